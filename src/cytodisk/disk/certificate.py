@@ -1,0 +1,121 @@
+"""The proof that a map is a bijection, from its arrays alone."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from shapely.geometry import LinearRing
+
+from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.geometry.exact import orientations
+from cytodisk.geometry.mesh import euler_characteristic, triangle_edges
+
+_ON_CIRCLE = 1e-12
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """Whether a map is one to one, and what speaks against it.
+
+    A piecewise linear map of a disk-type triangulation that keeps every triangle positive and takes the
+    boundary one to one onto a convex polygon's is a bijection. `faults` lists every condition that does not
+    hold; the map is valid when there is none.
+
+    Attributes
+    ----------
+    faults : tuple of str
+        In words; empty for a valid map.
+    flipped_in_cell, flipped_in_disk : tuple of int
+        Triangles whose area is not positive.
+    n_triangles : int
+    n_exact : int
+        Signs that floating point left in doubt and rational arithmetic decided.
+    euler_characteristic : int
+        1 for a topological disk.
+    """
+
+    faults: tuple[str, ...]
+    flipped_in_cell: tuple[int, ...]
+    flipped_in_disk: tuple[int, ...]
+    n_triangles: int
+    n_exact: int
+    euler_characteristic: int
+
+    @property
+    def valid(self) -> bool:
+        """True when every condition of the proof holds."""
+        return not self.faults
+
+
+def certify(
+    vertices_yx: FloatArray, vertices_uv: FloatArray, triangles: IntArray, boundary: IntArray
+) -> Certificate:
+    """Check every condition under which a map is a bijection.
+
+    Parameters
+    ----------
+    vertices_yx : ndarray of shape (V, 2) and dtype float
+        In the cell, (row, column).
+    vertices_uv : ndarray of shape (V, 2) and dtype float
+        In the disk, (u, v).
+    triangles : ndarray of shape (F, 3) and dtype int
+    boundary : ndarray of shape (B,) and dtype int
+        The boundary loop in order.
+
+    Returns
+    -------
+    Certificate
+        Never raises for a bad map: it says what is wrong.
+    """
+    in_cell, exact_cell = orientations(vertices_yx, triangles)
+    in_disk, exact_disk = orientations(vertices_uv[:, ::-1], triangles)
+    characteristic = euler_characteristic(triangles, len(vertices_yx))
+    faults = [f"{(sign <= 0).sum()} triangles are not positive in the {frame}"
+              for sign, frame in ((in_cell, "cell"), (in_disk, "disk")) if (sign <= 0).any()]
+    if characteristic != 1:
+        faults.append(f"the Euler characteristic is {characteristic}, not 1")
+    if len(np.unique(triangles)) != len(vertices_yx):
+        faults.append("a vertex belongs to no triangle")
+    faults += _boundary_faults(vertices_yx, vertices_uv, triangles, boundary)
+    return Certificate(
+        faults=tuple(faults),
+        flipped_in_cell=tuple(np.flatnonzero(in_cell <= 0).tolist()),
+        flipped_in_disk=tuple(np.flatnonzero(in_disk <= 0).tolist()),
+        n_triangles=len(triangles),
+        n_exact=exact_cell + exact_disk,
+        euler_characteristic=characteristic,
+    )
+
+
+def _boundary_faults(
+    vertices_yx: FloatArray, vertices_uv: FloatArray, triangles: IntArray, boundary: IntArray
+) -> list[str]:
+    faults = []
+    if not _is_the_loop(triangles, boundary, len(vertices_yx)):
+        faults.append("the boundary is not the one loop of edges that belong to one triangle")
+    if not LinearRing(vertices_yx[boundary]).is_simple:
+        faults.append("the boundary crosses itself in the cell")
+    on_circle = vertices_uv[boundary]
+    if np.abs(np.hypot(*on_circle.T) - 1.0).max() > _ON_CIRCLE:
+        faults.append("a boundary vertex is not on the unit circle")
+    if not _runs_round_once(on_circle):
+        faults.append("the boundary's angles do not increase strictly through one turn")
+    return faults
+
+
+def _is_the_loop(triangles: IntArray, boundary: IntArray, n_vertices: int) -> bool:
+    start, stop = triangle_edges(triangles).T
+    keys = start * n_vertices + stop
+    outer = np.sort(keys[~np.isin(keys, stop * n_vertices + start)])
+    loop = np.sort(boundary * n_vertices + np.roll(boundary, -1))
+    return len(np.unique(boundary)) == len(boundary) and np.array_equal(outer, loop)
+
+
+def _runs_round_once(on_circle: FloatArray) -> bool:
+    following = np.roll(on_circle, -1, axis=0)
+    corners = np.arange(len(on_circle))[:, None] + np.arange(3)
+    turns, _ = orientations(on_circle[:, ::-1], corners % len(on_circle))
+    steps = np.arctan2(
+        on_circle[:, 0] * following[:, 1] - on_circle[:, 1] * following[:, 0],
+        (on_circle * following).sum(axis=1),
+    )
+    return bool((turns > 0).all() and (steps > 0).all() and abs(steps.sum() - 2.0 * np.pi) < 1e-6)

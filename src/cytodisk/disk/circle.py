@@ -1,0 +1,74 @@
+"""Boundary → circle: each outline point gets its share of arc length as an angle (paper A.2.1 i)."""
+
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from cytodisk.arrays import FloatArray
+from cytodisk.errors import ParameterError
+from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
+
+Align: TypeAlias = Literal["upright"] | tuple[float, float] | float
+
+_SMOOTHING_PX = 1.0
+_LEAST_SHARE = 0.1  # of an edge's own length, that smoothing must leave
+
+
+def boundary_angles(outline_yx: FloatArray, align: Align = "upright") -> FloatArray:
+    """Angle on the circle of each outline point, in proportion to arc length.
+
+    Length is measured on a lightly smoothed copy, for the stair steps of a pixel outline overcount it by
+    up to 8 %, depending on direction.
+
+    Parameters
+    ----------
+    outline_yx : ndarray of shape (B, 2) and dtype float
+        Closed polygon from +x towards +y, (row, column) in pixels.
+    align : {"upright"}, (float, float) or float
+        Where the free rotation ends: "upright" brings the circle closest, in least squares along the
+        outline, to the outline's own directions from its centroid; a point (row, column) puts the nearest
+        outline point at angle 0; a number turns the upright disk by that many degrees, from +u towards +v.
+
+    Returns
+    -------
+    ndarray of shape (B,) and dtype float
+        In radians, strictly increasing, all within one turn.
+
+    Raises
+    ------
+    ParameterError
+        `align` is none of these.
+
+    References
+    ----------
+    u-Unwrap, appendix A.2.1 (i).
+    """
+    raw = edge_lengths(outline_yx)
+    lengths = np.maximum(edge_lengths(smooth_closed(outline_yx, _SMOOTHING_PX)), _LEAST_SHARE * raw)
+    turn = 2.0 * np.pi * np.cumsum(lengths) / lengths.sum()
+    angles = np.concatenate([[0.0], turn[:-1]])
+    return angles + _rotation(outline_yx, angles, lengths, align)
+
+
+def _rotation(outline_yx: FloatArray, angles: FloatArray, lengths: FloatArray, align: Align) -> float:
+    if isinstance(align, str) and align == "upright":
+        return _upright(outline_yx, angles, lengths)
+    try:
+        numbers = np.asarray(align, dtype=np.float64)
+    except (TypeError, ValueError):
+        numbers = np.full(3, np.nan)
+    if numbers.shape == () and np.isfinite(numbers):
+        return _upright(outline_yx, angles, lengths) + float(np.radians(numbers))
+    if numbers.shape == (2,) and np.isfinite(numbers).all():
+        nearest = np.square(outline_yx - numbers).sum(axis=1).argmin()
+        return -float(angles[nearest])
+    raise ParameterError(
+        f"align must be 'upright', a point (row, column) or an angle in degrees, got {align!r}"
+    )
+
+
+def _upright(outline_yx: FloatArray, angles: FloatArray, lengths: FloatArray) -> float:
+    away = outline_yx - centroid(outline_yx)
+    weight = lengths + np.roll(lengths, 1)
+    # argmin over φ of Σ weight |r exp(i (angle + φ)) - away|² is the phase of this sum, whatever r.
+    return float(np.angle(np.sum(weight * (away[:, 1] + 1j * away[:, 0]) * np.exp(-1j * angles))))

@@ -1,0 +1,283 @@
+"""`DiskMap`: the bijection between one cell and the unit disk."""
+
+from __future__ import annotations
+
+import json
+import os
+import zipfile
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+from scipy import ndimage
+
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.disk.certificate import Certificate, certify
+from cytodisk.disk.distortion import Distortion, distortion_of
+from cytodisk.errors import ParameterError, ReadError, SignalError
+from cytodisk.files import replacing
+from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline
+from cytodisk.geometry.mask import MaskReport
+
+Method: TypeAlias = Literal["newton", "harmonic"]
+Start: TypeAlias = Literal["cotangent", "uniform"]
+
+_FORMAT = 1
+
+
+@dataclass(frozen=True, eq=False)
+class DiskMap:
+    """One cell, its disk, and the one-to-one map between them.
+
+    Linear on every triangle; then stretched along the radius, so that the polygon that the boundary
+    vertices span in the disk fills the round disk.
+
+    Attributes
+    ----------
+    vertices_yx : ndarray of shape (V, 2) and dtype float
+        In the cell, (row, column) in pixels, pixel centres at integers.
+    vertices_uv : ndarray of shape (V, 2) and dtype float
+        In the unit disk, (u, v), u along x and v along y.
+    triangles : ndarray of shape (F, 3) and dtype int
+    boundary : ndarray of shape (B,) and dtype int
+        The boundary loop in order, from +x towards +y.
+    mask : ndarray of shape (H, W) and dtype bool
+        The cleaned mask that was mapped.
+    report : MaskReport
+        What cleaning changed.
+    method : {"newton", "harmonic"}
+    start : {"cotangent", "uniform"}
+        Weights of the harmonic map; "uniform" when cotangent weights turned a triangle over.
+    shape_weight, edge_length : float
+        As passed to `map_to_disk`; edge_length in pixels.
+    steps : int
+        Newton steps of the relaxation.
+    converged : bool
+        False when the relaxation stopped before its criterion; the map is valid all the same.
+    """
+
+    vertices_yx: FloatArray
+    vertices_uv: FloatArray
+    triangles: IntArray
+    boundary: IntArray
+    mask: BoolArray
+    report: MaskReport
+    method: Method
+    start: Start
+    shape_weight: float
+    edge_length: float
+    steps: int
+    converged: bool
+
+    @property
+    def outline_yx(self) -> FloatArray:
+        """The cell's outline, shape (B, 2), (row, column) in pixels."""
+        return self.vertices_yx[self.boundary]
+
+    @cached_property
+    def certificate(self) -> Certificate:
+        """The proof that the map is a bijection."""
+        return certify(self.vertices_yx, self.vertices_uv, self.triangles, self.boundary)
+
+    @cached_property
+    def distortion(self) -> Distortion:
+        """Area and angle distortion, by triangle and in sum."""
+        return distortion_of(self.vertices_yx, self.vertices_uv, self.triangles)
+
+    @cached_property
+    def boundary_angles(self) -> FloatArray:
+        """Angle of each boundary vertex in radians, strictly increasing through one turn, shape (B,)."""
+        angles = np.arctan2(self.vertices_uv[self.boundary, 1], self.vertices_uv[self.boundary, 0])
+        return np.unwrap(angles)
+
+    def to_disk(self, points_yx: Any, *, outside: Literal["nan", "nearest"] = "nan") -> FloatArray:
+        """Map points of the cell into the disk.
+
+        Parameters
+        ----------
+        points_yx : array_like of shape (..., 2)
+            (row, column) in pixels.
+        outside : {"nan", "nearest"}
+            What becomes of points outside the outline: NaN, or the image of the nearest outline point.
+
+        Returns
+        -------
+        ndarray of shape (..., 2) and dtype float
+            (u, v) in the unit disk.
+
+        Raises
+        ------
+        ParameterError
+            The last dimension is not 2, or `outside` is neither.
+        """
+        if outside not in ("nan", "nearest"):
+            raise ParameterError(f"outside must be 'nan' or 'nearest', got {outside!r}")
+        points, shape = _as_points(points_yx, "points_yx")
+        triangle, weights = self._in_cell(points)
+        inner = _interpolate(self.vertices_uv[self.triangles], triangle, weights)
+        uv = inner / self._radius_of_polygon(inner)[:, None]
+        lost = (triangle < 0) & np.isfinite(points).all(axis=1)
+        if outside == "nearest" and lost.any():
+            uv[lost] = self._nearest_on_circle(points[lost])
+        return uv.reshape(shape)
+
+    def to_cell(self, points_uv: Any) -> FloatArray:
+        """Map points of the disk into the cell; the exact inverse of `to_disk`.
+
+        Parameters
+        ----------
+        points_uv : array_like of shape (..., 2)
+            (u, v) in the unit disk.
+
+        Returns
+        -------
+        ndarray of shape (..., 2) and dtype float
+            (row, column) in pixels; NaN outside the disk.
+
+        Raises
+        ------
+        ParameterError
+            The last dimension is not 2.
+        """
+        points, shape = _as_points(points_uv, "points_uv")
+        inner = points * self._radius_of_polygon(points)[:, None]
+        triangle, weights = self._in_disk(inner)
+        return _interpolate(self.vertices_yx[self.triangles], triangle, weights).reshape(shape)
+
+    def image(self, signal: Any, size: int = 256) -> FloatArray:
+        """The signal on the disk, read from the cell by linear interpolation between pixels.
+
+        Parameters
+        ----------
+        signal : array_like of shape (H, W)
+            An image of the shape of the mask.
+        size : int
+            Pixels across the disk.
+
+        Returns
+        -------
+        ndarray of shape (size, size) and dtype float
+            Row along v, column along u, both from -1 to 1; NaN outside the disk.
+
+        Raises
+        ------
+        SignalError
+            The signal has another shape than the mask.
+        ParameterError
+            `size` is below 1.
+        """
+        values = np.asarray(signal, dtype=np.float64)
+        if values.shape != self.mask.shape:
+            raise SignalError(
+                f"signal has shape {values.shape}, the mask {self.mask.shape}: pass one channel of one frame"
+            )
+        if size < 1:
+            raise ParameterError(f"size must be at least 1, got {size}")
+        axis = (np.arange(size) + 0.5) / size * 2.0 - 1.0
+        v, u = np.meshgrid(axis, axis, indexing="ij")
+        points = self.to_cell(np.column_stack([u.ravel(), v.ravel()]))
+        inside = np.isfinite(points[:, 0])
+        out = np.full(size * size, np.nan)
+        out[inside] = ndimage.map_coordinates(values, points[inside].T, order=1, mode="nearest")
+        return out.reshape(size, size)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the map to a compressed `.npz` file that `load_map` reads back.
+
+        Parameters
+        ----------
+        path : path-like
+            Ends in `.npz`; written under a temporary name and then renamed.
+
+        Raises
+        ------
+        StudyError
+            The file cannot be written.
+        """
+        facts = {name: getattr(self, name) for name in _FACTS}
+        header = {"format": _FORMAT, "report": asdict(self.report), **facts}
+        with replacing(path) as temporary:
+            np.savez_compressed(
+                temporary,
+                header=np.array(json.dumps(header)),
+                mask=self.mask,
+                **{name: getattr(self, name) for name in _ARRAYS},
+            )
+
+    @cached_property
+    def _in_cell(self) -> TriangleLocator:
+        return TriangleLocator(self.vertices_yx, self.triangles)
+
+    @cached_property
+    def _in_disk(self) -> TriangleLocator:
+        return TriangleLocator(self.vertices_uv, self.triangles)
+
+    def _radius_of_polygon(self, points_uv: FloatArray) -> FloatArray:
+        """Distance from the centre to the boundary's polygon in the direction of each point."""
+        start = self.boundary_angles
+        ends = np.append(start[1:], start[0] + 2.0 * np.pi)
+        angle = np.arctan2(points_uv[:, 1], points_uv[:, 0])
+        angle = start[0] + np.mod(angle - start[0], 2.0 * np.pi)
+        edge = np.clip(np.searchsorted(start, angle, side="right") - 1, 0, len(start) - 1)
+        middle, half = 0.5 * (start + ends)[edge], 0.5 * (ends - start)[edge]
+        return np.asarray(np.cos(half) / np.cos(angle - middle))
+
+    def _nearest_on_circle(self, points_yx: FloatArray) -> FloatArray:
+        edge, fraction = nearest_on_outline(points_yx, self.outline_yx)
+        circle = self.vertices_uv[self.boundary]
+        start, stop = circle[edge], circle[(edge + 1) % len(circle)]
+        chord = start + fraction[:, None] * (stop - start)
+        return np.asarray(chord / np.hypot(chord[:, 0], chord[:, 1])[:, None])
+
+
+_ARRAYS = ("vertices_yx", "vertices_uv", "triangles", "boundary")
+_FACTS = ("method", "start", "shape_weight", "edge_length", "steps", "converged")
+
+
+def load_map(path: str | os.PathLike[str]) -> DiskMap:
+    """Read a map that `DiskMap.save` wrote.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    DiskMap
+        Its certificate is computed anew from the arrays that were read.
+
+    Raises
+    ------
+    ReadError
+        The file is missing, damaged, or not a map.
+    """
+    try:
+        with np.load(path) as file:
+            header = json.loads(str(file["header"]))
+            if header["format"] != _FORMAT:
+                raise ReadError(f"{path} is a map of format {header['format']}: this version reads {_FORMAT}")
+            return DiskMap(
+                mask=file["mask"],
+                report=MaskReport(**header["report"]),
+                **{name: file[name] for name in _ARRAYS},
+                **{name: header[name] for name in _FACTS},
+            )
+    except FileNotFoundError as error:
+        raise ReadError(f"{path} does not exist: pass a file that DiskMap.save wrote") from error
+    except (zipfile.BadZipFile, KeyError, ValueError, OSError, EOFError) as error:
+        if isinstance(error, ReadError):
+            raise
+        raise ReadError(f"{path} is not a map that DiskMap.save wrote: {error}") from error
+
+
+def _as_points(points: Any, name: str) -> tuple[FloatArray, tuple[int, ...]]:
+    array = np.asarray(points, dtype=np.float64)
+    if array.ndim == 0 or array.shape[-1] != 2:
+        raise ParameterError(f"{name} must have 2 as its last dimension, got shape {array.shape}")
+    return array.reshape(-1, 2), array.shape
+
+
+def _interpolate(corners: FloatArray, triangle: IntArray, weights: FloatArray) -> FloatArray:
+    """Weighted mean of a triangle's corner values; NaN where the weights are."""
+    return np.asarray((weights[:, :, None] * corners[triangle]).sum(axis=1))

@@ -1,0 +1,75 @@
+"""How far a map is from keeping areas and angles."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.geometry.mesh import hat_gradients, triangle_areas
+
+PERCENTILES = (1, 5, 25, 50, 75, 95, 99)
+
+
+@dataclass(frozen=True)
+class Distortion:
+    """Distortion of a map, by triangle and in sum.
+
+    Attributes
+    ----------
+    triangle_area_ratio : ndarray of shape (F,) and dtype float
+        λ, a triangle's share of the disk's area over its share of the cell's; 1 is perfect.
+    triangle_stretch : ndarray of shape (F,) and dtype float
+        K = σ₁ / σ₂, the ratio of the singular values of the map's Jacobian; 1 keeps angles.
+    area_share : ndarray of shape (F,) and dtype float
+        Share of each triangle in the cell's area.
+    """
+
+    triangle_area_ratio: FloatArray
+    triangle_stretch: FloatArray
+    area_share: FloatArray
+
+    @property
+    def area(self) -> float:
+        """Mean of |log λ| over the cell's area; 0 is perfect, 0.1 is about 10 % off."""
+        return float(self.area_share @ np.abs(np.log(self.triangle_area_ratio)))
+
+    @property
+    def angle(self) -> float:
+        """Median of K over the cell's area; 1 is conformal."""
+        return self.angle_percentiles[50]
+
+    @property
+    def area_percentiles(self) -> dict[int, float]:
+        """Percentiles of λ over the cell's area."""
+        return self._percentiles(self.triangle_area_ratio)
+
+    @property
+    def angle_percentiles(self) -> dict[int, float]:
+        """Percentiles of K over the cell's area."""
+        return self._percentiles(self.triangle_stretch)
+
+    def _percentiles(self, values: FloatArray) -> dict[int, float]:
+        order = np.argsort(values)
+        below = np.cumsum(self.area_share[order])
+        at = np.searchsorted(below, np.array(PERCENTILES) / 100.0 * below[-1])
+        return dict(zip(PERCENTILES, values[order[at]].tolist(), strict=True))
+
+
+def distortion_of(vertices_yx: FloatArray, vertices_uv: FloatArray, triangles: IntArray) -> Distortion:
+    """Distortion of a piecewise linear map from cell to disk.
+
+    Parameters
+    ----------
+    vertices_yx, vertices_uv : ndarray of shape (V, 2) and dtype float
+    triangles : ndarray of shape (F, 3) and dtype int
+
+    Returns
+    -------
+    Distortion
+    """
+    cell = triangle_areas(vertices_yx, triangles)
+    disk = triangle_areas(vertices_uv[:, ::-1], triangles)
+    share = cell / cell.sum()
+    jacobian = np.einsum("tki,tkj->tij", vertices_uv[triangles], hat_gradients(vertices_yx, triangles))
+    singular = np.linalg.svd(jacobian, compute_uv=False)
+    return Distortion(disk / disk.sum() / share, singular[:, 0] / singular[:, 1], share)

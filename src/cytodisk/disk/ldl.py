@@ -1,0 +1,28 @@
+"""Sparse symmetric systems with one pattern and many values."""
+
+import numpy as np
+import qdldl
+from scipy import sparse
+
+from cytodisk.arrays import FloatArray
+
+
+class Factorisation:
+    """LDLᵀ of a symmetric matrix; a second matrix of the same pattern costs less than the first.
+
+    Parameters
+    ----------
+    upper : scipy.sparse.csc_matrix of shape (N, N)
+        Upper triangle with the diagonal; positive definite.
+    """
+
+    def __init__(self, upper: sparse.csc_matrix):
+        self._solver = qdldl.Solver(upper, upper=True)
+
+    def update(self, upper: sparse.csc_matrix) -> None:
+        """Factor another matrix of the same pattern."""
+        self._solver.update(upper, upper=True)
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solution for one right-hand side of shape (N,)."""
+        return np.asarray(self._solver.solve(right))

@@ -1,0 +1,114 @@
+"""`map_to_disk`: from a mask to a certified map."""
+
+from typing import Any
+
+import numpy as np
+
+from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.disk.circle import Align, boundary_angles
+from cytodisk.disk.disk_map import DiskMap, Method
+from cytodisk.disk.harmonic import harmonic_map
+from cytodisk.disk.newton import relax
+from cytodisk.errors import MapError, ParameterError
+from cytodisk.geometry.mask import clean_mask
+from cytodisk.geometry.mesh import mesh_inside
+from cytodisk.geometry.outline import trace_outline
+
+
+def map_to_disk(
+    mask: Any,
+    *,
+    method: Method = "newton",
+    shape_weight: float = 0.005,
+    edge_length: float = 1.0,
+    align: Align = "upright",
+) -> DiskMap:
+    """Map one cell one to one onto the unit disk.
+
+    The mask is first reduced to its largest piece without holes (`clean_mask`); the map's `report` says what
+    that changed.
+
+    Parameters
+    ----------
+    mask : array_like of shape (H, W)
+        One cell: boolean, or numbers with one value beside 0.
+    method : {"newton", "harmonic"}
+        "newton": windows of equal area in the disk come from equal areas of the cell, as nearly as the
+        boundary allows. "harmonic": the paper's map before relaxation; it keeps angles where it can and
+        shrinks protrusions.
+    shape_weight : float
+        For "newton", how much shape counts against area, > 0: towards 0 equiareal, larger towards conformal.
+    edge_length : float
+        Spacing of mesh vertices at the edge of the cell, in pixels, 0.25 to 10.
+    align : {"upright"}, (float, float) or float
+        Rotation of the disk: "upright" looks like the cell; a point (row, column) puts the nearest outline
+        point at angle 0; a number turns the upright disk by that many degrees from +u towards +v.
+
+    Returns
+    -------
+    DiskMap
+        With a valid certificate.
+
+    Raises
+    ------
+    MaskError
+        The mask is not the mask of one cell.
+    ParameterError
+        A parameter is out of its range.
+    MapError
+        No valid map was found; never an invalid map instead.
+
+    References
+    ----------
+    u-Unwrap, section 3 (ii) and appendix A.2.1.
+    """
+    _check(method, shape_weight, edge_length)
+    cleaned, report = clean_mask(mask)
+    crop, corner = _crop(cleaned)
+    outline = trace_outline(crop)
+    mesh = mesh_inside(outline, crop, edge_length=edge_length)
+    angles = boundary_angles(outline, _relative(align, corner))
+    uv, start = harmonic_map(mesh, np.column_stack([np.cos(angles), np.sin(angles)]))
+    steps, converged = 0, True
+    if method == "newton":
+        relaxed = relax(mesh, uv, shape_weight)
+        uv, steps, converged = relaxed.vertices_uv, relaxed.steps, relaxed.converged
+    disk = DiskMap(
+        vertices_yx=mesh.vertices_yx + corner,
+        vertices_uv=uv,
+        triangles=mesh.triangles,
+        boundary=mesh.boundary,
+        mask=cleaned,
+        report=report,
+        method=method,
+        start=start,
+        shape_weight=float(shape_weight),
+        edge_length=float(edge_length),
+        steps=steps,
+        converged=converged,
+    )
+    if not disk.certificate.valid:
+        raise MapError(f"no valid map was found: {'; '.join(disk.certificate.faults)}")
+    return disk
+
+
+def _check(method: str, shape_weight: float, edge_length: float) -> None:
+    if method not in ("newton", "harmonic"):
+        raise ParameterError(f"method must be 'newton' or 'harmonic', got {method!r}")
+    if not 0 < shape_weight < np.inf:
+        raise ParameterError(f"shape_weight must be above 0, got {shape_weight!r}: 0.005 is the default")
+    if not 0.25 <= edge_length <= 10:
+        raise ParameterError(f"edge_length must be 0.25 to 10 pixels, got {edge_length!r}: 1 is the default")
+
+
+def _crop(mask: BoolArray) -> tuple[BoolArray, FloatArray]:
+    """The mask's bounding box and its first corner, so that a shifted mask gives the same mesh."""
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    crop = mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    return crop, np.array([rows[0], columns[0]], dtype=np.float64)
+
+
+def _relative(align: Align, corner: FloatArray) -> Align:
+    if isinstance(align, tuple | list) and len(align) == 2:
+        return (align[0] - corner[0], align[1] - corner[1])
+    return align

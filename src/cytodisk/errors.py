@@ -1,0 +1,45 @@
+"""Every error a user can cause. A message names the argument, what came and what to do.
+
+All inherit `CytodiskError`, which is a `ValueError`; a leaf also inherits the built-in that a caller
+would catch for such a fault.
+"""
+
+
+class CytodiskError(ValueError):
+    """Base of all errors that cytodisk raises on purpose."""
+
+
+class MaskError(CytodiskError):
+    """The mask cannot be used: wrong type or shape, empty, or against a policy."""
+
+
+class SignalError(CytodiskError):
+    """The signal does not fit the mask, or is not an image."""
+
+
+class WindowError(CytodiskError):
+    """The window grid or a request on it makes no sense."""
+
+
+class ParameterError(CytodiskError):
+    """A parameter is out of its range or unknown."""
+
+
+class MapError(CytodiskError, RuntimeError):
+    """The cell could not be mapped onto the disk with a valid certificate."""
+
+
+class MeshError(MapError):
+    """The outline could not be triangulated into a topological disk."""
+
+
+class ReadError(CytodiskError, OSError):
+    """A file is missing, is not an image, or is damaged."""
+
+
+class StudyError(CytodiskError, OSError):
+    """A study folder cannot be written, read or resumed."""
+
+
+class MissingPartError(CytodiskError, ImportError):
+    """An optional part is not installed; the message names the `pip install` to type."""

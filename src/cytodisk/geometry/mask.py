@@ -1,0 +1,209 @@
+"""A raw mask → one cell without holes, and a report of every change that took."""
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from scipy import ndimage
+
+from cytodisk.arrays import BoolArray
+from cytodisk.errors import MaskError, ParameterError
+
+_EIGHT = np.ones((3, 3), dtype=bool)
+_FOUR = ndimage.generate_binary_structure(2, 1)
+
+
+@dataclass(frozen=True)
+class MaskReport:
+    """What cleaning found and changed. Areas in pixels.
+
+    Attributes
+    ----------
+    area_px : int
+        Pixels of the cleaned mask.
+    components : int
+        Connected pieces (8-connected) that came.
+    dropped_px : int
+        Pixels of all pieces but the largest; they are not part of the cell any more.
+    holes : int
+        Holes (4-connected background) that were filled.
+    filled_px : int
+        Pixels of those holes; they are part of the cell now.
+    border_share : float
+        Share of the cell's pixel edges that lie on the image border, 0 to 1; above 0 the cell may go
+        on outside the image.
+    """
+
+    area_px: int
+    components: int
+    dropped_px: int
+    holes: int
+    filled_px: int
+    border_share: float
+
+    @property
+    def touches_border(self) -> bool:
+        """Whether any pixel of the cell lies on the image border."""
+        return self.border_share > 0
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a user should know, in words; empty when nothing was changed or cut off."""
+        notes = []
+        if self.components > 1:
+            share = self.dropped_px / (self.dropped_px + self.area_px - self.filled_px)
+            notes.append(f"{self.components - 1} fragments dropped ({self.dropped_px} px, {share:.1%})")
+        if self.holes:
+            notes.append(f"{self.holes} holes filled ({self.filled_px} px)")
+        if self.touches_border:
+            notes.append(f"touches the image border ({self.border_share:.1%} of its edge)")
+        return tuple(notes)
+
+
+def parse_mask(mask: Any) -> BoolArray:
+    """Check that an array is the mask of one cell and make it boolean.
+
+    Parameters
+    ----------
+    mask : array_like of shape (H, W)
+        Boolean, or numbers with at most one value beside 0 (for floats: exactly 0 and 1).
+
+    Returns
+    -------
+    ndarray of shape (H, W) and dtype bool
+
+    Raises
+    ------
+    MaskError
+        Not 2D, several labels, floats other than 0 and 1, or empty.
+    """
+    array = np.asarray(mask)
+    if array.ndim != 2:
+        raise MaskError(
+            f"mask must be 2D, got shape {array.shape}: pass one image, for a stack one frame at a time"
+        )
+    if array.dtype == bool:
+        parsed: BoolArray = array
+    elif np.issubdtype(array.dtype, np.integer):
+        parsed = _parse_integers(array)
+    elif np.issubdtype(array.dtype, np.floating):
+        parsed = _parse_floats(array)
+    else:
+        raise MaskError(f"mask must be boolean or numeric, got dtype {array.dtype}: pass mask > 0")
+    if not parsed.any():
+        raise MaskError(f"mask of shape {array.shape} is empty: no pixel belongs to the cell")
+    return parsed
+
+
+def _parse_integers(array: np.ndarray[Any, Any]) -> BoolArray:
+    inside: BoolArray = array != 0
+    values = array[inside]
+    if values.size and values.min() != values.max():
+        labels = np.unique(values)
+        raise MaskError(
+            f"mask holds {len(labels)} labels ({labels[0]} … {labels[-1]}): pass one cell, as mask == label"
+        )
+    return inside
+
+
+def _parse_floats(array: np.ndarray[Any, Any]) -> BoolArray:
+    if np.isin(array, (0.0, 1.0)).all():
+        return np.asarray(array == 1.0)
+    raise MaskError(
+        f"mask is {array.dtype} with values other than 0 and 1 "
+        f"({np.nanmin(array):g} … {np.nanmax(array):g}{', NaN' if np.isnan(array).any() else ''}): "
+        "threshold it first, as image > threshold"
+    )
+
+
+def clean_mask(
+    mask: Any,
+    *,
+    holes: Literal["fill", "error"] = "fill",
+    fragments: Literal["largest", "error"] = "largest",
+    border: Literal["flag", "error"] = "flag",
+) -> tuple[BoolArray, MaskReport]:
+    """Reduce a mask to one piece without holes, and count every change.
+
+    Nothing else is changed: no opening, no closing, since thin protrusions are data.
+
+    Parameters
+    ----------
+    mask : array_like of shape (H, W)
+        One cell: boolean, or numbers with one value beside 0.
+    holes : {"fill", "error"}
+        What to do with background enclosed by the cell (4-connected).
+    fragments : {"largest", "error"}
+        What to do with several pieces (8-connected): keep the largest (the first of equals), or raise.
+    border : {"flag", "error"}
+        What to do with a cell at the image border: note it in the report, or raise.
+
+    Returns
+    -------
+    mask : ndarray of shape (H, W) and dtype bool
+    report : MaskReport
+
+    Raises
+    ------
+    MaskError
+        The mask is not one, is empty, or a policy is "error" and its case came.
+    ParameterError
+        An unknown policy.
+
+    References
+    ----------
+    u-Unwrap, section 2: a map exists for any shape without holes, which filling makes sure of.
+    """
+    _check_policies(holes, fragments, border)
+    raw = parse_mask(mask)
+    piece, components, dropped = _largest_piece(raw)
+    solid, n_holes = _filled(piece)
+    report = MaskReport(
+        area_px=int(solid.sum()),
+        components=components,
+        dropped_px=dropped,
+        holes=n_holes,
+        filled_px=int(solid.sum() - piece.sum()),
+        border_share=_border_share(solid),
+    )
+    if fragments == "error" and report.components > 1:
+        raise MaskError(f"mask has {components} pieces: keep one, or pass fragments='largest'")
+    if holes == "error" and report.holes:
+        raise MaskError(f"mask has {n_holes} holes ({report.filled_px} px): fill them, or pass holes='fill'")
+    if border == "error" and report.touches_border:
+        raise MaskError("mask touches the image border: leave the cell out, or pass border='flag'")
+    return solid, report
+
+
+def _check_policies(holes: str, fragments: str, border: str) -> None:
+    known = (("holes", holes, "fill"), ("fragments", fragments, "largest"), ("border", border, "flag"))
+    for name, value, other in known:
+        if value not in (other, "error"):
+            raise ParameterError(f"{name} must be {other!r} or 'error', got {value!r}")
+
+
+def _largest_piece(raw: BoolArray) -> tuple[BoolArray, int, int]:
+    labels, count = ndimage.label(raw, structure=_EIGHT)
+    if count == 1:
+        return raw, 1, 0
+    areas = np.bincount(labels.ravel())[1:]
+    piece: BoolArray = labels == 1 + int(areas.argmax())
+    return piece, int(count), int(areas.sum() - areas.max())
+
+
+def _filled(piece: BoolArray) -> tuple[BoolArray, int]:
+    # Background is 4-connected where the cell is 8-connected, so that a diagonal contact closes a hole.
+    labels, count = ndimage.label(np.pad(~piece, 1, constant_values=True), structure=_FOUR)
+    if count == 1:
+        return piece, 0
+    solid: BoolArray = (labels != labels[0, 0])[1:-1, 1:-1]
+    return solid, int(count) - 1
+
+
+def _border_share(solid: BoolArray) -> float:
+    on_border = sum(int(side.sum()) for side in (solid[0], solid[-1], solid[:, 0], solid[:, -1]))
+    if not on_border:
+        return 0.0
+    padded = np.pad(solid, 1)
+    edges = sum(int((padded ^ np.roll(padded, 1, axis)).sum()) for axis in (0, 1))
+    return on_border / edges

@@ -1,0 +1,197 @@
+"""Outline → mesh: a triangulation of the cell's inside that is fit to be mapped."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pythoncdt
+
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.errors import MeshError
+from cytodisk.geometry.lattice import graded_lattice
+from cytodisk.geometry.polygon import signed_area
+
+_AREA_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Triangulation of a topological disk.
+
+    The first B vertices are the outline's, in its order: vertex_yx[:B] is the boundary loop.
+
+    Attributes
+    ----------
+    vertices_yx : ndarray of shape (V, 2) and dtype float
+        (row, column) in pixels.
+    triangles : ndarray of shape (F, 3) and dtype int
+        Vertex indices, from +x towards +y: every area is positive.
+    n_boundary : int
+        B, the number of boundary vertices.
+    """
+
+    vertices_yx: FloatArray
+    triangles: IntArray
+    n_boundary: int
+
+    @property
+    def boundary(self) -> IntArray:
+        """Indices of the boundary vertices in order, shape (B,)."""
+        return np.arange(self.n_boundary)
+
+
+def mesh_inside(
+    outline_yx: FloatArray, mask: BoolArray, *, edge_length: float = 1.0, growth: float = 0.5
+) -> Mesh:
+    """Triangulate the inside of an outline, fine at the edge and coarse inside.
+
+    Every outline point is a boundary vertex. No interior edge joins two boundary vertices: such edges are
+    split at their middle, for a triangle with three pinned corners could never change its area, and
+    Tutte's theorem, which vouches for the harmonic map, asks for it.
+
+    Parameters
+    ----------
+    outline_yx : ndarray of shape (B, 2) and dtype float
+        As `trace_outline` returns it, (row, column) in pixels.
+    mask : ndarray of shape (H, W) and dtype bool
+        The mask that the outline was traced around.
+    edge_length : float
+        Spacing of interior vertices at the edge, in pixels.
+    growth : float
+        How much the spacing grows for each pixel of depth.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    MeshError
+        An invariant does not hold: Euler characteristic 1, every vertex used, all areas positive, sum of
+        areas equal to the outline's to 1e-9.
+    """
+    points = np.concatenate([outline_yx, graded_lattice(mask, edge_length, growth)])
+    n_boundary = len(outline_yx)
+    triangles = _constrained_delaunay(points, n_boundary)
+    mesh = Mesh(*_split_chords(points, triangles, n_boundary), n_boundary)
+    _check(mesh, outline_yx)
+    return mesh
+
+
+def triangle_areas(points_ab: FloatArray, triangles: IntArray) -> FloatArray:
+    """Signed area of each triangle, for points (row, column) or for points (v, u).
+
+    Parameters
+    ----------
+    points_ab : ndarray of shape (V, 2) and dtype float
+    triangles : ndarray of shape (F, 3) and dtype int
+
+    Returns
+    -------
+    ndarray of shape (F,) and dtype float
+        Positive from +x towards +y.
+    """
+    a, b, c = (points_ab[triangles[:, corner]] for corner in range(3))
+    ab, ac = b - a, c - a
+    return np.asarray(0.5 * (ab[:, 1] * ac[:, 0] - ab[:, 0] * ac[:, 1]))
+
+
+def hat_gradients(vertices_yx: FloatArray, triangles: IntArray) -> FloatArray:
+    """Gradient (d/dx, d/dy) of each triangle's three hat functions, 1 at one corner and 0 at the others.
+
+    Parameters
+    ----------
+    vertices_yx : ndarray of shape (V, 2) and dtype float
+        (row, column) in pixels.
+    triangles : ndarray of shape (F, 3) and dtype int
+        All areas positive.
+
+    Returns
+    -------
+    ndarray of shape (F, 3, 2) and dtype float
+        In 1 / pixel.
+    """
+    corner = vertices_yx[triangles]
+    opposite = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)
+    twice = 2.0 * triangle_areas(vertices_yx, triangles)
+    return np.stack([-opposite[..., 0], opposite[..., 1]], axis=-1) / twice[:, None, None]
+
+
+def triangle_edges(triangles: IntArray) -> IntArray:
+    """The three edges of each triangle as (from, to), shape (3 F, 2); edge k of triangle t in row k F + t."""
+    return np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+
+
+def _constrained_delaunay(points_yx: FloatArray, n_boundary: int) -> IntArray:
+    triangulation = pythoncdt.Triangulation(
+        pythoncdt.VertexInsertionOrder.AUTO, pythoncdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0
+    )
+    triangulation.insert_vertices(np.ascontiguousarray(points_yx[:, ::-1]))
+    loop = np.arange(n_boundary, dtype=np.uint32)
+    triangulation.insert_edges(np.column_stack([loop, np.roll(loop, -1)]))
+    triangulation.erase_outer_triangles()
+    return triangulation.triangles_array()["vertices"].astype(np.int64)
+
+
+def _split_chords(
+    points_yx: FloatArray, triangles: IntArray, n_boundary: int
+) -> tuple[FloatArray, IntArray]:
+    """Put a vertex on the middle of each interior edge between two boundary vertices."""
+    start, stop = triangle_edges(triangles).T
+    pinned = (start < n_boundary) & (stop < n_boundary)
+    on_outline = pinned & ((start + 1) % n_boundary == stop)
+    chord = pinned & ~on_outline
+    low, high = np.minimum(start, stop)[chord], np.maximum(start, stop)[chord]
+    chords, which = np.unique(low * n_boundary + high, return_inverse=True)
+    middle = np.full(len(start), -1)
+    middle[chord] = len(points_yx) + which
+    low, high = chords // n_boundary, chords % n_boundary
+    return (
+        np.concatenate([points_yx, 0.5 * (points_yx[low] + points_yx[high])]),
+        _subdivide(triangles, middle.reshape(3, -1).T),
+    )
+
+
+def _subdivide(triangles: IntArray, middle: IntArray) -> IntArray:
+    """Replace triangles by 2, 3 or 4, where `middle` (F, 3) holds a vertex for edge k, k + 1 or -1."""
+    parts = [triangles[(middle < 0).all(axis=1)]]
+    count = (middle >= 0).sum(axis=1)
+    for n_split in (1, 2, 3):
+        some = count == n_split
+        # Turn each triangle so that its split edges come first.
+        first = np.argmax(
+            (middle[some] >= 0) & (np.roll(middle[some], 1, axis=1) < 0) if n_split < 3 else middle[some] >= 0,
+            axis=1,
+        )
+        turn = (first[:, None] + np.arange(3)) % 3
+        a, b, c = np.take_along_axis(triangles[some], turn, axis=1).T
+        p, q, r = np.take_along_axis(middle[some], turn, axis=1).T
+        pieces = {
+            1: [(a, p, c), (p, b, c)],
+            2: [(p, b, q), (a, p, q), (a, q, c)],
+            3: [(a, p, r), (p, b, q), (r, q, c), (p, q, r)],
+        }[n_split]
+        parts += [np.column_stack(piece) for piece in pieces]
+    return np.concatenate(parts)
+
+
+def euler_characteristic(triangles: IntArray, n_vertices: int) -> int:
+    """Vertices - edges + triangles; 1 for a topological disk."""
+    edges = np.sort(triangle_edges(triangles), axis=1)
+    return n_vertices - len(np.unique(edges[:, 0] * n_vertices + edges[:, 1])) + len(triangles)
+
+
+def _check(mesh: Mesh, outline_yx: FloatArray) -> None:
+    areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
+    n_vertices = len(mesh.vertices_yx)
+    faults = []
+    if euler_characteristic(mesh.triangles, n_vertices) != 1:
+        faults.append("its Euler characteristic is not 1")
+    if len(np.unique(mesh.triangles)) != n_vertices:
+        faults.append("a vertex belongs to no triangle")
+    if areas.min() <= 0:
+        faults.append(f"{(areas <= 0).sum()} triangles have no area")
+    outline_area = signed_area(outline_yx)
+    if abs(areas.sum() - outline_area) > _AREA_TOLERANCE * outline_area:
+        faults.append(f"its area {areas.sum()} is not the outline's {outline_area}")
+    if faults:
+        raise MeshError(f"mesh of the outline ({len(outline_yx)} points) is not a disk: {'; '.join(faults)}")
