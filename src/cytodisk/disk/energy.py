@@ -76,18 +76,6 @@ def _curvatures(s1: float, s2: float, weight: float, curvature: FloatArray) -> t
 
 
 @njit(cache=True)
-def _add_block(
-    values: FloatArray, one: int, two: int, diagonal: bool, scale: float, row: FloatArray, column: FloatArray
-) -> None:
-    """Add scale · row columnᵀ to the 2×2 block whose columns start at `one` and `two`."""
-    values[one] += scale * row[0] * column[0]
-    values[two] += scale * row[0] * column[1]
-    values[two + 1] += scale * row[1] * column[1]
-    if not diagonal:
-        values[one + 1] += scale * row[1] * column[0]
-
-
-@njit(cache=True)
 def derivatives(
     uv: FloatArray,
     triangles: IntArray,
@@ -137,10 +125,19 @@ def derivatives(
                 one, two = first[t, k, l], second[t, k, l]
                 if one < 0:
                     continue
+                uu = cross = vu = vv = 0.0
                 for m in range(4):
                     if curvature[m] > 0.0:
-                        scale = share[t] * curvature[m]
-                        _add_block(values, one, two, k == l, scale, modes[m, k], modes[m, l])
+                        scaled_u, scaled_v = curvature[m] * modes[m, k, 0], curvature[m] * modes[m, k, 1]
+                        uu += scaled_u * modes[m, l, 0]
+                        cross += scaled_u * modes[m, l, 1]
+                        vu += scaled_v * modes[m, l, 0]
+                        vv += scaled_v * modes[m, l, 1]
+                values[one] += share[t] * uu
+                values[two] += share[t] * cross
+                values[two + 1] += share[t] * vv
+                if k != l:
+                    values[one + 1] += share[t] * vu
 
 
 @njit(cache=True)
