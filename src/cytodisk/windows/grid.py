@@ -1,0 +1,127 @@
+"""`PolarWindows`: a grid of layers and sectors on the unit disk."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.errors import WindowError
+
+if TYPE_CHECKING:
+    from cytodisk.disk.disk_map import DiskMap
+    from cytodisk.windows.cell_windows import CellWindows
+
+Spacing: TypeAlias = Literal["area", "radius"]
+
+
+@dataclass(frozen=True)
+class PolarWindows:
+    """Layers from the edge (0) inwards, sectors from angle 0 (+u) towards +v.
+
+    Window (layer, sector) has number layer · sectors + sector.
+
+    Attributes
+    ----------
+    layers, sectors : int
+    spacing : {"area", "radius"}
+    """
+
+    layers: int
+    sectors: int
+    spacing: Spacing = "area"
+
+    @property
+    def n_windows(self) -> int:
+        """layers × sectors."""
+        return self.layers * self.sectors
+
+    @property
+    def radii(self) -> FloatArray:
+        """Radii between layers, from 1 at the edge to 0 at the centre, shape (layers + 1,)."""
+        steps = np.linspace(1.0, 0.0, self.layers + 1)
+        return np.sqrt(steps) if self.spacing == "area" else steps
+
+    @property
+    def angles(self) -> FloatArray:
+        """Angles between sectors in radians, from 0 to 2π, shape (sectors + 1,)."""
+        return np.linspace(0.0, 2.0 * np.pi, self.sectors + 1)
+
+    @property
+    def centres_uv(self) -> FloatArray:
+        """Middle of each window in the disk, half of its area on either side, shape (windows, 2)."""
+        outer, inner = self.radii[:-1], self.radii[1:]
+        radius = np.sqrt(0.5 * (outer**2 + inner**2))[:, None]
+        angle = 0.5 * (self.angles[:-1] + self.angles[1:])
+        return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1).reshape(-1, 2)
+
+    def window_of(self, points_uv: FloatArray) -> IntArray:
+        """Number of the window that holds each point.
+
+        Parameters
+        ----------
+        points_uv : ndarray of shape (N, 2) and dtype float
+            (u, v) in the disk; points on or beyond the rim belong to layer 0.
+
+        Returns
+        -------
+        ndarray of shape (N,) and dtype int
+        """
+        radius = np.hypot(points_uv[:, 0], points_uv[:, 1])
+        layer = np.searchsorted(-self.radii[1:-1], -radius, side="left")
+        turn = np.arctan2(points_uv[:, 1], points_uv[:, 0]) / (2.0 * np.pi)
+        sector = np.floor(np.mod(turn, 1.0) * self.sectors).astype(np.int64)
+        return np.asarray(layer * self.sectors + np.minimum(sector, self.sectors - 1))
+
+    def on(self, disk: DiskMap) -> CellWindows:
+        """Carry the grid onto a cell.
+
+        Parameters
+        ----------
+        disk : DiskMap
+
+        Returns
+        -------
+        CellWindows
+            No window is empty, whatever the grid.
+        """
+        from cytodisk.windows.cell_windows import CellWindows
+        from cytodisk.windows.weights import window_weights
+
+        return CellWindows(self, disk, window_weights(self, disk))
+
+
+def polar_windows(layers: int = 10, sectors: int = 60, spacing: Spacing = "area") -> PolarWindows:
+    """Grid of windows on the unit disk.
+
+    Parameters
+    ----------
+    layers : int
+        Rings, at least 1; layer 0 is at the cell's edge.
+    sectors : int
+        Wedges, at least 1.
+    spacing : {"area", "radius"}
+        "area": all windows have the same area of disk, so on an equiareal map of cell. "radius": rings of
+        equal width, as in the paper.
+
+    Returns
+    -------
+    PolarWindows
+
+    Raises
+    ------
+    WindowError
+        A count is not a positive whole number, or the spacing is unknown.
+
+    References
+    ----------
+    u-Unwrap, section 3, "Windowing the cell using the disk parameterization".
+    """
+    for name, value in (("layers", layers), ("sectors", sectors)):
+        if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
+            raise WindowError(f"{name} must be a whole number of at least 1, got {value!r}")
+    if spacing not in ("area", "radius"):
+        raise WindowError(f"spacing must be 'area' or 'radius', got {spacing!r}")
+    return PolarWindows(int(layers), int(sectors), spacing)

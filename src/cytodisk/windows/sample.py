@@ -1,0 +1,158 @@
+"""Signal in windows: mean, spread, extremes and quantiles by one matrix product."""
+
+from collections.abc import Sequence
+from typing import Any, Literal, Protocol
+
+import numpy as np
+import xarray as xr
+from scipy import sparse
+
+from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.errors import ParameterError, SignalError
+
+
+class Windows(Protocol):
+    """What `sample` needs of windows on a cell, polar or edge-based."""
+
+    @property
+    def mask(self) -> BoolArray: ...
+    @property
+    def areas(self) -> FloatArray: ...
+    @property
+    def weights(self) -> sparse.csr_array: ...
+
+
+def sample(
+    windows: Windows,
+    signal: Any,
+    *,
+    quantiles: Sequence[float] = (),
+    nan: Literal["propagate", "omit"] = "propagate",
+) -> xr.Dataset:
+    """Statistics of a signal in each window, read from the raw pixels.
+
+    Parameters
+    ----------
+    windows : CellWindows
+        Windows on one cell.
+    signal : array_like of shape (H, W) or (C, H, W), or DataArray with dims (channel,) y, x
+        Of the shape of the mask.
+    quantiles : sequence of float
+        Weighted quantiles to add, each 0 to 1.
+    nan : {"propagate", "omit"}
+        What a NaN pixel does to its windows: make them NaN, or be left out. Either way it is counted.
+
+    Returns
+    -------
+    Dataset with dims (layer, sector), before them channel if the signal has it
+        mean, sd (of the pixels, weighted), min, max (over pixels with any share in the window), n_pixels (sum
+        of pixel shares that were sampled, so Σ n_pixels · mean is the cell's whole intensity), n_nan (sum of
+        pixel shares that are NaN), area (square pixels), and quantile with its own dim on request.
+
+    Raises
+    ------
+    SignalError
+        The signal does not fit the mask or is not numeric.
+    ParameterError
+        A quantile is outside 0 to 1, or `nan` is unknown.
+    """
+    _check(quantiles, nan)
+    values, channels = _parse_signal(signal, windows.mask.shape)
+    weights = windows.weights
+    pixels = values[:, windows.mask]
+    shape = (len(values), *windows.areas.shape)
+    tables = [_statistics(weights, row, tuple(quantiles), nan) for row in pixels]
+    dims = ("channel", "layer", "sector")
+    data: dict[str, Any] = {
+        name: (dims, np.stack([table[name] for table in tables]).reshape(shape)) for name in _NAMES
+    }
+    if quantiles:
+        stacked = np.stack([table["quantile"] for table in tables]).reshape(*shape, len(quantiles))
+        data["quantile"] = ((*dims, "q"), stacked)
+    data["area"] = (("layer", "sector"), windows.areas)
+    coords: dict[str, Any] = {"layer": np.arange(shape[1]), "sector": np.arange(shape[2])}
+    if quantiles:
+        coords["q"] = list(quantiles)
+    dataset = xr.Dataset(data, coords, attrs={"area_unit": "px²"})
+    if channels is None:
+        return dataset.isel(channel=0)
+    return dataset.assign_coords(channel=channels)
+
+
+_NAMES = ("mean", "sd", "n_pixels", "n_nan", "min", "max")
+
+
+def _check(quantiles: Sequence[float], nan: str) -> None:
+    wrong = [q for q in quantiles if not 0 <= q <= 1]
+    if wrong:
+        raise ParameterError(f"quantiles must be 0 to 1, got {wrong}")
+    if nan not in ("propagate", "omit"):
+        raise ParameterError(f"nan must be 'propagate' or 'omit', got {nan!r}")
+
+
+def _parse_signal(signal: Any, shape: tuple[int, ...]) -> tuple[FloatArray, list[str] | None]:
+    """Values of shape (C, H, W), and the channels' names if the signal has such a dim."""
+    names: list[str] | None = None
+    if isinstance(signal, xr.DataArray):
+        extra = [str(dim) for dim in signal.dims if dim not in ("channel", "y", "x")]
+        if extra:
+            raise SignalError(f"signal has the dims {extra} beside channel, y, x: pass one frame, as signal.isel({extra[0]}=0)")
+        if "channel" in signal.dims:
+            signal = signal.transpose("channel", "y", "x")
+            names = [str(name) for name in signal["channel"].to_numpy()]
+    array = np.asarray(signal)
+    if array.dtype.kind not in "biuf":
+        raise SignalError(f"signal must be numeric, got dtype {array.dtype}")
+    if array.ndim not in (2, 3) or array.shape[-2:] != shape:
+        raise SignalError(
+            f"signal has shape {array.shape}, the mask {shape}: it must be (H, W) or (channel, H, W) of the same H, W"
+        )
+    if array.ndim == 3 and names is None:
+        names = [str(number) for number in range(len(array))]
+    return array.astype(np.float64, copy=False).reshape(-1, *shape), names
+
+
+def _statistics(
+    weights: sparse.csr_array, values: FloatArray, quantiles: tuple[float, ...], nan: str
+) -> dict[str, FloatArray]:
+    missing = np.isnan(values)
+    n_nan = np.asarray(weights @ missing.astype(np.float64))
+    if missing.any():
+        weights = sparse.csr_array(weights @ sparse.diags_array((~missing).astype(np.float64)))
+        weights.eliminate_zeros()
+        values = np.where(missing, 0.0, values)
+    n_pixels = np.asarray(weights.sum(axis=1)).ravel()
+    window = np.repeat(np.arange(weights.shape[0]), np.diff(weights.indptr))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = np.asarray(weights @ values) / n_pixels
+        deviation = values[weights.indices] - mean[window]
+        squares = np.bincount(window, weights.data * deviation**2, minlength=len(mean))
+        sd = np.sqrt(squares / n_pixels)
+    low, high = np.full(len(mean), np.inf), np.full(len(mean), -np.inf)
+    np.minimum.at(low, window, values[weights.indices])
+    np.maximum.at(high, window, values[weights.indices])
+    table = {"mean": mean, "sd": sd, "min": low, "max": high}
+    if quantiles:
+        table["quantile"] = _quantiles(weights, window, values, quantiles)
+    lost = n_pixels == 0 if nan == "omit" else n_nan > 0
+    for column in table.values():
+        column[lost] = np.nan
+    return table | {"n_pixels": n_pixels, "n_nan": n_nan}
+
+
+def _quantiles(
+    weights: sparse.csr_array, window: Any, values: FloatArray, quantiles: tuple[float, ...]
+) -> FloatArray:
+    """Smallest value at which a window's cumulated weight reaches the quantile, shape (windows, Q)."""
+    held = values[weights.indices]
+    order = np.lexsort((held, window))
+    running = np.concatenate([[0.0], np.cumsum(weights.data[order])])
+    first, last = weights.indptr[:-1], weights.indptr[1:]
+    out = np.full((weights.shape[0], len(quantiles)), np.nan)
+    filled = last > first
+    total = running[last] - running[first]
+    for column, quantile in enumerate(quantiles):
+        wanted = running[first] + quantile * total * (1.0 - 1e-12)
+        place = np.clip(np.searchsorted(running[1:], wanted, side="left"), first, np.maximum(last - 1, 0))
+        out[filled, column] = held[order][place[filled]]
+    return out
