@@ -111,7 +111,9 @@ def star(
     reach = body_radius + arm_length - 0.5 * arm_width
     angle = 2.0 * np.pi * np.arange(arms) / arms
     tips = reach * np.column_stack([np.sin(angle), np.cos(angle)])
-    strokes = np.concatenate([[_dot(0.0, 0.0, body_radius)], [(0.0, 0.0, *tip, 0.5 * arm_width) for tip in tips]])
+    strokes = np.concatenate(
+        [[_dot(0.0, 0.0, body_radius)], [(0.0, 0.0, *tip, 0.5 * arm_width) for tip in tips]]
+    )
     return _paint(strokes, margin)
 
 
@@ -219,7 +221,9 @@ def branching(
     return _paint(np.array(strokes), margin)
 
 
-def random_smooth(seed: int = 0, *, radius: float = 50.0, roughness: float = 0.25, margin: int = 8) -> BoolArray:
+def random_smooth(
+    seed: int = 0, *, radius: float = 50.0, roughness: float = 0.25, margin: int = 8
+) -> BoolArray:
     """Mask of a blob whose radius is a random trigonometric polynomial of the angle.
 
     Parameters
@@ -291,12 +295,20 @@ def random_spiky(
     _at_least("spike_length", spike_length, 0)
     _at_least("spike_width", spike_width, 1)
     random = np.random.default_rng(seed)
-    strokes = [_dot(*random.normal(0.0, 0.15 * radius, 2), radius * random.uniform(0.6, 1.0)) for _ in range(4)]
+    strokes = [
+        _dot(*random.normal(0.0, 0.15 * radius, 2), radius * random.uniform(0.6, 1.0)) for _ in range(4)
+    ]
     for _ in range(spikes):
         direction = random.uniform(0.0, 2.0 * np.pi)
         away = radius + spike_length * random.uniform(0.25, 1.0)
         strokes.append(
-            (0.0, 0.0, away * np.sin(direction), away * np.cos(direction), 0.5 * random.uniform(1.0, spike_width))
+            (
+                0.0,
+                0.0,
+                away * np.sin(direction),
+                away * np.cos(direction),
+                0.5 * random.uniform(1.0, spike_width),
+            )
         )
     return _paint(np.array(strokes), margin)
 
@@ -356,6 +368,8 @@ def _distance_to_segment(
 ) -> FloatArray:
     step_y, step_x = stop[0] - start[0], stop[1] - start[1]
     square = step_y**2 + step_x**2
-    share = ((row - start[0]) * step_y + (column - start[1]) * step_x) / square if square else np.zeros(row.shape)
+    share = (
+        ((row - start[0]) * step_y + (column - start[1]) * step_x) / square if square else np.zeros(row.shape)
+    )
     share = np.clip(share, 0.0, 1.0)
     return np.asarray(np.hypot(row - start[0] - share * step_y, column - start[1] - share * step_x))

@@ -38,7 +38,10 @@ def random_mask(kind: str, seed: int) -> BoolArray:
 
 def _smooth(random: np.random.Generator) -> BoolArray:
     return random_smooth(
-        _seed(random), radius=random.uniform(1.0, 40.0), roughness=random.uniform(0.0, 0.6), margin=_margin(random)
+        _seed(random),
+        radius=random.uniform(1.0, 40.0),
+        roughness=random.uniform(0.0, 0.6),
+        margin=_margin(random),
     )
 
 
