@@ -1,0 +1,31 @@
+"""Cells, signals and random masks with known answers, for the demo, the docs, tests and benchmarks."""
+
+from cytodisk.simulate.cells import (
+    branching,
+    disk,
+    dumbbell,
+    ellipse,
+    migrating,
+    random_smooth,
+    random_spiky,
+    star,
+)
+from cytodisk.simulate.random_masks import KINDS, random_mask
+from cytodisk.simulate.signals import SimulatedCell, cell_with_signal, linear_signal, ring_signal
+
+__all__ = [
+    "KINDS",
+    "SimulatedCell",
+    "branching",
+    "cell_with_signal",
+    "disk",
+    "dumbbell",
+    "ellipse",
+    "linear_signal",
+    "migrating",
+    "random_mask",
+    "random_smooth",
+    "random_spiky",
+    "ring_signal",
+    "star",
+]

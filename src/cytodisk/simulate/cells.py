@@ -1,11 +1,10 @@
 """Masks of cells whose geometry is known, because they are drawn from a few numbers."""
 
-from typing import Any
-
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import ParameterError
+from cytodisk.simulate.drawing import all_angles, check_at_least, dot, inside_radius, paint, pixel_grid
 
 _SMOOTH_MODES = 6
 _TURN_PER_STEP = 0.35  # radians, standard deviation of a process's change of direction
@@ -31,7 +30,7 @@ def disk(radius: float = 60.0, margin: int = 8) -> BoolArray:
     ParameterError
         A number is out of its range.
     """
-    _at_least("radius", radius, 0.5)
+    check_at_least("radius", radius, 0.5)
     return ellipse((radius, radius), margin=margin)
 
 
@@ -61,13 +60,13 @@ def ellipse(
     """
     if np.shape(semi_axes) != (2,):
         raise ParameterError(f"semi_axes must be two numbers (along y, along x), got {semi_axes!r}")
-    _at_least("semi_axes", min(semi_axes), 0.5)
-    _at_least("margin", margin, 0)
+    check_at_least("semi_axes", min(semi_axes), 0.5)
+    check_at_least("margin", margin, 0)
     turn = np.radians(angle)
     along_y, along_x = semi_axes
     half_height = np.hypot(along_y * np.cos(turn), along_x * np.sin(turn))
     half_width = np.hypot(along_y * np.sin(turn), along_x * np.cos(turn))
-    y, x = _grid(half_height + margin, half_width + margin)
+    y, x = pixel_grid(half_height + margin, half_width + margin)
     across, along = y * np.cos(turn) - x * np.sin(turn), x * np.cos(turn) + y * np.sin(turn)
     return np.asarray((across / along_y) ** 2 + (along / along_x) ** 2 <= 1.0 + 1e-12)
 
@@ -104,17 +103,17 @@ def star(
     ParameterError
         A number is out of its range.
     """
-    _at_least("arms", arms, 1)
-    _at_least("body_radius", body_radius, 1)
-    _at_least("arm_length", arm_length, 0)
-    _at_least("arm_width", arm_width, 1)
+    check_at_least("arms", arms, 1)
+    check_at_least("body_radius", body_radius, 1)
+    check_at_least("arm_length", arm_length, 0)
+    check_at_least("arm_width", arm_width, 1)
     reach = body_radius + arm_length - 0.5 * arm_width
     angle = 2.0 * np.pi * np.arange(arms) / arms
     tips = reach * np.column_stack([np.sin(angle), np.cos(angle)])
     strokes = np.concatenate(
-        [[_dot(0.0, 0.0, body_radius)], [(0.0, 0.0, *tip, 0.5 * arm_width) for tip in tips]]
+        [[dot(0.0, 0.0, body_radius)], [(0.0, 0.0, *tip, 0.5 * arm_width) for tip in tips]]
     )
-    return _paint(strokes, margin)
+    return paint(strokes, margin)
 
 
 def dumbbell(
@@ -142,13 +141,13 @@ def dumbbell(
     ParameterError
         A number is out of its range.
     """
-    _at_least("radius", radius, 1)
-    _at_least("neck_length", neck_length, 0)
-    _at_least("neck_width", neck_width, 1)
+    check_at_least("radius", radius, 1)
+    check_at_least("neck_length", neck_length, 0)
+    check_at_least("neck_width", neck_width, 1)
     away = radius + 0.5 * neck_length
-    return _paint(
+    return paint(
         np.array(
-            [_dot(0.0, -away, radius), _dot(0.0, away, radius), (0.0, -away, 0.0, away, 0.5 * neck_width)]
+            [dot(0.0, -away, radius), dot(0.0, away, radius), (0.0, -away, 0.0, away, 0.5 * neck_width)]
         ),
         margin,
     )
@@ -193,13 +192,13 @@ def branching(
     ParameterError
         A number is out of its range.
     """
-    _at_least("soma_radius", soma_radius, 1)
-    _at_least("processes", processes, 0)
-    _at_least("process_length", process_length, 0)
-    _at_least("process_width", process_width, 1)
-    _at_least("branch_every", branch_every, 1)
+    check_at_least("soma_radius", soma_radius, 1)
+    check_at_least("processes", processes, 0)
+    check_at_least("process_length", process_length, 0)
+    check_at_least("process_width", process_width, 1)
+    check_at_least("branch_every", branch_every, 1)
     random = np.random.default_rng(seed)
-    strokes = [_dot(0.0, 0.0, soma_radius)]
+    strokes = [dot(0.0, 0.0, soma_radius)]
     first = random.uniform(0.0, 2.0 * np.pi)
     growing = [
         (0.0, 0.0, first + 2.0 * np.pi * k / processes, soma_radius + process_length, process_width)
@@ -218,7 +217,7 @@ def branching(
             width, turn = max(0.75 * width, min(width, 1.5)), turn + 0.5
             growing.append((end_y, end_x, direction - 0.5, left - step, width))
         growing.append((end_y, end_x, direction + (0.0 if in_soma else turn), left - step, width))
-    return _paint(np.array(strokes), margin)
+    return paint(np.array(strokes), margin)
 
 
 def random_smooth(
@@ -246,13 +245,13 @@ def random_smooth(
     ParameterError
         A number is out of its range.
     """
-    _at_least("radius", radius, 1)
-    _at_least("roughness", roughness, 0)
+    check_at_least("radius", radius, 1)
+    check_at_least("roughness", roughness, 0)
     mode = np.arange(1, _SMOOTH_MODES + 1)
     coefficient = np.random.default_rng(seed).normal(size=(2, _SMOOTH_MODES)) / mode
-    angle = _angles()
+    angle = all_angles()
     waves = coefficient[0] @ np.cos(np.outer(mode, angle)) + coefficient[1] @ np.sin(np.outer(mode, angle))
-    return _inside_radius(radius * np.exp(min(roughness, 1.0) * waves / waves.std()), margin)
+    return inside_radius(radius * np.exp(min(roughness, 1.0) * waves / waves.std()), margin)
 
 
 def random_spiky(
@@ -290,14 +289,15 @@ def random_spiky(
     ParameterError
         A number is out of its range.
     """
-    _at_least("radius", radius, 1)
-    _at_least("spikes", spikes, 0)
-    _at_least("spike_length", spike_length, 0)
-    _at_least("spike_width", spike_width, 1)
+    check_at_least("radius", radius, 1)
+    check_at_least("spikes", spikes, 0)
+    check_at_least("spike_length", spike_length, 0)
+    check_at_least("spike_width", spike_width, 1)
     random = np.random.default_rng(seed)
-    strokes = [
-        _dot(*random.normal(0.0, 0.15 * radius, 2), radius * random.uniform(0.6, 1.0)) for _ in range(4)
-    ]
+    strokes = []
+    for _ in range(4):
+        y, x = random.normal(0.0, 0.15 * radius, 2).tolist()
+        strokes.append(dot(y, x, radius * random.uniform(0.6, 1.0)))
     for _ in range(spikes):
         direction = random.uniform(0.0, 2.0 * np.pi)
         away = radius + spike_length * random.uniform(0.25, 1.0)
@@ -310,66 +310,52 @@ def random_spiky(
                 0.5 * random.uniform(1.0, spike_width),
             )
         )
-    return _paint(np.array(strokes), margin)
+    return paint(np.array(strokes), margin)
 
 
-def _at_least(name: str, value: Any, least: float) -> None:
-    if not (np.isscalar(value) and np.isreal(value) and least <= value < np.inf):
-        raise ParameterError(f"{name} must be a number of at least {least}, got {value!r}: pass a larger one")
+def migrating(seed: int = 0, *, size: float = 1.0, margin: int = 8) -> BoolArray:
+    """Mask of a migrating cell: a broad ruffled lamellipodium towards +x and a thin bent tail towards -x.
 
+    Parameters
+    ----------
+    seed : int
+        The same seed gives the same cell.
+    size : float
+        1 gives about 15 000 pixels; lengths grow with it. At least 0.1.
+    margin : int
+        Pixels of background on every side, at least 0.
 
-def _grid(half_height: float, half_width: float) -> tuple[FloatArray, FloatArray]:
-    """Row and column of every pixel, counted from the central one."""
-    rows, columns = int(np.floor(half_height + 1e-9)), int(np.floor(half_width + 1e-9))
-    y, x = np.mgrid[-rows : rows + 1, -columns : columns + 1].astype(np.float64)
-    return y, x
+    Returns
+    -------
+    ndarray of shape (H, W) and dtype bool
 
-
-def _angles() -> FloatArray:
-    return np.linspace(-np.pi, np.pi, 721)
-
-
-def _inside_radius(radius_of_angle: FloatArray, margin: int) -> BoolArray:
-    """Pixels nearer to the centre than a radius given at `_angles()`."""
-    _at_least("margin", margin, 0)
-    reach = radius_of_angle.max() + margin
-    y, x = _grid(reach, reach)
-    return np.asarray(np.hypot(y, x) <= np.interp(np.arctan2(y, x), _angles(), radius_of_angle))
-
-
-def _dot(y: float, x: float, radius: float) -> tuple[float, float, float, float, float]:
-    return y, x, y, x, radius
-
-
-def _paint(strokes: FloatArray, margin: int) -> BoolArray:
-    """Pixels within a stroke's half width of its segment; rows (y, x, end y, end x, half width).
-
-    Pixel centres are at integers; the origin of the strokes is a pixel centre. Strokes are at least as wide
-    as it takes to stay 8-connected.
+    Raises
+    ------
+    ParameterError
+        A number is out of its range.
     """
-    _at_least("margin", margin, 0)
-    half = np.maximum(strokes[:, 4], 0.5 * np.sqrt(2.0))
-    points = np.concatenate([strokes[:, :2], strokes[:, 2:4]])
-    reach = np.concatenate([half, half])[:, None]
-    low = np.floor((points - reach).min(axis=0)).astype(int) - margin
-    high = np.ceil((points + reach).max(axis=0)).astype(int) + margin
-    mask = np.zeros(high - low + 1, dtype=bool)
-    for (y, x, end_y, end_x, _), width in zip(strokes, half, strict=True):
-        start = np.floor(np.minimum((y, x), (end_y, end_x)) - width).astype(int)
-        stop = np.ceil(np.maximum((y, x), (end_y, end_x)) + width).astype(int) + 1
-        row, column = np.mgrid[start[0] : stop[0], start[1] : stop[1]]
-        window = mask[start[0] - low[0] : stop[0] - low[0], start[1] - low[1] : stop[1] - low[1]]
-        window |= _distance_to_segment(row, column, (y, x), (end_y, end_x)) <= width + 1e-9
-    return mask
+    check_at_least("size", size, 0.1)
+    check_at_least("margin", margin, 0)
+    random = np.random.default_rng(seed)
+    strokes = np.concatenate([_fan(random), _tail(random)])
+    return paint(size * strokes, margin)
 
 
-def _distance_to_segment(
-    row: Any, column: Any, start: tuple[float, float], stop: tuple[float, float]
-) -> FloatArray:
-    step_y, step_x = stop[0] - start[0], stop[1] - start[1]
-    square = step_y**2 + step_x**2
-    share = (
-        ((row - start[0]) * step_y + (column - start[1]) * step_x) / square if square else np.zeros(row.shape)
-    )
-    share = np.clip(share, 0.0, 1.0)
-    return np.asarray(np.hypot(row - start[0] - share * step_y, column - start[1] - share * step_x))
+def _fan(random: np.random.Generator) -> FloatArray:
+    """Spokes of a body that is wide at its front, where its edge is ruffled."""
+    angle = np.linspace(-np.pi, np.pi, 720, endpoint=False)
+    front = np.exp(-((angle / 1.3) ** 4))
+    mode = np.arange(4, 15)
+    ruffles = random.normal(size=mode.size) / np.sqrt(mode) @ np.cos(np.outer(mode, angle) + mode[:, None])
+    reach = 55.2 + 26.0 * front + 2.5 * front * ruffles
+    nothing = np.zeros_like(angle)
+    return np.column_stack([nothing, nothing, reach * np.sin(angle), reach * np.cos(angle), nothing + 1.0])
+
+
+def _tail(random: np.random.Generator) -> FloatArray:
+    """A bent process towards -x that narrows to 4 px."""
+    along = np.linspace(-30.0, -125.0, 40)
+    across = random.choice([-1.0, 1.0]) * random.uniform(5.0, 14.0) * np.sin((along + 30.0) / 40.0)
+    half_width = 2.0 + 36.0 * np.exp((along + 30.0) / 16.0)
+    knots = np.column_stack([across, along])
+    return np.column_stack([knots[:-1], knots[1:], half_width[1:]])

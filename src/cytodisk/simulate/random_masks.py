@@ -1,6 +1,7 @@
 """Random masks of every kind that has broken a map somewhere: for tests and benchmarks."""
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 from scipy import ndimage
@@ -69,7 +70,7 @@ def _branching(random: np.random.Generator) -> BoolArray:
 
 
 def _percolation(random: np.random.Generator) -> BoolArray:
-    """A cluster of sites occupied at random near the threshold at which clusters are largest and raggedest."""
+    """The largest cluster of sites occupied at random, near the threshold where clusters are raggedest."""
     size = int(random.integers(5, 65))
     sites = random.random((size, size)) < random.uniform(0.35, 0.65)
     sites[size // 2, size // 2] = True
@@ -82,8 +83,9 @@ def _line(random: np.random.Generator) -> BoolArray:
     """A polyline one pixel wide, in any direction."""
     corners = random.integers(0, int(random.integers(3, 80)), size=(int(random.integers(2, 5)), 2))
     mask = np.zeros(corners.max(axis=0) + 2, dtype=bool)
-    for start, stop in zip(corners[:-1], corners[1:], strict=True):
-        mask[line(*start, *stop)] = True
+    for start, stop in pairwise(corners):
+        row, column = line(*start, *stop)  # type: ignore[no-untyped-call]
+        mask[row, column] = True
     return mask
 
 
@@ -146,7 +148,7 @@ def _few(random: np.random.Generator) -> BoolArray:
 
 
 def _block(random: np.random.Generator, height: int, width: int) -> BoolArray:
-    mask = np.zeros(random.integers((height, width), 8), dtype=bool)
+    mask = np.zeros((int(random.integers(height, 8)), int(random.integers(width, 8))), dtype=bool)
     row = int(random.integers(0, mask.shape[0] - height + 1))
     column = int(random.integers(0, mask.shape[1] - width + 1))
     mask[row : row + height, column : column + width] = True

@@ -1,0 +1,74 @@
+"""Draw masks on a pixel grid from strokes and from radii."""
+
+from typing import Any
+
+import numpy as np
+
+from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.errors import ParameterError
+
+
+def check_at_least(name: str, value: Any, least: float) -> None:
+    """Raise unless a parameter is a finite number that is large enough."""
+    number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+    if not (number and least <= value < np.inf):
+        raise ParameterError(f"{name} must be a number of at least {least}, got {value!r}: pass a larger one")
+
+
+def pixel_grid(half_height: float, half_width: float) -> tuple[FloatArray, FloatArray]:
+    """Row and column of every pixel, counted from the central one."""
+    rows, columns = int(np.floor(half_height + 1e-9)), int(np.floor(half_width + 1e-9))
+    y, x = np.mgrid[-rows : rows + 1, -columns : columns + 1].astype(np.float64)
+    return y, x
+
+
+def all_angles() -> FloatArray:
+    """Every half degree of a turn, both ends included, in radians."""
+    return np.linspace(-np.pi, np.pi, 721)
+
+
+def inside_radius(radius_of_angle: FloatArray, margin: int) -> BoolArray:
+    """Pixels nearer to the centre than a radius given at `all_angles()`."""
+    check_at_least("margin", margin, 0)
+    reach = radius_of_angle.max() + margin
+    y, x = pixel_grid(reach, reach)
+    return np.asarray(np.hypot(y, x) <= np.interp(np.arctan2(y, x), all_angles(), radius_of_angle))
+
+
+def dot(y: float, x: float, radius: float) -> tuple[float, float, float, float, float]:
+    """Stroke of no length: a round dot."""
+    return y, x, y, x, radius
+
+
+def paint(strokes: FloatArray, margin: int) -> BoolArray:
+    """Pixels within a stroke's half width of its segment; rows (y, x, end y, end x, half width).
+
+    Pixel centres are at integers; the origin of the strokes is a pixel centre. Strokes are at least as wide
+    as it takes to stay 8-connected.
+    """
+    check_at_least("margin", margin, 0)
+    half = np.maximum(strokes[:, 4], 0.5 * np.sqrt(2.0))
+    points = np.concatenate([strokes[:, :2], strokes[:, 2:4]])
+    reach = np.concatenate([half, half])[:, None]
+    low = np.floor((points - reach).min(axis=0)).astype(int) - margin
+    high = np.ceil((points + reach).max(axis=0)).astype(int) + margin
+    mask = np.zeros(high - low + 1, dtype=bool)
+    for (y, x, end_y, end_x, _), width in zip(strokes, half, strict=True):
+        start = np.floor(np.minimum((y, x), (end_y, end_x)) - width).astype(int)
+        stop = np.ceil(np.maximum((y, x), (end_y, end_x)) + width).astype(int) + 1
+        row, column = np.mgrid[start[0] : stop[0], start[1] : stop[1]]
+        window = mask[start[0] - low[0] : stop[0] - low[0], start[1] - low[1] : stop[1] - low[1]]
+        window |= _distance_to_segment(row, column, (y, x), (end_y, end_x)) <= width + 1e-9
+    return mask
+
+
+def _distance_to_segment(
+    row: Any, column: Any, start: tuple[float, float], stop: tuple[float, float]
+) -> FloatArray:
+    step_y, step_x = stop[0] - start[0], stop[1] - start[1]
+    square = step_y**2 + step_x**2
+    share = (
+        ((row - start[0]) * step_y + (column - start[1]) * step_x) / square if square else np.zeros(row.shape)
+    )
+    share = np.clip(share, 0.0, 1.0)
+    return np.asarray(np.hypot(row - start[0] - share * step_y, column - start[1] - share * step_x))
