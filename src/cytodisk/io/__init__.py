@@ -1,0 +1,1 @@
+"""Read images and masks; write and read a study folder."""

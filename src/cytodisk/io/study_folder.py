@@ -1,0 +1,272 @@
+"""A study: the folder that a run writes its results to, piece by piece, and that can be read back."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from cytodisk.disk.disk_map import DiskMap, load_map
+from cytodisk.errors import ReadError, StudyError
+from cytodisk.files import replacing
+from cytodisk.io.tables import CELL_COLUMNS, WINDOW_COLUMNS, schema
+
+PARAMETERS, PROVENANCE = "parameters.toml", "provenance.json"
+CELLS, WINDOWS = "cells.parquet", "windows.parquet"
+MAPS, FIGURES, _PARTS = "maps", "figures", ".parts"
+_OWN = (PARAMETERS, PROVENANCE, CELLS, WINDOWS, MAPS, FIGURES, _PARTS)
+_CELLS_PER_GROUP = 64
+
+
+class StudyFolder:
+    """The writing side of a study: one part a cell, merged into the tables at the end.
+
+    A part's last file marks it as done; every file is written under a temporary name and renamed. So a run
+    that is killed at any moment loses only the cells it was at, and another run can do the rest.
+    """
+
+    def __init__(self, path: Path, provenance: dict[str, Any]):
+        self.path = path
+        self.provenance = provenance
+
+    @classmethod
+    def start(
+        cls,
+        path: str | os.PathLike[str],
+        provenance: dict[str, Any],
+        *,
+        resume: bool = False,
+        overwrite: bool = False,
+    ) -> StudyFolder:
+        """Open a folder for a run.
+
+        Parameters
+        ----------
+        path : path-like
+            Is made if need be.
+        provenance : dict
+            Must hold "fingerprint": what the results depend on. Two runs with one fingerprint have the same
+            results.
+        resume : bool
+            Go on in a folder that holds part of the same run.
+        overwrite : bool
+            Remove a study that is there.
+
+        Returns
+        -------
+        StudyFolder
+
+        Raises
+        ------
+        StudyError
+            The folder holds something else, or another run, or cannot be written.
+        """
+        folder = Path(path)
+        if folder.exists() and not folder.is_dir():
+            raise StudyError(f"output {folder} is a file: pass a folder")
+        if folder.exists() and any(folder.iterdir()):
+            _make_room(folder, provenance, resume, overwrite)
+        study = cls(folder, provenance)
+        try:
+            for name in (MAPS, FIGURES, _PARTS):
+                (folder / name).mkdir(parents=True, exist_ok=True)
+            for left_over in folder.rglob(".*.tmp.*"):  # of a run that was killed while writing
+                left_over.unlink()
+        except OSError as error:
+            raise StudyError(f"output folder {folder} cannot be written: {error.strerror}") from error
+        study.note("status", "running")
+        return study
+
+    def note(self, name: str, value: Any) -> None:
+        """Set an entry of the provenance and write it."""
+        self.provenance[name] = value
+        _write_json(self.path / PROVENANCE, self.provenance)
+
+    def has(self, cell: int) -> bool:
+        """Whether a cell's part is complete."""
+        return self._part(cell, "json").exists()
+
+    def map_path(self, cell: int) -> Path:
+        """Where a cell's map stands."""
+        return self.path / MAPS / f"cell_{cell:05d}.npz"
+
+    def add(self, row: dict[str, Any], windows: dict[str, Any] | None) -> None:
+        """Write a cell's part: its windows, then its row.
+
+        Parameters
+        ----------
+        row : dict
+            Values for `CELL_COLUMNS`; missing ones are null.
+        windows : dict of str to array, or None
+            Columns for `WINDOW_COLUMNS`; None for a cell without a map.
+        """
+        if windows is not None:
+            table = pa.table(windows, schema=schema(WINDOW_COLUMNS, self._length_unit))
+            with replacing(self._part(row["cell"], "parquet")) as temporary:
+                pq.write_table(table, temporary)
+        _write_json(self._part(row["cell"], "json"), row)
+
+    def rows(self) -> list[dict[str, Any]]:
+        """The rows of all complete parts, in the order of cells."""
+        return [
+            json.loads(part.read_text(encoding="utf-8"))
+            for part in sorted((self.path / _PARTS).glob("[0-9]*.json"))
+        ]
+
+    def finish(self) -> None:
+        """Merge the parts into the tables and mark the study as complete."""
+        rows = self.rows()
+        cells = pa.Table.from_pylist(
+            [{name: row.get(name) for name, _, _ in CELL_COLUMNS} for row in rows],
+            schema=schema(CELL_COLUMNS, self._length_unit),
+        )
+        with replacing(self.path / WINDOWS) as temporary:
+            self._merge_windows([row["cell"] for row in rows], temporary)
+        with replacing(self.path / CELLS) as temporary:
+            pq.write_table(cells, temporary)
+        self.note("status", "complete")
+        shutil.rmtree(self.path / _PARTS)
+
+    def _merge_windows(self, cells: list[int], target: Path) -> None:
+        with pq.ParquetWriter(target, schema(WINDOW_COLUMNS, self._length_unit)) as writer:
+            for first in range(0, len(cells), _CELLS_PER_GROUP):
+                parts = [self._part(cell, "parquet") for cell in cells[first : first + _CELLS_PER_GROUP]]
+                tables = [pq.read_table(part) for part in parts if part.exists()]
+                if tables:
+                    writer.write_table(pa.concat_tables(tables).combine_chunks())
+
+    def _part(self, cell: int, suffix: str) -> Path:
+        return self.path / _PARTS / f"{cell:08d}.{suffix}"
+
+    @property
+    def _length_unit(self) -> str:
+        return str(self.provenance["length_unit"])
+
+
+@dataclass(frozen=True)
+class Study:
+    """The reading side of a study.
+
+    Attributes
+    ----------
+    path : Path
+    cells : DataFrame
+        One row a cell, with its status and the reason; units in `cells.attrs["units"]`.
+    windows : DataFrame
+        One row a cell, time, channel, layer and sector; units in `windows.attrs["units"]`.
+    provenance : dict
+        Versions, inputs with their hashes, parameters, times.
+    """
+
+    path: Path
+    cells: pd.DataFrame
+    windows: pd.DataFrame
+    provenance: dict[str, Any]
+
+    def map(self, cell: int) -> DiskMap:
+        """Read the map of one cell.
+
+        Parameters
+        ----------
+        cell : int
+            Its number in the tables.
+
+        Returns
+        -------
+        DiskMap
+
+        Raises
+        ------
+        ReadError
+            The cell has no map, as its row in `cells` says.
+        """
+        path = self.path / MAPS / f"cell_{cell:05d}.npz"
+        rows = self.cells[self.cells["cell"] == cell]
+        if rows.empty:
+            raise ReadError(f"study {self.path} has no cell {cell}: it has {len(self.cells)} cells from 0")
+        if not path.exists():
+            raise ReadError(f"cell {cell} of {self.path} has no map: {rows['reason'].iloc[0]}")
+        return load_map(path)
+
+
+def open_study(path: str | os.PathLike[str]) -> Study:
+    """Read a study folder.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    ReadError
+        The folder is not a study, is damaged, or its run is not complete.
+    """
+    folder = Path(path)
+    provenance = _read_provenance(folder)
+    if provenance is None:
+        raise ReadError(f"{folder} is no study: it has no readable {PROVENANCE}")
+    if provenance.get("status") != "complete":
+        raise ReadError(f"study {folder} is not complete: run the same command again with --resume")
+    try:
+        return Study(folder, _read_table(folder / CELLS), _read_table(folder / WINDOWS), provenance)
+    except (OSError, pa.ArrowException) as error:
+        raise ReadError(f"study {folder} is damaged: {error}") from error
+
+
+def _read_table(path: Path) -> pd.DataFrame:
+    table = pq.read_table(path)
+    frame: pd.DataFrame = table.to_pandas()
+    units = {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in table.schema}
+    frame.attrs["units"] = units
+    return frame
+
+
+def _make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite: bool) -> None:
+    there = _read_provenance(folder)
+    if there is None:
+        raise StudyError(f"output folder {folder} is not empty and holds no study: pass another folder")
+    if overwrite:
+        for name in _OWN:
+            target = folder / name
+            if target.is_dir():
+                shutil.rmtree(target)
+            else:
+                target.unlink(missing_ok=True)
+        return
+    if not resume:
+        raise StudyError(f"output folder {folder} holds a study: pass --resume to go on, --overwrite to replace it")
+    if there.get("fingerprint") != provenance["fingerprint"]:
+        raise StudyError(
+            f"output folder {folder} holds another run ({_differences(there, provenance)}): "
+            "pass --overwrite to replace it, or another folder"
+        )
+
+
+def _differences(there: dict[str, Any], here: dict[str, Any]) -> str:
+    old, new = there.get("fingerprint", {}), here["fingerprint"]
+    names = [name for name in new if old.get(name) != new[name]]
+    return "; ".join(f"{name}: {old.get(name)} then, {new[name]} now" for name in names) or "unknown"
+
+
+def _read_provenance(folder: Path) -> dict[str, Any] | None:
+    try:
+        found = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError):
+        return None
+    return found if isinstance(found, dict) and "fingerprint" in found else None
+
+
+def _write_json(path: Path, content: dict[str, Any]) -> None:
+    with replacing(path) as temporary:
+        temporary.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")

@@ -1,0 +1,80 @@
+"""The tables of a study: their columns, types and units."""
+
+from typing import Any
+
+import pyarrow as pa
+
+# (name, type, unit); "length²" and "length" become µm or px, whichever the run has.
+CELL_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
+    ("cell", pa.int64(), ""),
+    ("frame", pa.int64(), ""),
+    ("label", pa.int64(), ""),
+    ("status", pa.string(), ""),
+    ("reason", pa.string(), ""),
+    ("notes", pa.string(), ""),
+    ("area", pa.float64(), "length²"),
+    ("perimeter", pa.float64(), "length"),
+    ("centroid_y", pa.float64(), "px"),
+    ("centroid_x", pa.float64(), "px"),
+    ("area_px", pa.int64(), "px²"),
+    ("components", pa.int64(), ""),
+    ("dropped_px", pa.int64(), "px²"),
+    ("holes", pa.int64(), ""),
+    ("filled_px", pa.int64(), "px²"),
+    ("touches_border", pa.bool_(), ""),
+    ("border_share", pa.float64(), "1"),
+    ("nan_px", pa.int64(), "px²"),
+    ("certificate_valid", pa.bool_(), ""),
+    ("flipped", pa.int64(), ""),
+    ("vertices", pa.int64(), ""),
+    ("triangles", pa.int64(), ""),
+    ("area_distortion", pa.float64(), "1"),
+    ("area_ratio_p1", pa.float64(), "1"),
+    ("area_ratio_p99", pa.float64(), "1"),
+    ("angle_distortion", pa.float64(), "1"),
+    ("angle_distortion_p95", pa.float64(), "1"),
+    ("empty_windows", pa.int64(), ""),
+    ("harmonic_weights", pa.string(), ""),
+    ("steps", pa.int64(), ""),
+    ("converged", pa.bool_(), ""),
+    ("seconds", pa.float64(), "s"),
+)
+
+WINDOW_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
+    ("cell", pa.int64(), ""),
+    ("time", pa.int64(), "frame"),
+    ("channel", pa.string(), ""),
+    ("layer", pa.int64(), ""),
+    ("sector", pa.int64(), ""),
+    ("mean", pa.float64(), "a.u."),
+    ("sd", pa.float64(), "a.u."),
+    ("min", pa.float64(), "a.u."),
+    ("max", pa.float64(), "a.u."),
+    ("n_pixels", pa.float64(), "px²"),
+    ("n_nan", pa.float64(), "px²"),
+    ("area", pa.float64(), "length²"),
+    ("centroid_y", pa.float64(), "px"),
+    ("centroid_x", pa.float64(), "px"),
+    ("eccentricity", pa.float64(), "1"),
+    ("status", pa.string(), ""),
+)
+
+
+def schema(columns: tuple[tuple[str, pa.DataType, str], ...], length_unit: str) -> Any:
+    """Arrow schema with the unit of each column in its metadata.
+
+    Parameters
+    ----------
+    columns : tuple of (name, type, unit)
+    length_unit : {"µm", "px"}
+
+    Returns
+    -------
+    pyarrow.Schema
+    """
+    return pa.schema(
+        [
+            pa.field(name, kind, metadata={"unit": unit.replace("length", length_unit)})
+            for name, kind, unit in columns
+        ]
+    )

@@ -1,0 +1,1 @@
+"""Runs: parameters, one cell, many cells, and where the results came from."""

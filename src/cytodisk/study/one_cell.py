@@ -1,0 +1,182 @@
+"""One cell of a run: map it, sample it, and put the result into rows."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.disk.disk_map import DiskMap
+from cytodisk.disk.mapping import map_to_disk
+from cytodisk.errors import CytodiskError, ReadError
+from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
+from cytodisk.io.masks import CellMask
+from cytodisk.study.parameters import MapParameters
+from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.grid import polar_windows
+from cytodisk.windows.sample import sample
+
+DrawCell: TypeAlias = Callable[[Path, str, CellWindows, xr.DataArray | None, float | None], list[Path]]
+
+_NOTABLE_SHARE = 0.2  # of the area in dropped fragments: perhaps two cells
+_PERIMETER_SMOOTHING_PX = 1.0
+
+
+@dataclass(frozen=True)
+class CellTask:
+    """Everything a worker needs for one cell."""
+
+    found: CellMask
+    signal: xr.DataArray | None
+    signal_fault: CytodiskError | None
+    parameters: MapParameters
+    map_path: Path
+    figures: Path | None
+    draw: DrawCell | None
+
+
+@dataclass(frozen=True)
+class CellResult:
+    """A cell's row and its windows, for `StudyFolder.add`; None when the cell has no map."""
+
+    row: dict[str, Any]
+    windows: dict[str, Any] | None
+
+
+def measure_cell(task: CellTask) -> CellResult:
+    """Map and sample one cell; a fault of its input becomes a row with the reason.
+
+    Parameters
+    ----------
+    task : CellTask
+
+    Returns
+    -------
+    CellResult
+        The map is written to `task.map_path`, figures to `task.figures`.
+
+    Raises
+    ------
+    StudyError
+        A result cannot be written.
+    """
+    started = time.perf_counter()
+    found, parameters = task.found, task.parameters
+    row: dict[str, Any] = {"cell": found.cell, "frame": found.frame, "label": found.label}
+    fault = found.fault or task.signal_fault
+    if fault is None:
+        try:
+            disk = map_to_disk(
+                found.mask,
+                method=parameters.method,
+                shape_weight=parameters.shape_weight,
+                edge_length=parameters.edge_length,
+                align=parameters.align,
+            )
+        except CytodiskError as error:
+            fault = error
+    if fault is not None:
+        status = "unreadable" if isinstance(fault, ReadError) else "refused"
+        return CellResult(row | {"status": status, "reason": str(fault), "seconds": _since(started)}, None)
+
+    windows = polar_windows(parameters.layers, parameters.sectors, parameters.spacing).on(disk)
+    columns = _window_columns(task, windows)
+    row |= _cell_columns(disk, windows, task.signal, parameters.pixel_size_um)
+    disk.save(task.map_path)
+    seconds = _since(started)
+    if task.draw is not None and task.figures is not None:
+        task.draw(task.figures, f"cell_{found.cell:05d}", windows, task.signal, parameters.pixel_size_um)
+    return CellResult(row | {"status": "ok", "reason": "", "seconds": seconds}, columns)
+
+
+def _cell_columns(
+    disk: DiskMap, windows: CellWindows, signal: xr.DataArray | None, pixel_size_um: float | None
+) -> dict[str, Any]:
+    report, distortion, certificate = disk.report, disk.distortion, disk.certificate
+    pixel = pixel_size_um or 1.0
+    centre = centroid(disk.outline_yx)
+    smooth = smooth_closed(disk.outline_yx, _PERIMETER_SMOOTHING_PX)
+    missing = int(np.isnan(signal.to_numpy()[:, disk.mask]).sum()) if signal is not None else 0
+    return {
+        "notes": "; ".join(_notes(disk, missing)),
+        "area": report.area_px * pixel**2,
+        "perimeter": float(edge_lengths(smooth).sum()) * pixel,
+        "centroid_y": float(centre[0]),
+        "centroid_x": float(centre[1]),
+        "area_px": report.area_px,
+        "components": report.components,
+        "dropped_px": report.dropped_px,
+        "holes": report.holes,
+        "filled_px": report.filled_px,
+        "touches_border": report.touches_border,
+        "border_share": report.border_share,
+        "nan_px": missing,
+        "certificate_valid": certificate.valid,
+        "flipped": len(certificate.flipped_in_disk),
+        "vertices": len(disk.vertices_yx),
+        "triangles": len(disk.triangles),
+        "area_distortion": distortion.area,
+        "area_ratio_p1": distortion.area_percentiles[1],
+        "area_ratio_p99": distortion.area_percentiles[99],
+        "angle_distortion": distortion.angle,
+        "angle_distortion_p95": distortion.angle_percentiles[95],
+        "empty_windows": int((windows.areas <= 0).sum()),
+        "harmonic_weights": disk.start,
+        "steps": disk.steps,
+        "converged": disk.converged,
+    }
+
+
+def _notes(disk: DiskMap, missing: int) -> list[str]:
+    report = disk.report
+    notes = list(report.notes)
+    if report.dropped_px > _NOTABLE_SHARE * report.area_px:
+        notes.append("perhaps more than one cell")
+    if not disk.converged:
+        notes.append("relaxation stopped before its criterion")
+    if disk.start == "uniform":
+        notes.append("harmonic start with uniform weights")
+    if missing:
+        notes.append(f"{missing} NaN values in the signal")
+    return notes
+
+
+def _window_columns(task: CellTask, windows: CellWindows) -> dict[str, Any]:
+    """Columns of the windows table: for each channel every window, layers first."""
+    parameters = task.parameters
+    pixel = parameters.pixel_size_um or 1.0
+    n_windows = windows.grid.n_windows
+    channels: list[str | None] = [None]
+    statistics: dict[str, Any] = {}
+    status = ["no signal"] * n_windows
+    if task.signal is not None:
+        data = sample(windows, task.signal, nan=parameters.nan)
+        channels = [str(name) for name in data["channel"].to_numpy()]
+        statistics = {name: data[name].to_numpy().ravel() for name in _SAMPLED}
+        status = np.where(np.isnan(statistics["mean"]), "NaN in signal", "ok").tolist()
+    repeats = len(channels)
+    layer, sector = np.divmod(np.tile(np.arange(n_windows), repeats), windows.grid.sectors)
+    nothing = np.full(n_windows * repeats, np.nan)
+    return {
+        "cell": np.full(n_windows * repeats, task.found.cell),
+        "time": np.full(n_windows * repeats, task.found.frame),
+        "channel": [name for name in channels for _ in range(n_windows)],
+        "layer": layer,
+        "sector": sector,
+        **{name: statistics.get(name, nothing) for name in _SAMPLED},
+        "area": np.tile(windows.areas.ravel() * pixel**2, repeats),
+        "centroid_y": np.tile(windows.centroids_yx[..., 0].ravel(), repeats),
+        "centroid_x": np.tile(windows.centroids_yx[..., 1].ravel(), repeats),
+        "eccentricity": np.tile(windows.eccentricities.ravel(), repeats),
+        "status": status,
+    }
+
+
+_SAMPLED = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
+
+
+def _since(started: float) -> float:
+    return time.perf_counter() - started

@@ -1,0 +1,89 @@
+"""Parameters of a run, from flags or a file; the file in every study can be fed back."""
+
+import tomllib
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from cytodisk.errors import ParameterError
+from cytodisk.files import replacing
+
+
+class MapParameters(BaseModel):
+    """What decides the result of `cytodisk map`, beside the input files.
+
+    Lengths in pixels unless the name says otherwise; see `map_to_disk`, `polar_windows` and `sample`.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    kind: Literal["auto", "mask", "stack", "labels"] = "auto"
+    method: Literal["newton", "harmonic"] = "newton"
+    shape_weight: float = Field(0.005, gt=0)
+    edge_length: float = Field(1.0, ge=0.25, le=10)
+    align: Literal["upright"] | tuple[float, float] | float = "upright"
+    layers: int = Field(10, ge=1)
+    sectors: int = Field(60, ge=1)
+    spacing: Literal["area", "radius"] = "area"
+    nan: Literal["propagate", "omit"] = "propagate"
+    pixel_size_um: float | None = Field(None, gt=0)
+
+
+def parameters_from(values: dict[str, Any], path: Path | None = None) -> MapParameters:
+    """Parameters from a file, overruled by given values.
+
+    Parameters
+    ----------
+    values : dict
+        By name; None means not given.
+    path : Path, optional
+        A TOML file as `parameters.toml` of a study.
+
+    Returns
+    -------
+    MapParameters
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, or a value is unknown or out of range.
+    """
+    merged: dict[str, Any] = {}
+    if path is not None:
+        try:
+            merged = tomllib.loads(path.read_text(encoding="utf-8"))
+        except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+            raise ParameterError(f"parameters file {path} cannot be read: {error}") from error
+    merged |= {name: value for name, value in values.items() if value is not None}
+    try:
+        return MapParameters(**merged)
+    except ValidationError as error:
+        faults = [
+            f"{'.'.join(str(part) for part in fault['loc'][:1])}: {fault['msg']}, got {fault['input']!r}"
+            for fault in error.errors()
+        ]
+        raise ParameterError("parameters: " + "; ".join(dict.fromkeys(faults))) from error
+
+
+def write_parameters(parameters: MapParameters, path: Path) -> None:
+    """Write parameters as TOML; those that are not set are left out.
+
+    Parameters
+    ----------
+    parameters : MapParameters
+    path : Path
+    """
+    lines = [
+        f"{name} = {_toml(value)}" for name, value in parameters.model_dump().items() if value is not None
+    ]
+    with replacing(path) as temporary:
+        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, str):
+        return f'"{value}"'
+    if isinstance(value, tuple):
+        return "[" + ", ".join(_toml(item) for item in value) + "]"
+    return repr(value)
