@@ -43,7 +43,7 @@ _HOME = {
 }
 _MODULES = ("errors", "simulate")
 
-__all__ = sorted([*_HOME, *_MODULES])  # noqa: PLE0605 - loaded on first use
+__all__ = sorted([*_HOME, *_MODULES])
 
 
 def __getattr__(name: str) -> Any:

@@ -69,8 +69,11 @@ def certify(
     in_cell, exact_cell = orientations(vertices_yx, triangles)
     in_disk, exact_disk = orientations(vertices_uv[:, ::-1], triangles)
     characteristic = euler_characteristic(triangles, len(vertices_yx))
-    faults = [f"{(sign <= 0).sum()} triangles are not positive in the {frame}"
-              for sign, frame in ((in_cell, "cell"), (in_disk, "disk")) if (sign <= 0).any()]
+    faults = [
+        f"{(sign <= 0).sum()} triangles are not positive in the {frame}"
+        for sign, frame in ((in_cell, "cell"), (in_disk, "disk"))
+        if (sign <= 0).any()
+    ]
     if characteristic != 1:
         faults.append(f"the Euler characteristic is {characteristic}, not 1")
     if len(np.unique(triangles)) != len(vertices_yx):

@@ -53,7 +53,14 @@ def _singular_frame(
     s1 = math.hypot(e, h) + math.hypot(f, g)
     s2 = (a * d - b * c) / s1
     alpha, beta = 0.5 * math.atan2(g, f), 0.5 * math.atan2(h, e)
-    return s1, s2, math.cos(beta + alpha), math.sin(beta + alpha), math.cos(beta - alpha), math.sin(beta - alpha)
+    return (
+        s1,
+        s2,
+        math.cos(beta + alpha),
+        math.sin(beta + alpha),
+        math.cos(beta - alpha),
+        math.sin(beta - alpha),
+    )
 
 
 @njit(cache=True)

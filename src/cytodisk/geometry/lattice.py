@@ -33,7 +33,7 @@ def graded_lattice(mask: BoolArray, edge_length: float, growth: float) -> FloatA
     depth_of_pixel = ndimage.distance_transform_edt(np.pad(mask, 1)) - 0.5
     depth = ndimage.map_coordinates(depth_of_pixel, points.T + 1, order=1, cval=-1.0)
     wanted = np.log1p(growth * np.maximum(depth, 0) / edge_length) / np.log(np.sqrt(3.0))
-    return points[(level >= np.floor(wanted)) & (depth >= _CLEARANCE * edge_length)]
+    return np.asarray(points[(level >= np.floor(wanted)) & (depth >= _CLEARANCE * edge_length)])
 
 
 def _lattice(shape: tuple[int, ...], spacing: float) -> tuple[FloatArray, IntArray]:

@@ -64,9 +64,7 @@ class TriangleLocator:
 
 
 @njit(cache=True)
-def _band_columns(
-    points: FloatArray, triangle: IntArray, bottom: float, top: float
-) -> tuple[float, float]:
+def _band_columns(points: FloatArray, triangle: IntArray, bottom: float, top: float) -> tuple[float, float]:
     """Range of the second coordinate of a triangle within a band of the first."""
     first, last = np.inf, -np.inf
     for k in range(3):

@@ -52,12 +52,18 @@ class MaskReport:
         notes = []
         if self.components > 1:
             share = self.dropped_px / (self.dropped_px + self.area_px - self.filled_px)
-            notes.append(f"{self.components - 1} fragments dropped ({self.dropped_px} px, {share:.1%})")
+            notes.append(
+                f"{_count(self.components - 1, 'fragment')} dropped ({self.dropped_px} px, {share:.1%})"
+            )
         if self.holes:
-            notes.append(f"{self.holes} holes filled ({self.filled_px} px)")
+            notes.append(f"{_count(self.holes, 'hole')} filled ({self.filled_px} px)")
         if self.touches_border:
             notes.append(f"touches the image border ({self.border_share:.1%} of its edge)")
         return tuple(notes)
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def parse_mask(mask: Any) -> BoolArray:

@@ -1,6 +1,7 @@
 """Outline → mesh: a triangulation of the cell's inside that is fit to be mapped."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pythoncdt
@@ -125,16 +126,16 @@ def _constrained_delaunay(points_yx: FloatArray, n_boundary: int) -> IntArray:
     triangulation = pythoncdt.Triangulation(
         pythoncdt.VertexInsertionOrder.AUTO, pythoncdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0
     )
-    triangulation.insert_vertices(np.ascontiguousarray(points_yx[:, ::-1]))
+    points_xy: Any = np.ascontiguousarray(points_yx[:, ::-1])
+    triangulation.insert_vertices(points_xy)
     loop = np.arange(n_boundary, dtype=np.uint32)
-    triangulation.insert_edges(np.column_stack([loop, np.roll(loop, -1)]))
+    edges: Any = np.column_stack([loop, np.roll(loop, -1)])
+    triangulation.insert_edges(edges)
     triangulation.erase_outer_triangles()
     return triangulation.triangles_array()["vertices"].astype(np.int64)
 
 
-def _split_chords(
-    points_yx: FloatArray, triangles: IntArray, n_boundary: int
-) -> tuple[FloatArray, IntArray]:
+def _split_chords(points_yx: FloatArray, triangles: IntArray, n_boundary: int) -> tuple[FloatArray, IntArray]:
     """Put a vertex on the middle of each interior edge between two boundary vertices."""
     start, stop = triangle_edges(triangles).T
     pinned = (start < n_boundary) & (stop < n_boundary)
@@ -159,7 +160,9 @@ def _subdivide(triangles: IntArray, middle: IntArray) -> IntArray:
         some = count == n_split
         # Turn each triangle so that its split edges come first.
         first = np.argmax(
-            (middle[some] >= 0) & (np.roll(middle[some], 1, axis=1) < 0) if n_split < 3 else middle[some] >= 0,
+            (middle[some] >= 0) & (np.roll(middle[some], 1, axis=1) < 0)
+            if n_split < 3
+            else middle[some] >= 0,
             axis=1,
         )
         turn = (first[:, None] + np.arange(3)) % 3

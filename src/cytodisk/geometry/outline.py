@@ -29,7 +29,9 @@ def trace_outline(mask: BoolArray) -> FloatArray:
     MaskError
         The mask is empty, in several pieces or has holes.
     """
-    contours = find_contours(np.pad(mask, 1).astype(np.float64), 0.5, fully_connected="high")
+    contours = find_contours(  # type: ignore[no-untyped-call,unused-ignore]
+        np.pad(mask, 1).astype(np.float64), 0.5, fully_connected="high"
+    )
     if len(contours) != 1:
         raise MaskError(f"mask has {len(contours)} outlines, not one: pass it through clean_mask first")
     outline: FloatArray = contours[0][:-1] - 1.0

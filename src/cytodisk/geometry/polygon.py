@@ -41,7 +41,7 @@ def centroid(outline_yx: FloatArray) -> FloatArray:
     there = np.roll(here, -1, axis=0)
     cross = here[:, 1] * there[:, 0] - here[:, 0] * there[:, 1]
     moment: FloatArray = ((here + there) * cross[:, None]).sum(axis=0)
-    return moment / (3.0 * cross.sum()) + origin
+    return np.asarray(moment / (3.0 * cross.sum()) + origin)
 
 
 def edge_lengths(outline_yx: FloatArray) -> FloatArray:

@@ -20,7 +20,16 @@ from cytodisk.errors import ReadError
 _TIFF = (".tif", ".tiff")
 _PICTURES = (".png",)
 _FRAME_AXES = "TIQRZ"
-_MICROMETRES = {"µm": 1.0, "um": 1.0, "micron": 1.0, "microns": 1.0, "nm": 1e-3, "mm": 1e3, "cm": 1e4, "m": 1e6}
+_MICROMETRES = {
+    "µm": 1.0,
+    "um": 1.0,
+    "micron": 1.0,
+    "microns": 1.0,
+    "nm": 1e-3,
+    "mm": 1e3,
+    "cm": 1e4,
+    "m": 1e6,
+}
 _SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
 
 
@@ -124,7 +133,9 @@ def open_frames(path: str | os.PathLike[str], *, unnamed: str = "T") -> FrameFil
         raise ReadError(f"{file} is a folder: pass one image file")
     suffix = file.suffix.lower()
     if suffix not in _TIFF + _PICTURES:
-        raise ReadError(f"{file} is no image that can be read ({', '.join(_TIFF + _PICTURES)}): convert it to TIFF")
+        raise ReadError(
+            f"{file} is no image that can be read ({', '.join(_TIFF + _PICTURES)}): convert it to TIFF"
+        )
     with _reading(file, "its header"):
         return _open_tiff(file, unnamed) if suffix in _TIFF else _open_picture(file)
 
@@ -170,14 +181,16 @@ def _reading(path: Path, part: str) -> Iterator[None]:
         yield
     except ReadError:
         raise
-    except Exception as error:  # noqa: BLE001 - decoders raise all kinds; nothing is swallowed
+    except Exception as error:
         raise ReadError(f"{path}: {part} cannot be read as an image ({error})") from error
 
 
 def _open_tiff(file: Path, unnamed: str) -> FrameFile:
     with tifffile.TiffFile(file) as tiff:
         if len(tiff.series) > 1 and len({series.shape for series in tiff.series}) > 1:
-            raise ReadError(f"{file} holds {len(tiff.series)} images of several sizes: save one of them alone")
+            raise ReadError(
+                f"{file} holds {len(tiff.series)} images of several sizes: save one of them alone"
+            )
         series = tiff.series[0]
         axes, shape = _named_axes(file, series.axes, series.shape, unnamed)
         found = FrameFile(file, axes, shape, np.dtype(series.dtype), (), None, None)
@@ -197,16 +210,14 @@ def _open_picture(file: Path) -> FrameFile:
     return FrameFile(file, "YXC", shape, properties.dtype, names[shape[2]], None, None)
 
 
-def _named_axes(
-    file: Path, axes: str, shape: tuple[int, ...], unnamed: str
-) -> tuple[str, tuple[int, ...]]:
+def _named_axes(file: Path, axes: str, shape: tuple[int, ...], unnamed: str) -> tuple[str, tuple[int, ...]]:
     """Axes in the words T, C, Y, X, without those of length 1 beside Y and X."""
     kept = [(axis, size) for axis, size in zip(axes, shape, strict=True) if size > 1 or axis in "YX"]
     named = []
     for axis, size in kept:
         if axis == "Z":
             raise ReadError(
-                f"{file} is a z-stack (axes {axes}, shape {shape}): project it first, or save its axis as time"
+                f"{file} is a z-stack (axes {axes}, shape {shape}): project it, or save its axis as time"
             )
         letter = {"S": "C", "T": "T", "C": "C", "Y": "Y", "X": "X"}.get(axis, unnamed)
         named.append((letter, size))

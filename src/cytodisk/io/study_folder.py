@@ -69,20 +69,28 @@ class StudyFolder:
             The folder holds something else, or another run, or cannot be written.
         """
         folder = Path(path)
-        if folder.exists() and not folder.is_dir():
-            raise StudyError(f"output {folder} is a file: pass a folder")
-        if folder.exists() and any(folder.iterdir()):
-            _make_room(folder, provenance, resume, overwrite)
         study = cls(folder, provenance)
         try:
+            if folder.exists() and not folder.is_dir():
+                raise StudyError(f"output {folder} is a file: pass a folder")
+            if folder.exists() and any(folder.iterdir()):
+                _make_room(folder, provenance, resume, overwrite)
             for name in (MAPS, FIGURES, _PARTS):
                 (folder / name).mkdir(parents=True, exist_ok=True)
             for left_over in folder.rglob(".*.tmp.*"):  # of a run that was killed while writing
                 left_over.unlink()
+        except StudyError:
+            raise
         except OSError as error:
             raise StudyError(f"output folder {folder} cannot be written: {error.strerror}") from error
         study.note("status", "running")
         return study
+
+    @staticmethod
+    def is_complete(path: str | os.PathLike[str], provenance: dict[str, Any]) -> bool:
+        """Whether a folder holds the whole of the same run already."""
+        there = _read_provenance(Path(path)) or {}
+        return there.get("status") == "complete" and there.get("fingerprint") == provenance["fingerprint"]
 
     def note(self, name: str, value: Any) -> None:
         """Set an entry of the provenance and write it."""
@@ -96,6 +104,11 @@ class StudyFolder:
     def map_path(self, cell: int) -> Path:
         """Where a cell's map stands."""
         return self.path / MAPS / f"cell_{cell:05d}.npz"
+
+    @property
+    def figures(self) -> Path:
+        """Where figures stand."""
+        return self.path / FIGURES
 
     def add(self, row: dict[str, Any], windows: dict[str, Any] | None) -> None:
         """Write a cell's part: its windows, then its row.
@@ -245,7 +258,9 @@ def _make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite
                 target.unlink(missing_ok=True)
         return
     if not resume:
-        raise StudyError(f"output folder {folder} holds a study: pass --resume to go on, --overwrite to replace it")
+        raise StudyError(
+            f"output folder {folder} holds a study: pass --resume to go on, --overwrite to replace it"
+        )
     if there.get("fingerprint") != provenance["fingerprint"]:
         raise StudyError(
             f"output folder {folder} holds another run ({_differences(there, provenance)}): "

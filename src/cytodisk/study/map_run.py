@@ -6,16 +6,16 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from multiprocessing import get_context
-from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
 import xarray as xr
 
-from cytodisk.errors import CytodiskError, ParameterError, ReadError, SignalError
+from cytodisk.errors import CytodiskError, ParameterError, ReadError, SignalError, StudyError
 from cytodisk.io.frames import FrameFile, open_frames
 from cytodisk.io.masks import CellMask, Kind, read_cells, understood_as
 from cytodisk.io.study_folder import PARAMETERS, Study, StudyFolder, open_study
@@ -99,6 +99,7 @@ def run_map(
     overwrite: bool = False,
     draw: DrawCell | None = None,
     draw_at_most: int | None = None,
+    geojson: bool = False,
     progress: Progress | None = None,
 ) -> Study:
     """Map and sample every cell, and write a study.
@@ -117,6 +118,8 @@ def run_map(
         Draws a cell's figures: (folder, name, windows, signal, pixel_size_um) → paths.
     draw_at_most : int, optional
         How many cells, from the first, to draw.
+    geojson : bool
+        Write each cell's window outlines beside its map.
     progress : callable, optional
         Called with (cells done, cells in all) at the start and after each cell.
 
@@ -136,6 +139,8 @@ def run_map(
         raise ParameterError(f"workers must be at least 1, got {workers}")
     paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
     provenance = describe_run(paths, inputs.parameters, inputs.understood)
+    if resume and StudyFolder.is_complete(out, provenance):
+        return open_study(out)
     folder = StudyFolder.start(out, provenance, resume=resume, overwrite=overwrite)
     write_parameters(inputs.parameters, folder.path / PARAMETERS)
     cells = list_cells(inputs)
@@ -143,7 +148,8 @@ def run_map(
     report = progress or _silent
     done = len(cells) - len(pending)
     report(done, len(cells))
-    tasks = _tasks(inputs, folder, set(pending), draw, len(cells) if draw_at_most is None else draw_at_most)
+    at_most = len(cells) if draw_at_most is None else draw_at_most
+    tasks = _tasks(inputs, folder, set(pending), draw, at_most, geojson)
     for result in _results(tasks, min(workers, max(1, len(pending)))):
         folder.add(result.row, result.windows)
         done += 1
@@ -182,7 +188,12 @@ def _check_signal(masks: FrameFile, signal: FrameFile) -> None:
 
 
 def _tasks(
-    inputs: MapInputs, folder: StudyFolder, pending: set[int], draw: DrawCell | None, draw_at_most: int
+    inputs: MapInputs,
+    folder: StudyFolder,
+    pending: set[int],
+    draw: DrawCell | None,
+    draw_at_most: int,
+    geojson: bool,
 ) -> Iterator[CellTask]:
     frame, signal, fault = -1, None, None
     for found in read_cells(inputs.masks, inputs.kind):
@@ -198,8 +209,9 @@ def _tasks(
             fault,
             inputs.parameters,
             folder.map_path(found.cell),
-            folder.path / "figures",
+            folder.figures,
             wanted,
+            geojson,
         )
 
 
@@ -220,13 +232,19 @@ def _results(tasks: Iterator[CellTask], workers: int) -> Iterator[CellResult]:
         yield from map(measure_cell, tasks)
         return
     waiting: deque[Future[CellResult]] = deque()
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        for task in tasks:
-            waiting.append(pool.submit(measure_cell, task))
-            if len(waiting) >= 2 * workers:
+    try:
+        with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+            for task in tasks:
+                waiting.append(pool.submit(measure_cell, task))
+                if len(waiting) >= 2 * workers:
+                    yield waiting.popleft().result()
+            while waiting:
                 yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
+    except BrokenProcessPool as error:
+        raise StudyError(
+            "a worker process died, perhaps for want of memory: what was done is kept; "
+            "run the same command with --resume, and with fewer --workers"
+        ) from error
 
 
 def check_cells(inputs: MapInputs) -> Iterator[tuple[CellMask, str, tuple[str, ...]]]:

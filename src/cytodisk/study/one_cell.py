@@ -1,5 +1,6 @@
 """One cell of a run: map it, sample it, and put the result into rows."""
 
+import json
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ import xarray as xr
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_to_disk
 from cytodisk.errors import CytodiskError, ReadError
+from cytodisk.files import replacing
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
 from cytodisk.io.masks import CellMask
 from cytodisk.study.parameters import MapParameters
@@ -36,6 +38,7 @@ class CellTask:
     map_path: Path
     figures: Path | None
     draw: DrawCell | None
+    geojson: bool = False
 
 
 @dataclass(frozen=True)
@@ -86,6 +89,9 @@ def measure_cell(task: CellTask) -> CellResult:
     columns = _window_columns(task, windows)
     row |= _cell_columns(disk, windows, task.signal, parameters.pixel_size_um)
     disk.save(task.map_path)
+    if task.geojson:
+        with replacing(task.map_path.with_suffix(".geojson")) as temporary:
+            temporary.write_text(json.dumps(windows.geojson()), encoding="utf-8")
     seconds = _since(started)
     if task.draw is not None and task.figures is not None:
         task.draw(task.figures, f"cell_{found.cell:05d}", windows, task.signal, parameters.pixel_size_um)

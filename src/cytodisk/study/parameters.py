@@ -2,7 +2,7 @@
 
 import tomllib
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -20,14 +20,14 @@ class MapParameters(BaseModel):
 
     kind: Literal["auto", "mask", "stack", "labels"] = "auto"
     method: Literal["newton", "harmonic"] = "newton"
-    shape_weight: float = Field(0.005, gt=0)
-    edge_length: float = Field(1.0, ge=0.25, le=10)
+    shape_weight: Annotated[float, Field(gt=0)] = 0.005
+    edge_length: Annotated[float, Field(ge=0.25, le=10)] = 1.0
     align: Literal["upright"] | tuple[float, float] | float = "upright"
-    layers: int = Field(10, ge=1)
-    sectors: int = Field(60, ge=1)
+    layers: Annotated[int, Field(ge=1)] = 10
+    sectors: Annotated[int, Field(ge=1)] = 60
     spacing: Literal["area", "radius"] = "area"
     nan: Literal["propagate", "omit"] = "propagate"
-    pixel_size_um: float | None = Field(None, gt=0)
+    pixel_size_um: Annotated[float, Field(gt=0)] | None = None
 
 
 def parameters_from(values: dict[str, Any], path: Path | None = None) -> MapParameters:

@@ -11,7 +11,17 @@ from typing import Any
 from cytodisk.errors import ReadError
 from cytodisk.study.parameters import MapParameters
 
-PACKAGES = ("cytodisk", "numpy", "scipy", "numba", "pythoncdt", "qdldl", "shapely", "scikit-image", "tifffile")
+PACKAGES = (
+    "cytodisk",
+    "numpy",
+    "scipy",
+    "numba",
+    "pythoncdt",
+    "qdldl",
+    "shapely",
+    "scikit-image",
+    "tifffile",
+)
 
 
 def installed(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:

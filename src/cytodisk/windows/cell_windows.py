@@ -40,7 +40,7 @@ class CellWindows:
     @cached_property
     def areas(self) -> FloatArray:
         """Area of each window in square pixels, shape (layers, sectors); they sum to the mask's."""
-        return self._by_window(np.asarray(self.weights.sum(axis=1)).ravel())
+        return self._by_window(np.asarray(self.weights.sum(axis=1), dtype=np.float64).ravel())
 
     @cached_property
     def labels(self) -> IntArray:

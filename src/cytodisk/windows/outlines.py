@@ -1,5 +1,7 @@
 """Window outlines in the cell, as polygons that fit together."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from cytodisk.arrays import FloatArray
@@ -46,7 +48,7 @@ def _sector_arcs(grid: PolarWindows, disk: DiskMap, radius: float) -> list[Float
     points = disk.to_cell(np.column_stack([radius * np.cos(within), radius * np.sin(within)]))
     points[-1] = points[0]
     ends = np.searchsorted(within, grid.angles)
-    return [points[first : last + 1] for first, last in zip(ends[:-1], ends[1:], strict=True)]
+    return [points[first : last + 1] for first, last in pairwise(ends)]
 
 
 def _spokes(grid: PolarWindows, disk: DiskMap, layer: int, samples: int) -> FloatArray:

@@ -96,7 +96,7 @@ def _parse_signal(signal: Any, shape: tuple[int, ...]) -> tuple[FloatArray, list
     if isinstance(signal, xr.DataArray):
         extra = [str(dim) for dim in signal.dims if dim not in ("channel", "y", "x")]
         if extra:
-            raise SignalError(f"signal has the dims {extra} beside channel, y, x: pass one frame, as signal.isel({extra[0]}=0)")
+            raise SignalError(f"signal has the dims {extra} beside channel, y, x: pass one frame")
         if "channel" in signal.dims:
             signal = signal.transpose("channel", "y", "x")
             names = [str(name) for name in signal["channel"].to_numpy()]
@@ -105,7 +105,7 @@ def _parse_signal(signal: Any, shape: tuple[int, ...]) -> tuple[FloatArray, list
         raise SignalError(f"signal must be numeric, got dtype {array.dtype}")
     if array.ndim not in (2, 3) or array.shape[-2:] != shape:
         raise SignalError(
-            f"signal has shape {array.shape}, the mask {shape}: it must be (H, W) or (channel, H, W) of the same H, W"
+            f"signal has shape {array.shape}, the mask {shape}: pass (H, W) or (channel, H, W) of the same H, W"
         )
     if array.ndim == 3 and names is None:
         names = [str(number) for number in range(len(array))]

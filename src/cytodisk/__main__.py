@@ -1,0 +1,5 @@
+"""`python -m cytodisk`."""
+
+from cytodisk.cli import main
+
+main()

@@ -1,0 +1,295 @@
+"""The command line: reads flags, calls the library, prints what happened."""
+
+import platform
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from cytodisk.errors import CytodiskError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from cytodisk.io.study_folder import Study
+    from cytodisk.study.map_run import MapInputs
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    help="Map cells one to one onto the unit disk, divide them into windows and sample the signal in each.",
+)
+
+_MAP_HELP = """Map masks onto the disk and sample a signal in windows, into a study folder.
+
+MASKS is one mask, a stack of masks, or a label image (each label a cell), as TIFF or PNG.
+
+Examples:
+
+  cytodisk map mask.tif -o out/
+
+  cytodisk map masks.tif --signal image.ome.tif -o out/ --layers 10 --sectors 60 --workers 2
+
+  cytodisk map labels.tif -o out/ --parameters other_study/parameters.toml --resume
+
+Exit code: 0 when done (refused cells have a row with the reason), 2 for an input that cannot be used.
+"""
+
+Masks = Annotated[
+    Path, typer.Argument(help="Mask, stack of masks or label image: TIFF or PNG.", show_default=False)
+]
+Signal = Annotated[
+    Path | None, typer.Option(help="Image to sample, of the same height and width: TIFF or PNG.")
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+
+
+@app.command("map", help=_MAP_HELP)
+def map_command(
+    masks: Masks,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)],
+    signal: Signal = None,
+    kind: Annotated[str | None, typer.Option(help="What MASKS is: auto, mask, stack or labels.")] = None,
+    layers: Annotated[int | None, typer.Option(help="Windows from edge to centre.  [default: 10]")] = None,
+    sectors: Annotated[int | None, typer.Option(help="Windows around the edge.  [default: 60]")] = None,
+    spacing: Annotated[
+        str | None, typer.Option(help="Layers of equal area or radius.  [default: area]")
+    ] = None,
+    method: Annotated[
+        str | None, typer.Option(help="newton (equal area) or harmonic.  [default: newton]")
+    ] = None,
+    shape_weight: Annotated[
+        float | None, typer.Option(help="Shape against area, above 0.  [default: 0.005]")
+    ] = None,
+    edge_length: Annotated[
+        float | None, typer.Option(help="Mesh spacing at the edge, px.  [default: 1]")
+    ] = None,
+    align: Annotated[
+        str | None,
+        typer.Option(help="upright, an angle in degrees, or a point ROW,COLUMN.  [default: upright]"),
+    ] = None,
+    nan: Annotated[
+        str | None, typer.Option(help="Windows with NaN pixels: propagate or omit.  [default: propagate]")
+    ] = None,
+    pixel_size: Annotated[float | None, typer.Option(help="µm per pixel; overrules the file's own.")] = None,
+    parameters: Annotated[
+        Path | None, typer.Option(help="TOML file as in a study; flags overrule it.")
+    ] = None,
+    workers: Annotated[int, typer.Option(help="Processes.")] = 1,
+    figures: Annotated[int, typer.Option(help="Draw this many cells, from the first; -1 for all.")] = 8,
+    geojson: Annotated[
+        bool, typer.Option("--geojson", help="Write window outlines beside the maps.")
+    ] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the same run in this folder.")] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in this folder.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    from cytodisk.plot.study import draw_cell_figures
+    from cytodisk.study.map_run import open_inputs, run_map
+    from cytodisk.study.parameters import parameters_from
+
+    given = {
+        "kind": kind,
+        "layers": layers,
+        "sectors": sectors,
+        "spacing": spacing,
+        "method": method,
+        "shape_weight": shape_weight,
+        "edge_length": edge_length,
+        "align": _align(align),
+        "nan": nan,
+        "pixel_size_um": pixel_size,
+    }
+    console = _console(quiet)
+    inputs = open_inputs(masks, signal, parameters_from(given, parameters))
+    _say_inputs(console, inputs)
+    with _progress(quiet, "cells") as progress:
+        study = run_map(
+            inputs,
+            out,
+            workers=workers,
+            resume=resume,
+            overwrite=overwrite,
+            draw=draw_cell_figures,
+            draw_at_most=None if figures < 0 else figures,
+            geojson=geojson,
+            progress=progress,
+        )
+    _finish(console, study, figures)
+
+
+@app.command("check")
+def check_command(
+    masks: Masks,
+    signal: Signal = None,
+    kind: Annotated[str, typer.Option(help="What MASKS is: auto, mask, stack or labels.")] = "auto",
+) -> None:
+    """Say what is wrong with masks before a run: a line a cell.
+
+    Exit code: 0 when all can be used, 1 if any cannot, 2 if the file cannot be read at all.
+
+    Example: cytodisk check labels.tif
+    """
+    from cytodisk.study.map_run import check_cells, open_inputs
+    from cytodisk.study.parameters import parameters_from
+
+    inputs = open_inputs(masks, signal, parameters_from({"kind": kind}))
+    console = _console(False)
+    _say_inputs(console, inputs)
+    unusable = noted = count = 0
+    print("cell\tframe\tlabel\tusable\tremarks")
+    for found, reason, notes in check_cells(inputs):
+        count += 1
+        unusable += bool(reason)
+        noted += bool(notes)
+        remarks = reason or "; ".join(notes)
+        print(f"{found.cell}\t{found.frame}\t{found.label}\t{'no' if reason else 'yes'}\t{remarks}")
+    console.print(f"{count} cells: {count - unusable} usable ({noted} with remarks), {unusable} not usable")
+    raise typer.Exit(1 if unusable else 0)
+
+
+@app.command("info")
+def info_command() -> None:
+    """Print versions, and which optional parts are there."""
+    from cytodisk.study.provenance import PACKAGES, installed
+
+    print(f"python\t{platform.python_version()} on {platform.platform()}")
+    for name, found in installed(PACKAGES).items():
+        print(f"{name}\t{found}")
+    print("image formats\tTIFF, OME-TIFF, ImageJ TIFF, PNG")
+    print(f"compressed TIFF\t{'yes' if find_spec('imagecodecs') else 'no: pip install imagecodecs'}")
+
+
+@app.command("demo")
+def demo_command(
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the demo.")] = Path("cytodisk_demo"),
+    seed: Annotated[int, typer.Option(help="Seed of the simulated cell.")] = 0,
+    quiet: Quiet = False,
+) -> None:
+    """Simulate a cell with two signals, map it, sample it, and compare with the known answer.
+
+    Nothing is downloaded. OUT/input holds the simulated files, OUT/study the results.
+    """
+    from cytodisk.plot.study import draw_cell_figures
+    from cytodisk.study.demo import compare_with_truth, write_demo_input
+    from cytodisk.study.map_run import open_inputs, run_map
+    from cytodisk.study.parameters import MapParameters
+
+    console = _console(quiet)
+    cell, masks, signal = write_demo_input(out / "input", seed)
+    console.print(f"A simulated cell of {int(cell.mask.sum())} pixels with its signals is in {masks.parent}.")
+    console.print(f"The same by hand: cytodisk map {masks} --signal {signal} -o {out / 'study'}\n")
+    inputs = open_inputs(masks, signal, MapParameters())
+    _say_inputs(console, inputs)
+    with _progress(quiet, "cells") as progress:
+        study = run_map(inputs, out / "study", resume=True, draw=draw_cell_figures, progress=progress)
+    _finish(console, study, 1)
+    for channel, answer in compare_with_truth(study, cell).items():
+        console.print(f"{channel}: {answer}")
+
+
+def main() -> None:
+    """Run the command line; errors that a user can mend end in exit code 2."""
+    try:
+        app()
+    except CytodiskError as error:
+        _fail(str(error))
+    except KeyboardInterrupt:
+        print("Stopped; what was done is kept: run the same command with --resume.", file=sys.stderr)
+        raise SystemExit(130) from None
+
+
+def _fail(message: str) -> None:
+    print(f"Error: {message}", file=sys.stderr)
+    raise SystemExit(2)
+
+
+def _align(text: str | None) -> Any:
+    from cytodisk.errors import ParameterError
+
+    if text is None or text == "upright":
+        return text
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in (1, 2):
+        raise ParameterError(f"align must be upright, an angle in degrees or ROW,COLUMN, got {text!r}")
+    return numbers[0] if len(numbers) == 1 else tuple(numbers)
+
+
+def _console(quiet: bool) -> "Console":
+    from rich.console import Console
+
+    return Console(quiet=quiet, highlight=False, soft_wrap=True, markup=False)
+
+
+@contextmanager
+def _progress(quiet: bool, unit: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar on stderr with rate and time left; gives a function to call with (done, in all)."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), disable=quiet, transient=True) as bar:
+        task = bar.add_task(unit, total=None, rate="")
+
+        def report(done: int, total: int) -> None:
+            speed = bar.tasks[task].speed
+            rate = f"{speed:.1f} {unit}/s" if speed else ""
+            bar.update(task, completed=done, total=total, rate=rate)
+
+        yield report
+
+
+def _say_inputs(console: "Console", inputs: "MapInputs") -> None:
+    for role, words in inputs.understood.items():
+        console.print(f"{role}: {words}")
+    size = inputs.parameters.pixel_size_um
+    console.print(f"pixel size: {size:g} µm" if size else "pixel size: unknown, results are in px")
+
+
+def _finish(console: "Console", study: "Study", figures: int) -> None:
+    """Draw the overview and say what came out; exit code 2 if that is nothing, or a frame is damaged."""
+    from cytodisk.plot.study import draw_overview
+
+    cells = study.cells
+    draw_overview(study.path / "figures" / "overview.png", cells)
+    mapped = cells[cells["status"] == "ok"]
+    console.print(f"{len(mapped)} of {len(cells)} cells mapped, each with a valid certificate")
+    if len(mapped):
+        console.print(
+            f"median {mapped['seconds'].median():.2f} s a cell; median area distortion (mean |log λ|) "
+            f"{mapped['area_distortion'].median():.3f}; empty windows {int(mapped['empty_windows'].sum())}"
+        )
+    remarks = mapped[mapped["notes"] != ""]
+    if len(remarks):
+        console.print(f"{len(remarks)} cells with remarks: column 'notes' of cells.parquet")
+    lost = cells[cells["status"] != "ok"]
+    for _, row in lost.head(20).iterrows():
+        print(f"cell {row['cell']} (frame {row['frame']}) {row['status']}: {row['reason']}", file=sys.stderr)
+    if len(lost) > 20:
+        print(f"… and {len(lost) - 20} more: column 'reason' of cells.parquet", file=sys.stderr)
+    if 0 <= figures < len(mapped):
+        console.print(f"figures drawn for the first {figures} cells: --figures -1 draws all")
+    console.print(f"results: {study.path}")
+    unreadable = int((cells["status"] == "unreadable").sum())
+    if not len(mapped):
+        _fail(f"no cell could be mapped: {lost['reason'].iloc[0] if len(lost) else 'the file holds no cell'}")
+    if unreadable:
+        _fail(f"{unreadable} frames of the input are damaged; all others are in {study.path}")
+
+
+__all__ = ["app", "main"]
