@@ -76,11 +76,12 @@ def print_doubling(data: Path, repeats: int) -> None:
     for path in sorted((data / "reference_masks").glob("*.tif")):
         mask = tifffile.imread(path) > 0
         pairs[path.stem + " ×2"] = mask, twice_as_large(mask)
-    print(f"\n{'shape':<18}{'seconds':>9}{'twice as large':>16}{'ratio':>7}")
+    print(f"\n{'shape':<18}{'seconds':>9}{'twice as large':>16}{'ratio':>7}{'steps':>7}{'then':>6}")
     for name, (small, large) in pairs.items():
         before = median_seconds(lambda small=small: map_to_disk(small), repeats)
         after = median_seconds(lambda large=large: map_to_disk(large), repeats)
-        print(f"{name:<18}{before:>9.3f}{after:>16.3f}{after / before:>7.2f}")
+        steps = [map_to_disk(mask).steps for mask in (small, large)]
+        print(f"{name:<18}{before:>9.3f}{after:>16.3f}{after / before:>7.2f}{steps[0]:>7}{steps[1]:>6}")
 
 
 def print_fresh_process() -> None:

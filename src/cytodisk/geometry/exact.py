@@ -8,6 +8,7 @@ from cytodisk.arrays import FloatArray, IntArray
 
 # Shewchuk 1997, doi:10.1007/PL00009321: bound of the rounding error of the plain determinant.
 _ERROR_BOUND = (3.0 + 16.0 * 2.0**-53) * 2.0**-53
+_UNDERFLOW = 2.0**-1000  # below it products lose digits, which that bound leaves out
 
 
 def orientations(points: FloatArray, triangles: IntArray) -> tuple[IntArray, int]:
@@ -32,11 +33,13 @@ def orientations(points: FloatArray, triangles: IntArray) -> tuple[IntArray, int
     """
     a, b, c = (points[triangles[:, corner]] for corner in range(3))
     finite = np.isfinite(np.concatenate([a, b, c], axis=1)).all(axis=1)
-    left = (a[:, 1] - c[:, 1]) * (b[:, 0] - c[:, 0])
-    right = (a[:, 0] - c[:, 0]) * (b[:, 1] - c[:, 1])
-    determinant = left - right
-    sign = np.where(finite, np.sign(determinant), 0.0).astype(np.int64)
-    in_doubt = finite & (np.abs(determinant) <= _ERROR_BOUND * (np.abs(left) + np.abs(right)))
+    with np.errstate(invalid="ignore", over="ignore"):
+        left = (a[:, 1] - c[:, 1]) * (b[:, 0] - c[:, 0])
+        right = (a[:, 0] - c[:, 0]) * (b[:, 1] - c[:, 1])
+        determinant = left - right
+        surely = np.abs(determinant) > _ERROR_BOUND * (np.abs(left) + np.abs(right)) + _UNDERFLOW
+    sign = np.where(finite & surely, np.sign(determinant), 0.0).astype(np.int64)
+    in_doubt = finite & ~surely
     for t in np.flatnonzero(in_doubt):
         sign[t] = _exact_sign(points[triangles[t]])
     return sign, int(in_doubt.sum())

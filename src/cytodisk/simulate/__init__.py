@@ -1,15 +1,7 @@
 """Cells, signals and random masks with known answers, for the demo, the docs, tests and benchmarks."""
 
-from cytodisk.simulate.cells import (
-    branching,
-    disk,
-    dumbbell,
-    ellipse,
-    migrating,
-    random_smooth,
-    random_spiky,
-    star,
-)
+from cytodisk.simulate.cells import disk, dumbbell, ellipse, star
+from cytodisk.simulate.random_cells import branching, migrating, random_smooth, random_spiky
 from cytodisk.simulate.random_masks import KINDS, random_mask
 from cytodisk.simulate.signals import SimulatedCell, cell_with_signal, linear_signal, ring_signal
 

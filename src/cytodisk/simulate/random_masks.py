@@ -9,7 +9,7 @@ from skimage.draw import line
 
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import ParameterError
-from cytodisk.simulate.cells import branching, random_smooth, random_spiky
+from cytodisk.simulate.random_cells import branching, random_smooth, random_spiky
 
 
 def random_mask(kind: str, seed: int) -> BoolArray:

@@ -8,8 +8,8 @@ from scipy import ndimage
 
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import ParameterError
-from cytodisk.simulate.cells import migrating
 from cytodisk.simulate.drawing import check_at_least
+from cytodisk.simulate.random_cells import migrating
 
 _CHANNELS = ["edge", "perinuclear"]
 _PIXEL_SIZE_UM = 0.16
@@ -144,7 +144,7 @@ def cell_with_signal(seed: int = 0) -> SimulatedCell:
 def _leading_edge(mask: BoolArray) -> FloatArray:
     columns = np.flatnonzero(mask.any(axis=0))
     forward = np.clip((np.arange(mask.shape[1]) - columns[0]) / np.ptp(columns), 0.0, 1.0)
-    return np.where(mask, 60.0, 0.0) + ring_signal(mask, peak=300.0, decay_px=5.0) * forward**2
+    return np.asarray(np.where(mask, 60.0, 0.0) + ring_signal(mask, peak=300.0, decay_px=5.0) * forward**2)
 
 
 def _around_nucleus(mask: BoolArray) -> FloatArray:
