@@ -1,0 +1,201 @@
+"""How figures look: sizes of a printed page, colours, scale bar and colour bar."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colorbar import Colorbar
+from matplotlib.colors import Colormap
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
+
+from cytodisk.arrays import BoolArray
+from cytodisk.errors import ParameterError
+
+SINGLE_COLUMN_MM = 85.0
+DOUBLE_COLUMN_MM = 180.0
+MM_PER_INCH = 25.4
+DPI = 200
+
+SIGNAL_COLOURS = "viridis"
+DIVERGING_COLOURS = "RdBu_r"
+LAYER_COLOURS = "cividis"
+MISSING_COLOUR = "0.85"
+LINE_COLOUR = "0.15"
+STATUS_COLOURS = {"ok": "#0072B2", "refused": "#E69F00", "unreadable": "#999999"}
+
+PAPER: Mapping[str, Any] = {
+    "font.family": "sans-serif",
+    "font.size": 7.0,
+    "axes.titlesize": 7.5,
+    "axes.labelsize": 7.0,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "legend.fontsize": 7.0,
+    "axes.linewidth": 0.5,
+    "xtick.major.width": 0.5,
+    "ytick.major.width": 0.5,
+    "xtick.major.size": 2.0,
+    "ytick.major.size": 2.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.formatter.use_mathtext": True,
+    "savefig.facecolor": "white",
+}
+"""Matplotlib settings for print: `with matplotlib.rc_context(PAPER): ...`."""
+
+_PERCENTILES = (1.0, 99.5)
+_BAR_SHARE = 0.3  # of the axes' width that a scale bar may take
+_BAR_NAME = "scale bar"
+
+
+def colour_map(name: str | Colormap) -> Colormap:
+    """A colour map that shows missing values in light grey.
+
+    Parameters
+    ----------
+    name : str or Colormap
+
+    Returns
+    -------
+    Colormap
+
+    Raises
+    ------
+    ParameterError
+        Matplotlib has no colour map of this name.
+    """
+    if isinstance(name, str) and name not in mpl.colormaps:
+        raise ParameterError(
+            f"cmap {name!r} is not a colour map: pass one of Matplotlib's, such as 'viridis'"
+        )
+    base = mpl.colormaps[name] if isinstance(name, str) else name
+    return base.with_extremes(bad=MISSING_COLOUR)
+
+
+def signal_limits(image: Any, mask: BoolArray) -> tuple[float, float]:
+    """Limits of the colours for a signal: its percentiles 1 and 99.5 inside the cell.
+
+    Parameters
+    ----------
+    image : array_like of shape (H, W)
+    mask : ndarray of shape (H, W) and dtype bool
+
+    Returns
+    -------
+    (float, float)
+        In the signal's unit, the second above the first; (0, 1) when no pixel of the cell is finite.
+    """
+    inside = np.asarray(image, dtype=np.float64)[mask]
+    inside = inside[np.isfinite(inside)]
+    if not inside.size:
+        return 0.0, 1.0
+    low, high = np.percentile(inside, _PERCENTILES).tolist()
+    if high > low:
+        return low, high
+    half = 0.5 * max(abs(low), 1.0)
+    return low - half, high + half
+
+
+def nice_length(longest: float) -> float:
+    """The longest of 1, 2, 5 times a power of ten that is not above a length.
+
+    Parameters
+    ----------
+    longest : float
+        Above 0.
+
+    Returns
+    -------
+    float
+        In the same unit.
+
+    Raises
+    ------
+    ParameterError
+        `longest` is not a positive number.
+    """
+    if not 0 < longest < np.inf:
+        raise ParameterError(f"longest must be a positive number, got {longest!r}: pass the room for the bar")
+    power = 10.0 ** np.floor(np.log10(longest))
+    return float(max(step * power for step in (0.5, 1.0, 2.0, 5.0) if step * power <= longest * (1 + 1e-9)))
+
+
+def scale_bar(ax: Axes, pixel_size_um: float | None = None) -> tuple[Line2D, Text]:
+    """Draw a bar of round length below axes whose x is in pixels; a former bar gives way.
+
+    Parameters
+    ----------
+    ax : Axes
+        With its limits set.
+    pixel_size_um : float, optional
+        Micrometres a pixel; without it the bar is in px.
+
+    Returns
+    -------
+    (Line2D, Text)
+
+    Raises
+    ------
+    ParameterError
+        The pixel size is not a positive number.
+    """
+    if pixel_size_um is not None and not 0 < pixel_size_um < np.inf:
+        raise ParameterError(
+            f"pixel_size_um must be a positive number, got {pixel_size_um!r}: pass None when it is not known"
+        )
+    for artist in (*ax.lines, *ax.texts):
+        if artist.get_gid() == _BAR_NAME:
+            artist.remove()
+    left, right = ax.get_xlim()
+    unit, size = ("px", 1.0) if pixel_size_um is None else ("µm", pixel_size_um)
+    length = nice_length(_BAR_SHARE * abs(right - left) * size)
+    stop = left + np.copysign(length / size, right - left)
+    across = ax.get_xaxis_transform()
+    (bar,) = ax.plot([left, stop], [-0.04, -0.04], color=LINE_COLOUR, linewidth=1.5, transform=across)
+    bar.set(clip_on=False, solid_capstyle="butt", gid=_BAR_NAME)
+    text = ax.annotate(
+        f"{length:g} {unit}",
+        (stop, -0.04),
+        xycoords=across,
+        xytext=(3, 0),
+        textcoords="offset points",
+        va="center_baseline",
+        annotation_clip=False,
+    )
+    text.set_gid(_BAR_NAME)
+    return bar, text
+
+
+def colour_bar(
+    mappable: ScalarMappable, into: Axes, label: str, unit: str | None = None, *, extend: str = "neither"
+) -> Colorbar:
+    """Draw a colour bar with its label and unit.
+
+    Parameters
+    ----------
+    mappable : ScalarMappable
+        What the colours stand for.
+    into : Axes
+        Filled by the colour bar.
+    label : str
+        Taken literally, a dollar sign too.
+    unit : str, optional
+        Follows the label in brackets.
+    extend : {"neither", "both", "min", "max"}
+        At which ends values are cut off.
+
+    Returns
+    -------
+    Colorbar
+    """
+    bar = into.figure.colorbar(mappable, cax=into, extend=extend, extendfrac=0.04)
+    bar.set_label(f"{label} ({unit})" if unit else label, parse_math=False)
+    bar.outline.set_linewidth(0.4)  # type: ignore[operator]
+    bar.ax.tick_params(width=0.4, length=2)
+    bar.locator = mpl.ticker.MaxNLocator(5, steps=[1, 2, 2.5, 5, 10])
+    bar.update_ticks()
+    return bar
