@@ -105,7 +105,7 @@ def _parse_signal(signal: Any, shape: tuple[int, ...]) -> tuple[FloatArray, list
         raise SignalError(f"signal must be numeric, got dtype {array.dtype}")
     if array.ndim not in (2, 3) or array.shape[-2:] != shape:
         raise SignalError(
-            f"signal has shape {array.shape}, the mask {shape}: pass (H, W) or (channel, H, W) of the same H, W"
+            f"signal has shape {array.shape}, mask {shape}: pass (H, W) or (channel, H, W) of that size"
         )
     if array.ndim == 3 and names is None:
         names = [str(number) for number in range(len(array))]
