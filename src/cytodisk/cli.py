@@ -150,7 +150,7 @@ def check_command(
         noted += bool(notes)
         remarks = reason or "; ".join(notes)
         print(f"{found.cell}\t{found.frame}\t{found.label}\t{'no' if reason else 'yes'}\t{remarks}")
-    console.print(f"{count} cells: {count - unusable} usable ({noted} with remarks), {unusable} not usable")
+    console.print(f"{_count(count)}: {count - unusable} usable ({noted} with remarks), {unusable} not usable")
     raise typer.Exit(1 if unusable else 0)
 
 
@@ -208,6 +208,10 @@ def main() -> None:
 def _fail(message: str) -> None:
     print(f"Error: {message}", file=sys.stderr)
     raise SystemExit(2)
+
+
+def _count(cells: int) -> str:
+    return "1 cell" if cells == 1 else f"{cells} cells"
 
 
 def _align(text: str | None) -> Any:
@@ -268,7 +272,7 @@ def _finish(console: "Console", study: "Study", figures: int) -> None:
     cells = study.cells
     draw_overview(study.path / "figures" / "overview.png", cells)
     mapped = cells[cells["status"] == "ok"]
-    console.print(f"{len(mapped)} of {len(cells)} cells mapped, each with a valid certificate")
+    console.print(f"{len(mapped)} of {_count(len(cells))} mapped, each with a valid certificate")
     if len(mapped):
         console.print(
             f"median {mapped['seconds'].median():.2f} s a cell; median area distortion (mean |log λ|) "
@@ -276,14 +280,14 @@ def _finish(console: "Console", study: "Study", figures: int) -> None:
         )
     remarks = mapped[mapped["notes"] != ""]
     if len(remarks):
-        console.print(f"{len(remarks)} cells with remarks: column 'notes' of cells.parquet")
+        console.print(f"{_count(len(remarks))} with remarks: column 'notes' of cells.parquet")
     lost = cells[cells["status"] != "ok"]
     for _, row in lost.head(20).iterrows():
         print(f"cell {row['cell']} (frame {row['frame']}) {row['status']}: {row['reason']}", file=sys.stderr)
     if len(lost) > 20:
         print(f"… and {len(lost) - 20} more: column 'reason' of cells.parquet", file=sys.stderr)
     if 0 <= figures < len(mapped):
-        console.print(f"figures drawn for the first {figures} cells: --figures -1 draws all")
+        console.print(f"figures drawn for the first {_count(figures)}: --figures -1 draws all")
     console.print(f"results: {study.path}")
     unreadable = int((cells["status"] == "unreadable").sum())
     if not len(mapped):
