@@ -97,13 +97,15 @@ def _parse_signal(signal: Any, shape: tuple[int, ...]) -> tuple[FloatArray, list
         extra = [str(dim) for dim in signal.dims if dim not in ("channel", "y", "x")]
         if extra:
             raise SignalError(f"signal has the dims {extra} beside channel, y, x: pass one frame")
+        if not {"y", "x"} <= set(signal.dims):
+            raise SignalError(f"signal has the dims {list(signal.dims)}: it needs y and x")
+        signal = signal.transpose("channel", "y", "x", missing_dims="ignore")
         if "channel" in signal.dims:
-            signal = signal.transpose("channel", "y", "x")
             names = [str(name) for name in signal["channel"].to_numpy()]
     array = np.asarray(signal)
     if array.dtype.kind not in "biuf":
         raise SignalError(f"signal must be numeric, got dtype {array.dtype}")
-    if array.ndim not in (2, 3) or array.shape[-2:] != shape:
+    if array.ndim not in (2, 3) or array.shape[-2:] != shape or not array.size:
         raise SignalError(
             f"signal has shape {array.shape}, mask {shape}: pass (H, W) or (channel, H, W) of that size"
         )
