@@ -60,7 +60,7 @@ def frame_cell(ax: Axes, disk: DiskMap, *, pixel_size_um: float | None = None) -
     scale_bar(ax, pixel_size_um)
 
 
-def draw_outline(ax: Axes, disk: DiskMap, *, color: str = LINE_COLOUR, linewidth: float = 0.6) -> Polygon:
+def draw_outline(ax: Axes, disk: DiskMap, *, color: str = LINE_COLOUR, linewidth: float = 0.4) -> Polygon:
     """Draw the cell's outline.
 
     Parameters
@@ -121,7 +121,7 @@ def draw_cell(
         )
     low, high = limits or signal_limits(values, disk.mask)
     drawn = ax.imshow(values, cmap=colour_map(cmap), vmin=low, vmax=high)
-    draw_outline(ax, disk, color="white")
+    draw_outline(ax, disk, color="white", linewidth=0.3)
     frame_cell(ax, disk, pixel_size_um=pixel_size_um)
     return drawn
 
@@ -133,6 +133,7 @@ def draw_windows(
     by_layer: bool = False,
     color: str = "white",
     linewidth: float = 0.25,
+    alpha: float | None = None,
 ) -> PolyCollection:
     """Draw the windows over a cell; `frame_cell` fits the axes when nothing else did.
 
@@ -146,13 +147,15 @@ def draw_windows(
         Of the lines.
     linewidth : float
         In points.
+    alpha : float, optional
+        Opacity, 0 to 1.
 
     Returns
     -------
     PolyCollection
         One polygon a window, by window number.
     """
-    style = {"edgecolors": color, "linewidths": linewidth}
+    style = {"edgecolors": color, "linewidths": linewidth, "alpha": alpha}
     polygons = [polygon[:, ::-1] for polygon in windows.polygons()]
     return add_windows(ax, polygons, *windows.areas.shape, by_layer=by_layer, style=style)
 
@@ -178,7 +181,7 @@ def draw_window_means(
         Micrometres a pixel; without it the scale bar is in px.
     cmap : str or Colormap
     limits : (float, float), optional
-        Of the colours; by default the least and the largest value.
+        Of the colours; by default percentiles 1 and 99.5 of the values.
 
     Returns
     -------
@@ -195,7 +198,7 @@ def draw_window_means(
     table = window_values(values, windows.areas.shape)
     polygons = [polygon[:, ::-1] for polygon in windows.polygons()]
     drawn = add_filled_windows(ax, polygons, table, cmap, limits)
-    draw_outline(ax, windows.disk)
+    draw_outline(ax, windows.disk, linewidth=0.25)
     frame_cell(ax, windows.disk, pixel_size_um=pixel_size_um)
     return drawn
 
@@ -205,8 +208,8 @@ def draw_mesh(
     points_yx: FloatArray,
     triangles: IntArray,
     *,
-    color: str = LINE_COLOUR,
-    linewidth: float = 0.15,
+    color: str = "0.35",
+    linewidth: float = 0.12,
 ) -> LineCollection:
     """Draw every edge of a triangulation once.
 
@@ -280,7 +283,7 @@ def draw_area_distortion(
     drawn.set_array(np.log2(disk.distortion.triangle_area_ratio))
     drawn.set_clim(-top, top)
     ax.add_collection(drawn, autolim=False)
-    draw_outline(ax, disk)
+    draw_outline(ax, disk, color="0.5", linewidth=0.25)
     frame_cell(ax, disk, pixel_size_um=pixel_size_um)
     return drawn
 

@@ -164,7 +164,7 @@ def draw_disk_means(
 
 
 def draw_disk_mesh(
-    ax: Axes, disk: DiskMap, *, color: str = LINE_COLOUR, linewidth: float = 0.15
+    ax: Axes, disk: DiskMap, *, color: str = "0.35", linewidth: float = 0.12
 ) -> LineCollection:
     """Draw the mesh as it lies on the disk.
 

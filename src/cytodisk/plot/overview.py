@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -15,11 +14,12 @@ from cytodisk.errors import ParameterError
 from cytodisk.files import replacing
 from cytodisk.plot.cell import DISTORTION_LABEL, distortion_limit, draw_area_distortion
 from cytodisk.plot.sheet import Sheet
-from cytodisk.plot.style import DPI, PAPER, STATUS_COLOURS, colour_bar
+from cytodisk.plot.style import DPI, STATUS_COLOURS, colour_bar, paper_style
 
 _NEEDED = ("status", "area", "area_distortion")
 _MOST_BINS = 30
 _THUMBNAILS = 6
+_THUMBNAIL_LIMIT = 1.0  # log2, so that one bad cell does not bleach the others
 _DISTORTION = "area distortion, mean |log λ|"
 
 
@@ -60,8 +60,8 @@ def draw_overview(path: Path, cells: pd.DataFrame, masks: Callable[[int], DiskMa
     area = pd.to_numeric(cells["area"], errors="coerce").to_numpy(np.float64, na_value=np.nan)
     mapped = (cells["status"] == "ok").to_numpy() & np.isfinite(distortion)
     chosen = _spread_out(distortion, mapped) if masks is not None else np.empty(0, dtype=np.int64)
-    with mpl.rc_context(dict(PAPER)):
-        sheet = Sheet(58.0 + (42.0 if len(chosen) else 0.0))
+    with paper_style():
+        sheet = Sheet(58.0 + (40.0 if len(chosen) else 0.0))
         _draw_status(sheet.axes(19.0, 8.0, 29.0, 38.0), cells["status"].astype(str))
         _draw_histogram(sheet.axes(64.0, 8.0, 46.0, 38.0), distortion[mapped])
         unit = cells.attrs.get("units", {}).get("area", "px²")
@@ -97,7 +97,7 @@ def _draw_histogram(ax: Axes, distortion: FloatArray) -> None:
     top = 1.05 * distortion.max() if distortion.max() > 0 else 0.1
     ax.hist(
         distortion,
-        bins=np.linspace(0.0, top, bins + 1),
+        bins=np.linspace(0.0, top, bins + 1).tolist(),
         color=STATUS_COLOURS["ok"],
         edgecolor="white",
         linewidth=0.3,
@@ -124,14 +124,16 @@ def _draw_against_area(ax: Axes, area: FloatArray, distortion: FloatArray, unit:
 
 def _draw_cells(sheet: Sheet, top: float, disks: list[DiskMap], pixel_size_um: float | None) -> None:
     """Thumbnails in the same colours."""
-    limit = max(distortion_limit(disk.distortion) for disk in disks)
-    sheet.text(5.0, top - 2.0, "from the least to the most distorted", fontsize=7.5)
+    limit = min(max(distortion_limit(disk.distortion) for disk in disks), _THUMBNAIL_LIMIT)
+    sheet.text(
+        5.0, top - 2.0, "cells from the least to the most distorted, with their area distortion", fontsize=7.5
+    )
     for k, disk in enumerate(disks):
         left = 5.0 + 26.0 * k
         drawn = draw_area_distortion(
             sheet.axes(left, top, 24.0, 24.0), disk, pixel_size_um=pixel_size_um, limit=limit
         )
-        sheet.text(left + 12.0, top + 33.0, f"{disk.distortion.area:.3f}", ha="center")
+        sheet.text(left + 12.0, top + 31.5, f"{disk.distortion.area:.3f}", ha="center")
     colour_bar(drawn, sheet.axes(162.0, top, 2.2, 28.0), DISTORTION_LABEL, extend="both")
 
 

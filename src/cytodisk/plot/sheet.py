@@ -34,6 +34,6 @@ class Sheet:
         )
 
     def text(self, left: float, top: float, words: str, **style: Any) -> Text:
-        """Text at a place counted from the page's upper left corner, in millimetres; dollar signs are kept."""
-        style = {"va": "baseline", "parse_math": False} | style
-        return self.figure.text(left / self.width_mm, 1.0 - top / self.height_mm, words, **style)
+        """Text at a place counted from the page's upper left corner, in millimetres; a dollar sign is one."""
+        options: dict[str, Any] = {"va": "baseline", "parse_math": False} | style
+        return self.figure.text(left / self.width_mm, 1.0 - top / self.height_mm, words, **options)

@@ -27,7 +27,7 @@ from cytodisk.plot.cell import (
 from cytodisk.plot.disk import draw_disk_image, draw_disk_means, draw_disk_mesh, draw_disk_windows
 from cytodisk.plot.overview import draw_overview
 from cytodisk.plot.sheet import Sheet
-from cytodisk.plot.style import DIVERGING_COLOURS, DPI, PAPER, SIGNAL_COLOURS, colour_bar, signal_limits
+from cytodisk.plot.style import DIVERGING_COLOURS, DPI, SIGNAL_COLOURS, colour_bar, paper_style, signal_limits
 from cytodisk.windows.cell_windows import CellWindows
 from cytodisk.windows.sample import sample
 
@@ -35,7 +35,9 @@ __all__ = ["draw_cell_figures", "draw_overview"]
 
 _MOST_CHANNELS = 3
 _LONGEST_NAME = 60
-_PANEL, _GAP, _LEFT = 37.0, 3.0, 6.0  # mm, with a signal: four panels and a colour bar
+_LONGEST_CHANNEL = 20
+_PANEL, _GAP, _LEFT, _BAR = 32.5, 4.0, 6.0, 14.0  # mm, with a signal
+_PAIR = 2 * (_PANEL + _GAP) + _BAR - 1.0  # mm, cell, disk and colour bar; two of them side by side
 _WIDE_PANEL = 43.0  # mm, without a signal: three panels
 _TOP, _HEADING, _BELOW = 9.0, 4.5, 6.0  # mm: page heading, headings of panels, room for scale bars
 _TALLEST = 1.45  # height of a panel over its width
@@ -81,7 +83,7 @@ def draw_cell_figures(
     if not name or Path(name).name != name:
         raise ParameterError(f"name must be a file name without folders, got {name!r}: pass the cell's name")
     path = Path(folder) / f"{name}.png"
-    with mpl.rc_context(dict(PAPER)):
+    with paper_style():
         if signal is None:
             sheet = _sheet_without_signal(name, windows, pixel_size_um)
         else:
@@ -96,11 +98,7 @@ def _sheet_with_signal(
 ) -> Sheet:
     images = signal.transpose("channel", ...) if "channel" in signal.dims else signal.expand_dims("channel")
     means = np.asarray(sample(windows, images)["mean"])
-    given = "channel" in images.coords
-    names = [
-        str(images["channel"].to_numpy()[k]) if given else "signal" if len(means) == 1 else f"channel {k}"
-        for k in range(len(means))
-    ]
+    names = _channel_names(images)
     shown = min(len(means), _MOST_CHANNELS)
     height = _panel_height(windows.disk, _PANEL)
     row = _HEADING + height + _BELOW
@@ -114,6 +112,13 @@ def _sheet_with_signal(
     return sheet
 
 
+def _channel_names(images: xr.DataArray) -> list[str]:
+    if "channel" in images.coords:
+        return [str(name) for name in images["channel"].to_numpy()]
+    count = images.sizes["channel"]
+    return ["signal"] if count == 1 else [f"channel {k}" for k in range(count)]
+
+
 def _draw_channel(
     sheet: Sheet,
     top: float,
@@ -124,35 +129,47 @@ def _draw_channel(
     channel: str,
     pixel_size_um: float | None,
 ) -> None:
-    """Four panels in the same colours and one colour bar."""
-    limits = signal_limits(image, windows.mask)
-    headings = (f"windows over {channel}", "window means", "signal on the disk", "window means on the disk")
-    cell, cell_means, disk, disk_means = _row_of_axes(sheet, top, height, _PANEL, headings)
+    """The signal in cell and disk in the same colours, then the means, whose range is narrower."""
     sheet.text(
-        3.5, top + 0.5 * height, channel, rotation=90, ha="center", va="center", fontsize=7.5, weight="bold"
+        3.5,
+        top + 0.5 * height,
+        _shortened(channel, _LONGEST_CHANNEL),
+        rotation=90,
+        ha="center",
+        va="center",
+        fontsize=7.5,
+        weight="bold",
     )
+    second = _LEFT + _PAIR
+    headings = ("signal and windows", "signal on the disk")
+    cell, wheel = _row_of_axes(sheet, top, height, _PANEL, headings)
+    limits = signal_limits(image, windows.mask)
     drawn = draw_cell(
         cell, image, windows.disk, pixel_size_um=pixel_size_um, cmap=SIGNAL_COLOURS, limits=limits
     )
-    draw_windows(cell, windows, linewidth=0.15)
-    draw_window_means(cell_means, windows, means, pixel_size_um=pixel_size_um, limits=limits)
-    draw_disk_image(disk, windows.disk, image, limits=limits)
-    draw_disk_means(disk_means, windows.grid, means, limits=limits)
-    colour_bar(
-        drawn, _bar_axes(sheet, top, height, _LEFT + 4 * (_PANEL + _GAP)), channel, "a.u.", extend="both"
-    )
+    draw_windows(cell, windows, linewidth=0.15, alpha=0.6)
+    draw_disk_image(wheel, windows.disk, image, limits=limits)
+    bar = _bar_axes(sheet, top, height, second - _BAR)
+    colour_bar(drawn, bar, _shortened(channel, _LONGEST_CHANNEL), "a.u.", extend="both")
+    headings = ("window means", "window means on the disk")
+    cell, wheel = _row_of_axes(sheet, top, height, _PANEL, headings, left=second)
+    filled = draw_window_means(cell, windows, means, pixel_size_um=pixel_size_um)
+    draw_disk_means(wheel, windows.grid, means)
+    bar = _bar_axes(sheet, top, height, second + _PAIR - _BAR)
+    colour_bar(filled, bar, f"mean {_shortened(channel, _LONGEST_CHANNEL)}", "a.u.", extend="both")
 
 
 def _draw_map_row(
     sheet: Sheet, top: float, height: float, disk: DiskMap, pixel_size_um: float | None
 ) -> None:
-    headings = ("mesh in the cell", "mesh on the disk", "", "area distortion")
-    mesh, disk_mesh, spread, area = _row_of_axes(sheet, top, height, _PANEL, headings)
-    _draw_meshes(mesh, disk_mesh, disk, pixel_size_um)
-    _inset(spread, sheet, 9.0, 9.0, min(height, _PANEL))
+    second = _LEFT + _PAIR
+    mesh, wheel = _row_of_axes(sheet, top, height, _PANEL, ("mesh in the cell", "mesh on the disk"))
+    spread, area = _row_of_axes(sheet, top, height, _PANEL, ("", "area distortion"), left=second)
+    _draw_meshes(mesh, wheel, disk, pixel_size_um)
+    _inset(spread, sheet, 4.0, 9.0, min(height, _PANEL))
     draw_area_spread(spread, disk)
     drawn = draw_area_distortion(area, disk, pixel_size_um=pixel_size_um)
-    bar = _bar_axes(sheet, top, height, _LEFT + 4 * (_PANEL + _GAP))
+    bar = _bar_axes(sheet, top, height, second + _PAIR - _BAR)
     colour_bar(drawn, bar, DISTORTION_LABEL, extend="both")
 
 
@@ -170,10 +187,10 @@ def _sheet_without_signal(name: str, windows: CellWindows, pixel_size_um: float 
     )
     (area,) = _row_of_axes(sheet, first, height, _WIDE_PANEL, ("area distortion",), left=third)
     (spread,) = _row_of_axes(sheet, second, height, _WIDE_PANEL, ("",), left=third)
-    draw_windows(cell, windows, by_layer=True)
+    draw_windows(cell, windows, by_layer=True, linewidth=0.15)
     draw_outline(cell, disk)
     frame_cell(cell, disk, pixel_size_um=pixel_size_um)
-    layers = draw_disk_windows(wheel, windows.grid, by_layer=True, color="white")
+    layers = draw_disk_windows(wheel, windows.grid, by_layer=True, color="white", linewidth=0.15)
     _draw_layer_bar(layers, _bar_axes(sheet, first, height, _LEFT + 2 * (_WIDE_PANEL + _GAP)), windows)
     _draw_meshes(mesh, disk_mesh, disk, pixel_size_um)
     drawn = draw_area_distortion(area, disk, pixel_size_um=pixel_size_um)
@@ -199,7 +216,7 @@ def draw_area_spread(ax: Axes, disk: DiskMap) -> None:
     middle = 0.5 * (edges[:-1] + edges[1:])
     colours = mpl.colormaps[DIVERGING_COLOURS](Normalize(-top, top)(middle))
     ax.bar(middle, share, np.diff(edges), color=colours, edgecolor="0.4", linewidth=0.25)
-    ax.set(xlim=(-top, top), xlabel=DISTORTION_LABEL, ylabel="share of the cell's area (%)")
+    ax.set(xlim=(-top, top), xlabel=DISTORTION_LABEL, ylabel="cell's area (%)")
 
 
 def _draw_meshes(cell: Axes, wheel: Axes, disk: DiskMap, pixel_size_um: float | None) -> None:
@@ -239,7 +256,7 @@ def _bar_axes(sheet: Sheet, top: float, height: float, left: float) -> Axes:
 def _inset(ax: Axes, sheet: Sheet, left: float, bottom: float, height: float) -> None:
     """Make room inside a panel for the labels of its axes, in millimetres."""
     box = ax.get_position()
-    x, y = left / sheet.width_mm, bottom / sheet.height_mm
+    x = left / sheet.width_mm
     tall = (height - bottom) / sheet.height_mm
     ax.set_position((box.x0 + x, box.y1 - tall, box.width - x - 1.0 / sheet.width_mm, tall))
 
@@ -251,14 +268,14 @@ def _write_heading(
     area = f"{pixels:,.0f} px²" if pixel_size_um is None else f"{pixels * pixel_size_um**2:,.4g} µm²"
     grid = f"{windows.grid.layers} layers × {windows.grid.sectors} sectors"
     distortion = windows.disk.distortion
-    facts = [area, grid, f"area distortion {distortion.area:.3f}", f"angle distortion {distortion.angle:.2f}"]
-    sheet.text(_LEFT, 5.0, _shortened(name), fontsize=8, weight="bold")
+    facts = [area, grid, f"area distortion {distortion.area:.3f}", f"angle distortion {distortion.angle:.3g}"]
+    sheet.text(_LEFT, 5.0, _shortened(name, _LONGEST_NAME), fontsize=8, weight="bold")
     sheet.text(sheet.width_mm - 3.0, 5.0, " · ".join([*facts, more] if more else facts), ha="right")
 
 
-def _shortened(name: str) -> str:
-    """A name short enough for the heading, cut in its middle."""
-    if len(name) <= _LONGEST_NAME:
+def _shortened(name: str, longest: int) -> str:
+    """A name short enough for its place, cut in its middle."""
+    if len(name) <= longest:
         return name
-    half = (_LONGEST_NAME - 1) // 2
+    half = (longest - 1) // 2
     return f"{name[:half]}…{name[-half:]}"

@@ -1,6 +1,7 @@
 """How figures look: sizes of a printed page, colours, scale bar and colour bar."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
@@ -11,6 +12,8 @@ from matplotlib.colorbar import Colorbar
 from matplotlib.colors import Colormap
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
+from matplotlib.ticker import MaxNLocator, ScalarFormatter
+from matplotlib.transforms import ScaledTranslation
 
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import ParameterError
@@ -27,7 +30,7 @@ MISSING_COLOUR = "0.85"
 LINE_COLOUR = "0.15"
 STATUS_COLOURS = {"ok": "#0072B2", "refused": "#E69F00", "unreadable": "#999999"}
 
-PAPER: Mapping[str, Any] = {
+PAPER: Any = {
     "font.family": "sans-serif",
     "font.size": 7.0,
     "axes.titlesize": 7.5,
@@ -45,11 +48,19 @@ PAPER: Mapping[str, Any] = {
     "axes.formatter.use_mathtext": True,
     "savefig.facecolor": "white",
 }
-"""Matplotlib settings for print: `with matplotlib.rc_context(PAPER): ...`."""
+"""Matplotlib settings for print."""
 
 _PERCENTILES = (1.0, 99.5)
 _BAR_SHARE = 0.3  # of the axes' width that a scale bar may take
+_BAR_BELOW = 5.0  # points from the axes to the bar
 _BAR_NAME = "scale bar"
+
+
+@contextmanager
+def paper_style() -> Iterator[None]:
+    """Apply `PAPER` to what is made inside the block."""
+    with mpl.rc_context(PAPER):
+        yield
 
 
 def colour_map(name: str | Colormap) -> Colormap:
@@ -154,12 +165,13 @@ def scale_bar(ax: Axes, pixel_size_um: float | None = None) -> tuple[Line2D, Tex
     unit, size = ("px", 1.0) if pixel_size_um is None else ("µm", pixel_size_um)
     length = nice_length(_BAR_SHARE * abs(right - left) * size)
     stop = left + np.copysign(length / size, right - left)
-    across = ax.get_xaxis_transform()
-    (bar,) = ax.plot([left, stop], [-0.04, -0.04], color=LINE_COLOUR, linewidth=1.5, transform=across)
+    below = ScaledTranslation(0.0, -_BAR_BELOW / 72.0, ax.figure.dpi_scale_trans)
+    across = ax.get_xaxis_transform() + below
+    (bar,) = ax.plot([left, stop], [0.0, 0.0], color=LINE_COLOUR, linewidth=1.5, transform=across)
     bar.set(clip_on=False, solid_capstyle="butt", gid=_BAR_NAME)
     text = ax.annotate(
         f"{length:g} {unit}",
-        (stop, -0.04),
+        (stop, 0.0),
         xycoords=across,
         xytext=(3, 0),
         textcoords="offset points",
@@ -194,8 +206,11 @@ def colour_bar(
     """
     bar = into.figure.colorbar(mappable, cax=into, extend=extend, extendfrac=0.04)
     bar.set_label(f"{label} ({unit})" if unit else label, parse_math=False)
-    bar.outline.set_linewidth(0.4)  # type: ignore[operator]
+    bar.outline.set_linewidth(0.4)
     bar.ax.tick_params(width=0.4, length=2)
-    bar.locator = mpl.ticker.MaxNLocator(5, steps=[1, 2, 2.5, 5, 10])
+    bar.locator = MaxNLocator(5, steps=[1, 2, 2.5, 5, 10])
+    numbers = ScalarFormatter(useMathText=True)
+    numbers.set_powerlimits((-3, 4))
+    bar.formatter = numbers
     bar.update_ticks()
     return bar
