@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import os
 import zipfile
+import zlib
 from dataclasses import asdict, dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -253,7 +255,7 @@ def load_map(path: str | os.PathLike[str]) -> DiskMap:
         The file is missing, damaged, or not a map.
     """
     try:
-        with np.load(path) as file:
+        with Path(path).open("rb") as stream, np.load(stream) as file:
             header = json.loads(str(file["header"]))
             if header["format"] != _FORMAT:
                 raise ReadError(f"{path} is a map of format {header['format']}: this version reads {_FORMAT}")
@@ -265,7 +267,7 @@ def load_map(path: str | os.PathLike[str]) -> DiskMap:
             )
     except FileNotFoundError as error:
         raise ReadError(f"{path} does not exist: pass a file that DiskMap.save wrote") from error
-    except (zipfile.BadZipFile, KeyError, ValueError, OSError, EOFError) as error:
+    except (zipfile.BadZipFile, zlib.error, KeyError, TypeError, ValueError, OSError, EOFError) as error:
         if isinstance(error, ReadError):
             raise
         raise ReadError(f"{path} is not a map that DiskMap.save wrote: {error}") from error

@@ -130,7 +130,10 @@ def _constrained_delaunay(points_yx: FloatArray, n_boundary: int) -> IntArray:
     triangulation.insert_vertices(points_xy)
     loop = np.arange(n_boundary, dtype=np.uint32)
     edges: Any = np.column_stack([loop, np.roll(loop, -1)])
-    triangulation.insert_edges(edges)
+    try:
+        triangulation.insert_edges(edges)
+    except RuntimeError as error:
+        raise MeshError(f"outline ({n_boundary} points) crosses itself: use trace_outline") from error
     triangulation.erase_outer_triangles()
     return triangulation.triangles_array()["vertices"].astype(np.int64)
 

@@ -139,6 +139,7 @@ def random_spiky(
     Returns
     -------
     ndarray of shape (H, W) and dtype bool
+        One piece; spikes that meet may enclose holes.
 
     Raises
     ------

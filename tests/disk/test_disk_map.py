@@ -1,0 +1,152 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cytodisk import simulate
+from cytodisk.disk.disk_map import DiskMap, load_map
+from cytodisk.disk.mapping import map_to_disk
+from cytodisk.errors import ParameterError, ReadError, SignalError, StudyError
+
+
+@pytest.fixture(scope="module")
+def disk() -> DiskMap:
+    return map_to_disk(simulate.random_mask("spiky", 8))
+
+
+def test_outside_the_cell_is_nan_or_the_nearest_boundary_point(disk: DiskMap) -> None:
+    outside = np.array([[-50.0, -50.0], [-50.0, 200.0], [np.nan, 3.0]])
+    assert np.isnan(disk.to_disk(outside)).all()
+    nearest = disk.to_disk(outside, outside="nearest")
+    np.testing.assert_allclose(np.hypot(*nearest[:2].T), 1.0)
+    assert np.isnan(nearest[2]).all()
+    corner = disk.outline_yx[np.square(disk.outline_yx - outside[0]).sum(axis=1).argmin()]
+    np.testing.assert_allclose(nearest[0], disk.to_disk(corner), atol=1e-6)
+
+
+def test_outside_the_disk_is_nan(disk: DiskMap) -> None:
+    cell = disk.to_cell([[1.001, 0.0], [0.0, -2.0], [np.nan, 0.0], [0.3, 0.2]])
+    assert np.isnan(cell[:3]).all()
+    assert np.isfinite(cell[3]).all()
+
+
+def test_the_whole_round_disk_is_covered(disk: DiskMap) -> None:
+    angle = np.linspace(0.0, 2.0 * np.pi, 5000)
+    for radius in (1.0 - 1e-9, 0.999, 0.5, 0.0):
+        uv = radius * np.column_stack([np.cos(angle), np.sin(angle)])
+        back = disk.to_disk(disk.to_cell(uv))
+        np.testing.assert_allclose(back, uv, atol=1e-8)
+
+
+def test_boundary_vertices_go_to_their_place_on_the_circle(disk: DiskMap) -> None:
+    circle = disk.vertices_uv[disk.boundary]
+    np.testing.assert_allclose(disk.to_disk(disk.outline_yx, outside="nearest"), circle, atol=1e-7)
+    assert (np.diff(disk.boundary_angles) > 0).all()
+
+
+def test_points_of_any_shape_keep_it(disk: DiskMap) -> None:
+    inside = np.argwhere(disk.mask)[:6].astype(float)
+    assert disk.to_disk(inside[0]).shape == (2,)
+    stacked = disk.to_disk(inside.reshape(2, 3, 2))
+    np.testing.assert_array_equal(stacked.reshape(6, 2), disk.to_disk(inside))
+    assert disk.to_disk(np.empty((0, 2))).shape == (0, 2)
+
+
+def test_bad_points_are_refused(disk: DiskMap) -> None:
+    with pytest.raises(
+        ParameterError, match=r"points_yx must have 2 as its last dimension, got shape \(4, 3\)"
+    ):
+        disk.to_disk(np.zeros((4, 3)))
+    with pytest.raises(ParameterError, match="points_uv must have 2"):
+        disk.to_cell(1.0)
+    with pytest.raises(ParameterError, match="outside must be 'nan' or 'nearest', got 'zero'"):
+        disk.to_disk([[0.0, 0.0]], outside="zero")
+
+
+def test_image_shows_the_signal_where_the_map_says(disk: DiskMap) -> None:
+    column = simulate.linear_signal(disk.mask.shape, (0.0, 1.0))
+    image = disk.image(column, size=101)
+    assert image.shape == (101, 101)
+    axis = (np.arange(101) + 0.5) / 101 * 2.0 - 1.0
+    v, u = np.meshgrid(axis, axis, indexing="ij")
+    np.testing.assert_array_equal(np.isfinite(image), np.hypot(u, v) <= 1.0)
+    inside = np.isfinite(image)
+    expected = np.clip(disk.to_cell(np.stack([u, v], axis=-1)[inside])[:, 1], 0, disk.mask.shape[1] - 1)
+    np.testing.assert_allclose(image[inside], expected, atol=1e-9)
+
+
+def test_bad_images_are_refused(disk: DiskMap) -> None:
+    with pytest.raises(SignalError, match=r"signal has shape \(3, 3\), the mask"):
+        disk.image(np.zeros((3, 3)))
+    with pytest.raises(ParameterError, match="size must be at least 1, got 0"):
+        disk.image(np.zeros(disk.mask.shape), size=0)
+
+
+def test_a_map_comes_back_from_its_file(tmp_path: Path) -> None:
+    disk = map_to_disk(simulate.random_mask("comb", 1), edge_length=2.0)
+    disk.save(tmp_path / "a.npz")
+    read = load_map(tmp_path / "a.npz")
+    for name in ("vertices_yx", "vertices_uv", "triangles", "boundary", "mask"):
+        np.testing.assert_array_equal(getattr(read, name), getattr(disk, name))
+    for name in ("report", "method", "start", "shape_weight", "edge_length", "steps", "converged"):
+        assert getattr(read, name) == getattr(disk, name)
+    assert read.certificate == disk.certificate
+    assert [path.name for path in tmp_path.iterdir()] == ["a.npz"]
+    assert json.loads(str(np.load(tmp_path / "a.npz")["header"]))["format"] == 1
+
+
+def test_saving_into_a_missing_folder_is_refused(disk: DiskMap, tmp_path: Path) -> None:
+    with pytest.raises(StudyError, match="cannot write"):
+        disk.save(tmp_path / "absent" / "a.npz")
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ReadError, match=r"b\.npz does not exist"):
+        load_map(tmp_path / "b.npz")
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.9, 0.999])
+def test_a_cut_off_file_is_refused(disk: DiskMap, tmp_path: Path, share: float) -> None:
+    path = tmp_path / "a.npz"
+    disk.save(path)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: int(share * len(whole))])
+    with pytest.raises(ReadError, match=r"is not a map that DiskMap\.save wrote"):
+        load_map(path)
+
+
+def test_a_damaged_file_is_refused(disk: DiskMap, tmp_path: Path) -> None:
+    path = tmp_path / "a.npz"
+    disk.save(path)
+    damaged = bytearray(path.read_bytes())
+    damaged[len(damaged) // 2 : len(damaged) // 2 + 40] = bytes(40)
+    path.write_bytes(bytes(damaged))
+    with pytest.raises(ReadError):
+        load_map(path)
+
+
+@pytest.mark.parametrize(
+    "content", [b"not a zip", b"\x93NUMPY", b"PK\x03\x04garbage"], ids=["text", "npy", "zip"]
+)
+def test_another_file_is_refused(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "a.npz"
+    path.write_bytes(content)
+    with pytest.raises(ReadError):
+        load_map(path)
+
+
+def test_another_array_file_and_another_format_are_refused(disk: DiskMap, tmp_path: Path) -> None:
+    other = tmp_path / "other.npz"
+    np.savez(other, a=np.zeros(3))
+    with pytest.raises(ReadError):
+        load_map(other)
+    np.save(tmp_path / "plain.npy", np.zeros(3))
+    with pytest.raises(ReadError):
+        load_map(tmp_path / "plain.npy")
+    np.savez(other, header=np.array(json.dumps({"format": 99})))
+    with pytest.raises(ReadError, match="format 99: this version reads 1"):
+        load_map(other)
+    np.savez(other, header=np.array(json.dumps([1])))
+    with pytest.raises(ReadError):
+        load_map(other)
