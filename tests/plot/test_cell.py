@@ -32,7 +32,7 @@ def test_cell_is_framed_with_y_downwards(ax: Axes, image: FloatArray, disk: Disk
     assert bottom > disk.outline_yx[:, 0].max() > disk.outline_yx[:, 0].min() > top
     assert ax.get_aspect() == 1.0
     assert not ax.axison
-    assert [text.get_text() for text in ax.texts] == ["5 µm"]
+    assert [text.get_text() for text in ax.texts] == ["2 µm"]
     assert list(drawn.get_extent()) == [-0.5, 89.5, 49.5, -0.5]
 
 

@@ -74,7 +74,7 @@ def test_page_with_channels(
     expected = {"VASP (a.u.)", "mean VASP (a.u.)", "$Rac1$ (a.u.)", "mean $Rac1$ (a.u.)"}
     assert expected | {"disk area / cell area, log2", "cell's area (%)"} == _labels(saved[0])
     assert any(word.endswith("µm²") for words in _words(saved[0]) for word in words.split(" · "))
-    assert "5 µm" in _words(saved[0])
+    assert "2 µm" in _words(saved[0])
 
 
 def test_page_of_one_channel_without_name_or_scale(

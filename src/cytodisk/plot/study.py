@@ -34,12 +34,12 @@ from cytodisk.windows.sample import sample
 __all__ = ["draw_cell_figures", "draw_overview"]
 
 _MOST_CHANNELS = 3
-_LONGEST_NAME = 60
+_LONGEST_NAME = 80
 _LONGEST_CHANNEL = 20
 _PANEL, _GAP, _LEFT, _BAR = 32.5, 4.0, 6.0, 14.0  # mm, with a signal
 _PAIR = 2 * (_PANEL + _GAP) + _BAR - 1.0  # mm, cell, disk and colour bar; two of them side by side
 _WIDE_PANEL = 43.0  # mm, without a signal: three panels
-_TOP, _HEADING, _BELOW = 9.0, 4.5, 6.0  # mm: page heading, headings of panels, room for scale bars
+_TOP, _HEADING, _BELOW = 11.0, 4.5, 6.0  # mm: page heading, headings of panels, room for scale bars
 _TALLEST = 1.45  # height of a panel over its width
 
 
@@ -265,12 +265,13 @@ def _write_heading(
     sheet: Sheet, name: str, windows: CellWindows, pixel_size_um: float | None, more: str
 ) -> None:
     pixels = float(windows.mask.sum())
-    area = f"{pixels:,.0f} px²" if pixel_size_um is None else f"{pixels * pixel_size_um**2:,.4g} µm²"
+    size, unit = (pixels, "px²") if pixel_size_um is None else (pixels * pixel_size_um**2, "µm²")
+    area = f"{size:,.0f} {unit}" if size >= 100 else f"{size:.3g} {unit}"
     grid = f"{windows.grid.layers} layers × {windows.grid.sectors} sectors"
     distortion = windows.disk.distortion
     facts = [area, grid, f"area distortion {distortion.area:.3f}", f"angle distortion {distortion.angle:.3g}"]
     sheet.text(_LEFT, 5.0, _shortened(name, _LONGEST_NAME), fontsize=8, weight="bold")
-    sheet.text(sheet.width_mm - 3.0, 5.0, " · ".join([*facts, more] if more else facts), ha="right")
+    sheet.text(_LEFT, 8.6, " · ".join([*facts, more] if more else facts), color="0.3")
 
 
 def _shortened(name: str, longest: int) -> str:
