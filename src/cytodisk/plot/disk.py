@@ -16,7 +16,7 @@ from matplotlib.patches import Circle
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.plot.cell import add_filled_windows, add_windows, draw_mesh, window_values
-from cytodisk.plot.style import LINE_COLOUR, SIGNAL_COLOURS, colour_map, signal_limits
+from cytodisk.plot.style import LINE_COLOUR, MISSING_COLOUR, SIGNAL_COLOURS, colour_map, signal_limits
 from cytodisk.windows.grid import PolarWindows
 
 _REACH = 1.26  # of the axes, in radii: room for the angles
@@ -67,7 +67,7 @@ def draw_disk_image(
     ax : Axes
     disk : DiskMap
     signal : array_like of shape (H, W)
-        One channel of one frame, of the shape of the mask.
+        One channel of one frame, of the shape of the mask; NaN is drawn light grey.
     size : int
         Pixels across the disk.
     cmap : str or Colormap
@@ -88,6 +88,7 @@ def draw_disk_image(
     image = disk.image(signal, size)
     low, high = limits or signal_limits(signal, disk.mask)
     colours = colour_map(cmap).with_extremes(bad=(1.0, 1.0, 1.0, 0.0))
+    ax.add_patch(Circle((0.0, 0.0), 1.0, facecolor=MISSING_COLOUR, linewidth=0.0, zorder=-1))
     drawn = ax.imshow(image, cmap=colours, vmin=low, vmax=high, extent=(-1.0, 1.0, 1.0, -1.0))
     frame_disk(ax)
     return drawn

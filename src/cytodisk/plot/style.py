@@ -51,7 +51,7 @@ PAPER: Any = {
 """Matplotlib settings for print."""
 
 _PERCENTILES = (1.0, 99.5)
-_BAR_SHARE = 0.3  # of the axes' width that a scale bar may take
+_BAR_SHARE = 0.3  # of the axes' width, or of half their height, that a scale bar may take
 _BAR_BELOW = 5.0  # points from the axes to the bar
 _BAR_NAME = "scale bar"
 
@@ -163,7 +163,8 @@ def scale_bar(ax: Axes, pixel_size_um: float | None = None) -> tuple[Line2D, Tex
             artist.remove()
     left, right = ax.get_xlim()
     unit, size = ("px", 1.0) if pixel_size_um is None else ("µm", pixel_size_um)
-    length = nice_length(_BAR_SHARE * abs(right - left) * size)
+    width, height = abs(right - left), abs(np.subtract(*ax.get_ylim()))
+    length = nice_length(size * min(width, _BAR_SHARE * max(width, 0.5 * height)))
     stop = left + np.copysign(length / size, right - left)
     below = ScaledTranslation(0.0, -_BAR_BELOW / 72.0, ax.figure.dpi_scale_trans)
     across = ax.get_xaxis_transform() + below
