@@ -64,10 +64,12 @@ def _singular_frame(
 
 
 @njit(cache=True)
-def _curvatures(s1: float, s2: float, weight: float, curvature: FloatArray) -> tuple[float, float]:
+def _curvatures(
+    s1: float, s2: float, weight: float, gauss: bool, curvature: FloatArray
+) -> tuple[float, float]:
     """Fill the eigenvalues for (stretch, stretch, twist, flip); (cos, sin) of the first stretch mode."""
     det = s1 * s2
-    log_det = math.log(det)
+    log_det = 0.0 if gauss else math.log(det)  # Gauss-Newton: without the residual's own curvature
     psi_11 = (2.0 - 2.0 * log_det) / (s1 * s1) + 2.0 * weight * s2 / (s1 * s1 * s1)
     psi_22 = (2.0 - 2.0 * log_det) / (s2 * s2) + 2.0 * weight * s1 / (s2 * s2 * s2)
     psi_12 = 2.0 / det - weight * (1.0 / (s1 * s1) + 1.0 / (s2 * s2))
@@ -94,9 +96,11 @@ def derivatives(
     first: IntArray,
     second: IntArray,
     values: FloatArray,
+    gauss: bool = False,
 ) -> None:
     """Fill the gradient (2 n,) and the values of the upper triangle of the projected Hessian.
 
+    With `gauss` the area term counts with its Gauss-Newton Hessian, 2 ∇L ∇Lᵀ, which leaves out L ∇²L.
     `unknown`, `first` and `second` say where a vertex pair's 2×2 block lies, as in `newton._HessianPattern`.
     """
     gradient[:] = 0.0
@@ -107,7 +111,7 @@ def derivatives(
     for t in range(triangles.shape[0]):
         a, b, c, d = jacobian(uv, triangles[t], hats[t])
         s1, s2, cu, su, cv, sv = _singular_frame(a, b, c, d)
-        ce, se = _curvatures(s1, s2, weight, curvature)
+        ce, se = _curvatures(s1, s2, weight, gauss, curvature)
         log_det = math.log(s1 * s2)
         slope1 = 2.0 * log_det / s1 + weight * (1.0 / s2 - s2 / (s1 * s1))
         slope2 = 2.0 * log_det / s2 + weight * (1.0 / s1 - s1 / (s2 * s2))
