@@ -124,7 +124,7 @@ def test_every_number_type_is_read(windows: cd.CellWindows, dtype: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "signal, message",
+    ("signal", "message"),
     [
         (np.zeros((3, 3)), r"signal has shape \(3, 3\), mask \(20, 20\): pass \(H, W\) or \(channel, H, W\)"),
         (np.zeros((2, 2, 20, 20)), r"signal has shape \(2, 2, 20, 20\), mask"),

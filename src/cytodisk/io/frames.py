@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -19,7 +21,7 @@ from cytodisk.errors import ReadError
 
 _TIFF = (".tif", ".tiff")
 _PICTURES = (".png",)
-_FRAME_AXES = "TIQRZ"
+_PNG: dict[str, Any] = {"extension": ".png", "plugin": "pillow"}
 _MICROMETRES = {
     "µm": 1.0,
     "um": 1.0,
@@ -30,6 +32,7 @@ _MICROMETRES = {
     "cm": 1e4,
     "m": 1e6,
 }
+_CUT_SHORT = re.compile("invalid (page|value) offset")
 _SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
 
 
@@ -88,7 +91,8 @@ class FrameFile:
         """
         with _reading(self.path, f"frame {number}"):
             if self.path.suffix.lower() in _PICTURES:
-                array = np.asarray(imageio.imread(self.path))
+                with self.path.open("rb") as opened:
+                    array = np.asarray(imageio.imread(opened, **_PNG))
             else:
                 array = self._tiff_frame(number)
         rest = [axis for axis in self.axes if axis != "T"]
@@ -185,8 +189,29 @@ def _reading(path: Path, part: str) -> Iterator[None]:
         raise ReadError(f"{path}: {part} cannot be read as an image ({error})") from error
 
 
+@contextmanager
+def _whole_tiff(file: Path) -> Iterator[tifffile.TiffFile]:
+    """Open a TIFF, and raise if it is cut short, of which tifffile only logs that pages or tags are lost."""
+    logged: list[str] = []
+    watch = logging.Handler(logging.ERROR)
+    watch.emit = lambda record: logged.append(record.getMessage())  # type: ignore[method-assign]
+    log = logging.getLogger("tifffile")
+    log.addHandler(watch)
+    try:
+        with tifffile.TiffFile(file) as tiff:
+            pages = len(tiff.pages)
+            lost = [message for message in logged if _CUT_SHORT.search(message)]
+            if lost:
+                raise ReadError(
+                    f"{file}: the file is cut short after {pages} pages ({lost[0]}): copy it again, whole"
+                )
+            yield tiff
+    finally:
+        log.removeHandler(watch)
+
+
 def _open_tiff(file: Path, unnamed: str) -> FrameFile:
-    with tifffile.TiffFile(file) as tiff:
+    with _whole_tiff(file) as tiff:
         if len(tiff.series) > 1 and len({series.shape for series in tiff.series}) > 1:
             raise ReadError(
                 f"{file} holds {len(tiff.series)} images of several sizes: save one of them alone"
@@ -202,7 +227,8 @@ def _open_tiff(file: Path, unnamed: str) -> FrameFile:
 
 
 def _open_picture(file: Path) -> FrameFile:
-    properties = imageio.improps(file)
+    with file.open("rb") as opened:  # imageio leaves a damaged file open when it opens it itself
+        properties = imageio.improps(opened, **_PNG)
     shape = tuple(properties.shape)
     if len(shape) == 2:
         return FrameFile(file, "YX", shape, properties.dtype, ("0",), None, None)

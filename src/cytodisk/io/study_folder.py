@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
@@ -77,8 +78,7 @@ class StudyFolder:
                 _make_room(folder, provenance, resume, overwrite)
             for name in (MAPS, FIGURES, _PARTS):
                 (folder / name).mkdir(parents=True, exist_ok=True)
-            for left_over in folder.rglob(".*.tmp.*"):  # of a run that was killed while writing
-                left_over.unlink()
+            _remove_left_overs(folder)
         except StudyError:
             raise
         except OSError as error:
@@ -266,6 +266,14 @@ def _make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite
             f"output folder {folder} holds another run ({_differences(there, provenance)}): "
             "pass --overwrite to replace it, or another folder"
         )
+
+
+def _remove_left_overs(folder: Path) -> None:
+    """Remove the temporary files of a run that was killed while writing; other files are not ours."""
+    for place in (folder, *(folder / name for name in (MAPS, FIGURES, _PARTS))):
+        for file in place.iterdir():
+            if re.fullmatch(r"\..+\.\d+\.tmp\.\w+", file.name):
+                file.unlink()
 
 
 def _differences(there: dict[str, Any], here: dict[str, Any]) -> str:
