@@ -16,7 +16,7 @@ class MapParameters(BaseModel):
     Lengths in pixels unless the name says otherwise; see `map_to_disk`, `polar_windows` and `sample`.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     kind: Literal["auto", "mask", "stack", "labels"] = "auto"
     method: Literal["newton", "harmonic"] = "newton"
