@@ -293,7 +293,7 @@ def _finish(console: "Console", study: "Study", figures: int) -> None:
     if not len(mapped):
         _fail(f"no cell could be mapped: {lost['reason'].iloc[0] if len(lost) else 'the file holds no cell'}")
     if unreadable:
-        _fail(f"{unreadable} frames of the input are damaged; all others are in {study.path}")
+        _fail(f"damaged frames of the input: {unreadable}; all others are in {study.path}")
 
 
 __all__ = ["app", "main"]

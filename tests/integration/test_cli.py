@@ -1,0 +1,364 @@
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import imageio.v3 as imageio
+import numpy as np
+import pandas as pd
+import pytest
+import tifffile
+
+import cytodisk as cd
+from cytodisk import cli
+
+Run = Callable[..., tuple[int, str, str]]
+GRID = ("--layers", "3", "--sectors", "8", "--figures", "0")
+
+
+@pytest.fixture
+def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
+    """Runs the command line in this process; gives exit code, stdout and stderr."""
+
+    def call(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["cytodisk", *map(str, arguments)])
+        try:
+            cli.main()
+            code = 0
+        except SystemExit as stop:
+            code = stop.code if isinstance(stop.code, int) else int(stop.code is not None)
+        said = capsys.readouterr()
+        return code, said.out, said.err
+
+    return call
+
+
+@pytest.fixture
+def mask(tmp_path: Path) -> Path:
+    values = np.zeros((40, 50), dtype=np.uint8)
+    values[8:30, 6:40] = 1
+    tifffile.imwrite(tmp_path / "mask.tif", values)
+    return tmp_path / "mask.tif"
+
+
+def write(path: Path, values: np.ndarray, **options: object) -> Path:
+    tifffile.imwrite(path, values, photometric="minisblack", **options)
+    return path
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def assert_refused(result: tuple[int, str, str], *words: str) -> None:
+    """Exit code 2, and an error that a user can act on instead of a traceback."""
+    code, _, error = result
+    assert code == 2
+    assert "Traceback" not in error
+    for word in words:
+        assert word in error
+
+
+def test_map_writes_a_study(run: Run, mask: Path, tmp_path: Path) -> None:
+    code, said, error = run("map", mask, "-o", tmp_path / "out", *GRID)
+    assert (code, error.strip()) == (0, "")
+    assert "masks: one mask, YX (40, 50) uint8" in said
+    assert "pixel size: unknown, results are in px" in said
+    assert "1 of 1 cell mapped, each with a valid certificate" in said
+    study = cd.open_study(tmp_path / "out")
+    assert study.map(0).certificate.valid
+    assert len(study.windows) == 24
+
+
+def test_flags_reach_the_parameters(run: Run, mask: Path, tmp_path: Path) -> None:
+    flags = ("--spacing", "radius", "--method", "harmonic", "--edge-length", "2", "--align", "30")
+    more = ("--nan", "omit", "--pixel-size", "0.2", "--shape-weight", "0.01", "--kind", "mask", "--geojson")
+    assert run("map", mask, "-o", tmp_path / "out", *GRID, *flags, *more, "-q")[:2] == (0, "")
+    found = cd.open_study(tmp_path / "out").provenance["parameters"]
+    assert found == {
+        "kind": "mask",
+        "method": "harmonic",
+        "shape_weight": 0.01,
+        "edge_length": 2.0,
+        "align": 30.0,
+        "layers": 3,
+        "sectors": 8,
+        "spacing": "radius",
+        "nan": "omit",
+        "pixel_size_um": 0.2,
+    }
+    outlines = json.loads((tmp_path / "out" / "maps" / "cell_00000.geojson").read_text())
+    assert len(outlines["features"]) == 24
+
+
+def test_a_point_to_align_to(run: Run, mask: Path, tmp_path: Path) -> None:
+    assert run("map", mask, "-o", tmp_path / "out", *GRID, "--align", "20,39")[0] == 0
+    disk = cd.open_study(tmp_path / "out").map(0)
+    assert disk.to_disk([[20.0, 39.0]])[0, 1] == pytest.approx(0.0, abs=0.05)
+    refused = run("map", mask, "-o", tmp_path / "other", "--align", "left")
+    assert_refused(refused, "align must be upright, an angle in degrees or ROW,COLUMN, got 'left'")
+
+
+def test_figures_are_drawn(run: Run, mask: Path, tmp_path: Path) -> None:
+    assert run("map", mask, "-o", tmp_path / "out", "--layers", 3, "--sectors", 8)[0] == 0
+    names = {path.name for path in (tmp_path / "out" / "figures").iterdir()}
+    assert "overview.png" in names
+    assert any(name.startswith("cell_00000") for name in names)
+
+
+def test_a_missing_file(run: Run, tmp_path: Path) -> None:
+    result = run("map", tmp_path / "gone.tif", "-o", tmp_path / "out")
+    assert_refused(result, "gone.tif does not exist: check the path")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_missing_signal(run: Run, mask: Path, tmp_path: Path) -> None:
+    result = run("map", mask, "--signal", tmp_path / "gone.tif", "-o", tmp_path / "out")
+    assert_refused(result, "gone.tif does not exist: check the path")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", ["a.tif", "a.png", "a.txt"])
+def test_a_file_that_is_not_an_image(run: Run, tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("layers,sectors\n1,2\n")
+    assert_refused(run("map", tmp_path / name, "-o", tmp_path / "out"), name, "image")
+
+
+def test_an_empty_mask(run: Run, tmp_path: Path) -> None:
+    path = write(tmp_path / "mask.tif", np.zeros((30, 30), dtype=np.uint8))
+    result = run("map", path, "-o", tmp_path / "out", *GRID)
+    assert_refused(result, "no cell could be mapped: mask of shape (30, 30) is empty: no pixel belongs to")
+    assert cd.open_study(tmp_path / "out").cells["status"].tolist() == ["refused"]
+
+
+def test_a_stack_where_one_image_is_needed(run: Run, tmp_path: Path) -> None:
+    path = write(tmp_path / "masks.tif", np.ones((4, 30, 30), dtype=np.uint8))
+    result = run("map", path, "-o", tmp_path / "out", "--kind", "mask")
+    assert_refused(result, "masks.tif is a stack of 4 frames where one image is needed: save the frame alone")
+
+
+def test_a_picture_of_floats(run: Run, tmp_path: Path) -> None:
+    values = np.random.default_rng(0).random((30, 30)).astype(np.float32)
+    result = run("map", write(tmp_path / "a.tif", values), "-o", tmp_path / "out", *GRID)
+    assert_refused(result, "mask is float32 with values other than 0 and 1", "threshold it first")
+
+
+def test_a_microscope_picture(run: Run, tmp_path: Path) -> None:
+    values = np.random.default_rng(0).integers(0, 4000, (30, 30)).astype(np.uint16)
+    result = run("map", write(tmp_path / "a.tif", values), "-o", tmp_path / "out")
+    assert_refused(result, "looks like a picture, not a mask", "pass the mask or label image")
+
+
+def test_a_colour_picture(run: Run, tmp_path: Path) -> None:
+    imageio.imwrite(tmp_path / "a.png", np.full((30, 30, 3), 255, dtype=np.uint8))
+    result = run("map", tmp_path / "a.png", "-o", tmp_path / "out")
+    assert_refused(result, "a.png has 3 channels (red, green, blue)", "save the mask alone")
+
+
+def test_a_z_stack(run: Run, mask: Path, tmp_path: Path) -> None:
+    signal = tmp_path / "z.ome.tif"
+    tifffile.imwrite(signal, np.zeros((5, 40, 50), dtype=np.uint8), metadata={"axes": "ZYX"})
+    result = run("map", mask, "--signal", signal, "-o", tmp_path / "out")
+    assert_refused(result, "z.ome.tif is a z-stack", "project it")
+
+
+def test_a_signal_of_another_shape(run: Run, mask: Path, tmp_path: Path) -> None:
+    signal = write(tmp_path / "signal.tif", np.zeros((40, 51), dtype=np.uint16))
+    result = run("map", mask, "--signal", signal, "-o", tmp_path / "out")
+    words = "has images of (40, 51), the masks of (40, 50): they must have the same height and width"
+    assert_refused(result, words)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("value", ["0", "-3"])
+@pytest.mark.parametrize("name", ["layers", "sectors"])
+def test_counts_below_1(run: Run, mask: Path, tmp_path: Path, name: str, value: str) -> None:
+    result = run("map", mask, "-o", tmp_path / "out", f"--{name}", value)
+    assert_refused(result, f"{name}: Input should be greater than or equal to 1, got {value}")
+    assert not (tmp_path / "out").exists()
+
+
+def test_counts_that_are_no_numbers(run: Run, mask: Path, tmp_path: Path) -> None:
+    assert_refused(run("map", mask, "-o", tmp_path / "out", "--layers", "many"), "--layers", "valid integer")
+
+
+def test_no_workers(run: Run, mask: Path, tmp_path: Path) -> None:
+    result = run("map", mask, "-o", tmp_path / "out", "--workers", "0")
+    assert_refused(result, "workers must be at least 1, got 0")
+
+
+def test_an_output_folder_below_a_file(run: Run, mask: Path) -> None:
+    before = mask.read_bytes()
+    result = run("map", mask, "-o", mask / "out", *GRID)
+    assert_refused(result, f"output folder {mask / 'out'} cannot be written: Not a directory")
+    assert_refused(run("map", mask, "-o", mask, *GRID), f"output {mask} is a file: pass a folder")
+    assert_refused(run("demo", "-o", mask), "cannot be written")
+    assert mask.read_bytes() == before
+
+
+def test_an_output_folder_with_something_else(run: Run, mask: Path, tmp_path: Path) -> None:
+    before = content(tmp_path)
+    result = run("map", mask, "-o", tmp_path, "--overwrite", *GRID)
+    assert_refused(result, "is not empty and holds no study: pass another folder")
+    assert content(tmp_path) == before
+
+
+def test_an_output_folder_of_another_run(run: Run, mask: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert run("map", mask, "-o", out, *GRID)[0] == 0
+    before = content(out)
+    assert_refused(run("map", mask, "-o", out, *GRID), "pass --resume to go on, --overwrite to replace it")
+    other = ("--layers", "4", "--sectors", "8", "--figures", "0")
+    assert_refused(run("map", mask, "-o", out, *other), "holds a study: pass --resume")
+    assert_refused(run("map", mask, "-o", out, *other, "--resume"), "layers: 3 then, 4 now", "--overwrite")
+    assert content(out) == before
+    assert run("map", mask, "-o", out, *other, "--overwrite")[0] == 0
+    assert len(cd.open_study(out).windows) == 32
+
+
+def test_resume_of_a_complete_study(run: Run, mask: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert run("map", mask, "-o", out, *GRID)[0] == 0
+    before = (out / "windows.parquet").stat().st_mtime_ns
+    code, said, _ = run("map", mask, "-o", out, *GRID, "--resume")
+    assert code == 0
+    assert "1 of 1 cell mapped" in said
+    assert (out / "windows.parquet").stat().st_mtime_ns == before
+
+
+def test_a_damaged_frame_in_a_stack(run: Run, tmp_path: Path) -> None:
+    masks = np.zeros((4, 30, 30), dtype=np.uint8)
+    masks[:, 5:25, 5:25] = 1
+    path = write(tmp_path / "masks.tif", masks, compression="zlib")
+    with tifffile.TiffFile(path) as tiff:
+        start, count = tiff.pages[2].dataoffsets[0], tiff.pages[2].databytecounts[0]
+    with path.open("r+b") as file:
+        file.seek(start)
+        file.write(b"\xff" * count)
+    result = run("map", path, "-o", tmp_path / "out", *GRID)
+    assert_refused(result, "cell 2 (frame 2) unreadable", "damaged frames of the input: 1; all others are in")
+    assert cd.open_study(tmp_path / "out").cells["status"].tolist() == ["ok", "ok", "unreadable", "ok"]
+
+
+def test_a_file_that_is_cut_short(run: Run, tmp_path: Path) -> None:
+    path = write(tmp_path / "masks.tif", np.ones((4, 30, 30), dtype=np.uint8), compression="zlib")
+    path.write_bytes(path.read_bytes()[:-60])
+    assert_refused(
+        run("map", path, "-o", tmp_path / "out"), "masks.tif: the file is cut short", "copy it again"
+    )
+
+
+def test_nan_in_the_signal(run: Run, mask: Path, tmp_path: Path) -> None:
+    signal = np.ones((40, 50), dtype=np.float32)
+    signal[10, 10:14] = np.nan
+    path = write(tmp_path / "signal.tif", signal)
+    code, said, _ = run("map", mask, "--signal", path, "-o", tmp_path / "out", *GRID)
+    assert code == 0
+    assert "1 cell with remarks" in said
+    study = cd.open_study(tmp_path / "out")
+    assert study.cells["nan_px"].tolist() == [4]
+    assert study.windows["n_nan"].sum() == pytest.approx(4.0)
+    assert (study.windows["mean"].isna() == (study.windows["n_nan"] > 0)).all()
+
+
+def test_parameters_of_a_study_reproduce_it(run: Run, mask: Path, tmp_path: Path) -> None:
+    signal = write(tmp_path / "signal.tif", np.random.default_rng(0).random((2, 40, 50)))
+    flags = (
+        "--layers",
+        "4",
+        "--sectors",
+        "7",
+        "--spacing",
+        "radius",
+        "--align",
+        "33.3",
+        "--pixel-size",
+        "0.1",
+    )
+    first, second = tmp_path / "first", tmp_path / "second"
+    common = ("map", mask, "--signal", signal, "--figures", "0")
+    assert run(*common, "-o", first, *flags)[0] == 0
+    assert run(*common, "-o", second, "--parameters", first / "parameters.toml")[0] == 0
+    assert (first / "windows.parquet").read_bytes() == (second / "windows.parquet").read_bytes()
+    assert (first / "parameters.toml").read_bytes() == (second / "parameters.toml").read_bytes()
+
+
+def test_a_parameters_file_that_cannot_be_used(run: Run, mask: Path, tmp_path: Path) -> None:
+    (tmp_path / "p.toml").write_text("layer = 3\n")
+    common = ("map", mask, "-o", tmp_path / "out", "--parameters")
+    assert_refused(run(*common, tmp_path / "p.toml"), "layer: Extra inputs are not permitted, got 3")
+    assert_refused(run(*common, tmp_path / "gone.toml"), "gone.toml cannot be read")
+
+
+def test_check_of_good_masks(run: Run, mask: Path) -> None:
+    code, said, _ = run("check", mask)
+    assert code == 0
+    assert "0\t0\t1\tyes\t" in said
+    assert "1 cell: 1 usable (0 with remarks), 0 not usable" in said
+
+
+def test_check_names_what_is_wrong(run: Run, tmp_path: Path) -> None:
+    masks = np.zeros((3, 30, 30), dtype=np.uint8)
+    masks[0, 5:25, 5:25] = 1
+    masks[1, 5:20, 5:20] = masks[1, 25, 25] = 1
+    code, said, _ = run("check", write(tmp_path / "masks.tif", masks))
+    assert code == 1
+    assert "1\t1\t1\tyes\t1 fragment" in said
+    assert "2\t2\t1\tno\tmask of shape (30, 30) is empty" in said
+    assert "3 cells: 2 usable (1 with remarks), 1 not usable" in said
+
+
+def test_check_of_a_file_that_cannot_be_read(run: Run, mask: Path, tmp_path: Path) -> None:
+    assert_refused(run("check", tmp_path / "gone.tif"), "does not exist")
+    assert_refused(run("check", mask, "--kind", "cells"), "kind", "got 'cells'")
+    assert_refused(run("check", mask, "--signal", tmp_path / "gone.tif"), "does not exist")
+
+
+def test_info_lists_versions(run: Run) -> None:
+    code, said, _ = run("info")
+    assert code == 0
+    versions = dict(line.split("\t") for line in said.splitlines())
+    assert versions["numpy"] == np.__version__
+    assert versions["cytodisk"]
+    assert versions["image formats"] == "TIFF, OME-TIFF, ImageJ TIFF, PNG"
+
+
+def test_demo_twice_in_one_folder(run: Run, tmp_path: Path) -> None:
+    code, said, _ = run("demo", "-o", tmp_path / "demo")
+    assert code == 0
+    assert "1 of 1 cell mapped, each with a valid certificate" in said
+    assert "edge: window means within" in said
+    assert "perinuclear: window means within" in said
+    study = cd.open_study(tmp_path / "demo" / "study")
+    assert study.provenance["length_unit"] == "µm"
+    before = content(tmp_path / "demo")
+    code, again, _ = run("demo", "-o", tmp_path / "demo")
+    assert code == 0
+    assert "perinuclear: window means within" in again
+    after = content(tmp_path / "demo")
+    assert after.keys() == before.keys()
+    for name in ("input/mask.tif", "input/signal.ome.tif", "study/windows.parquet", "study/cells.parquet"):
+        assert after[name] == before[name]
+
+
+def test_an_unknown_command(run: Run) -> None:
+    assert_refused(run("unwrap"), "unwrap")
+
+
+def test_the_program_runs_as_a_module(mask: Path, tmp_path: Path) -> None:
+    program = [sys.executable, "-m", "cytodisk"]
+    done = subprocess.run(
+        [*program, "map", mask, "-o", tmp_path / "out", *GRID], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr.strip()) == (0, "")
+    assert isinstance(cd.open_study(tmp_path / "out").cells, pd.DataFrame)
+    refused = subprocess.run(
+        [*program, "map", tmp_path / "gone.tif", "-o", tmp_path / "other"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("Error: ")
+    assert refused.stderr.count("\n") == 1

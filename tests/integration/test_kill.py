@@ -1,0 +1,56 @@
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import tifffile
+
+import cytodisk as cd
+
+N_CELLS = 30
+
+
+@pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")
+def test_a_killed_run_is_resumed_to_the_same_results(tmp_path: Path) -> None:
+    cells = [cd.simulate.migrating(seed, size=0.7) for seed in range(N_CELLS)]
+    shape = np.max([cell.shape for cell in cells], axis=0)
+    masks = np.stack([np.pad(cell, [(0, n) for n in shape - cell.shape]) for cell in cells])
+    counts = np.random.default_rng(0).poisson(100, masks.shape).astype(np.uint16)
+    tifffile.imwrite(tmp_path / "masks.tif", masks.astype(np.uint8), photometric="minisblack")
+    tifffile.imwrite(tmp_path / "signal.tif", counts, photometric="minisblack")
+
+    def command(out: Path, workers: int, *options: str) -> list[str]:
+        files = [str(tmp_path / "masks.tif"), "--signal", str(tmp_path / "signal.tif"), "-o", str(out)]
+        flags = ["--figures", "0", "--workers", str(workers), "-q", *options]
+        return [sys.executable, "-m", "cytodisk", "map", *files, *flags]
+
+    out = tmp_path / "out"
+    killed = subprocess.Popen(command(out, 2), start_new_session=True)
+    try:
+        while len(list(out.glob(".parts/*.json"))) < 3 and killed.poll() is None:
+            time.sleep(0.002)
+    finally:
+        os.killpg(killed.pid, signal.SIGKILL)
+        killed.wait()
+    assert killed.returncode == -signal.SIGKILL
+    done = len(list(out.glob(".parts/*.json")))
+    assert 3 <= done < N_CELLS
+    assert not (out / "windows.parquet").exists()
+
+    subprocess.run(command(out, 2, "--resume"), check=True)
+    subprocess.run(command(tmp_path / "whole", 1), check=True)
+    resumed, whole = cd.open_study(out), cd.open_study(tmp_path / "whole")
+    assert resumed.cells["status"].tolist() == ["ok"] * N_CELLS
+    pd.testing.assert_frame_equal(
+        resumed.cells.drop(columns="seconds"), whole.cells.drop(columns="seconds"), check_exact=True
+    )
+    assert (out / "windows.parquet").read_bytes() == (tmp_path / "whole" / "windows.parquet").read_bytes()
+    names = [
+        {str(path.relative_to(folder)) for path in folder.rglob("*")} for folder in (out, tmp_path / "whole")
+    ]
+    assert names[0] == names[1]
