@@ -56,26 +56,26 @@ def map_command(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)],
     signal: Signal = None,
     kind: Annotated[str | None, typer.Option(help="What MASKS is: auto, mask, stack or labels.")] = None,
-    layers: Annotated[int | None, typer.Option(help="Windows from edge to centre.  [default: 10]")] = None,
-    sectors: Annotated[int | None, typer.Option(help="Windows around the edge.  [default: 60]")] = None,
+    layers: Annotated[int | None, typer.Option(help="Windows from edge to centre (default 10).")] = None,
+    sectors: Annotated[int | None, typer.Option(help="Windows around the edge (default 60).")] = None,
     spacing: Annotated[
-        str | None, typer.Option(help="Layers of equal area or radius.  [default: area]")
+        str | None, typer.Option(help="Layers of equal area or radius (default area).")
     ] = None,
     method: Annotated[
-        str | None, typer.Option(help="newton (equal area) or harmonic.  [default: newton]")
+        str | None, typer.Option(help="newton (equal area) or harmonic (default newton).")
     ] = None,
     shape_weight: Annotated[
-        float | None, typer.Option(help="Shape against area, above 0.  [default: 0.005]")
+        float | None, typer.Option(help="Shape against area, above 0 (default 0.005).")
     ] = None,
     edge_length: Annotated[
-        float | None, typer.Option(help="Mesh spacing at the edge, px.  [default: 1]")
+        float | None, typer.Option(help="Mesh spacing at the edge, px (default 1).")
     ] = None,
     align: Annotated[
         str | None,
-        typer.Option(help="upright, an angle in degrees, or a point ROW,COLUMN.  [default: upright]"),
+        typer.Option(help="upright, an angle in degrees, or a point ROW,COLUMN (default upright)."),
     ] = None,
     nan: Annotated[
-        str | None, typer.Option(help="Windows with NaN pixels: propagate or omit.  [default: propagate]")
+        str | None, typer.Option(help="Windows with NaN pixels: propagate or omit (default propagate).")
     ] = None,
     pixel_size: Annotated[float | None, typer.Option(help="µm per pixel; overrules the file's own.")] = None,
     parameters: Annotated[
