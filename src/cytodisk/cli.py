@@ -170,6 +170,7 @@ def info_command() -> None:
 def demo_command(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the demo.")] = Path("cytodisk_demo"),
     seed: Annotated[int, typer.Option(help="Seed of the simulated cell.")] = 0,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in OUT/study.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Simulate a cell with two signals, map it, sample it, and compare with the known answer.
@@ -188,7 +189,14 @@ def demo_command(
     inputs = open_inputs(masks, signal, MapParameters())
     _say_inputs(console, inputs)
     with _progress(quiet, "cells") as progress:
-        study = run_map(inputs, out / "study", resume=True, draw=draw_cell_figures, progress=progress)
+        study = run_map(
+            inputs,
+            out / "study",
+            resume=not overwrite,
+            overwrite=overwrite,
+            draw=draw_cell_figures,
+            progress=progress,
+        )
     _finish(console, study, 1)
     for channel, answer in compare_with_truth(study, cell).items():
         console.print(f"{channel}: {answer}")
