@@ -68,7 +68,7 @@ def map_command(
         float | None, typer.Option(help="Shape against area, above 0 (default 0.005).")
     ] = None,
     edge_length: Annotated[
-        float | None, typer.Option(help="Mesh spacing at the edge, px (default 1).")
+        float | None, typer.Option(help="Mesh spacing at the edge, px (default 0.9).")
     ] = None,
     align: Annotated[
         str | None,

@@ -20,7 +20,7 @@ def map_to_disk(
     *,
     method: Method = "newton",
     shape_weight: float = 0.005,
-    edge_length: float = 1.0,
+    edge_length: float = 0.9,
     align: Align = "upright",
 ) -> DiskMap:
     """Map one cell one to one onto the unit disk.
@@ -98,7 +98,7 @@ def _check(method: str, shape_weight: float, edge_length: float) -> None:
     if not 0 < shape_weight < np.inf:
         raise ParameterError(f"shape_weight must be above 0, got {shape_weight!r}: 0.005 is the default")
     if not 0.25 <= edge_length <= 10:
-        raise ParameterError(f"edge_length must be 0.25 to 10 pixels, got {edge_length!r}: 1 is the default")
+        raise ParameterError(f"edge_length must be 0.25 to 10 pixels, got {edge_length!r}: 0.9 is the default")
 
 
 def _crop(mask: BoolArray) -> tuple[BoolArray, FloatArray]:

@@ -22,7 +22,7 @@ from cytodisk.geometry.mesh import Mesh, hat_gradients, triangle_areas
 _SAFE_SHARE = 0.9  # of the step at which the first triangle would lose its area
 _SUFFICIENT = 1e-4  # Armijo: share of the predicted decrease that a step must reach
 _HALVINGS = 50
-DECREMENT = 1e-5
+DECREMENT = 4e-5
 GAUSS_NEWTON_ABOVE = 1e-2  # decrement below which the whole projected Hessian takes over
 MAX_STEPS = 500
 

@@ -1,11 +1,14 @@
 """Interior points of a mesh: a triangular lattice, fine at the cell's edge and coarse inside."""
 
+import math
+
 import numpy as np
+from numba import njit
 from scipy import ndimage
 
-from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.arrays import BoolArray, FloatArray
 
-_CLEARANCE = 0.62  # smallest depth of an interior point, in units of the spacing at the edge
+_CLEARANCE = 0.75  # smallest depth of an interior point, in units of the spacing at the edge
 _COARSEST = 16  # √3¹⁶ = 6561 times the finest spacing: beyond any image
 
 
@@ -29,41 +32,58 @@ def graded_lattice(mask: BoolArray, edge_length: float, growth: float) -> FloatA
     ndarray of shape (M, 2) and dtype float
         (row, column) in pixels; may be empty for thin cells.
     """
-    points, level = _lattice(mask, edge_length)
-    depth_of_pixel = ndimage.distance_transform_edt(np.pad(mask, 1)) - 0.5
-    depth = ndimage.map_coordinates(depth_of_pixel, points.T + 1, order=1, cval=-1.0)
-    wanted = np.log1p(growth * np.maximum(depth, 0) / edge_length) / np.log(np.sqrt(3.0))
-    return np.asarray(points[(level >= np.floor(wanted)) & (depth >= _CLEARANCE * edge_length)])
-
-
-def _lattice(mask: BoolArray, spacing: float) -> tuple[FloatArray, IntArray]:
-    """Triangular lattice over a mask and, for each point, how many coarser lattices hold it too.
-
-    It is laid out from the centroid along the longer axis, so that it turns and moves with the cell.
-    """
+    depth = ndimage.distance_transform_edt(np.pad(mask, 1)) - 0.5
     pixels = np.argwhere(mask)
     centre = pixels.mean(axis=0)
-    yy, yx, _, xx = np.cov((pixels - centre).T, bias=True).ravel() if len(pixels) > 1 else np.zeros(4)
-    angle = 0.5 * np.arctan2(2.0 * yx, xx - yy)
-    reach = np.hypot(*(np.array(mask.shape) + 1.0)) / spacing
-    rows = np.arange(-int(reach / np.sqrt(0.75)) - 1, int(reach / np.sqrt(0.75)) + 2)
-    columns = np.arange(-int(reach) - 1, int(reach) + 2)
-    j, k = (grid.ravel() for grid in np.meshgrid(rows, columns, indexing="ij"))
-    i = k - j // 2
-    along, across = (i + 0.5 * j) * spacing, j * np.sqrt(0.75) * spacing
-    y = centre[0] + along * np.sin(angle) + across * np.cos(angle)
-    x = centre[1] + along * np.cos(angle) - across * np.sin(angle)
-    inside = (y >= 0) & (x >= 0) & (y <= mask.shape[0] - 1) & (x <= mask.shape[1] - 1)
-    return np.column_stack([y[inside], x[inside]]), _level(i[inside], j[inside])
+    return _fill(depth, centre, _long_axis(pixels - centre), edge_length, growth)
 
 
-def _level(i: IntArray, j: IntArray) -> IntArray:
-    """How often i + j·exp(πi/3) can be divided by the lattice's number of norm 3."""
-    level = np.zeros(i.shape, dtype=np.int64)
-    rest = np.arange(i.size)
-    for _ in range(_COARSEST):
-        divisible = (i - j) % 3 == 0
-        rest, i, j = rest[divisible], i[divisible], j[divisible]
+def _long_axis(away: FloatArray) -> float:
+    """Angle of the axis of largest spread, from +x towards +y, so that the lattice turns with the cell."""
+    yy, xx, yx = (away[:, 0] ** 2).sum(), (away[:, 1] ** 2).sum(), (away[:, 0] * away[:, 1]).sum()
+    return float(0.5 * np.arctan2(2.0 * yx, xx - yy))
+
+
+@njit(cache=True)
+def _level(i: int, j: int) -> int:
+    """How often the lattice's number of norm 3 divides i + j·exp(πi/3): how many coarser lattices hold it."""
+    level = 0
+    while level < _COARSEST and (i - j) % 3 == 0:
         i, j = (2 * i + j) // 3, (j - i) // 3
-        level[rest] += 1
+        level += 1
     return level
+
+
+@njit(cache=True)
+def _fill(depth: FloatArray, centre: FloatArray, angle: float, spacing: float, growth: float) -> FloatArray:
+    """Kept points of the lattice through `centre`; `depth` is padded by one pixel on each side."""
+    height, width = depth.shape
+    reach = math.hypot(height, width) / spacing
+    last_row, last_column = int(reach / math.sqrt(0.75)) + 1, int(reach) + 1
+    cos, sin = math.cos(angle), math.sin(angle)
+    points = np.empty((256, 2))
+    count = 0
+    for j in range(-last_row, last_row + 1):
+        across = j * math.sqrt(0.75) * spacing
+        for k in range(-last_column, last_column + 1):
+            i = k - j // 2
+            along = (i + 0.5 * j) * spacing
+            y = centre[0] + along * sin + across * cos
+            x = centre[1] + along * cos - across * sin
+            row, column = math.floor(y) + 1, math.floor(x) + 1
+            if row < 0 or column < 0 or row >= height - 1 or column >= width - 1:
+                continue
+            t, s = y + 1.0 - row, x + 1.0 - column
+            upper = depth[row, column] * (1.0 - s) + depth[row, column + 1] * s
+            lower = depth[row + 1, column] * (1.0 - s) + depth[row + 1, column + 1] * s
+            here = upper * (1.0 - t) + lower * t
+            if here < _CLEARANCE * spacing:
+                continue
+            coarser = math.floor(math.log1p(growth * here / spacing) / (0.5 * math.log(3.0)))
+            if _level(i, j) < coarser:
+                continue
+            if count == len(points):
+                points = np.concatenate((points, np.empty_like(points)))
+            points[count, 0], points[count, 1] = y, x
+            count += 1
+    return points[:count].copy()

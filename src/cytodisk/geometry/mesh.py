@@ -41,7 +41,7 @@ class Mesh:
 
 
 def mesh_inside(
-    outline_yx: FloatArray, mask: BoolArray, *, edge_length: float = 1.0, growth: float = 0.5
+    outline_yx: FloatArray, mask: BoolArray, *, edge_length: float = 0.9, growth: float = 0.5
 ) -> Mesh:
     """Triangulate the inside of an outline, fine at the edge and coarse inside.
 

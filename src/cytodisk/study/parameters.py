@@ -21,7 +21,7 @@ class MapParameters(BaseModel):
     kind: Literal["auto", "mask", "stack", "labels"] = "auto"
     method: Literal["newton", "harmonic"] = "newton"
     shape_weight: Annotated[float, Field(gt=0)] = 0.005
-    edge_length: Annotated[float, Field(ge=0.25, le=10)] = 1.0
+    edge_length: Annotated[float, Field(ge=0.25, le=10)] = 0.9
     align: Literal["upright"] | tuple[float, float] | float = "upright"
     layers: Annotated[int, Field(ge=1)] = 10
     sectors: Annotated[int, Field(ge=1)] = 60
