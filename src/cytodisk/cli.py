@@ -269,7 +269,7 @@ def _progress(quiet: bool, unit: str) -> Iterator[Callable[[int, int], None]]:
 def _say_inputs(console: "Console", inputs: "MapInputs") -> None:
     for role, words in inputs.understood.items():
         console.print(f"{role}: {words}")
-    size = inputs.parameters.pixel_size_um
+    size = inputs.pixel_size_um
     console.print(f"pixel size: {size:g} µm" if size else "pixel size: unknown, results are in px")
 
 

@@ -67,7 +67,7 @@ def test_it_sees_a_triangle_without_area(valid: Arrays) -> None:
 
 def test_it_sees_nan(valid: Arrays) -> None:
     valid.uv[-1] = np.nan
-    assert says(valid.certify(), "not positive in the disk")
+    assert says(valid.certify(), "a vertex is not finite")
 
 
 def test_it_sees_a_triangle_with_reversed_corners(valid: Arrays) -> None:
@@ -139,3 +139,13 @@ def test_two_disks_that_touch_in_a_vertex_are_not_one() -> None:
     angle = 2.0 * np.pi * np.arange(5) / 5
     uv = np.column_stack([np.cos(angle), np.sin(angle)])
     assert not certify(yx, uv, triangles, np.arange(5)).valid
+
+
+def test_it_says_what_is_malformed(valid: Arrays) -> None:
+    triangles, boundary = valid.triangles.copy(), valid.boundary.copy()
+    valid.boundary = boundary[:2]
+    assert says(valid.certify(), "2 boundary vertices")
+    valid.boundary = boundary
+    valid.triangles = triangles.copy()
+    valid.triangles[0, 0] = -1
+    assert says(valid.certify(), "name a vertex that does not exist")

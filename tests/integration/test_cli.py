@@ -147,7 +147,7 @@ def test_a_picture_of_floats(run: Run, tmp_path: Path) -> None:
 def test_a_microscope_picture(run: Run, tmp_path: Path) -> None:
     values = np.random.default_rng(0).integers(0, 4000, (30, 30)).astype(np.uint16)
     result = run("map", write(tmp_path / "a.tif", values), "-o", tmp_path / "out")
-    assert_refused(result, "looks like a picture, not a mask", "pass the mask or label image")
+    assert_refused(result, "looks like a picture, not a mask", "threshold it")
 
 
 def test_a_colour_picture(run: Run, tmp_path: Path) -> None:

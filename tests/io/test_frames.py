@@ -78,10 +78,10 @@ def test_an_unknown_unit_is_no_scale(tmp_path: Path) -> None:
     assert open_frames(tmp_path / "a.ome.tif").pixel_size_um is None
 
 
-def test_channel_names_that_are_not_distinct_become_numbers(tmp_path: Path) -> None:
+def test_channel_names_that_are_not_distinct_are_told_apart(tmp_path: Path) -> None:
     metadata = {"axes": "CYX", "Channel": {"Name": ["GFP", "GFP"]}}
     tifffile.imwrite(tmp_path / "a.ome.tif", STACK[0], metadata=metadata)
-    assert open_frames(tmp_path / "a.ome.tif").channels == ("0", "1")
+    assert open_frames(tmp_path / "a.ome.tif").channels == ("GFP", "GFP (2)")
 
 
 @pytest.mark.parametrize("unit", ["micron", "um", "\\u00B5m"])
@@ -157,11 +157,11 @@ def test_two_axes_of_one_kind_are_refused(tmp_path: Path) -> None:
         open_frames(tmp_path / "a.tif")
 
 
-def test_images_of_several_sizes_are_refused(tmp_path: Path) -> None:
+def test_separate_images_in_one_file_are_refused(tmp_path: Path) -> None:
     with tifffile.TiffWriter(tmp_path / "a.tif") as writer:
         writer.write(PLANE)
         writer.write(PLANE[:10])
-    with pytest.raises(ReadError, match="holds 2 images of several sizes: save one of them alone"):
+    with pytest.raises(ReadError, match="holds 2 separate images: save one alone, or all as one stack"):
         open_frames(tmp_path / "a.tif")
 
 
@@ -225,3 +225,31 @@ def test_a_damaged_frame_leaves_the_others(tmp_path: Path) -> None:
         damaged.frame(1)
     assert_array_equal(damaged.frame(0)[0], STACK[0, 0])
     assert_array_equal(damaged.frame(2)[0], STACK[2, 0])
+
+
+def test_separate_images_of_one_size_are_refused_too(tmp_path: Path) -> None:
+    for _ in range(3):
+        tifffile.imwrite(tmp_path / "a.tif", PLANE, append=True)
+    with pytest.raises(ReadError, match="holds 3 separate images"):
+        open_frames(tmp_path / "a.tif")
+
+
+@pytest.mark.parametrize(("unnamed", "axes"), [("T", "TYX"), ("C", "CYX")])
+def test_planes_that_stand_first_are_what_the_caller_says(tmp_path: Path, unnamed: str, axes: str) -> None:
+    planes = np.arange(3 * 12 * 10, dtype=np.uint16).reshape(3, 12, 10)
+    tifffile.imwrite(tmp_path / "a.tif", planes, photometric="rgb", planarconfig="separate")
+    file = open_frames(tmp_path / "a.tif", unnamed=unnamed)
+    assert file.axes == axes
+    read = np.concatenate([file.frame(number) for number in range(file.n_frames)])
+    np.testing.assert_array_equal(read, planes)
+
+
+def test_the_greek_letter_is_a_micro_sign_too(tmp_path: Path) -> None:
+    metadata = {"axes": "YX", "PhysicalSizeX": 0.2, "PhysicalSizeXUnit": "\u03bcm"}
+    tifffile.imwrite(tmp_path / "a.ome.tif", PLANE, metadata=metadata)
+    assert open_frames(tmp_path / "a.ome.tif").pixel_size_um == pytest.approx(0.2)
+
+
+def test_a_name_that_is_too_long_is_a_read_error(tmp_path: Path) -> None:
+    with pytest.raises(ReadError, match="cannot be read"):
+        open_frames(tmp_path / ("a" * 300 + ".tif"))

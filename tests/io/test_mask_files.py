@@ -49,7 +49,7 @@ def test_the_callers_word_counts(tmp_path: Path) -> None:
 @pytest.mark.parametrize("bits", [8, 16])
 def test_a_microscope_picture_is_refused(tmp_path: Path, bits: int) -> None:
     picture = np.random.default_rng(0).integers(0, 2**bits, (40, 50)).astype(f"uint{bits}")
-    with pytest.raises(MaskError, match=r"looks like a picture, not a mask: .* pass the mask or label image"):
+    with pytest.raises(MaskError, match=r"looks like a picture, not a mask or label image: .* threshold it"):
         understood_as(written(tmp_path, picture))
 
 
@@ -93,3 +93,23 @@ def test_a_frame_without_label_has_a_reason(tmp_path: Path) -> None:
 def test_labels_that_are_no_whole_numbers_have_a_reason(tmp_path: Path) -> None:
     (found,) = read_cells(written(tmp_path, TWO.astype(np.float32)), "labels")
     assert str(found.fault) == "labels must be whole numbers, got dtype float32: save the labels as uint16"
+
+
+def test_a_mask_with_smoothed_edges_is_refused(tmp_path: Path) -> None:
+    away = np.hypot(*(np.indices((60, 60)) - 30.0))
+    smooth = (255.0 / (1.0 + np.exp((away - 20.0) / 0.8))).astype(np.uint8)
+    with pytest.raises(MaskError, match="threshold it"):
+        understood_as(written(tmp_path, smooth))
+
+
+def test_a_single_label_keeps_its_number(tmp_path: Path) -> None:
+    file = written(tmp_path, np.stack([ONE * 7, ONE * 8, ONE, ONE * 255]))
+    assert [cell.label for cell in read_cells(file, understood_as(file))] == [7, 8, 1, 1]
+
+
+def test_negative_labels_are_a_fault(tmp_path: Path) -> None:
+    values = TWO.astype(np.int16)
+    values[0, 0] = -1
+    cells = list(read_cells(written(tmp_path, values), "labels"))
+    assert len(cells) == 1
+    assert "negative labels (down to -1)" in str(cells[0].fault)

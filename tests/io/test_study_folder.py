@@ -25,7 +25,7 @@ def finished(path: Path, length_unit: str = "px") -> StudyFolder:
     folder = StudyFolder.start(path, run(length_unit))
     folder.add({"cell": 0, "status": "ok", "area": 12.5}, windows_of(0))
     folder.add({"cell": 1, "status": "refused", "reason": "empty"}, None)
-    folder.finish()
+    folder.finish([row["cell"] for row in folder.rows()])
     return folder
 
 
@@ -62,7 +62,7 @@ def test_parts_come_in_the_order_of_cells_whatever_the_order_of_adding(tmp_path:
     folder = StudyFolder.start(tmp_path / "out", run())
     for cell in (10, 2, 0):
         folder.add({"cell": cell, "status": "ok"}, windows_of(cell))
-    folder.finish()
+    folder.finish([row["cell"] for row in folder.rows()])
     study = cd.open_study(tmp_path / "out")
     assert study.cells["cell"].tolist() == [0, 2, 10]
     assert study.windows["cell"].tolist() == [0, 0, 2, 2, 10, 10]

@@ -9,6 +9,7 @@ from numpy.testing import assert_array_equal
 
 import cytodisk as cd
 from cytodisk.errors import MaskError, ParameterError, ReadError, SignalError, StudyError
+from cytodisk.io.study_folder import alone_in
 from cytodisk.study.map_run import MapInputs, check_cells, open_inputs, run_map
 from cytodisk.study.parameters import MapParameters, parameters_from
 
@@ -181,7 +182,7 @@ def test_nan_in_the_signal_is_counted(tmp_path: Path) -> None:
     paths = tmp_path / "mask.tif", tmp_path / "signal.tif"
     study = run_map(open_inputs(*paths, SMALL), tmp_path / "out")
     assert study.cells["nan_px"].tolist() == [3]
-    assert "3 NaN values in the signal" in study.cells["notes"][0]
+    assert "3 NaN or infinite values in the signal" in study.cells["notes"][0]
     touched = study.windows["n_nan"] > 0
     assert study.windows["n_nan"].sum() == pytest.approx(3.0)
     assert touched.any()
@@ -218,3 +219,69 @@ def test_workers_must_be_positive(write_stack: WriteStack, tmp_path: Path) -> No
     with pytest.raises(ParameterError, match="workers must be at least 1, got 0"):
         run_map(inputs, tmp_path / "out", workers=0)
     assert not (tmp_path / "out").exists()
+
+
+def test_two_runs_do_not_write_into_one_folder(write_stack: WriteStack, tmp_path: Path) -> None:
+    masks, signal = write_stack(1)
+    with alone_in(tmp_path / "out"), pytest.raises(StudyError, match="another run is writing there"):
+        run_map(open_inputs(masks, signal, SMALL), tmp_path / "out")
+    assert run_map(open_inputs(masks, signal, SMALL), tmp_path / "out").cells["status"].tolist() == ["ok"]
+    assert not (tmp_path / "out" / ".lock").exists()
+
+
+def test_a_run_killed_before_its_first_note_can_be_repeated(write_stack: WriteStack, tmp_path: Path) -> None:
+    masks, signal = write_stack(1)
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / ".lock").touch()
+    (tmp_path / "out" / ".provenance.123.tmp.json").touch()
+    assert len(run_map(open_inputs(masks, signal, SMALL), tmp_path / "out").cells) == 1
+
+
+def test_an_overwrite_killed_half_way_can_be_repeated(
+    write_stack: WriteStack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    masks, signal = write_stack(1)
+    inputs = open_inputs(masks, signal, SMALL)
+    run_map(inputs, tmp_path / "out")
+    with monkeypatch.context() as patch:
+        patch.setattr("cytodisk.io.study_folder.shutil.rmtree", _stop)
+        with pytest.raises(Stopped):
+            run_map(inputs, tmp_path / "out", overwrite=True)
+    with pytest.raises(ReadError, match="not complete"):
+        cd.open_study(tmp_path / "out")
+    assert len(run_map(inputs, tmp_path / "out", overwrite=True).cells) == 1
+
+
+def test_a_missing_part_is_not_passed_over(write_stack: WriteStack, tmp_path: Path) -> None:
+    masks, signal = write_stack(2)
+
+    def lose_a_part(done: int, total: int) -> None:
+        if done == total:
+            (tmp_path / "out" / ".parts" / "00000000.json").unlink()
+
+    with pytest.raises(StudyError, match="the parts of 1 cells instead of 2"):
+        run_map(open_inputs(masks, signal, SMALL), tmp_path / "out", progress=lose_a_part)
+
+
+def test_a_files_own_scale_stays_out_of_the_parameters(write_stack: WriteStack, tmp_path: Path) -> None:
+    masks, _ = write_stack(1)
+    for name, size in (("fine", 0.1), ("coarse", 0.3)):
+        metadata = {"axes": "YX", "PhysicalSizeX": size, "PhysicalSizeY": size}
+        tifffile.imwrite(tmp_path / f"{name}.ome.tif", tifffile.imread(masks)[0], metadata=metadata)
+    fine = tmp_path / "fine.ome.tif"
+    study = run_map(open_inputs(tmp_path / "coarse.ome.tif", None, SMALL), tmp_path / "out")
+    again = parameters_from({}, tmp_path / "out" / "parameters.toml")
+    assert study.provenance["pixel_size_um"] == pytest.approx(0.3)
+    assert open_inputs(fine, None, again).pixel_size_um == pytest.approx(0.1)
+    with pytest.raises(SignalError, match="pixel sizes differ"):
+        open_inputs(fine, tmp_path / "coarse.ome.tif", SMALL)
+
+
+def test_resume_and_overwrite_exclude_each_other(write_stack: WriteStack, tmp_path: Path) -> None:
+    masks, signal = write_stack(1)
+    with pytest.raises(ParameterError, match="exclude each other"):
+        run_map(open_inputs(masks, signal, SMALL), tmp_path / "out", resume=True, overwrite=True)
+
+
+def _stop(*_: object, **__: object) -> None:
+    raise Stopped

@@ -153,3 +153,15 @@ def test_parameters_out_of_range_are_refused(windows: cd.CellWindows) -> None:
         cd.sample(windows, signal, quantiles=[-0.1, 0.5, 2])
     with pytest.raises(ParameterError, match="nan must be 'propagate' or 'omit', got 'drop'"):
         cd.sample(windows, signal, nan="drop")
+
+
+def test_infinite_and_masked_pixels_count_as_missing() -> None:
+    mask = cd.simulate.disk(12.0)
+    windows = cd.polar_windows(2, 4).on(cd.map_to_disk(mask))
+    signal = np.ones(mask.shape)
+    row, column = np.argwhere(mask)[40]
+    signal[row, column] = np.inf
+    for values in (signal, np.ma.masked_invalid(signal)):
+        data = cd.sample(windows, values, nan="omit")
+        assert float(data["n_nan"].sum()) == pytest.approx(1.0)
+        np.testing.assert_allclose(data["mean"], 1.0)

@@ -66,6 +66,9 @@ def certify(
     Certificate
         Never raises for a bad map: it says what is wrong.
     """
+    malformed = _malformed(vertices_yx, vertices_uv, triangles, boundary)
+    if malformed:
+        return Certificate(malformed, (), (), len(triangles), 0, 0)
     in_cell, exact_cell = orientations(vertices_yx, triangles)
     in_disk, exact_disk = orientations(vertices_uv[:, ::-1], triangles)
     characteristic = euler_characteristic(triangles, len(vertices_yx))
@@ -89,6 +92,24 @@ def certify(
     )
 
 
+def _malformed(
+    vertices_yx: FloatArray, vertices_uv: FloatArray, triangles: IntArray, boundary: IntArray
+) -> tuple[str, ...]:
+    """Faults that leave nothing to be checked."""
+    faults = []
+    n_vertices = len(vertices_yx)
+    if vertices_yx.shape != (n_vertices, 2) or vertices_uv.shape != (n_vertices, 2):
+        faults.append(f"vertices have shape {vertices_yx.shape} in the cell, {vertices_uv.shape} in the disk")
+    elif not (np.isfinite(vertices_yx).all() and np.isfinite(vertices_uv).all()):
+        faults.append("a vertex is not finite")
+    for name, indices in (("triangles", triangles), ("boundary", boundary)):
+        if indices.size and (indices.min() < 0 or indices.max() >= n_vertices):
+            faults.append(f"{name} name a vertex that does not exist")
+    if len(triangles) == 0 or len(boundary) < 3:
+        faults.append(f"there are {len(triangles)} triangles and {len(boundary)} boundary vertices")
+    return tuple(faults)
+
+
 def _boundary_faults(
     vertices_yx: FloatArray, vertices_uv: FloatArray, triangles: IntArray, boundary: IntArray
 ) -> list[str]:
@@ -98,7 +119,7 @@ def _boundary_faults(
     if not LinearRing(vertices_yx[boundary]).is_simple:
         faults.append("the boundary crosses itself in the cell")
     on_circle = vertices_uv[boundary]
-    if np.abs(np.hypot(*on_circle.T) - 1.0).max() > _ON_CIRCLE:
+    if not np.abs(np.hypot(*on_circle.T) - 1.0).max() <= _ON_CIRCLE:
         faults.append("a boundary vertex is not on the unit circle")
     if not _runs_round_once(on_circle):
         faults.append("the boundary's angles do not increase strictly through one turn")

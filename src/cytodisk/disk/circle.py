@@ -1,6 +1,6 @@
 """Boundary → circle: each outline point gets its share of arc length as an angle (paper A.2.1 i)."""
 
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -50,21 +50,43 @@ def boundary_angles(outline_yx: FloatArray, align: Align = "upright") -> FloatAr
     return angles + _rotation(outline_yx, angles, lengths, align)
 
 
-def _rotation(outline_yx: FloatArray, angles: FloatArray, lengths: FloatArray, align: Align) -> float:
+def parse_align(align: Any) -> Align:
+    """Check where the rotation of the disk is to end.
+
+    Parameters
+    ----------
+    align : {"upright"}, point or number
+        As in `boundary_angles`.
+
+    Returns
+    -------
+    {"upright"}, (float, float) or float
+
+    Raises
+    ------
+    ParameterError
+        `align` is none of these.
+    """
     if isinstance(align, str) and align == "upright":
-        return _upright(outline_yx, angles, lengths)
+        return "upright"
     try:
         numbers = np.asarray(align, dtype=np.float64)
     except (TypeError, ValueError):
         numbers = np.full(3, np.nan)
-    if numbers.shape == () and np.isfinite(numbers):
-        return _upright(outline_yx, angles, lengths) + float(np.radians(numbers))
-    if numbers.shape == (2,) and np.isfinite(numbers).all():
-        nearest = np.square(outline_yx - numbers).sum(axis=1).argmin()
-        return -float(angles[nearest])
+    if numbers.shape in ((), (2,)) and np.isfinite(numbers).all() and not isinstance(align, bool | str):
+        return float(numbers) if numbers.shape == () else (float(numbers[0]), float(numbers[1]))
     raise ParameterError(
         f"align must be 'upright', a point (row, column) or an angle in degrees, got {align!r}"
     )
+
+
+def _rotation(outline_yx: FloatArray, angles: FloatArray, lengths: FloatArray, align: Align) -> float:
+    align = parse_align(align)
+    if isinstance(align, tuple):
+        nearest = np.square(outline_yx - np.array(align)).sum(axis=1).argmin()
+        return -float(angles[nearest])
+    upright = _upright(outline_yx, angles, lengths)
+    return upright if isinstance(align, str) else upright + float(np.radians(align))
 
 
 def _upright(outline_yx: FloatArray, angles: FloatArray, lengths: FloatArray) -> float:

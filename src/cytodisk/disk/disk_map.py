@@ -174,8 +174,8 @@ class DiskMap:
             raise SignalError(
                 f"signal has shape {values.shape}, the mask {self.mask.shape}: pass one channel of one frame"
             )
-        if size < 1:
-            raise ParameterError(f"size must be at least 1, got {size}")
+        if not isinstance(size, int | np.integer) or size < 1:
+            raise ParameterError(f"size must be a whole number of at least 1, got {size!r}")
         axis = (np.arange(size) + 0.5) / size * 2.0 - 1.0
         v, u = np.meshgrid(axis, axis, indexing="ij")
         points = self.to_cell(np.column_stack([u.ravel(), v.ravel()]))
@@ -196,7 +196,11 @@ class DiskMap:
         ------
         StudyError
             The file cannot be written.
+        ParameterError
+            The name does not end in `.npz`.
         """
+        if Path(path).suffix != ".npz":
+            raise ParameterError(f"path must end in .npz, got {path}")
         facts = {name: getattr(self, name) for name in _FACTS}
         header = {"format": _FORMAT, "report": asdict(self.report), **facts}
         with replacing(path) as temporary:

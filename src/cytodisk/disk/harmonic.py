@@ -47,7 +47,7 @@ def harmonic_map(mesh: Mesh, boundary_uv: FloatArray) -> tuple[FloatArray, Weigh
     for weights in choices:
         edge_weights = _cotangents(mesh) if weights == "cotangent" else np.full(3 * len(mesh.triangles), 0.5)
         uv = _weighted_means(mesh, edge_weights, boundary_uv)
-        flipped = int((triangle_areas(uv[:, ::-1], mesh.triangles) <= 0).sum())
+        flipped = int((~(triangle_areas(uv[:, ::-1], mesh.triangles) > 0)).sum())
         if not flipped:
             return uv, weights
     raise MapError(

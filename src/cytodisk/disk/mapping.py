@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray
-from cytodisk.disk.circle import Align, boundary_angles
+from cytodisk.disk.circle import Align, boundary_angles, parse_align
 from cytodisk.disk.disk_map import DiskMap, Method
 from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.disk.newton import relax
@@ -63,6 +63,7 @@ def map_to_disk(
     u-Unwrap, section 3 (ii) and appendix A.2.1.
     """
     _check(method, shape_weight, edge_length)
+    align = parse_align(align)
     cleaned, report = clean_mask(mask)
     crop, corner = _crop(cleaned)
     outline = trace_outline(crop)
@@ -95,10 +96,15 @@ def map_to_disk(
 def _check(method: str, shape_weight: float, edge_length: float) -> None:
     if method not in ("newton", "harmonic"):
         raise ParameterError(f"method must be 'newton' or 'harmonic', got {method!r}")
+    for name, value in (("shape_weight", shape_weight), ("edge_length", edge_length)):
+        if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+            raise ParameterError(f"{name} must be a number, got {value!r}")
     if not 0 < shape_weight < np.inf:
         raise ParameterError(f"shape_weight must be above 0, got {shape_weight!r}: 0.005 is the default")
     if not 0.25 <= edge_length <= 10:
-        raise ParameterError(f"edge_length must be 0.25 to 10 pixels, got {edge_length!r}: 0.9 is the default")
+        raise ParameterError(
+            f"edge_length must be 0.25 to 10 pixels, got {edge_length!r}: 0.9 is the default"
+        )
 
 
 def _crop(mask: BoolArray) -> tuple[BoolArray, FloatArray]:
@@ -109,6 +115,6 @@ def _crop(mask: BoolArray) -> tuple[BoolArray, FloatArray]:
 
 
 def _relative(align: Align, corner: FloatArray) -> Align:
-    if isinstance(align, tuple | list) and len(align) == 2:
+    if isinstance(align, tuple):
         return (align[0] - corner[0], align[1] - corner[1])
     return align

@@ -102,6 +102,8 @@ def parse_mask(mask: Any) -> BoolArray:
 
 
 def _parse_integers(array: np.ndarray[Any, Any]) -> BoolArray:
+    if array.min(initial=0) < 0:
+        raise MaskError(f"mask has negative values (down to {array.min()}): set what is no cell to 0")
     inside: BoolArray = array != 0
     values = array[inside]
     if values.size and values.min() != values.max():
@@ -115,9 +117,13 @@ def _parse_integers(array: np.ndarray[Any, Any]) -> BoolArray:
 def _parse_floats(array: np.ndarray[Any, Any]) -> BoolArray:
     if np.isin(array, (0.0, 1.0)).all():
         return np.asarray(array == 1.0)
+    if not np.isfinite(array).all():
+        raise MaskError(
+            f"mask is {array.dtype} with values that are NaN or infinite: set what is no cell to 0"
+        )
     raise MaskError(
         f"mask is {array.dtype} with values other than 0 and 1 "
-        f"({np.nanmin(array):g} … {np.nanmax(array):g}{', NaN' if np.isnan(array).any() else ''}): "
+        f"({array.min():g} … {array.max():g}): "
         "threshold it first, as image > threshold"
     )
 

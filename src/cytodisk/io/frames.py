@@ -104,9 +104,9 @@ class FrameFile:
         without = tuple(size for axis, size in zip(self.axes, self.shape, strict=True) if axis != "T")
         with tifffile.TiffFile(self.path) as tiff:
             pages = len(tiff.series[0].pages) // self.n_frames
-            if self.axes[0] in "TYX" and pages * self.n_frames == len(tiff.pages) and pages > 0:
-                keys = range(number * pages, (number + 1) * pages)
-                return np.asarray(tiff.asarray(key=list(keys))).reshape(without)
+            if self.axes[0] == "T" and pages > 0 and pages * self.n_frames == len(tiff.series[0].pages):
+                keys = list(range(number * pages, (number + 1) * pages))
+                return np.asarray(tiff.asarray(series=0, key=keys)).reshape(without)
             whole = np.asarray(tiff.series[0].asarray()).reshape(self.shape)
         return whole.take(number, axis=self.axes.index("T")) if "T" in self.axes else whole
 
@@ -131,8 +131,12 @@ def open_frames(path: str | os.PathLike[str], *, unnamed: str = "T") -> FrameFil
         The file is missing, is not an image, is damaged, or has axes that cannot be used (a z-stack).
     """
     file = Path(path)
-    if not file.exists():
-        raise ReadError(f"{file} does not exist: check the path")
+    try:
+        file.stat()
+    except FileNotFoundError as error:
+        raise ReadError(f"{file} does not exist: check the path") from error
+    except OSError as error:
+        raise ReadError(f"{file} cannot be read: {error.strerror}") from error
     if file.is_dir():
         raise ReadError(f"{file} is a folder: pass one image file")
     suffix = file.suffix.lower()
@@ -175,7 +179,9 @@ def read_image(path: str | os.PathLike[str], *, unnamed: str = "C") -> xr.DataAr
     )
     if "T" not in file.axes:
         image = image.isel(time=0)
-    return image if "C" in file.axes else image.isel(channel=0, drop=True)
+    if "C" in file.axes:
+        return image
+    return image.isel(channel=0, drop=file.channels == ("0",))
 
 
 @contextmanager
@@ -212,9 +218,9 @@ def _whole_tiff(file: Path) -> Iterator[tifffile.TiffFile]:
 
 def _open_tiff(file: Path, unnamed: str) -> FrameFile:
     with _whole_tiff(file) as tiff:
-        if len(tiff.series) > 1 and len({series.shape for series in tiff.series}) > 1:
+        if len(tiff.series) > 1:
             raise ReadError(
-                f"{file} holds {len(tiff.series)} images of several sizes: save one of them alone"
+                f"{file} holds {len(tiff.series)} separate images: save one alone, or all as one stack"
             )
         series = tiff.series[0]
         axes, shape = _named_axes(file, series.axes, series.shape, unnamed)
@@ -240,12 +246,13 @@ def _named_axes(file: Path, axes: str, shape: tuple[int, ...], unnamed: str) -> 
     """Axes in the words T, C, Y, X, without those of length 1 beside Y and X."""
     kept = [(axis, size) for axis, size in zip(axes, shape, strict=True) if size > 1 or axis in "YX"]
     named = []
-    for axis, size in kept:
+    for place, (axis, size) in enumerate(kept):
         if axis == "Z":
             raise ReadError(
                 f"{file} is a z-stack (axes {axes}, shape {shape}): project it, or save its axis as time"
             )
-        letter = {"S": "C", "T": "T", "C": "C", "Y": "Y", "X": "X"}.get(axis, unnamed)
+        colour = axis == "S" and place == len(kept) - 1  # planes that stand first may be frames as well
+        letter = axis if axis in "TCYX" else "C" if colour else unnamed
         named.append((letter, size))
     letters = "".join(letter for letter, _ in named)
     if len(set(letters)) != len(letters) or not {"Y", "X"} <= set(letters):
@@ -257,7 +264,7 @@ def _with_ome(found: FrameFile, xml: str) -> FrameFile:
     pixels = next(e for e in ElementTree.fromstring(xml).iter() if e.tag.endswith("}Pixels"))
     sizes = [
         float(pixels.attrib[f"PhysicalSize{axis}"])
-        * _MICROMETRES.get(pixels.attrib.get(f"PhysicalSize{axis}Unit", "µm"), np.nan)
+        * _MICROMETRES.get(_micro(pixels.attrib.get(f"PhysicalSize{axis}Unit", "µm")), np.nan)
         for axis in "XY"
         if f"PhysicalSize{axis}" in pixels.attrib
     ]
@@ -274,7 +281,7 @@ def _with_ome(found: FrameFile, xml: str) -> FrameFile:
 
 def _with_imagej(found: FrameFile, tiff: tifffile.TiffFile) -> FrameFile:
     metadata = tiff.imagej_metadata or {}
-    unit = str(metadata.get("unit", "")).replace("\\u00B5", "µ").strip()
+    unit = _micro(str(metadata.get("unit", "")).replace("\\u00B5", "µ").strip())
     tags = tiff.pages.first.tags
     sizes = []
     if unit in _MICROMETRES:
@@ -288,6 +295,10 @@ def _with_imagej(found: FrameFile, tiff: tifffile.TiffFile) -> FrameFile:
         pixel_size_um=_square(found.path, sizes),
         frame_interval_s=_positive(float(interval) * seconds) if interval else None,
     )
+
+
+def _micro(unit: str) -> str:
+    return unit.replace("\u03bc", "\u00b5")  # the Greek letter mu stands for the micro sign
 
 
 def _square(file: Path, sizes: list[float]) -> float | None:
@@ -304,6 +315,8 @@ def _positive(value: float) -> float | None:
 
 def _with_channel_names(found: FrameFile) -> FrameFile:
     count = found.shape[found.axes.index("C")] if "C" in found.axes else 1
-    if len(found.channels) == count and len(set(found.channels)) == count:
-        return found
+    if len(found.channels) == count:
+        again = [found.channels[:place].count(name) for place, name in enumerate(found.channels)]
+        names = [f"{name} ({n + 1})" if n else name for name, n in zip(found.channels, again, strict=True)]
+        return replace(found, channels=tuple(names))
     return replace(found, channels=tuple(str(number) for number in range(count)))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
+from skimage import measure
 
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import CytodiskError, MaskError, ParameterError, ReadError
@@ -14,6 +15,7 @@ from cytodisk.io.frames import FrameFile
 
 Kind: TypeAlias = Literal["auto", "mask", "stack", "labels"]
 _LEAST_ALIKE = 0.5  # of neighbouring pixels within cells must have one label in a label image
+_MOST_PIECES = 3  # connected pieces a label, on average, in a label image
 KINDS: tuple[Kind, ...] = ("auto", "mask", "stack", "labels")
 
 
@@ -85,10 +87,16 @@ def _refuse_intensities(file: FrameFile, number: int) -> None:
     frame = file.frame(number)[0]
     left, right = frame[:, :-1], frame[:, 1:]
     both = (left != 0) & (right != 0)
-    if both.any() and (left == right)[both].mean() < _LEAST_ALIKE:
+    alike = (left == right)[both].mean() if both.any() else 1.0
+    values = len(np.unique(frame[frame != 0]))
+    _, pieces = measure.label(  # type: ignore[no-untyped-call,unused-ignore]
+        frame, background=0, connectivity=2, return_num=True
+    )
+    if alike < _LEAST_ALIKE or pieces > _MOST_PIECES * values:
         raise MaskError(
-            f"{file.path} looks like a picture, not a mask: neighbouring pixels of frame {number} differ "
-            f"({len(np.unique(frame))} values); pass the mask or label image, or kind='labels' if it is one"
+            f"{file.path} looks like a picture, not a mask or label image: "
+            f"{values} values of frame {number} lie in "
+            f"{pieces} pieces; threshold it, or pass kind='labels' (--kind labels) if it is one"
         )
 
 
@@ -119,18 +127,32 @@ def _cells_of_frame(file: FrameFile, number: int, kind: Kind) -> Iterator[CellMa
         yield CellMask(0, number, 0, None, error)
         return
     if kind != "labels":
-        yield CellMask(0, number, 1, frame)
+        yield CellMask(0, number, _single_label(frame), frame)
         return
     if not np.issubdtype(frame.dtype, np.integer):
         fault = MaskError(f"labels must be whole numbers, got dtype {frame.dtype}: save the labels as uint16")
         yield CellMask(0, number, 0, None, fault)
         return
     labels = np.unique(frame)
+    if labels[0] < 0:
+        fault = MaskError(
+            f"frame {number} has negative labels (down to {labels[0]}): set what is no cell to 0"
+        )
+        yield CellMask(0, number, 0, None, fault)
+        return
     if not (labels != 0).any():
         yield CellMask(0, number, 0, None, MaskError(f"frame {number} is empty: it holds no label"))
     for label in labels[labels != 0]:
         inside: BoolArray = frame == label
         yield CellMask(0, number, int(label), inside)
+
+
+def _single_label(frame: np.ndarray[Any, Any]) -> int:
+    """The label of a frame that holds just one; 1 for plain masks such as 0/1 and 0/255."""
+    if not np.issubdtype(frame.dtype, np.integer):
+        return 1
+    label = int(frame.max(initial=0))
+    return 1 if label in (0, np.iinfo(frame.dtype).max) else label
 
 
 def _has_labels(file: FrameFile, number: int) -> bool:

@@ -6,6 +6,8 @@ import json
 import os
 import re
 import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,21 +18,55 @@ import pyarrow.parquet as pq
 
 from cytodisk.disk.disk_map import DiskMap, load_map
 from cytodisk.errors import ReadError, StudyError
-from cytodisk.files import replacing
+from cytodisk.files import lock, replacing
 from cytodisk.io.tables import CELL_COLUMNS, WINDOW_COLUMNS, schema
 
 PARAMETERS, PROVENANCE = "parameters.toml", "provenance.json"
 CELLS, WINDOWS = "cells.parquet", "windows.parquet"
-MAPS, FIGURES, _PARTS = "maps", "figures", ".parts"
-_OWN = (PARAMETERS, PROVENANCE, CELLS, WINDOWS, MAPS, FIGURES, _PARTS)
+MAPS, FIGURES, _PARTS, _LOCK = "maps", "figures", ".parts", ".lock"
+_OWN = (PARAMETERS, CELLS, WINDOWS, MAPS, FIGURES, _PARTS)
 _CELLS_PER_GROUP = 64
+
+
+@contextmanager
+def alone_in(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Keep other runs out of a folder while the block runs.
+
+    Parameters
+    ----------
+    path : path-like
+        Is made if need be.
+
+    Raises
+    ------
+    StudyError
+        Another run is writing there, or the folder cannot be written.
+    """
+    folder = Path(path)
+    try:
+        if folder.exists() and not folder.is_dir():
+            raise StudyError(f"output {folder} is a file: pass a folder")
+        folder.mkdir(parents=True, exist_ok=True)
+        held = lock(folder / _LOCK)
+    except StudyError:
+        raise
+    except BlockingIOError as error:
+        raise StudyError(f"output folder {folder}: another run is writing there, wait for its end") from error
+    except OSError as error:
+        raise StudyError(f"output folder {folder} cannot be written: {error.strerror}") from error
+    try:
+        yield
+    finally:
+        (folder / _LOCK).unlink(missing_ok=True)
+        held.close()
 
 
 class StudyFolder:
     """The writing side of a study: one part a cell, merged into the tables at the end.
 
     A part's last file marks it as done; every file is written under a temporary name and renamed. So a run
-    that is killed at any moment loses only the cells it was at, and another run can do the rest.
+    that is killed at any moment loses only the cells it was at, and another run can do the rest. Use it
+    within `alone_in`.
     """
 
     def __init__(self, path: Path, provenance: dict[str, Any]):
@@ -74,16 +110,17 @@ class StudyFolder:
         try:
             if folder.exists() and not folder.is_dir():
                 raise StudyError(f"output {folder} is a file: pass a folder")
-            if folder.exists() and any(folder.iterdir()):
+            folder.mkdir(parents=True, exist_ok=True)
+            if any(not _is_left_over(file) for file in folder.iterdir()):
                 _make_room(folder, provenance, resume, overwrite)
+            study.note("status", "running")  # first, so that a folder that stands is known as a study
             for name in (MAPS, FIGURES, _PARTS):
-                (folder / name).mkdir(parents=True, exist_ok=True)
+                (folder / name).mkdir(exist_ok=True)
             _remove_left_overs(folder)
         except StudyError:
             raise
         except OSError as error:
             raise StudyError(f"output folder {folder} cannot be written: {error.strerror}") from error
-        study.note("status", "running")
         return study
 
     @staticmethod
@@ -133,19 +170,35 @@ class StudyFolder:
             for part in sorted((self.path / _PARTS).glob("[0-9]*.json"))
         ]
 
-    def finish(self) -> None:
-        """Merge the parts into the tables and mark the study as complete."""
+    def finish(self, cells: list[int]) -> None:
+        """Merge the parts into the tables and mark the study as complete.
+
+        Parameters
+        ----------
+        cells : list of int
+            All cells of the run.
+
+        Raises
+        ------
+        StudyError
+            The part of a cell is missing.
+        """
         rows = self.rows()
-        cells = pa.Table.from_pylist(
+        if [row["cell"] for row in rows] != cells:
+            raise StudyError(
+                f"study {self.path} has the parts of {len(rows)} cells instead of {len(cells)}: "
+                "run the same command again with --resume"
+            )
+        table = pa.Table.from_pylist(
             [{name: row.get(name) for name, _, _ in CELL_COLUMNS} for row in rows],
             schema=schema(CELL_COLUMNS, self._length_unit),
         )
         with replacing(self.path / WINDOWS) as temporary:
             self._merge_windows([row["cell"] for row in rows], temporary)
         with replacing(self.path / CELLS) as temporary:
-            pq.write_table(cells, temporary)
+            pq.write_table(table, temporary)
         self.note("status", "complete")
-        shutil.rmtree(self.path / _PARTS)
+        shutil.rmtree(self.path / _PARTS, ignore_errors=True)  # the tables stand; parts are only in the way
 
     def _merge_windows(self, cells: list[int], target: Path) -> None:
         with pq.ParquetWriter(target, schema(WINDOW_COLUMNS, self._length_unit)) as writer:
@@ -250,6 +303,8 @@ def _make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite
     if there is None:
         raise StudyError(f"output folder {folder} is not empty and holds no study: pass another folder")
     if overwrite:
+        # The old provenance stays, marked, until the new one replaces it: a kill leaves a known study.
+        _write_json(folder / PROVENANCE, there | {"status": "being replaced", "fingerprint": {}})
         for name in _OWN:
             target = folder / name
             if target.is_dir():
@@ -272,14 +327,26 @@ def _remove_left_overs(folder: Path) -> None:
     """Remove the temporary files of a run that was killed while writing; other files are not ours."""
     for place in (folder, *(folder / name for name in (MAPS, FIGURES, _PARTS))):
         for file in place.iterdir():
-            if re.fullmatch(r"\..+\.\d+\.tmp\.\w+", file.name):
+            if file.name != _LOCK and _is_left_over(file):
                 file.unlink()
+
+
+def _is_left_over(file: Path) -> bool:
+    return file.name == _LOCK or re.fullmatch(r"\..+\.\d+\.tmp\.\w+", file.name) is not None
 
 
 def _differences(there: dict[str, Any], here: dict[str, Any]) -> str:
     old, new = there.get("fingerprint", {}), here["fingerprint"]
     names = [name for name in new if old.get(name) != new[name]]
-    return "; ".join(f"{name}: {old.get(name)} then, {new[name]} now" for name in names) or "unknown"
+    return (
+        "; ".join(f"{name}: {_short(old.get(name))} then, {_short(new[name])} now" for name in names)
+        or "unknown"
+    )
+
+
+def _short(value: Any) -> str:
+    text = str(value)
+    return text if len(text) <= 24 else f"{text[:8]}…"
 
 
 def _read_provenance(folder: Path) -> dict[str, Any] | None:

@@ -10,7 +10,7 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from multiprocessing import get_context
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -18,10 +18,13 @@ import xarray as xr
 from cytodisk.errors import CytodiskError, ParameterError, ReadError, SignalError, StudyError
 from cytodisk.io.frames import FrameFile, open_frames
 from cytodisk.io.masks import CellMask, Kind, read_cells, understood_as
-from cytodisk.io.study_folder import PARAMETERS, Study, StudyFolder, open_study
+from cytodisk.io.study_folder import PARAMETERS, Study, StudyFolder, alone_in, open_study
 from cytodisk.study.one_cell import CellResult, CellTask, DrawCell, measure_cell
 from cytodisk.study.parameters import MapParameters, write_parameters
 from cytodisk.study.provenance import describe_run
+from cytodisk.windows.grid import polar_windows
+
+_MOST_UNNAMED = 10  # more planes than that are hardly channels
 
 Progress: TypeAlias = Callable[[int, int], None]
 
@@ -36,13 +39,16 @@ class MapInputs:
     kind : {"mask", "stack", "labels"}
     signal : FrameFile or None
     parameters : MapParameters
-        With the pixel size that holds: the given one, or the signal's, or the masks'.
+        As given.
+    pixel_size_um : float or None
+        The given one, or else the files' own; None when nobody knows.
     """
 
     masks: FrameFile
     kind: Kind
     signal: FrameFile | None
     parameters: MapParameters
+    pixel_size_um: float | None
 
     @property
     def understood(self) -> dict[str, str]:
@@ -83,11 +89,9 @@ def open_inputs(
     if signal is not None:
         signal_file = open_frames(signal, unnamed="T" if mask_file.n_frames > 1 else "C")
         _check_signal(mask_file, signal_file)
-    if parameters.pixel_size_um is None:
-        scales = [file.pixel_size_um for file in (signal_file, mask_file) if file is not None]
-        known = next((scale for scale in scales if scale is not None), None)
-        parameters = parameters.model_copy(update={"pixel_size_um": known})
-    return MapInputs(mask_file, kind, signal_file, parameters)
+    polar_windows(parameters.layers, parameters.sectors, parameters.spacing)  # raises if it makes no sense
+    pixel_size_um = parameters.pixel_size_um or _pixel_size(mask_file, signal_file)
+    return MapInputs(mask_file, kind, signal_file, parameters, pixel_size_um)
 
 
 def run_map(
@@ -137,8 +141,28 @@ def run_map(
     """
     if workers < 1:
         raise ParameterError(f"workers must be at least 1, got {workers}")
+    if resume and overwrite:
+        raise ParameterError("resume and overwrite exclude each other: pass one of them")
     paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
-    provenance = describe_run(paths, inputs.parameters, inputs.understood)
+    provenance = describe_run(paths, inputs.parameters, inputs.understood, inputs.pixel_size_um)
+    with alone_in(out):
+        return _run(
+            inputs, out, provenance, workers, resume, overwrite, draw, draw_at_most, geojson, progress
+        )
+
+
+def _run(
+    inputs: MapInputs,
+    out: str | os.PathLike[str],
+    provenance: dict[str, Any],
+    workers: int,
+    resume: bool,
+    overwrite: bool,
+    draw: DrawCell | None,
+    draw_at_most: int | None,
+    geojson: bool,
+    progress: Progress | None,
+) -> Study:
     if resume and StudyFolder.is_complete(out, provenance):
         return open_study(out)
     folder = StudyFolder.start(out, provenance, resume=resume, overwrite=overwrite)
@@ -157,7 +181,7 @@ def run_map(
     rows = folder.rows()
     folder.note("warnings", [f"cell {row['cell']}: {row['reason']}" for row in rows if row["status"] != "ok"])
     folder.note("finished", datetime.now(UTC).isoformat(timespec="seconds"))
-    folder.finish()
+    folder.finish(cells)
     return open_study(folder.path)
 
 
@@ -166,6 +190,17 @@ def list_cells(inputs: MapInputs) -> list[int]:
     if inputs.kind != "labels":
         return list(range(inputs.masks.n_frames))
     return [found.cell for found in read_cells(inputs.masks, inputs.kind)]
+
+
+def _pixel_size(masks: FrameFile, signal: FrameFile | None) -> float | None:
+    known = [file for file in (signal, masks) if file is not None and file.pixel_size_um is not None]
+    sizes = [file.pixel_size_um for file in known if file.pixel_size_um is not None]
+    if sizes and max(sizes) > 1.01 * min(sizes):
+        raise SignalError(
+            f"pixel sizes differ: {known[0].path} says {sizes[0]:g} µm, {known[1].path} {sizes[1]:g} µm: "
+            "pass the right one, as --pixel-size"
+        )
+    return sizes[0] if sizes else None
 
 
 def _silent(done: int, total: int) -> None:
@@ -180,6 +215,11 @@ def _check_signal(masks: FrameFile, signal: FrameFile) -> None:
         )
     if signal.dtype.kind not in "biuf":
         raise SignalError(f"signal {signal.path} has dtype {signal.dtype}: it must be numbers")
+    if len(signal.channels) > _MOST_UNNAMED and signal.channels[0] == "0":
+        raise SignalError(
+            f"signal {signal.path} has {len(signal.channels)} planes without names, where one image is due: "
+            "pass one frame, or name its axes and channels in the file"
+        )
     if signal.n_frames not in (1, masks.n_frames):
         raise SignalError(
             f"signal {signal.path} has {signal.n_frames} frames, the masks {masks.n_frames}: "
@@ -208,6 +248,7 @@ def _tasks(
             signal,
             fault,
             inputs.parameters,
+            inputs.pixel_size_um,
             folder.map_path(found.cell),
             folder.figures,
             wanted,

@@ -35,6 +35,7 @@ class CellTask:
     signal: xr.DataArray | None
     signal_fault: CytodiskError | None
     parameters: MapParameters
+    pixel_size_um: float | None
     map_path: Path
     figures: Path | None
     draw: DrawCell | None
@@ -87,14 +88,14 @@ def measure_cell(task: CellTask) -> CellResult:
 
     windows = polar_windows(parameters.layers, parameters.sectors, parameters.spacing).on(disk)
     columns = _window_columns(task, windows)
-    row |= _cell_columns(disk, windows, task.signal, parameters.pixel_size_um)
+    row |= _cell_columns(disk, windows, task.signal, task.pixel_size_um)
     disk.save(task.map_path)
     if task.geojson:
         with replacing(task.map_path.with_suffix(".geojson")) as temporary:
             temporary.write_text(json.dumps(windows.geojson()), encoding="utf-8")
     seconds = _since(started)
     if task.draw is not None and task.figures is not None:
-        task.draw(task.figures, f"cell_{found.cell:05d}", windows, task.signal, parameters.pixel_size_um)
+        task.draw(task.figures, f"cell_{found.cell:05d}", windows, task.signal, task.pixel_size_um)
     return CellResult(row | {"status": "ok", "reason": "", "seconds": seconds}, columns)
 
 
@@ -105,7 +106,7 @@ def _cell_columns(
     pixel = pixel_size_um or 1.0
     centre = centroid(disk.outline_yx)
     smooth = smooth_closed(disk.outline_yx, _PERIMETER_SMOOTHING_PX)
-    missing = int(np.isnan(signal.to_numpy()[:, disk.mask]).sum()) if signal is not None else 0
+    missing = int((~np.isfinite(signal.to_numpy()[:, disk.mask])).sum()) if signal is not None else 0
     return {
         "notes": "; ".join(_notes(disk, missing)),
         "area": report.area_px * pixel**2,
@@ -146,14 +147,14 @@ def _notes(disk: DiskMap, missing: int) -> list[str]:
     if disk.start == "uniform":
         notes.append("harmonic start with uniform weights")
     if missing:
-        notes.append(f"{missing} NaN values in the signal")
+        notes.append(f"{missing} NaN or infinite values in the signal")
     return notes
 
 
 def _window_columns(task: CellTask, windows: CellWindows) -> dict[str, Any]:
     """Columns of the windows table: for each channel every window, layers first."""
     parameters = task.parameters
-    pixel = parameters.pixel_size_um or 1.0
+    pixel = task.pixel_size_um or 1.0
     n_windows = windows.grid.n_windows
     channels: list[str | None] = [None]
     statistics: dict[str, Any] = {}

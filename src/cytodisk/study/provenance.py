@@ -36,7 +36,10 @@ def installed(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
 
 
 def describe_run(
-    inputs: Mapping[str, Path], parameters: MapParameters, understood: Mapping[str, str]
+    inputs: Mapping[str, Path],
+    parameters: MapParameters,
+    understood: Mapping[str, str],
+    pixel_size_um: float | None,
 ) -> dict[str, Any]:
     """Provenance of a run that starts now.
 
@@ -47,6 +50,8 @@ def describe_run(
     parameters : MapParameters
     understood : dict of role to str
         What each input was read as, in words.
+    pixel_size_um : float or None
+        The scale that the results are in.
 
     Returns
     -------
@@ -60,8 +65,9 @@ def describe_run(
     """
     hashes = {role: _sha256(path) for role, path in inputs.items()}
     settings = parameters.model_dump(mode="json")
-    fingerprint = {f"{role} sha256": value for role, value in hashes.items()}
+    fingerprint: dict[str, Any] = {f"{role} sha256": value for role, value in hashes.items()}
     fingerprint |= {"cytodisk": installed(("cytodisk",))["cytodisk"]} | settings
+    fingerprint["pixel_size_um"] = pixel_size_um
     return {
         "status": "running",
         "fingerprint": fingerprint,
@@ -70,7 +76,8 @@ def describe_run(
             for role, path in inputs.items()
         },
         "parameters": settings,
-        "length_unit": "px" if parameters.pixel_size_um is None else "µm",
+        "pixel_size_um": pixel_size_um,
+        "length_unit": "px" if pixel_size_um is None else "µm",
         "versions": installed(),
         "python": platform.python_version(),
         "platform": platform.platform(),

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from cytodisk.disk.disk_map import DiskMap
     from cytodisk.windows.cell_windows import CellWindows
 
+_MOST_WINDOWS = 10_000_000  # beyond any image, and still within memory
+
 Spacing: TypeAlias = Literal["area", "radius"]
 
 
@@ -122,6 +124,8 @@ def polar_windows(layers: int = 10, sectors: int = 60, spacing: Spacing = "area"
     for name, value in (("layers", layers), ("sectors", sectors)):
         if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
             raise WindowError(f"{name} must be a whole number of at least 1, got {value!r}")
+    if layers * sectors > _MOST_WINDOWS:
+        raise WindowError(f"layers × sectors must be at most {_MOST_WINDOWS}, got {layers} × {sectors}")
     if spacing not in ("area", "radius"):
         raise WindowError(f"spacing must be 'area' or 'radius', got {spacing!r}")
     return PolarWindows(int(layers), int(sectors), spacing)

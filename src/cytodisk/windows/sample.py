@@ -40,14 +40,15 @@ def sample(
     quantiles : sequence of float
         Weighted quantiles to add, each 0 to 1.
     nan : {"propagate", "omit"}
-        What a NaN pixel does to its windows: make them NaN, or be left out. Either way it is counted.
+        What a pixel that is NaN, infinite or masked does to its windows: make them NaN, or be left out.
+        Either way it is counted.
 
     Returns
     -------
     Dataset with dims (layer, sector), before them channel if the signal has it
         mean, sd (of the pixels, weighted), min, max (over pixels with any share in the window), n_pixels (sum
         of pixel shares that were sampled, so Σ n_pixels · mean is the cell's whole intensity), n_nan (sum of
-        pixel shares that are NaN), area (square pixels), and quantile with its own dim on request.
+        pixel shares that are NaN or infinite), area (square pixels); on request quantile with its own dim.
 
     Raises
     ------
@@ -103,6 +104,8 @@ def _parse_signal(signal: Any, shape: tuple[int, ...]) -> tuple[FloatArray, list
         if "channel" in signal.dims:
             names = [str(name) for name in signal["channel"].to_numpy()]
     array = np.asarray(signal)
+    if np.ma.isMaskedArray(signal):
+        array = np.ma.filled(signal.astype(np.float64), np.nan)
     if array.dtype.kind not in "biuf":
         raise SignalError(f"signal must be numeric, got dtype {array.dtype}")
     if array.ndim not in (2, 3) or array.shape[-2:] != shape or not array.size:
@@ -117,7 +120,7 @@ def _parse_signal(signal: Any, shape: tuple[int, ...]) -> tuple[FloatArray, list
 def _statistics(
     weights: sparse.csr_array, values: FloatArray, quantiles: tuple[float, ...], nan: str
 ) -> dict[str, FloatArray]:
-    missing = np.isnan(values)
+    missing = ~np.isfinite(values)
     n_nan = np.asarray(weights @ missing.astype(np.float64))
     if missing.any():
         weights = sparse.csr_array(weights @ sparse.diags_array((~missing).astype(np.float64)))
