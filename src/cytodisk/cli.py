@@ -264,6 +264,8 @@ def _progress(quiet: bool, unit: str) -> Iterator[Callable[[int, int], None]]:
             bar.update(task, completed=done, total=total, rate=rate)
 
         yield report
+        if not bar.tasks[task].total and not quiet:
+            print("this study is complete already: nothing was run or drawn again", file=sys.stderr)
 
 
 def _say_inputs(console: "Console", inputs: "MapInputs") -> None:

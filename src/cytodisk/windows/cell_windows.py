@@ -100,7 +100,8 @@ class CellWindows:
         -------
         dict
             Coordinates are (x, y) in pixels with pixel centres at integers: add 0.5 for programs that count
-            from the pixel's corner.
+            from the pixel's corner. With a single sector a window is a ring, which is cut open along a line;
+            windows thinner than their outline's points lie apart may touch themselves.
 
         Raises
         ------
