@@ -38,7 +38,7 @@ Examples:
 
   cytodisk map labels.tif -o out/ --parameters other_study/parameters.toml --resume
 
-Exit code: 0 when done (refused cells have a row with the reason), 2 for an input that cannot be used.
+Exit code: 0 when done (refused cells have a row with the reason), 2 if nothing could be mapped.
 """
 
 Masks = Annotated[
@@ -142,15 +142,18 @@ def check_command(
     inputs = open_inputs(masks, signal, parameters_from({"kind": kind}))
     console = _console(False)
     _say_inputs(console, inputs)
-    unusable = noted = count = 0
+    unusable = doubtful = count = 0
     print("cell\tframe\tlabel\tusable\tremarks")
-    for found, reason, notes in check_cells(inputs):
+    for found, reason, notes, doubts in check_cells(inputs):
         count += 1
         unusable += bool(reason)
-        noted += bool(notes)
-        remarks = reason or "; ".join(notes)
-        print(f"{found.cell}\t{found.frame}\t{found.label}\t{'no' if reason else 'yes'}\t{remarks}")
-    console.print(f"{_count(count)}: {count - unusable} usable ({noted} with remarks), {unusable} not usable")
+        doubtful += bool(doubts)
+        remarks = reason or "; ".join([*doubts, *notes])
+        usable = "no" if reason else "doubtful" if doubts else "yes"
+        print(f"{found.cell}\t{found.frame}\t{found.label}\t{usable}\t{remarks}")
+    console.print(
+        f"{_count(count)}: {count - unusable} usable ({doubtful} of them doubtful), {unusable} not usable"
+    )
     raise typer.Exit(1 if unusable else 0)
 
 
@@ -183,7 +186,7 @@ def demo_command(
     from cytodisk.study.parameters import MapParameters
 
     console = _console(quiet)
-    cell, masks, signal = write_demo_input(out / "input", seed)
+    cell, masks, signal = write_demo_input(out / "input", seed, overwrite=overwrite)
     console.print(f"A simulated cell of {int(cell.mask.sum())} pixels with its signals is in {masks.parent}.")
     console.print(f"The same by hand: cytodisk map {masks} --signal {signal} -o {out / 'study'}\n")
     inputs = open_inputs(masks, signal, MapParameters())
@@ -208,9 +211,6 @@ def main() -> None:
         app()
     except CytodiskError as error:
         _fail(str(error))
-    except KeyboardInterrupt:
-        print("Stopped; what was done is kept: run the same command with --resume.", file=sys.stderr)
-        raise SystemExit(130) from None
 
 
 def _fail(message: str) -> None:
@@ -263,7 +263,13 @@ def _progress(quiet: bool, unit: str) -> Iterator[Callable[[int, int], None]]:
             rate = f"{speed:.1f} {unit}/s" if speed else ""
             bar.update(task, completed=done, total=total, rate=rate)
 
-        yield report
+        try:
+            yield report
+        except KeyboardInterrupt:
+            done, total = bar.tasks[task].completed, bar.tasks[task].total
+            of_all = f" ({done:.0f} of {total:.0f} {unit})" if total else ""
+            print(f"Stopped; what was done is kept{of_all}: run it again with --resume.", file=sys.stderr)
+            raise typer.Exit(130) from None
         if not bar.tasks[task].total and not quiet:
             print("this study is complete already: nothing was run or drawn again", file=sys.stderr)
 
@@ -280,9 +286,10 @@ def _finish(console: "Console", study: "Study", figures: int) -> None:
     from cytodisk.plot.study import draw_overview
 
     cells = study.cells
-    draw_overview(study.path / "figures" / "overview.png", cells)
+    if len(cells) > 1:
+        draw_overview(study.path / "figures" / "overview.png", cells)
     mapped = cells[cells["status"] == "ok"]
-    console.print(f"{len(mapped)} of {_count(len(cells))} mapped, each with a valid certificate")
+    console.print(f"{len(mapped)} of {_count(len(cells))} mapped{', one to one' if len(mapped) else ''}")
     if len(mapped):
         console.print(
             f"median {mapped['seconds'].median():.2f} s a cell; median area distortion (mean |log λ|) "
@@ -291,6 +298,11 @@ def _finish(console: "Console", study: "Study", figures: int) -> None:
     remarks = mapped[mapped["notes"] != ""]
     if len(remarks):
         console.print(f"{_count(len(remarks))} with remarks: column 'notes' of cells.parquet")
+    doubtful = mapped[mapped["doubts"] != ""]
+    for _, row in doubtful.head(20).iterrows():
+        console.print(f"look at cell {row['cell']} (frame {row['frame']}): {row['doubts']}")
+    if len(doubtful) > 20:
+        console.print(f"… and at {len(doubtful) - 20} more: column 'doubts' of cells.parquet")
     lost = cells[cells["status"] != "ok"]
     for _, row in lost.head(20).iterrows():
         print(f"cell {row['cell']} (frame {row['frame']}) {row['status']}: {row['reason']}", file=sys.stderr)

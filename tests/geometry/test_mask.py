@@ -60,7 +60,7 @@ def test_holes_are_filled_and_counted() -> None:
     cleaned, report = clean_mask(RING)
     assert cleaned[1:5, 1:6].all()
     assert (report.holes, report.filled_px, report.area_px) == (2, 3, 20)
-    assert report.notes == ("2 holes filled (3 px)",)
+    assert report.notes == ("2 holes filled (3 px, 15.0%)",)
 
 
 def test_a_diagonal_contact_closes_a_hole() -> None:
@@ -142,3 +142,17 @@ def test_cleaning_leaves_one_piece_without_holes_and_its_counts_add_up(mask: np.
     again, second = clean_mask(cleaned)
     np.testing.assert_array_equal(again, cleaned)
     assert (second.components, second.holes) == (1, 0)
+
+
+def test_doubtful_masks_are_said_to_be() -> None:
+    good = np.zeros((40, 60), dtype=bool)
+    good[5:25, 5:25] = True
+    two = good.copy()
+    two[5:15, 40:55] = True
+    holed = good.copy()
+    holed[10:13, 10:15] = False
+    for mask, words in ((two, "more than one cell"), (holed, "touching cells"), (~good, "inverted")):
+        assert any(words in doubt for doubt in clean_mask(mask)[1].doubts)
+    speck = good.copy()
+    speck[30, 30] = True
+    assert clean_mask(speck)[1].doubts == ()

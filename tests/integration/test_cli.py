@@ -65,7 +65,7 @@ def test_map_writes_a_study(run: Run, mask: Path, tmp_path: Path) -> None:
     assert (code, error.strip()) == (0, "")
     assert "masks: one mask, YX (40, 50) uint8" in said
     assert "pixel size: unknown, results are in px" in said
-    assert "1 of 1 cell mapped, each with a valid certificate" in said
+    assert "1 of 1 cell mapped, one to one" in said
     study = cd.open_study(tmp_path / "out")
     assert study.map(0).certificate.valid
     assert len(study.windows) == 24
@@ -101,7 +101,8 @@ def test_a_point_to_align_to(run: Run, mask: Path, tmp_path: Path) -> None:
 
 
 def test_figures_are_drawn(run: Run, mask: Path, tmp_path: Path) -> None:
-    assert run("map", mask, "-o", tmp_path / "out", "--layers", 3, "--sectors", 8)[0] == 0
+    masks = write(tmp_path / "two.tif", np.stack([tifffile.imread(mask)] * 2))
+    assert run("map", masks, "-o", tmp_path / "out", "--layers", 3, "--sectors", 8)[0] == 0
     names = {path.name for path in (tmp_path / "out" / "figures").iterdir()}
     assert "overview.png" in names
     assert any(name.startswith("cell_00000") for name in names)
@@ -295,7 +296,7 @@ def test_check_of_good_masks(run: Run, mask: Path) -> None:
     code, said, _ = run("check", mask)
     assert code == 0
     assert "0\t0\t1\tyes\t" in said
-    assert "1 cell: 1 usable (0 with remarks), 0 not usable" in said
+    assert "1 cell: 1 usable (0 of them doubtful), 0 not usable" in said
 
 
 def test_check_names_what_is_wrong(run: Run, tmp_path: Path) -> None:
@@ -306,7 +307,7 @@ def test_check_names_what_is_wrong(run: Run, tmp_path: Path) -> None:
     assert code == 1
     assert "1\t1\t1\tyes\t1 fragment" in said
     assert "2\t2\t1\tno\tmask of shape (30, 30) is empty" in said
-    assert "3 cells: 2 usable (1 with remarks), 1 not usable" in said
+    assert "3 cells: 2 usable (0 of them doubtful), 1 not usable" in said
 
 
 def test_check_of_a_file_that_cannot_be_read(run: Run, mask: Path, tmp_path: Path) -> None:
@@ -327,7 +328,7 @@ def test_info_lists_versions(run: Run) -> None:
 def test_demo_twice_in_one_folder(run: Run, tmp_path: Path) -> None:
     code, said, _ = run("demo", "-o", tmp_path / "demo")
     assert code == 0
-    assert "1 of 1 cell mapped, each with a valid certificate" in said
+    assert "1 of 1 cell mapped, one to one" in said
     assert "edge: window means within" in said
     assert "perinuclear: window means within" in said
     study = cd.open_study(tmp_path / "demo" / "study")
@@ -362,3 +363,20 @@ def test_the_program_runs_as_a_module(mask: Path, tmp_path: Path) -> None:
     assert refused.returncode == 2
     assert refused.stderr.startswith("Error: ")
     assert refused.stderr.count("\n") == 1
+
+
+def test_demo_does_not_touch_the_files_of_another(run: Run, tmp_path: Path) -> None:
+    assert run("demo", "-o", tmp_path / "demo")[0] == 0
+    before = {file: file.read_bytes() for file in (tmp_path / "demo" / "input").iterdir()}
+    assert_refused(run("demo", "-o", tmp_path / "demo", "--seed", 1), "holds something else", "--overwrite")
+    assert {file: file.read_bytes() for file in (tmp_path / "demo" / "input").iterdir()} == before
+    assert run("demo", "-o", tmp_path / "demo", "--seed", 1, "--overwrite")[0] == 0
+
+
+def test_doubtful_cells_are_named(run: Run, tmp_path: Path) -> None:
+    mask = np.zeros((30, 60), dtype=np.uint8)
+    mask[5:25, 5:25] = mask[5:25, 35:50] = 1
+    path = write(tmp_path / "mask.tif", mask)
+    assert "doubtful\tperhaps more than one cell" in run("check", path)[1]
+    said = run("map", path, "-o", tmp_path / "out", "--figures", 0)[1]
+    assert "look at cell 0 (frame 0): perhaps more than one cell" in said

@@ -148,7 +148,7 @@ def test_cells_that_cannot_be_mapped_have_a_reason(tmp_path: Path) -> None:
     masks[2, 3:9, 3:9] = 1
     tifffile.imwrite(tmp_path / "masks.tif", masks, photometric="minisblack")
     inputs = open_inputs(tmp_path / "masks.tif", None, SMALL)
-    assert [(found.cell, bool(reason)) for found, reason, _ in check_cells(inputs)] == [
+    assert [(found.cell, bool(reason)) for found, reason, _, _ in check_cells(inputs)] == [
         (0, False),
         (1, True),
         (2, False),

@@ -72,6 +72,12 @@ class DiskMap:
     steps: int
     converged: bool
 
+    def __repr__(self) -> str:
+        return (
+            f"<DiskMap {self.method} of {self.report.area_px} px: {len(self.triangles)} triangles, "
+            f"valid {self.certificate.valid}, area distortion {self.distortion.area:.3f}>"
+        )
+
     @property
     def outline_yx(self) -> FloatArray:
         """The cell's outline, shape (B, 2), (row, column) in pixels."""

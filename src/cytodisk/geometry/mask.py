@@ -9,6 +9,8 @@ from scipy import ndimage
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import MaskError, ParameterError
 
+# Shares from which on a mask is doubtful: of the area in dropped pieces, of the area in holes, of the edge.
+_DOUBTFUL_DROPPED, _DOUBTFUL_FILLED, _DOUBTFUL_BORDER = 0.1, 0.02, 0.5
 _EIGHT = np.ones((3, 3), dtype=bool)
 _FOUR = ndimage.generate_binary_structure(2, 1)
 
@@ -56,10 +58,23 @@ class MaskReport:
                 f"{_count(self.components - 1, 'fragment')} dropped ({self.dropped_px} px, {share:.1%})"
             )
         if self.holes:
-            notes.append(f"{_count(self.holes, 'hole')} filled ({self.filled_px} px)")
+            share = self.filled_px / self.area_px
+            notes.append(f"{_count(self.holes, 'hole')} filled ({self.filled_px} px, {share:.1%})")
         if self.touches_border:
             notes.append(f"touches the image border ({self.border_share:.1%} of its edge)")
         return tuple(notes)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What speaks against this being the mask of one cell, in words; a user should look at it."""
+        doubts = []
+        if self.dropped_px > _DOUBTFUL_DROPPED * self.area_px:
+            doubts.append("perhaps more than one cell: a large fragment was dropped")
+        if self.filled_px > _DOUBTFUL_FILLED * self.area_px:
+            doubts.append("perhaps several touching cells: what was a hole is measured as cell")
+        if self.border_share > _DOUBTFUL_BORDER:
+            doubts.append("perhaps inverted or cut off: most of its edge is the image border")
+        return tuple(doubts)
 
 
 def _count(number: int, noun: str) -> str:

@@ -236,6 +236,9 @@ class Study:
     windows: pd.DataFrame
     provenance: dict[str, Any]
 
+    def __repr__(self) -> str:
+        return f"<Study {self.path}: {len(self.cells)} cells, {len(self.windows)} rows of windows>"
+
     def map(self, cell: int) -> DiskMap:
         """Read the map of one cell.
 

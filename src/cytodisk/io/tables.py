@@ -12,6 +12,7 @@ CELL_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
     ("status", pa.string(), ""),
     ("reason", pa.string(), ""),
     ("notes", pa.string(), ""),
+    ("doubts", pa.string(), ""),
     ("area", pa.float64(), "length²"),
     ("perimeter", pa.float64(), "length"),
     ("centroid_y", pa.float64(), "px"),

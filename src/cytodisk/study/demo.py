@@ -15,7 +15,7 @@ from cytodisk.windows.grid import polar_windows
 from cytodisk.windows.sample import sample
 
 
-def write_demo_input(folder: Path, seed: int) -> tuple[SimulatedCell, Path, Path]:
+def write_demo_input(folder: Path, seed: int, *, overwrite: bool = False) -> tuple[SimulatedCell, Path, Path]:
     """Write a simulated cell as a mask file and an OME-TIFF; files that hold it already are left alone.
 
     Parameters
@@ -23,6 +23,8 @@ def write_demo_input(folder: Path, seed: int) -> tuple[SimulatedCell, Path, Path
     folder : Path
         Is made if need be.
     seed : int
+    overwrite : bool
+        Replace files that hold something else.
 
     Returns
     -------
@@ -32,7 +34,7 @@ def write_demo_input(folder: Path, seed: int) -> tuple[SimulatedCell, Path, Path
     Raises
     ------
     StudyError
-        The folder cannot be written.
+        The folder cannot be written, or holds something else.
     """
     cell = cell_with_signal(seed)
     try:
@@ -40,7 +42,7 @@ def write_demo_input(folder: Path, seed: int) -> tuple[SimulatedCell, Path, Path
     except OSError as error:
         raise StudyError(f"output folder {folder} cannot be written: {error.strerror}") from error
     mask, signal = folder / "mask.tif", folder / "signal.ome.tif"
-    _write(mask, cell.mask.astype(np.uint8), {"axes": "YX"})
+    _write(mask, cell.mask.astype(np.uint8), {"axes": "YX"}, overwrite)
     pixel = cell.signal.attrs["pixel_size_um"]
     metadata = {
         "axes": "CYX",
@@ -50,7 +52,7 @@ def write_demo_input(folder: Path, seed: int) -> tuple[SimulatedCell, Path, Path
         "PhysicalSizeY": pixel,
         "PhysicalSizeYUnit": "µm",
     }
-    _write(signal, cell.signal.to_numpy(), metadata)
+    _write(signal, cell.signal.to_numpy(), metadata, overwrite)
     return cell, mask, signal
 
 
@@ -92,9 +94,11 @@ def compare_with_truth(study: Study, cell: SimulatedCell) -> dict[str, str]:
     return answers
 
 
-def _write(path: Path, values: Any, metadata: dict[str, Any]) -> None:
+def _write(path: Path, values: Any, metadata: dict[str, Any], overwrite: bool) -> None:
     if path.exists() and _holds(path, values):
         return
+    if path.exists() and not overwrite:
+        raise StudyError(f"{path} holds something else than this demo: pass --overwrite, or another folder")
     with replacing(path) as temporary:
         tifffile.imwrite(temporary, values, metadata=metadata, ome=path.name.endswith(".ome.tif"))
 

@@ -9,13 +9,16 @@ from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
+from multiprocessing.connection import wait
+from threading import Thread
 from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
 
 from cytodisk.errors import CytodiskError, ParameterError, ReadError, SignalError, StudyError
+from cytodisk.geometry.mask import clean_mask
 from cytodisk.io.frames import FrameFile, open_frames
 from cytodisk.io.masks import CellMask, Kind, read_cells, understood_as
 from cytodisk.io.study_folder import PARAMETERS, Study, StudyFolder, alone_in, open_study
@@ -58,6 +61,10 @@ class MapInputs:
         if self.signal is not None:
             names = ", ".join(self.signal.channels)
             words["signal"] = f"channels {names}; {self.signal.axes} {self.signal.shape} {self.signal.dtype}"
+            if self.signal.n_frames < self.masks.n_frames:
+                words["signal"] += (
+                    f"; the one image is used for all {self.masks.n_frames} frames of the masks"
+                )
         return words
 
 
@@ -179,7 +186,12 @@ def _run(
         done += 1
         report(done, len(cells))
     rows = folder.rows()
-    folder.note("warnings", [f"cell {row['cell']}: {row['reason']}" for row in rows if row["status"] != "ok"])
+    warnings = [
+        f"cell {row['cell']}: {row['reason'] or row['doubts']}"
+        for row in rows
+        if row["reason"] or row["doubts"]
+    ]
+    folder.note("warnings", warnings)
     folder.note("finished", datetime.now(UTC).isoformat(timespec="seconds"))
     folder.finish(cells)
     return open_study(folder.path)
@@ -274,7 +286,7 @@ def _results(tasks: Iterator[CellTask], workers: int) -> Iterator[CellResult]:
         return
     waiting: deque[Future[CellResult]] = deque()
     try:
-        with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        with ProcessPoolExecutor(workers, get_context("spawn"), _leave_with_parent) as pool:
             for task in tasks:
                 waiting.append(pool.submit(measure_cell, task))
                 if len(waiting) >= 2 * workers:
@@ -288,7 +300,15 @@ def _results(tasks: Iterator[CellTask], workers: int) -> Iterator[CellResult]:
         ) from error
 
 
-def check_cells(inputs: MapInputs) -> Iterator[tuple[CellMask, str, tuple[str, ...]]]:
+def _leave_with_parent() -> None:
+    """Let a worker end when the main process is gone, even if that was killed."""
+    parent = parent_process()
+    if parent is not None:
+        sentinel = parent.sentinel
+        Thread(target=lambda: (wait([sentinel]), os._exit(1)), daemon=True).start()
+
+
+def check_cells(inputs: MapInputs) -> Iterator[tuple[CellMask, str, tuple[str, ...], tuple[str, ...]]]:
     """Look at every mask without mapping it.
 
     Parameters
@@ -302,16 +322,16 @@ def check_cells(inputs: MapInputs) -> Iterator[tuple[CellMask, str, tuple[str, .
         Why it cannot be used; empty if it can.
     notes : tuple of str
         What cleaning would change.
+    doubts : tuple of str
+        What speaks against this being the mask of one cell.
     """
-    from cytodisk.geometry.mask import clean_mask
-
     for found in read_cells(inputs.masks, inputs.kind):
         if found.fault is not None:
-            yield found, str(found.fault), ()
+            yield found, str(found.fault), (), ()
             continue
         try:
             _, report = clean_mask(found.mask)
         except CytodiskError as error:
-            yield found, str(error), ()
+            yield found, str(error), (), ()
             continue
-        yield found, "", report.notes
+        yield found, "", report.notes, report.doubts

@@ -23,7 +23,6 @@ from cytodisk.windows.sample import sample
 
 DrawCell: TypeAlias = Callable[[Path, str, CellWindows, xr.DataArray | None, float | None], list[Path]]
 
-_NOTABLE_SHARE = 0.2  # of the area in dropped fragments: perhaps two cells
 _PERIMETER_SMOOTHING_PX = 1.0
 
 
@@ -109,6 +108,7 @@ def _cell_columns(
     missing = int((~np.isfinite(signal.to_numpy()[:, disk.mask])).sum()) if signal is not None else 0
     return {
         "notes": "; ".join(_notes(disk, missing)),
+        "doubts": "; ".join(report.doubts),
         "area": report.area_px * pixel**2,
         "perimeter": float(edge_lengths(smooth).sum()) * pixel,
         "centroid_y": float(centre[0]),
@@ -140,8 +140,6 @@ def _cell_columns(
 def _notes(disk: DiskMap, missing: int) -> list[str]:
     report = disk.report
     notes = list(report.notes)
-    if report.dropped_px > _NOTABLE_SHARE * report.area_px:
-        notes.append("perhaps more than one cell")
     if not disk.converged:
         notes.append("relaxation stopped before its criterion")
     if disk.start == "uniform":

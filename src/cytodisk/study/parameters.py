@@ -60,7 +60,7 @@ def parameters_from(values: dict[str, Any], path: Path | None = None) -> MapPara
         return MapParameters(**merged)
     except ValidationError as error:
         faults = [
-            f"{'.'.join(str(part) for part in fault['loc'][:1])}: {fault['msg']}, got {fault['input']!r}"
+            f"{fault['loc'][0] if fault['loc'] else '?'}: {fault['msg']}, got {repr(fault['input'])[:40]}"
             for fault in error.errors()
         ]
         raise ParameterError("parameters: " + "; ".join(dict.fromkeys(faults))) from error
