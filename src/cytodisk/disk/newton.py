@@ -5,7 +5,7 @@ accepted step leaves the valid maps.
 
 Far from the minimum the area term's Hessian is the Gauss-Newton one: log det J is close to linear over a
 step, where (log det J)² bends away from its parabola and even turns concave above e. On cells with thin necks
-this takes a third of the steps (`benchmarks/reference_masks.py` prints them).
+this takes fewer steps (`benchmarks/reference_masks.py` prints how many).
 """
 
 from dataclasses import dataclass
