@@ -79,6 +79,8 @@ def test_image_shows_the_signal_where_the_map_says(disk: DiskMap) -> None:
 def test_bad_images_are_refused(disk: DiskMap) -> None:
     with pytest.raises(SignalError, match=r"signal has shape \(3, 3\), the mask"):
         disk.image(np.zeros((3, 3)))
+    with pytest.raises(SignalError, match="signal must be numeric, got dtype complex128"):
+        disk.image(np.zeros(disk.mask.shape, dtype=complex))
     with pytest.raises(ParameterError, match="size must be a whole number of at least 1, got 0"):
         disk.image(np.zeros(disk.mask.shape), size=0)
 

@@ -156,3 +156,8 @@ def test_doubtful_masks_are_said_to_be() -> None:
     speck = good.copy()
     speck[30, 30] = True
     assert clean_mask(speck)[1].doubts == ()
+
+
+def test_a_ragged_list_is_a_mask_error() -> None:
+    with pytest.raises(MaskError, match=r"mask must be an array of shape \(H, W\)"):
+        clean_mask([[1, 0], [1]])

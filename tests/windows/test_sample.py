@@ -149,7 +149,7 @@ def test_a_signal_that_does_not_fit_is_refused(signal: object, message: str) -> 
 
 def test_parameters_out_of_range_are_refused(windows: cd.CellWindows) -> None:
     signal = np.zeros(windows.mask.shape)
-    with pytest.raises(ParameterError, match=r"quantiles must be 0 to 1, got \[-0.1, 2\]"):
+    with pytest.raises(ParameterError, match=r"quantiles must be a sequence of numbers 0 to 1, got"):
         cd.sample(windows, signal, quantiles=[-0.1, 0.5, 2])
     with pytest.raises(ParameterError, match="nan must be 'propagate' or 'omit', got 'drop'"):
         cd.sample(windows, signal, nan="drop")
@@ -165,3 +165,10 @@ def test_infinite_and_masked_pixels_count_as_missing() -> None:
         data = cd.sample(windows, values, nan="omit")
         assert float(data["n_nan"].sum()) == pytest.approx(1.0)
         np.testing.assert_allclose(data["mean"], 1.0)
+
+
+@pytest.mark.parametrize("quantiles", [0.5, ["a"]])
+def test_quantiles_that_are_none_are_refused(quantiles: object) -> None:
+    windows = cd.polar_windows(1, 2).on(cd.map_to_disk(cd.simulate.disk(6.0)))
+    with pytest.raises(ParameterError, match="quantiles must be a sequence of numbers"):
+        cd.sample(windows, np.zeros(windows.mask.shape), quantiles=quantiles)  # type: ignore[arg-type]

@@ -171,11 +171,14 @@ class DiskMap:
         Raises
         ------
         SignalError
-            The signal has another shape than the mask.
+            The signal has another shape than the mask, or is not numeric.
         ParameterError
             `size` is below 1.
         """
-        values = np.asarray(signal, dtype=np.float64)
+        array = np.asarray(signal)
+        if array.dtype.kind not in "biuf":
+            raise SignalError(f"signal must be numeric, got dtype {array.dtype}")
+        values = array.astype(np.float64, copy=False)
         if values.shape != self.mask.shape:
             raise SignalError(
                 f"signal has shape {values.shape}, the mask {self.mask.shape}: pass one channel of one frame"

@@ -98,7 +98,10 @@ def parse_mask(mask: Any) -> BoolArray:
     MaskError
         Not 2D, several labels, floats other than 0 and 1, or empty.
     """
-    array = np.asarray(mask)
+    try:
+        array = np.asarray(mask)
+    except ValueError as error:
+        raise MaskError(f"mask must be an array of shape (H, W): {error}") from error
     if array.ndim != 2:
         raise MaskError(
             f"mask must be 2D, got shape {array.shape}: pass one image, for a stack one frame at a time"

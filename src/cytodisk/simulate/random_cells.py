@@ -3,6 +3,7 @@
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.errors import ParameterError
 from cytodisk.simulate.drawing import all_angles, check_at_least, dot, inside_radius, paint
 
 _SMOOTH_MODES = 6
@@ -103,11 +104,13 @@ def random_smooth(
     """
     check_at_least("radius", radius, 1)
     check_at_least("roughness", roughness, 0)
+    if roughness > 1:
+        raise ParameterError(f"roughness must be 0 to 1, got {roughness!r}: pass a smaller one")
     mode = np.arange(1, _SMOOTH_MODES + 1)
     coefficient = np.random.default_rng(seed).normal(size=(2, _SMOOTH_MODES)) / mode
     angle = all_angles()
     waves = coefficient[0] @ np.cos(np.outer(mode, angle)) + coefficient[1] @ np.sin(np.outer(mode, angle))
-    return inside_radius(radius * np.exp(min(roughness, 1.0) * waves / waves.std()), margin)
+    return inside_radius(radius * np.exp(roughness * waves / waves.std()), margin)
 
 
 def random_spiky(

@@ -84,9 +84,12 @@ _NAMES = ("mean", "sd", "n_pixels", "n_nan", "min", "max")
 
 
 def _check(quantiles: Sequence[float], nan: str) -> None:
-    wrong = [q for q in quantiles if not 0 <= q <= 1]
-    if wrong:
-        raise ParameterError(f"quantiles must be 0 to 1, got {wrong}")
+    try:
+        inside = all(0 <= q <= 1 for q in quantiles)
+    except TypeError:
+        inside = False
+    if not inside:
+        raise ParameterError(f"quantiles must be a sequence of numbers 0 to 1, got {quantiles!r}")
     if nan not in ("propagate", "omit"):
         raise ParameterError(f"nan must be 'propagate' or 'omit', got {nan!r}")
 
