@@ -12,7 +12,7 @@ from datetime import UTC, datetime
 from multiprocessing import get_context, parent_process
 from multiprocessing.connection import wait
 from threading import Thread
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -142,7 +142,7 @@ def run_map(
     Raises
     ------
     ParameterError
-        `workers` is below 1.
+        `workers` is below 1, or both `resume` and `overwrite` are set.
     StudyError
         The folder cannot be used.
     """
@@ -153,48 +153,31 @@ def run_map(
     paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
     provenance = describe_run(paths, inputs.parameters, inputs.understood, inputs.pixel_size_um)
     with alone_in(out):
-        return _run(
-            inputs, out, provenance, workers, resume, overwrite, draw, draw_at_most, geojson, progress
-        )
-
-
-def _run(
-    inputs: MapInputs,
-    out: str | os.PathLike[str],
-    provenance: dict[str, Any],
-    workers: int,
-    resume: bool,
-    overwrite: bool,
-    draw: DrawCell | None,
-    draw_at_most: int | None,
-    geojson: bool,
-    progress: Progress | None,
-) -> Study:
-    if resume and StudyFolder.is_complete(out, provenance):
-        return open_study(out)
-    folder = StudyFolder.start(out, provenance, resume=resume, overwrite=overwrite)
-    write_parameters(inputs.parameters, folder.path / PARAMETERS)
-    cells = list_cells(inputs)
-    pending = [cell for cell in cells if not folder.has(cell)]
-    report = progress or _silent
-    done = len(cells) - len(pending)
-    report(done, len(cells))
-    at_most = len(cells) if draw_at_most is None else draw_at_most
-    tasks = _tasks(inputs, folder, set(pending), draw, at_most, geojson)
-    for result in _results(tasks, min(workers, max(1, len(pending)))):
-        folder.add(result.row, result.windows)
-        done += 1
+        if resume and StudyFolder.is_complete(out, provenance):
+            return open_study(out)
+        folder = StudyFolder.start(out, provenance, resume=resume, overwrite=overwrite)
+        write_parameters(inputs.parameters, folder.path / PARAMETERS)
+        cells = list_cells(inputs)
+        pending = [cell for cell in cells if not folder.has(cell)]
+        report = progress or _silent
+        done = len(cells) - len(pending)
         report(done, len(cells))
-    rows = folder.rows()
-    warnings = [
-        f"cell {row['cell']}: {row['reason'] or row['doubts']}"
-        for row in rows
-        if row["reason"] or row["doubts"]
-    ]
-    folder.note("warnings", warnings)
-    folder.note("finished", datetime.now(UTC).isoformat(timespec="seconds"))
-    folder.finish(cells)
-    return open_study(folder.path)
+        at_most = len(cells) if draw_at_most is None else draw_at_most
+        tasks = _tasks(inputs, folder, set(pending), draw, at_most, geojson)
+        for result in _results(tasks, min(workers, max(1, len(pending)))):
+            folder.add(result.row, result.windows)
+            done += 1
+            report(done, len(cells))
+        rows = folder.rows()
+        warnings = [
+            f"cell {row['cell']}: {row['reason'] or row['doubts']}"
+            for row in rows
+            if row["reason"] or row["doubts"]
+        ]
+        folder.note("warnings", warnings)
+        folder.note("finished", datetime.now(UTC).isoformat(timespec="seconds"))
+        folder.finish(cells)
+        return open_study(folder.path)
 
 
 def list_cells(inputs: MapInputs) -> list[int]:
