@@ -1,0 +1,1 @@
+"""Boundary through time: rigid registration, trackers, temporal maps, edge velocity."""
