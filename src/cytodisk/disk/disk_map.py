@@ -23,7 +23,7 @@ from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline
 from cytodisk.geometry.mask import MaskReport
 
 Method: TypeAlias = Literal["newton", "harmonic"]
-Start: TypeAlias = Literal["cotangent", "uniform"]
+Start: TypeAlias = Literal["cotangent", "uniform", "previous"]
 
 _FORMAT = 1
 
@@ -49,8 +49,9 @@ class DiskMap:
     report : MaskReport
         What cleaning changed.
     method : {"newton", "harmonic"}
-    start : {"cotangent", "uniform"}
-        Weights of the harmonic map; "uniform" when cotangent weights turned a triangle over.
+    start : {"cotangent", "uniform", "previous"}
+        Where the relaxation started: weights of the harmonic map ("uniform" when cotangent weights turned a
+        triangle over), or the previous frame of a movie.
     shape_weight, edge_length : float
         As passed to `map_to_disk`; edge_length in pixels.
     steps : int

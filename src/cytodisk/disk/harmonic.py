@@ -56,6 +56,22 @@ def harmonic_map(mesh: Mesh, boundary_uv: FloatArray) -> tuple[FloatArray, Weigh
     )
 
 
+def harmonic_extension(mesh: Mesh, boundary_values: FloatArray) -> FloatArray:
+    """Values at all vertices that are harmonic inside and given at the boundary.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    boundary_values : ndarray of shape (B, 2) and dtype float
+        Two numbers a boundary vertex, such as a displacement.
+
+    Returns
+    -------
+    ndarray of shape (V, 2) and dtype float
+    """
+    return _weighted_means(mesh, _cotangents(mesh), boundary_values)
+
+
 def _cotangents(mesh: Mesh) -> FloatArray:
     """Half the cotangent opposite each edge of each triangle, in the order of `triangle_edges`."""
     hats = hat_gradients(mesh.vertices_yx, mesh.triangles)

@@ -1,18 +1,21 @@
 """`map_to_disk`: from a mask to a certified map."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.disk.circle import Align, boundary_angles, parse_align
-from cytodisk.disk.disk_map import DiskMap, Method
+from cytodisk.disk.disk_map import DiskMap, Method, Start
 from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.disk.newton import relax
 from cytodisk.errors import MapError, ParameterError
-from cytodisk.geometry.mask import clean_mask
-from cytodisk.geometry.mesh import mesh_inside
+from cytodisk.geometry.mask import MaskReport, clean_mask
+from cytodisk.geometry.mesh import Mesh, mesh_inside, triangle_areas
 from cytodisk.geometry.outline import trace_outline
+
+_LEAST_AREA = 1e-12  # of a triangle in the disk that a relaxation may start from
 
 
 def map_to_disk(
@@ -64,33 +67,127 @@ def map_to_disk(
     """
     _check(method, shape_weight, edge_length)
     align = parse_align(align)
+    cell = mesh_cell(mask, edge_length)
+    angles = boundary_angles(cell.outline, _relative(align, cell.corner))
+    return map_mesh(cell, angles, method=method, shape_weight=shape_weight)
+
+
+@dataclass(frozen=True, eq=False)
+class CellMesh:
+    """A cleaned mask with the mesh that is to be mapped.
+
+    Attributes
+    ----------
+    mask : ndarray of shape (H, W) and dtype bool
+    report : MaskReport
+    mesh : Mesh
+        In the frame of the mask's bounding box, so that a shifted mask gives the same mesh.
+    corner : ndarray of shape (2,) and dtype float
+        First pixel of the bounding box.
+    edge_length : float
+    """
+
+    mask: BoolArray
+    report: MaskReport
+    mesh: Mesh
+    corner: FloatArray
+    edge_length: float
+
+    @property
+    def outline(self) -> FloatArray:
+        """Outline in the frame of the bounding box, shape (B, 2)."""
+        return self.mesh.vertices_yx[: self.mesh.n_boundary]
+
+
+def mesh_cell(mask: Any, edge_length: float = 0.9) -> CellMesh:
+    """Clean a mask and triangulate its inside.
+
+    Parameters
+    ----------
+    mask : array_like of shape (H, W)
+        As for `map_to_disk`.
+    edge_length : float
+        Spacing of mesh vertices at the edge, in pixels.
+
+    Returns
+    -------
+    CellMesh
+
+    Raises
+    ------
+    MaskError
+        The mask is not the mask of one cell.
+    MeshError
+        It could not be triangulated.
+    """
     cleaned, report = clean_mask(mask)
     crop, corner = _crop(cleaned)
-    outline = trace_outline(crop)
-    mesh = mesh_inside(outline, crop, edge_length=edge_length)
-    angles = boundary_angles(outline, _relative(align, corner))
-    uv, start = harmonic_map(mesh, np.column_stack([np.cos(angles), np.sin(angles)]))
+    mesh = mesh_inside(trace_outline(crop), crop, edge_length=edge_length)
+    return CellMesh(cleaned, report, mesh, corner, float(edge_length))
+
+
+def map_mesh(
+    cell: CellMesh,
+    angles: FloatArray,
+    *,
+    method: Method = "newton",
+    shape_weight: float = 0.005,
+    start_uv: FloatArray | None = None,
+) -> DiskMap:
+    """Map a meshed cell onto the disk, with its boundary at given angles.
+
+    Parameters
+    ----------
+    cell : CellMesh
+    angles : ndarray of shape (B,) and dtype float
+        Angle of each boundary vertex in radians, strictly increasing, all within one turn.
+    method, shape_weight
+        As for `map_to_disk`.
+    start_uv : ndarray of shape (V, 2) and dtype float, optional
+        Where the relaxation starts, such as the last frame's result; its boundary is put to the angles. If
+        a triangle of it is not positive, the harmonic map takes its place, and the map's `start` says so.
+
+    Returns
+    -------
+    DiskMap
+        With a valid certificate.
+
+    Raises
+    ------
+    MapError
+        No valid map was found.
+    """
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    uv, start = _start(cell.mesh, circle, start_uv)
     steps, converged = 0, True
     if method == "newton":
-        relaxed = relax(mesh, uv, shape_weight)
+        relaxed = relax(cell.mesh, uv, shape_weight)
         uv, steps, converged = relaxed.vertices_uv, relaxed.steps, relaxed.converged
     disk = DiskMap(
-        vertices_yx=mesh.vertices_yx + corner,
+        vertices_yx=cell.mesh.vertices_yx + cell.corner,
         vertices_uv=uv,
-        triangles=mesh.triangles,
-        boundary=mesh.boundary,
-        mask=cleaned,
-        report=report,
+        triangles=cell.mesh.triangles,
+        boundary=cell.mesh.boundary,
+        mask=cell.mask,
+        report=cell.report,
         method=method,
         start=start,
         shape_weight=float(shape_weight),
-        edge_length=float(edge_length),
+        edge_length=cell.edge_length,
         steps=steps,
         converged=converged,
     )
     if not disk.certificate.valid:
         raise MapError(f"no valid map was found: {'; '.join(disk.certificate.faults)}")
     return disk
+
+
+def _start(mesh: Mesh, circle: FloatArray, start_uv: FloatArray | None) -> tuple[FloatArray, Start]:
+    if start_uv is not None:
+        uv = np.concatenate([circle, start_uv[mesh.n_boundary :]])
+        if (triangle_areas(uv[:, ::-1], mesh.triangles) > _LEAST_AREA).all():
+            return uv, "previous"
+    return harmonic_map(mesh, circle)
 
 
 def _check(method: str, shape_weight: float, edge_length: float) -> None:
