@@ -1,13 +1,17 @@
 """Cells, signals and random masks with known answers, for the demo, the docs, tests and benchmarks."""
 
 from cytodisk.simulate.cells import disk, dumbbell, ellipse, star
+from cytodisk.simulate.movie_kinds import MOVIE_KINDS
+from cytodisk.simulate.moving_cells import SimulatedMovie, movie
 from cytodisk.simulate.random_cells import branching, migrating, random_smooth, random_spiky
 from cytodisk.simulate.random_masks import KINDS, random_mask
 from cytodisk.simulate.signals import SimulatedCell, cell_with_signal, linear_signal, ring_signal
 
 __all__ = [
     "KINDS",
+    "MOVIE_KINDS",
     "SimulatedCell",
+    "SimulatedMovie",
     "branching",
     "cell_with_signal",
     "disk",
@@ -15,6 +19,7 @@ __all__ = [
     "ellipse",
     "linear_signal",
     "migrating",
+    "movie",
     "random_mask",
     "random_smooth",
     "random_spiky",

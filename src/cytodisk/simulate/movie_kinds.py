@@ -1,0 +1,290 @@
+"""What each kind of movie shows: the shape of a cell at rest and the flow that moves it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Literal, get_args
+
+import numpy as np
+
+from cytodisk.arrays import FloatArray
+from cytodisk.geometry.polygon import signed_area
+from cytodisk.simulate.flow import NO_RUFFLES, NOTHING, Flow, Ruffles, Swing, no_numbers
+
+MovieKind = Literal[
+    "bulging",
+    "migrating",
+    "translating",
+    "turning",
+    "necking",
+    "neutrophil",
+    "spiky",
+    "ruffling",
+    "growing",
+    "still",
+    "dropping",
+]
+MOVIE_KINDS: tuple[MovieKind, ...] = get_args(MovieKind)
+
+_ANGLE = np.linspace(0.0, 2.0 * np.pi, 2000, endpoint=False)
+
+
+@dataclass(frozen=True)
+class Habits:
+    """Numbers of a kind that the caller may replace.
+
+    Attributes
+    ----------
+    speed_px : float
+        In pixels per frame; of the edge for "growing", of the whole cell else.
+    turn_deg : float
+        In degrees per frame.
+    protrusion_px : float or None
+        Height of the largest protrusion, in pixels; None for a kind that has none.
+    jitter_px : float
+        Standard deviation of the drawn edge about the true one, in pixels.
+    dropped : float
+        Share of frames whose mask is empty.
+    """
+
+    speed_px: float = 0.0
+    turn_deg: float = 0.0
+    protrusion_px: float | None = None
+    jitter_px: float = 0.0
+    dropped: float = 0.0
+
+
+HABITS: dict[MovieKind, Habits] = {
+    "bulging": Habits(protrusion_px=15.0),
+    "migrating": Habits(speed_px=0.7, turn_deg=0.5, protrusion_px=11.0),
+    "translating": Habits(speed_px=1.5),
+    "turning": Habits(turn_deg=2.0),
+    "necking": Habits(),
+    "neutrophil": Habits(speed_px=1.0, turn_deg=1.0, protrusion_px=18.0),
+    "spiky": Habits(protrusion_px=15.0),
+    "ruffling": Habits(protrusion_px=4.0),
+    "growing": Habits(speed_px=1.0),
+    "still": Habits(jitter_px=1.0),
+    "dropping": Habits(protrusion_px=15.0, dropped=0.15),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A cell at rest and how it moves.
+
+    Attributes
+    ----------
+    outline_yx : ndarray of shape (N, 2) and dtype float
+        From +x towards +y, about the cell's centre, before the deformation of frame 0.
+    places_yx : ndarray of shape (K, 2) and dtype float
+        Where the pushes sit on that outline.
+    flow : Flow
+    """
+
+    outline_yx: FloatArray
+    places_yx: FloatArray
+    flow: Flow
+
+
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    """Outline with the cell's heading along +x, and everything that changes its shape."""
+
+    outline_yx: FloatArray
+    push: Swing = NOTHING
+    push_width: FloatArray = field(default_factory=no_numbers)
+    push_at: FloatArray = field(default_factory=no_numbers)  # angle of its place as seen from the centre
+    stretch: Swing = NOTHING
+    bend: Swing = NOTHING
+    neck: Swing = NOTHING
+    neck_width: float = 1.0
+    ruffles: Ruffles = NO_RUFFLES
+
+
+def plan_movie(kind: MovieKind, random: np.random.Generator, radius: float, habits: Habits) -> Plan:
+    """Draw shape, places, phases and directions of one movie.
+
+    Parameters
+    ----------
+    kind : str
+        One of `MOVIE_KINDS`.
+    random : Generator
+    radius : float
+        Of the disk of the same area as the cell at rest, in pixels.
+    habits : Habits
+
+    Returns
+    -------
+    Plan
+    """
+    motion = _MAKERS[kind](random, radius, habits.protrusion_px or 0.0)
+    heading = random.uniform(-np.pi, np.pi)
+    y, x = motion.outline_yx.T
+    nearest = _places(np.arctan2(y, x), motion.push_at)
+    normal = _outward(motion.outline_yx)[nearest]
+    growing = kind == "growing"
+    flow = Flow(
+        radius=radius,
+        heading=heading,
+        turn=np.radians(habits.turn_deg),
+        speed=0.0 if growing else habits.speed_px,
+        push=motion.push,
+        push_width=motion.push_width,
+        push_angle=np.arctan2(normal[:, 0], normal[:, 1]),
+        stretch=motion.stretch,
+        bend=motion.bend,
+        neck=motion.neck,
+        neck_width=motion.neck_width,
+        ruffles=motion.ruffles,
+        growth=habits.speed_px if growing else 0.0,
+    )
+    cos, sin = np.cos(heading), np.sin(heading)
+    turned = np.column_stack([x * sin + y * cos, x * cos - y * sin])
+    return Plan(turned, turned[nearest], flow)
+
+
+def _bulging(random: np.random.Generator, radius: float, height: float) -> _Motion:
+    return _Motion(
+        _lobed(random, radius, 0.03),
+        push=_swing(random, height * random.uniform(0.7, 1.0, 5), (20.0, 30.0)),
+        push_width=radius / 45.0 * random.uniform(8.0, 12.0, 5),
+        push_at=_spread(random, 5),
+    )
+
+
+def _migrating(random: np.random.Generator, radius: float, height: float) -> _Motion:
+    """A broad front of three overlapping pushes, four small ones aside, and a tail that is pulled in."""
+    front = np.radians([-50.0, 0.0, 50.0]) + random.uniform(-0.15, 0.15, 3)
+    side = np.radians([-125.0, -90.0, 90.0, 125.0]) + random.uniform(-0.2, 0.2, 4)
+    share = np.concatenate([random.uniform(0.8, 1.0, 3), random.uniform(0.3, 0.6, 4), [0.8]])
+    width = np.concatenate([random.uniform(13.0, 16.0, 3), random.uniform(7.0, 9.0, 4), [9.0]])
+    return _Motion(
+        _egg(random, radius),
+        push=_swing(random, height * share, (18.0, 30.0)),
+        push_width=radius / 45.0 * width,
+        push_at=np.concatenate([front, side, [np.pi]]),
+        stretch=_between(random, [-0.04, -0.05], [0.1, 0.05], (25.0, 40.0)),
+    )
+
+
+def _rigid(random: np.random.Generator, radius: float, height: float) -> _Motion:
+    return _Motion(_lobed(random, radius, 0.1))
+
+
+def _necking(random: np.random.Generator, radius: float, height: float) -> _Motion:
+    """Two lobes whose waist of 1.25 radii narrows to a ninth of the radius: 5 px of 45."""
+    outline = _of_area(_polar(1.0 + 0.38 * np.cos(2.0 * _ANGLE) + _waves(random, 0.02)), radius)
+    y, x = outline.T
+    waist = 2.0 * np.abs(y[np.abs(x) < 2.0]).mean()
+    narrowing = np.log(waist / (radius / 9.0))
+    neck = Swing(np.zeros(1), np.array([narrowing]), random.uniform(32.0, 40.0, 1), np.zeros(1))
+    return _Motion(outline, neck=neck, neck_width=radius / 45.0 * random.uniform(12.0, 16.0))
+
+
+def _neutrophil(random: np.random.Generator, radius: float, height: float) -> _Motion:
+    """Stretch up to 2:1 whose axis leans from side to side, bending, and large pseudopods in front."""
+    places = np.concatenate([np.radians([-45.0, 5.0, 50.0]), np.radians([-110.0, 110.0])])
+    share = np.concatenate([random.uniform(0.75, 1.0, 3), random.uniform(0.4, 0.7, 2)])
+    return _Motion(
+        _lobed(random, radius, 0.04),
+        push=_swing(random, height * share, (22.0, 36.0)),
+        push_width=radius / 45.0 * random.uniform(11.0, 14.0, 5),
+        push_at=places + random.uniform(-0.25, 0.25, 5),
+        stretch=_between(random, [-0.1, -0.22], [0.3, 0.22], (28.0, 44.0)),
+        bend=_between(random, [-0.25 * radius], [0.25 * radius], (26.0, 40.0)),
+    )
+
+
+def _spiky(random: np.random.Generator, radius: float, height: float) -> _Motion:
+    return _Motion(
+        _lobed(random, radius, 0.03),
+        push=_swing(random, height * random.uniform(0.6, 1.0, 12), (24.0, 36.0)),
+        push_width=random.uniform(3.0, 3.5, 12),
+        push_at=_spread(random, 12),
+    )
+
+
+def _ruffling(random: np.random.Generator, radius: float, height: float) -> _Motion:
+    period = random.uniform(16.0, 24.0, 3) * random.choice([-1.0, 1.0])
+    speed = 2.0 * np.pi / np.abs(period) * height * np.array([0.3, 0.45, 0.25])
+    ruffles = Ruffles(np.array([3.0, 5.0, 8.0]), speed, period, random.uniform(-np.pi, np.pi, 3))
+    return _Motion(_lobed(random, radius, 0.03), ruffles=ruffles)
+
+
+def _growing(random: np.random.Generator, radius: float, height: float) -> _Motion:
+    return _Motion(radius * _polar(np.ones_like(_ANGLE)))
+
+
+_MAKERS: dict[MovieKind, Callable[[np.random.Generator, float, float], _Motion]] = {
+    "bulging": _bulging,
+    "migrating": _migrating,
+    "translating": _rigid,
+    "turning": _rigid,
+    "necking": _necking,
+    "neutrophil": _neutrophil,
+    "spiky": _spiky,
+    "ruffling": _ruffling,
+    "growing": _growing,
+    "still": _rigid,
+    "dropping": _bulging,
+}
+
+
+def _lobed(random: np.random.Generator, radius: float, roughness: float) -> FloatArray:
+    return _of_area(_polar(1.0 + _waves(random, roughness)), radius)
+
+
+def _egg(random: np.random.Generator, radius: float) -> FloatArray:
+    """Blunt and broad towards +x, narrow towards -x, where it bends aside."""
+    ahead = np.cos(_ANGLE)
+    broad = 0.95 * (0.72 + 0.33 * ahead)
+    bent = random.choice([-1.0, 1.0]) * random.uniform(0.05, 0.15) * (ahead - 1.0) ** 2
+    shape = np.column_stack([broad * np.sin(_ANGLE) + bent, 1.05 * ahead - 0.12 * ahead**2])
+    return _of_area(shape * (1.0 + _waves(random, 0.02))[:, None], radius)
+
+
+def _waves(random: np.random.Generator, roughness: float) -> FloatArray:
+    mode = np.arange(2, 7)
+    height = roughness * random.uniform(0.5, 1.0, mode.size) * (2.0 / mode) ** 0.5
+    phase = random.uniform(-np.pi, np.pi, mode.size)
+    return np.asarray(height @ np.cos(np.outer(mode, _ANGLE) + phase[:, None]))
+
+
+def _polar(distance: FloatArray) -> FloatArray:
+    return distance[:, None] * np.column_stack([np.sin(_ANGLE), np.cos(_ANGLE)])
+
+
+def _of_area(outline_yx: FloatArray, radius: float) -> FloatArray:
+    """The outline scaled to the area of a disk."""
+    return np.asarray(outline_yx * radius * np.sqrt(np.pi / signed_area(outline_yx)))
+
+
+def _spread(random: np.random.Generator, count: int) -> FloatArray:
+    """Angles all around, uneven, no two close to each other."""
+    step = 2.0 * np.pi / count
+    return step * (np.arange(count) + random.uniform(-0.25, 0.25, count)) + random.uniform(0.0, 2.0 * np.pi)
+
+
+def _swing(random: np.random.Generator, high: FloatArray, period: tuple[float, float]) -> Swing:
+    """From 0 up and back, each in its own time."""
+    phase = random.uniform(-np.pi, np.pi, high.size)
+    return Swing(np.zeros_like(high), high, random.uniform(*period, high.size), phase)
+
+
+def _between(
+    random: np.random.Generator, low: list[float], high: list[float], period: tuple[float, float]
+) -> Swing:
+    swing = _swing(random, np.array(high), period)
+    return Swing(np.array(low), swing.high, swing.period, swing.phase)
+
+
+def _places(angle: FloatArray, wanted: FloatArray) -> list[int]:
+    """Outline point at each angle as seen from the centre."""
+    return [int(np.cos(angle - place).argmax()) for place in wanted]
+
+
+def _outward(outline_yx: FloatArray) -> FloatArray:
+    """Outward unit normal at each point of an outline that runs from +x towards +y."""
+    along = np.roll(outline_yx, -1, axis=0) - np.roll(outline_yx, 1, axis=0)
+    normal = np.column_stack([-along[:, 1], along[:, 0]])
+    return np.asarray(normal / np.hypot(normal[:, 0], normal[:, 1])[:, None])
