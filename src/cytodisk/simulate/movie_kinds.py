@@ -9,6 +9,7 @@ import numpy as np
 from cytodisk.arrays import FloatArray
 from cytodisk.geometry.polygon import signed_area
 from cytodisk.simulate.flow import NO_RUFFLES, NOTHING, Flow, Ruffles, Swing, no_numbers
+from cytodisk.simulate.pose import Pose
 
 MovieKind = Literal[
     "bulging",
@@ -75,15 +76,17 @@ class Plan:
     Attributes
     ----------
     outline_yx : ndarray of shape (N, 2) and dtype float
-        From +x towards +y, about the cell's centre, before the deformation of frame 0.
+        From +x towards +y, in the cell's frame, before any push.
     places_yx : ndarray of shape (K, 2) and dtype float
         Where the pushes sit on that outline.
     flow : Flow
+    pose : Pose
     """
 
     outline_yx: FloatArray
     places_yx: FloatArray
     flow: Flow
+    pose: Pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,29 +121,29 @@ def plan_movie(kind: MovieKind, random: np.random.Generator, radius: float, habi
     Plan
     """
     motion = _MAKERS[kind](random, radius, habits.protrusion_px or 0.0)
-    heading = random.uniform(-np.pi, np.pi)
     y, x = motion.outline_yx.T
-    nearest = _places(np.arctan2(y, x), motion.push_at)
-    normal = _outward(motion.outline_yx)[nearest]
+    places = [int(np.cos(np.arctan2(y, x) - angle).argmax()) for angle in motion.push_at]
+    normal = _outward(motion.outline_yx)[places]
     growing = kind == "growing"
     flow = Flow(
         radius=radius,
-        heading=heading,
-        turn=np.radians(habits.turn_deg),
-        speed=0.0 if growing else habits.speed_px,
         push=motion.push,
         push_width=motion.push_width,
         push_angle=np.arctan2(normal[:, 0], normal[:, 1]),
-        stretch=motion.stretch,
-        bend=motion.bend,
-        neck=motion.neck,
-        neck_width=motion.neck_width,
         ruffles=motion.ruffles,
         growth=habits.speed_px if growing else 0.0,
     )
-    cos, sin = np.cos(heading), np.sin(heading)
-    turned = np.column_stack([x * sin + y * cos, x * cos - y * sin])
-    return Plan(turned, turned[nearest], flow)
+    pose = Pose(
+        radius=radius,
+        heading=random.uniform(-np.pi, np.pi),
+        turn=np.radians(habits.turn_deg),
+        speed=0.0 if growing else habits.speed_px,
+        neck=motion.neck,
+        neck_width=motion.neck_width,
+        stretch=motion.stretch,
+        bend=motion.bend,
+    )
+    return Plan(motion.outline_yx, motion.outline_yx[places], flow, pose)
 
 
 def _bulging(random: np.random.Generator, radius: float, height: float) -> _Motion:
@@ -153,11 +156,11 @@ def _bulging(random: np.random.Generator, radius: float, height: float) -> _Moti
 
 
 def _migrating(random: np.random.Generator, radius: float, height: float) -> _Motion:
-    """A broad front of three overlapping pushes, four small ones aside, and a tail that is pulled in."""
-    front = np.radians([-50.0, 0.0, 50.0]) + random.uniform(-0.15, 0.15, 3)
-    side = np.radians([-125.0, -90.0, 90.0, 125.0]) + random.uniform(-0.2, 0.2, 4)
-    share = np.concatenate([random.uniform(0.8, 1.0, 3), random.uniform(0.3, 0.6, 4), [0.8]])
-    width = np.concatenate([random.uniform(13.0, 16.0, 3), random.uniform(7.0, 9.0, 4), [9.0]])
+    """A broad front of four overlapping pushes, four small ones aside, and a tail that is pulled in."""
+    front = np.radians([-66.0, -22.0, 22.0, 66.0]) + random.uniform(-0.12, 0.12, 4)
+    side = np.radians([-140.0, -108.0, 108.0, 140.0]) + random.uniform(-0.2, 0.2, 4)
+    share = np.concatenate([random.uniform(0.6, 1.0, 4), random.uniform(0.3, 0.6, 4), [0.6]])
+    width = np.concatenate([random.uniform(10.0, 13.0, 4), random.uniform(7.0, 9.0, 4), [11.0]])
     return _Motion(
         _egg(random, radius),
         push=_swing(random, height * share, (18.0, 30.0)),
@@ -188,7 +191,7 @@ def _neutrophil(random: np.random.Generator, radius: float, height: float) -> _M
     return _Motion(
         _lobed(random, radius, 0.04),
         push=_swing(random, height * share, (22.0, 36.0)),
-        push_width=radius / 45.0 * random.uniform(11.0, 14.0, 5),
+        push_width=radius / 45.0 * random.uniform(12.0, 15.0, 5),
         push_at=places + random.uniform(-0.25, 0.25, 5),
         stretch=_between(random, [-0.1, -0.22], [0.3, 0.22], (28.0, 44.0)),
         bend=_between(random, [-0.25 * radius], [0.25 * radius], (26.0, 40.0)),
@@ -237,9 +240,9 @@ def _lobed(random: np.random.Generator, radius: float, roughness: float) -> Floa
 def _egg(random: np.random.Generator, radius: float) -> FloatArray:
     """Blunt and broad towards +x, narrow towards -x, where it bends aside."""
     ahead = np.cos(_ANGLE)
-    broad = 0.95 * (0.72 + 0.33 * ahead)
+    broad = 0.86 + 0.36 * ahead
     bent = random.choice([-1.0, 1.0]) * random.uniform(0.05, 0.15) * (ahead - 1.0) ** 2
-    shape = np.column_stack([broad * np.sin(_ANGLE) + bent, 1.05 * ahead - 0.12 * ahead**2])
+    shape = np.column_stack([broad * np.sin(_ANGLE) + bent, 0.95 * ahead - 0.2 * ahead**2])
     return _of_area(shape * (1.0 + _waves(random, 0.02))[:, None], radius)
 
 
@@ -251,7 +254,7 @@ def _waves(random: np.random.Generator, roughness: float) -> FloatArray:
 
 
 def _polar(distance: FloatArray) -> FloatArray:
-    return distance[:, None] * np.column_stack([np.sin(_ANGLE), np.cos(_ANGLE)])
+    return np.asarray(distance[:, None] * np.column_stack([np.sin(_ANGLE), np.cos(_ANGLE)]))
 
 
 def _of_area(outline_yx: FloatArray, radius: float) -> FloatArray:
@@ -276,11 +279,6 @@ def _between(
 ) -> Swing:
     swing = _swing(random, np.array(high), period)
     return Swing(np.array(low), swing.high, swing.period, swing.phase)
-
-
-def _places(angle: FloatArray, wanted: FloatArray) -> list[int]:
-    """Outline point at each angle as seen from the centre."""
-    return [int(np.cos(angle - place).argmax()) for place in wanted]
 
 
 def _outward(outline_yx: FloatArray) -> FloatArray:

@@ -1,23 +1,20 @@
 """Movies of one moving cell whose every material point is known, for tests of boundary trackers."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
+import shapely
 import xarray as xr
-from matplotlib.path import Path
-from scipy.ndimage import gaussian_filter1d
-from skimage.draw import polygon2mask
 
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import ParameterError
-from cytodisk.geometry.polygon import edge_lengths
 from cytodisk.simulate.drawing import check_at_least
-from cytodisk.simulate.flow import Flow
+from cytodisk.simulate.jitter import evenly_spaced, jittered
 from cytodisk.simulate.movie_kinds import HABITS, MOVIE_KINDS, Habits, MovieKind, Plan, plan_movie
+from cytodisk.simulate.movie_signals import Scene, camera, expected_counts, rasterised
 
 _BOUNDARY_POINTS = 3000
 _INTERIOR_SPACING = np.sqrt(2.0)  # pixels: one point in two square pixels
-_JITTER_LENGTH = 8.0  # pixels along the edge over which the jitter's correlation falls to exp(-1/2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +59,15 @@ class SimulatedMovie:
     lag_frames: int
     pixel_size_um: float
     frame_interval_s: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Path:
+    """Places of the pushes in the cell's frame, boundary and interior in the image, in a run of frames."""
+
+    places_yx: FloatArray
+    boundary_yx: FloatArray
+    interior_yx: FloatArray
 
 
 def movie(
@@ -127,29 +133,38 @@ def movie(
     ParameterError
         An unknown kind, a number out of its range, or a protrusion for a kind that has none.
     """
+    _check(seed, frames, radius_px, lag_frames, pixel_size_um, frame_interval_s, margin)
     habits = _habits(kind, speed_px, turn_deg, protrusion_px, jitter_px, dropped)
     plan = plan_movie(kind, np.random.default_rng([seed, 0]), radius_px, habits)
-    path = _carried(plan.flow, _at_start(plan), 0, frames)
-    anchors = 1 + len(plan.places_yx)
-    boundary, interior = path[:, anchors : anchors + _BOUNDARY_POINTS], path[:, anchors + _BOUNDARY_POINTS :]
-    drawn = _jittered(boundary, habits.jitter_px, np.random.default_rng([seed, 1]))
-    shape, shift = _frame(drawn, margin)
+    around = abs(lag_frames)
+    path = _carried(plan, _at_start(plan), -around, frames + around + 1)
+    shown = slice(around, around + frames)
+    drawn = jittered(path.boundary_yx[shown], habits.jitter_px, np.random.default_rng([seed, 1]))
+    shape, shift = _image_frame(drawn, margin)
     present = _present(frames, habits.dropped, np.random.default_rng([seed, 2]))
-    masks = np.stack([polygon2mask(shape, outline + shift) for outline in drawn]) & present[:, None, None]
-    displacement = normal_displacement(boundary)
+    displacement = normal_displacement(path.boundary_yx)
+    boundary = path.boundary_yx[shown] + shift
+    signal, truth = None, None
+    if signals:
+        followed = displacement[around - lag_frames : around - lag_frames + frames]
+        scene = Scene(plan, path.places_yx[shown], boundary, followed, shape, shift, present)
+        truth = expected_counts(scene, np.random.default_rng([seed, 3]), pixel_size_um, frame_interval_s)
+        signal = camera(truth, np.random.default_rng([seed, 4]))
+    displacement = displacement[shown].copy()
+    displacement[-1] = np.nan
     return SimulatedMovie(
-        masks,
-        boundary + shift,
-        interior + shift,
-        displacement,
-        present,
-        None,
-        None,
-        kind,
-        seed,
-        lag_frames,
-        pixel_size_um,
-        frame_interval_s,
+        masks=np.stack([rasterised(outline + shift, shape) for outline in drawn]) & present[:, None, None],
+        boundary_yx=boundary,
+        interior_yx=path.interior_yx[shown] + shift,
+        normal_displacement_px=displacement,
+        present=present,
+        signal=signal,
+        truth=truth,
+        kind=kind,
+        seed=seed,
+        lag_frames=lag_frames,
+        pixel_size_um=pixel_size_um,
+        frame_interval_s=frame_interval_s,
     )
 
 
@@ -170,31 +185,60 @@ def _habits(
     dropped: float | None,
 ) -> Habits:
     """The kind's habits with what the caller replaced."""
-    given = {
-        "speed_px": speed_px,
-        "turn_deg": turn_deg,
-        "protrusion_px": protrusion_px,
-        "jitter_px": jitter_px,
-        "dropped": dropped,
-    }
-    return replace(HABITS[kind], **{name: value for name, value in given.items() if value is not None})
+    if kind not in MOVIE_KINDS:
+        raise ParameterError(f"kind must be one of {', '.join(MOVIE_KINDS)}, got {kind!r}")
+    if protrusion_px is not None and HABITS[kind].protrusion_px is None:
+        raise ParameterError(
+            f"kind {kind!r} has no protrusions, got protrusion_px={protrusion_px!r}: leave it out"
+        )
+    own = HABITS[kind]
+    habits = Habits(
+        speed_px=own.speed_px if speed_px is None else speed_px,
+        turn_deg=own.turn_deg if turn_deg is None else turn_deg,
+        protrusion_px=own.protrusion_px if protrusion_px is None else protrusion_px,
+        jitter_px=own.jitter_px if jitter_px is None else jitter_px,
+        dropped=own.dropped if dropped is None else dropped,
+    )
+    for name in ("speed_px", "jitter_px", "dropped"):
+        check_at_least(name, getattr(habits, name), 0.0)
+    check_at_least("turn_deg", habits.turn_deg, -180.0)
+    check_at_least("protrusion_px", habits.protrusion_px or 0.0, 0.0)
+    if habits.dropped >= 1.0:
+        raise ParameterError(f"dropped must be a share below 1, got {dropped!r}: pass 0.15 for 15 %")
+    return habits
+
+
+def _check(
+    seed: int,
+    frames: int,
+    radius_px: float,
+    lag_frames: int,
+    pixel_size_um: float,
+    frame_interval_s: float,
+    margin: int,
+) -> None:
+    for name, value, least in (("seed", seed, 0), ("frames", frames, 2), ("margin", margin, 0)):
+        _check_whole(name, value, least)
+    _check_whole("lag_frames", lag_frames, -frames)
+    check_at_least("radius_px", radius_px, 10.0)
+    check_at_least("pixel_size_um", pixel_size_um, 1e-9)
+    check_at_least("frame_interval_s", frame_interval_s, 1e-9)
+
+
+def _check_whole(name: str, value: int, least: int) -> None:
+    """Raise unless a parameter is a whole number that is large enough."""
+    check_at_least(name, value, least)
+    if value != int(value):
+        raise ParameterError(f"{name} must be a whole number, got {value!r}: pass {int(value)}")
 
 
 def _at_start(plan: Plan) -> FloatArray:
-    """Anchors, evenly spaced boundary points and interior points in frame 0."""
-    anchors = np.concatenate([np.zeros((1, 2)), plan.places_yx])
-    deformed = plan.flow.shape_at_start(np.concatenate([anchors, plan.outline_yx]))
-    anchors, outline = deformed[: len(anchors)], deformed[len(anchors) :]
-    boundary = _evenly(outline, _BOUNDARY_POINTS)
-    return np.concatenate([anchors, boundary, _inside(boundary)])
-
-
-def _evenly(outline_yx: FloatArray, count: int) -> FloatArray:
-    """Points at equal distances along a closed outline."""
-    arc = np.concatenate([[0.0], np.cumsum(edge_lengths(outline_yx))])
-    closed = np.concatenate([outline_yx, outline_yx[:1]])
-    at = np.linspace(0.0, arc[-1], count, endpoint=False)
-    return np.column_stack([np.interp(at, arc, closed[:, 0]), np.interp(at, arc, closed[:, 1])])
+    """Places, boundary points that are evenly spaced in the image, and interior points, in frame 0."""
+    pushed = plan.flow.shape_at_start(np.concatenate([plan.places_yx, plan.outline_yx]))
+    places, outline = pushed[: len(plan.places_yx)], pushed[len(plan.places_yx) :]
+    boundary = evenly_spaced(plan.pose.to_image(outline, 0.0), _BOUNDARY_POINTS)
+    points = np.concatenate([boundary, _inside(boundary)])
+    return np.concatenate([places, plan.pose.to_cell(points, 0.0)])
 
 
 def _inside(outline_yx: FloatArray) -> FloatArray:
@@ -202,37 +246,23 @@ def _inside(outline_yx: FloatArray) -> FloatArray:
     low, high = outline_yx.min(axis=0), outline_yx.max(axis=0)
     rows, columns = (np.arange(a, b, _INTERIOR_SPACING) for a, b in zip(low, high, strict=True))
     lattice = np.stack(np.meshgrid(rows, columns, indexing="ij"), axis=-1).reshape(-1, 2)
-    return lattice[Path(outline_yx).contains_points(lattice)]
+    return lattice[shapely.contains_xy(shapely.Polygon(outline_yx), lattice)]
 
 
-def _carried(flow: Flow, points_yx: FloatArray, first: int, stop: int) -> FloatArray:
-    """Points of frame 0 in the frames from `first` (0 or before) up to `stop`, shape (frames, N, 2)."""
+def _carried(plan: Plan, points_yx: FloatArray, first: int, stop: int) -> _Path:
+    """Points of frame 0 in the frames from `first` (0 or before) up to `stop`."""
     later, earlier = [points_yx], [points_yx]
     for frame in range(stop - 1):
-        later.append(flow.carry(later[-1], frame, frame + 1))
+        later.append(plan.flow.carry(later[-1], frame, frame + 1))
     for frame in range(0, first, -1):
-        earlier.append(flow.carry(earlier[-1], frame, frame - 1))
-    return np.stack(earlier[:0:-1] + later)
+        earlier.append(plan.flow.carry(earlier[-1], frame, frame - 1))
+    path = np.stack(earlier[:0:-1] + later)
+    places = len(plan.places_yx)
+    image = np.stack([plan.pose.to_image(path[k, places:], first + k) for k in range(len(path))])
+    return _Path(path[:, :places], image[:, :_BOUNDARY_POINTS], image[:, _BOUNDARY_POINTS:])
 
 
-def _jittered(boundary_yx: FloatArray, jitter_px: float, random: np.random.Generator) -> FloatArray:
-    """Outlines displaced along their normals by noise that is smooth along the edge."""
-    if not jitter_px:
-        return boundary_yx
-    return np.stack([_jittered_outline(outline, jitter_px, random) for outline in boundary_yx])
-
-
-def _jittered_outline(outline_yx: FloatArray, jitter_px: float, random: np.random.Generator) -> FloatArray:
-    even = _evenly(outline_yx, len(outline_yx))
-    width = _JITTER_LENGTH / np.sqrt(2.0) / edge_lengths(even).mean()
-    noise = gaussian_filter1d(random.normal(size=len(even)), width, mode="wrap")
-    noise *= jitter_px * np.sqrt(2.0 * width * np.sqrt(np.pi))  # the filter's loss of standard deviation
-    along = np.roll(even, -1, axis=0) - np.roll(even, 1, axis=0)
-    normal = np.column_stack([-along[:, 1], along[:, 0]]) / np.hypot(along[:, 0], along[:, 1])[:, None]
-    return np.asarray(even + noise[:, None] * normal)
-
-
-def _frame(drawn_yx: FloatArray, margin: int) -> tuple[tuple[int, int], FloatArray]:
+def _image_frame(drawn_yx: FloatArray, margin: int) -> tuple[tuple[int, int], FloatArray]:
     """Shape of an image that holds all outlines, and the shift of positions into it."""
     low = np.floor(drawn_yx.min(axis=(0, 1))) - margin
     high = np.ceil(drawn_yx.max(axis=(0, 1))) + margin
