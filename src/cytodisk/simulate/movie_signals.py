@@ -15,7 +15,7 @@ from cytodisk.simulate.movie_kinds import Plan
 _CHANNELS = ["material", "edge"]
 _BACKGROUND = 20.0
 _MATERIAL_MEAN, _MATERIAL_CONTRAST, _MATERIAL_LENGTH = 300.0, 0.4, 6.0
-_EDGE_BASE, _EDGE_GAIN, _EDGE_DECAY = 500.0, 60.0, 5.0
+_EDGE_BASE, _EDGE_GAIN, _EDGE_DECAY = 500.0, 80.0, 5.0
 _DIMMEST = 5.0  # counts: an edge cannot get darker, however fast it retracts
 _AROUND = 6.0  # pixels of the grid beyond the cell, so that splines do not feel its end
 

@@ -136,7 +136,7 @@ def movie(
     _check(seed, frames, radius_px, lag_frames, pixel_size_um, frame_interval_s, margin)
     habits = _habits(kind, speed_px, turn_deg, protrusion_px, jitter_px, dropped)
     plan = plan_movie(kind, np.random.default_rng([seed, 0]), radius_px, habits)
-    around = abs(lag_frames)
+    around = abs(lag_frames) if signals else 0
     path = _carried(plan, _at_start(plan), -around, frames + around + 1)
     shown = slice(around, around + frames)
     drawn = jittered(path.boundary_yx[shown], habits.jitter_px, np.random.default_rng([seed, 1]))
