@@ -153,7 +153,7 @@ def test_the_material_channel_moves_with_the_material(kind: MovieKind) -> None:
 
 @pytest.mark.parametrize("lag", [3, 0, -2])
 def test_the_edge_channel_follows_velocity_by_its_lag(lag: int) -> None:
-    shown = movie("bulging", 1, frames=13, lag_frames=lag)
+    shown = movie("bulging", 1, frames=14, lag_frames=lag)
     inner = range(4, 9)
     brightness = [edge_brightness(shown, frame) for frame in inner]
     seen = np.concatenate([values for values, _ in brightness])
