@@ -21,9 +21,12 @@ class Contour:
     ----------
     points_yx : ndarray of shape (B, 2) and dtype float
         From +x towards +y, (row, column) in pixels; the last point is not repeated.
+    outline_yx : ndarray of shape (B, 2) and dtype float
+        The outline that the curve was smoothed from, point by point.
     """
 
     points_yx: FloatArray
+    outline_yx: FloatArray
 
     @classmethod
     def of_outline(cls, outline_yx: FloatArray, sigma_px: float = SMOOTHING_PX) -> Contour:
@@ -32,7 +35,7 @@ class Contour:
         The stair steps of an outline carry neither length nor direction; smoothing along the curve takes
         them away and moves straight edges by nothing.
         """
-        return cls(smooth_closed(outline_yx, sigma_px))
+        return cls(smooth_closed(outline_yx, sigma_px), outline_yx)
 
     @cached_property
     def arc(self) -> FloatArray:
@@ -60,6 +63,12 @@ class Contour:
         start = self.points_yx[edge]
         return np.asarray(start + share[:, None] * self._edges[edge])
 
+    def outline_at(self, s: FloatArray) -> FloatArray:
+        """Points of the unsmoothed outline that belong to a distance along the curve, shape (N, 2)."""
+        edge, share = self._edge_at(s)
+        start, stop = self.outline_yx[edge], self.outline_yx[(edge + 1) % len(self.outline_yx)]
+        return np.asarray(start + share[:, None] * (stop - start))
+
     def normals(self, s: FloatArray) -> FloatArray:
         """Outward unit normals at a distance along the curve, shape (N, 2).
 
@@ -70,10 +79,6 @@ class Contour:
         tangent += share[:, None] * self._tangents[(edge + 1) % len(self.points_yx)]
         normal = np.column_stack([-tangent[:, 1], tangent[:, 0]])
         return np.asarray(normal / np.linalg.norm(normal, axis=1, keepdims=True))
-
-    def moved(self, rotation: FloatArray, shift: FloatArray) -> Contour:
-        """The curve after a rigid motion x → rotation · x + shift."""
-        return Contour(self.points_yx @ rotation.T + shift)
 
     @cached_property
     def _edges(self) -> FloatArray:

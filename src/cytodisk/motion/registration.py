@@ -1,4 +1,4 @@
-"""Rigid registration of consecutive outlines (paper algorithm 1); transforms are numbers, images stay as they are."""
+"""Rigid registration of outlines (paper, algorithm 1); transforms are numbers, images stay as they are."""
 
 from __future__ import annotations
 
@@ -6,16 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from cytodisk.arrays import FloatArray
 from cytodisk.geometry.polygon import centroid
 from cytodisk.motion.contour import Contour
-
-_SAMPLES = 400
-_ROUNDS = 40
-_STILL_PX = 1e-4
-_ROUND_SHAPE = 0.01  # share of outline motion along the normal below which a rotation cannot be seen
+from cytodisk.motion.matching import rigid_motion
 
 
 @dataclass(frozen=True)
@@ -37,8 +32,8 @@ class RigidTransform:
     @property
     def rotation(self) -> FloatArray:
         """Matrix for (row, column) vectors, shape (2, 2)."""
-        c, s = math.cos(self.angle), math.sin(self.angle)
-        return np.array([[c, s], [-s, c]])
+        cosine, sine = math.cos(self.angle), math.sin(self.angle)
+        return np.array([[cosine, sine], [-sine, cosine]])
 
     @property
     def shift(self) -> FloatArray:
@@ -46,25 +41,54 @@ class RigidTransform:
         return np.array([self.shift_y, self.shift_x])
 
     def __call__(self, points_yx: FloatArray) -> FloatArray:
-        """Transformed points, shape (N, 2)."""
+        """Transformed points, of the shape that came, (..., 2)."""
         return np.asarray(points_yx @ self.rotation.T + self.shift)
 
     def inverse(self, points_yx: FloatArray) -> FloatArray:
-        """Points whose transforms are given, shape (N, 2)."""
+        """Points whose transforms are given, of the shape that came, (..., 2)."""
         return np.asarray((points_yx - self.shift) @ self.rotation)
 
     def of(self, contour: Contour) -> Contour:
         """The transformed contour."""
-        return Contour(self(contour.points_yx))
+        return Contour(self(contour.points_yx), self(contour.outline_yx))
 
 
-def register(moving: Contour, reference: Contour, start: RigidTransform) -> RigidTransform:
+IDENTITY = RigidTransform()
+
+
+def first_transform(moving: Contour, reference: Contour, angle: float) -> RigidTransform:
+    """Transform with a known rotation that brings the centroids together.
+
+    Parameters
+    ----------
+    moving : Contour
+    reference : Contour
+        In the common frame.
+    angle : float
+        In radians; that of the last frame, so that no cell can flip by half a turn.
+
+    Returns
+    -------
+    RigidTransform
+        From the frame of `moving` to the common one.
+    """
+    shift = centroid(reference.points_yx) - RigidTransform(angle)(centroid(moving.points_yx))
+    return RigidTransform(angle, float(shift[0]), float(shift[1]))
+
+
+def register(
+    moving: Contour,
+    reference: Contour,
+    start: RigidTransform,
+    reference_s: FloatArray,
+    moving_s: FloatArray,
+    smoothness: float,
+) -> RigidTransform:
     """Rigid motion that lays one outline onto another.
 
-    Least squares of the distance along the normal, by Gauss-Newton steps with far parts weighted down, so
-    that a growing protrusion does not turn the cell. It starts from a rotation that is known to be near, so
-    it cannot flip by half a turn; and where the outline is too round for a rotation to be seen, that
-    rotation stays as it is.
+    The motion that leaves the least of the matching energy (`matching.rigid_motion`): a growing protrusion
+    turns the cell less than it would turn a fit of overlap. A rotation counts only in so far as it explains
+    how the boundary moved, so a round cell stays as it is.
 
     Parameters
     ----------
@@ -72,7 +96,11 @@ def register(moving: Contour, reference: Contour, start: RigidTransform) -> Rigi
     reference : Contour
         In the common frame.
     start : RigidTransform
-        Its rotation is the first guess; the shift starts where the centroids meet.
+        First guess.
+    reference_s, moving_s : ndarray of shape (N,) and dtype float
+        Points on the reference and a guess of the same points on `moving`, distances along each in pixels.
+    smoothness : float
+        Of the matching energy, in square pixels.
 
     Returns
     -------
@@ -81,31 +109,9 @@ def register(moving: Contour, reference: Contour, start: RigidTransform) -> Rigi
 
     References
     ----------
-    u-Unwrap, appendix A.1, algorithm 1. Point-to-plane distance: Chen & Medioni 1992,
-    doi:10.1016/0262-8856(92)90066-C.
+    u-Unwrap, appendix A.1, algorithm 1.
     """
-    points = moving.at(moving.length * np.arange(_SAMPLES) / _SAMPLES)
-    middle = centroid(moving.points_yx)
-    target_s = reference.length * np.arange(4 * _SAMPLES) / (4 * _SAMPLES)
-    target, normals = reference.at(target_s), reference.normals(target_s)
-    tree = cKDTree(target)
-    radius = math.sqrt(float(np.square(points - middle).sum(axis=1).mean()))
-    angle, place = start.angle, centroid(reference.points_yx)
-    for _ in range(_ROUNDS):
-        turned = (points - middle) @ RigidTransform(angle).rotation.T
-        _, nearest = tree.query(turned + place)
-        normal = normals[nearest]
-        gap = ((target[nearest] - turned - place) * normal).sum(axis=1)
-        weight = 1.0 / np.maximum(1.0, np.abs(gap) / max(0.5, float(np.median(np.abs(gap)))))
-        sideways = np.column_stack([turned[:, 1], -turned[:, 0]]) / radius
-        columns = np.column_stack([normal, (sideways * normal).sum(axis=1)])
-        square = columns.T @ (weight[:, None] * columns)
-        visible = square[2, 2] / weight.sum()
-        square[2, 2] *= 1.0 + (_ROUND_SHAPE / max(visible, 1e-9)) ** 3
-        step = np.linalg.solve(square, columns.T @ (weight * gap))
-        place = place + step[:2]
-        angle += step[2] / radius
-        if np.abs(step).max() < _STILL_PX:
-            break
-    shift = place - RigidTransform(angle).rotation @ middle
-    return RigidTransform(float(angle), float(shift[0]), float(shift[1]))
+    angle, pivot, place = rigid_motion(reference, start.of(moving), reference_s, moving_s, smoothness)
+    back = RigidTransform(-angle)
+    shift = back(start.shift - place) + pivot
+    return RigidTransform(start.angle - angle, float(shift[0]), float(shift[1]))

@@ -1,0 +1,133 @@
+"""Cheapest order-preserving pairing of two closed curves, by dynamic programming."""
+
+import numpy as np
+from numba import njit
+
+from cytodisk.arrays import FloatArray, IntArray
+
+# Steps (along here, along there) from pair to pair; their slopes bound the stretch from 1/6 to 6.
+_STEPS = np.array(
+    [(1, 1), (1, 2), (2, 1), (2, 3), (3, 2), (1, 3), (3, 1), (1, 4), (4, 1), (1, 6), (6, 1)], dtype=np.int64
+)
+_BAND = 0.25  # of the curve: how far a pair may lie from an even pairing, on either side
+_TURNS = 2
+
+
+def cyclic_path(
+    here: FloatArray, there: FloatArray, spacing: float, smoothness: float
+) -> tuple[IntArray, IntArray]:
+    """Pair the samples of two closed curves so that order is kept and little moves.
+
+    The cost of a pairing is the integral of |d|² + smoothness · |d'|², with d the displacement from a
+    sample to its partner and d' its change along the curve.
+
+    Parameters
+    ----------
+    here, there : ndarray of shape (N, 2) and (M, 2) and dtype float
+        Evenly spaced along each curve, in one frame, in pixels.
+    spacing : float
+        Mean distance of neighbouring samples, in pixels.
+    smoothness : float
+        In square pixels.
+
+    Returns
+    -------
+    here_index, there_index : ndarray of shape (K,) and dtype int
+        Pairs in order through one turn, both strictly increasing; indices may go beyond N and M into the
+        next turn.
+    """
+    n, m = len(here), len(there)
+    nearest = np.square(here[:, None] - there[None]).sum(axis=2).argmin(axis=1)
+    lead = 2.0 * np.pi * (nearest / m - np.arange(n) / n)
+    offset = float(np.angle(np.exp(1j * lead).sum())) / (2.0 * np.pi) * m
+    half = max(3, round(_BAND * m))
+    # Two turns with free ends: their middle does not feel the ends, and is a pair to cut the circle at.
+    i, j = _path(here, there, 0, _TURNS * n, offset, half, -1, spacing, smoothness, _STEPS)
+    cut = int(np.abs(i - n).argmin())
+    i, j = _path(here, there, i[cut], i[cut] + n, offset, half, j[cut], spacing, smoothness, _STEPS)
+    return i[:-1], j[:-1]
+
+
+@njit(cache=True)
+def _step_cost(
+    here: FloatArray,
+    there: FloatArray,
+    i: int,
+    j: int,
+    a: int,
+    b: int,
+    spacing: float,
+    smoothness: float,
+) -> float:
+    """Cost between the pairs (i - a, j - b) and (i, j), with d linear in between."""
+    n, m = here.shape[0], there.shape[0]
+    i0, j0, i1, j1 = (i - a) % n, (j - b) % m, i % n, j % m
+    y0, x0 = there[j0, 0] - here[i0, 0], there[j0, 1] - here[i0, 1]
+    y1, x1 = there[j1, 0] - here[i1, 0], there[j1, 1] - here[i1, 1]
+    length = 0.5 * (a + b) * spacing
+    size = (y0 * y0 + x0 * x0 + y1 * y1 + x1 * x1 + y0 * y1 + x0 * x1) / 3.0
+    change = (y1 - y0) ** 2 + (x1 - x0) ** 2
+    return size * length + smoothness * change / length
+
+
+@njit(cache=True)
+def _path(
+    here: FloatArray,
+    there: FloatArray,
+    first: int,
+    last: int,
+    offset: float,
+    half: int,
+    pinned: int,
+    spacing: float,
+    smoothness: float,
+    steps: IntArray,
+) -> tuple[IntArray, IntArray]:
+    """Cheapest path from row `first` to row `last`, within a band about an even pairing.
+
+    `pinned` is the partner of `first`, and one turn later of `last`; -1 leaves both free.
+    """
+    n, m = here.shape[0], there.shape[0]
+    rows, width = last - first + 1, 2 * half + 1
+    low = np.empty(rows, np.int64)
+    for row in range(rows):
+        low[row] = int(np.floor((first + row) * m / n + offset)) - half
+    cost = np.full((rows, width), np.inf)
+    step_of = np.full((rows, width), -1, np.int64)
+    for column in range(width):
+        if pinned < 0 or low[0] + column == pinned:
+            cost[0, column] = 0.0
+    for row in range(1, rows):
+        for column in range(width):
+            best, chosen = np.inf, -1
+            for k in range(steps.shape[0]):
+                before = row - steps[k, 0]
+                if before < 0:
+                    continue
+                place = low[row] + column - steps[k, 1] - low[before]
+                if place < 0 or place >= width or not cost[before, place] < best:
+                    continue
+                total = cost[before, place] + _step_cost(
+                    here,
+                    there,
+                    first + row,
+                    low[row] + column,
+                    steps[k, 0],
+                    steps[k, 1],
+                    spacing,
+                    smoothness,
+                )
+                if total < best:
+                    best, chosen = total, k
+            cost[row, column], step_of[row, column] = best, chosen
+    row = rows - 1
+    column = pinned + m - low[row] if pinned >= 0 else int(cost[row].argmin())
+    i, j = [first + row], [low[row] + column]
+    while row > 0:
+        k = step_of[row, column]
+        column = low[row] + column - steps[k, 1]
+        row -= steps[k, 0]
+        column -= low[row]
+        i.append(first + row)
+        j.append(low[row] + column)
+    return np.array(i)[::-1].copy(), np.array(j)[::-1].copy()

@@ -1,0 +1,43 @@
+"""Linear systems that couple each point of a closed curve to its two neighbours."""
+
+import numpy as np
+from numba import njit
+
+from cytodisk.arrays import FloatArray
+
+
+@njit(cache=True)
+def solve_cyclic(diagonal: FloatArray, coupling: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve a symmetric positive definite cyclic tridiagonal system (Sherman-Morrison).
+
+    Parameters
+    ----------
+    diagonal : ndarray of shape (N,) and dtype float
+        N at least 3.
+    coupling : ndarray of shape (N,) and dtype float
+        Entry i couples the unknowns i and i + 1; the last one couples the last to the first.
+    right : ndarray of shape (N, K) and dtype float
+        Right-hand sides.
+
+    Returns
+    -------
+    ndarray of shape (N, K) and dtype float
+    """
+    n, k = right.shape
+    corner = -diagonal[0]
+    x = np.zeros((n, k + 1))
+    x[:, :k] = right
+    x[0, k], x[n - 1, k] = corner, coupling[n - 1]
+    ratio = np.empty(n)
+    pivot = diagonal[0] - corner
+    x[0] /= pivot
+    for i in range(1, n):
+        ratio[i] = coupling[i - 1] / pivot
+        last = coupling[n - 1] ** 2 / corner if i == n - 1 else 0.0
+        pivot = diagonal[i] - last - coupling[i - 1] * ratio[i]
+        x[i] = (x[i] - coupling[i - 1] * x[i - 1]) / pivot
+    for i in range(n - 2, -1, -1):
+        x[i] -= ratio[i + 1] * x[i + 1]
+    end = coupling[n - 1] / corner
+    factor = (x[0, :k] + end * x[n - 1, :k]) / (1.0 + x[0, k] + end * x[n - 1, k])
+    return x[:, :k] - np.outer(x[:, k], factor)

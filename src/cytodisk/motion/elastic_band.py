@@ -1,0 +1,150 @@
+"""Gauss-Newton relaxation of an elastic band: points of one closed curve slide along another."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from cytodisk.arrays import FloatArray
+from cytodisk.motion.cyclic_system import solve_cyclic
+
+_ROUNDS = 40
+_STILL_PX = 1e-3
+_LONGEST_STEP_PX = 3.0
+_MOST_SHRINKING = 0.8  # of the gap between neighbours in one round, so that order is kept
+
+
+@njit(cache=True)
+def relax_band(
+    points: FloatArray,
+    target: FloatArray,
+    arc: FloatArray,
+    places: FloatArray,
+    spacing: float,
+    smoothness: float,
+    motion: FloatArray,
+    rigid: bool,
+    doubt: float,
+) -> tuple[FloatArray, FloatArray, float]:
+    """Minimise Σ spacing |d|² + smoothness |Δd|² / spacing over the points' places on the target.
+
+    Parameters
+    ----------
+    points : ndarray of shape (N, 2) and dtype float
+        Evenly spaced along a closed curve; d is the displacement from a point, after the rigid motion, to
+        its place.
+    target : ndarray of shape (B, 2) and dtype float
+        Closed polygon.
+    arc : ndarray of shape (B + 1,) and dtype float
+        Distance along it.
+    places : ndarray of shape (N,) and dtype float
+        Start: distance of each point's place along the target, strictly increasing through one turn.
+    spacing : float
+        Distance of neighbouring points.
+    smoothness : float
+    motion : ndarray of shape (3,) and dtype float
+        Angle and shift (y, x) of the rigid motion.
+    rigid : bool
+        Free the rigid motion; otherwise it stays.
+    doubt : float
+        Weight of the square of the angle, when it is free.
+
+    Returns
+    -------
+    places : ndarray of shape (N,) and dtype float
+        Strictly increasing through one turn.
+    motion : ndarray of shape (3,) and dtype float
+    left_over : float
+        Mean |d|².
+    """
+    n, total = points.shape[0], arc[-1]
+    places, motion = places.copy(), motion.copy()
+    tangent, d = np.empty((n, 2)), np.empty((n, 2))
+    by_motion = np.zeros((n, 2, 3))  # derivative of d by the rigid motion
+    by_motion[:, 0, 1] = -1.0
+    by_motion[:, 1, 2] = -1.0
+    for _ in range(_ROUNDS):
+        _displace(points, target, arc, places, motion, tangent, d, by_motion)
+        change, moved = _newton_step(
+            tangent, d, by_motion, spacing, smoothness / spacing, rigid, doubt, motion
+        )
+        scale = min(1.0, _LONGEST_STEP_PX / max(np.abs(change).max(), 1e-12))
+        for i in range(n):
+            gap = places[(i + 1) % n] - places[i] + (total if i == n - 1 else 0.0)
+            shrinking = change[i] - change[(i + 1) % n]
+            if shrinking > _MOST_SHRINKING * gap:
+                scale = min(scale, _MOST_SHRINKING * gap / shrinking)
+        places += scale * change
+        motion += scale * moved
+        if scale * np.abs(change).max() < _STILL_PX:
+            break
+    return places, motion, float((d**2).sum() / n)
+
+
+@njit(cache=True)
+def _displace(
+    points: FloatArray,
+    target: FloatArray,
+    arc: FloatArray,
+    places: FloatArray,
+    motion: FloatArray,
+    tangent: FloatArray,
+    d: FloatArray,
+    by_motion: FloatArray,
+) -> None:
+    """Fill in displacements, their derivatives by place (the tangent) and by the angle."""
+    cosine, sine = math.cos(motion[0]), math.sin(motion[0])
+    total, edges = arc[-1], target.shape[0]
+    for i in range(points.shape[0]):
+        wrapped = places[i] % total
+        edge = min(max(np.searchsorted(arc, wrapped, side="right") - 1, 0), edges - 1)
+        length = arc[edge + 1] - arc[edge]
+        share = (wrapped - arc[edge]) / length
+        y = cosine * points[i, 0] + sine * points[i, 1]
+        x = cosine * points[i, 1] - sine * points[i, 0]
+        by_motion[i, 0, 0], by_motion[i, 1, 0] = -x, y
+        for k in range(2):
+            side = target[(edge + 1) % edges, k] - target[edge, k]
+            tangent[i, k] = side / length
+            d[i, k] = target[edge, k] + share * side - (y if k == 0 else x) - motion[1 + k]
+
+
+@njit(cache=True)
+def _newton_step(
+    tangent: FloatArray,
+    d: FloatArray,
+    by_motion: FloatArray,
+    weight: float,
+    stiffness: float,
+    rigid: bool,
+    doubt: float,
+    motion: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Change of places and of the rigid motion; places are eliminated first, three unknowns are left."""
+    n = d.shape[0]
+    diagonal, coupling, right = np.full(n, weight + 2.0 * stiffness), np.empty(n), np.zeros((n, 4))
+    square, pull = np.zeros((3, 3)), np.zeros(3)
+    square[0, 0], pull[0] = doubt, doubt * motion[0]
+    for i in range(n):
+        after, before = (i + 1) % n, i - 1
+        coupling[i] = -stiffness * (tangent[i, 0] * tangent[after, 0] + tangent[i, 1] * tangent[after, 1])
+        for k in range(2):
+            ahead, behind = d[after, k] - d[i, k], d[i, k] - d[before, k]
+            right[i, 3] -= tangent[i, k] * (weight * d[i, k] + stiffness * (behind - ahead))
+            if not rigid:
+                continue
+            for a in range(3):
+                step = by_motion[after, k, a] - by_motion[i, k, a]
+                back = by_motion[i, k, a] - by_motion[before, k, a]
+                right[i, a] += tangent[i, k] * (weight * by_motion[i, k, a] + stiffness * (back - step))
+                pull[a] += weight * by_motion[i, k, a] * d[i, k] + stiffness * step * ahead
+                for b in range(3):
+                    square[a, b] += weight * by_motion[i, k, a] * by_motion[i, k, b]
+                    square[a, b] += stiffness * step * (by_motion[after, k, b] - by_motion[i, k, b])
+    solved = solve_cyclic(diagonal, coupling, right)
+    change, moved = solved[:, 3].copy(), np.zeros(3)
+    if rigid:
+        across, response = np.ascontiguousarray(right[:, :3].T), np.ascontiguousarray(solved[:, :3])
+        moved = np.linalg.solve(square - across @ response, -pull - across @ change)
+        change -= response @ moved
+    return change, moved
