@@ -6,11 +6,10 @@ Sectors have cyclic colours, so that the eye can follow a window from frame to f
 from collections.abc import Sequence
 from typing import Any, TypeAlias
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import Colormap
+from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.lines import Line2D
 
 from cytodisk.arrays import FloatArray
@@ -20,8 +19,15 @@ from cytodisk.plot.cell import draw_outline
 from cytodisk.plot.style import colour_map, scale_bar, signal_limits
 from cytodisk.windows.cell_windows import CellWindows
 
-SECTOR_COLOURS = "twilight_shifted"
+SECTOR_COLOURS = LinearSegmentedColormap.from_list(
+    "sectors", ["#1F3F99", "#1C9AA8", "#E3B92F", "#D1492E", "#7A2A6E", "#1F3F99"]
+)
+"""Cyclic. Neither white nor black, so that every sector shows on both; without red against green."""
+
 SECTOR_NOTE = "○ sector 0"
+EDGE_WIDTH = 2.2  # points
+OVER_SIGNAL: Any = {"edgecolors": (1.0, 1.0, 1.0, 0.4), "linewidths": 0.2}
+ON_WHITE: Any = {"edgecolors": "0.6", "linewidths": 0.2}
 
 Extent: TypeAlias = tuple[float, float, float, float]
 
@@ -108,39 +114,40 @@ def draw_sectors(ax: Axes, windows: CellWindows, *, over_signal: bool = False) -
     PolyCollection
         One polygon a window, by window number.
     """
+    sectors = windows.grid.sectors
     faces = np.zeros((windows.grid.n_windows, 4))
     if over_signal:
-        line: dict[str, Any] = {"edgecolors": (1.0, 1.0, 1.0, 0.4), "linewidths": 0.2}
-        draw_outline(ax, windows.disk, color="white", linewidth=2.8)  # sets dark colours off a dark image
-        ax.add_collection(edge_collection(windows, linewidth=1.8), autolim=False)
+        # White on both sides sets dark colours off a dark image.
+        draw_outline(ax, windows.disk, color="white", linewidth=EDGE_WIDTH + 1.0)
+        arcs = [arc[:, ::-1] for arc in sector_arcs(windows)]
+        edge = LineCollection(arcs, colors=sector_colours(sectors), linewidths=EDGE_WIDTH, zorder=4)
+        ax.add_collection(edge, autolim=False)
     else:
-        line = {"edgecolors": "0.6", "linewidths": 0.2}
-        faces[: windows.grid.sectors] = sector_colours(windows.grid.sectors)
+        faces[:sectors] = sector_colours(sectors)
         draw_outline(ax, windows.disk)
     polygons = [polygon[:, ::-1] for polygon in windows.polygons()]
-    drawn = PolyCollection(polygons, facecolors=faces, **line)
+    lines = OVER_SIGNAL if over_signal else ON_WHITE
+    drawn = PolyCollection(polygons, facecolors=faces, **lines)
     ax.add_collection(drawn, autolim=False)
-    mark_sector(ax, windows)
+    ((y, x),) = _on_outline(windows.disk, windows.grid.angles[:2].mean(keepdims=True))
+    mark_point(ax, y, x)
     return drawn
 
 
-def mark_sector(ax: Axes, windows: CellWindows) -> Line2D:
-    """Draw a small ring on the cell's edge in the middle of sector 0.
+def mark_point(ax: Axes, y: float, x: float) -> Line2D:
+    """Draw the small ring that stands for sector 0.
 
     Parameters
     ----------
     ax : Axes
-    windows : CellWindows
+    y, x : float
 
     Returns
     -------
     Line2D
     """
-    ((y, x),) = _on_outline(windows.disk, windows.grid.angles[:2].mean(keepdims=True))
-    (ring,) = ax.plot(
-        [x], [y], "o", markersize=3.6, markerfacecolor="white", markeredgecolor="black", zorder=6
-    )
-    ring.set(markeredgewidth=0.7, clip_on=False)
+    style: dict[str, Any] = {"markerfacecolor": "white", "markeredgecolor": "black", "markeredgewidth": 0.7}
+    (ring,) = ax.plot([x], [y], "o", markersize=3.6, zorder=6, clip_on=False, **style)
     return ring
 
 
@@ -158,25 +165,6 @@ def note_sector(ax: Axes) -> None:
     )
 
 
-def edge_collection(windows: CellWindows, *, linewidth: float) -> LineCollection:
-    """The cell's edge, one line a sector, in the colours of the sectors.
-
-    Parameters
-    ----------
-    windows : CellWindows
-    linewidth : float
-        In points.
-
-    Returns
-    -------
-    LineCollection
-        Not yet part of any axes.
-    """
-    arcs = [arc[:, ::-1] for arc in sector_arcs(windows)]
-    colours = sector_colours(windows.grid.sectors)
-    return LineCollection(arcs, colors=colours, linewidths=linewidth, zorder=4, capstyle="butt")
-
-
 def sector_colours(sectors: int) -> FloatArray:
     """Cyclic colours: neighbours are alike, the last sector and the first too.
 
@@ -189,7 +177,7 @@ def sector_colours(sectors: int) -> FloatArray:
     ndarray of shape (sectors, 4) and dtype float
         Red, green, blue and opacity.
     """
-    return np.asarray(mpl.colormaps[SECTOR_COLOURS]((np.arange(sectors) + 0.5) / sectors))
+    return np.asarray(SECTOR_COLOURS((np.arange(sectors) + 0.5) / sectors))
 
 
 def sector_arcs(windows: CellWindows) -> list[FloatArray]:
