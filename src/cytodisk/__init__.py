@@ -6,6 +6,14 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from cytodisk import errors as errors
     from cytodisk import simulate as simulate
+    from cytodisk.analysis.activity import sample_movie as sample_movie
+    from cytodisk.analysis.consistency import centroid_displacement as centroid_displacement
+    from cytodisk.analysis.consistency import consecutive_correlation as consecutive_correlation
+    from cytodisk.motion.disk_movie import DiskMovie as DiskMovie
+    from cytodisk.motion.map_movie import map_movie as map_movie
+    from cytodisk.motion.velocity import boundary_velocity as boundary_velocity
+    from cytodisk.motion.velocity import edge_changes as edge_changes
+    from cytodisk.motion.velocity import edge_velocity as edge_velocity
     from cytodisk.disk.certificate import Certificate as Certificate
     from cytodisk.disk.certificate import certify as certify
     from cytodisk.disk.disk_map import DiskMap as DiskMap
@@ -25,21 +33,29 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOME = {
-    "Certificate": "disk.certificate",
+    "boundary_velocity": "motion.velocity",
     "CellWindows": "windows.cell_windows",
-    "DiskMap": "disk.disk_map",
-    "Distortion": "disk.distortion",
-    "MaskReport": "geometry.mask",
-    "PolarWindows": "windows.grid",
-    "Study": "io.study_folder",
+    "centroid_displacement": "analysis.consistency",
+    "Certificate": "disk.certificate",
     "certify": "disk.certificate",
     "clean_mask": "geometry.mask",
+    "consecutive_correlation": "analysis.consistency",
+    "DiskMap": "disk.disk_map",
+    "DiskMovie": "motion.disk_movie",
+    "Distortion": "disk.distortion",
+    "edge_changes": "motion.velocity",
+    "edge_velocity": "motion.velocity",
     "load_map": "disk.disk_map",
+    "map_movie": "motion.map_movie",
     "map_to_disk": "disk.mapping",
+    "MaskReport": "geometry.mask",
     "open_study": "io.study_folder",
     "polar_windows": "windows.grid",
+    "PolarWindows": "windows.grid",
     "read_image": "io.frames",
     "sample": "windows.sample",
+    "sample_movie": "analysis.activity",
+    "Study": "io.study_folder",
 }
 _MODULES = ("errors", "simulate")
 

@@ -10,12 +10,11 @@ from cytodisk.disk.circle import Align, boundary_angles, parse_align
 from cytodisk.disk.disk_map import DiskMap, Method, Start
 from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.disk.newton import relax
+from cytodisk.disk.untangle import untangled
 from cytodisk.errors import MapError, ParameterError
 from cytodisk.geometry.mask import MaskReport, clean_mask
-from cytodisk.geometry.mesh import Mesh, mesh_inside, triangle_areas
+from cytodisk.geometry.mesh import Mesh, mesh_inside
 from cytodisk.geometry.outline import trace_outline
-
-_LEAST_AREA = 1e-12  # of a triangle in the disk that a relaxation may start from
 
 
 def map_to_disk(
@@ -132,7 +131,8 @@ def map_mesh(
     *,
     method: Method = "newton",
     shape_weight: float = 0.005,
-    start_uv: FloatArray | None = None,
+    anchor_uv: FloatArray | None = None,
+    inertia: float = 0.0,
 ) -> DiskMap:
     """Map a meshed cell onto the disk, with its boundary at given angles.
 
@@ -143,9 +143,12 @@ def map_mesh(
         Angle of each boundary vertex in radians, strictly increasing, all within one turn.
     method, shape_weight
         As for `map_to_disk`.
-    start_uv : ndarray of shape (V, 2) and dtype float, optional
-        Where the relaxation starts, such as the last frame's result; its boundary is put to the angles. If
-        a triangle of it is not positive, the harmonic map takes its place, and the map's `start` says so.
+    anchor_uv : ndarray of shape (V, 2) and dtype float, optional
+        Where the vertices would rather be, such as where the last frame of a movie puts them. The
+        relaxation starts there if its flipped triangles can be mended, else from the harmonic map; `start`
+        of the map says which it was.
+    inertia : float
+        How much the inside is to stay at the anchor, against equal areas; see `relax`.
 
     Returns
     -------
@@ -158,10 +161,10 @@ def map_mesh(
         No valid map was found.
     """
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
-    uv, start = _start(cell.mesh, circle, start_uv)
+    uv, start = _start(cell.mesh, circle, anchor_uv)
     steps, converged = 0, True
     if method == "newton":
-        relaxed = relax(cell.mesh, uv, shape_weight)
+        relaxed = relax(cell.mesh, uv, shape_weight, anchor_uv, inertia)
         uv, steps, converged = relaxed.vertices_uv, relaxed.steps, relaxed.converged
     disk = DiskMap(
         vertices_yx=cell.mesh.vertices_yx + cell.corner,
@@ -182,10 +185,10 @@ def map_mesh(
     return disk
 
 
-def _start(mesh: Mesh, circle: FloatArray, start_uv: FloatArray | None) -> tuple[FloatArray, Start]:
-    if start_uv is not None:
-        uv = np.concatenate([circle, start_uv[mesh.n_boundary :]])
-        if (triangle_areas(uv[:, ::-1], mesh.triangles) > _LEAST_AREA).all():
+def _start(mesh: Mesh, circle: FloatArray, anchor_uv: FloatArray | None) -> tuple[FloatArray, Start]:
+    if anchor_uv is not None:
+        uv = untangled(mesh, np.concatenate([circle, anchor_uv[mesh.n_boundary :]]))
+        if uv is not None:
             return uv, "previous"
     return harmonic_map(mesh, circle)
 

@@ -46,7 +46,13 @@ class Relaxed:
     converged: bool
 
 
-def relax(mesh: Mesh, start_uv: FloatArray, shape_weight: float) -> Relaxed:
+def relax(
+    mesh: Mesh,
+    start_uv: FloatArray,
+    shape_weight: float,
+    anchor_uv: FloatArray | None = None,
+    inertia: float = 0.0,
+) -> Relaxed:
     """Move the interior vertices of a valid map until its triangles have their share of the area.
 
     Parameters
@@ -56,6 +62,10 @@ def relax(mesh: Mesh, start_uv: FloatArray, shape_weight: float) -> Relaxed:
         A valid map: every triangle positive. Boundary vertices stay where they are.
     shape_weight : float
         Weight of shape against area in the energy; > 0.
+    anchor_uv : ndarray of shape (V, 2) and dtype float, optional
+        Where the vertices would rather be, such as where the last frame of a movie puts them.
+    inertia : float
+        Weight of the mean squared distance from there, over the disk's area, that is added to the energy.
 
     Returns
     -------
@@ -71,7 +81,8 @@ def relax(mesh: Mesh, start_uv: FloatArray, shape_weight: float) -> Relaxed:
     Smith, de Goes & Kim, "Analytic eigensystems for isotropic distortion energies", 2019,
     doi:10.1145/3241041
     """
-    problem = _Problem(mesh, start_uv, shape_weight)
+    anchored = (start_uv, 0.0) if anchor_uv is None else (anchor_uv, inertia)
+    problem = _Problem(mesh, start_uv, shape_weight, *anchored)
     uv, value = start_uv, problem.energy(start_uv)
     if not np.isfinite(value):
         raise MapError("relaxation needs a start without flipped triangles")
@@ -91,7 +102,9 @@ def relax(mesh: Mesh, start_uv: FloatArray, shape_weight: float) -> Relaxed:
 class _Problem:
     """The energy of one mesh with everything that stays the same between steps."""
 
-    def __init__(self, mesh: Mesh, uv: FloatArray, shape_weight: float):
+    def __init__(
+        self, mesh: Mesh, uv: FloatArray, shape_weight: float, anchor_uv: FloatArray, inertia: float
+    ):
         areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
         scale = np.sqrt(triangle_areas(uv[:, ::-1], mesh.triangles).sum() / areas.sum())
         self._hats = hat_gradients(mesh.vertices_yx * scale, mesh.triangles)
@@ -101,9 +114,15 @@ class _Problem:
         self._n_boundary = mesh.n_boundary
         self._pattern = _HessianPattern(mesh)
         self._factors: Factorisation | None = None
+        corner_share = np.repeat(self._share / 3.0, 3)
+        share = np.bincount(mesh.triangles.ravel(), corner_share, minlength=len(uv))[mesh.n_boundary :]
+        self._anchor = anchor_uv[mesh.n_boundary :]
+        self._inertia = inertia * share
 
     def energy(self, uv: FloatArray) -> float:
-        return float(energy(uv, self._triangles, self._hats, self._share, self._weight))
+        moved = np.square(uv[self._n_boundary :] - self._anchor).sum(axis=1)
+        area_and_shape = float(energy(uv, self._triangles, self._hats, self._share, self._weight))
+        return area_and_shape + float(self._inertia @ moved)
 
     def newton_direction(self, uv: FloatArray, gauss: bool) -> tuple[FloatArray, float]:
         """Step of every vertex, and the energy it promises to save to first order."""
@@ -122,6 +141,9 @@ class _Problem:
             pattern.upper.data,
             gauss,
         )
+        if self._inertia.any():
+            gradient += (2.0 * self._inertia[:, None] * (uv[self._n_boundary :] - self._anchor)).ravel()
+            pattern.upper.data[pattern.diagonal] += np.repeat(2.0 * self._inertia, 2)
         if self._factors is None:
             self._factors = Factorisation(pattern.upper)
         else:
@@ -157,6 +179,8 @@ class _HessianPattern:
         M interior vertices; values to be filled.
     unknown : ndarray of shape (V,) and dtype int
         Number of each vertex among the unknowns, -1 for the boundary.
+    diagonal : ndarray of shape (2 M,) and dtype int
+        Place of the diagonal in the matrix's values.
     first, second : ndarray of shape (F, 3, 3) and dtype int
         Place in the matrix's values of the first row of a block's two columns, for the corners (row, column)
         of a triangle; -1 below the diagonal or at the boundary.
@@ -178,6 +202,7 @@ class _HessianPattern:
         self.first, self.second = np.full(stored.shape, -1), np.full(stored.shape, -1)
         self.first[stored], self.second[stored] = first[which], second[which]
         self.upper = self._matrix(n, row, column, first, second, start, above)
+        self.diagonal = self.upper.indptr[1:] - 1  # last in its column
 
     @staticmethod
     def _matrix(

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.geometry.polygon import edge_lengths, smooth_closed
 
 SMOOTHING_PX = 2.0
@@ -89,7 +89,9 @@ class Contour:
         central = np.roll(self.points_yx, -1, axis=0) - np.roll(self.points_yx, 1, axis=0)
         return np.asarray(central / np.linalg.norm(central, axis=1, keepdims=True))
 
-    def _edge_at(self, s: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _edge_at(self, s: FloatArray) -> tuple[IntArray, FloatArray]:
         wrapped = np.mod(s, self.length)
-        edge = np.clip(np.searchsorted(self.arc, wrapped, side="right") - 1, 0, len(self.points_yx) - 1)
+        edge: IntArray = np.clip(
+            np.searchsorted(self.arc, wrapped, side="right") - 1, 0, len(self.points_yx) - 1
+        )
         return edge, (wrapped - self.arc[edge]) / (self.arc[edge + 1] - self.arc[edge])

@@ -67,7 +67,7 @@ def _step_cost(
     length = 0.5 * (a + b) * spacing
     size = (y0 * y0 + x0 * x0 + y1 * y1 + x1 * x1 + y0 * y1 + x0 * x1) / 3.0
     change = (y1 - y0) ** 2 + (x1 - x0) ** 2
-    return size * length + smoothness * change / length
+    return float(size * length + smoothness * change / length)
 
 
 @njit(cache=True)

@@ -142,7 +142,8 @@ def _newton_step(
                     square[a, b] += weight * by_motion[i, k, a] * by_motion[i, k, b]
                     square[a, b] += stiffness * step * (by_motion[after, k, b] - by_motion[i, k, b])
     solved = solve_cyclic(diagonal, coupling, right)
-    change, moved = solved[:, 3].copy(), np.zeros(3)
+    change: FloatArray = solved[:, 3].copy()
+    moved: FloatArray = np.zeros(3)
     if rigid:
         across, response = np.ascontiguousarray(right[:, :3].T), np.ascontiguousarray(solved[:, :3])
         moved = np.linalg.solve(square - across @ response, -pull - across @ change)

@@ -9,7 +9,7 @@ from cytodisk.disk.circle import Align, boundary_angles
 from cytodisk.disk.disk_map import DiskMap, Method
 from cytodisk.disk.mapping import CellMesh, map_mesh, mesh_cell
 from cytodisk.motion.contour import Contour
-from cytodisk.motion.temporal import carried_start, tracked_angles
+from cytodisk.motion.temporal import carried_inside, tracked_angles
 from cytodisk.motion.tracking import TrackedBoundary, TrackingSettings, first_boundary, follow, point_angles
 
 
@@ -24,6 +24,8 @@ class MovieSettings:
         As for `map_to_disk`.
     align : {"upright"}, (float, float) or float
         Rotation of the first frame's disk, as for `map_to_disk`.
+    inertia : float
+        How much the inside of a frame stays where the frame before put it, against equal areas.
     """
 
     tracking: TrackingSettings = field(default_factory=TrackingSettings)
@@ -31,6 +33,7 @@ class MovieSettings:
     shape_weight: float = 0.005
     edge_length: float = 0.9
     align: Align = "upright"
+    inertia: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,13 +93,18 @@ def map_frame(time: int, mask: Any, last: MappedFrame | None, settings: MovieSet
     reference = last.boundary if renewed else last.reference
     boundary = follow(time, contour, last.boundary, reference, settings.tracking)
     angles = tracked_angles(contour, boundary.s, point_angles(len(boundary.s)))
-    start = None
+    anchor = None
     if not boundary.restarted and settings.method == "newton":
-        start = carried_start(cell, contour, boundary.s, last.disk, last.boundary.contour, last.boundary.s)
-    return MappedFrame(_map(cell, angles, settings, start), boundary, reference)
+        anchor = carried_inside(cell, contour, boundary.s, last.disk, last.boundary.contour, last.boundary.s)
+    return MappedFrame(_map(cell, angles, settings, anchor), boundary, reference)
 
 
-def _map(cell: CellMesh, angles: Any, settings: MovieSettings, start_uv: Any = None) -> DiskMap:
+def _map(cell: CellMesh, angles: Any, settings: MovieSettings, anchor_uv: Any = None) -> DiskMap:
     return map_mesh(
-        cell, angles, method=settings.method, shape_weight=settings.shape_weight, start_uv=start_uv
+        cell,
+        angles,
+        method=settings.method,
+        shape_weight=settings.shape_weight,
+        anchor_uv=anchor_uv,
+        inertia=settings.inertia,
     )

@@ -47,13 +47,15 @@ def first_guess(here: Contour, there: Contour, s: FloatArray, smoothness: float)
     n = _COARSE_SAMPLES
     m = min(max(round(n * there.length / here.length), n // 4), 4 * n)
     step_here, step_there = here.length / n, there.length / m
+    at_here: FloatArray = step_here * np.arange(n, dtype=np.float64)
+    at_there: FloatArray = step_there * np.arange(m, dtype=np.float64)
     i, j = cyclic_path(
-        here.at(step_here * np.arange(n)),
-        there.at(step_there * np.arange(m)),
+        here.at(at_here),
+        there.at(at_there),
         0.5 * (step_here + step_there),
         smoothness,
     )
-    return carry(s, i * step_here, j * step_there, here.length, there.length)
+    return carry(s, np.asarray(i * step_here), np.asarray(j * step_there), here.length, there.length)
 
 
 def match(

@@ -42,7 +42,7 @@ def tracked_angles(contour: Contour, s: FloatArray, angles: FloatArray) -> Float
     return np.asarray(found[0] + np.concatenate([[0.0], steps[:-1]]))
 
 
-def carried_start(
+def carried_inside(
     cell: CellMesh,
     contour: Contour,
     s: FloatArray,

@@ -59,7 +59,8 @@ class TrackingSettings:
             raise ParameterError(f"tension must be 0 to 1, got {self.tension!r}: 0.01 is the default")
         if not 0.0 < self.smoothness_px2 < np.inf:
             raise ParameterError(
-                f"smoothness_px2 must be above 0, got {self.smoothness_px2!r}: {SMOOTHNESS_PX2:g} is the default"
+                f"smoothness_px2 must be above 0, got {self.smoothness_px2!r}: "
+                f"{SMOOTHNESS_PX2:g} is the default"
             )
         if (
             isinstance(self.renew_every, bool)
@@ -235,7 +236,7 @@ def _at_even_angles(contour: Contour, angles: FloatArray, n: int) -> FloatArray:
 
 def _towards_even(s: FloatArray, length: float, tension: float) -> FloatArray:
     even = length * np.arange(len(s)) / len(s)
-    return s + tension * (even + (s - even).mean() - s)
+    return np.asarray(s + tension * (even + (s - even).mean() - s))
 
 
 def _overlap(here: Contour, there: Contour) -> float:

@@ -1,0 +1,1 @@
+"""What tables of windows and edges say: activity through time, consistency."""

@@ -1,0 +1,185 @@
+"""Activity of a movie: a signal in every window of every frame."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.arrays import FloatArray
+from cytodisk.errors import SignalError
+from cytodisk.motion.disk_movie import DiskMovie
+from cytodisk.windows.grid import PolarWindows
+from cytodisk.windows.sample import sample
+
+STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
+
+
+def sample_movie(
+    movie: DiskMovie,
+    grid: PolarWindows,
+    signals: Any,
+    *,
+    nan: Literal["propagate", "omit"] = "propagate",
+    progress: Callable[[int, int], None] | None = None,
+) -> xr.Dataset:
+    """Statistics of a signal in every window of every frame, frame by frame.
+
+    Parameters
+    ----------
+    movie : DiskMovie
+    grid : PolarWindows
+    signals : array_like of shape (T, H, W) or (T, C, H, W), DataArray with dims time, (channel,) y, x, or sequence
+        As many frames as the movie. A sequence may read its frames, (H, W) or (C, H, W), when asked for
+        them.
+    nan : {"propagate", "omit"}
+        As for `sample`.
+    progress : callable, optional
+        Called with (frames done, frames in all).
+
+    Returns
+    -------
+    Dataset with dims (time, channel, layer, sector)
+        mean, sd, min, max, n_pixels, n_nan as for `sample`; area, centroid_y, centroid_x of the windows and
+        frame_status, reason by frame. A frame without a map is NaN with its reason. The coordinate time_s is
+        there when the frame interval is known; units are in the attrs of each variable.
+
+    Raises
+    ------
+    SignalError
+        The signals do not fit the movie.
+    """
+    frames, channels = parse_signals(signals, len(movie), movie.image_shape)
+    shape = (len(movie), len(channels), grid.layers, grid.sectors)
+    tables = {name: np.full(shape, np.nan) for name in STATISTICS}
+    area, y, x = (np.full((len(movie), grid.layers, grid.sectors), np.nan) for _ in range(3))
+    for time, record in enumerate(movie.records):
+        if record.boundary is not None:
+            windows = grid.on(movie[time])
+            data = sample(windows, np.asarray(frames[time]).reshape(-1, *movie.image_shape), nan=nan)
+            for name in STATISTICS:
+                tables[name][time] = data[name].to_numpy()
+            area[time] = windows.areas
+            y[time], x[time] = np.moveaxis(windows.centroids_yx, -1, 0)
+        if progress is not None:
+            progress(time + 1, len(movie))
+    return activity_dataset(
+        tables | {"area": area, "centroid_y": y, "centroid_x": x},
+        channels,
+        [record.status for record in movie.records],
+        [record.reason for record in movie.records],
+        movie.pixel_size_um,
+        movie.frame_interval_s,
+    )
+
+
+def activity_dataset(
+    tables: dict[str, FloatArray],
+    channels: list[str],
+    status: list[str],
+    reasons: list[str],
+    pixel_size_um: float | None,
+    frame_interval_s: float | None,
+    first_time: int = 0,
+) -> xr.Dataset:
+    """Tables of a movie as a Dataset with coordinates and units.
+
+    Parameters
+    ----------
+    tables : dict of str to ndarray of shape (T, C, L, S), or (T, L, S) for area and centroids
+        Areas in square pixels; they become µm² where the pixel size is known.
+    channels, status, reasons : list of str
+        The first by channel, the others by frame.
+    pixel_size_um, frame_interval_s : float or None
+    first_time : int
+        Number of the first frame.
+
+    Returns
+    -------
+    Dataset
+    """
+    dims = {4: ("time", "channel", "layer", "sector"), 3: ("time", "layer", "sector")}
+    data: dict[str, Any] = {}
+    unit = "px" if pixel_size_um is None else "µm"
+    units = {"area": f"{unit}²", "centroid_y": "px", "centroid_x": "px", "n_pixels": "px²", "n_nan": "px²"}
+    for name, values in tables.items():
+        scaled = values * (pixel_size_um or 1.0) ** 2 if name == "area" else values
+        data[name] = (dims[values.ndim], scaled, {"units": units.get(name, "a.u.")})
+    data["frame_status"] = ("time", np.array(status, dtype=str))
+    data["reason"] = ("time", np.array(reasons, dtype=str))
+    times = first_time + np.arange(len(status))
+    layers, sectors = tables["area"].shape[1:]
+    coords: dict[str, Any] = {
+        "time": ("time", times, {"units": "frame"}),
+        "channel": channels,
+        "layer": np.arange(layers),
+        "sector": np.arange(sectors),
+    }
+    if frame_interval_s is not None:
+        coords["time_s"] = ("time", times * frame_interval_s, {"units": "s"})
+    attrs = {"pixel_size_um": pixel_size_um, "frame_interval_s": frame_interval_s}
+    return xr.Dataset(data, coords, attrs={name: value for name, value in attrs.items() if value is not None})
+
+
+def parse_signals(signals: Any, n_frames: int, image_shape: tuple[int, int]) -> tuple[Any, list[str]]:
+    """A sequence of frames with channel names, checked against a movie.
+
+    Parameters
+    ----------
+    signals : array_like, DataArray or sequence
+        See `sample_movie`.
+    n_frames : int
+    image_shape : (int, int)
+
+    Returns
+    -------
+    frames : sequence of array_like of shape (H, W) or (C, H, W)
+    channels : list of str
+
+    Raises
+    ------
+    SignalError
+        They do not fit, or are not numbers.
+    """
+    names: list[str] | None = None
+    if isinstance(signals, xr.DataArray):
+        if not {"time", "y", "x"} <= set(signals.dims) or not set(signals.dims) <= {
+            "time",
+            "channel",
+            "y",
+            "x",
+        }:
+            raise SignalError(
+                f"signals have the dims {list(signals.dims)}: a movie has time, (channel,) y, x"
+            )
+        signals = signals.transpose("time", "channel", "y", "x", missing_dims="ignore")
+        if "channel" in signals.coords:
+            names = [str(name) for name in np.atleast_1d(signals["channel"].to_numpy())]
+        signals = signals.to_numpy()
+    if not hasattr(signals, "__getitem__") or not hasattr(signals, "__len__"):
+        raise SignalError(f"signals must be an array or a sequence of frames, got {type(signals).__name__}")
+    if len(signals) != n_frames:
+        raise SignalError(
+            f"signals have {len(signals)} frames, the movie {n_frames}"
+            + _axis_hint(getattr(signals, "shape", ()), n_frames)
+            + ": pass as many, time first"
+        )
+    first = np.asarray(signals[0])
+    if first.dtype.kind not in "biuf":
+        raise SignalError(f"signals must be numbers, got dtype {first.dtype}")
+    if first.ndim not in (2, 3) or first.shape[-2:] != tuple(image_shape):
+        raise SignalError(
+            f"a frame of the signals has shape {first.shape}, the masks {tuple(image_shape)}: "
+            "pass (time, y, x) or (time, channel, y, x) of the same size"
+        )
+    count = first.shape[0] if first.ndim == 3 else 1
+    if names is None or len(names) != count:
+        names = [str(number) for number in range(count)]
+    return signals, names
+
+
+def _axis_hint(shape: tuple[int, ...], n_frames: int) -> str:
+    axes = [axis for axis, size in enumerate(shape) if size == n_frames]
+    return f" (but {n_frames} is the length of axis {axes[0]} of {tuple(shape)})" if axes else ""

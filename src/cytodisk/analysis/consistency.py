@@ -1,0 +1,77 @@
+"""How consistent windows are through time: the two measures of the paper (section 3, Fig. 4)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.arrays import FloatArray
+from cytodisk.motion.disk_movie import DiskMovie
+
+
+def consecutive_correlation(activity: xr.DataArray) -> xr.DataArray:
+    """Pearson correlation over sectors of each frame with the next, by layer.
+
+    Parameters
+    ----------
+    activity : DataArray with dims time and sector, and any others
+        Such as the mean of `sample_movie`.
+
+    Returns
+    -------
+    DataArray with the dims of `activity` but sector
+        Of frame t with t + 1, stored at t: the last is NaN, as is a frame without signal, or one whose
+        signal does not vary.
+
+    References
+    ----------
+    u-Unwrap, section 3, Fig. 4C.
+    """
+    here = activity.transpose("time", ..., "sector").to_numpy()
+    out = np.full(here.shape[:-1], np.nan)
+    a = here[:-1] - here[:-1].mean(axis=-1, keepdims=True)
+    b = here[1:] - here[1:].mean(axis=-1, keepdims=True)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        out[:-1] = (a * b).sum(axis=-1) / np.sqrt((a**2).sum(axis=-1) * (b**2).sum(axis=-1))
+    dims = tuple(dim for dim in activity.transpose("time", ..., "sector").dims if dim != "sector")
+    coords: dict[Any, Any] = {
+        name: coord for name, coord in activity.coords.items() if set(coord.dims) <= set(dims)
+    }
+    return xr.DataArray(out, coords, dims, name="consecutive_correlation", attrs={"units": "1"})
+
+
+def centroid_displacement(movie: DiskMovie, activity: xr.Dataset) -> xr.DataArray:
+    """How far each window's centroid moves from a frame to the next, rigid motion of the cell taken out.
+
+    Parameters
+    ----------
+    movie : DiskMovie
+    activity : Dataset
+        Of `sample_movie` on it: its centroid_y and centroid_x.
+
+    Returns
+    -------
+    DataArray with dims (time, layer, sector)
+        In µm when the movie knows its scale, else px, as attrs `units` says; of frame t to t + 1, stored at
+        t: the last is NaN. Its mean over windows is the paper's measure.
+
+    References
+    ----------
+    u-Unwrap, section 3, Fig. 4D.
+    """
+    centroids = np.stack([activity["centroid_y"].to_numpy(), activity["centroid_x"].to_numpy()], axis=-1)
+    steps = displacement_between(movie.registered(centroids)) * (movie.pixel_size_um or 1.0)
+    coords = {name: activity[name] for name in ("time", "layer", "sector")}
+    units = "px" if movie.pixel_size_um is None else "µm"
+    return xr.DataArray(
+        steps, coords, ("time", "layer", "sector"), name="centroid_displacement", attrs={"units": units}
+    )
+
+
+def displacement_between(positions: FloatArray) -> FloatArray:
+    """Distance of each position to the next frame's, shape (T, …) of positions (T, …, 2); the last is NaN."""
+    out = np.full(positions.shape[:-1], np.nan)
+    out[:-1] = np.linalg.norm(np.diff(positions, axis=0), axis=-1)
+    return out

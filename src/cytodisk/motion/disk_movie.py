@@ -1,0 +1,181 @@
+"""`DiskMovie`: the disk maps of a movie, in correspondence through time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import overload
+
+import numpy as np
+
+from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.disk.disk_map import DiskMap
+from cytodisk.errors import MapError, ParameterError
+from cytodisk.motion.registration import RigidTransform
+from cytodisk.motion.tracking import TrackedBoundary, point_angles
+
+_BORDER_PX = 1.0  # a point nearer than this to the image's border lies on it
+
+
+@dataclass(frozen=True, eq=False)
+class FrameRecord:
+    """What became of one frame.
+
+    Attributes
+    ----------
+    status : str
+        "ok", "refused" (the mask cannot be used), "missing" (the label is not there) or "unreadable".
+    reason : str
+        Why there is no map; empty if there is one.
+    boundary : TrackedBoundary or None
+    """
+
+    status: str
+    reason: str
+    boundary: TrackedBoundary | None
+
+
+@dataclass(frozen=True, eq=False)
+class DiskMovie(Sequence[DiskMap]):
+    """Maps of one cell through time: a point of the disk is the same place of the cell in every frame.
+
+    `movie[t]` is the `DiskMap` of frame t, read when asked for; a frame without one raises `MapError` with
+    the reason.
+
+    Attributes
+    ----------
+    records : tuple of FrameRecord
+        One a frame.
+    image_shape : (int, int)
+        (H, W) of the masks.
+    pixel_size_um, frame_interval_s : float or None
+        None when unknown; then results are in px and frames.
+    load : callable
+        Gives the map of a frame that has one.
+    """
+
+    records: tuple[FrameRecord, ...]
+    image_shape: tuple[int, int]
+    pixel_size_um: float | None
+    frame_interval_s: float | None
+    load: Callable[[int], DiskMap]
+
+    def __repr__(self) -> str:
+        mapped = int(self.mapped.sum())
+        return f"<DiskMovie: {mapped} of {len(self)} frames mapped, {self.n_points} boundary points>"
+
+    def __len__(self) -> int:
+        return len(self.records)
+
+    @overload
+    def __getitem__(self, time: int) -> DiskMap: ...
+    @overload
+    def __getitem__(self, time: slice) -> list[DiskMap]: ...
+    def __getitem__(self, time: int | slice) -> DiskMap | list[DiskMap]:
+        """Map of a frame, or a list of maps; negative numbers count from the end."""
+        if isinstance(time, slice):
+            return [self[number] for number in range(*time.indices(len(self)))]
+        if not isinstance(time, int | np.integer):
+            raise ParameterError(f"a movie is indexed by frame number, got {time!r}")
+        number = int(time) + (len(self) if time < 0 else 0)
+        if not 0 <= number < len(self):
+            raise IndexError(f"frame {time} of a movie of {len(self)} frames")
+        record = self.records[number]
+        if record.boundary is None:
+            raise MapError(f"frame {number} has no map: {record.reason}")
+        return self.load(number)
+
+    @property
+    def status(self) -> list[str]:
+        """Status of each frame."""
+        return [record.status for record in self.records]
+
+    @property
+    def mapped(self) -> BoolArray:
+        """Whether each frame has a map, shape (T,)."""
+        return np.array([record.boundary is not None for record in self.records])
+
+    @property
+    def n_points(self) -> int:
+        """Tracked boundary points a frame; 0 if no frame has a map."""
+        return next((len(found.s) for found in self._boundaries if found is not None), 0)
+
+    @property
+    def point_angles(self) -> FloatArray:
+        """Angle of each tracked point on the disk, in radians, the same in every frame, shape (N,)."""
+        return point_angles(self.n_points)
+
+    @cached_property
+    def points_yx(self) -> FloatArray:
+        """Tracked boundary points in the image, shape (T, N, 2), (row, column) in pixels; NaN without map."""
+        return self._by_frame((self.n_points, 2), lambda found: found.points_yx)
+
+    @cached_property
+    def normals_yx(self) -> FloatArray:
+        """Outward unit normals at the tracked points, in the image, shape (T, N, 2)."""
+        return self._by_frame((self.n_points, 2), lambda found: found.normals_yx)
+
+    @cached_property
+    def lengths_px(self) -> FloatArray:
+        """Boundary length that belongs to each tracked point, in pixels, shape (T, N)."""
+        return self._by_frame((self.n_points,), lambda found: found.lengths_px)
+
+    @cached_property
+    def residual_px(self) -> FloatArray:
+        """Tracking residual of each frame in pixels, shape (T,); see `TrackedBoundary`."""
+        return self._by_frame((), lambda found: np.array(found.residual_px))
+
+    @property
+    def transforms(self) -> list[RigidTransform | None]:
+        """From each frame to the movie's common frame, that of its first map; None without map."""
+        return [None if found is None else found.transform for found in self._boundaries]
+
+    @property
+    def on_border(self) -> BoolArray:
+        """Whether each tracked point lies on the image's border, shape (T, N)."""
+        return np.stack([on_border(points, self.image_shape) for points in self.points_yx])
+
+    def registered(self, points_yx: FloatArray) -> FloatArray:
+        """Points of all frames in the movie's common frame: rigid motion taken out.
+
+        Parameters
+        ----------
+        points_yx : ndarray of shape (T, ..., 2) and dtype float
+            In the image, (row, column) in pixels.
+
+        Returns
+        -------
+        ndarray of the same shape
+            NaN for frames without a map.
+        """
+        moved = np.full_like(points_yx, np.nan)
+        for time, transform in enumerate(self.transforms):
+            if transform is not None:
+                moved[time] = transform(points_yx[time])
+        return moved
+
+    @property
+    def _boundaries(self) -> list[TrackedBoundary | None]:
+        return [record.boundary for record in self.records]
+
+    def _by_frame(self, shape: tuple[int, ...], value: Callable[[TrackedBoundary], FloatArray]) -> FloatArray:
+        out = np.full((len(self), *shape), np.nan)
+        for time, found in enumerate(self._boundaries):
+            if found is not None:
+                out[time] = value(found)
+        return out
+
+
+def on_border(points_yx: FloatArray, image_shape: tuple[int, int]) -> BoolArray:
+    """Whether points lie on the image's border, shape (N,); NaN does not.
+
+    Parameters
+    ----------
+    points_yx : ndarray of shape (N, 2) and dtype float
+        (row, column) in pixels.
+    image_shape : (int, int)
+        (H, W).
+    """
+    last = np.array(image_shape) - 1.0
+    return np.asarray(((points_yx < _BORDER_PX) | (points_yx > last - _BORDER_PX)).any(axis=-1))

@@ -1,0 +1,288 @@
+"""`map_movie`: from masks to maps that correspond through time."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.disk.circle import Align
+from cytodisk.disk.disk_map import DiskMap, Method, load_map
+from cytodisk.errors import CytodiskError, MapError, MaskError, ParameterError, ReadError, StudyError
+from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
+from cytodisk.motion.mapped_frame import MappedFrame, MovieSettings, map_frame
+from cytodisk.motion.tracking import Tracker, TrackingSettings
+
+_KEPT = 4  # maps that a movie on disk keeps in memory
+
+
+@dataclass(frozen=True, eq=False)
+class FrameResult:
+    """What became of one frame of a movie.
+
+    Attributes
+    ----------
+    time : int
+    mapped : MappedFrame or None
+    fault : CytodiskError or None
+        Why there is no map.
+    """
+
+    time: int
+    mapped: MappedFrame | None
+    fault: CytodiskError | None
+
+    @property
+    def record(self) -> FrameRecord:
+        """The frame without its map."""
+        if self.mapped is not None:
+            return FrameRecord("ok", "", self.mapped.boundary)
+        return FrameRecord(status_of(self.fault), str(self.fault), None)
+
+
+def status_of(fault: CytodiskError | None) -> str:
+    """Status of a frame in the tables: what kind of fault it had."""
+    if fault is None:
+        return "ok"
+    return "unreadable" if isinstance(fault, ReadError) else "refused"
+
+
+def map_frames(masks: Iterable[Any], settings: MovieSettings) -> Iterator[FrameResult]:
+    """Map the frames of a movie one by one; each is ready to be used and dropped before the next is read.
+
+    Parameters
+    ----------
+    masks : iterable of array_like of shape (H, W)
+        Masks of one cell. An entry may be an error of this package instead: the frame then has that fault.
+    settings : MovieSettings
+
+    Yields
+    ------
+    FrameResult
+        In order; a frame that cannot be mapped has its fault, and the next one goes on from the last map.
+    """
+    last: MappedFrame | None = None
+    for time, mask in enumerate(masks):
+        result = map_one(time, mask, last, settings)
+        last = result.mapped or last
+        yield result
+
+
+def map_one(time: int, mask: Any, last: MappedFrame | None, settings: MovieSettings) -> FrameResult:
+    """Map one frame; a fault of its mask becomes part of the result.
+
+    Parameters
+    ----------
+    time : int
+    mask : array_like of shape (H, W), or CytodiskError
+    last : MappedFrame or None
+    settings : MovieSettings
+
+    Returns
+    -------
+    FrameResult
+    """
+    if isinstance(mask, CytodiskError):
+        return FrameResult(time, None, mask)
+    try:
+        return FrameResult(time, map_frame(time, mask, last, settings), None)
+    except (MaskError, MapError) as fault:
+        return FrameResult(time, None, fault)
+
+
+def map_movie(
+    masks: Any,
+    *,
+    tracker: Tracker = "matching",
+    register: bool = True,
+    tension: float = 0.01,
+    renew_every: int = 5,
+    method: Method = "newton",
+    shape_weight: float = 0.005,
+    edge_length: float = 0.9,
+    align: Align = "upright",
+    inertia: float = 1.0,
+    frame_interval_s: float | None = None,
+    pixel_size_um: float | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> DiskMovie:
+    """Map every frame of a movie of one cell onto the disk, in correspondence through time.
+
+    The boundary is tracked from frame to frame, so that each place of the edge keeps its angle on the disk;
+    the inside starts from where the last frame put it. A frame that cannot be mapped (empty, damaged) is a
+    gap with a reason, and the movie goes on after it.
+
+    Parameters
+    ----------
+    masks : array_like of shape (T, H, W), DataArray with dims (time, y, x), or sequence of (H, W) arrays
+        Masks of one cell. A sequence may read its frames when asked for them.
+    tracker : {"matching", "demons"}
+        "matching": order-preserving elastic matching of outlines. "demons": the paper's pipeline.
+    register : bool
+        Take out rigid motion before tracking (paper, algorithm 1).
+    tension : float
+        For "matching", from 0 (points stay with matter) to 1 (equidistant in each frame).
+    renew_every : int
+        Frames after which the reference of the registration is renewed.
+    method, shape_weight, edge_length, align
+        As for `map_to_disk`; `align` holds for the first frame.
+    inertia : float
+        How much the inside of a frame stays where the frame before put it, against equal areas; at least 0.
+    frame_interval_s, pixel_size_um : float, optional
+        Seconds a frame and µm a pixel; by default those of a DataArray's attrs, else unknown.
+    folder : path-like, optional
+        Write the maps there and read them when asked for, so that memory stays bounded; by default they
+        stay in memory.
+    progress : callable, optional
+        Called with (frames done, frames in all).
+
+    Returns
+    -------
+    DiskMovie
+
+    Raises
+    ------
+    MaskError
+        `masks` is not a movie, or no frame of it can be mapped.
+    ParameterError
+        A parameter is out of its range.
+    StudyError
+        The folder cannot be written, or holds maps already.
+
+    References
+    ----------
+    u-Unwrap, section 3 (i), appendix A.1 and A.2.2.
+    """
+    settings = MovieSettings(
+        TrackingSettings(tracker=tracker, tension=tension, register=register, renew_every=renew_every),
+        method,
+        shape_weight,
+        edge_length,
+        align,
+        inertia,
+    )
+    frames, interval, pixel = parse_masks(masks)
+    interval = parse_scale("frame_interval_s", interval if frame_interval_s is None else frame_interval_s)
+    pixel = parse_scale("pixel_size_um", pixel if pixel_size_um is None else pixel_size_um)
+    store: _Memory | _Folder = _Memory() if folder is None else _Folder(Path(folder))
+    records: list[FrameRecord] = []
+    shape: tuple[int, ...] = ()
+    for result in map_frames(frames, settings):
+        if result.mapped is not None:
+            shape = result.mapped.disk.mask.shape
+            store.keep(result.time, result.mapped.disk)
+        records.append(result.record)
+        if progress is not None:
+            progress(len(records), len(frames))
+    if not shape:
+        raise MaskError(f"no frame of {len(records)} could be mapped; frame 0: {records[0].reason}")
+    return DiskMovie(tuple(records), (shape[0], shape[1]), pixel, interval, store.load)
+
+
+def parse_masks(masks: Any) -> tuple[Any, float | None, float | None]:
+    """A sequence of frames with its scale, from whatever a user has.
+
+    Parameters
+    ----------
+    masks : array_like, DataArray or sequence
+        See `map_movie`.
+
+    Returns
+    -------
+    frames : sequence of array_like of shape (H, W)
+    frame_interval_s, pixel_size_um : float or None
+
+    Raises
+    ------
+    MaskError
+        It has not three dimensions or a single frame, or its frames differ in shape.
+    """
+    interval = pixel = None
+    if isinstance(masks, xr.DataArray):
+        interval, pixel = masks.attrs.get("frame_interval_s"), masks.attrs.get("pixel_size_um")
+        if set(masks.dims) != {"time", "y", "x"}:
+            raise MaskError(f"masks have the dims {list(masks.dims)}: a movie of one cell has time, y, x")
+        masks = masks.transpose("time", "y", "x")
+    if not isinstance(masks, list | tuple) and not hasattr(masks, "__getitem__"):
+        raise MaskError(
+            f"masks must be an array (T, H, W) or a sequence of frames, got {type(masks).__name__}"
+        )
+    if hasattr(masks, "ndim") and masks.ndim != 3:
+        raise MaskError(
+            f"masks have shape {tuple(masks.shape)}: a movie of one cell is (time, y, x); "
+            "for one frame use map_to_disk"
+        )
+    if len(masks) < 2:
+        raise MaskError(f"masks hold {len(masks)} frame: a movie has two at least; for one use map_to_disk")
+    if isinstance(masks, list | tuple):
+        shapes = {np.shape(mask) for mask in masks if not isinstance(mask, CytodiskError)}
+        if len(shapes) > 1:
+            raise MaskError(f"masks differ in shape ({sorted(shapes)}): crop the frames alike")
+    if hasattr(masks, "shape"):
+        frames, height, width = masks.shape
+        if width < frames / 4 and width < height / 4:
+            raise MaskError(
+                f"masks of shape {tuple(masks.shape)} were understood as {frames} frames of {height} × "
+                f"{width} pixels, which looks like time on the last axis: pass numpy.moveaxis(masks, -1, 0)"
+            )
+    return (masks.to_numpy() if isinstance(masks, xr.DataArray) else masks), interval, pixel
+
+
+def parse_scale(name: str, value: Any) -> float | None:
+    """A positive number, or None for unknown.
+
+    Raises
+    ------
+    ParameterError
+        It is neither.
+    """
+    if value is None:
+        return None
+    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    if not (number and 0 < value < np.inf):
+        raise ParameterError(f"{name} must be a number above 0, got {value!r}: leave it out if it is unknown")
+    return float(value)
+
+
+class _Memory:
+    """Maps of a movie in memory."""
+
+    def __init__(self) -> None:
+        self._maps: dict[int, DiskMap] = {}
+
+    def keep(self, time: int, disk: DiskMap) -> None:
+        self._maps[time] = disk
+
+    def load(self, time: int) -> DiskMap:
+        return self._maps[time]
+
+
+class _Folder:
+    """Maps of a movie on disk, the last used ones in memory."""
+
+    def __init__(self, folder: Path) -> None:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            taken = any(folder.glob("frame_*.npz"))
+        except OSError as error:
+            raise StudyError(f"folder {folder} cannot be written: {error.strerror}") from error
+        if taken:
+            raise StudyError(f"folder {folder} holds maps already: pass another folder")
+        self._folder = folder
+        self.load = lru_cache(maxsize=_KEPT)(self._read)
+
+    def keep(self, time: int, disk: DiskMap) -> None:
+        disk.save(self._path(time))
+
+    def _read(self, time: int) -> DiskMap:
+        return load_map(self._path(time))
+
+    def _path(self, time: int) -> Path:
+        return self._folder / f"frame_{time:05d}.npz"

@@ -1,0 +1,201 @@
+"""Edge velocity of a movie, by sector and by boundary point."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.errors import ParameterError, WindowError
+from cytodisk.motion.disk_movie import DiskMovie
+from cytodisk.motion.edge import FRAMES, EdgeMotion, Frame, edge_motion, mean_by_sector, normal_displacement
+
+
+def edge_velocity(movie: DiskMovie, sectors: int = 60, *, frame: Frame = "lab") -> xr.DataArray:
+    """Outward velocity of the cell's edge by frame and sector.
+
+    Displacement of the tracked boundary points from frame t to t + 1 along the outward normal, averaged over
+    the sector's boundary and stored at t: the last frame is NaN, as is one without a map before or after it.
+    Boundary on the image's border is left out.
+
+    Parameters
+    ----------
+    movie : DiskMovie
+    sectors : int
+        From angle 0 of the disk (+u) towards +v, like those of `polar_windows`.
+    frame : {"lab", "cell"}
+        "lab": motion over the substrate. "cell": change of shape only, after rigid registration.
+
+    Returns
+    -------
+    DataArray with dims (time, sector)
+        Protrusion positive. attrs `units` is "µm/s" when the movie knows its scale, else "px/frame" (or a
+        mixture, when it knows one of the two).
+
+    Raises
+    ------
+    WindowError
+        `sectors` is not a positive whole number.
+    ParameterError
+        An unknown frame.
+
+    References
+    ----------
+    u-Unwrap, section 3 and Fig. S5.
+    """
+    _check(sectors, frame)
+    values = np.full((len(movie), sectors), np.nan)
+    for time, (here, there) in _pairs(movie):
+        displacement = normal_displacement(here, there, frame)
+        values[time] = mean_by_sector(displacement, here, there, movie.image_shape, sectors)
+    return _labelled(movie, values * _scale(movie), "sector", frame)
+
+
+def boundary_velocity(movie: DiskMovie, *, frame: Frame = "lab") -> xr.DataArray:
+    """Outward velocity of every tracked boundary point; see `edge_velocity`.
+
+    Parameters
+    ----------
+    movie : DiskMovie
+    frame : {"lab", "cell"}
+
+    Returns
+    -------
+    DataArray with dims (time, point)
+        With the coordinate `angle`, the points' angles on the disk in radians; points on the image's border
+        are NaN.
+
+    Raises
+    ------
+    ParameterError
+        An unknown frame.
+    """
+    _check(1, frame)
+    values = np.full((len(movie), movie.n_points), np.nan)
+    for time, (here, there) in _pairs(movie):
+        values[time] = normal_displacement(here, there, frame)
+    border = movie.on_border
+    values[:-1][border[:-1] | border[1:]] = np.nan
+    labelled = _labelled(movie, values * _scale(movie), "point", frame)
+    return labelled.assign_coords(angle=("point", movie.point_angles))
+
+
+def edge_changes(
+    movie: DiskMovie,
+    sectors: int = 60,
+    *,
+    frame: Frame = "lab",
+    jitter_px: float = 0.5,
+    repeats: int = 16,
+    seed: int = 0,
+) -> xr.Dataset:
+    """Edge velocity with its error bar, and the areas that the cell won and lost, by frame and sector.
+
+    Parameters
+    ----------
+    movie : DiskMovie
+    sectors : int
+    frame : {"lab", "cell"}
+    jitter_px : float
+        How uncertain the position of the masks' edges is, in pixels (standard deviation).
+    repeats : int
+        How often both outlines are drawn anew with that error.
+    seed : int
+        Of those draws.
+
+    Returns
+    -------
+    Dataset with dims (time, sector)
+        velocity, velocity_error (standard deviation), protruded_area, retracted_area, edge_length; their
+        units are in the attrs of each.
+
+    Raises
+    ------
+    WindowError, ParameterError
+        An argument is out of its range.
+    """
+    _check(sectors, frame)
+    check_jitter(jitter_px, repeats)
+    rows: dict[int, EdgeMotion] = {}
+    for time, (here, there) in _pairs(movie):
+        rows[time] = edge_motion(
+            here,
+            there,
+            movie[time],
+            movie[time + 1],
+            sectors,
+            frame=frame,
+            jitter_px=jitter_px,
+            repeats=repeats,
+            seed=seed,
+        )
+    pixel = movie.pixel_size_um or 1.0
+    unit = "px" if movie.pixel_size_um is None else "µm"
+    scales = {
+        "velocity": (
+            "displacement_px",
+            _scale(movie),
+            velocity_unit(movie.pixel_size_um, movie.frame_interval_s),
+        ),
+        "velocity_error": (
+            "error_px",
+            _scale(movie),
+            velocity_unit(movie.pixel_size_um, movie.frame_interval_s),
+        ),
+        "protruded_area": ("protruded_px2", pixel**2, f"{unit}²"),
+        "retracted_area": ("retracted_px2", pixel**2, f"{unit}²"),
+        "edge_length": ("length_px", pixel, unit),
+    }
+    columns = {}
+    for name, (source, scale, units) in scales.items():
+        values = np.full((len(movie), sectors), np.nan)
+        for time, row in rows.items():
+            values[time] = getattr(row, source) * scale
+        columns[name] = _labelled(movie, values, "sector", frame).assign_attrs(units=units)
+    return xr.Dataset(columns, attrs={"frame": frame})
+
+
+def check_jitter(jitter_px: Any, repeats: Any) -> None:
+    """Raise ParameterError unless the arguments of the error bar make sense."""
+    if not (isinstance(jitter_px, int | float | np.number) and 0 <= jitter_px < np.inf):
+        raise ParameterError(
+            f"jitter_px must be a number of at least 0, got {jitter_px!r}: 0.5 is the default"
+        )
+    if isinstance(repeats, bool) or not isinstance(repeats, int | np.integer) or repeats < 2:
+        raise ParameterError(
+            f"repeats must be a whole number of at least 2, got {repeats!r}: 16 is the default"
+        )
+
+
+def velocity_unit(pixel_size_um: float | None, frame_interval_s: float | None) -> str:
+    """Unit of a velocity, with px and frame where the scale is unknown."""
+    return f"{'px' if pixel_size_um is None else 'µm'}/{'frame' if frame_interval_s is None else 's'}"
+
+
+def _scale(movie: DiskMovie) -> float:
+    return (movie.pixel_size_um or 1.0) / (movie.frame_interval_s or 1.0)
+
+
+def _check(sectors: Any, frame: Any) -> None:
+    if isinstance(sectors, bool) or not isinstance(sectors, int | np.integer) or sectors < 1:
+        raise WindowError(f"sectors must be a whole number of at least 1, got {sectors!r}")
+    if frame not in FRAMES:
+        raise ParameterError(f"frame must be 'lab' or 'cell', got {frame!r}")
+
+
+def _pairs(movie: DiskMovie) -> Any:
+    """(time, boundaries of this frame and the next) where both have a map and tracking went on."""
+    for time, (first, second) in enumerate(zip(movie.records, movie.records[1:], strict=False)):
+        here, there = first.boundary, second.boundary
+        if here is not None and there is not None and not there.restarted:
+            yield time, (here, there)
+
+
+def _labelled(movie: DiskMovie, values: Any, last: str, frame: str) -> xr.DataArray:
+    coords: dict[str, Any] = {"time": np.arange(len(movie)), last: np.arange(values.shape[1])}
+    if movie.frame_interval_s is not None:
+        coords["time_s"] = ("time", np.arange(len(movie)) * movie.frame_interval_s)
+    units = velocity_unit(movie.pixel_size_um, movie.frame_interval_s)
+    name = "edge_velocity" if last == "sector" else "boundary_velocity"
+    return xr.DataArray(values, coords, ("time", last), name=name, attrs={"units": units, "frame": frame})
