@@ -232,8 +232,7 @@ def _check_count(name: str, value: int, least: int) -> None:
 
 
 def _draw_closed(ax: Axes, outline_yx: FloatArray, color: str, linewidth: float, label: str) -> None:
-    xy = outline_yx[:, ::-1]
-    ax.add_patch(Polygon(xy, fill=False, edgecolor=color, linewidth=linewidth, label=label))
+    ax.add_patch(Polygon(outline_yx[:, ::-1], fill=False, edgecolor=color, linewidth=linewidth, label=label))
 
 
 def _draw_arrows(
@@ -279,8 +278,7 @@ def _draw_key(
     ]
     place: Any = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.2}
     ax.legend(handles=handles, ncols=2, frameon=False, handlelength=1.2, columnspacing=1.2, **place)
-    longest = float(np.hypot(*step_yx.T).max(initial=0.0))
-    if not longest:
+    if not (longest := float(np.hypot(*step_yx.T).max(initial=0.0))):
         return
     unit, size = ("px", 1.0) if pixel_size_um is None else ("µm", pixel_size_um)
     length = nice_length(size * longest)

@@ -78,7 +78,6 @@ def draw_velocity_map(
     *,
     frame_interval_s: float | None = None,
     unit: str = "µm/s",
-    limit: float | None = None,
 ) -> AxesImage:
     """Draw edge velocity by frame and sector: protrusion red, retraction blue, white at 0.
 
@@ -91,26 +90,22 @@ def draw_velocity_map(
         Seconds between frames; without it time is in frames.
     unit : str
         Of the velocity.
-    limit : float, optional
-        Colours go from -limit to limit; by default percentile 99 of the speeds.
 
     Returns
     -------
     AxesImage
-        Its array has shape (S, T).
+        Its array has shape (S, T); its limits are percentile 99 of the speeds to both sides of 0.
 
     Raises
     ------
     ParameterError
-        The velocity is no table of numbers, or the interval or the limit is not a positive number.
+        The velocity is no table of numbers, or the interval is not a positive number.
 
     References
     ----------
     u-Unwrap, Fig. S5.
     """
-    if limit is not None and not 0 < limit < np.inf:
-        raise ParameterError(f"limit must be a positive number, got {limit!r}: pass None to have it chosen")
-    return _draw_velocity(ax, velocity, frame_interval_s, f"edge velocity ({unit})", limit)
+    return _draw_velocity(ax, velocity, frame_interval_s, f"edge velocity ({unit})")
 
 
 def draw_layers(
@@ -162,7 +157,8 @@ def draw_layers(
     common = limits or _limits(table)
     for ax, layer in zip(maps, layers, strict=True):
         drawn.append(_draw_map(ax, table[:, layer], frame_interval_s, SIGNAL_COLOURS, common))
-        _name(ax, _layer_name(layer, table.shape[1]))
+        place = " (edge)" if layer == 0 else " (centre)" if layer == table.shape[1] - 1 else ""
+        _name(ax, f"layer {layer}{place}")
     colour_bar(drawn[-1], bar_beside(*maps), label, extend=_extend(table[:, layers], drawn[-1]))
     _share_labels(axes)
     return drawn
@@ -216,7 +212,6 @@ def time_scale(frames: int, frame_interval_s: float | None) -> tuple[float, str]
 
 
 def _table(values: Any, name: str, dims: tuple[str, ...]) -> FloatArray:
-    """A table of numbers with known dimensions; a DataArray may have them in another order."""
     if isinstance(values, xr.DataArray) and set(values.dims) == set(dims):
         values = values.transpose(*dims)
     array = np.asarray(values)
@@ -241,12 +236,10 @@ def _limits(table: FloatArray) -> tuple[float, float]:
     return signal_limits(table, np.isfinite(table))
 
 
-def _draw_velocity(
-    ax: Axes, velocity: Any, frame_interval_s: float | None, label: str, limit: float | None = None
-) -> AxesImage:
+def _draw_velocity(ax: Axes, velocity: Any, frame_interval_s: float | None, label: str) -> AxesImage:
     table = _table(velocity, "velocity", ("time", "sector"))
     speed = np.abs(table[np.isfinite(table)])
-    top = limit or (float(np.percentile(speed, _VELOCITY_PERCENTILE)) if speed.size else 0.0) or 1.0
+    top = (float(np.percentile(speed, _VELOCITY_PERCENTILE)) if speed.size else 0.0) or 1.0
     drawn = _draw_map(ax, table, frame_interval_s, DIVERGING_COLOURS, (-top, top))
     colour_bar(drawn, bar_beside(ax), label, extend=_extend(table, drawn))
     return drawn
@@ -309,8 +302,3 @@ def _share_labels(axes: Sequence[Axes]) -> None:
 def _name(ax: Axes, title: str) -> None:
     """A title at a fixed height: it would give way to the colour bar of several maps."""
     ax.set_title(title, loc="left", y=1.0, pad=2.5)
-
-
-def _layer_name(layer: int, layers: int) -> str:
-    place = " (edge)" if layer == 0 else " (centre)" if layer == layers - 1 else ""
-    return f"layer {layer}{place}"

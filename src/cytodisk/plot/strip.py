@@ -246,9 +246,19 @@ def time_stamp(frame: int, frame_interval_s: float | None = None) -> str:
     Returns
     -------
     str
+
+    Raises
+    ------
+    ParameterError
+        The interval is not a positive number.
     """
     if frame_interval_s is None:
         return f"frame {frame}"
+    if not 0 < frame_interval_s < np.inf:
+        raise ParameterError(
+            f"frame_interval_s must be a positive number, got {frame_interval_s!r}: "
+            "pass None when it is not known"
+        )
     unit, seconds = ("s", 1.0) if frame_interval_s < 60.0 else ("min", 60.0)
     return f"{round(frame * frame_interval_s / seconds, 2):g} {unit}"
 
