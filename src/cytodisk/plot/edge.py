@@ -1,7 +1,4 @@
-"""Draw how a cell's edge moves: arrows of one frame, outlines through time, area won and lost.
-
-x and y are pixels, y downwards as in an image. Outwards is red, inwards blue.
-"""
+"""Draw how a cell's edge moves: arrows of one frame, outlines through time, area won (red) and lost (blue)."""
 
 from typing import Any, Literal
 
@@ -145,7 +142,7 @@ def draw_tracks(
     lines.set_clim(0.0, step * max(len(points) - 1, 1))
     ax.add_collection(lines, autolim=False)
     _draw_paths(ax, points, paths)
-    if np.isfinite(points).any():
+    if shown:
         frame_field(ax, field_of_view([points]))
         scale_bar(ax, pixel_size_um)
         ax.apply_aspect()
@@ -291,9 +288,8 @@ def _draw_key(
 def _draw_paths(ax: Axes, points: FloatArray, paths: int) -> None:
     chosen = np.unique(np.linspace(0, points.shape[1], paths, endpoint=False).astype(int))
     traced = points[:, chosen]
-    style: dict[str, Any] = {"color": LINE_COLOUR, "zorder": 4}
-    ax.plot(traced[..., 1], traced[..., 0], linewidth=0.8, **style)
-    ax.plot(traced[0, :, 1], traced[0, :, 0], "o", markersize=2.0, **style)
+    ax.plot(traced[..., 1], traced[..., 0], linewidth=0.8, color=LINE_COLOUR, zorder=4)
+    ax.plot(traced[0, :, 1], traced[0, :, 0], "o", markersize=2.0, color=LINE_COLOUR, zorder=4)
 
 
 def _time_colours() -> Colormap:

@@ -155,10 +155,10 @@ def draw_layers(
         drawn.append(_draw_velocity(top, velocity, frame_interval_s, unit))
         _name(top, "edge velocity: protrusion red, retraction blue")
     common = limits or _limits(table)
+    places = {table.shape[1] - 1: " (centre)", 0: " (edge)"}
     for ax, layer in zip(maps, layers, strict=True):
         drawn.append(_draw_map(ax, table[:, layer], frame_interval_s, SIGNAL_COLOURS, common))
-        place = " (edge)" if layer == 0 else " (centre)" if layer == table.shape[1] - 1 else ""
-        _name(ax, f"layer {layer}{place}")
+        _name(ax, f"layer {layer}{places.get(layer, '')}")
     colour_bar(drawn[-1], bar_beside(*maps), label, extend=_extend(table[:, layers], drawn[-1]))
     _share_labels(axes)
     return drawn
@@ -246,11 +246,7 @@ def _draw_velocity(ax: Axes, velocity: Any, frame_interval_s: float | None, labe
 
 
 def _draw_map(
-    ax: Axes,
-    table: FloatArray,
-    frame_interval_s: float | None,
-    cmap: str,
-    limits: tuple[float, float],
+    ax: Axes, table: FloatArray, frame_interval_s: float | None, cmap: str, limits: tuple[float, float]
 ) -> AxesImage:
     frames, sectors = table.shape
     step, label = time_scale(frames, frame_interval_s)
@@ -271,9 +267,8 @@ def _draw_map(
 
 def _extend(table: FloatArray, drawn: AxesImage) -> Extend:
     """At which ends of the colours values are cut off."""
-    finite = table[np.isfinite(table)]
     low, high = drawn.get_clim()
-    below, above = bool((finite < low).any()), bool((finite > high).any())
+    below, above = bool((table < low).any()), bool((table > high).any())
     return "both" if below and above else "min" if below else "max" if above else "neither"
 
 
