@@ -1,4 +1,4 @@
-"""Draw how a cell's edge moves: arrows of one frame, outlines through time, area won (red) and lost (blue)."""
+"""Draw how a cell's edge moves: arrows of one frame, outlines through time, area won and lost."""
 
 from typing import Any, Literal
 
