@@ -300,12 +300,12 @@ def _finish(console: "Console", study: "Study", figures: int) -> None:
         console.print(f"{_count(len(remarks))} with remarks: column 'notes' of cells.parquet")
     doubtful = mapped[mapped["doubts"] != ""]
     for _, row in doubtful.head(20).iterrows():
-        console.print(f"look at cell {row['cell']} (frame {row['frame']}): {row['doubts']}")
+        console.print(f"look at cell {row['cell']} (frame {row['time']}): {row['doubts']}")
     if len(doubtful) > 20:
         console.print(f"… and at {len(doubtful) - 20} more: column 'doubts' of cells.parquet")
     lost = cells[cells["status"] != "ok"]
     for _, row in lost.head(20).iterrows():
-        print(f"cell {row['cell']} (frame {row['frame']}) {row['status']}: {row['reason']}", file=sys.stderr)
+        print(f"cell {row['cell']} (frame {row['time']}) {row['status']}: {row['reason']}", file=sys.stderr)
     if len(lost) > 20:
         print(f"… and {len(lost) - 20} more: column 'reason' of cells.parquet", file=sys.stderr)
     if 0 <= figures < len(mapped):

@@ -6,7 +6,8 @@ import json
 import os
 import zipfile
 import zlib
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
@@ -72,6 +73,10 @@ class DiskMap:
     edge_length: float
     steps: int
     converged: bool
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is computed from the fields is not sent to other processes."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     def __repr__(self) -> str:
         return (
@@ -194,13 +199,15 @@ class DiskMap:
         out[inside] = ndimage.map_coordinates(values, points[inside].T, order=1, mode="nearest")
         return out.reshape(size, size)
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: str | os.PathLike[str], beside: Mapping[str, FloatArray] | None = None) -> None:
         """Write the map to a compressed `.npz` file that `load_map` reads back.
 
         Parameters
         ----------
         path : path-like
             Ends in `.npz`; written under a temporary name and then renamed.
+        beside : dict of str to ndarray, optional
+            More arrays for the same file; `load_map` does not read them.
 
         Raises
         ------
@@ -218,6 +225,7 @@ class DiskMap:
                 temporary,
                 header=np.array(json.dumps(header)),
                 mask=self.mask,
+                **(beside or {}),
                 **{name: getattr(self, name) for name in _ARRAYS},
             )
 

@@ -4,10 +4,11 @@ from typing import Any
 
 import pyarrow as pa
 
-# (name, type, unit); "length²" and "length" become µm or px, whichever the run has.
+# (name, type, unit); "length²", "length" and "velocity" become the units that the run has.
 CELL_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
     ("cell", pa.int64(), ""),
-    ("frame", pa.int64(), ""),
+    ("time", pa.int64(), "frame"),
+    ("time_s", pa.float64(), "s"),
     ("label", pa.int64(), ""),
     ("status", pa.string(), ""),
     ("reason", pa.string(), ""),
@@ -41,9 +42,45 @@ CELL_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
     ("seconds", pa.float64(), "s"),
 )
 
+# What a movie's cells have in addition: how the frame was tracked and registered.
+TRACK_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
+    ("restarted", pa.string(), ""),
+    ("tracking_residual", pa.float64(), "length"),
+    ("order_violations", pa.int64(), ""),
+    ("registration_angle", pa.float64(), "°"),
+    ("registration_shift_y", pa.float64(), "px"),
+    ("registration_shift_x", pa.float64(), "px"),
+)
+
+EDGE_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
+    ("cell", pa.int64(), ""),
+    ("time", pa.int64(), "frame"),
+    ("time_s", pa.float64(), "s"),
+    ("sector", pa.int64(), ""),
+    ("velocity", pa.float64(), "velocity"),
+    ("velocity_cell_frame", pa.float64(), "velocity"),
+    ("velocity_error", pa.float64(), "velocity"),
+    ("protruded_area", pa.float64(), "length²"),
+    ("retracted_area", pa.float64(), "length²"),
+    ("edge_length", pa.float64(), "length"),
+    ("status", pa.string(), ""),
+)
+
+CONSISTENCY_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
+    ("cell", pa.int64(), ""),
+    ("time", pa.int64(), "frame"),
+    ("time_s", pa.float64(), "s"),
+    ("channel", pa.string(), ""),
+    ("layer", pa.int64(), ""),
+    ("correlation", pa.float64(), "1"),
+    ("centroid_displacement", pa.float64(), "length"),
+    ("completeness", pa.float64(), "1"),
+)
+
 WINDOW_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
     ("cell", pa.int64(), ""),
     ("time", pa.int64(), "frame"),
+    ("time_s", pa.float64(), "s"),
     ("channel", pa.string(), ""),
     ("layer", pa.int64(), ""),
     ("sector", pa.int64(), ""),
@@ -61,13 +98,17 @@ WINDOW_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
 )
 
 
-def schema(columns: tuple[tuple[str, pa.DataType, str], ...], length_unit: str) -> Any:
+def schema(
+    columns: tuple[tuple[str, pa.DataType, str], ...], length_unit: str, velocity_unit: str = ""
+) -> Any:
     """Arrow schema with the unit of each column in its metadata.
 
     Parameters
     ----------
     columns : tuple of (name, type, unit)
     length_unit : {"µm", "px"}
+    velocity_unit : str
+        Such as "µm/s".
 
     Returns
     -------
@@ -75,7 +116,11 @@ def schema(columns: tuple[tuple[str, pa.DataType, str], ...], length_unit: str) 
     """
     return pa.schema(
         [
-            pa.field(name, kind, metadata={"unit": unit.replace("length", length_unit)})
+            pa.field(name, kind, metadata={"unit": _unit(unit, length_unit, velocity_unit)})
             for name, kind, unit in columns
         ]
     )
+
+
+def _unit(unit: str, length_unit: str, velocity_unit: str) -> str:
+    return unit.replace("length", length_unit).replace("velocity", velocity_unit)

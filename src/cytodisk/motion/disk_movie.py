@@ -28,12 +28,23 @@ class FrameRecord:
         "ok", "refused" (the mask cannot be used), "missing" (the label is not there) or "unreadable".
     reason : str
         Why there is no map; empty if there is one.
-    boundary : TrackedBoundary or None
+    load_boundary : callable or None
+        Gives the tracked boundary; None if there is none.
     """
 
     status: str
     reason: str
-    boundary: TrackedBoundary | None
+    load_boundary: Callable[[], TrackedBoundary] | None
+
+    @property
+    def has_map(self) -> bool:
+        """Whether the frame was mapped."""
+        return self.load_boundary is not None
+
+    @cached_property
+    def boundary(self) -> TrackedBoundary | None:
+        """Tracked boundary, None without a map; read when first asked for."""
+        return None if self.load_boundary is None else self.load_boundary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +93,7 @@ class DiskMovie(Sequence[DiskMap]):
         if not 0 <= number < len(self):
             raise IndexError(f"frame {time} of a movie of {len(self)} frames")
         record = self.records[number]
-        if record.boundary is None:
+        if not record.has_map:
             raise MapError(f"frame {number} has no map: {record.reason}")
         return self.load(number)
 
@@ -94,7 +105,7 @@ class DiskMovie(Sequence[DiskMap]):
     @property
     def mapped(self) -> BoolArray:
         """Whether each frame has a map, shape (T,)."""
-        return np.array([record.boundary is not None for record in self.records])
+        return np.array([record.has_map for record in self.records])
 
     @property
     def n_points(self) -> int:

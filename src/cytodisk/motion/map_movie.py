@@ -42,7 +42,8 @@ class FrameResult:
     def record(self) -> FrameRecord:
         """The frame without its map."""
         if self.mapped is not None:
-            return FrameRecord("ok", "", self.mapped.boundary)
+            boundary = self.mapped.boundary
+            return FrameRecord("ok", "", lambda: boundary)
         return FrameRecord(status_of(self.fault), str(self.fault), None)
 
 

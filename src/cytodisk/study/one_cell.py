@@ -68,7 +68,7 @@ def measure_cell(task: CellTask) -> CellResult:
     """
     started = time.perf_counter()
     found, parameters = task.found, task.parameters
-    row: dict[str, Any] = {"cell": found.cell, "frame": found.frame, "label": found.label}
+    row: dict[str, Any] = {"cell": found.cell, "time": found.frame, "label": found.label}
     fault = found.fault or task.signal_fault
     if fault is None:
         try:

@@ -1,0 +1,112 @@
+"""A mapped frame in one file: its disk map and its tracked boundary."""
+
+from __future__ import annotations
+
+import os
+import zipfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from cytodisk.disk.disk_map import DiskMap, load_map
+from cytodisk.errors import ReadError
+from cytodisk.motion.contour import Contour
+from cytodisk.motion.mapped_frame import MappedFrame
+from cytodisk.motion.registration import RigidTransform
+from cytodisk.motion.tracking import TrackedBoundary
+
+
+def save_frame(path: str | os.PathLike[str], frame: MappedFrame) -> None:
+    """Write a frame to a `.npz` file; `load_map` reads its map, `load_boundary` its boundary.
+
+    Parameters
+    ----------
+    path : path-like
+    frame : MappedFrame
+
+    Raises
+    ------
+    StudyError
+        The file cannot be written.
+    """
+    boundary, transform = frame.boundary, frame.boundary.transform
+    frame.disk.save(
+        path,
+        {
+            "track_s": boundary.s,
+            "track_transform": np.array([transform.angle, transform.shift_y, transform.shift_x]),
+            "track_residual_px": np.array(boundary.residual_px),
+            "track_times": np.array([boundary.time, frame.reference.time, boundary.order_violations]),
+            "track_restarted": np.array(boundary.restarted),
+        },
+    )
+
+
+def load_boundary(path: str | os.PathLike[str], disk: DiskMap | None = None) -> TrackedBoundary:
+    """Read the tracked boundary of a frame that `save_frame` wrote.
+
+    Parameters
+    ----------
+    path : path-like
+    disk : DiskMap, optional
+        The frame's map, when it has been read already.
+
+    Returns
+    -------
+    TrackedBoundary
+        Bit for bit as it was saved.
+
+    Raises
+    ------
+    ReadError
+        The file is missing, damaged, or holds no boundary.
+    """
+    return _read(path, disk)[0]
+
+
+def load_frame(path: str | os.PathLike[str], path_at: dict[int, Path]) -> MappedFrame:
+    """Read a whole frame back.
+
+    Parameters
+    ----------
+    path : path-like
+    path_at : dict of int to Path
+        Files of the movie's frames by time, for the frame that this one was registered to.
+
+    Returns
+    -------
+    MappedFrame
+
+    Raises
+    ------
+    ReadError
+        A file is missing, damaged, or holds no boundary.
+    """
+    disk = load_map(path)
+    boundary, reference_time = _read(path, disk)
+    if reference_time == boundary.time:
+        return MappedFrame(disk, boundary, boundary)
+    if reference_time not in path_at:
+        raise ReadError(f"{path} refers to frame {reference_time}, which has no file")
+    return MappedFrame(disk, boundary, load_boundary(path_at[reference_time]))
+
+
+def _read(path: str | os.PathLike[str], disk: DiskMap | None) -> tuple[TrackedBoundary, int]:
+    outline = (disk or load_map(path)).outline_yx
+    try:
+        with Path(path).open("rb") as stream, np.load(stream) as file:
+            time, reference_time, violations = (int(number) for number in file["track_times"])
+            angle, shift_y, shift_x = (float(number) for number in file["track_transform"])
+            boundary = TrackedBoundary(
+                time,
+                Contour.of_outline(outline),
+                file["track_s"],
+                RigidTransform(angle, shift_y, shift_x),
+                float(file["track_residual_px"]),
+                violations,
+                str(file["track_restarted"]),
+            )
+            return boundary, reference_time
+    except (zipfile.BadZipFile, zlib.error, KeyError, ValueError, OSError, EOFError) as error:
+        raise ReadError(f"{path} holds no tracked boundary: {error}") from error
