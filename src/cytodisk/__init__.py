@@ -9,11 +9,6 @@ if TYPE_CHECKING:
     from cytodisk.analysis.activity import sample_movie as sample_movie
     from cytodisk.analysis.consistency import centroid_displacement as centroid_displacement
     from cytodisk.analysis.consistency import consecutive_correlation as consecutive_correlation
-    from cytodisk.motion.disk_movie import DiskMovie as DiskMovie
-    from cytodisk.motion.map_movie import map_movie as map_movie
-    from cytodisk.motion.velocity import boundary_velocity as boundary_velocity
-    from cytodisk.motion.velocity import edge_changes as edge_changes
-    from cytodisk.motion.velocity import edge_velocity as edge_velocity
     from cytodisk.disk.certificate import Certificate as Certificate
     from cytodisk.disk.certificate import certify as certify
     from cytodisk.disk.disk_map import DiskMap as DiskMap
@@ -25,6 +20,11 @@ if TYPE_CHECKING:
     from cytodisk.io.frames import read_image as read_image
     from cytodisk.io.study_folder import Study as Study
     from cytodisk.io.study_folder import open_study as open_study
+    from cytodisk.motion.disk_movie import DiskMovie as DiskMovie
+    from cytodisk.motion.map_movie import map_movie as map_movie
+    from cytodisk.motion.velocity import boundary_velocity as boundary_velocity
+    from cytodisk.motion.velocity import edge_changes as edge_changes
+    from cytodisk.motion.velocity import edge_velocity as edge_velocity
     from cytodisk.windows.cell_windows import CellWindows as CellWindows
     from cytodisk.windows.grid import PolarWindows as PolarWindows
     from cytodisk.windows.grid import polar_windows as polar_windows

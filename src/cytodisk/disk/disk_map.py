@@ -225,7 +225,7 @@ class DiskMap:
                 temporary,
                 header=np.array(json.dumps(header)),
                 mask=self.mask,
-                **(beside or {}),
+                **dict[str, Any](beside or {}),
                 **{name: getattr(self, name) for name in _ARRAYS},
             )
 

@@ -19,13 +19,50 @@ import pyarrow.parquet as pq
 from cytodisk.disk.disk_map import DiskMap, load_map
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.files import lock, replacing
-from cytodisk.io.tables import CELL_COLUMNS, WINDOW_COLUMNS, schema
+from cytodisk.io.tables import (
+    CELL_COLUMNS,
+    CONSISTENCY_COLUMNS,
+    EDGE_COLUMNS,
+    TRACK_COLUMNS,
+    WINDOW_COLUMNS,
+    Columns,
+    schema,
+)
 
 PARAMETERS, PROVENANCE = "parameters.toml", "provenance.json"
-CELLS, WINDOWS = "cells.parquet", "windows.parquet"
+CELLS, WINDOWS, EDGE = "cells.parquet", "windows.parquet", "edge.parquet"
+CONSISTENCY, ACTIVITY = "consistency.parquet", "activity.zarr"
 MAPS, FIGURES, _PARTS, _LOCK = "maps", "figures", ".parts", ".lock"
-_OWN = (PARAMETERS, CELLS, WINDOWS, MAPS, FIGURES, _PARTS)
-_CELLS_PER_GROUP = 64
+_OWN = (PARAMETERS, CELLS, WINDOWS, EDGE, CONSISTENCY, ACTIVITY, MAPS, FIGURES, _PARTS)
+_PARTS_PER_GROUP = 64
+
+
+@dataclass(frozen=True)
+class Tables:
+    """Which tables a run writes.
+
+    Attributes
+    ----------
+    cells : tuple of (name, type, unit)
+        Columns of the table with a row for each cell, or for each frame of a cell.
+    others : dict of str to tuple of (name, type, unit)
+        By name of the table.
+    """
+
+    cells: Columns
+    others: dict[str, Columns]
+
+
+MAP_TABLES = Tables(CELL_COLUMNS, {"windows": WINDOW_COLUMNS})
+MOVIE_TABLES = Tables(
+    (*CELL_COLUMNS, *TRACK_COLUMNS),
+    {"windows": WINDOW_COLUMNS, "edge": EDGE_COLUMNS, "consistency": CONSISTENCY_COLUMNS},
+)
+
+
+def part_key(cell: int, time: int | None = None) -> str:
+    """Name of a part of a study: a cell, or a frame of a cell."""
+    return f"{cell:05d}" if time is None else f"{cell:05d}_t{time:05d}"
 
 
 @contextmanager
@@ -62,22 +99,24 @@ def alone_in(path: str | os.PathLike[str]) -> Iterator[None]:
 
 
 class StudyFolder:
-    """The writing side of a study: one part a cell, merged into the tables at the end.
+    """The writing side of a study: one part a cell, or a frame of a cell, merged into the tables at the end.
 
     A part's last file marks it as done; every file is written under a temporary name and renamed. So a run
     that is killed at any moment loses only the cells it was at, and another run can do the rest. Use it
     within `alone_in`.
     """
 
-    def __init__(self, path: Path, provenance: dict[str, Any]):
+    def __init__(self, path: Path, provenance: dict[str, Any], tables: Tables = MAP_TABLES):
         self.path = path
         self.provenance = provenance
+        self.tables = tables
 
     @classmethod
     def start(
         cls,
         path: str | os.PathLike[str],
         provenance: dict[str, Any],
+        tables: Tables = MAP_TABLES,
         *,
         resume: bool = False,
         overwrite: bool = False,
@@ -91,6 +130,7 @@ class StudyFolder:
         provenance : dict
             Must hold "fingerprint": what the results depend on. Two runs with one fingerprint have the same
             results.
+        tables : Tables
         resume : bool
             Go on in a folder that holds part of the same run.
         overwrite : bool
@@ -106,7 +146,7 @@ class StudyFolder:
             The folder holds something else, or another run, or cannot be written.
         """
         folder = Path(path)
-        study = cls(folder, provenance)
+        study = cls(folder, provenance, tables)
         try:
             if folder.exists() and not folder.is_dir():
                 raise StudyError(f"output {folder} is a file: pass a folder")
@@ -134,86 +174,111 @@ class StudyFolder:
         self.provenance[name] = value
         _write_json(self.path / PROVENANCE, self.provenance)
 
-    def has(self, cell: int) -> bool:
-        """Whether a cell's part is complete."""
-        return self._part(cell, "json").exists()
+    def has(self, key: str) -> bool:
+        """Whether a part is complete."""
+        return self._part(key, "json").exists()
 
-    def map_path(self, cell: int) -> Path:
-        """Where a cell's map stands."""
-        return self.path / MAPS / f"cell_{cell:05d}.npz"
+    def has_table(self, key: str, table: str) -> bool:
+        """Whether a part has rows for a table."""
+        return self._part(key, f"{table}.parquet").exists()
+
+    def map_path(self, key: str) -> Path:
+        """Where a part's map stands."""
+        return self.path / MAPS / f"cell_{key}.npz"
 
     @property
     def figures(self) -> Path:
         """Where figures stand."""
         return self.path / FIGURES
 
-    def add(self, row: dict[str, Any], windows: dict[str, Any] | None) -> None:
-        """Write a cell's part: its windows, then its row.
+    def add_table(self, key: str, table: str, columns: dict[str, Any]) -> None:
+        """Write a part's rows for a table.
 
         Parameters
         ----------
-        row : dict
-            Values for `CELL_COLUMNS`; missing ones are null.
-        windows : dict of str to array, or None
-            Columns for `WINDOW_COLUMNS`; None for a cell without a map.
+        key : str
+            See `part_key`.
+        table : str
+            One of `self.tables.others`.
+        columns : dict of str to array
         """
-        if windows is not None:
-            table = pa.table(windows, schema=schema(WINDOW_COLUMNS, self._length_unit))
-            with replacing(self._part(row["cell"], "parquet")) as temporary:
-                pq.write_table(table, temporary)
-        _write_json(self._part(row["cell"], "json"), row)
+        rows = pa.table(columns, schema=self._schema(self.tables.others[table]))
+        with replacing(self._part(key, f"{table}.parquet")) as temporary:
+            pq.write_table(rows, temporary)
+
+    def add(self, key: str, row: dict[str, Any], tables: dict[str, dict[str, Any]]) -> None:
+        """Write a part: its rows for the tables, then its own row, which marks it as complete.
+
+        Parameters
+        ----------
+        key : str
+            See `part_key`.
+        row : dict
+            Values for the table of cells; missing ones are null.
+        tables : dict of str to columns
+            Empty for a cell without a map.
+        """
+        for table, columns in tables.items():
+            self.add_table(key, table, columns)
+        _write_json(self._part(key, "json"), row)
 
     def rows(self) -> list[dict[str, Any]]:
-        """The rows of all complete parts, in the order of cells."""
-        return [
-            json.loads(part.read_text(encoding="utf-8"))
-            for part in sorted((self.path / _PARTS).glob("[0-9]*.json"))
+        """The rows of all complete parts, in the order of cells, then time."""
+        found = [
+            json.loads(part.read_text(encoding="utf-8")) for part in (self.path / _PARTS).glob("[0-9]*.json")
         ]
+        return sorted(found, key=lambda row: (row["cell"], row["time"]))
 
-    def finish(self, cells: list[int]) -> None:
+    def part_table(self, key: str, table: str) -> Any:
+        """A part's rows for a table, as an Arrow table."""
+        return pq.read_table(self._part(key, f"{table}.parquet"))
+
+    def finish(self, keys: list[str]) -> None:
         """Merge the parts into the tables and mark the study as complete.
 
         Parameters
         ----------
-        cells : list of int
-            All cells of the run.
+        keys : list of str
+            All parts of the run, in the order of the tables.
 
         Raises
         ------
         StudyError
-            The part of a cell is missing.
+            A part is missing.
         """
+        missing = [key for key in keys if not self.has(key)]
         rows = self.rows()
-        if [row["cell"] for row in rows] != cells:
+        if missing or len(rows) != len(keys):
             raise StudyError(
-                f"study {self.path} has the parts of {len(rows)} cells instead of {len(cells)}: "
+                f"study {self.path} has {len(rows)} parts instead of {len(keys)}: "
                 "run the same command again with --resume"
             )
+        columns = self.tables.cells
         table = pa.Table.from_pylist(
-            [{name: row.get(name) for name, _, _ in CELL_COLUMNS} for row in rows],
-            schema=schema(CELL_COLUMNS, self._length_unit),
+            [{name: row.get(name) for name, _, _ in columns} for row in rows], schema=self._schema(columns)
         )
-        with replacing(self.path / WINDOWS) as temporary:
-            self._merge_windows([row["cell"] for row in rows], temporary)
+        for name in self.tables.others:
+            with replacing(self.path / f"{name}.parquet") as temporary:
+                self._merge(keys, name, temporary)
         with replacing(self.path / CELLS) as temporary:
             pq.write_table(table, temporary)
         self.note("status", "complete")
         shutil.rmtree(self.path / _PARTS, ignore_errors=True)  # the tables stand; parts are only in the way
 
-    def _merge_windows(self, cells: list[int], target: Path) -> None:
-        with pq.ParquetWriter(target, schema(WINDOW_COLUMNS, self._length_unit)) as writer:
-            for first in range(0, len(cells), _CELLS_PER_GROUP):
-                parts = [self._part(cell, "parquet") for cell in cells[first : first + _CELLS_PER_GROUP]]
-                tables = [pq.read_table(part) for part in parts if part.exists()]
-                if tables:
-                    writer.write_table(pa.concat_tables(tables).combine_chunks())
+    def _merge(self, keys: list[str], table: str, target: Path) -> None:
+        with pq.ParquetWriter(target, self._schema(self.tables.others[table])) as writer:
+            for first in range(0, len(keys), _PARTS_PER_GROUP):
+                group = keys[first : first + _PARTS_PER_GROUP]
+                found = [self.part_table(key, table) for key in group if self.has_table(key, table)]
+                if found:
+                    writer.write_table(pa.concat_tables(found).combine_chunks())
 
-    def _part(self, cell: int, suffix: str) -> Path:
-        return self.path / _PARTS / f"{cell:08d}.{suffix}"
+    def _part(self, key: str, suffix: str) -> Path:
+        return self.path / _PARTS / f"{key}.{suffix}"
 
-    @property
-    def _length_unit(self) -> str:
-        return str(self.provenance["length_unit"])
+    def _schema(self, columns: Columns) -> Any:
+        units = self.provenance["length_unit"], self.provenance.get("velocity_unit", "")
+        return schema(columns, *(str(unit) for unit in units))
 
 
 @dataclass(frozen=True)

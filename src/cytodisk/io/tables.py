@@ -1,11 +1,13 @@
 """The tables of a study: their columns, types and units."""
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import pyarrow as pa
 
+Columns: TypeAlias = tuple[tuple[str, pa.DataType, str], ...]
+
 # (name, type, unit); "length²", "length" and "velocity" become the units that the run has.
-CELL_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
+CELL_COLUMNS: Columns = (
     ("cell", pa.int64(), ""),
     ("time", pa.int64(), "frame"),
     ("time_s", pa.float64(), "s"),
@@ -43,7 +45,7 @@ CELL_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
 )
 
 # What a movie's cells have in addition: how the frame was tracked and registered.
-TRACK_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
+TRACK_COLUMNS: Columns = (
     ("restarted", pa.string(), ""),
     ("tracking_residual", pa.float64(), "length"),
     ("order_violations", pa.int64(), ""),
@@ -52,7 +54,7 @@ TRACK_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
     ("registration_shift_x", pa.float64(), "px"),
 )
 
-EDGE_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
+EDGE_COLUMNS: Columns = (
     ("cell", pa.int64(), ""),
     ("time", pa.int64(), "frame"),
     ("time_s", pa.float64(), "s"),
@@ -66,7 +68,7 @@ EDGE_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
     ("status", pa.string(), ""),
 )
 
-CONSISTENCY_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
+CONSISTENCY_COLUMNS: Columns = (
     ("cell", pa.int64(), ""),
     ("time", pa.int64(), "frame"),
     ("time_s", pa.float64(), "s"),
@@ -77,7 +79,7 @@ CONSISTENCY_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
     ("completeness", pa.float64(), "1"),
 )
 
-WINDOW_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
+WINDOW_COLUMNS: Columns = (
     ("cell", pa.int64(), ""),
     ("time", pa.int64(), "frame"),
     ("time_s", pa.float64(), "s"),
@@ -98,9 +100,7 @@ WINDOW_COLUMNS: tuple[tuple[str, pa.DataType, str], ...] = (
 )
 
 
-def schema(
-    columns: tuple[tuple[str, pa.DataType, str], ...], length_unit: str, velocity_unit: str = ""
-) -> Any:
+def schema(columns: Columns, length_unit: str, velocity_unit: str = "") -> Any:
     """Arrow schema with the unit of each column in its metadata.
 
     Parameters

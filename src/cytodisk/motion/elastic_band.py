@@ -142,10 +142,10 @@ def _newton_step(
                     square[a, b] += weight * by_motion[i, k, a] * by_motion[i, k, b]
                     square[a, b] += stiffness * step * (by_motion[after, k, b] - by_motion[i, k, b])
     solved = solve_cyclic(diagonal, coupling, right)
-    change: FloatArray = solved[:, 3].copy()
-    moved: FloatArray = np.zeros(3)
+    change, moved = solved[:, 3].copy(), np.zeros(3)
     if rigid:
         across, response = np.ascontiguousarray(right[:, :3].T), np.ascontiguousarray(solved[:, :3])
-        moved = np.linalg.solve(square - across @ response, -pull - across @ change)
-        change -= response @ moved
+        moved[:] = np.linalg.solve(square - across @ response, -pull - across @ change)
+        for a in range(3):
+            change -= response[:, a] * moved[a]
     return change, moved

@@ -5,26 +5,23 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import Future
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from multiprocessing import get_context, parent_process
-from multiprocessing.connection import wait
-from threading import Thread
 from typing import TypeAlias
 
 import numpy as np
 import xarray as xr
 
-from cytodisk.errors import CytodiskError, ParameterError, ReadError, SignalError, StudyError
+from cytodisk.errors import CytodiskError, ParameterError, ReadError, SignalError
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.io.frames import FrameFile, open_frames
 from cytodisk.io.masks import CellMask, Kind, read_cells, understood_as
-from cytodisk.io.study_folder import PARAMETERS, Study, StudyFolder, alone_in, open_study
+from cytodisk.io.study_folder import PARAMETERS, Study, StudyFolder, alone_in, open_study, part_key
 from cytodisk.study.one_cell import CellResult, CellTask, DrawCell, measure_cell
 from cytodisk.study.parameters import MapParameters, write_parameters
 from cytodisk.study.provenance import describe_run
+from cytodisk.study.workers import worker_pool
 from cytodisk.windows.grid import polar_windows
 
 _MOST_UNNAMED = 10  # more planes than that are hardly channels
@@ -95,9 +92,9 @@ def open_inputs(
     signal_file = None
     if signal is not None:
         signal_file = open_frames(signal, unnamed="T" if mask_file.n_frames > 1 else "C")
-        _check_signal(mask_file, signal_file)
+        check_signal(mask_file, signal_file)
     polar_windows(parameters.layers, parameters.sectors, parameters.spacing)  # raises if it makes no sense
-    pixel_size_um = parameters.pixel_size_um or _pixel_size(mask_file, signal_file)
+    pixel_size_um = parameters.pixel_size_um or common_pixel_size(mask_file, signal_file)
     return MapInputs(mask_file, kind, signal_file, parameters, pixel_size_um)
 
 
@@ -158,14 +155,14 @@ def run_map(
         folder = StudyFolder.start(out, provenance, resume=resume, overwrite=overwrite)
         write_parameters(inputs.parameters, folder.path / PARAMETERS)
         cells = list_cells(inputs)
-        pending = [cell for cell in cells if not folder.has(cell)]
+        pending = [cell for cell in cells if not folder.has(part_key(cell))]
         report = progress or _silent
         done = len(cells) - len(pending)
         report(done, len(cells))
         at_most = len(cells) if draw_at_most is None else draw_at_most
         tasks = _tasks(inputs, folder, set(pending), draw, at_most, geojson)
         for result in _results(tasks, min(workers, max(1, len(pending)))):
-            folder.add(result.row, result.windows)
+            folder.add(part_key(result.row["cell"]), result.row, result.tables)
             done += 1
             report(done, len(cells))
         rows = folder.rows()
@@ -176,7 +173,7 @@ def run_map(
         ]
         folder.note("warnings", warnings)
         folder.note("finished", datetime.now(UTC).isoformat(timespec="seconds"))
-        folder.finish(cells)
+        folder.finish([part_key(cell) for cell in cells])
         return open_study(folder.path)
 
 
@@ -187,7 +184,7 @@ def list_cells(inputs: MapInputs) -> list[int]:
     return [found.cell for found in read_cells(inputs.masks, inputs.kind)]
 
 
-def _pixel_size(masks: FrameFile, signal: FrameFile | None) -> float | None:
+def common_pixel_size(masks: FrameFile, signal: FrameFile | None) -> float | None:
     known = [file for file in (signal, masks) if file is not None and file.pixel_size_um is not None]
     sizes = [file.pixel_size_um for file in known if file.pixel_size_um is not None]
     if sizes and max(sizes) > 1.01 * min(sizes):
@@ -202,7 +199,7 @@ def _silent(done: int, total: int) -> None:
     """Report nothing."""
 
 
-def _check_signal(masks: FrameFile, signal: FrameFile) -> None:
+def check_signal(masks: FrameFile, signal: FrameFile) -> None:
     if signal.image_shape != masks.image_shape:
         raise SignalError(
             f"signal {signal.path} has images of {signal.image_shape}, the masks of {masks.image_shape}: "
@@ -244,7 +241,7 @@ def _tasks(
             fault,
             inputs.parameters,
             inputs.pixel_size_um,
-            folder.map_path(found.cell),
+            folder.map_path(part_key(found.cell)),
             folder.figures,
             wanted,
             geojson,
@@ -264,31 +261,14 @@ def _signal_at(inputs: MapInputs, frame: int) -> tuple[xr.DataArray | None, Cyto
 
 def _results(tasks: Iterator[CellTask], workers: int) -> Iterator[CellResult]:
     """Results in the order of tasks; at most two tasks a worker wait at a time, so memory is bounded."""
-    if workers == 1:
-        yield from map(measure_cell, tasks)
-        return
     waiting: deque[Future[CellResult]] = deque()
-    try:
-        with ProcessPoolExecutor(workers, get_context("spawn"), _leave_with_parent) as pool:
-            for task in tasks:
-                waiting.append(pool.submit(measure_cell, task))
-                if len(waiting) >= 2 * workers:
-                    yield waiting.popleft().result()
-            while waiting:
+    with worker_pool(workers) as pool:
+        for task in tasks:
+            waiting.append(pool.submit(measure_cell, task))
+            if workers == 1 or len(waiting) >= 2 * workers:
                 yield waiting.popleft().result()
-    except BrokenProcessPool as error:
-        raise StudyError(
-            "a worker process died, perhaps for want of memory: what was done is kept; "
-            "run the same command with --resume, and with fewer --workers"
-        ) from error
-
-
-def _leave_with_parent() -> None:
-    """Let a worker end when the main process is gone, even if that was killed."""
-    parent = parent_process()
-    if parent is not None:
-        sentinel = parent.sentinel
-        Thread(target=lambda: (wait([sentinel]), os._exit(1)), daemon=True).start()
+        while waiting:
+            yield waiting.popleft().result()
 
 
 def check_cells(inputs: MapInputs) -> Iterator[tuple[CellMask, str, tuple[str, ...], tuple[str, ...]]]:

@@ -1,11 +1,11 @@
 """One cell of a run: map it, sample it, and put the result into rows."""
 
 import json
-import time
+import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -43,10 +43,10 @@ class CellTask:
 
 @dataclass(frozen=True)
 class CellResult:
-    """A cell's row and its windows, for `StudyFolder.add`; None when the cell has no map."""
+    """A cell's row and its rows of the tables, for `StudyFolder.add`; no tables when the cell has no map."""
 
     row: dict[str, Any]
-    windows: dict[str, Any] | None
+    tables: dict[str, dict[str, Any]]
 
 
 def measure_cell(task: CellTask) -> CellResult:
@@ -66,7 +66,7 @@ def measure_cell(task: CellTask) -> CellResult:
     StudyError
         A result cannot be written.
     """
-    started = time.perf_counter()
+    started = clock.perf_counter()
     found, parameters = task.found, task.parameters
     row: dict[str, Any] = {"cell": found.cell, "time": found.frame, "label": found.label}
     fault = found.fault or task.signal_fault
@@ -83,11 +83,13 @@ def measure_cell(task: CellTask) -> CellResult:
             fault = error
     if fault is not None:
         status = "unreadable" if isinstance(fault, ReadError) else "refused"
-        return CellResult(row | {"status": status, "reason": str(fault), "seconds": _since(started)}, None)
+        return CellResult(row | {"status": status, "reason": str(fault), "seconds": _since(started)}, {})
 
     windows = polar_windows(parameters.layers, parameters.sectors, parameters.spacing).on(disk)
-    columns = _window_columns(task, windows)
-    row |= _cell_columns(disk, windows, task.signal, task.pixel_size_um)
+    columns = window_columns(
+        (found.cell, found.frame, None), windows, task.signal, parameters.nan, task.pixel_size_um
+    )
+    row |= cell_columns(disk, windows, task.signal, task.pixel_size_um)
     disk.save(task.map_path)
     if task.geojson:
         with replacing(task.map_path.with_suffix(".geojson")) as temporary:
@@ -95,12 +97,26 @@ def measure_cell(task: CellTask) -> CellResult:
     seconds = _since(started)
     if task.draw is not None and task.figures is not None:
         task.draw(task.figures, f"cell_{found.cell:05d}", windows, task.signal, task.pixel_size_um)
-    return CellResult(row | {"status": "ok", "reason": "", "seconds": seconds}, columns)
+    return CellResult(row | {"status": "ok", "reason": "", "seconds": seconds}, {"windows": columns})
 
 
-def _cell_columns(
+def cell_columns(
     disk: DiskMap, windows: CellWindows, signal: xr.DataArray | None, pixel_size_um: float | None
 ) -> dict[str, Any]:
+    """What the table of cells says about a map and its windows.
+
+    Parameters
+    ----------
+    disk : DiskMap
+    windows : CellWindows
+    signal : DataArray with dims (channel, y, x), optional
+    pixel_size_um : float or None
+
+    Returns
+    -------
+    dict
+        Values by column.
+    """
     report, distortion, certificate = disk.report, disk.distortion, disk.certificate
     pixel = pixel_size_um or 1.0
     centre = centroid(disk.outline_yx)
@@ -149,29 +165,51 @@ def _notes(disk: DiskMap, missing: int) -> list[str]:
     return notes
 
 
-def _window_columns(task: CellTask, windows: CellWindows) -> dict[str, Any]:
-    """Columns of the windows table: for each channel every window, layers first."""
-    parameters = task.parameters
-    pixel = task.pixel_size_um or 1.0
+def window_columns(
+    place: tuple[int, int, float | None],
+    windows: CellWindows,
+    signal: xr.DataArray | None,
+    nan: Literal["propagate", "omit"],
+    pixel_size_um: float | None,
+) -> dict[str, Any]:
+    """Columns of the windows table: for each channel every window, layers first.
+
+    Parameters
+    ----------
+    place : (int, int, float or None)
+        Cell, frame, and the frame's time in seconds.
+    windows : CellWindows
+    signal : DataArray with dims (channel, y, x), optional
+    nan : {"propagate", "omit"}
+    pixel_size_um : float or None
+
+    Returns
+    -------
+    dict of str to array
+    """
+    pixel = pixel_size_um or 1.0
     n_windows = windows.grid.n_windows
     channels: list[str | None] = [None]
     statistics: dict[str, Any] = {}
     status = ["no signal"] * n_windows
-    if task.signal is not None:
-        data = sample(windows, task.signal, nan=parameters.nan)
+    if signal is not None:
+        data = sample(windows, signal, nan=nan)
         channels = [str(name) for name in data["channel"].to_numpy()]
-        statistics = {name: data[name].to_numpy().ravel() for name in _SAMPLED}
+        statistics = {name: data[name].to_numpy().ravel() for name in SAMPLED}
         status = np.where(np.isnan(statistics["mean"]), "NaN in signal", "ok").tolist()
     repeats = len(channels)
+    rows = n_windows * repeats
     layer, sector = np.divmod(np.tile(np.arange(n_windows), repeats), windows.grid.sectors)
-    nothing = np.full(n_windows * repeats, np.nan)
+    nothing = np.full(rows, np.nan)
+    cell, time, time_s = place
     return {
-        "cell": np.full(n_windows * repeats, task.found.cell),
-        "time": np.full(n_windows * repeats, task.found.frame),
+        "cell": np.full(rows, cell),
+        "time": np.full(rows, time),
+        "time_s": [time_s] * rows,
         "channel": [name for name in channels for _ in range(n_windows)],
         "layer": layer,
         "sector": sector,
-        **{name: statistics.get(name, nothing) for name in _SAMPLED},
+        **{name: statistics.get(name, nothing) for name in SAMPLED},
         "area": np.tile(windows.areas.ravel() * pixel**2, repeats),
         "centroid_y": np.tile(windows.centroids_yx[..., 0].ravel(), repeats),
         "centroid_x": np.tile(windows.centroids_yx[..., 1].ravel(), repeats),
@@ -180,8 +218,8 @@ def _window_columns(task: CellTask, windows: CellWindows) -> dict[str, Any]:
     }
 
 
-_SAMPLED = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
+SAMPLED = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
 
 
 def _since(started: float) -> float:
-    return time.perf_counter() - started
+    return clock.perf_counter() - started

@@ -2,7 +2,7 @@
 
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -30,7 +30,35 @@ class MapParameters(BaseModel):
     pixel_size_um: Annotated[float, Field(gt=0)] | None = None
 
 
-def parameters_from(values: dict[str, Any], path: Path | None = None) -> MapParameters:
+class MovieParameters(MapParameters):
+    """What decides the result of `cytodisk movie`, beside the input files.
+
+    See `map_movie` and `edge_changes`. `depth_um` takes the place of `layers`: thickness of the first layer in
+    the first frame.
+    """
+
+    kind: Literal["auto", "stack", "labels"] = "auto"
+    link: bool = False
+    tracker: Literal["matching", "demons"] = "matching"
+    tension: Annotated[float, Field(ge=0, le=1)] = 0.01
+    registration: bool = True
+    renew_every: Annotated[int, Field(ge=1)] = 5
+    inertia: Annotated[float, Field(ge=0)] = 1.0
+    depth_um: Annotated[float, Field(gt=0)] | None = None
+    jitter_px: Annotated[float, Field(ge=0)] = 0.5
+    repeats: Annotated[int, Field(ge=2)] = 16
+    seed: Annotated[int, Field(ge=0)] = 0
+    frame_interval_s: Annotated[float, Field(gt=0)] | None = None
+
+
+AnyParameters = TypeVar("AnyParameters", bound=MapParameters)
+
+
+def parameters_from(
+    values: dict[str, Any],
+    path: Path | None = None,
+    of: type[AnyParameters] = MapParameters,  # type: ignore[assignment]
+) -> AnyParameters:
     """Parameters from a file, overruled by given values.
 
     Parameters
@@ -39,10 +67,12 @@ def parameters_from(values: dict[str, Any], path: Path | None = None) -> MapPara
         By name; None means not given.
     path : Path, optional
         A TOML file as `parameters.toml` of a study.
+    of : type
+        `MapParameters` or `MovieParameters`.
 
     Returns
     -------
-    MapParameters
+    MapParameters or MovieParameters
 
     Raises
     ------
@@ -57,7 +87,7 @@ def parameters_from(values: dict[str, Any], path: Path | None = None) -> MapPara
             raise ParameterError(f"parameters file {path} cannot be read: {error}") from error
     merged |= {name: value for name, value in values.items() if value is not None}
     try:
-        return MapParameters(**merged)
+        return of(**merged)
     except ValidationError as error:
         faults = [
             f"{fault['loc'][0] if fault['loc'] else '?'}: {fault['msg']}, got {repr(fault['input'])[:40]}"
@@ -82,6 +112,8 @@ def write_parameters(parameters: MapParameters, path: Path) -> None:
 
 
 def _toml(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
     if isinstance(value, str):
         return f'"{value}"'
     if isinstance(value, tuple):

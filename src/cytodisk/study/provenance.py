@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from cytodisk.errors import ReadError
+from cytodisk.motion.velocity import velocity_unit
 from cytodisk.study.parameters import MapParameters
 
 PACKAGES = (
@@ -40,6 +41,7 @@ def describe_run(
     parameters: MapParameters,
     understood: Mapping[str, str],
     pixel_size_um: float | None,
+    frame_interval_s: float | None = None,
 ) -> dict[str, Any]:
     """Provenance of a run that starts now.
 
@@ -52,6 +54,7 @@ def describe_run(
         What each input was read as, in words.
     pixel_size_um : float or None
         The scale that the results are in.
+    frame_interval_s : float or None
 
     Returns
     -------
@@ -67,7 +70,7 @@ def describe_run(
     settings = parameters.model_dump(mode="json")
     fingerprint: dict[str, Any] = {f"{role} sha256": value for role, value in hashes.items()}
     fingerprint |= {"cytodisk": installed(("cytodisk",))["cytodisk"]} | settings
-    fingerprint["pixel_size_um"] = pixel_size_um
+    fingerprint |= {"pixel_size_um": pixel_size_um, "frame_interval_s": frame_interval_s}
     return {
         "status": "running",
         "fingerprint": fingerprint,
@@ -77,11 +80,13 @@ def describe_run(
         },
         "parameters": settings,
         "pixel_size_um": pixel_size_um,
+        "frame_interval_s": frame_interval_s,
         "length_unit": "px" if pixel_size_um is None else "µm",
+        "velocity_unit": velocity_unit(pixel_size_um, frame_interval_s),
         "versions": installed(),
         "python": platform.python_version(),
         "platform": platform.platform(),
-        "seed": None,  # nothing here is random
+        "seed": settings.get("seed"),  # of the error bar of edge velocity; nothing else is random
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
         "warnings": [],
     }

@@ -129,3 +129,33 @@ def polar_windows(layers: int = 10, sectors: int = 60, spacing: Spacing = "area"
     if spacing not in ("area", "radius"):
         raise WindowError(f"spacing must be 'area' or 'radius', got {spacing!r}")
     return PolarWindows(int(layers), int(sectors), spacing)
+
+
+def layers_for_depth(depth: float, area: float, perimeter: float, spacing: Spacing = "area") -> int:
+    """Number of layers whose first is about so thick on a cell.
+
+    The first layer's area is taken as its thickness times the cell's perimeter.
+
+    Parameters
+    ----------
+    depth : float
+        Thickness of the first layer, above 0.
+    area, perimeter : float
+        Of the cell, in the same unit of length.
+    spacing : {"area", "radius"}
+
+    Returns
+    -------
+    int
+        At least 1.
+
+    Raises
+    ------
+    WindowError
+        `depth` is not above 0.
+    """
+    if not 0 < depth < np.inf:
+        raise WindowError(f"depth must be above 0, got {depth!r}")
+    share = min(1.0, depth * perimeter / area)
+    step = share if spacing == "area" else 1.0 - np.sqrt(1.0 - share)
+    return max(1, round(1.0 / step))
