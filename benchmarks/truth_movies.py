@@ -195,7 +195,7 @@ def print_header(tracker: str, names: Sequence[str]) -> None:
     print(f"|---|{'---:|' * len(names)}", flush=True)
 
 
-def run(tracker: Tracker, kinds: Sequence[str], seeds: int, frames: int) -> Iterator[Trial]:
+def run(tracker: Tracker, kinds: Sequence[MovieKind], seeds: int, frames: int) -> Iterator[Trial]:
     """Simulate, track and print; a trial for each movie, as soon as it is known."""
     for kind in kinds:
         trials = []
