@@ -31,9 +31,9 @@ def sample_movie(
     ----------
     movie : DiskMovie
     grid : PolarWindows
-    signals : array_like of shape (T, H, W) or (T, C, H, W), DataArray with dims time, (channel,) y, x, or sequence
-        As many frames as the movie. A sequence may read its frames, (H, W) or (C, H, W), when asked for
-        them.
+    signals : array_like of shape (T, H, W) or (T, C, H, W), DataArray or sequence
+        As many frames as the movie; a DataArray has the dims time, (channel,) y, x. A sequence may read its
+        frames, (H, W) or (C, H, W), when asked for them.
     nan : {"propagate", "omit"}
         As for `sample`.
     progress : callable, optional

@@ -15,10 +15,12 @@ from typing import Any
 import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
+import xarray as xr
 
 from cytodisk.disk.disk_map import DiskMap, load_map
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.files import lock, replacing
+from cytodisk.io.activity_store import open_activity
 from cytodisk.io.tables import (
     CELL_COLUMNS,
     CONSISTENCY_COLUMNS,
@@ -28,6 +30,8 @@ from cytodisk.io.tables import (
     Columns,
     schema,
 )
+from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
+from cytodisk.motion.frame_file import load_boundary
 
 PARAMETERS, PROVENANCE = "parameters.toml", "provenance.json"
 CELLS, WINDOWS, EDGE = "cells.parquet", "windows.parquet", "edge.parquet"
@@ -289,9 +293,14 @@ class Study:
     ----------
     path : Path
     cells : DataFrame
-        One row a cell, with its status and the reason; units in `cells.attrs["units"]`.
+        One row a cell, or a frame of a cell, with its status and the reason; units in
+        `cells.attrs["units"]`.
     windows : DataFrame
         One row a cell, time, channel, layer and sector; units in `windows.attrs["units"]`.
+    edge : DataFrame or None
+        For a movie, one row a cell, time and sector: edge velocity, areas won and lost.
+    consistency : DataFrame or None
+        For a movie, one row a cell, time, channel and layer: the paper's measures.
     provenance : dict
         Versions, inputs with their hashes, parameters, times.
     """
@@ -299,18 +308,30 @@ class Study:
     path: Path
     cells: pd.DataFrame
     windows: pd.DataFrame
+    edge: pd.DataFrame | None
+    consistency: pd.DataFrame | None
     provenance: dict[str, Any]
 
     def __repr__(self) -> str:
-        return f"<Study {self.path}: {len(self.cells)} cells, {len(self.windows)} rows of windows>"
+        what = f"{len(self.cells)} cells"
+        if self.is_movie:
+            what = f"{self.cells['cell'].nunique()} cells in {self.cells['time'].nunique()} frames"
+        return f"<Study {self.path}: {what}, {len(self.windows)} rows of windows>"
 
-    def map(self, cell: int) -> DiskMap:
-        """Read the map of one cell.
+    @property
+    def is_movie(self) -> bool:
+        """Whether the run was that of a movie."""
+        return self.edge is not None
+
+    def map(self, cell: int, time: int | None = None) -> DiskMap:
+        """Read the map of one cell, in one frame of a movie.
 
         Parameters
         ----------
         cell : int
             Its number in the tables.
+        time : int, optional
+            Number of the frame, for a movie.
 
         Returns
         -------
@@ -319,15 +340,93 @@ class Study:
         Raises
         ------
         ReadError
-            The cell has no map, as its row in `cells` says.
+            There is no such map, as the row in `cells` says.
         """
-        path = self.path / MAPS / f"cell_{cell:05d}.npz"
+        if self.is_movie != (time is not None):
+            raise ReadError(
+                f"study {self.path}: pass {'cell and time' if self.is_movie else 'the cell alone'}"
+            )
+        key = part_key(cell, time)
+        rows = self._rows_of(cell)
+        if time is not None:
+            rows = rows[rows["time"] == time]
+            if rows.empty:
+                raise ReadError(f"cell {cell} of {self.path} is not in frame {time}")
+        path = self._map_path(key)
+        if not path.exists():
+            raise ReadError(f"cell {key} of {self.path} has no map: {rows['reason'].iloc[0]}")
+        return load_map(path)
+
+    def activity(self, cell: int = 0) -> xr.Dataset:
+        """Activity of one cell of a movie, read from disk when asked for.
+
+        Parameters
+        ----------
+        cell : int
+
+        Returns
+        -------
+        Dataset with dims (time, channel, layer, sector)
+            Statistics of the signal and geometry of the windows; edge velocity and areas by (time, sector);
+            status and reason by frame. Units are in the attrs of each variable.
+
+        Raises
+        ------
+        ReadError
+            The study is not a movie's, or has no such cell.
+        """
+        self._rows_of(cell)
+        return open_activity(self.path / ACTIVITY, cell)
+
+    def movie(self, cell: int = 0) -> DiskMovie:
+        """Maps of one cell through time, each read from disk when asked for.
+
+        Parameters
+        ----------
+        cell : int
+
+        Returns
+        -------
+        DiskMovie
+            Its frame 0 is the first frame of the recording, which the cell may enter later.
+
+        Raises
+        ------
+        ReadError
+            The study is not a movie's, or has no such cell.
+        """
+        rows = self._rows_of(cell)
+        if not self.is_movie:
+            raise ReadError(f"study {self.path} is not that of a movie: use map({cell})")
+        at = {int(row["time"]): row for _, row in rows.iterrows()}
+        last = max(at)
+        records = [self._record(cell, time, at.get(time)) for time in range(last + 1)]
+        height, width = self.provenance["image_shape"]
+        return DiskMovie(
+            tuple(records),
+            (height, width),
+            self.provenance["pixel_size_um"],
+            self.provenance["frame_interval_s"],
+            lambda time: load_map(self._map_path(part_key(cell, time))),
+        )
+
+    def _record(self, cell: int, time: int, row: Any) -> FrameRecord:
+        if row is None:
+            return FrameRecord("missing", f"cell {cell} is not in frame {time} yet", None)
+        if row["status"] != "ok":
+            return FrameRecord(row["status"], row["reason"], None)
+        path = self._map_path(part_key(cell, time))
+        return FrameRecord("ok", "", lambda: load_boundary(path))
+
+    def _map_path(self, key: str) -> Path:
+        return self.path / MAPS / f"cell_{key}.npz"
+
+    def _rows_of(self, cell: int) -> pd.DataFrame:
         rows = self.cells[self.cells["cell"] == cell]
         if rows.empty:
-            raise ReadError(f"study {self.path} has no cell {cell}: it has {len(self.cells)} cells from 0")
-        if not path.exists():
-            raise ReadError(f"cell {cell} of {self.path} has no map: {rows['reason'].iloc[0]}")
-        return load_map(path)
+            count = self.cells["cell"].nunique()
+            raise ReadError(f"study {self.path} has no cell {cell}: it has {count} cells from 0")
+        return rows
 
 
 def open_study(path: str | os.PathLike[str]) -> Study:
@@ -353,7 +452,10 @@ def open_study(path: str | os.PathLike[str]) -> Study:
     if provenance.get("status") != "complete":
         raise ReadError(f"study {folder} is not complete: run the same command again with --resume")
     try:
-        return Study(folder, _read_table(folder / CELLS), _read_table(folder / WINDOWS), provenance)
+        tables = [_read_table(folder / name) for name in (CELLS, WINDOWS)]
+        movie = provenance.get("run") == "movie"
+        more = [_read_table(folder / name) if movie else None for name in (EDGE, CONSISTENCY)]
+        return Study(folder, tables[0], tables[1], more[0], more[1], provenance)
     except (OSError, pa.ArrowException) as error:
         raise ReadError(f"study {folder} is damaged: {error}") from error
 
@@ -374,11 +476,7 @@ def _make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite
         # The old provenance stays, marked, until the new one replaces it: a kill leaves a known study.
         _write_json(folder / PROVENANCE, there | {"status": "being replaced", "fingerprint": {}})
         for name in _OWN:
-            target = folder / name
-            if target.is_dir():
-                shutil.rmtree(target)
-            else:
-                target.unlink(missing_ok=True)
+            _remove(folder / name)
         return
     if not resume:
         raise StudyError(
@@ -396,7 +494,14 @@ def _remove_left_overs(folder: Path) -> None:
     for place in (folder, *(folder / name for name in (MAPS, FIGURES, _PARTS))):
         for file in place.iterdir():
             if file.name != _LOCK and _is_left_over(file):
-                file.unlink()
+                _remove(file)
+
+
+def _remove(target: Path) -> None:
+    if target.is_dir():
+        shutil.rmtree(target)
+    else:
+        target.unlink(missing_ok=True)
 
 
 def _is_left_over(file: Path) -> bool:

@@ -33,8 +33,8 @@ class MapParameters(BaseModel):
 class MovieParameters(MapParameters):
     """What decides the result of `cytodisk movie`, beside the input files.
 
-    See `map_movie` and `edge_changes`. `depth_um` takes the place of `layers`: thickness of the first layer in
-    the first frame.
+    See `map_movie` and `edge_changes`. `depth_um` takes the place of `layers`: thickness of the first layer
+    in the first frame.
     """
 
     kind: Literal["auto", "stack", "labels"] = "auto"

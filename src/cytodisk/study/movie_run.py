@@ -1,0 +1,413 @@
+"""A run over a mask movie: `cytodisk movie` and the same from Python."""
+
+from __future__ import annotations
+
+import os
+import time as clock
+from collections import deque
+from collections.abc import Iterator
+from concurrent.futures import Executor, Future
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.errors import CytodiskError, MaskError, ParameterError, ReadError, SignalError
+from cytodisk.geometry.mask import clean_mask
+from cytodisk.geometry.outline import trace_outline
+from cytodisk.geometry.polygon import edge_lengths, smooth_closed
+from cytodisk.io.frames import FrameFile, open_frames
+from cytodisk.io.masks import Kind, understood_as
+from cytodisk.io.study_folder import (
+    MOVIE_TABLES,
+    PARAMETERS,
+    Study,
+    StudyFolder,
+    alone_in,
+    open_study,
+    part_key,
+)
+from cytodisk.io.tracks import CellTrack, list_tracks, read_frame
+from cytodisk.motion.demons import DemonsParameters
+from cytodisk.motion.frame_file import load_frame
+from cytodisk.motion.map_movie import FrameResult, map_one
+from cytodisk.motion.mapped_frame import MappedFrame, MovieSettings
+from cytodisk.motion.tracking import TrackingSettings
+from cytodisk.study.map_run import Progress, check_signal, common_pixel_size
+from cytodisk.study.movie_tables import finish_tables
+from cytodisk.study.one_frame import FrameRows, FrameTask, Scale, measure_frame, unmapped_row
+from cytodisk.study.parameters import MovieParameters, write_parameters
+from cytodisk.study.provenance import describe_run
+from cytodisk.study.workers import worker_pool
+from cytodisk.windows.grid import PolarWindows, layers_for_depth, polar_windows
+
+
+@dataclass(frozen=True)
+class MovieInputs:
+    """The files of a run, opened and checked against each other.
+
+    Attributes
+    ----------
+    masks : FrameFile
+    kind : {"stack", "labels"}
+    tracks : tuple of CellTrack
+    signal : FrameFile or None
+    parameters : MovieParameters
+        As given.
+    grid : PolarWindows
+    scale : Scale
+        The given one, or else the files' own.
+    """
+
+    masks: FrameFile
+    kind: Kind
+    tracks: tuple[CellTrack, ...]
+    signal: FrameFile | None
+    parameters: MovieParameters
+    grid: PolarWindows
+    scale: Scale
+
+    @property
+    def understood(self) -> dict[str, str]:
+        """What each file was read as, in words."""
+        height, width = self.masks.image_shape
+        size = f"{self.masks.n_frames} frames of {height} × {width} pixels"
+        what = "masks of one cell" if self.kind == "stack" else f"labels of {len(self.tracks)} cells"
+        if self.parameters.link:
+            what += ", linked by overlap"
+        words = {"masks": f"{what}, {size} ({self.masks.axes}, {self.masks.dtype})"}
+        if self.signal is not None:
+            names = ", ".join(self.signal.channels)
+            words["signal"] = (
+                f"channels {names}; {self.signal.n_frames} frames ({self.signal.axes}, {self.signal.dtype})"
+            )
+        if self.parameters.depth_um is not None:
+            words["windows"] = (
+                f"{self.grid.layers} layers × {self.grid.sectors} sectors; the first layer is about "
+                f"{self.parameters.depth_um:g} µm deep in the first frame"
+            )
+        return words
+
+    @property
+    def n_frames(self) -> int:
+        """Frames of all cells together."""
+        return sum(len(track.times) for track in self.tracks)
+
+    @property
+    def keys(self) -> list[str]:
+        """Parts of the study, by cell, then time."""
+        return [part_key(track.cell, time) for track in self.tracks for time in track.times]
+
+
+def open_movie(
+    masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: MovieParameters
+) -> MovieInputs:
+    """Open the files of a run and check that they fit.
+
+    Parameters
+    ----------
+    masks : path-like
+        Masks of one cell by frame, or label images by frame.
+    signal : path-like, optional
+        Images of the shape of the masks, as many frames as they.
+    parameters : MovieParameters
+
+    Returns
+    -------
+    MovieInputs
+
+    Raises
+    ------
+    ReadError, MaskError, SignalError, ParameterError, MissingPartError
+        A file is missing, damaged, or does not fit.
+    """
+    mask_file = open_frames(masks, unnamed="T")
+    _check_masks(mask_file)
+    kind = understood_as(mask_file, parameters.kind)
+    signal_file = None
+    if signal is not None:
+        signal_file = open_frames(signal, unnamed="T")
+        _check_frames(mask_file, signal_file)
+        check_signal(mask_file, signal_file)
+    tracks = tuple(list_tracks(mask_file, kind, parameters.link))
+    scale = Scale(
+        parameters.pixel_size_um or common_pixel_size(mask_file, signal_file),
+        parameters.frame_interval_s or _frame_interval(mask_file, signal_file),
+    )
+    layers = parameters.layers
+    if parameters.depth_um is not None:
+        layers = _layers(mask_file, tracks, parameters, scale)
+    grid = polar_windows(layers, parameters.sectors, parameters.spacing)
+    return MovieInputs(mask_file, kind, tracks, signal_file, parameters, grid, scale)
+
+
+def run_movie(
+    inputs: MovieInputs,
+    out: str | os.PathLike[str],
+    *,
+    workers: int = 1,
+    resume: bool = False,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> Study:
+    """Map, sample and measure every frame of every cell, and write a study.
+
+    Parameters
+    ----------
+    inputs : MovieInputs
+        As `open_movie` returns it.
+    out : path-like
+        Folder of the study.
+    workers : int
+        Processes; with 1 everything runs in this one. The results do not depend on it.
+    resume, overwrite : bool
+        What to do with a study that is there; see `StudyFolder.start`.
+    progress : callable, optional
+        Called with (frames done, frames in all), counted over all cells.
+
+    Returns
+    -------
+    Study
+        Complete; a frame that could not be mapped has a row with the reason.
+
+    Raises
+    ------
+    ParameterError
+        `workers` is below 1, or both `resume` and `overwrite` are set.
+    StudyError
+        The folder cannot be used.
+    """
+    if workers < 1:
+        raise ParameterError(f"workers must be at least 1, got {workers}")
+    if resume and overwrite:
+        raise ParameterError("resume and overwrite exclude each other: pass one of them")
+    paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
+    provenance = describe_run(
+        paths, inputs.parameters, inputs.understood, inputs.scale.pixel_size_um, inputs.scale.frame_interval_s
+    )
+    provenance |= {
+        "run": "movie",
+        "layers": inputs.grid.layers,
+        "image_shape": list(inputs.masks.image_shape),
+    }
+    with alone_in(out):
+        if resume and StudyFolder.is_complete(out, provenance):
+            return open_study(out)
+        folder = StudyFolder.start(out, provenance, MOVIE_TABLES, resume=resume, overwrite=overwrite)
+        write_parameters(inputs.parameters, folder.path / PARAMETERS)
+        with worker_pool(workers) as pool:
+            _Run(inputs, folder, pool, 2 * workers, progress).all_frames()
+        channels = inputs.signal.channels if inputs.signal else ()
+        finish_tables(folder, inputs.tracks, inputs.grid, inputs.scale, channels)
+        rows = folder.rows()
+        folder.note("warnings", [_warning(row) for row in rows if _warning(row)])
+        folder.note("finished", datetime.now(UTC).isoformat(timespec="seconds"))
+        folder.finish(inputs.keys)
+        return open_study(folder.path)
+
+
+def movie_settings(parameters: MovieParameters) -> MovieSettings:
+    """The mapping's part of a run's parameters."""
+    tracking = TrackingSettings(
+        tracker=parameters.tracker,
+        tension=parameters.tension,
+        register=parameters.registration,
+        renew_every=parameters.renew_every,
+        demons=DemonsParameters(),
+    )
+    return MovieSettings(
+        tracking,
+        parameters.method,
+        parameters.shape_weight,
+        parameters.edge_length,
+        parameters.align,
+        parameters.inertia,
+    )
+
+
+class _Run:
+    """Frame after frame, all cells of a frame side by side.
+
+    A frame is mapped when the one before is; measuring it runs beside the mapping of the next one. At most
+    `queue` measured frames wait to be written, so memory does not grow with the movie.
+    """
+
+    def __init__(
+        self, inputs: MovieInputs, folder: StudyFolder, pool: Executor, queue: int, progress: Progress | None
+    ):
+        self._inputs = inputs
+        self._folder = folder
+        self._pool = pool
+        self._queue = queue
+        self._progress = progress
+        self._settings = movie_settings(inputs.parameters)
+        self._last: dict[int, MappedFrame] = {}
+        self._waiting: deque[tuple[str, str, Future[FrameRows]]] = deque()
+        self._done = sum(folder.has(key) for key in inputs.keys)
+
+    def all_frames(self) -> None:
+        """Do what is not done yet."""
+        self._report()
+        for time in range(self._inputs.masks.n_frames):
+            present = [track for track in self._inputs.tracks if time in track.times]
+            pending = [track for track in present if not self._folder.has(part_key(track.cell, time))]
+            if pending:
+                self._one_time(time, pending)
+            for track in present:
+                if time == track.last:
+                    self._last.pop(track.cell, None)
+        while self._waiting:
+            self._write_next()
+
+    def _one_time(self, time: int, tracks: list[CellTrack]) -> None:
+        frame = read_frame(self._inputs.masks, time)
+        signal = _signal_at(self._inputs.signal, time)
+        mapping = []
+        for track in tracks:
+            if track.cell not in self._last:
+                self._resume_from(track, time)
+            mask = signal if isinstance(signal, ReadError) else track.mask_in(frame, time)
+            last = self._last.get(track.cell)
+            mapping.append((track, self._pool.submit(_map_timed, time, mask, last, self._settings)))
+        for track, future in mapping:
+            self._take(track, time, *future.result(), signal)
+
+    def _take(
+        self, track: CellTrack, time: int, result: FrameResult, seconds: float, signal: xr.DataArray | None
+    ) -> None:
+        key = part_key(track.cell, time)
+        if result.mapped is None:
+            fault = result.fault or MaskError("no map")
+            place = track.cell, time, self._inputs.scale.seconds(time)
+            rows = FrameRows(unmapped_row(place, track.label, fault, seconds), {}, None)
+            future: Future[FrameRows] = Future()
+            future.set_result(rows)
+        else:
+            last = self._last.get(track.cell)
+            task = FrameTask(
+                track.cell,
+                track.label,
+                result.mapped,
+                last if last is not None and last.time == time - 1 else None,
+                signal,
+                self._inputs.grid,
+                self._inputs.parameters,
+                self._inputs.scale,
+                self._folder.map_path(key),
+                seconds,
+            )
+            self._last[track.cell] = result.mapped
+            future = self._pool.submit(measure_frame, task)
+        self._waiting.append((key, part_key(track.cell, time - 1) if time else key, future))
+        while len(self._waiting) > self._queue:
+            self._write_next()
+
+    def _write_next(self) -> None:
+        key, before, future = self._waiting.popleft()
+        rows = future.result()
+        if rows.edge_before is not None:
+            self._folder.add_table(before, "edge", rows.edge_before)
+        self._folder.add(key, rows.row, rows.tables)
+        self._done += 1
+        self._report()
+
+    def _resume_from(self, track: CellTrack, time: int) -> None:
+        """Read the last frame that has a map back, if an earlier run left any."""
+        done = [t for t in range(track.first, time) if self._folder.has(part_key(track.cell, t))]
+        paths = {t: self._folder.map_path(part_key(track.cell, t)) for t in done}
+        mapped = {t: path for t, path in paths.items() if path.exists()}
+        if mapped:
+            self._last[track.cell] = load_frame(mapped[max(mapped)], mapped)
+
+    def _report(self) -> None:
+        if self._progress is not None:
+            self._progress(self._done, self._inputs.n_frames)
+
+
+def _map_timed(
+    time: int, mask: Any, last: MappedFrame | None, settings: MovieSettings
+) -> tuple[FrameResult, float]:
+    started = clock.perf_counter()
+    return map_one(time, mask, last, settings), clock.perf_counter() - started
+
+
+def _signal_at(signal: FrameFile | None, time: int) -> Any:
+    if signal is None:
+        return None
+    try:
+        values = signal.frame(time)
+    except ReadError as error:
+        return error
+    coords = {"channel": list(signal.channels)}
+    return xr.DataArray(values.astype(np.float64), dims=("channel", "y", "x"), coords=coords)
+
+
+def _check_masks(masks: FrameFile) -> None:
+    if "T" not in masks.axes:
+        channels = masks.shape[masks.axes.index("C")] if "C" in masks.axes else 1
+        if channels > 1:
+            raise MaskError(
+                f"masks {masks.path} were understood as one frame with {channels} channels ({masks.axes} "
+                f"{masks.shape}): if these are frames, save them with axes TYX"
+            )
+        raise MaskError(f"masks {masks.path} hold one frame: a movie has two at least; use cytodisk map")
+    height, width = masks.image_shape
+    if width < masks.n_frames / 4 and width < height / 4:
+        raise MaskError(
+            f"masks {masks.path} were understood as {masks.n_frames} frames of {height} × {width} pixels, "
+            "which looks like time on the last axis: save them with axes TYX"
+        )
+
+
+def _check_frames(masks: FrameFile, signal: FrameFile) -> None:
+    if signal.n_frames == masks.n_frames:
+        return
+    hint = "pass as many"
+    if len(signal.channels) == masks.n_frames:
+        hint = f"its {len(signal.channels)} channels look like frames: save it with axes TYX or TCYX"
+    raise SignalError(
+        f"signal {signal.path} was understood as {signal.n_frames} frames of {len(signal.channels)} channels "
+        f"({signal.axes} {signal.shape}), the masks have {masks.n_frames} frames: {hint}"
+    )
+
+
+def _frame_interval(masks: FrameFile, signal: FrameFile | None) -> float | None:
+    known = [file for file in (signal, masks) if file is not None and file.frame_interval_s is not None]
+    intervals = [file.frame_interval_s for file in known if file.frame_interval_s is not None]
+    if intervals and max(intervals) > 1.01 * min(intervals):
+        raise SignalError(
+            f"frame intervals differ: {known[0].path} says {intervals[0]:g} s, {known[1].path} "
+            f"{intervals[1]:g} s: pass the right one, as --frame-interval"
+        )
+    return intervals[0] if intervals else None
+
+
+def _layers(
+    masks: FrameFile, tracks: tuple[CellTrack, ...], parameters: MovieParameters, scale: Scale
+) -> int:
+    """Layers for the wanted depth on the first frame that can be used of the first cell that has one."""
+    depth = parameters.depth_um
+    if scale.pixel_size_um is None or depth is None:
+        raise ParameterError("depth_um needs a pixel size: pass it as --pixel-size, or layers instead")
+    for track, time in _first_frames(tracks):
+        try:
+            mask, report = clean_mask(track.mask_in(read_frame(masks, time), time))
+        except CytodiskError:
+            continue  # has its row in the run; the next frame serves as well
+        perimeter = float(edge_lengths(smooth_closed(trace_outline(mask), 1.0)).sum())
+        return layers_for_depth(depth / scale.pixel_size_um, report.area_px, perimeter, parameters.spacing)
+    raise MaskError(f"no frame of {masks.path} can be used")
+
+
+def _first_frames(tracks: tuple[CellTrack, ...]) -> Iterator[tuple[CellTrack, int]]:
+    for track in tracks:
+        for time in track.times:
+            yield track, time
+
+
+def _warning(row: dict[str, Any]) -> str:
+    remarks = [row.get(name) for name in ("reason", "doubts", "restarted")]
+    words = "; ".join(str(remark) for remark in remarks if remark)
+    return f"cell {row['cell']}, frame {row['time']}: {words}" if words else ""
