@@ -20,7 +20,7 @@ from cytodisk.disk.certificate import Certificate, certify
 from cytodisk.disk.distortion import Distortion, distortion_of
 from cytodisk.errors import ParameterError, ReadError, SignalError
 from cytodisk.files import replacing
-from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline
+from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline, weighted_corners
 from cytodisk.geometry.mask import MaskReport
 
 Method: TypeAlias = Literal["newton", "harmonic"]
@@ -304,4 +304,4 @@ def _as_points(points: Any, name: str) -> tuple[FloatArray, tuple[int, ...]]:
 
 def _interpolate(corners: FloatArray, triangle: IntArray, weights: FloatArray) -> FloatArray:
     """Weighted mean of a triangle's corner values; NaN where the weights are."""
-    return np.asarray((weights[:, :, None] * corners[triangle]).sum(axis=1))
+    return weighted_corners(np.ascontiguousarray(corners), triangle, weights)

@@ -166,6 +166,36 @@ def _locate(
     return triangle, weights
 
 
+@njit(cache=True)
+def weighted_corners(corners: FloatArray, triangle: IntArray, weights: FloatArray) -> FloatArray:
+    """Weighted mean of the values at a triangle's corners.
+
+    Parameters
+    ----------
+    corners : ndarray of shape (F, 3, 2) and dtype float
+        Two numbers a corner.
+    triangle : ndarray of shape (N,) and dtype int
+        -1 for none.
+    weights : ndarray of shape (N, 3) and dtype float
+
+    Returns
+    -------
+    ndarray of shape (N, 2) and dtype float
+        NaN where there is no triangle.
+    """
+    out = np.full((len(triangle), 2), np.nan)
+    for n in range(len(triangle)):
+        t = triangle[n]
+        if t >= 0:
+            for k in range(2):
+                out[n, k] = (
+                    weights[n, 0] * corners[t, 0, k]
+                    + weights[n, 1] * corners[t, 1, k]
+                    + weights[n, 2] * corners[t, 2, k]
+                )
+    return out
+
+
 def nearest_on_outline(points: FloatArray, outline: FloatArray) -> tuple[IntArray, FloatArray]:
     """Nearest point of a closed polygon for each point, among the edges at its nearest vertices.
 

@@ -86,7 +86,7 @@ def edge_motion(
     *,
     frame: Frame = "lab",
     jitter_px: float = 0.5,
-    repeats: int = 16,
+    repeats: int = 8,
     seed: int = 0,
     smoothness_px2: float = 64.0,
 ) -> EdgeMotion:

@@ -87,7 +87,7 @@ def edge_changes(
     *,
     frame: Frame = "lab",
     jitter_px: float = 0.5,
-    repeats: int = 16,
+    repeats: int = 8,
     seed: int = 0,
 ) -> xr.Dataset:
     """Edge velocity with its error bar, and the areas that the cell won and lost, by frame and sector.
@@ -164,7 +164,7 @@ def check_jitter(jitter_px: Any, repeats: Any) -> None:
         )
     if isinstance(repeats, bool) or not isinstance(repeats, int | np.integer) or repeats < 2:
         raise ParameterError(
-            f"repeats must be a whole number of at least 2, got {repeats!r}: 16 is the default"
+            f"repeats must be a whole number of at least 2, got {repeats!r}: 8 is the default"
         )
 
 

@@ -46,7 +46,7 @@ class MovieParameters(MapParameters):
     inertia: Annotated[float, Field(ge=0)] = 1.0
     depth_um: Annotated[float, Field(gt=0)] | None = None
     jitter_px: Annotated[float, Field(ge=0)] = 0.5
-    repeats: Annotated[int, Field(ge=2)] = 16
+    repeats: Annotated[int, Field(ge=2)] = 8
     seed: Annotated[int, Field(ge=0)] = 0
     frame_interval_s: Annotated[float, Field(gt=0)] | None = None
 
