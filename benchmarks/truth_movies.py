@@ -42,6 +42,7 @@ from cytodisk.motion.matching import SMOOTHNESS_PX2, carry, first_guess, match
 from cytodisk.motion.tracking import TRACKERS, TrackedBoundary, Tracker, TrackingSettings, follow
 from cytodisk.motion.velocity import edge_velocity
 from cytodisk.simulate import MOVIE_KINDS, SimulatedMovie
+from cytodisk.simulate.movie_kinds import MovieKind
 from cytodisk.windows.grid import PolarWindows, polar_windows
 
 HORIZONS = (1, 10, 50)
