@@ -192,7 +192,7 @@ def _jittered(
         for boundary, shaken in ((here, first), (there, second))
     )
     s_first, s_second = _unwrapped(s_first, first.length), _unwrapped(s_second, second.length)
-    s_second = match(start.of(first), stop.of(second), s_first, s_second, smoothness)
+    s_second = match(here.alignment.of(first), there.alignment.of(second), s_first, s_second, smoothness)
     again = (
         TrackedBoundary(here.time, first, s_first, start),
         TrackedBoundary(there.time, second, s_second, stop),

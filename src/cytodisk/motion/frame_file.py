@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import zipfile
 import zlib
+from dataclasses import astuple
 from pathlib import Path
 
 import numpy as np
@@ -30,12 +31,12 @@ def save_frame(path: str | os.PathLike[str], frame: MappedFrame) -> None:
     StudyError
         The file cannot be written.
     """
-    boundary, transform = frame.boundary, frame.boundary.transform
+    boundary = frame.boundary
     frame.disk.save(
         path,
         {
             "track_s": boundary.s,
-            "track_transform": np.array([transform.angle, transform.shift_y, transform.shift_x]),
+            "track_transforms": np.array([astuple(boundary.transform), astuple(boundary.alignment)]),
             "track_residual_px": np.array(boundary.residual_px),
             "track_times": np.array([boundary.time, frame.reference.time, boundary.order_violations]),
             "track_restarted": np.array(boundary.restarted),
@@ -97,12 +98,13 @@ def _read(path: str | os.PathLike[str], disk: DiskMap | None) -> tuple[TrackedBo
     try:
         with Path(path).open("rb") as stream, np.load(stream) as file:
             time, reference_time, violations = (int(number) for number in file["track_times"])
-            angle, shift_y, shift_x = (float(number) for number in file["track_transform"])
+            transform, alignment = (RigidTransform(*row) for row in file["track_transforms"].tolist())
             boundary = TrackedBoundary(
                 time,
                 Contour.of_outline(outline),
                 file["track_s"],
-                RigidTransform(angle, shift_y, shift_x),
+                transform,
+                alignment,
                 float(file["track_residual_px"]),
                 violations,
                 str(file["track_restarted"]),

@@ -93,6 +93,20 @@ def match(
     return carry(s, grid, places, here.length, there.length)
 
 
+def mean_square_displacement(
+    here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoothness: float = SMOOTHNESS_PX2
+) -> float:
+    """Mean squared displacement of the matched boundary, in square pixels; arguments as for `match`."""
+    grid = _even_grid(here)
+    start = carry(grid, s, guess, here.length, there.length)
+    spacing = here.length / len(grid)
+    return float(
+        relax_band(
+            here.at(grid), there.points_yx, there.arc, start, spacing, smoothness, np.zeros(3), False, 0.0
+        )[2]
+    )
+
+
 def rigid_motion(
     here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoothness: float = SMOOTHNESS_PX2
 ) -> tuple[float, FloatArray, FloatArray]:

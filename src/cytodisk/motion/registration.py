@@ -10,7 +10,9 @@ import numpy as np
 from cytodisk.arrays import FloatArray
 from cytodisk.geometry.polygon import centroid
 from cytodisk.motion.contour import Contour
-from cytodisk.motion.matching import rigid_motion
+from cytodisk.motion.matching import mean_square_displacement, rigid_motion
+
+_HESITATION = 0.15
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,16 @@ class RigidTransform:
         """Points whose transforms are given, of the shape that came, (..., 2)."""
         return np.asarray((points_yx - self.shift) @ self.rotation)
 
+    def after(self, first: RigidTransform) -> RigidTransform:
+        """The transform that applies another one first, then this one."""
+        shift = self(first.shift)
+        return RigidTransform(self.angle + first.angle, float(shift[0]), float(shift[1]))
+
+    def undone(self) -> RigidTransform:
+        """The transform that takes this one back."""
+        shift = -(self.shift @ self.rotation)
+        return RigidTransform(-self.angle, float(shift[0]), float(shift[1]))
+
     def of(self, contour: Contour) -> Contour:
         """The transformed contour."""
         return Contour(self(contour.points_yx), self(contour.outline_yx))
@@ -73,6 +85,48 @@ def first_transform(moving: Contour, reference: Contour, angle: float) -> RigidT
         From the frame of `moving` to the common one.
     """
     shift = centroid(reference.points_yx) - RigidTransform(angle)(centroid(moving.points_yx))
+    return RigidTransform(angle, float(shift[0]), float(shift[1]))
+
+
+def believable(
+    last: RigidTransform,
+    found: RigidTransform,
+    contour: Contour,
+    reference: Contour,
+    reference_s: FloatArray,
+    s: FloatArray,
+    smoothness: float,
+) -> RigidTransform:
+    """Go from the last frame's transform towards a new one, as far as that explains how the boundary moved.
+
+    A shape that moves or turns as a whole is followed at once; of a change of shape that merely looks like a
+    rotation, such as a wave of ruffles, little is taken for one. With q the share of the squared boundary
+    displacement that the new transform takes away, the way gone is q / (q + 0.15 (1 - q)).
+
+    Parameters
+    ----------
+    last, found : RigidTransform
+        From the frame of `contour` to the common frame.
+    contour, reference : Contour
+        This frame's, and the reference's in the common frame.
+    reference_s, s : ndarray of shape (N,) and dtype float
+        Points on the reference and a guess of the same points on `contour`.
+    smoothness : float
+        Of the matching energy, in square pixels.
+
+    Returns
+    -------
+    RigidTransform
+    """
+    before, after = (
+        mean_square_displacement(reference, transform.of(contour), reference_s, s, smoothness)
+        for transform in (last, found)
+    )
+    explained = 1.0 - after / before if after < before else 0.0
+    way = explained / (explained + _HESITATION * (1.0 - explained))
+    middle = centroid(contour.points_yx)
+    angle = last.angle + way * (found.angle - last.angle)
+    shift = (1.0 - way) * last(middle) + way * found(middle) - RigidTransform(angle)(middle)
     return RigidTransform(angle, float(shift[0]), float(shift[1]))
 
 

@@ -15,7 +15,7 @@ from cytodisk.geometry.locate import nearest_on_outline
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.demons import DemonsParameters, propagate
 from cytodisk.motion.matching import SMOOTHNESS_PX2, carry, first_guess, match
-from cytodisk.motion.registration import IDENTITY, RigidTransform, first_transform, register
+from cytodisk.motion.registration import IDENTITY, RigidTransform, believable, first_transform, register
 
 Tracker: TypeAlias = Literal["matching", "demons"]
 TRACKERS: tuple[Tracker, ...] = get_args(Tracker)
@@ -88,6 +88,8 @@ class TrackedBoundary:
         Distance of the points along the contour, in pixels; strictly increasing through one turn.
     transform : RigidTransform
         From the image's frame to the common frame of the movie, that of its first frame.
+    alignment : RigidTransform
+        The part of it that "matching" believes in; see `registration.believable`.
     residual_px : float
         For "matching", mean distance between points and where they come to lie when carried on and back
         again; for "demons", mean distance of the propagated points from the outline. 0 in a first frame.
@@ -101,6 +103,7 @@ class TrackedBoundary:
     contour: Contour
     s: FloatArray
     transform: RigidTransform = IDENTITY
+    alignment: RigidTransform = IDENTITY
     residual_px: float = 0.0
     order_violations: int = 0
     restarted: str = ""
@@ -175,42 +178,39 @@ def follow(
         points do not go once around, tracking starts anew and says why.
     """
     here = last.transform.of(last.contour)
+    smoothness = settings.smoothness_px2
     rough = first_transform(contour, here, last.transform.angle) if settings.register else IDENTITY
-    guess = first_guess(here, rough.of(contour), last.s, settings.smoothness_px2)
-    transform = rough
+    guess = first_guess(here, rough.of(contour), last.s, smoothness)
+    transform = alignment = rough
     if settings.register:
-        transform = register(
-            contour,
-            reference.transform.of(reference.contour),
-            rough,
-            reference.s,
-            guess,
-            settings.smoothness_px2,
+        fixed = reference.transform.of(reference.contour)
+        transform = register(contour, fixed, rough, reference.s, guess, smoothness)
+        moved = reference.alignment.after(reference.transform.undone())
+        alignment = believable(
+            last.alignment, moved.after(transform), contour, moved.of(fixed), reference.s, guess, smoothness
         )
-    there = transform.of(contour)
-    overlap = _overlap(here, there)
+    overlap = _overlap(here, transform.of(contour))
     if overlap < _LEAST_OVERLAP:
         why = f"outlines overlap by {overlap:.0%} only (frames {last.time} and {time})"
         return _restart(time, contour, transform, len(last.s), why)
     if settings.tracker == "demons":
-        return _follow_demons(time, contour, here, there, last, transform, settings.demons)
-    s = match(here, there, last.s, guess, settings.smoothness_px2)
-    back = match(there, here, s, last.s, settings.smoothness_px2)
+        return _follow_demons(time, contour, last, transform, settings.demons)
+    here, there = last.alignment.of(last.contour), alignment.of(contour)
+    s = match(here, there, last.s, guess, smoothness)
+    back = match(there, here, s, last.s, smoothness)
     residual = float(np.linalg.norm(here.at(back) - here.at(last.s), axis=1).mean())
-    return TrackedBoundary(
-        time, contour, _towards_even(s, there.length, settings.tension), transform, residual
-    )
+    even = _towards_even(s, there.length, settings.tension)
+    return TrackedBoundary(time, contour, even, transform, alignment, residual)
 
 
 def _follow_demons(
     time: int,
     contour: Contour,
-    here: Contour,
-    there: Contour,
     last: TrackedBoundary,
     transform: RigidTransform,
     parameters: DemonsParameters,
 ) -> TrackedBoundary:
+    here, there = last.transform.of(last.contour), transform.of(contour)
     points = propagate(here, there, here.at(last.s), parameters)
     edge, share = nearest_on_outline(points, there.points_yx)
     s = there.arc[edge] + share * (there.arc[edge + 1] - there.arc[edge])
@@ -222,12 +222,15 @@ def _follow_demons(
     ordered = np.maximum(steps, _LEAST_GAP * there.length / len(s))
     ordered *= there.length / ordered.sum()
     placed = s[0] + np.concatenate([[0.0], np.cumsum(ordered)[:-1]])
-    return TrackedBoundary(time, contour, placed, transform, residual, int((steps <= 0).sum()))
+    violations = int((steps <= 0).sum())
+    return TrackedBoundary(time, contour, placed, transform, transform, residual, violations)
 
 
 def _restart(time: int, contour: Contour, transform: RigidTransform, n: int, why: str) -> TrackedBoundary:
     angles = boundary_angles(transform(contour.outline_yx))
-    return TrackedBoundary(time, contour, _at_even_angles(contour, angles, n), transform, restarted=why)
+    return TrackedBoundary(
+        time, contour, _at_even_angles(contour, angles, n), transform, transform, restarted=why
+    )
 
 
 def _at_even_angles(contour: Contour, angles: FloatArray, n: int) -> FloatArray:
