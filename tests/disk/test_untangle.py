@@ -1,0 +1,114 @@
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+import pytest
+
+from cytodisk import simulate
+from cytodisk.disk.certificate import certify
+from cytodisk.disk.circle import boundary_angles
+from cytodisk.disk.harmonic import harmonic_map
+from cytodisk.disk.mapping import CellMesh, map_mesh, mesh_cell
+from cytodisk.disk.untangle import untangled
+from cytodisk.geometry.mesh import Mesh, triangle_areas
+
+
+@cache
+def valid_map(kind: str = "smooth") -> tuple[CellMesh, np.ndarray]:
+    cell = mesh_cell(simulate.random_mask(kind, 3), 1.5)
+    angles = boundary_angles(cell.outline)
+    return cell, harmonic_map(cell.mesh, np.column_stack([np.cos(angles), np.sin(angles)]))[0]
+
+
+def flipped(mesh: Mesh, uv: np.ndarray) -> np.ndarray:
+    return np.flatnonzero(triangle_areas(uv[:, ::-1], mesh.triangles) <= 0.0)
+
+
+def deep_inside(mesh: Mesh, uv: np.ndarray, count: int, seed: int) -> np.ndarray:
+    inner = np.flatnonzero(np.hypot(*uv.T) < 0.8)
+    chosen: np.ndarray = np.random.default_rng(seed).choice(inner[inner >= mesh.n_boundary], count, False)
+    return chosen
+
+
+def within(mesh: Mesh, vertices: np.ndarray, rings: int) -> np.ndarray:
+    """Whether each vertex is reached from some vertices by that many edges."""
+    reached = np.zeros(len(mesh.vertices_yx), dtype=bool)
+    reached[vertices] = True
+    for _ in range(rings):
+        reached[mesh.triangles[reached[mesh.triangles].any(axis=1)]] = True
+    return reached
+
+
+@pytest.mark.parametrize("kind", ["smooth", "spiky"])
+def test_a_valid_map_comes_back_as_it_is(kind: str) -> None:
+    cell, uv = valid_map(kind)
+    found = untangled(cell.mesh, uv)
+    assert found is not None
+    np.testing.assert_array_equal(found, uv)
+
+
+@pytest.mark.parametrize("kind", ["smooth", "spiky"])
+@pytest.mark.parametrize("count", [1, 5, 20])
+def test_pushed_vertices_are_mended_and_the_rest_stays(kind: str, count: int) -> None:
+    cell, uv = valid_map(kind)
+    spoilt = uv.copy()
+    pushed = deep_inside(cell.mesh, uv, count, seed=count)
+    spoilt[pushed] *= -1.0
+    assert len(flipped(cell.mesh, spoilt)) > 0
+    before = spoilt.copy()
+    found = untangled(cell.mesh, spoilt)
+    assert found is not None
+    assert len(flipped(cell.mesh, found)) == 0
+    n = cell.mesh.n_boundary
+    assert certify(cell.mesh.vertices_yx, found, cell.mesh.triangles, np.arange(n)).valid
+    np.testing.assert_array_equal(found[:n], uv[:n])
+    np.testing.assert_array_equal(spoilt, before)
+    stayed = (found == uv).all(axis=1)
+    assert not stayed[pushed].any()
+    assert stayed[~within(cell.mesh, pushed, 3)].all()
+
+
+def test_mended_vertices_are_means_of_their_neighbours() -> None:
+    cell, uv = valid_map()
+    spoilt = uv.copy()
+    pushed = int(deep_inside(cell.mesh, uv, 1, seed=4)[0])
+    spoilt[pushed] *= -1.0
+    found = untangled(cell.mesh, spoilt)
+    assert found is not None
+    around = np.unique(cell.mesh.triangles[(cell.mesh.triangles == pushed).any(axis=1)])
+    neighbours = found[around[around != pushed]]
+    np.testing.assert_allclose(found[pushed], neighbours.mean(axis=0), atol=1e-9)
+
+
+@pytest.mark.parametrize("lost", [np.nan, 0.0])
+def test_a_vertex_without_a_place_gets_one(lost: float) -> None:
+    cell, uv = valid_map()
+    spoilt = uv.copy()
+    spoilt[deep_inside(cell.mesh, uv, 3, seed=1)] = lost
+    found = untangled(cell.mesh, spoilt)
+    assert found is not None
+    assert len(flipped(cell.mesh, found)) == 0
+
+
+def test_a_boundary_that_runs_backwards_is_hopeless() -> None:
+    cell, uv = valid_map()
+    mirrored = uv * [1.0, -1.0]
+    assert len(flipped(cell.mesh, mirrored)) == len(cell.mesh.triangles)
+    assert untangled(cell.mesh, mirrored) is None
+
+
+@pytest.mark.parametrize("spoil", [lambda uv: -uv, lambda uv: np.full_like(uv, 5.0), lambda uv: uv[::-1]])
+def test_a_map_starts_from_any_anchor(spoil: Callable[[np.ndarray], np.ndarray]) -> None:
+    cell, uv = valid_map()
+    disk = map_mesh(cell, boundary_angles(cell.outline), anchor_uv=spoil(uv), inertia=1.0)
+    assert disk.start == "previous"
+    assert disk.converged
+    assert disk.certificate.valid
+
+
+def test_an_anchor_that_cannot_be_mended_is_no_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cytodisk.disk.mapping.untangled", lambda mesh, uv: None)
+    cell, uv = valid_map()
+    disk = map_mesh(cell, boundary_angles(cell.outline), anchor_uv=uv, inertia=1.0)
+    assert disk.start in ("cotangent", "uniform")
+    assert disk.certificate.valid
