@@ -13,9 +13,10 @@ from matplotlib.quiver import Quiver
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
-from cytodisk.plot.kymograph import bar_beside, time_scale
+from cytodisk.plot.kymograph import bar_beside
 from cytodisk.plot.strip import field_of_view, frame_field
 from cytodisk.plot.style import LINE_COLOUR, MM_PER_INCH, SIGNAL_COLOURS, colour_bar, nice_length, scale_bar
+from cytodisk.plot.time_axis import time_scale
 
 OUTWARD_COLOUR, INWARD_COLOUR = "#B2182B", "#2166AC"  # near the ends of the diverging colours
 
@@ -100,6 +101,7 @@ def draw_tracks(
     *,
     every: int = 1,
     frame_interval_s: float | None = None,
+    first_frame: int = 0,
     pixel_size_um: float | None = None,
     paths: int = 12,
 ) -> LineCollection:
@@ -114,6 +116,8 @@ def draw_tracks(
         The outline of every so many frames.
     frame_interval_s : float, optional
         Seconds between frames; without it time is in frames.
+    first_frame : int
+        Number of the first frame, where time starts.
     pixel_size_um : float, optional
         Micrometres a pixel; without it the scale bar is in px.
     paths : int
@@ -134,12 +138,12 @@ def draw_tracks(
         raise ParameterError(f"points_yx must have shape (T, N, 2), got {points.shape}: pass tracked points")
     _check_count("every", every, 1)
     _check_count("paths", paths, 0)
-    step, label = time_scale(len(points), frame_interval_s)
+    step, label = time_scale(first_frame + len(points), frame_interval_s)
     shown = [t for t in range(0, len(points), every) if np.isfinite(points[t]).all()]
     closed = [np.concatenate([points[t], points[t, :1]])[:, ::-1] for t in shown]
     lines = LineCollection(closed, cmap=_time_colours(), linewidths=0.5)
-    lines.set_array(step * np.array(shown, dtype=np.float64))
-    lines.set_clim(0.0, step * max(len(points) - 1, 1))
+    lines.set_array(step * (first_frame + np.array(shown, dtype=np.float64)))
+    lines.set_clim(step * first_frame, step * (first_frame + max(len(points) - 1, 1)))
     ax.add_collection(lines, autolim=False)
     _draw_paths(ax, points, paths)
     if shown:
@@ -156,6 +160,7 @@ def draw_area_change(
     retracted: Any,
     *,
     frame_interval_s: float | None = None,
+    first_frame: int = 0,
     unit: str = "px²",
 ) -> tuple[Line2D, Line2D]:
     """Draw the area that the whole edge won, upwards, and lost, downwards, from frame to frame.
@@ -167,6 +172,8 @@ def draw_area_change(
         Areas, the sum over sectors; the sign of the second does not matter. NaN is a gap.
     frame_interval_s : float, optional
         Seconds between frames; without it time is in frames.
+    first_frame : int
+        Number of the first frame, where time starts.
     unit : str
         Of the areas.
 
@@ -185,8 +192,8 @@ def draw_area_change(
         raise ParameterError(
             f"protruded has shape {won.shape}, retracted {lost.shape}: pass one number a frame"
         )
-    step, label = time_scale(len(won), frame_interval_s)
-    time = step * np.arange(len(won))
+    step, label = time_scale(first_frame + len(won), frame_interval_s)
+    time = step * (first_frame + np.arange(len(won)))
     ax.axhline(0.0, color=LINE_COLOUR, linewidth=0.5)
     lines = []
     for area, colour, name in ((won, OUTWARD_COLOUR, "protruded"), (lost, INWARD_COLOUR, "retracted")):

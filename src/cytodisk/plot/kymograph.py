@@ -22,6 +22,7 @@ from cytodisk.plot.style import (
     colour_map,
     signal_limits,
 )
+from cytodisk.plot.time_axis import time_scale
 
 SECTOR_LABEL = "sector (0 at +x, towards +y)"
 
@@ -29,9 +30,9 @@ _MOST_LAYERS = 4
 _VELOCITY_PERCENTILE = 99.0
 _BAR_WIDTH_MM, _BAR_GAP_MM = 2.0, 1.5
 _STEPS = [1, 2, 2.5, 5, 10]
-_LONGEST_IN = (("s", 1.0, 300.0), ("min", 60.0, 36000.0), ("h", 3600.0, np.inf))  # unit, seconds, up to
 
 Extend = Literal["neither", "both", "min", "max"]
+TimeAxis = tuple[int, float | None]  # number of the first frame, seconds between frames
 
 
 def draw_activity_map(
@@ -39,6 +40,7 @@ def draw_activity_map(
     values: Any,
     *,
     frame_interval_s: float | None = None,
+    first_frame: int = 0,
     label: str = "mean (a.u.)",
     limits: tuple[float, float] | None = None,
 ) -> AxesImage:
@@ -51,6 +53,8 @@ def draw_activity_map(
         NaN is drawn light grey.
     frame_interval_s : float, optional
         Seconds between frames; without it time is in frames.
+    first_frame : int
+        Number of the first frame, where the time axis starts.
     label : str
         Of the colour bar, with its unit.
     limits : (float, float), optional
@@ -67,7 +71,7 @@ def draw_activity_map(
         The values are no table of numbers, or the interval is not a positive number.
     """
     table = _table(values, "values", ("time", "sector"))
-    drawn = _draw_map(ax, table, frame_interval_s, SIGNAL_COLOURS, limits or _limits(table))
+    drawn = _draw_map(ax, table, (first_frame, frame_interval_s), SIGNAL_COLOURS, limits or _limits(table))
     colour_bar(drawn, bar_beside(ax), label, extend=_extend(table, drawn))
     return drawn
 
@@ -77,6 +81,7 @@ def draw_velocity_map(
     velocity: Any,
     *,
     frame_interval_s: float | None = None,
+    first_frame: int = 0,
     unit: str = "µm/s",
 ) -> AxesImage:
     """Draw edge velocity by frame and sector: protrusion red, retraction blue, white at 0.
@@ -88,6 +93,8 @@ def draw_velocity_map(
         Positive outwards; NaN, as in the last frame, is drawn light grey.
     frame_interval_s : float, optional
         Seconds between frames; without it time is in frames.
+    first_frame : int
+        Number of the first frame, where the time axis starts.
     unit : str
         Of the velocity.
 
@@ -105,7 +112,7 @@ def draw_velocity_map(
     ----------
     u-Unwrap, Fig. S5.
     """
-    return _draw_velocity(ax, velocity, frame_interval_s, f"edge velocity ({unit})")
+    return _draw_velocity(ax, velocity, (first_frame, frame_interval_s), f"edge velocity ({unit})")
 
 
 def draw_layers(
@@ -114,6 +121,7 @@ def draw_layers(
     velocity: Any = None,
     *,
     frame_interval_s: float | None = None,
+    first_frame: int = 0,
     label: str = "mean (a.u.)",
     unit: str = "µm/s",
     limits: tuple[float, float] | None = None,
@@ -129,6 +137,8 @@ def draw_layers(
         Positive outwards.
     frame_interval_s : float, optional
         Seconds between frames; without it time is in frames.
+    first_frame : int
+        Number of the first frame, where the time axis starts.
     label : str
         Of the layers' common colour bar, with its unit.
     unit : str
@@ -149,15 +159,15 @@ def draw_layers(
     table = _table(values, "values", ("time", "layer", "sector"))
     layers = shown_layers(table.shape[1])
     _check_layers(axes, table, velocity, len(layers))
-    maps, drawn = list(axes), []
+    maps, drawn, axis = list(axes), [], (first_frame, frame_interval_s)
     if velocity is not None:
         top = maps.pop(0)
-        drawn.append(_draw_velocity(top, velocity, frame_interval_s, unit))
+        drawn.append(_draw_velocity(top, velocity, axis, f"edge velocity ({unit})"))
         _name(top, "edge velocity: protrusion red, retraction blue")
     common = limits or _limits(table)
     places = {table.shape[1] - 1: " (centre)", 0: " (edge)"}
     for ax, layer in zip(maps, layers, strict=True):
-        drawn.append(_draw_map(ax, table[:, layer], frame_interval_s, SIGNAL_COLOURS, common))
+        drawn.append(_draw_map(ax, table[:, layer], axis, SIGNAL_COLOURS, common))
         _name(ax, f"layer {layer}{places.get(layer, '')}")
     colour_bar(drawn[-1], bar_beside(*maps), label, extend=_extend(table[:, layers], drawn[-1]))
     _share_labels(axes)
@@ -178,37 +188,6 @@ def shown_layers(layers: int) -> list[int]:
     """
     chosen = np.linspace(0, layers - 1, min(layers, _MOST_LAYERS)).round().astype(int)
     return [int(layer) for layer in np.unique(chosen)]
-
-
-def time_scale(frames: int, frame_interval_s: float | None) -> tuple[float, str]:
-    """Length of a frame on a time axis and the axis' label.
-
-    Parameters
-    ----------
-    frames : int
-        Of the whole movie: a long one is in minutes or hours.
-    frame_interval_s : float or None
-
-    Returns
-    -------
-    (float, str)
-        1 and "frame" when the interval is not known.
-
-    Raises
-    ------
-    ParameterError
-        The interval is not a positive number.
-    """
-    if frame_interval_s is None:
-        return 1.0, "frame"
-    if not 0 < frame_interval_s < np.inf:
-        raise ParameterError(
-            f"frame_interval_s must be a positive number, got {frame_interval_s!r}: "
-            "pass None when it is not known"
-        )
-    whole = frames * frame_interval_s
-    unit, seconds = next((unit, seconds) for unit, seconds, most in _LONGEST_IN if whole <= most)
-    return frame_interval_s / seconds, f"time ({unit})"
 
 
 def _table(values: Any, name: str, dims: tuple[str, ...]) -> FloatArray:
@@ -236,20 +215,20 @@ def _limits(table: FloatArray) -> tuple[float, float]:
     return signal_limits(table, np.isfinite(table))
 
 
-def _draw_velocity(ax: Axes, velocity: Any, frame_interval_s: float | None, label: str) -> AxesImage:
+def _draw_velocity(ax: Axes, velocity: Any, axis: TimeAxis, label: str) -> AxesImage:
     table = _table(velocity, "velocity", ("time", "sector"))
     speed = np.abs(table[np.isfinite(table)])
     top = (float(np.percentile(speed, _VELOCITY_PERCENTILE)) if speed.size else 0.0) or 1.0
-    drawn = _draw_map(ax, table, frame_interval_s, DIVERGING_COLOURS, (-top, top))
+    drawn = _draw_map(ax, table, axis, DIVERGING_COLOURS, (-top, top))
     colour_bar(drawn, bar_beside(ax), label, extend=_extend(table, drawn))
     return drawn
 
 
 def _draw_map(
-    ax: Axes, table: FloatArray, frame_interval_s: float | None, cmap: str, limits: tuple[float, float]
+    ax: Axes, table: FloatArray, axis: TimeAxis, cmap: str, limits: tuple[float, float]
 ) -> AxesImage:
-    frames, sectors = table.shape
-    step, label = time_scale(frames, frame_interval_s)
+    (first, interval), (frames, sectors) = axis, table.shape
+    step, label = time_scale(first + frames, interval)
     drawn = ax.imshow(
         np.ma.masked_invalid(table.T),
         cmap=colour_map(cmap),
@@ -257,10 +236,10 @@ def _draw_map(
         vmax=limits[1],
         origin="lower",
         aspect="auto",
-        extent=(-0.5 * step, (frames - 0.5) * step, -0.5, sectors - 0.5),
+        extent=((first - 0.5) * step, (first + frames - 0.5) * step, -0.5, sectors - 0.5),
     )
     ax.set(xlabel=label, ylabel=SECTOR_LABEL)
-    ax.xaxis.set_major_locator(MaxNLocator(6, steps=_STEPS, integer=frame_interval_s is None))
+    ax.xaxis.set_major_locator(MaxNLocator(6, steps=_STEPS, integer=interval is None))
     ax.yaxis.set_major_locator(MaxNLocator(4, steps=_STEPS, integer=True))
     return drawn
 

@@ -1,0 +1,297 @@
+"""The pictures of one cell of a movie's study."""
+
+import re
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cytodisk.arrays import FloatArray
+from cytodisk.io.study_folder import Study
+from cytodisk.plot.animation import write_animation
+from cytodisk.plot.consistency import draw_by_layer, layer_colours
+from cytodisk.plot.kymograph import bar_beside, draw_layers, draw_velocity_map, shown_layers
+from cytodisk.plot.movie_cell import HEADING_MM, LEFT_MM, CellMovie
+from cytodisk.plot.movie_edge import edge_sheet
+from cytodisk.plot.sheet import Sheet
+from cytodisk.plot.strip import draw_strip, field_of_view, time_stamp
+from cytodisk.plot.style import DOUBLE_COLUMN_MM, colour_bar, paper_style, signal_limits
+
+SignalAt = Callable[[int], FloatArray | None]
+Progress = Callable[[int, int], None]
+
+_MOST_ANIMATED = 60  # frames; drawing one takes about 0.2 s
+_STRIP_FRAMES, _STRIP_COLUMNS = 6, 3
+_MOST_CORRELATIONS = 2
+_LONGEST_CHANNEL = 24
+_MAP_LEFT, _MAP_WIDTH, _MAP, _MAP_GAP = 15.0, 145.0, 26.0, 5.5  # mm
+_TALLEST = 1.3  # height of a panel of the strip over its width
+
+
+def draw_movie_figures(
+    study: Study,
+    cell: int,
+    signal: SignalAt | None = None,
+    *,
+    animation: bool = True,
+    progress: Progress | None = None,
+) -> list[Path]:
+    """Write the pictures of one cell of a movie into the study's folder of figures.
+
+    They are activity maps of each channel (without a signal the map of edge velocity alone), the motion of
+    the edge, windows on the cell in a few frames, consistency, and last an animation of cell and disk.
+    Frames without a map are gaps in the maps, and left out elsewhere; what a cell has too few frames for is
+    not drawn.
+
+    Parameters
+    ----------
+    study : Study
+        Of a movie.
+    cell : int
+        Its number in the tables.
+    signal : callable, optional
+        Gives the image of a frame, shape (C, H, W), by the recording's frame number, or None if it has none;
+        is asked for the few frames drawn, one at a time. The first channel is the background of the windows.
+    animation : bool
+        Whether to write the animation, which takes longest: at most 60 frames, evenly spaced.
+    progress : callable, optional
+        Called with (done, in all), counted in pages and frames of the animation.
+
+    Returns
+    -------
+    list of Path
+        The files written: `cell_<number>_<what>.png`, 180 mm wide, and `cell_<number>.gif`. Empty when no
+        frame has a map.
+
+    Raises
+    ------
+    ReadError
+        The study is not a movie's, has no such cell, or a map of it is damaged.
+    SignalError
+        An image has another shape than the masks.
+    StudyError
+        The folder cannot be written.
+    """
+    movie = CellMovie.of(study, cell)
+    if not movie.mapped:
+        return []
+    pages = _pages(movie, signal)
+    times = _evenly(movie.mapped, _MOST_ANIMATED) if animation else []
+    report = progress or (lambda done, whole: None)
+    whole, paths = len(pages) + len(times), []
+    for done, (what, draw) in enumerate(pages):
+        report(done, whole)
+        with paper_style():
+            sheet = draw()
+            if sheet is not None:
+                paths.append(movie.save(sheet, what))
+    if times:
+        paths.append(_animate(movie, signal, times, lambda done: report(len(pages) + done, whole)))
+    report(whole, whole)
+    return paths
+
+
+def _pages(movie: CellMovie, signal: SignalAt | None) -> list[tuple[str, Callable[[], Sheet | None]]]:
+    """Name of each page, and what draws it."""
+    pages: list[tuple[str, Callable[[], Sheet | None]]] = []
+    if not movie.channels:
+        pages.append(("velocity", partial(_velocity_sheet, movie)))
+    for number, name in enumerate(_file_names(movie.channels)):
+        pages.append((f"activity_{name}", partial(_activity_sheet, movie, number)))
+    pages.append(("edge", partial(edge_sheet, movie)))
+    pages.append(("strip", partial(_strip_sheet, movie, signal)))
+    pages.append(("consistency", partial(_consistency_sheet, movie)))
+    return pages
+
+
+def _file_names(channels: list[str]) -> list[str]:
+    """Names of channels that can be part of a file's name, all different."""
+    names: list[str] = []
+    for number, channel in enumerate(channels):
+        name = re.sub(r"[^\w-]+", "_", channel)[:_LONGEST_CHANNEL].strip("_") or str(number)
+        taken = name.casefold() in (other.casefold() for other in names)
+        names.append(f"{name}_{number}" if taken else name)
+    return names
+
+
+def _velocity_sheet(movie: CellMovie) -> Sheet:
+    sheet = Sheet(HEADING_MM + 6.0 + 2 * _MAP + 12.0)
+    movie.write_heading(sheet, "edge velocity")
+    ax = sheet.axes(_MAP_LEFT, HEADING_MM + 6.0, _MAP_WIDTH, 2 * _MAP)
+    draw_velocity_map(ax, movie.activity["velocity"], unit=movie.unit("velocity"), **_time(movie))
+    ax.set_title("edge velocity: protrusion red, retraction blue", loc="left", y=1.0, pad=2.5)
+    return sheet
+
+
+def _activity_sheet(movie: CellMovie, channel: int) -> Sheet:
+    rows = 1 + len(shown_layers(movie.grid.layers))
+    sheet = Sheet(HEADING_MM + rows * (_MAP + _MAP_GAP) + 10.0)
+    name = _shortened(movie.channels[channel])
+    movie.write_heading(sheet, f"activity of {name}")
+    tops = [HEADING_MM + 5.0 + row * (_MAP + _MAP_GAP) for row in range(rows)]
+    draw_layers(
+        [sheet.axes(_MAP_LEFT, top, _MAP_WIDTH, _MAP) for top in tops],
+        movie.activity["mean"][:, channel],
+        movie.activity["velocity"],
+        label=f"mean {name} (a.u.)",
+        unit=movie.unit("velocity"),
+        **_time(movie),
+    )
+    return sheet
+
+
+def _strip_sheet(movie: CellMovie, signal: SignalAt | None) -> Sheet:
+    times = _spread(movie.mapped, _STRIP_FRAMES)
+    images = [_background(signal, time) for time in times]
+    shown = [image for image in images if image is not None]
+    extent = field_of_view([movie.points_yx])
+    wide, right = extent[3] - extent[2], 15.0 if shown else 0.0
+    width = (DOUBLE_COLUMN_MM - 2 * LEFT_MM - right - 3.0 * (_STRIP_COLUMNS - 1)) / _STRIP_COLUMNS
+    height = width * min((extent[1] - extent[0]) / wide, _TALLEST)
+    rows = -(-len(times) // _STRIP_COLUMNS)
+    sheet = Sheet(HEADING_MM + rows * (height + 10.0) + 1.0)
+    movie.write_heading(sheet, "windows through time" + (f", over {_first_channel(movie)}" if shown else ""))
+    axes = [
+        sheet.axes(
+            LEFT_MM + (k % _STRIP_COLUMNS) * (width + 3.0),
+            HEADING_MM + 4.5 + (k // _STRIP_COLUMNS) * (height + 10.0),
+            width,
+            height,
+        )
+        for k in range(len(times))
+    ]
+    windows = [movie.windows(time) for time in times]
+    stamps = [time_stamp(time, movie.interval_s) for time in times]
+    # A frame without its image stays blank below its windows, as its neighbours keep their colours.
+    missing = np.full(movie.maps.image_shape, np.nan)
+    draw_strip(
+        axes,
+        windows,
+        stamps,
+        extent_yx=extent,
+        pixel_size_um=movie.pixel_size_um,
+        signal=[missing if image is None else image for image in images] if shown else None,
+    )
+    if shown:
+        colour_bar(axes[0].images[0], bar_beside(axes[min(2, len(axes) - 1)]), _first_channel(movie), "a.u.")
+    return sheet
+
+
+def _consistency_sheet(movie: CellMovie) -> Sheet | None:
+    """Correlation of consecutive frames, displacement of windows, and completeness where it is not whole."""
+    measures = _measures(movie)
+    if not measures:
+        return None
+    rows, columns = -(-len(measures) // 2), min(len(measures), 2)
+    width = (DOUBLE_COLUMN_MM - LEFT_MM - 14.0 * columns) / columns - 1.0
+    sheet = Sheet(HEADING_MM + 6.0 + rows * 48.0 + 2.0)
+    movie.write_heading(sheet, "consistency of windows from a frame to the next")
+    layers = shown_layers(movie.grid.layers)
+    for number, (title, label, values) in enumerate(measures):
+        row, column = divmod(number, 2)
+        left, top = LEFT_MM + 11.0 + column * (width + 14.0), HEADING_MM + 10.0 + row * 48.0
+        ax = sheet.axes(left, top, width, 34.0)
+        draw_by_layer(ax, values, layers, label, **_time(movie))
+        ax.set_title(title, loc="left", parse_math=False)
+    left = LEFT_MM
+    for layer, colour in zip(layers, layer_colours(layers), strict=True):
+        sheet.text(left, HEADING_MM + 2.0, "—", color=colour, weight="bold")
+        sheet.text(left + 4.0, HEADING_MM + 2.0, _layer_name(layer, movie.grid.layers))
+        left += 30.0
+    return sheet
+
+
+def _measures(movie: CellMovie) -> list[tuple[str, str, FloatArray]]:
+    """Title, label and values by frame and layer of each measure that has numbers."""
+    table = movie.study.consistency
+    if table is None:
+        return []
+    unit = table.attrs["units"]["centroid_displacement"]
+    rows = table[table["cell"] == movie.cell]
+
+    def by_frame(name: str, channel: str | None) -> FloatArray:
+        chosen = rows if channel is None else rows[rows["channel"] == channel]
+        wide = chosen.pivot_table(index="time", columns="layer", values=name, dropna=False, aggfunc="first")
+        times, layers = range(movie.first, movie.first + movie.frames), range(movie.grid.layers)
+        return wide.reindex(index=times, columns=layers).to_numpy(dtype=np.float64)
+
+    found = [
+        (f"signal: {_shortened(name)}", "correlation with next frame", by_frame("correlation", name))
+        for name in movie.channels[:_MOST_CORRELATIONS]
+    ]
+    moved = by_frame("centroid_displacement", None)
+    found.append(("mean displacement of windows' centroids", f"to next frame ({unit})", moved))
+    complete = by_frame("completeness", None)
+    if np.nanmin(complete, initial=1.0) < 1.0:
+        found.append(("completeness", "share of windows with pixels", complete))
+    return [measure for measure in found if np.isfinite(measure[2]).any()]
+
+
+def _animate(
+    movie: CellMovie, signal: SignalAt | None, times: list[int], progress: Callable[[int], None]
+) -> Path:
+    def frames() -> Iterator[tuple[Any, FloatArray | None, int]]:
+        for time in times:
+            yield movie.windows(time), _background(signal, time), time
+
+    return write_animation(
+        movie.path(".gif"),
+        frames(),
+        extent_yx=field_of_view([movie.points_yx]),
+        pixel_size_um=movie.pixel_size_um,
+        frame_interval_s=movie.interval_s,
+        limits=_limits(movie, signal),
+        label=f"{_first_channel(movie)} (a.u.)",
+        progress=progress,
+    )
+
+
+def _limits(movie: CellMovie, signal: SignalAt | None) -> tuple[float, float] | None:
+    """Colours that suit first, middle and last frame alike."""
+    inside = []
+    for time in _spread(movie.mapped, 3):
+        image = _background(signal, time)
+        if image is not None and image.shape == movie.maps.image_shape:
+            inside.append(image[movie.maps[time].mask])
+    if not inside:
+        return None
+    values = np.concatenate(inside)
+    return signal_limits(values, np.ones(values.shape, dtype=bool))
+
+
+def _background(signal: SignalAt | None, time: int) -> FloatArray | None:
+    """First channel of a frame's image."""
+    image = None if signal is None else signal(time)
+    if image is None:
+        return None
+    values = np.asarray(image, dtype=np.float64)
+    return values if values.ndim == 2 else values[0]
+
+
+def _time(movie: CellMovie) -> Any:
+    return {"frame_interval_s": movie.interval_s, "first_frame": movie.first}
+
+
+def _first_channel(movie: CellMovie) -> str:
+    return _shortened(movie.channels[0]) if movie.channels else "signal"
+
+
+def _shortened(name: str) -> str:
+    return name if len(name) <= _LONGEST_CHANNEL else f"{name[: _LONGEST_CHANNEL - 1]}…"
+
+
+def _layer_name(layer: int, layers: int) -> str:
+    return f"layer {layer}" + {layers - 1: " (centre)", 0: " (edge)"}.get(layer, "")
+
+
+def _spread(times: list[int], most: int) -> list[int]:
+    """First, last, and as many between as wanted."""
+    chosen = np.linspace(0, len(times) - 1, min(most, len(times))).round().astype(int)
+    return [times[k] for k in chosen]
+
+
+def _evenly(times: list[int], most: int) -> list[int]:
+    """Every k-th, so that at most so many are left."""
+    return times[:: -(-len(times) // most)]

@@ -1,0 +1,183 @@
+"""The page of how a cell's edge moves."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from cytodisk.arrays import FloatArray
+from cytodisk.errors import ParameterError
+from cytodisk.motion.disk_movie import on_border
+from cytodisk.motion.edge import normal_displacement
+from cytodisk.plot.edge import draw_area_change, draw_tracks, draw_velocity_arrows
+from cytodisk.plot.movie_cell import HEADING_MM, CellMovie
+from cytodisk.plot.sheet import Sheet
+from cytodisk.plot.strip import time_stamp
+from cytodisk.plot.style import LINE_COLOUR
+from cytodisk.plot.time_axis import time_scale
+
+SPREAD = (10, 90)  # percentiles
+
+_ARROWS, _TRACKS = 80.0, 66.0  # mm, width of the panels
+_TALL, _LINES, _LINE_LEFT, _LINE_WIDTH = 72.0, 28.0, 17.0, 156.0  # mm
+_POINTS_SHOWN = 120  # arrows around the cell
+_OUTLINES_SHOWN = 20
+
+
+def edge_sheet(movie: CellMovie) -> Sheet:
+    """Arrows of the fastest frame and tracks above; area change and edge velocity through time below.
+
+    Parameters
+    ----------
+    movie : CellMovie
+        With at least one map.
+
+    Returns
+    -------
+    Sheet
+    """
+    top = HEADING_MM + 12.0
+    first = top + _TALL + 16.0
+    second = first + _LINES + 9.0
+    sheet = Sheet(second + _LINES + 11.0)
+    movie.write_heading(sheet, "motion of the edge")
+    velocity = _table(movie.activity["velocity"])
+    _draw_arrows(sheet, top, movie, velocity)
+    _draw_tracks(sheet, top, movie)
+    changes = sheet.axes(_LINE_LEFT, first, _LINE_WIDTH, _LINES)
+    won, lost = (_sum(_table(movie.activity[name])) for name in ("protruded_area", "retracted_area"))
+    scale: Any = {"frame_interval_s": movie.interval_s, "first_frame": movie.first}
+    draw_area_change(changes, won, lost, unit=movie.unit("protruded_area"), **scale)
+    changes.set_xlabel("")
+    changes.tick_params(labelbottom=False)
+    speeds = sheet.axes(_LINE_LEFT, second, _LINE_WIDTH, _LINES)
+    draw_mean_velocity(speeds, velocity, unit=movie.unit("velocity"), **scale)
+    speeds.set_xlim(changes.get_xlim())
+    return sheet
+
+
+def draw_mean_velocity(
+    ax: Axes,
+    velocity: Any,
+    *,
+    frame_interval_s: float | None = None,
+    first_frame: int = 0,
+    unit: str = "µm/s",
+) -> Line2D:
+    """Draw edge velocity through time: mean of the sectors, and their percentiles 10 to 90.
+
+    Parameters
+    ----------
+    ax : Axes
+    velocity : array_like of shape (T, S)
+        Positive outwards; NaN is left out, a frame without any number is a gap.
+    frame_interval_s : float, optional
+        Seconds between frames; without it time is in frames.
+    first_frame : int
+        Number of the first frame, where the time axis starts.
+    unit : str
+        Of the velocity.
+
+    Returns
+    -------
+    Line2D
+        The mean.
+
+    Raises
+    ------
+    ParameterError
+        The velocity is no table, or the interval is not a positive number.
+    """
+    table = np.asarray(velocity, dtype=np.float64)
+    if table.ndim != 2 or not table.size:
+        raise ParameterError(f"velocity must have shape (T, S), got {table.shape}: pass frames by sectors")
+    step, label = time_scale(first_frame + len(table), frame_interval_s)
+    time = step * (first_frame + np.arange(len(table)))
+    known = np.isfinite(table).any(axis=1)
+    mean, low, high = np.full((3, len(table)), np.nan)
+    mean[known] = np.nanmean(table[known], axis=1)
+    low[known], high[known] = np.nanpercentile(table[known], SPREAD, axis=1)
+    ax.axhline(0.0, color="0.6", linewidth=0.5)
+    ax.fill_between(
+        time, low, high, color="0.8", linewidth=0, label=f"percentiles {SPREAD[0]}–{SPREAD[1]} of sectors"
+    )
+    (line,) = ax.plot(time, mean, color=LINE_COLOUR, linewidth=1.0, label="mean of sectors")
+    ax.margins(x=0.0)
+    ax.set(xlabel=label, ylabel=f"edge velocity ({unit})")
+    ax.legend(frameon=False, ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1)
+    return line
+
+
+def fastest_frame(velocity: FloatArray) -> int | None:
+    """Frame with the largest mean speed of its sectors.
+
+    Parameters
+    ----------
+    velocity : ndarray of shape (T, S) and dtype float
+
+    Returns
+    -------
+    int or None
+        None when no frame has a velocity.
+    """
+    known = np.isfinite(velocity)
+    if not known.any():
+        return None
+    speed = np.where(known, np.abs(velocity), 0.0).sum(axis=1) / np.maximum(known.sum(axis=1), 1)
+    return int(speed.argmax())
+
+
+def _draw_arrows(sheet: Sheet, top: float, movie: CellMovie, velocity: FloatArray) -> None:
+    fastest = fastest_frame(velocity)
+    if fastest is None:
+        sheet.text(8.0, top + 0.5 * _TALL, "no two frames in a row to compare", color="0.3")
+        return
+    time = movie.first + fastest
+    here, there = (movie.maps.records[number].boundary for number in (time, time + 1))
+    if here is None or there is None:
+        return
+    distance = normal_displacement(here, there)
+    for boundary in (here, there):
+        distance[on_border(boundary.points_yx, movie.maps.image_shape)] = np.nan
+    ax = sheet.axes(4.0, top, _ARROWS, _TALL)
+    draw_velocity_arrows(
+        ax,
+        here.points_yx,
+        there.points_yx,
+        here.normals_yx,
+        distance,
+        here.contour.outline_yx,
+        there.contour.outline_yx,
+        pixel_size_um=movie.pixel_size_um,
+        every=max(1, len(distance) // _POINTS_SHOWN),
+        stretch=None,
+    )
+    stamp = time_stamp(time, movie.interval_s)
+    stamp += "" if movie.interval_s is None else f" (frame {time})"
+    sheet.text(4.0, HEADING_MM + 3.0, f"fastest step, from {stamp} to the next frame", fontsize=7.5)
+
+
+def _draw_tracks(sheet: Sheet, top: float, movie: CellMovie) -> None:
+    ax = sheet.axes(94.0, top, _TRACKS, _TALL)
+    every = -(-movie.frames // _OUTLINES_SHOWN)
+    draw_tracks(
+        ax,
+        movie.points_yx,
+        every=every,
+        frame_interval_s=movie.interval_s,
+        first_frame=movie.first,
+        pixel_size_um=movie.pixel_size_um,
+    )
+    which = "every frame" if every == 1 else f"every {every} frames"
+    sheet.text(94.0, HEADING_MM + 3.0, f"outlines {which}, paths of points (from ●)", fontsize=7.5)
+
+
+def _table(values: xr.DataArray) -> FloatArray:
+    return np.asarray(values.transpose("time", "sector").to_numpy(), dtype=np.float64)
+
+
+def _sum(table: FloatArray) -> FloatArray:
+    """Sum over sectors; NaN where none has a number."""
+    return np.where(np.isfinite(table).any(axis=1), np.nansum(table, axis=1), np.nan)
