@@ -146,7 +146,7 @@ def median_milliseconds(boundaries: Sequence[TrackedBoundary], tracker: Tracker)
         start = time.perf_counter()
         follow(following.time, following.contour, last, last, settings)
         whole.append(time.perf_counter() - start)
-        here, there = (found.transform.of(found.contour) for found in (last, following))
+        here, there = (found.alignment.of(found.contour) for found in (last, following))
         step.append(seconds_of_step(here, there, last.s, tracker))
     return 1e3 * float(np.median(whole)), 1e3 * float(np.median(step))
 
