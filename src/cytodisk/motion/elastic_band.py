@@ -8,6 +8,7 @@ from numba import njit
 from cytodisk.arrays import FloatArray
 from cytodisk.motion.cyclic_system import solve_cyclic
 
+_SPRING = 1.0  # weight of even stretch against even displacement
 _ROUNDS = 40
 _STILL_PX = 1e-3
 _LONGEST_STEP_PX = 3.0
@@ -26,7 +27,7 @@ def relax_band(
     rigid: bool,
     doubt: float,
 ) -> tuple[FloatArray, FloatArray, float]:
-    """Minimise Σ spacing |d|² + smoothness |Δd|² / spacing over the points' places on the target.
+    """Minimise Σ spacing |d|² + smoothness (|Δd|² + Δσ²) / spacing over the points' places σ on the target.
 
     Parameters
     ----------
@@ -63,17 +64,19 @@ def relax_band(
     by_motion = np.zeros((n, 2, 3))  # derivative of d by the rigid motion
     by_motion[:, 0, 1] = -1.0
     by_motion[:, 1, 2] = -1.0
+    gaps = np.empty(n)
     for _ in range(_ROUNDS):
+        for i in range(n):
+            gaps[i] = places[(i + 1) % n] - places[i] + (total if i == n - 1 else 0.0)
         _displace(points, target, arc, places, motion, tangent, d, by_motion)
         change, moved = _newton_step(
-            tangent, d, by_motion, spacing, smoothness / spacing, rigid, doubt, motion
+            tangent, d, by_motion, gaps, spacing, smoothness / spacing, rigid, doubt, motion
         )
         scale = min(1.0, _LONGEST_STEP_PX / max(np.abs(change).max(), 1e-12))
         for i in range(n):
-            gap = places[(i + 1) % n] - places[i] + (total if i == n - 1 else 0.0)
             shrinking = change[i] - change[(i + 1) % n]
-            if shrinking > _MOST_SHRINKING * gap:
-                scale = min(scale, _MOST_SHRINKING * gap / shrinking)
+            if shrinking > _MOST_SHRINKING * gaps[i]:
+                scale = min(scale, _MOST_SHRINKING * gaps[i] / shrinking)
         places += scale * change
         motion += scale * moved
         if scale * np.abs(change).max() < _STILL_PX:
@@ -114,6 +117,7 @@ def _newton_step(
     tangent: FloatArray,
     d: FloatArray,
     by_motion: FloatArray,
+    gaps: FloatArray,
     weight: float,
     stiffness: float,
     rigid: bool,
@@ -122,12 +126,16 @@ def _newton_step(
 ) -> tuple[FloatArray, FloatArray]:
     """Change of places and of the rigid motion; places are eliminated first, three unknowns are left."""
     n = d.shape[0]
-    diagonal, coupling, right = np.full(n, weight + 2.0 * stiffness), np.empty(n), np.zeros((n, 4))
+    spring = _SPRING * stiffness
+    diagonal, coupling, right = np.empty(n), np.empty(n), np.zeros((n, 4))
+    diagonal[:] = weight + 2.0 * (stiffness + spring)
     square, pull = np.zeros((3, 3)), np.zeros(3)
     square[0, 0], pull[0] = doubt, doubt * motion[0]
     for i in range(n):
         after, before = (i + 1) % n, i - 1
-        coupling[i] = -stiffness * (tangent[i, 0] * tangent[after, 0] + tangent[i, 1] * tangent[after, 1])
+        alike = tangent[i, 0] * tangent[after, 0] + tangent[i, 1] * tangent[after, 1]
+        coupling[i] = -stiffness * alike - spring
+        right[i, 3] = spring * (gaps[i] - gaps[before])
         for k in range(2):
             ahead, behind = d[after, k] - d[i, k], d[i, k] - d[before, k]
             right[i, 3] -= tangent[i, k] * (weight * d[i, k] + stiffness * (behind - ahead))
