@@ -192,7 +192,7 @@ class _Stage:
         return Image.fromarray(pixels[..., :3].copy()).quantize(palette=_PALETTE, dither=Image.Dither.NONE)
 
     def _draw_cell(self, windows: CellWindows, image: FloatArray | None) -> None:
-        self._cell.cla()
+        _empty(self._cell)
         if image is not None:
             self._limits = self._limits or signal_limits(image, windows.mask)
             low, high = self._limits
@@ -206,7 +206,7 @@ class _Stage:
         note_sector(self._cell)
 
     def _draw_disk(self, windows: CellWindows, image: FloatArray | None) -> None:
-        self._disk.cla()
+        _empty(self._disk)
         grid, colours = self._grid, sector_colours(self._grid.sectors)
         faces = np.zeros((grid.n_windows, 4))
         if image is not None:
@@ -227,6 +227,12 @@ class _Stage:
             )
         middle = 0.5 * grid.angles[1]
         mark_point(self._disk, float(np.sin(middle)), float(np.cos(middle)))
+
+
+def _empty(ax: Axes) -> None:
+    """Remove what is drawn, but not the axes' own parts, which take long to make."""
+    for artist in (*ax.images, *ax.collections, *ax.patches, *ax.lines, *ax.texts):
+        artist.remove()
 
 
 def _arcs(grid: PolarWindows) -> list[FloatArray]:

@@ -76,7 +76,7 @@ def draw_outline(ax: Axes, disk: DiskMap, *, color: str = LINE_COLOUR, linewidth
     Polygon
     """
     outline = Polygon(disk.outline_yx[:, ::-1], fill=False, edgecolor=color, linewidth=linewidth, zorder=3)
-    ax.add_patch(outline)
+    ax.add_artist(outline)  # add_patch would measure all its points, for limits that the callers set
     return outline
 
 

@@ -22,7 +22,7 @@ OUTWARD_COLOUR, INWARD_COLOUR = "#B2182B", "#2166AC"  # near the ends of the div
 
 _THIS_FRAME, _NEXT_FRAME = "0.65", "black"
 _ARROW_WIDTH_MM = 0.22
-_LONGEST_ARROW = 0.15  # of the cell, at most
+_LONGEST_ARROW = 0.15  # of the cell, at most; the key's arrow, of the axes' width
 _KEY_BELOW = 5.0  # points, at the height of the scale bar
 _DARKEST_TO = 0.88  # share of the colours that can be seen on white
 
@@ -236,7 +236,7 @@ def _check_count(name: str, value: int, least: int) -> None:
 
 
 def _draw_closed(ax: Axes, outline_yx: FloatArray, color: str, linewidth: float, label: str) -> None:
-    ax.add_patch(Polygon(outline_yx[:, ::-1], fill=False, edgecolor=color, linewidth=linewidth, label=label))
+    ax.add_artist(Polygon(outline_yx[:, ::-1], fill=False, edgecolor=color, linewidth=linewidth, label=label))
 
 
 def _draw_arrows(
@@ -285,11 +285,12 @@ def _draw_key(
     if not (longest := float(np.hypot(*step_yx.T).max(initial=0.0))):
         return
     unit, size = ("px", 1.0) if pixel_size_um is None else ("µm", pixel_size_um)
-    length = nice_length(size * longest)
+    room = _LONGEST_ARROW * abs(float(np.subtract(*ax.get_xlim()))) / stretch
+    length = nice_length(size * min(longest, room))
     words = f"{length:g} {unit} per frame" + (f" (× {stretch:g})" if stretch != 1.0 else "")
     ax.apply_aspect()
     below = -_KEY_BELOW / 72.0 * ax.figure.dpi / ax.get_window_extent().height
-    ax.quiverkey(arrows, 0.6, below, length / size, words, labelpos="E", labelsep=0.04, color=LINE_COLOUR)
+    ax.quiverkey(arrows, 0.64, below, length / size, words, labelpos="E", labelsep=0.04, color=LINE_COLOUR)
 
 
 def _draw_paths(ax: Axes, points: FloatArray, paths: int) -> None:

@@ -27,7 +27,7 @@ from cytodisk.plot.time_axis import time_scale
 SECTOR_LABEL = "sector (0 at +x, towards +y)"
 
 _MOST_LAYERS = 4
-_VELOCITY_PERCENTILE = 99.0
+_VELOCITY_PERCENTILE = 97.0
 _BAR_WIDTH_MM, _BAR_GAP_MM = 2.0, 1.5
 _STEPS = [1, 2, 2.5, 5, 10]
 
@@ -101,7 +101,7 @@ def draw_velocity_map(
     Returns
     -------
     AxesImage
-        Its array has shape (S, T); its limits are percentile 99 of the speeds to both sides of 0.
+        Its array has shape (S, T); its limits are percentile 97 of the speeds to both sides of 0.
 
     Raises
     ------

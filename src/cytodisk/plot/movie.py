@@ -11,7 +11,7 @@ import numpy as np
 from cytodisk.arrays import FloatArray
 from cytodisk.io.study_folder import Study
 from cytodisk.plot.animation import write_animation
-from cytodisk.plot.consistency import draw_by_layer, layer_colours
+from cytodisk.plot.consistency import consistency_sheet
 from cytodisk.plot.kymograph import bar_beside, draw_layers, draw_velocity_map, shown_layers
 from cytodisk.plot.movie_cell import HEADING_MM, LEFT_MM, CellMovie
 from cytodisk.plot.movie_edge import edge_sheet
@@ -24,9 +24,8 @@ Progress = Callable[[int, int], None]
 
 _MOST_ANIMATED = 60  # frames; drawing one takes about 0.2 s
 _STRIP_FRAMES, _STRIP_COLUMNS = 6, 3
-_MOST_CORRELATIONS = 2
 _LONGEST_CHANNEL = 24
-_MAP_LEFT, _MAP_WIDTH, _MAP, _MAP_GAP = 15.0, 145.0, 26.0, 5.5  # mm
+_MAP_LEFT, _MAP_WIDTH, _VELOCITY, _MAP, _MAP_GAP = 15.0, 145.0, 34.0, 25.0, 5.5  # mm
 _TALLEST = 1.3  # height of a panel of the strip over its width
 
 
@@ -102,7 +101,7 @@ def _pages(movie: CellMovie, signal: SignalAt | None) -> list[tuple[str, Callabl
         pages.append((f"activity_{name}", partial(_activity_sheet, movie, number)))
     pages.append(("edge", partial(edge_sheet, movie)))
     pages.append(("strip", partial(_strip_sheet, movie, signal)))
-    pages.append(("consistency", partial(_consistency_sheet, movie)))
+    pages.append(("consistency", partial(consistency_sheet, movie)))
     return pages
 
 
@@ -117,22 +116,24 @@ def _file_names(channels: list[str]) -> list[str]:
 
 
 def _velocity_sheet(movie: CellMovie) -> Sheet:
-    sheet = Sheet(HEADING_MM + 6.0 + 2 * _MAP + 12.0)
+    sheet = Sheet(HEADING_MM + 6.0 + 2 * _VELOCITY + 12.0)
     movie.write_heading(sheet, "edge velocity")
-    ax = sheet.axes(_MAP_LEFT, HEADING_MM + 6.0, _MAP_WIDTH, 2 * _MAP)
+    ax = sheet.axes(_MAP_LEFT, HEADING_MM + 6.0, _MAP_WIDTH, 2 * _VELOCITY)
     draw_velocity_map(ax, movie.activity["velocity"], unit=movie.unit("velocity"), **_time(movie))
     ax.set_title("edge velocity: protrusion red, retraction blue", loc="left", y=1.0, pad=2.5)
     return sheet
 
 
 def _activity_sheet(movie: CellMovie, channel: int) -> Sheet:
-    rows = 1 + len(shown_layers(movie.grid.layers))
-    sheet = Sheet(HEADING_MM + rows * (_MAP + _MAP_GAP) + 10.0)
-    name = _shortened(movie.channels[channel])
+    layers = len(shown_layers(movie.grid.layers))
+    first = HEADING_MM + 5.0
+    below = first + _VELOCITY + _MAP_GAP
+    sheet = Sheet(below + layers * (_MAP + _MAP_GAP) + 5.0)
+    name = movie.shown_name(channel)
     movie.write_heading(sheet, f"activity of {name}")
-    tops = [HEADING_MM + 5.0 + row * (_MAP + _MAP_GAP) for row in range(rows)]
+    maps = [sheet.axes(_MAP_LEFT, below + k * (_MAP + _MAP_GAP), _MAP_WIDTH, _MAP) for k in range(layers)]
     draw_layers(
-        [sheet.axes(_MAP_LEFT, top, _MAP_WIDTH, _MAP) for top in tops],
+        [sheet.axes(_MAP_LEFT, first, _MAP_WIDTH, _VELOCITY), *maps],
         movie.activity["mean"][:, channel],
         movie.activity["velocity"],
         label=f"mean {name} (a.u.)",
@@ -152,7 +153,7 @@ def _strip_sheet(movie: CellMovie, signal: SignalAt | None) -> Sheet:
     height = width * min((extent[1] - extent[0]) / wide, _TALLEST)
     rows = -(-len(times) // _STRIP_COLUMNS)
     sheet = Sheet(HEADING_MM + rows * (height + 10.0) + 1.0)
-    movie.write_heading(sheet, "windows through time" + (f", over {_first_channel(movie)}" if shown else ""))
+    movie.write_heading(sheet, "windows through time" + (f", over {movie.shown_name()}" if shown else ""))
     axes = [
         sheet.axes(
             LEFT_MM + (k % _STRIP_COLUMNS) * (width + 3.0),
@@ -175,58 +176,9 @@ def _strip_sheet(movie: CellMovie, signal: SignalAt | None) -> Sheet:
         signal=[missing if image is None else image for image in images] if shown else None,
     )
     if shown:
-        colour_bar(axes[0].images[0], bar_beside(axes[min(2, len(axes) - 1)]), _first_channel(movie), "a.u.")
+        beside = bar_beside(axes[min(_STRIP_COLUMNS, len(axes)) - 1])
+        colour_bar(axes[0].images[0], beside, movie.shown_name(), "a.u.", extend="both")
     return sheet
-
-
-def _consistency_sheet(movie: CellMovie) -> Sheet | None:
-    """Correlation of consecutive frames, displacement of windows, and completeness where it is not whole."""
-    measures = _measures(movie)
-    if not measures:
-        return None
-    rows, columns = -(-len(measures) // 2), min(len(measures), 2)
-    width = (DOUBLE_COLUMN_MM - LEFT_MM - 14.0 * columns) / columns - 1.0
-    sheet = Sheet(HEADING_MM + 6.0 + rows * 48.0 + 2.0)
-    movie.write_heading(sheet, "consistency of windows from a frame to the next")
-    layers = shown_layers(movie.grid.layers)
-    for number, (title, label, values) in enumerate(measures):
-        row, column = divmod(number, 2)
-        left, top = LEFT_MM + 11.0 + column * (width + 14.0), HEADING_MM + 10.0 + row * 48.0
-        ax = sheet.axes(left, top, width, 34.0)
-        draw_by_layer(ax, values, layers, label, **_time(movie))
-        ax.set_title(title, loc="left", parse_math=False)
-    left = LEFT_MM
-    for layer, colour in zip(layers, layer_colours(layers), strict=True):
-        sheet.text(left, HEADING_MM + 2.0, "—", color=colour, weight="bold")
-        sheet.text(left + 4.0, HEADING_MM + 2.0, _layer_name(layer, movie.grid.layers))
-        left += 30.0
-    return sheet
-
-
-def _measures(movie: CellMovie) -> list[tuple[str, str, FloatArray]]:
-    """Title, label and values by frame and layer of each measure that has numbers."""
-    table = movie.study.consistency
-    if table is None:
-        return []
-    unit = table.attrs["units"]["centroid_displacement"]
-    rows = table[table["cell"] == movie.cell]
-
-    def by_frame(name: str, channel: str | None) -> FloatArray:
-        chosen = rows if channel is None else rows[rows["channel"] == channel]
-        wide = chosen.pivot_table(index="time", columns="layer", values=name, dropna=False, aggfunc="first")
-        times, layers = range(movie.first, movie.first + movie.frames), range(movie.grid.layers)
-        return wide.reindex(index=times, columns=layers).to_numpy(dtype=np.float64)
-
-    found = [
-        (f"signal: {_shortened(name)}", "correlation with next frame", by_frame("correlation", name))
-        for name in movie.channels[:_MOST_CORRELATIONS]
-    ]
-    moved = by_frame("centroid_displacement", None)
-    found.append(("mean displacement of windows' centroids", f"to next frame ({unit})", moved))
-    complete = by_frame("completeness", None)
-    if np.nanmin(complete, initial=1.0) < 1.0:
-        found.append(("completeness", "share of windows with pixels", complete))
-    return [measure for measure in found if np.isfinite(measure[2]).any()]
 
 
 def _animate(
@@ -243,7 +195,7 @@ def _animate(
         pixel_size_um=movie.pixel_size_um,
         frame_interval_s=movie.interval_s,
         limits=_limits(movie, signal),
-        label=f"{_first_channel(movie)} (a.u.)",
+        label=f"{movie.shown_name()} (a.u.)",
         progress=progress,
     )
 
@@ -272,18 +224,6 @@ def _background(signal: SignalAt | None, time: int) -> FloatArray | None:
 
 def _time(movie: CellMovie) -> Any:
     return {"frame_interval_s": movie.interval_s, "first_frame": movie.first}
-
-
-def _first_channel(movie: CellMovie) -> str:
-    return _shortened(movie.channels[0]) if movie.channels else "signal"
-
-
-def _shortened(name: str) -> str:
-    return name if len(name) <= _LONGEST_CHANNEL else f"{name[: _LONGEST_CHANNEL - 1]}…"
-
-
-def _layer_name(layer: int, layers: int) -> str:
-    return f"layer {layer}" + {layers - 1: " (centre)", 0: " (edge)"}.get(layer, "")
 
 
 def _spread(times: list[int], most: int) -> list[int]:

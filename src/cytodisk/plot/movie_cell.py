@@ -22,6 +22,8 @@ from cytodisk.windows.grid import PolarWindows, polar_windows
 HEADING_MM = 12.0
 LEFT_MM = 4.0
 
+_LONGEST_CHANNEL = 24
+
 
 @dataclass(frozen=True, eq=False)
 class CellMovie:
@@ -73,8 +75,17 @@ class CellMovie:
 
     @property
     def channels(self) -> list[str]:
-        """Names of the signal's channels; empty without a signal."""
+        """Names of the signal's channels, as the tables have them; empty without a signal."""
         return [str(name) for name in self.activity["channel"].to_numpy()] if "mean" in self.activity else []
+
+    def shown_name(self, channel: int = 0) -> str:
+        """Name of a channel for headings and labels."""
+        if not self.channels:
+            return "signal"
+        name = self.channels[channel]
+        if name.isdigit():  # a file without names
+            return f"channel {name}" if len(self.channels) > 1 else "signal"
+        return name if len(name) <= _LONGEST_CHANNEL else f"{name[: _LONGEST_CHANNEL - 1]}…"
 
     @cached_property
     def points_yx(self) -> FloatArray:

@@ -15,7 +15,7 @@ from cytodisk.plot.edge import draw_area_change, draw_tracks, draw_velocity_arro
 from cytodisk.plot.movie_cell import HEADING_MM, CellMovie
 from cytodisk.plot.sheet import Sheet
 from cytodisk.plot.strip import time_stamp
-from cytodisk.plot.style import LINE_COLOUR
+from cytodisk.plot.style import LINE_COLOUR, nice_length
 from cytodisk.plot.time_axis import time_scale
 
 SPREAD = (10, 90)  # percentiles
@@ -24,6 +24,8 @@ _ARROWS, _TRACKS = 80.0, 66.0  # mm, width of the panels
 _TALL, _LINES, _LINE_LEFT, _LINE_WIDTH = 72.0, 28.0, 17.0, 156.0  # mm
 _POINTS_SHOWN = 120  # arrows around the cell
 _OUTLINES_SHOWN = 20
+_MOST_SPEED = 97.0  # percentile
+_USUAL_ARROW, _LONGEST_ARROW = 0.08, 0.25  # of the cell: percentile 95, and the longest
 
 
 def edge_sheet(movie: CellMovie) -> Sheet:
@@ -39,7 +41,7 @@ def edge_sheet(movie: CellMovie) -> Sheet:
     Sheet
     """
     top = HEADING_MM + 12.0
-    first = top + _TALL + 16.0
+    first = top + _TALL + 14.0
     second = first + _LINES + 9.0
     sheet = Sheet(second + _LINES + 11.0)
     movie.write_heading(sheet, "motion of the edge")
@@ -113,6 +115,9 @@ def draw_mean_velocity(
 def fastest_frame(velocity: FloatArray) -> int | None:
     """Frame with the largest mean speed of its sectors.
 
+    Speeds above percentile 97 of the movie count as that, so that a fault of the mask in a few sectors does
+    not pass for motion of the cell.
+
     Parameters
     ----------
     velocity : ndarray of shape (T, S) and dtype float
@@ -125,8 +130,9 @@ def fastest_frame(velocity: FloatArray) -> int | None:
     known = np.isfinite(velocity)
     if not known.any():
         return None
-    speed = np.where(known, np.abs(velocity), 0.0).sum(axis=1) / np.maximum(known.sum(axis=1), 1)
-    return int(speed.argmax())
+    size = np.abs(velocity)
+    size = np.where(known, np.minimum(size, np.percentile(size[known], _MOST_SPEED)), 0.0)
+    return int((size.sum(axis=1) / np.maximum(known.sum(axis=1), 1)).argmax())
 
 
 def _draw_arrows(sheet: Sheet, top: float, movie: CellMovie, velocity: FloatArray) -> None:
@@ -142,6 +148,7 @@ def _draw_arrows(sheet: Sheet, top: float, movie: CellMovie, velocity: FloatArra
     for boundary in (here, there):
         distance[on_border(boundary.points_yx, movie.maps.image_shape)] = np.nan
     ax = sheet.axes(4.0, top, _ARROWS, _TALL)
+    ax.set_anchor("NW")
     draw_velocity_arrows(
         ax,
         here.points_yx,
@@ -152,7 +159,7 @@ def _draw_arrows(sheet: Sheet, top: float, movie: CellMovie, velocity: FloatArra
         there.contour.outline_yx,
         pixel_size_um=movie.pixel_size_um,
         every=max(1, len(distance) // _POINTS_SHOWN),
-        stretch=None,
+        stretch=_stretch(there.points_yx - here.points_yx, here.contour.outline_yx),
     )
     stamp = time_stamp(time, movie.interval_s)
     stamp += "" if movie.interval_s is None else f" (frame {time})"
@@ -161,6 +168,7 @@ def _draw_arrows(sheet: Sheet, top: float, movie: CellMovie, velocity: FloatArra
 
 def _draw_tracks(sheet: Sheet, top: float, movie: CellMovie) -> None:
     ax = sheet.axes(94.0, top, _TRACKS, _TALL)
+    ax.set_anchor("NW")
     every = -(-movie.frames // _OUTLINES_SHOWN)
     draw_tracks(
         ax,
@@ -171,7 +179,17 @@ def _draw_tracks(sheet: Sheet, top: float, movie: CellMovie) -> None:
         pixel_size_um=movie.pixel_size_um,
     )
     which = "every frame" if every == 1 else f"every {every} frames"
-    sheet.text(94.0, HEADING_MM + 3.0, f"outlines {which}, paths of points (from ●)", fontsize=7.5)
+    sheet.text(94.0, HEADING_MM + 3.0, f"outlines {which}, paths of points from the dot on", fontsize=7.5)
+
+
+def _stretch(step_yx: FloatArray, outline_yx: FloatArray) -> float:
+    """So much longer than their steps are arrows that most can be seen and none leaves the panel."""
+    length = np.hypot(*step_yx.T)
+    if not length.max() > 0:
+        return 1.0
+    size = float(np.ptp(outline_yx, axis=0).max())
+    usual = _USUAL_ARROW * size / max(float(np.percentile(length, 95)), 1e-9)
+    return nice_length(max(1.0, min(usual, _LONGEST_ARROW * size / float(length.max()))))
 
 
 def _table(values: xr.DataArray) -> FloatArray:
