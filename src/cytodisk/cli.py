@@ -285,37 +285,38 @@ def info_command() -> None:
 @app.command("demo")
 def demo_command(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the demo.")] = Path("cytodisk_demo"),
-    seed: Annotated[int, typer.Option(help="Seed of the simulated cell.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the simulated movie.")] = 0,
+    workers: Annotated[int, typer.Option(help="Processes.")] = 1,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in OUT/study.")] = False,
     quiet: Quiet = False,
 ) -> None:
-    """Simulate a cell with two signals, map it, sample it, and compare with the known answer.
+    """Simulate a moving cell with two signals, follow it, and compare with the known answer.
 
     Nothing is downloaded. OUT/input holds the simulated files, OUT/study the results.
     """
-    from cytodisk.plot.study import draw_cell_figures
     from cytodisk.study.demo import compare_with_truth, write_demo_input
-    from cytodisk.study.map_run import open_inputs, run_map
-    from cytodisk.study.parameters import MapParameters
+    from cytodisk.study.movie_run import open_movie, run_movie
+    from cytodisk.study.parameters import MovieParameters
 
     console = _console(quiet)
-    cell, masks, signal = write_demo_input(out / "input", seed, overwrite=overwrite)
-    console.print(f"A simulated cell of {int(cell.mask.sum())} pixels with its signals is in {masks.parent}.")
-    console.print(f"The same by hand: cytodisk map {masks} --signal {signal} -o {out / 'study'}\n")
-    inputs = open_inputs(masks, signal, MapParameters())
-    _say_inputs(console, inputs)
-    with _progress(quiet, "cells") as progress:
-        study = run_map(
+    truth, masks, signal = write_demo_input(out / "input", seed, overwrite=overwrite)
+    console.print(f"A simulated cell in {len(truth.masks)} frames, with two signals, is in {masks.parent}.")
+    console.print(f"The same by hand: cytodisk movie {masks} --signal {signal} -o {out / 'study'}\n")
+    inputs = open_movie(masks, signal, MovieParameters())
+    _say_movie(console, inputs)
+    with _progress(quiet, "frames") as progress:
+        study = run_movie(
             inputs,
             out / "study",
+            workers=workers,
             resume=not overwrite,
             overwrite=overwrite,
-            draw=draw_cell_figures,
             progress=progress,
         )
-    _finish(console, study, 1)
-    for channel, answer in compare_with_truth(study, cell).items():
-        console.print(f"{channel}: {answer}")
+    _draw_movie(quiet, study, inputs, 1)
+    _finish_movie(console, study)
+    for what, answer in compare_with_truth(study, truth).items():
+        console.print(f"{what}: {answer}")
 
 
 def main() -> None:
@@ -468,8 +469,8 @@ def _say_measures(console: "Console", study: "Study", mapped: Any) -> None:
     border = mapped.groupby("cell")["touches_border"].sum()
     if border.any():
         console.print(
-            f"{_count(int((border > 0).sum()))} on the image's border in {int(border.sum())} frames: that part "
-            "of the edge has no velocity"
+            f"{_count(int((border > 0).sum()))} on the image's border in {int(border.sum())} frames: "
+            "that part of the edge has no velocity"
         )
 
 

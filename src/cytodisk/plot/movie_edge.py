@@ -24,7 +24,7 @@ _ARROWS, _TRACKS = 80.0, 66.0  # mm, width of the panels
 _TALL, _LINES, _LINE_LEFT, _LINE_WIDTH = 72.0, 28.0, 17.0, 156.0  # mm
 _POINTS_SHOWN = 120  # arrows around the cell
 _OUTLINES_SHOWN = 20
-_MOST_SPEED = 97.0  # percentile
+_MOST_SPEED = 90.0  # percentile
 _USUAL_ARROW, _LONGEST_ARROW = 0.08, 0.25  # of the cell: percentile 95, and the longest
 
 
@@ -115,7 +115,7 @@ def draw_mean_velocity(
 def fastest_frame(velocity: FloatArray) -> int | None:
     """Frame with the largest mean speed of its sectors.
 
-    Speeds above percentile 97 of the movie count as that, so that a fault of the mask in a few sectors does
+    Speeds above percentile 90 of the movie count as that, so that a fault of the mask in a few sectors does
     not pass for motion of the cell.
 
     Parameters

@@ -1,22 +1,29 @@
 """The demo's input files, and how far its results are from the known answer."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import tifffile
 
+from cytodisk.analysis.accuracy import first_boundary_of, tracking_error, true_edge_velocity
+from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.files import replacing
 from cytodisk.io.frames import open_frames
 from cytodisk.io.study_folder import Study
-from cytodisk.simulate.signals import SimulatedCell, cell_with_signal
-from cytodisk.windows.grid import polar_windows
-from cytodisk.windows.sample import sample
+from cytodisk.simulate.moving_cells import SimulatedMovie, movie
+
+FRAMES = 40
+_LONGEST_LAG = 10  # frames
 
 
-def write_demo_input(folder: Path, seed: int, *, overwrite: bool = False) -> tuple[SimulatedCell, Path, Path]:
-    """Write a simulated cell as a mask file and an OME-TIFF; files that hold it already are left alone.
+def write_demo_input(
+    folder: Path, seed: int, *, overwrite: bool = False
+) -> tuple[SimulatedMovie, Path, Path]:
+    """Write a simulated movie as a mask file and an OME-TIFF; files that hold it already are left alone.
 
     Parameters
     ----------
@@ -28,70 +35,126 @@ def write_demo_input(folder: Path, seed: int, *, overwrite: bool = False) -> tup
 
     Returns
     -------
-    cell : SimulatedCell
-    mask, signal : Path
+    truth : SimulatedMovie
+    masks, signal : Path
 
     Raises
     ------
     StudyError
         The folder cannot be written, or holds something else.
     """
-    cell = cell_with_signal(seed)
+    truth = movie("migrating", seed, frames=FRAMES)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise StudyError(f"output folder {folder} cannot be written: {error.strerror}") from error
-    mask, signal = folder / "mask.tif", folder / "signal.ome.tif"
-    _write(mask, cell.mask.astype(np.uint8), {"axes": "YX"}, overwrite)
-    pixel = cell.signal.attrs["pixel_size_um"]
+    masks, signal = folder / "masks.tif", folder / "signal.ome.tif"
+    _write(masks, truth.masks.astype(np.uint8), {"axes": "TYX"}, overwrite)
+    counts = _signal(truth)
     metadata = {
-        "axes": "CYX",
-        "Channel": {"Name": [str(name) for name in cell.signal["channel"].to_numpy()]},
-        "PhysicalSizeX": pixel,
+        "axes": "TCYX",
+        "Channel": {"Name": [str(name) for name in counts["channel"].to_numpy()]},
+        "PhysicalSizeX": truth.pixel_size_um,
         "PhysicalSizeXUnit": "µm",
-        "PhysicalSizeY": pixel,
+        "PhysicalSizeY": truth.pixel_size_um,
         "PhysicalSizeYUnit": "µm",
+        "TimeIncrement": truth.frame_interval_s,
+        "TimeIncrementUnit": "s",
     }
-    _write(signal, cell.signal.to_numpy(), metadata, overwrite)
-    return cell, mask, signal
+    _write(signal, counts.to_numpy(), metadata, overwrite)
+    return truth, masks, signal
 
 
-def compare_with_truth(study: Study, cell: SimulatedCell) -> dict[str, str]:
-    """How far the window means of a demo are from the expected counts, in words by channel.
-
-    The noise of a window's mean is known: expected counts are Poisson, so its variance is the weighted mean
-    of the expected counts over the number of pixels. Deviations that this explains have a root mean square
-    of 1 in units of their own standard deviation.
+def compare_with_truth(study: Study, truth: SimulatedMovie) -> dict[str, str]:
+    """How far the results of a demo are from the known answer, in words.
 
     Parameters
     ----------
     study : Study
         Of the files that `write_demo_input` wrote.
-    cell : SimulatedCell
+    truth : SimulatedMovie
 
     Returns
     -------
     dict of str to str
+        By what is compared.
     """
-    disk = study.map(0)
-    settings = study.provenance["parameters"]
-    windows = polar_windows(settings["layers"], settings["sectors"], settings["spacing"]).on(disk)
-    expected = sample(windows, cell.truth)
-    spread = np.sqrt(windows.weights.power(2) @ cell.truth.to_numpy()[:, disk.mask].T).T
-    answers = {}
-    for number, channel in enumerate(cell.signal["channel"].to_numpy()):
-        found = study.windows[study.windows["channel"] == channel]
-        known = expected["mean"].to_numpy()[number].ravel()
-        off = found["mean"].to_numpy() - known
-        sigmas = off / (spread[number] / windows.areas.ravel())
-        total = float((found["mean"] * found["n_pixels"]).sum())
-        counted = float(cell.signal.to_numpy()[number][disk.mask].sum(dtype=np.float64))
-        answers[str(channel)] = (
-            f"window means within {np.abs(off / known).max():.1%} of the known ones (rms "
-            f"{np.sqrt(np.mean((off / known) ** 2)):.1%}; {np.sqrt(np.mean(sigmas**2)):.2f} of what photon "
-            f"noise explains); sum over windows {total:.0f}, counts in the cell {counted:.0f}"
-        )
-    return answers
+    activity = study.activity(0)
+    return {
+        "boundary": _boundary_words(study, truth),
+        "edge velocity": _velocity_words(study, truth, activity["velocity"].to_numpy()),
+        "signal": _signal_words(study, truth),
+        "lag": _lag_words(truth, activity["mean"].sel(channel="edge", layer=0).to_numpy(), activity),
+    }
+
+
+def _boundary_words(study: Study, truth: SimulatedMovie) -> str:
+    movie = study.movie(0)
+    first, last = first_boundary_of(movie), movie.records[-1].boundary
+    if last is None:
+        return f"the last frame has no map: {movie.records[-1].reason}"
+    error = tracking_error(first, last, truth.boundary_yx[0], truth.boundary_yx[-1]) * truth.pixel_size_um
+    share = error.mean() / (last.contour.length * truth.pixel_size_um)
+    return (
+        f"after {len(movie) - 1} frames the tracked points are {error.mean():.2f} µm along the edge from "
+        f"where they belong on average (95 % within {np.percentile(error, 95):.2f} µm), {share:.1%} of the "
+        "way around"
+    )
+
+
+def _velocity_words(study: Study, truth: SimulatedMovie, found: FloatArray) -> str:
+    first = first_boundary_of(study.movie(0))
+    known = true_edge_velocity(first, truth.boundary_yx, truth.normal_displacement_px, found.shape[1])
+    known = known * truth.pixel_size_um / truth.frame_interval_s
+    both = np.isfinite(found) & np.isfinite(known)
+    error = float(np.sqrt(np.mean((found - known)[both] ** 2)))
+    spread = float(known[both].std())
+    correlation = float(np.corrcoef(found[both], known[both])[0, 1])
+    return (
+        f"error {error:.3f} µm/s (rms; the velocities spread by {spread:.3f} µm/s), correlation with the "
+        f"known ones {correlation:.3f}"
+    )
+
+
+def _signal_words(study: Study, truth: SimulatedMovie) -> str:
+    """Sums over windows against counts in the mask, which must agree but for rounding."""
+    windows = study.windows
+    products = windows["mean"] * windows["n_pixels"]
+    found = products.groupby([windows["channel"], windows["time"]]).sum()
+    off = []
+    counts = _signal(truth)
+    for number, channel in enumerate(counts["channel"].to_numpy()):
+        for time, mask in enumerate(truth.masks):
+            counted = float(counts.to_numpy()[time, number][mask].sum(dtype=np.float64))
+            off.append(abs(found[str(channel), time] - counted) / counted)
+    worst = float(np.max(off))
+    return f"sum over windows against counts in the cell: at most {worst:.0e} off, in any frame and channel"
+
+
+def _lag_words(truth: SimulatedMovie, edge: FloatArray, activity: Any) -> str:
+    """Lag at which the outermost layer's edge signal follows velocity best, against the simulated one."""
+    velocity = activity["velocity"].to_numpy()
+    lags = range(-_LONGEST_LAG, _LONGEST_LAG + 1)
+    best = max(lags, key=lambda lag: _correlation_at(velocity, edge, lag))
+    interval = truth.frame_interval_s
+    return (
+        f"the edge signal follows edge velocity by {best * interval:g} s ({best} frames); simulated were "
+        f"{truth.lag_frames * interval:g} s ({truth.lag_frames} frames)"
+    )
+
+
+def _correlation_at(velocity: FloatArray, signal: FloatArray, lag: int) -> float:
+    """Correlation over frames and sectors of the velocity with the signal `lag` frames later."""
+    frames = len(velocity) - abs(lag)
+    early, late = velocity[max(0, -lag) :][:frames], signal[max(0, lag) :][:frames]
+    both = np.isfinite(early) & np.isfinite(late)
+    return float(np.corrcoef(early[both], late[both])[0, 1])
+
+
+def _signal(truth: SimulatedMovie) -> Any:
+    if truth.signal is None:
+        raise StudyError("the demo's movie has no signal: simulate it with signals=True")
+    return truth.signal
 
 
 def _write(path: Path, values: Any, metadata: dict[str, Any], overwrite: bool) -> None:
@@ -105,6 +168,12 @@ def _write(path: Path, values: Any, metadata: dict[str, Any], overwrite: bool) -
 
 def _holds(path: Path, values: Any) -> bool:
     try:
-        return np.array_equal(open_frames(path, unnamed="C").frame(0), values.reshape(-1, *values.shape[-2:]))
+        found = open_frames(path)
+        if found.n_frames != len(values) or found.image_shape != values.shape[-2:]:
+            return False
+        return all(
+            np.array_equal(found.frame(time), frame.reshape(-1, *values.shape[-2:]))
+            for time, frame in enumerate(values)
+        )
     except ReadError:
         return False  # a file that cannot be read is written anew
