@@ -3,8 +3,8 @@
 It minimises, over maps of one closed curve onto the other that keep order, the integral along the curve of
 |d|² + smoothness · (|d'|² + s'²): displacements d are to be short and to change little along the edge, and
 the stretch s' is to be even, like those of an elastic band. A global search over coarse pairs comes first,
-then Gauss-Newton steps on the continuous positions, which give fractions of a pixel. Registration uses the same
-energy with a free rigid motion.
+then Gauss-Newton steps on the continuous positions, which give fractions of a pixel. Registration uses the
+same energy with a free rigid motion.
 """
 
 from __future__ import annotations

@@ -21,6 +21,7 @@ from cytodisk.plot.time_axis import time_scale
 
 _LIGHTEST = 0.85  # share of the colours that can be seen on white
 _MOST_CORRELATIONS = 2
+_HIGH_CORRELATION = 0.9
 _PANEL, _ROW, _AXIS = 34.0, 49.0, 14.0  # mm: height of a panel, of a row, room for the labels of an axis
 
 
@@ -100,15 +101,13 @@ def consistency_measures(movie: CellMovie) -> list[Measure]:
         return []
     unit = table.attrs["units"]["centroid_displacement"]
     rows = table[table["cell"] == movie.cell]
-    found = [
-        Measure(
-            f"correlation of {movie.shown_name(number)}",
-            "correlation with next frame",
-            _by_frame(movie, rows[rows["channel"] == name], "correlation"),
-            high=1.0,
-        )
-        for number, name in enumerate(movie.channels[:_MOST_CORRELATIONS])
-    ]
+    found = []
+    for number, name in enumerate(movie.channels[:_MOST_CORRELATIONS]):
+        title = f"correlation of {movie.shown_name(number)}"
+        values = _by_frame(movie, rows[rows["channel"] == name], "correlation")
+        # Correlations that are all near 1 should look so.
+        low = _HIGH_CORRELATION if np.nanmin(values, initial=1.0) > _HIGH_CORRELATION else None
+        found.append(Measure(title, "correlation with next frame", values, low, 1.0))
     moved = _by_frame(movie, rows, "centroid_displacement")
     found.append(Measure("mean displacement of centroids", f"displacement ({unit})", moved, low=0.0))
     complete = _by_frame(movie, rows, "completeness")

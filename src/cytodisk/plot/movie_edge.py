@@ -99,8 +99,9 @@ def draw_mean_velocity(
     time = step * (first_frame + np.arange(len(table)))
     known = np.isfinite(table).any(axis=1)
     mean, low, high = np.full((3, len(table)), np.nan)
-    mean[known] = np.nanmean(table[known], axis=1)
-    low[known], high[known] = np.nanpercentile(table[known], SPREAD, axis=1)
+    if known.any():
+        mean[known] = np.nanmean(table[known], axis=1)
+        low[known], high[known] = np.nanpercentile(table[known], SPREAD, axis=1)
     ax.axhline(0.0, color="0.6", linewidth=0.5)
     ax.fill_between(
         time, low, high, color="0.8", linewidth=0, label=f"percentiles {SPREAD[0]}–{SPREAD[1]} of sectors"
