@@ -1,0 +1,235 @@
+import struct
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tifffile
+from matplotlib.figure import Figure
+from PIL import Image
+
+from cytodisk.arrays import FloatArray
+from cytodisk.errors import ReadError, SignalError
+from cytodisk.io.study_folder import Study
+from cytodisk.plot import movie as pages
+from cytodisk.plot.consistency import draw_by_layer
+from cytodisk.plot.movie import draw_movie_figures
+from cytodisk.plot.movie_cell import CellMovie
+from cytodisk.plot.movie_edge import draw_mean_velocity, fastest_frame
+from cytodisk.study.movie_run import open_movie, run_movie
+from cytodisk.study.parameters import MovieParameters
+
+FRAMES, GAP, SHAPE = 8, 3, (50, 150)
+WHOLE, LATE, ONCE = range(3)  # cells: with a gap, from frame 5 to 6, in frame 6 alone
+
+
+def _masks() -> FloatArray:
+    """A disk that grows by 0.5 px a frame and moves, and cells that are seen for a short time."""
+    y, x = np.mgrid[: SHAPE[0], : SHAPE[1]]
+    masks = np.zeros((FRAMES, *SHAPE), dtype=np.uint8)
+    for time in range(FRAMES):
+        if time != GAP:
+            masks[time][np.hypot(y - 25, x - 25 - time) < 12 + 0.5 * time] = 1
+        if time in (5, 6):
+            masks[time][np.hypot(y - 25, x - 80) < 10 + time - 5] = 2
+        if time == 6:
+            masks[time][np.hypot(y - 25, x - 120) < 10] = 3
+    return masks
+
+
+def _signal() -> FloatArray:
+    y, x = np.mgrid[: SHAPE[0], : SHAPE[1]]
+    frame = np.stack([100.0 + x, 100.0 + 3 * y + (x % 7)])
+    return np.stack([frame + time for time in range(FRAMES)]).astype(np.float32)
+
+
+@pytest.fixture(scope="module")
+def images() -> FloatArray:
+    return _signal()
+
+
+def _study(folder: Path, signal: FloatArray | None, **scale: float) -> Study:
+    tifffile.imwrite(folder / "masks.tif", _masks(), metadata={"axes": "TYX"})
+    path = None
+    if signal is not None:
+        path = folder / "signal.ome.tif"
+        names = {"Channel": {"Name": ["Rac/1 $a$", "rac 1 $a$"]}}
+        tifffile.imwrite(path, signal, metadata={"axes": "TCYX"} | names)
+    parameters = MovieParameters(kind="labels", layers=3, sectors=12, repeats=2, **scale)
+    return run_movie(open_movie(folder / "masks.tif", path, parameters), folder / "study")
+
+
+@pytest.fixture(scope="module")
+def scaled(tmp_path_factory: pytest.TempPathFactory, images: FloatArray) -> Study:
+    """With a signal and a known scale."""
+    return _study(tmp_path_factory.mktemp("scaled"), images, pixel_size_um=0.2, frame_interval_s=5.0)
+
+
+@pytest.fixture(scope="module")
+def bare(tmp_path_factory: pytest.TempPathFactory) -> Study:
+    """Without a signal or a scale."""
+    return _study(tmp_path_factory.mktemp("bare"), None)
+
+
+@pytest.fixture
+def saved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Figure]]:
+    """Every page that was written, and that no text of it is cut off at the page's border."""
+    figures: list[Figure] = []
+    write = Figure.savefig
+
+    def note(figure: Figure, *args: object, **options: object) -> None:
+        figures.append(figure)
+        write(figure, *args, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Figure, "savefig", note)
+    yield figures
+    for figure in figures:
+        extent = figure.get_tightbbox()
+        width, height = figure.get_size_inches()
+        assert extent.x0 >= 0
+        assert extent.y0 >= 0
+        assert extent.x1 <= width
+        assert extent.y1 <= height
+
+
+def _names(paths: list[Path]) -> list[str]:
+    return [path.name for path in paths]
+
+
+def _labels(figure: Figure) -> set[str]:
+    axes = [inner for ax in figure.axes for inner in (ax, *ax.child_axes)]
+    return {label for ax in axes for label in (ax.get_xlabel(), ax.get_ylabel()) if label}
+
+
+def _count(path: Path) -> int:
+    with Image.open(path) as movie:
+        return int(getattr(movie, "n_frames", 1))
+
+
+def test_pages_with_signal(scaled: Study, images: FloatArray, saved: list[Figure]) -> None:
+    asked: list[int] = []
+    done: list[tuple[int, int]] = []
+
+    def signal(time: int) -> FloatArray:
+        asked.append(time)
+        return np.asarray(images[time])
+
+    paths = draw_movie_figures(scaled, WHOLE, signal, progress=lambda *state: done.append(state))
+    endings = ["activity_Rac_1_a", "activity_rac_1_a_1", "edge", "strip", "consistency"]
+    assert _names(paths) == [*(f"cell_00000_{ending}.png" for ending in endings), "cell_00000.gif"]
+    assert {path.parent for path in paths} == {scaled.path / "figures"}
+    assert not list((scaled.path / "figures").glob(".*"))
+    widths = {struct.unpack(">I", path.read_bytes()[16:20])[0] for path in paths[:-1]}
+    assert widths == {round(180 / 25.4 * 200)}
+    assert GAP not in asked
+    assert _count(paths[-1]) == FRAMES - 1
+    assert done[0] == (0, 12)
+    assert done[-1] == (12, 12)
+    activity, _, edge, strip, consistency = map(_labels, saved)
+    assert {"time (s)", "edge velocity (µm/s)", "mean Rac/1 $a$ (a.u.)"} <= activity
+    assert {"time (s)", "area per frame (µm²)", "edge velocity (µm/s)"} <= edge
+    assert strip == {"Rac/1 $a$ (a.u.)"}
+    assert {"time (s)", "displacement (µm)", "correlation with next frame"} <= consistency
+
+
+def test_pages_without_signal_or_scale(bare: Study, saved: list[Figure]) -> None:
+    paths = draw_movie_figures(bare, WHOLE)
+    endings = ["_velocity.png", "_edge.png", "_strip.png", "_consistency.png", ".gif"]
+    assert _names(paths) == [f"cell_00000{ending}" for ending in endings]
+    velocity, edge, strip, consistency = map(_labels, saved)
+    assert velocity == {"frame", "edge velocity (px/frame)", "sector (0 at +x, towards +y)"}
+    assert {"frame", "area per frame (px²)", "edge velocity (px/frame)"} <= edge
+    assert strip == set()
+    assert consistency == {"frame", "displacement (px)"}
+
+
+def test_a_gap_is_missing_in_the_map(bare: Study, saved: list[Figure]) -> None:
+    draw_movie_figures(bare, WHOLE, animation=False)
+    velocity = saved[0].axes[0].images[0].get_array()
+    known = ~np.ma.getmaskarray(velocity).all(axis=0)
+    assert known.tolist() == [True, True, False, False, True, True, True, False]
+    stamps = [ax.get_title() for ax in saved[2].axes]
+    assert stamps == ["frame 0", "frame 1", "frame 2", "frame 5", "frame 6", "frame 7"]
+
+
+def test_a_late_cell_has_the_recordings_times(scaled: Study, images: FloatArray, saved: list[Figure]) -> None:
+    paths = draw_movie_figures(scaled, LATE, lambda time: images[time])
+    assert _count(paths[-1]) == 2
+    activity, _, edge, strip, consistency = saved
+    assert activity.axes[0].get_xlim() == (22.5, 32.5)
+    assert [ax.get_title() for ax in strip.axes if ax.get_title()] == ["25 s", "30 s"]
+    changes = edge.axes[2].lines[-1]
+    assert changes.get_xdata().tolist() == [25.0, 30.0]
+    assert consistency.axes[0].lines[0].get_xdata().tolist() == [25.0, 30.0]
+
+
+def test_a_cell_in_one_frame(scaled: Study, images: FloatArray, saved: list[Figure]) -> None:
+    paths = draw_movie_figures(scaled, ONCE, lambda time: images[time])
+    assert [path.name[len("cell_00002") :] for path in paths[2:]] == ["_edge.png", "_strip.png", ".gif"]
+    words = {text.get_text() for text in saved[2].texts}
+    assert "no two frames in a row to compare" in words
+
+
+def test_a_cell_without_map(scaled: Study) -> None:
+    refused = scaled.cells.assign(status="refused", reason="mask is empty")
+    assert draw_movie_figures(replace(scaled, cells=refused), LATE) == []
+
+
+def test_images_may_be_missing(scaled: Study, images: FloatArray, saved: list[Figure]) -> None:
+    def signal(time: int) -> FloatArray | None:
+        return None if time < 2 else images[time, :1]
+
+    draw_movie_figures(scaled, WHOLE, signal, animation=False)
+    assert np.ma.getmaskarray(saved[3].axes[0].images[0].get_array()).all()
+
+
+def test_a_long_movie_is_thinned(bare: Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pages, "_MOST_ANIMATED", 1)
+    paths = draw_movie_figures(bare, LATE)
+    assert _count(paths[-1]) == 1
+
+
+def test_figures_refuse(scaled: Study) -> None:
+    with pytest.raises(ReadError, match="has no cell 9"):
+        draw_movie_figures(scaled, 9)
+    with pytest.raises(SignalError, match=r"signal has shape \(3, 3\)"):
+        draw_movie_figures(scaled, ONCE, lambda _: np.ones((1, 3, 3)))
+
+
+def test_outlines_are_those_of_the_windows(scaled: Study) -> None:
+    movie = CellMovie.of(scaled, WHOLE)
+    drawn = movie.windows(0).polygons()
+    for polygon, expected in zip(drawn, movie.grid.on(movie.maps[0]).polygons(), strict=True):
+        assert np.array_equal(polygon, expected)
+
+
+def test_mean_velocity_and_spread() -> None:
+    velocity = np.tile(np.arange(11.0), (3, 1))
+    velocity[1] = np.nan
+    velocity[2, 0] = np.nan
+    ax = Figure().add_subplot()
+    line = draw_mean_velocity(ax, velocity, first_frame=4)
+    assert line.get_xdata().tolist() == [4.0, 5.0, 6.0]
+    assert np.allclose(line.get_ydata(), [5.0, np.nan, 5.5], equal_nan=True)
+    spread = ax.collections[0].get_paths()[0].vertices
+    assert {1.0, 9.0} <= set(spread[spread[:, 0] == 4.0, 1])
+    assert ax.get_ylabel() == "edge velocity (µm/s)"
+
+
+def test_fastest_frame_is_not_that_of_a_fault() -> None:
+    velocity = np.full((5, 20), 0.1)
+    velocity[2] = -0.3
+    velocity[3, 4] = 100.0
+    velocity[4] = np.nan
+    assert fastest_frame(velocity) == 2
+    assert fastest_frame(np.full((3, 4), np.nan)) is None
+
+
+def test_measures_by_layer() -> None:
+    values = np.array([[1.0, 2.0], [np.nan, 2.0], [3.0, 2.0]])
+    ax = Figure().add_subplot()
+    edge, centre = draw_by_layer(ax, values, [0, 1], "length (µm)", frame_interval_s=2.0, first_frame=1)
+    assert edge.get_xdata().tolist() == [2.0, 4.0, 6.0]
+    assert (edge.get_marker(), centre.get_marker()) == (".", "")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("time (s)", "length (µm)")
