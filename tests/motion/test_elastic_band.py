@@ -23,7 +23,9 @@ def band_energy(
     """Plain twin of what is minimised."""
     d = target.at(places) - RigidTransform(*motion)(points)
     change = np.roll(d, -1, axis=0) - d
-    return float(spacing * (d**2).sum() + smoothness / spacing * (change**2).sum() + doubt * motion[0] ** 2)
+    stretch = np.diff(places, append=places[0] + target.length)
+    uneven = (change**2).sum() + (stretch**2).sum()
+    return float(spacing * (d**2).sum() + smoothness / spacing * uneven + doubt * motion[0] ** 2)
 
 
 def relaxed(

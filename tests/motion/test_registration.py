@@ -9,7 +9,7 @@ from cytodisk.geometry.outline import trace_outline
 from cytodisk.geometry.polygon import centroid
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.matching import first_guess
-from cytodisk.motion.registration import IDENTITY, RigidTransform, first_transform, register
+from cytodisk.motion.registration import IDENTITY, RigidTransform, believable, first_transform, register
 
 transforms = st.builds(
     RigidTransform, st.floats(-10.0, 10.0), st.floats(-100.0, 100.0), st.floats(-100.0, 100.0)
@@ -32,6 +32,13 @@ def test_the_inverse_undoes_and_lengths_stay(transform: RigidTransform) -> None:
     steps, steps_there = (np.linalg.norm(np.diff(x, axis=1), axis=-1) for x in (POINTS, there))
     np.testing.assert_allclose(steps_there, steps, atol=1e-9)
     assert np.linalg.det(transform.rotation) == pytest.approx(1.0)
+
+
+@given(transforms, transforms)
+def test_transforms_follow_each_other_and_are_undone(one: RigidTransform, other: RigidTransform) -> None:
+    np.testing.assert_allclose(one.after(other)(POINTS), one(other(POINTS)), atol=1e-9)
+    np.testing.assert_allclose(one.undone()(POINTS), one.inverse(POINTS), atol=1e-9)
+    np.testing.assert_allclose(one.after(one.undone())(POINTS), POINTS, atol=1e-9)
 
 
 @given(transforms)
@@ -102,6 +109,30 @@ def test_a_round_mask_is_not_turned(shift: tuple[float, float]) -> None:
     transform = turned(moving, reference, first_transform(moving, reference, 0.0))
     assert np.degrees(abs(transform.angle)) < 1.0
     np.testing.assert_allclose(transform(CENTRE + np.array(shift)), CENTRE, atol=0.3)
+
+
+def believed(moving: Contour, reference: Contour, found: RigidTransform) -> RigidTransform:
+    s = evenly(reference)
+    guess = first_guess(reference, moving, s, 64.0)
+    return believable(IDENTITY, found, moving, reference, s, guess, 64.0)
+
+
+@given(st.floats(-5.0, 5.0), st.floats(0.3, 3.0))
+def test_a_rigid_motion_is_believed_in(degrees: float, shift: float) -> None:
+    reference, moving = exact(lobed()), exact(moved(lobed(), degrees, (shift, -shift)))
+    back = RigidTransform(-np.radians(degrees))
+    found = RigidTransform(back.angle, *(CENTRE - back(CENTRE + np.array([shift, -shift]))))
+    np.testing.assert_allclose(found(moving.points_yx), reference.points_yx, atol=1e-9)
+    transform = believed(moving, reference, found)
+    np.testing.assert_allclose(transform(moving.points_yx), reference.points_yx, atol=0.05)
+
+
+def test_what_explains_nothing_is_not_believed_in() -> None:
+    reference, grown = exact(lobed()), exact(lobed(47.0))
+    wrong = RigidTransform(0.0, 5.0, -5.0)
+    transform = believed(grown, reference, wrong)
+    np.testing.assert_allclose(transform(grown.points_yx), grown.points_yx, atol=1e-9)
+    assert transform.angle == 0.0
 
 
 @pytest.mark.parametrize("turn", [-4.0, 2.0])

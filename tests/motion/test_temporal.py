@@ -30,6 +30,8 @@ def test_angles_increase_strictly_through_one_turn(
     angles = tracked_angles(contour, uneven(n, seed, contour.length, evenness), point_angles(n))
     assert angles.shape == (len(points),)
     assert one_turn(angles)
+    gaps = np.diff(angles, append=angles[0] + 2.0 * np.pi)
+    assert gaps.min() > 1e-4 * gaps.mean()
 
 
 @given(smooth_curves(), st.integers(2, 20), st.integers(-3, 3))

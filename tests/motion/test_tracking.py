@@ -124,6 +124,9 @@ def test_lengths_sum_to_the_contour_and_normals_lead_out() -> None:
     boundary = followed([exact(lobed()), exact(lobed(48.0))])[1]
     assert boundary.lengths_px.sum() == pytest.approx(boundary.contour.length)
     assert boundary.lengths_px.min() > 0.0
+    gaps = np.diff(boundary.s, append=boundary.s[0] + boundary.contour.length)
+    assert boundary.lengths_px[5] == pytest.approx(0.5 * (gaps[4] + gaps[5]))
+    assert np.ptp(gaps) > 1e-3
     outward = (boundary.normals_yx * (boundary.points_yx - CENTRE)).sum(axis=1)
     assert outward.min() > 0.0
 
