@@ -79,8 +79,7 @@ def test_gaps_have_their_reason_and_the_movie_goes_on(gappy: DiskMovie) -> None:
     for time in (3, 5):
         transform = gappy.transforms[time]
         assert transform is not None
-        assert np.degrees(transform.angle) == pytest.approx(-2.0 * time, abs=3.0)
-        assert transform.angle < -0.5 * np.radians(time)
+        assert -3.0 * time < np.degrees(transform.angle) < -0.5 * time
         assert gappy[time].start == "previous"
     for table in (gappy.points_yx, gappy.normals_yx, gappy.lengths_px, gappy.residual_px):
         lost = np.isnan(table.reshape(6, -1))
