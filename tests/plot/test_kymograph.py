@@ -12,9 +12,9 @@ from cytodisk.plot.kymograph import (
     draw_layers,
     draw_velocity_map,
     shown_layers,
-    time_scale,
 )
 from cytodisk.plot.style import MISSING_COLOUR
+from cytodisk.plot.time_axis import time_scale
 
 
 @pytest.fixture

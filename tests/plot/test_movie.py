@@ -169,6 +169,7 @@ def test_a_cell_in_one_frame(scaled: Study, images: FloatArray, saved: list[Figu
     assert [path.name[len("cell_00002") :] for path in paths[2:]] == ["_edge.png", "_strip.png", ".gif"]
     words = {text.get_text() for text in saved[2].texts}
     assert "no two frames in a row to compare" in words
+    assert len(saved[2].axes) == 1
 
 
 def test_a_cell_without_map(scaled: Study) -> None:
@@ -231,5 +232,7 @@ def test_measures_by_layer() -> None:
     ax = Figure().add_subplot()
     edge, centre = draw_by_layer(ax, values, [0, 1], "length (µm)", frame_interval_s=2.0, first_frame=1)
     assert edge.get_xdata().tolist() == [2.0, 4.0, 6.0]
-    assert (edge.get_marker(), centre.get_marker()) == (".", "")
+    assert edge.get_markevery().tolist() == [True, False, True]
+    assert centre.get_markevery().tolist() == [False] * 3
+    assert ax.get_xlim() == (1.0, 7.0)
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("time (s)", "length (µm)")

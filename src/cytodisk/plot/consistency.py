@@ -17,7 +17,7 @@ from cytodisk.plot.kymograph import shown_layers
 from cytodisk.plot.movie_cell import HEADING_MM, LEFT_MM, CellMovie
 from cytodisk.plot.sheet import Sheet
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, LAYER_COLOURS
-from cytodisk.plot.time_axis import time_scale
+from cytodisk.plot.time_axis import TICK_STEPS, stands_alone, time_axis
 
 _LIGHTEST = 0.85  # share of the colours that can be seen on white
 _MOST_CORRELATIONS = 2
@@ -158,17 +158,14 @@ def draw_by_layer(
     table = np.asarray(values, dtype=np.float64)
     if table.ndim != 2 or not len(table) or not all(0 <= layer < table.shape[1] for layer in layers):
         raise ParameterError(f"values has shape {table.shape}: pass (frames, layers) for layers {layers}")
-    step, time_label = time_scale(first_frame + len(table), frame_interval_s)
-    time = step * (first_frame + np.arange(len(table)))
+    time = time_axis(ax, len(table), frame_interval_s, first_frame)
     lines = []
     for layer, colour in zip(layers, layer_colours(layers), strict=True):
-        # A dot shows where a frame stands alone between gaps, which a line does not.
-        marker = "." if _alone(table[:, layer]) else ""
-        lines += ax.plot(time, table[:, layer], color=colour, linewidth=0.9, marker=marker, markersize=2)
-    half = 0.5 * step
-    ax.set(xlim=(time[0] - half, time[-1] + half), xlabel=time_label, ylabel=label)
-    ax.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10], integer=frame_interval_s is None))
-    ax.yaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]))
+        values = table[:, layer]
+        dots: Any = {"marker": ".", "markersize": 3.0, "markevery": stands_alone(values)}
+        lines += ax.plot(time, values, color=colour, linewidth=0.9, clip_on=False, **dots)
+    ax.set_ylabel(label)
+    ax.yaxis.set_major_locator(MaxNLocator(4, steps=TICK_STEPS))
     return lines
 
 
@@ -204,9 +201,3 @@ def _write_key(sheet: Sheet, layers: Sequence[int], count: int) -> None:
     sheet.figure.legend(
         handles=handles, ncols=4, frameon=False, loc="upper left", bbox_to_anchor=(across, up), borderpad=0.0
     )
-
-
-def _alone(values: FloatArray) -> bool:
-    """Whether some value has no neighbour in time."""
-    known = np.pad(np.isfinite(values), 1)
-    return bool((known[1:-1] & ~known[:-2] & ~known[2:]).any())

@@ -6,7 +6,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import Colormap, ListedColormap
+from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 from matplotlib.quiver import Quiver
@@ -16,7 +16,7 @@ from cytodisk.errors import ParameterError
 from cytodisk.plot.kymograph import bar_beside
 from cytodisk.plot.strip import field_of_view, frame_field
 from cytodisk.plot.style import LINE_COLOUR, MM_PER_INCH, SIGNAL_COLOURS, colour_bar, nice_length, scale_bar
-from cytodisk.plot.time_axis import time_scale
+from cytodisk.plot.time_axis import stands_alone, time_axis, time_scale
 
 OUTWARD_COLOUR, INWARD_COLOUR = "#B2182B", "#2166AC"  # near the ends of the diverging colours
 
@@ -24,7 +24,8 @@ _THIS_FRAME, _NEXT_FRAME = "0.65", "black"
 _ARROW_WIDTH_MM = 0.22
 _LONGEST_ARROW = 0.15  # of the cell, at most; the key's arrow, of the axes' width
 _KEY_BELOW = 5.0  # points, at the height of the scale bar
-_DARKEST_TO = 0.88  # share of the colours that can be seen on white
+# The signal's colours without their light end, which is lost on white.
+_TIME_COLOURS = ListedColormap(mpl.colormaps[SIGNAL_COLOURS](np.linspace(0.0, 0.88, 256)))
 
 
 def draw_velocity_arrows(
@@ -141,7 +142,7 @@ def draw_tracks(
     step, label = time_scale(first_frame + len(points), frame_interval_s)
     shown = [t for t in range(0, len(points), every) if np.isfinite(points[t]).all()]
     closed = [np.concatenate([points[t], points[t, :1]])[:, ::-1] for t in shown]
-    lines = LineCollection(closed, cmap=_time_colours(), linewidths=0.5)
+    lines = LineCollection(closed, cmap=_TIME_COLOURS, linewidths=0.5)
     lines.set_array(step * (first_frame + np.array(shown, dtype=np.float64)))
     lines.set_clim(step * first_frame, step * (first_frame + max(len(points) - 1, 1)))
     ax.add_collection(lines, autolim=False)
@@ -192,15 +193,14 @@ def draw_area_change(
         raise ParameterError(
             f"protruded has shape {won.shape}, retracted {lost.shape}: pass one number a frame"
         )
-    step, label = time_scale(first_frame + len(won), frame_interval_s)
-    time = step * (first_frame + np.arange(len(won)))
+    time = time_axis(ax, len(won), frame_interval_s, first_frame)
+    dots: Any = {"marker": ".", "markersize": 3.0, "markevery": stands_alone(won)}
     ax.axhline(0.0, color=LINE_COLOUR, linewidth=0.5)
     lines = []
     for area, colour, name in ((won, OUTWARD_COLOUR, "protruded"), (lost, INWARD_COLOUR, "retracted")):
         ax.fill_between(time, area, color=colour, alpha=0.2, linewidth=0)
-        lines += ax.plot(time, area, color=colour, linewidth=1.0, label=name)
-    ax.margins(x=0.0)
-    ax.set(xlabel=label, ylabel=f"area per frame ({unit})")
+        lines += ax.plot(time, area, color=colour, linewidth=1.0, label=name, **dots)
+    ax.set_ylabel(f"area per frame ({unit})")
     ax.legend(frameon=False, ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1)
     return lines[0], lines[1]
 
@@ -223,9 +223,7 @@ def _check_arrows(
         )
     _check_count("every", every, 1)
     if stretch is not None and not 0 < stretch < np.inf:
-        raise ParameterError(
-            f"stretch must be a positive number, got {stretch!r}: pass None to have it chosen"
-        )
+        raise ParameterError(f"stretch must be a positive number, got {stretch!r}: None chooses it")
     if along not in ("path", "normal"):
         raise ParameterError(f"along must be 'path' or 'normal', got {along!r}")
 
@@ -298,8 +296,3 @@ def _draw_paths(ax: Axes, points: FloatArray, paths: int) -> None:
     traced = points[:, chosen]
     ax.plot(traced[..., 1], traced[..., 0], linewidth=0.8, color=LINE_COLOUR, zorder=4)
     ax.plot(traced[0, :, 1], traced[0, :, 0], "o", markersize=2.0, color=LINE_COLOUR, zorder=4)
-
-
-def _time_colours() -> Colormap:
-    """The signal's colours without their light end, which is lost on white."""
-    return ListedColormap(mpl.colormaps[SIGNAL_COLOURS](np.linspace(0.0, _DARKEST_TO, 256)))

@@ -22,14 +22,13 @@ from cytodisk.plot.style import (
     colour_map,
     signal_limits,
 )
-from cytodisk.plot.time_axis import time_scale
+from cytodisk.plot.time_axis import TICK_STEPS, time_axis
 
 SECTOR_LABEL = "sector (0 at +x, towards +y)"
 
 _MOST_LAYERS = 4
 _VELOCITY_PERCENTILE = 97.0
 _BAR_WIDTH_MM, _BAR_GAP_MM = 2.0, 1.5
-_STEPS = [1, 2, 2.5, 5, 10]
 
 Extend = Literal["neither", "both", "min", "max"]
 TimeAxis = tuple[int, float | None]  # number of the first frame, seconds between frames
@@ -228,7 +227,8 @@ def _draw_map(
     ax: Axes, table: FloatArray, axis: TimeAxis, cmap: str, limits: tuple[float, float]
 ) -> AxesImage:
     (first, interval), (frames, sectors) = axis, table.shape
-    step, label = time_scale(first + frames, interval)
+    time_axis(ax, frames, interval, first)
+    left, right = ax.get_xlim()
     drawn = ax.imshow(
         np.ma.masked_invalid(table.T),
         cmap=colour_map(cmap),
@@ -236,11 +236,10 @@ def _draw_map(
         vmax=limits[1],
         origin="lower",
         aspect="auto",
-        extent=((first - 0.5) * step, (first + frames - 0.5) * step, -0.5, sectors - 0.5),
+        extent=(left, right, -0.5, sectors - 0.5),
     )
-    ax.set(xlabel=label, ylabel=SECTOR_LABEL)
-    ax.xaxis.set_major_locator(MaxNLocator(6, steps=_STEPS, integer=interval is None))
-    ax.yaxis.set_major_locator(MaxNLocator(4, steps=_STEPS, integer=True))
+    ax.set_ylabel(SECTOR_LABEL)
+    ax.yaxis.set_major_locator(MaxNLocator(4, steps=TICK_STEPS, integer=True))
     return drawn
 
 

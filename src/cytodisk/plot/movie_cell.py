@@ -131,7 +131,8 @@ class CellMovie:
     def _facts(self) -> list[str]:
         last = self.first + self.frames - 1
         lost = self.frames - len(self.mapped)
-        facts = [f"frames {self.first}–{last}" + (f", {lost} without a map" if lost else "")]
+        which = f"frames {self.first}–{last}" if last > self.first else f"frame {last}"
+        facts = [which + (f", {lost} without a map" if lost else "")]
         facts.append(f"{self.grid.layers} layers × {self.grid.sectors} sectors")
         pixel, interval = self.pixel_size_um, self.interval_s
         facts.append("pixel size unknown" if pixel is None else f"{pixel:.4g} µm/px")

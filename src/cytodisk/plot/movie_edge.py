@@ -16,7 +16,7 @@ from cytodisk.plot.movie_cell import HEADING_MM, CellMovie
 from cytodisk.plot.sheet import Sheet
 from cytodisk.plot.strip import time_stamp
 from cytodisk.plot.style import LINE_COLOUR, nice_length
-from cytodisk.plot.time_axis import time_scale
+from cytodisk.plot.time_axis import stands_alone, time_axis
 
 SPREAD = (10, 90)  # percentiles
 
@@ -43,20 +43,14 @@ def edge_sheet(movie: CellMovie) -> Sheet:
     top = HEADING_MM + 12.0
     first = top + _TALL + 14.0
     second = first + _LINES + 9.0
-    sheet = Sheet(second + _LINES + 11.0)
-    movie.write_heading(sheet, "motion of the edge")
     velocity = _table(movie.activity["velocity"])
+    moves = bool(np.isfinite(velocity).any())
+    sheet = Sheet(second + _LINES + 11.0 if moves else top + _TALL + 9.0)
+    movie.write_heading(sheet, "motion of the edge")
     _draw_arrows(sheet, top, movie, velocity)
     _draw_tracks(sheet, top, movie)
-    changes = sheet.axes(_LINE_LEFT, first, _LINE_WIDTH, _LINES)
-    won, lost = (_sum(_table(movie.activity[name])) for name in ("protruded_area", "retracted_area"))
-    scale: Any = {"frame_interval_s": movie.interval_s, "first_frame": movie.first}
-    draw_area_change(changes, won, lost, unit=movie.unit("protruded_area"), **scale)
-    changes.set_xlabel("")
-    changes.tick_params(labelbottom=False)
-    speeds = sheet.axes(_LINE_LEFT, second, _LINE_WIDTH, _LINES)
-    draw_mean_velocity(speeds, velocity, unit=movie.unit("velocity"), **scale)
-    speeds.set_xlim(changes.get_xlim())
+    if moves:
+        _draw_changes(sheet, first, second, movie, velocity)
     return sheet
 
 
@@ -95,8 +89,7 @@ def draw_mean_velocity(
     table = np.asarray(velocity, dtype=np.float64)
     if table.ndim != 2 or not table.size:
         raise ParameterError(f"velocity must have shape (T, S), got {table.shape}: pass frames by sectors")
-    step, label = time_scale(first_frame + len(table), frame_interval_s)
-    time = step * (first_frame + np.arange(len(table)))
+    time = time_axis(ax, len(table), frame_interval_s, first_frame)
     known = np.isfinite(table).any(axis=1)
     mean, low, high = np.full((3, len(table)), np.nan)
     if known.any():
@@ -106,9 +99,11 @@ def draw_mean_velocity(
     ax.fill_between(
         time, low, high, color="0.8", linewidth=0, label=f"percentiles {SPREAD[0]}–{SPREAD[1]} of sectors"
     )
-    (line,) = ax.plot(time, mean, color=LINE_COLOUR, linewidth=1.0, label="mean of sectors")
-    ax.margins(x=0.0)
-    ax.set(xlabel=label, ylabel=f"edge velocity ({unit})")
+    alone = stands_alone(mean)
+    ax.vlines(time[alone], low[alone], high[alone], color="0.8", linewidth=2.0)
+    dots: Any = {"marker": ".", "markersize": 3.0, "markevery": alone}
+    (line,) = ax.plot(time, mean, color=LINE_COLOUR, linewidth=1.0, label="mean of sectors", **dots)
+    ax.set_ylabel(f"edge velocity ({unit})")
     ax.legend(frameon=False, ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1)
     return line
 
@@ -181,6 +176,17 @@ def _draw_tracks(sheet: Sheet, top: float, movie: CellMovie) -> None:
     )
     which = "every frame" if every == 1 else f"every {every} frames"
     sheet.text(94.0, HEADING_MM + 3.0, f"outlines {which}, paths of points from the dot on", fontsize=7.5)
+
+
+def _draw_changes(sheet: Sheet, first: float, second: float, movie: CellMovie, velocity: FloatArray) -> None:
+    changes = sheet.axes(_LINE_LEFT, first, _LINE_WIDTH, _LINES)
+    won, lost = (_sum(_table(movie.activity[name])) for name in ("protruded_area", "retracted_area"))
+    scale: Any = {"frame_interval_s": movie.interval_s, "first_frame": movie.first}
+    draw_area_change(changes, won, lost, unit=movie.unit("protruded_area"), **scale)
+    changes.set_xlabel("")
+    changes.tick_params(labelbottom=False)
+    speeds = sheet.axes(_LINE_LEFT, second, _LINE_WIDTH, _LINES)
+    draw_mean_velocity(speeds, velocity, unit=movie.unit("velocity"), **scale)
 
 
 def _stretch(step_yx: FloatArray, outline_yx: FloatArray) -> float:
