@@ -14,6 +14,7 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
 from cytodisk.windows.grid import PolarWindows
 from cytodisk.windows.outlines import window_polygons
+from cytodisk.windows.weights import window_weights
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,13 +25,15 @@ class CellWindows:
     ----------
     grid : PolarWindows
     disk : DiskMap
-    weights : csr_array of shape (windows, pixels)
-        Share of each mask pixel (row-major order) in each window; columns sum to 1.
     """
 
     grid: PolarWindows
     disk: DiskMap
-    weights: sparse.csr_array
+
+    @cached_property
+    def weights(self) -> sparse.csr_array:
+        """Share of each mask pixel (row-major order) in each window, (windows, pixels); columns sum to 1."""
+        return window_weights(self.grid, self.disk)
 
     @property
     def mask(self) -> Any:

@@ -90,9 +90,8 @@ class PolarWindows:
             No window is empty, whatever the grid.
         """
         from cytodisk.windows.cell_windows import CellWindows
-        from cytodisk.windows.weights import window_weights
 
-        return CellWindows(self, disk, window_weights(self, disk))
+        return CellWindows(self, disk)
 
 
 def polar_windows(layers: int = 10, sectors: int = 60, spacing: Spacing = "area") -> PolarWindows:
