@@ -209,6 +209,14 @@ def test_boundary_on_the_border_is_left_out(growth: float) -> None:
     np.testing.assert_array_equal(changes.edge_length[:-1] == 0.0, np.isnan(inner))
 
 
+def test_points_that_come_onto_the_border_are_left_out_already_before() -> None:
+    outlines = [circle(20.0, centre=np.array([23.0 - 2.0 * time, 40.0])) for time in range(5)]
+    movie = map_movie(masks_of(outlines, (60, 80)), register=False, **QUICK)
+    border = movie.on_border
+    assert (border[1:] & ~border[:-1]).any()
+    np.testing.assert_array_equal(np.isnan(boundary_velocity(movie)[:-1]), border[:-1] | border[1:])
+
+
 @pytest.mark.xfail(strict=True, reason="only 6 of 20 degrees of a cell's turn are found while it grows")
 def test_growth_is_the_same_however_the_cell_turns_meanwhile() -> None:
     velocity = []
