@@ -116,3 +116,9 @@ def test_maps_refuse(ax: Axes, table: FloatArray) -> None:
         draw_layers([ax], table[:, None], table)
     with pytest.raises(ParameterError, match=r"velocity has shape \(4, 8\), values \(5, 1, 8\)"):
         draw_layers([ax, ax], table[:, None], table[:4])
+
+
+def test_few_fast_places_do_not_pale_the_velocity(ax: Axes) -> None:
+    velocity = np.full((10, 10), -1.0)
+    velocity[3, :2] = 100.0
+    assert draw_velocity_map(ax, velocity).get_clim() == (-3.0, 3.0)

@@ -15,7 +15,6 @@ from cytodisk.io.study_folder import Study
 from cytodisk.plot import movie as pages
 from cytodisk.plot.consistency import draw_by_layer
 from cytodisk.plot.movie import draw_movie_figures
-from cytodisk.plot.movie_cell import CellMovie
 from cytodisk.plot.movie_edge import draw_mean_velocity, fastest_frame
 from cytodisk.study.movie_run import open_movie, run_movie
 from cytodisk.study.parameters import MovieParameters
@@ -159,8 +158,8 @@ def test_a_late_cell_has_the_recordings_times(scaled: Study, images: FloatArray,
     activity, _, edge, strip, consistency = saved
     assert activity.axes[0].get_xlim() == (22.5, 32.5)
     assert [ax.get_title() for ax in strip.axes if ax.get_title()] == ["25 s", "30 s"]
-    changes = edge.axes[2].lines[-1]
-    assert changes.get_xdata().tolist() == [25.0, 30.0]
+    won = edge.axes[2].lines[1]
+    assert won.get_xdata().tolist() == [25.0, 30.0]
     assert consistency.axes[0].lines[0].get_xdata().tolist() == [25.0, 30.0]
 
 
@@ -196,13 +195,6 @@ def test_figures_refuse(scaled: Study) -> None:
         draw_movie_figures(scaled, 9)
     with pytest.raises(SignalError, match=r"signal has shape \(3, 3\)"):
         draw_movie_figures(scaled, ONCE, lambda _: np.ones((1, 3, 3)))
-
-
-def test_outlines_are_those_of_the_windows(scaled: Study) -> None:
-    movie = CellMovie.of(scaled, WHOLE)
-    drawn = movie.windows(0).polygons()
-    for polygon, expected in zip(drawn, movie.grid.on(movie.maps[0]).polygons(), strict=True):
-        assert np.array_equal(polygon, expected)
 
 
 def test_mean_velocity_and_spread() -> None:

@@ -194,12 +194,13 @@ def draw_area_change(
             f"protruded has shape {won.shape}, retracted {lost.shape}: pass one number a frame"
         )
     time = time_axis(ax, len(won), frame_interval_s, first_frame)
-    dots: Any = {"marker": ".", "markersize": 3.0, "markevery": stands_alone(won)}
+    alone = stands_alone(won)
     ax.axhline(0.0, color=LINE_COLOUR, linewidth=0.5)
     lines = []
     for area, colour, name in ((won, OUTWARD_COLOUR, "protruded"), (lost, INWARD_COLOUR, "retracted")):
         ax.fill_between(time, area, color=colour, alpha=0.2, linewidth=0)
-        lines += ax.plot(time, area, color=colour, linewidth=1.0, label=name, **dots)
+        lines += ax.plot(time, area, color=colour, linewidth=1.0, label=name)
+        ax.plot(time[alone], area[alone], ".", color=colour, markersize=3.0)
     ax.set_ylabel(f"area per frame ({unit})")
     ax.legend(frameon=False, ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1)
     return lines[0], lines[1]

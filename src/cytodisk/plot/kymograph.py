@@ -27,7 +27,7 @@ from cytodisk.plot.time_axis import TICK_STEPS, time_axis
 SECTOR_LABEL = "sector (0 at +x, towards +y)"
 
 _MOST_LAYERS = 4
-_VELOCITY_PERCENTILE = 97.0
+_VELOCITY_PERCENTILES, _MOST_OVER_USUAL = (75.0, 99.0), 3.0
 _BAR_WIDTH_MM, _BAR_GAP_MM = 2.0, 1.5
 
 Extend = Literal["neither", "both", "min", "max"]
@@ -100,7 +100,8 @@ def draw_velocity_map(
     Returns
     -------
     AxesImage
-        Its array has shape (S, T); its limits are percentile 97 of the speeds to both sides of 0.
+        Its array has shape (S, T); its limits are percentile 99 of the speeds to both sides of 0, but
+        at most three times percentile 75, as a few faults of masks would pale all else.
 
     Raises
     ------
@@ -217,10 +218,15 @@ def _limits(table: FloatArray) -> tuple[float, float]:
 def _draw_velocity(ax: Axes, velocity: Any, axis: TimeAxis, label: str) -> AxesImage:
     table = _table(velocity, "velocity", ("time", "sector"))
     speed = np.abs(table[np.isfinite(table)])
-    top = (float(np.percentile(speed, _VELOCITY_PERCENTILE)) if speed.size else 0.0) or 1.0
+    top = _top_speed(speed) if speed.size else 1.0
     drawn = _draw_map(ax, table, axis, DIVERGING_COLOURS, (-top, top))
     colour_bar(drawn, bar_beside(ax), label, extend=_extend(table, drawn))
     return drawn
+
+
+def _top_speed(speed: FloatArray) -> float:
+    usual, fast = np.percentile(speed, _VELOCITY_PERCENTILES).tolist()
+    return min(fast, _MOST_OVER_USUAL * usual) or fast or 1.0
 
 
 def _draw_map(

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from scipy import sparse
 
 from cytodisk.arrays import FloatArray
 from cytodisk.files import replacing
@@ -100,11 +99,8 @@ class CellMovie:
         return polar_windows(layers, parameters["sectors"], parameters["spacing"])
 
     def windows(self, time: int) -> CellWindows:
-        """Windows of a mapped frame to draw: outlines only, since the shares of pixels take much longer."""
-        disk = self.maps[time]
-        return CellWindows(
-            self.grid, disk, sparse.csr_array((self.grid.n_windows, int(np.count_nonzero(disk.mask))))
-        )
+        """Windows of a mapped frame to draw."""
+        return self.grid.on(self.maps[time])
 
     def unit(self, name: str) -> str:
         """Unit of a variable of the activity."""

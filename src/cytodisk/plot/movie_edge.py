@@ -25,7 +25,7 @@ _TALL, _LINES, _LINE_LEFT, _LINE_WIDTH = 72.0, 28.0, 17.0, 156.0  # mm
 _POINTS_SHOWN = 120  # arrows around the cell
 _OUTLINES_SHOWN = 20
 _MOST_SPEED = 90.0  # percentile
-_USUAL_ARROW, _LONGEST_ARROW = 0.08, 0.25  # of the cell: percentile 95, and the longest
+_USUAL_ARROW, _LONGEST_ARROW = 0.12, 0.25  # of the cell: percentile 95, and the longest
 
 
 def edge_sheet(movie: CellMovie) -> Sheet:
@@ -101,8 +101,8 @@ def draw_mean_velocity(
     )
     alone = stands_alone(mean)
     ax.vlines(time[alone], low[alone], high[alone], color="0.8", linewidth=2.0)
-    dots: Any = {"marker": ".", "markersize": 3.0, "markevery": alone}
-    (line,) = ax.plot(time, mean, color=LINE_COLOUR, linewidth=1.0, label="mean of sectors", **dots)
+    ax.plot(time[alone], mean[alone], ".", color=LINE_COLOUR, markersize=3.0)
+    (line,) = ax.plot(time, mean, color=LINE_COLOUR, linewidth=1.0, label="mean of sectors")
     ax.set_ylabel(f"edge velocity ({unit})")
     ax.legend(frameon=False, ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1)
     return line
