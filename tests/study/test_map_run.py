@@ -9,7 +9,7 @@ from numpy.testing import assert_array_equal
 
 import cytodisk as cd
 from cytodisk.errors import MaskError, ParameterError, ReadError, SignalError, StudyError
-from cytodisk.io.study_folder import alone_in
+from cytodisk.io.study_folder import alone_in, part_key
 from cytodisk.study.map_run import MapInputs, check_cells, open_inputs, run_map
 from cytodisk.study.parameters import MapParameters, parameters_from
 
@@ -166,7 +166,7 @@ def test_a_label_image_gives_a_cell_a_label_with_one_signal(tmp_path: Path) -> N
     tifffile.imwrite(tmp_path / "labels.tif", labels)
     tifffile.imwrite(tmp_path / "signal.tif", signal)
     study = run_map(open_inputs(tmp_path / "labels.tif", tmp_path / "signal.tif", SMALL), tmp_path / "out")
-    assert study.cells[["frame", "label", "area_px"]].to_numpy().tolist() == [[0, 4, 169], [0, 9, 324]]
+    assert study.cells[["time", "label", "area_px"]].to_numpy().tolist() == [[0, 4, 169], [0, 9, 324]]
     expected = study.windows["centroid_y"] + 2.0 * study.windows["centroid_x"]
     np.testing.assert_allclose(study.windows["mean"], expected, rtol=1e-6)
 
@@ -257,9 +257,9 @@ def test_a_missing_part_is_not_passed_over(write_stack: WriteStack, tmp_path: Pa
 
     def lose_a_part(done: int, total: int) -> None:
         if done == total:
-            (tmp_path / "out" / ".parts" / "00000000.json").unlink()
+            (tmp_path / "out" / ".parts" / f"{part_key(0)}.json").unlink()
 
-    with pytest.raises(StudyError, match="the parts of 1 cells instead of 2"):
+    with pytest.raises(StudyError, match="has 1 parts instead of 2"):
         run_map(open_inputs(masks, signal, SMALL), tmp_path / "out", progress=lose_a_part)
 
 
