@@ -3,7 +3,7 @@ import pytest
 
 from cytodisk import simulate
 from cytodisk.disk.mapping import map_to_disk
-from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline
+from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline, weighted_corners
 
 
 def locate_one_by_one(
@@ -66,3 +66,21 @@ def test_nearest_on_outline_agrees_with_a_search_over_all_edges() -> None:
     share = np.clip(((points[:, None] - outline) * along).sum(-1) / (along**2).sum(-1), 0.0, 1.0)
     best = np.linalg.norm(points[:, None] - outline - share[..., None] * along, axis=-1).min(axis=1)
     np.testing.assert_allclose(np.linalg.norm(points - nearest, axis=1), best, atol=1e-9)
+
+
+def test_weighted_corners_agree_with_numpy() -> None:
+    random = np.random.default_rng(0)
+    corners = random.normal(size=(20, 3, 2))
+    triangle = random.integers(-1, 20, 200)
+    weights = random.dirichlet(np.ones(3), 200)
+    found = weighted_corners(corners, triangle, weights)
+    nowhere = triangle < 0
+    assert 0 < nowhere.sum() < 200
+    assert np.isnan(found[nowhere]).all()
+    expected = np.einsum("nk,nkd->nd", weights, corners[triangle])
+    np.testing.assert_allclose(found[~nowhere], expected[~nowhere], rtol=1e-13, atol=1e-15)
+
+
+def test_weighted_corners_of_no_points() -> None:
+    none = weighted_corners(np.ones((1, 3, 2)), np.empty(0, dtype=np.int64), np.empty((0, 3)))
+    assert none.shape == (0, 2)
