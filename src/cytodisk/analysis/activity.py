@@ -58,7 +58,7 @@ def sample_movie(
     for time, record in enumerate(movie.records):
         if record.boundary is not None:
             windows = grid.on(movie[time])
-            data = sample(windows, np.asarray(frames[time]).reshape(-1, *movie.image_shape), nan=nan)
+            data = sample(windows, _frame(frames[time], time, len(channels), movie.image_shape), nan=nan)
             for name in STATISTICS:
                 tables[name][time] = data[name].to_numpy()
             area[time] = windows.areas
@@ -178,6 +178,18 @@ def parse_signals(signals: Any, n_frames: int, image_shape: tuple[int, int]) -> 
     if names is None or len(names) != count:
         names = [str(number) for number in range(count)]
     return signals, names
+
+
+def _frame(frame: Any, time: int, channels: int, image_shape: tuple[int, int]) -> Any:
+    values = np.asarray(frame)
+    if values.ndim == 2:
+        values = values[None]
+    if values.shape != (channels, *image_shape):
+        raise SignalError(
+            f"frame {time} of the signals has shape {values.shape}, those before "
+            f"{(channels, *image_shape)}: save all frames alike"
+        )
+    return values
 
 
 def _axis_hint(shape: tuple[int, ...], n_frames: int) -> str:

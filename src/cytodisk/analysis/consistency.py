@@ -29,12 +29,9 @@ def consecutive_correlation(activity: xr.DataArray) -> xr.DataArray:
     ----------
     u-Unwrap, section 3, Fig. 4C.
     """
-    here = activity.transpose("time", ..., "sector").to_numpy()
-    out = np.full(here.shape[:-1], np.nan)
-    a = here[:-1] - here[:-1].mean(axis=-1, keepdims=True)
-    b = here[1:] - here[1:].mean(axis=-1, keepdims=True)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        out[:-1] = (a * b).sum(axis=-1) / np.sqrt((a**2).sum(axis=-1) * (b**2).sum(axis=-1))
+    values = activity.transpose("time", ..., "sector").to_numpy()
+    out = np.full(values.shape[:-1], np.nan)
+    out[:-1] = correlation_over_sectors(values[:-1], values[1:])
     dims = tuple(dim for dim in activity.transpose("time", ..., "sector").dims if dim != "sector")
     coords: dict[Any, Any] = {
         name: coord for name, coord in activity.coords.items() if set(coord.dims) <= set(dims)
@@ -68,6 +65,15 @@ def centroid_displacement(movie: DiskMovie, activity: xr.Dataset) -> xr.DataArra
     return xr.DataArray(
         steps, coords, ("time", "layer", "sector"), name="centroid_displacement", attrs={"units": units}
     )
+
+
+def correlation_over_sectors(here: FloatArray, there: FloatArray) -> FloatArray:
+    """Pearson correlation over the last axis; NaN where a signal does not vary or is not there."""
+    a, b = (values - values.mean(axis=-1, keepdims=True) for values in (here, there))
+    constant = (np.ptp(here, axis=-1) == 0) | (np.ptp(there, axis=-1) == 0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        found = (a * b).sum(axis=-1) / np.sqrt((a**2).sum(axis=-1) * (b**2).sum(axis=-1))
+    return np.asarray(np.where(constant, np.nan, found))
 
 
 def displacement_between(positions: FloatArray) -> FloatArray:

@@ -64,7 +64,7 @@ def map_to_disk(
     ----------
     u-Unwrap, section 3 (ii) and appendix A.2.1.
     """
-    _check(method, shape_weight, edge_length)
+    check_map_parameters(method, shape_weight, edge_length)
     align = parse_align(align)
     cell = mesh_cell(mask, edge_length)
     angles = boundary_angles(cell.outline, _relative(align, cell.corner))
@@ -193,7 +193,8 @@ def _start(mesh: Mesh, circle: FloatArray, anchor_uv: FloatArray | None) -> tupl
     return harmonic_map(mesh, circle)
 
 
-def _check(method: str, shape_weight: float, edge_length: float) -> None:
+def check_map_parameters(method: Any, shape_weight: Any, edge_length: Any) -> None:
+    """Raise ParameterError unless the parameters of a map are in their ranges; see `map_to_disk`."""
     if method not in ("newton", "harmonic"):
         raise ParameterError(f"method must be 'newton' or 'harmonic', got {method!r}")
     for name, value in (("shape_weight", shape_weight), ("edge_length", edge_length)):

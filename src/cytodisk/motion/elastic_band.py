@@ -10,6 +10,7 @@ from cytodisk.motion.cyclic_system import solve_cyclic
 
 _SPRING = 1.0  # weight of even stretch against even displacement
 _ROUNDS = 40
+_HALVINGS = 12
 _STILL_PX = 1e-3
 _LONGEST_STEP_PX = 3.0
 _MOST_SHRINKING = 0.8  # of the gap between neighbours in one round, so that order is kept
@@ -58,30 +59,50 @@ def relax_band(
     left_over : float
         Mean |d|².
     """
-    n, total = points.shape[0], arc[-1]
+    n = points.shape[0]
+    stiffness = smoothness / spacing
+    reach = math.sqrt((points**2).sum() / n)
     places, motion = places.copy(), motion.copy()
-    tangent, d = np.empty((n, 2)), np.empty((n, 2))
+    tangent, d, gaps = np.empty((n, 2)), np.empty((n, 2)), np.empty(n)
     by_motion = np.zeros((n, 2, 3))  # derivative of d by the rigid motion
     by_motion[:, 0, 1] = -1.0
     by_motion[:, 1, 2] = -1.0
-    gaps = np.empty(n)
+    _displace(points, target, arc, places, motion, tangent, d, by_motion, gaps)
+    value = _energy(d, gaps, spacing, stiffness, doubt, motion)
     for _ in range(_ROUNDS):
-        for i in range(n):
-            gaps[i] = places[(i + 1) % n] - places[i] + (total if i == n - 1 else 0.0)
-        _displace(points, target, arc, places, motion, tangent, d, by_motion)
-        change, moved = _newton_step(
-            tangent, d, by_motion, gaps, spacing, smoothness / spacing, rigid, doubt, motion
-        )
-        scale = min(1.0, _LONGEST_STEP_PX / max(np.abs(change).max(), 1e-12))
+        change, moved = _newton_step(tangent, d, by_motion, gaps, spacing, stiffness, rigid, doubt, motion)
+        longest = max(np.abs(change).max(), reach * abs(moved[0]), abs(moved[1]), abs(moved[2]))
+        scale = min(1.0, _LONGEST_STEP_PX / max(longest, 1e-12))
         for i in range(n):
             shrinking = change[i] - change[(i + 1) % n]
             if shrinking > _MOST_SHRINKING * gaps[i]:
                 scale = min(scale, _MOST_SHRINKING * gaps[i] / shrinking)
-        places += scale * change
-        motion += scale * moved
-        if scale * np.abs(change).max() < _STILL_PX:
+        for _ in range(_HALVINGS):
+            new_places, new_motion = places + scale * change, motion + scale * moved
+            _displace(points, target, arc, new_places, new_motion, tangent, d, by_motion, gaps)
+            new_value = _energy(d, gaps, spacing, stiffness, doubt, new_motion)
+            if new_value <= value:
+                break
+            scale *= 0.5
+        if new_value > value:  # the polygon's corners leave no descent: this is as far as it goes
+            _displace(points, target, arc, places, motion, tangent, d, by_motion, gaps)
+            break
+        places, motion, value = new_places, new_motion, new_value
+        if scale * longest < _STILL_PX:
             break
     return places, motion, float((d**2).sum() / n)
+
+
+@njit(cache=True)
+def _energy(
+    d: FloatArray, gaps: FloatArray, weight: float, stiffness: float, doubt: float, motion: FloatArray
+) -> float:
+    total = doubt * motion[0] ** 2
+    for i in range(d.shape[0]):
+        after = (i + 1) % d.shape[0]
+        change = (d[after, 0] - d[i, 0]) ** 2 + (d[after, 1] - d[i, 1]) ** 2
+        total += weight * (d[i, 0] ** 2 + d[i, 1] ** 2) + stiffness * (change + _SPRING * gaps[i] ** 2)
+    return float(total)
 
 
 @njit(cache=True)
@@ -94,11 +115,14 @@ def _displace(
     tangent: FloatArray,
     d: FloatArray,
     by_motion: FloatArray,
+    gaps: FloatArray,
 ) -> None:
-    """Fill in displacements, their derivatives by place (the tangent) and by the angle."""
+    """Fill in displacements, their derivatives by place (the tangent) and by the angle, and the gaps."""
     cosine, sine = math.cos(motion[0]), math.sin(motion[0])
     total, edges = arc[-1], target.shape[0]
-    for i in range(points.shape[0]):
+    n = points.shape[0]
+    for i in range(n):
+        gaps[i] = places[(i + 1) % n] - places[i] + (total if i == n - 1 else 0.0)
         wrapped = places[i] % total
         edge = min(max(np.searchsorted(arc, wrapped, side="right") - 1, 0), edges - 1)
         length = arc[edge + 1] - arc[edge]

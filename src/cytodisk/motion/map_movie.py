@@ -177,6 +177,7 @@ def map_movie(
     shape: tuple[int, ...] = ()
     for result in map_frames(frames, settings):
         if result.mapped is not None:
+            _check_shape(result.mapped.disk.mask.shape, shape, result.time)
             shape = result.mapped.disk.mask.shape
             store.keep(result.time, result.mapped.disk)
         records.append(result.record)
@@ -185,6 +186,13 @@ def map_movie(
     if not shape:
         raise MaskError(f"no frame of {len(records)} could be mapped; frame 0: {records[0].reason}")
     return DiskMovie(tuple(records), (shape[0], shape[1]), pixel, interval, store.load)
+
+
+def _check_shape(found: tuple[int, ...], before: tuple[int, ...], time: int) -> None:
+    if before and found != before:
+        raise MaskError(
+            f"frame {time} of masks has shape {found}, those before {before}: crop the frames alike"
+        )
 
 
 def parse_masks(masks: Any) -> tuple[Any, float | None, float | None]:

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
-from cytodisk.disk.circle import Align, boundary_angles
+from cytodisk.disk.circle import Align, boundary_angles, parse_align
 from cytodisk.disk.disk_map import DiskMap, Method
-from cytodisk.disk.mapping import CellMesh, map_mesh, mesh_cell
+from cytodisk.disk.mapping import CellMesh, check_map_parameters, map_mesh, mesh_cell
+from cytodisk.errors import ParameterError
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.temporal import carried_inside, tracked_angles
-from cytodisk.motion.tracking import TrackedBoundary, TrackingSettings, first_boundary, follow, point_angles
+from cytodisk.motion.tracking import (
+    TrackedBoundary,
+    TrackingSettings,
+    first_boundary,
+    follow,
+    is_number,
+    point_angles,
+)
 
 
 @dataclass(frozen=True)
@@ -34,6 +43,14 @@ class MovieSettings:
     edge_length: float = 0.9
     align: Align = "upright"
     inertia: float = 1.0
+
+    def __post_init__(self) -> None:
+        check_map_parameters(self.method, self.shape_weight, self.edge_length)
+        parse_align(self.align)
+        if not (is_number(self.inertia) and 0 <= self.inertia < math.inf):
+            raise ParameterError(
+                f"inertia must be a number of at least 0, got {self.inertia!r}: 1 is the default"
+            )
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,6 +14,7 @@ import math
 import numpy as np
 
 from cytodisk.arrays import FloatArray
+from cytodisk.geometry.polygon import signed_area
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.cyclic_path import cyclic_path
 from cytodisk.motion.elastic_band import relax_band
@@ -22,10 +23,7 @@ SMOOTHNESS_PX2 = 64.0
 _COARSE_SAMPLES = 128
 _FINE_PX = 1.0
 _LEAST_SAMPLES = 16
-# A rotation is believed in so far as it explains the boundary's motion: what it leaves is noise that
-# reaches this far along the boundary, and turns of a degree a frame are nothing unusual.
-_NOISE_REACH_PX = 60.0
-_USUAL_TURN = math.radians(1.0)
+_PINNED = 1e12  # weight that holds a rotation at nothing
 
 
 def first_guess(here: Contour, there: Contour, s: FloatArray, smoothness: float) -> FloatArray:
@@ -113,6 +111,10 @@ def rigid_motion(
 ) -> tuple[float, FloatArray, FloatArray]:
     """Rigid motion that leaves the least of the matching energy.
 
+    Growth of the whole shape is taken out first. A rotation is believed in as far as it explains what a
+    shift alone leaves of the boundary's motion: the stair steps of a round mask, or a protrusion, do not
+    turn a cell.
+
     Parameters
     ----------
     here, there : Contour
@@ -133,21 +135,24 @@ def rigid_motion(
     places = carry(grid, s, guess, here.length, there.length)
     points = here.at(grid)
     pivot = points.mean(axis=0)
-    motion = np.array([0.0, *pivot])
-    doubt = 0.0
-    for _ in range(2):
-        places, motion, left_over = relax_band(
-            points - pivot,
+    growth = math.sqrt(signed_area(there.points_yx) / signed_area(here.points_yx))
+    motions, left_over = [], []
+    for doubt in (_PINNED, 0.0):
+        _, motion, left = relax_band(
+            growth * (points - pivot),
             there.points_yx,
             there.arc,
             places,
-            here.length / len(grid),
+            growth * here.length / len(grid),
             smoothness,
-            motion,
+            np.array([0.0, *pivot]),
             True,
             doubt,
         )
-        doubt = _NOISE_REACH_PX * left_over / _USUAL_TURN**2
+        motions.append(motion)
+        left_over.append(left)
+    explained = max(0.0, 1.0 - left_over[1] / max(left_over[0], 1e-12))
+    motion = motions[0] + explained * (motions[1] - motions[0])
     return float(motion[0]), pivot, motion[1:]
 
 

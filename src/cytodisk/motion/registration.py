@@ -141,8 +141,7 @@ def register(
     """Rigid motion that lays one outline onto another.
 
     The motion that leaves the least of the matching energy (`matching.rigid_motion`): a growing protrusion
-    turns the cell less than it would turn a fit of overlap. A rotation counts only in so far as it explains
-    how the boundary moved, so a round cell stays as it is.
+    turns the cell less than it would turn a fit of overlap, and a round cell stays as it is.
 
     Parameters
     ----------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 import shapely
@@ -55,9 +55,9 @@ class TrackingSettings:
     def __post_init__(self) -> None:
         if self.tracker not in TRACKERS:
             raise ParameterError(f"tracker must be one of {', '.join(TRACKERS)}, got {self.tracker!r}")
-        if not 0.0 <= self.tension <= 1.0:
+        if not (is_number(self.tension) and 0.0 <= self.tension <= 1.0):
             raise ParameterError(f"tension must be 0 to 1, got {self.tension!r}: 0.01 is the default")
-        if not 0.0 < self.smoothness_px2 < np.inf:
+        if not (is_number(self.smoothness_px2) and 0.0 < self.smoothness_px2 < np.inf):
             raise ParameterError(
                 f"smoothness_px2 must be above 0, got {self.smoothness_px2!r}: "
                 f"{SMOOTHNESS_PX2:g} is the default"
@@ -123,6 +123,11 @@ class TrackedBoundary:
         """Length of boundary that is nearer to each point than to its neighbours, shape (N,)."""
         gaps = np.diff(self.s, append=self.s[0] + self.contour.length)
         return np.asarray(0.5 * (gaps + np.roll(gaps, 1)))
+
+
+def is_number(value: Any) -> bool:
+    """Whether a parameter is a number; True and False are none."""
+    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
 
 
 def point_angles(n: int) -> FloatArray:

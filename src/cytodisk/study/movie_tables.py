@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.analysis.activity import STATISTICS
-from cytodisk.analysis.consistency import displacement_between
+from cytodisk.analysis.consistency import correlation_over_sectors, displacement_between
 from cytodisk.io.activity_store import ActivityStore
 from cytodisk.io.study_folder import ACTIVITY, StudyFolder, part_key
 from cytodisk.io.tracks import CellTrack
@@ -139,7 +139,7 @@ def _add_consistency(
         places = np.stack([_registered(here), _registered(there)])
         moved = displacement_between(places)[0].mean(axis=-1) * (scale.pixel_size_um or 1.0)
         if "mean" in here:
-            correlation = _correlation(here["mean"], there["mean"])
+            correlation = correlation_over_sectors(here["mean"], there["mean"])
     rows = len(channels) * layers
     columns = {
         "cell": np.full(rows, cell),
@@ -156,10 +156,3 @@ def _add_consistency(
 
 def _registered(arrays: dict[str, Any]) -> Any:
     return arrays["transform"](np.stack([arrays["centroid_y"], arrays["centroid_x"]], axis=-1))
-
-
-def _correlation(here: Any, there: Any) -> Any:
-    """Pearson correlation over the last axis; NaN where a signal does not vary or is not there."""
-    a, b = (values - values.mean(axis=-1, keepdims=True) for values in (here, there))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return (a * b).sum(axis=-1) / np.sqrt((a**2).sum(axis=-1) * (b**2).sum(axis=-1))

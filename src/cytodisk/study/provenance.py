@@ -22,6 +22,10 @@ PACKAGES = (
     "shapely",
     "scikit-image",
     "tifffile",
+    "xarray",
+    "zarr",
+    "SimpleITK",
+    "laptrack",
 )
 
 

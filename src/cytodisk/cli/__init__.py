@@ -1,0 +1,33 @@
+"""The command line: reads flags, calls the library, prints what happened."""
+
+import typer
+
+from cytodisk.cli.console import fail
+from cytodisk.cli.demo import demo_command, info_command
+from cytodisk.cli.map import MAP_HELP, check_command, map_command
+from cytodisk.cli.movie import MOVIE_HELP, movie_command
+from cytodisk.errors import CytodiskError
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    help="Map cells one to one onto the unit disk, divide them into windows, follow them, sample signals.",
+)
+app.command("map", help=MAP_HELP)(map_command)
+app.command("movie", help=MOVIE_HELP)(movie_command)
+app.command("check")(check_command)
+app.command("info")(info_command)
+app.command("demo")(demo_command)
+
+
+def main() -> None:
+    """Run the command line; errors that a user can mend end in exit code 2."""
+    try:
+        app()
+    except CytodiskError as error:
+        fail(str(error))
+
+
+__all__ = ["app", "main"]

@@ -1,0 +1,81 @@
+"""What all commands share: console, progress, errors that end a command."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+Masks = Annotated[
+    Path, typer.Argument(help="Mask, stack of masks or label image: TIFF or PNG.", show_default=False)
+]
+Signal = Annotated[
+    Path | None, typer.Option(help="Image to sample, of the same height and width: TIFF or PNG.")
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+
+
+def fail(message: str) -> None:
+    print(f"Error: {message}", file=sys.stderr)
+    raise SystemExit(2)
+
+
+def count(cells: int) -> str:
+    return "1 cell" if cells == 1 else f"{cells} cells"
+
+
+def parse_align(text: str | None) -> Any:
+    from cytodisk.errors import ParameterError
+
+    if text is None or text == "upright":
+        return text
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in (1, 2):
+        raise ParameterError(f"align must be upright, an angle in degrees or ROW,COLUMN, got {text!r}")
+    return numbers[0] if len(numbers) == 1 else tuple(numbers)
+
+
+def console_for(quiet: bool) -> "Console":
+    from rich.console import Console
+
+    return Console(quiet=quiet, highlight=False, soft_wrap=True, markup=False)
+
+
+@contextmanager
+def progress_bar(quiet: bool, unit: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar on stderr with rate and time left; gives a function to call with (done, in all)."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), disable=quiet, transient=True) as bar:
+        task = bar.add_task(unit, total=None, rate="")
+
+        def report(done: int, total: int) -> None:
+            speed = bar.tasks[task].speed
+            rate = f"{speed:.1f} {unit}/s" if speed else ""
+            bar.update(task, completed=done, total=total, rate=rate)
+
+        try:
+            yield report
+        except KeyboardInterrupt:
+            done, total = bar.tasks[task].completed, bar.tasks[task].total
+            of_all = f" ({done:.0f} of {total:.0f} {unit})" if total else ""
+            print(f"Stopped; what was done is kept{of_all}: run it again with --resume.", file=sys.stderr)
+            raise typer.Exit(130) from None
+        if not bar.tasks[task].total and not quiet:
+            print("this study is complete already: nothing was run or drawn again", file=sys.stderr)

@@ -1,0 +1,58 @@
+"""`cytodisk demo` and `cytodisk info`."""
+
+import platform
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cytodisk.cli.console import Quiet, console_for, progress_bar
+from cytodisk.cli.movie import draw_movie, finish_movie, say_movie
+
+
+def info_command() -> None:
+    """Print versions, and which optional parts are there."""
+    from cytodisk.study.provenance import PACKAGES, installed
+
+    print(f"python\t{platform.python_version()} on {platform.platform()}")
+    for name, found in installed(PACKAGES).items():
+        print(f"{name}\t{found}")
+    print("image formats\tTIFF, OME-TIFF, ImageJ TIFF, PNG")
+    print(f"compressed TIFF\t{'yes' if find_spec('imagecodecs') else 'no: pip install imagecodecs'}")
+
+
+def demo_command(
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the demo.")] = Path("cytodisk_demo"),
+    seed: Annotated[int, typer.Option(help="Seed of the simulated movie.")] = 0,
+    workers: Annotated[int, typer.Option(help="Processes.")] = 1,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in OUT/study.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Simulate a moving cell with two signals, follow it, and compare with the known answer.
+
+    Nothing is downloaded. OUT/input holds the simulated files, OUT/study the results.
+    """
+    from cytodisk.study.demo import compare_with_truth, write_demo_input
+    from cytodisk.study.movie_run import open_movie, run_movie
+    from cytodisk.study.parameters import MovieParameters
+
+    console = console_for(quiet)
+    truth, masks, signal = write_demo_input(out / "input", seed, overwrite=overwrite)
+    console.print(f"A simulated cell in {len(truth.masks)} frames, with two signals, is in {masks.parent}.")
+    console.print(f"The same by hand: cytodisk movie {masks} --signal {signal} -o {out / 'study'}\n")
+    inputs = open_movie(masks, signal, MovieParameters())
+    say_movie(console, inputs)
+    with progress_bar(quiet, "frames") as progress:
+        study = run_movie(
+            inputs,
+            out / "study",
+            workers=workers,
+            resume=not overwrite,
+            overwrite=overwrite,
+            progress=progress,
+        )
+    draw_movie(quiet, study, inputs, 1)
+    finish_movie(console, study)
+    for what, answer in compare_with_truth(study, truth).items():
+        console.print(f"{what}: {answer}")
