@@ -80,10 +80,7 @@ def test_coordinates_go_on_without_the_sector() -> None:
     "value",
     [
         0.5,
-        pytest.param(
-            0.1,
-            marks=pytest.mark.xfail(strict=True, reason="rounding of the mean is taken for signal: gives -1"),
-        ),
+        0.1,
     ],
 )
 def test_a_signal_that_does_not_vary_has_no_correlation(value: float) -> None:

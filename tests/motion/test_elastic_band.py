@@ -74,9 +74,6 @@ def test_the_energy_does_not_increase_with_a_free_motion(
     assert_not_worse(exact(here - CENTRE), exact(there - CENTRE), 250, 64.0, rigid=True)
 
 
-@pytest.mark.xfail(
-    strict=True, reason="the rotation that a round target leaves free takes a step of any length"
-)
 def test_the_energy_does_not_increase_towards_a_round_target() -> None:
     here = exact(wavy([0.0, 0.0, 0.0, 0.0625], [0.0] * 4, 30.0))
     assert_not_worse(here, exact(circle(30.0, 600)), 40, 4.0, rigid=True)
@@ -128,13 +125,7 @@ def test_the_rigid_image_of_a_curve_is_laid_onto_it(degrees: float, shift: tuple
     [
         (4.0, 1.1),
         (0.0, 1.1),
-        pytest.param(
-            0.0,
-            1.0,
-            marks=pytest.mark.xfail(
-                strict=True, reason="it is counted before the last step, which may be the first one"
-            ),
-        ),
+        (0.0, 1.0),
     ],
 )
 def test_what_is_left_over_is_that_of_the_result(degrees: float, growth: float) -> None:

@@ -208,9 +208,6 @@ def test_a_scale_is_a_number_above_0(masks: np.ndarray, name: str, value: object
         map_movie(xr.DataArray(masks, dims=("time", "y", "x"), attrs={name: value}))
 
 
-UNCHECKED = pytest.mark.xfail(strict=True, reason="map_movie takes it without a check")
-
-
 @pytest.mark.parametrize(
     ("name", "value"),
     [
@@ -218,11 +215,11 @@ UNCHECKED = pytest.mark.xfail(strict=True, reason="map_movie takes it without a 
         ("tension", 2.0),
         ("renew_every", 0),
         ("align", "left"),
-        pytest.param("method", "magic", marks=UNCHECKED),
-        pytest.param("shape_weight", 0.0, marks=UNCHECKED),
-        pytest.param("edge_length", 0.1, marks=UNCHECKED),
-        pytest.param("inertia", -1.0, marks=UNCHECKED),
-        pytest.param("inertia", np.nan, marks=UNCHECKED),
+        ("method", "magic"),
+        ("shape_weight", 0.0),
+        ("edge_length", 0.1),
+        ("inertia", -1.0),
+        ("inertia", np.nan),
     ],
 )
 def test_bad_parameters_are_refused(masks: np.ndarray, name: str, value: object) -> None:

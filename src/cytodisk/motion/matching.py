@@ -24,6 +24,11 @@ _COARSE_SAMPLES = 128
 _FINE_PX = 1.0
 _LEAST_SAMPLES = 16
 _PINNED = 1e12  # weight that holds a rotation at nothing
+# What a rotation leaves of the boundary's motion is noise that reaches this far along the boundary; turns of
+# a degree a frame are nothing unusual.
+_NOISE_REACH_PX = 20.0
+_USUAL_TURN = math.radians(1.0)
+_PIXEL_NOISE_PX2 = 0.04  # squared displacement that the pixels of a mask make of nothing
 
 
 def first_guess(here: Contour, there: Contour, s: FloatArray, smoothness: float) -> FloatArray:
@@ -111,9 +116,10 @@ def rigid_motion(
 ) -> tuple[float, FloatArray, FloatArray]:
     """Rigid motion that leaves the least of the matching energy.
 
-    Growth of the whole shape is taken out first. A rotation is believed in as far as it explains what a
-    shift alone leaves of the boundary's motion: the stair steps of a round mask, or a protrusion, do not
-    turn a cell.
+    Growth of the whole shape is taken out first. Then three fits: without a rotation, with one, and with one
+    that what the second leaves unexplained speaks against. The result goes from the first towards the third
+    as far as the second explains what the first leaves: neither the stair steps of a round mask nor a
+    protrusion turn a cell.
 
     Parameters
     ----------
@@ -136,9 +142,10 @@ def rigid_motion(
     points = here.at(grid)
     pivot = points.mean(axis=0)
     growth = math.sqrt(signed_area(there.points_yx) / signed_area(here.points_yx))
-    motions, left_over = [], []
-    for doubt in (_PINNED, 0.0):
-        _, motion, left = relax_band(
+    fits = []
+    doubt = _PINNED
+    for _ in range(3):
+        _, motion, left_over = relax_band(
             growth * (points - pivot),
             there.points_yx,
             there.arc,
@@ -149,10 +156,11 @@ def rigid_motion(
             True,
             doubt,
         )
-        motions.append(motion)
-        left_over.append(left)
-    explained = max(0.0, 1.0 - left_over[1] / max(left_over[0], 1e-12))
-    motion = motions[0] + explained * (motions[1] - motions[0])
+        fits.append((motion, left_over))
+        doubt = 0.0 if doubt == _PINNED else _NOISE_REACH_PX * left_over / _USUAL_TURN**2
+    (shifted, by_shift), (_, by_both), (turned, _) = fits
+    explained = max(0.0, by_shift - by_both) / max(by_shift, _PIXEL_NOISE_PX2)
+    motion = shifted + explained * (turned - shifted)
     return float(motion[0]), pivot, motion[1:]
 
 
