@@ -166,7 +166,6 @@ def test_open_study_says_why_not(tmp_path: Path) -> None:
         cd.open_study(tmp_path / "out")
 
 
-@pytest.mark.xfail(strict=True, reason="the message names the part's key, as in 'cell 00001', not the cell")
 def test_a_map_that_is_not_there_has_a_reason(tmp_path: Path) -> None:
     finished(tmp_path / "out")
     study = cd.open_study(tmp_path / "out")

@@ -354,7 +354,8 @@ class Study:
                 raise ReadError(f"cell {cell} of {self.path} is not in frame {time}")
         path = self._map_path(key)
         if not path.exists():
-            raise ReadError(f"cell {key} of {self.path} has no map: {rows['reason'].iloc[0]}")
+            frame = "" if time is None else f", frame {time},"
+            raise ReadError(f"cell {cell}{frame} of {self.path} has no map: {rows['reason'].iloc[0]}")
         return load_map(path)
 
     def activity(self, cell: int = 0) -> xr.Dataset:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from cytodisk.windows.cell_windows import CellWindows
 
 _MOST_WINDOWS = 10_000_000  # beyond any image, and still within memory
+_MOST_LAYERS = 1000  # that a depth is turned into
 
 Spacing: TypeAlias = Literal["area", "radius"]
 
@@ -133,7 +134,8 @@ def polar_windows(layers: int = 10, sectors: int = 60, spacing: Spacing = "area"
 def layers_for_depth(depth: float, area: float, perimeter: float, spacing: Spacing = "area") -> int:
     """Number of layers whose first is about so thick on a cell.
 
-    The first layer's area is taken as its thickness times the cell's perimeter.
+    A band of thickness d along the edge is taken to have the area P d - π d², with P the perimeter: exact for
+    convex cells, as long as the band does not fill them (Steiner's formula).
 
     Parameters
     ----------
@@ -155,6 +157,8 @@ def layers_for_depth(depth: float, area: float, perimeter: float, spacing: Spaci
     """
     if not 0 < depth < np.inf:
         raise WindowError(f"depth must be above 0, got {depth!r}")
-    share = min(1.0, depth * perimeter / area)
-    step = share if spacing == "area" else 1.0 - np.sqrt(1.0 - share)
-    return max(1, round(1.0 / step))
+    counts = np.arange(1, _MOST_LAYERS + 1)
+    share = 1.0 / counts if spacing == "area" else 1.0 - (1.0 - 1.0 / counts) ** 2
+    root = np.sqrt(np.maximum(perimeter**2 - 4.0 * np.pi * share * area, 0.0))
+    thickness = (perimeter - root) / (2.0 * np.pi)
+    return int(counts[np.abs(thickness - depth).argmin()])
