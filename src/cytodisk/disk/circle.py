@@ -1,8 +1,10 @@
 """Boundary → circle: each outline point gets its share of arc length as an angle (paper A.2.1 i)."""
 
+import math
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
+from numba import njit
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
@@ -78,6 +80,33 @@ def parse_align(align: Any) -> Align:
     raise ParameterError(
         f"align must be 'upright', a point (row, column) or an angle in degrees, got {align!r}"
     )
+
+
+@njit(cache=True)
+def polygon_radius(points_uv: FloatArray, angles: FloatArray) -> FloatArray:
+    """Distance from the centre to the polygon of points on the circle, in the direction of each point.
+
+    Parameters
+    ----------
+    points_uv : ndarray of shape (N, 2) and dtype float
+        (u, v).
+    angles : ndarray of shape (B,) and dtype float
+        Of the polygon's corners in radians, strictly increasing within one turn.
+
+    Returns
+    -------
+    ndarray of shape (N,) and dtype float
+        cos π/B to 1 where the corners are even; NaN where the point is.
+    """
+    out = np.empty(len(points_uv))
+    turn, last = 2.0 * math.pi, len(angles) - 1
+    for n in range(len(points_uv)):
+        angle = angles[0] + (math.atan2(points_uv[n, 1], points_uv[n, 0]) - angles[0]) % turn
+        edge = min(max(np.searchsorted(angles, angle, side="right") - 1, 0), last)
+        end = angles[edge + 1] if edge < last else angles[0] + turn
+        half, middle = 0.5 * (end - angles[edge]), 0.5 * (end + angles[edge])
+        out[n] = math.cos(half) / math.cos(angle - middle)
+    return out
 
 
 def _rotation(outline_yx: FloatArray, angles: FloatArray, lengths: FloatArray, align: Align) -> float:

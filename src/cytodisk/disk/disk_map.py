@@ -17,10 +17,11 @@ from scipy import ndimage
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.certificate import Certificate, certify
+from cytodisk.disk.circle import polygon_radius
 from cytodisk.disk.distortion import Distortion, distortion_of
 from cytodisk.errors import ParameterError, ReadError, SignalError
 from cytodisk.files import replacing
-from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline, weighted_corners
+from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline
 from cytodisk.geometry.mask import MaskReport
 
 Method: TypeAlias = Literal["newton", "harmonic"]
@@ -128,10 +129,9 @@ class DiskMap:
         if outside not in ("nan", "nearest"):
             raise ParameterError(f"outside must be 'nan' or 'nearest', got {outside!r}")
         points, shape = _as_points(points_yx, "points_yx")
-        triangle, weights = self._in_cell(points)
-        inner = _interpolate(self.vertices_uv[self.triangles], triangle, weights)
-        uv = inner / self._radius_of_polygon(inner)[:, None]
-        lost = (triangle < 0) & np.isfinite(points).all(axis=1)
+        uv = self._in_cell.carry(points, self.vertices_uv[self.triangles])
+        lost = np.isnan(uv[:, 0]) & np.isfinite(points).all(axis=1)
+        uv /= polygon_radius(uv, self.boundary_angles)[:, None]
         if outside == "nearest" and lost.any():
             uv[lost] = self._nearest_on_circle(points[lost])
         return uv.reshape(shape)
@@ -155,9 +155,8 @@ class DiskMap:
             The last dimension is not 2.
         """
         points, shape = _as_points(points_uv, "points_uv")
-        inner = points * self._radius_of_polygon(points)[:, None]
-        triangle, weights = self._in_disk(inner)
-        return _interpolate(self.vertices_yx[self.triangles], triangle, weights).reshape(shape)
+        inner = points * polygon_radius(points, self.boundary_angles)[:, None]
+        return self._in_disk.carry(inner, self.vertices_yx[self.triangles]).reshape(shape)
 
     def image(self, signal: Any, size: int = 256) -> FloatArray:
         """The signal on the disk, read from the cell by linear interpolation between pixels.
@@ -237,16 +236,6 @@ class DiskMap:
     def _in_disk(self) -> TriangleLocator:
         return TriangleLocator(self.vertices_uv, self.triangles)
 
-    def _radius_of_polygon(self, points_uv: FloatArray) -> FloatArray:
-        """Distance from the centre to the boundary's polygon in the direction of each point."""
-        start = self.boundary_angles
-        ends = np.append(start[1:], start[0] + 2.0 * np.pi)
-        angle = np.arctan2(points_uv[:, 1], points_uv[:, 0])
-        angle = start[0] + np.mod(angle - start[0], 2.0 * np.pi)
-        edge = np.clip(np.searchsorted(start, angle, side="right") - 1, 0, len(start) - 1)
-        middle, half = 0.5 * (start + ends)[edge], 0.5 * (ends - start)[edge]
-        return np.asarray(np.cos(half) / np.cos(angle - middle))
-
     def _nearest_on_circle(self, points_yx: FloatArray) -> FloatArray:
         edge, fraction = nearest_on_outline(points_yx, self.outline_yx)
         circle = self.vertices_uv[self.boundary]
@@ -300,8 +289,3 @@ def _as_points(points: Any, name: str) -> tuple[FloatArray, tuple[int, ...]]:
     if array.ndim == 0 or array.shape[-1] != 2:
         raise ParameterError(f"{name} must have 2 as its last dimension, got shape {array.shape}")
     return array.reshape(-1, 2), array.shape
-
-
-def _interpolate(corners: FloatArray, triangle: IntArray, weights: FloatArray) -> FloatArray:
-    """Weighted mean of a triangle's corner values; NaN where the weights are."""
-    return weighted_corners(np.ascontiguousarray(corners), triangle, weights)

@@ -8,6 +8,7 @@ from scipy.spatial import cKDTree
 
 from cytodisk.arrays import FloatArray, IntArray
 
+_BLOCK = 8192  # points
 _TOLERANCE = 1e-9  # of the mesh's extent: a point this far outside still counts as on the edge
 
 
@@ -61,6 +62,27 @@ class TriangleLocator:
             self._list,
             self._slack,
         )
+
+    def carry(self, points: FloatArray, corners: FloatArray) -> FloatArray:
+        """Points under the map that is linear on every triangle; `weighted_corners` of located points.
+
+        Parameters
+        ----------
+        points : ndarray of shape (N, 2) and dtype float
+            In the frame of the vertices.
+        corners : ndarray of shape (F, 3, 2) and dtype float
+            Where each triangle's corners go.
+
+        Returns
+        -------
+        ndarray of shape (N, 2) and dtype float
+            NaN outside.
+        """
+        moved = np.empty((len(points), 2))
+        for first in range(0, len(points), _BLOCK):  # weights and triangles of a block stay in the cache
+            block = slice(first, first + _BLOCK)
+            moved[block] = weighted_corners(corners, *self(points[block]))
+        return moved
 
 
 @njit(cache=True)
