@@ -9,6 +9,7 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.windows.grid import PolarWindows
 
 _COARSE, _FINE = 4, 16  # parts along a pixel's side
+_PIXELS_AT_ONCE = 1024  # whose parts stay in the cache
 
 
 def window_weights(grid: PolarWindows, disk: DiskMap) -> sparse.csr_array:
@@ -53,8 +54,14 @@ def _parts(
     """Pixel and window of each part of the chosen pixels."""
     steps = (np.arange(per_side) + 0.5) / per_side - 0.5
     offsets = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
-    points = (pixels[chosen, None, :] + offsets).reshape(-1, 2)
-    return np.repeat(chosen, per_side**2), grid.window_of(disk.to_disk(points, outside="nearest"))
+    window = np.empty(len(chosen) * per_side**2, dtype=np.int64)
+    for first in range(0, len(chosen), _PIXELS_AT_ONCE):
+        block = chosen[first : first + _PIXELS_AT_ONCE]
+        points = (pixels[block, None, :] + offsets).reshape(-1, 2)
+        start = first * per_side**2
+        uv = disk.to_disk(points, outside="nearest")
+        window[start : start + len(points)] = grid.window_of(uv)
+    return np.repeat(chosen, per_side**2), window
 
 
 def _empty(grid: PolarWindows, window: IntArray) -> IntArray:
