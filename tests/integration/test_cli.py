@@ -1,7 +1,6 @@
 import json
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import imageio.v3 as imageio
@@ -9,29 +8,11 @@ import numpy as np
 import pandas as pd
 import pytest
 import tifffile
+from command_line import Run, assert_refused, content, write
 
 import cytodisk as cd
-from cytodisk import cli
 
-Run = Callable[..., tuple[int, str, str]]
 GRID = ("--layers", "3", "--sectors", "8", "--figures", "0")
-
-
-@pytest.fixture
-def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
-    """Runs the command line in this process; gives exit code, stdout and stderr."""
-
-    def call(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["cytodisk", *map(str, arguments)])
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as stop:
-            code = stop.code if isinstance(stop.code, int) else int(stop.code is not None)
-        said = capsys.readouterr()
-        return code, said.out, said.err
-
-    return call
 
 
 @pytest.fixture
@@ -40,24 +21,6 @@ def mask(tmp_path: Path) -> Path:
     values[8:30, 6:40] = 1
     tifffile.imwrite(tmp_path / "mask.tif", values)
     return tmp_path / "mask.tif"
-
-
-def write(path: Path, values: np.ndarray, **options: object) -> Path:
-    tifffile.imwrite(path, values, photometric="minisblack", **options)
-    return path
-
-
-def content(folder: Path) -> dict[str, bytes]:
-    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-
-
-def assert_refused(result: tuple[int, str, str], *words: str) -> None:
-    """Exit code 2, and an error that a user can act on instead of a traceback."""
-    code, _, error = result
-    assert code == 2
-    assert "Traceback" not in error
-    for word in words:
-        assert word in error
 
 
 def test_map_writes_a_study(run: Run, mask: Path, tmp_path: Path) -> None:

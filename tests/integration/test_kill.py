@@ -9,10 +9,11 @@ import numpy as np
 import pandas as pd
 import pytest
 import tifffile
+import xarray as xr
 
 import cytodisk as cd
 
-N_CELLS = 30
+N_CELLS = 16
 
 
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")
@@ -52,5 +53,61 @@ def test_a_killed_run_is_resumed_to_the_same_results(tmp_path: Path) -> None:
     assert (out / "windows.parquet").read_bytes() == (tmp_path / "whole" / "windows.parquet").read_bytes()
     names = [
         {str(path.relative_to(folder)) for path in folder.rglob("*")} for folder in (out, tmp_path / "whole")
+    ]
+    assert names[0] == names[1]
+
+
+N_FRAMES = 20
+
+
+def movie_command(files: Path, out: Path, workers: int, *options: str) -> list[str]:
+    inputs = [str(files / "masks.tif"), "--signal", str(files / "signal.ome.tif"), "-o", str(out)]
+    flags = ["--figures", "0", "--layers", "4", "--sectors", "12", "-q", "--workers", str(workers)]
+    return [sys.executable, "-m", "cytodisk", "movie", *inputs, *flags, *options]
+
+
+@pytest.fixture(scope="module")
+def movie_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder of a movie that loses three frames, and of its whole study."""
+    folder = tmp_path_factory.mktemp("movie")
+    truth = cd.simulate.movie("dropping", 0, frames=N_FRAMES, radius_px=25.0)
+    assert truth.signal is not None
+    tifffile.imwrite(folder / "masks.tif", truth.masks.astype(np.uint8), photometric="minisblack")
+    metadata = {"axes": "TCYX", "PhysicalSizeX": 0.16, "PhysicalSizeY": 0.16}
+    tifffile.imwrite(folder / "signal.ome.tif", truth.signal.to_numpy(), metadata=metadata)
+    subprocess.run(movie_command(folder, folder / "whole", 1), check=True)
+    return folder
+
+
+@pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")
+@pytest.mark.parametrize(("workers", "kill_at"), [(1, 3), (2, 10)])
+def test_a_killed_movie_is_resumed_to_the_same_results(
+    movie_files: Path, tmp_path: Path, workers: int, kill_at: int
+) -> None:
+    out = tmp_path / "out"
+    killed = subprocess.Popen(movie_command(movie_files, out, workers), start_new_session=True)
+    try:
+        while len(list(out.glob(".parts/*.json"))) < kill_at and killed.poll() is None:
+            time.sleep(0.002)
+    finally:
+        os.killpg(killed.pid, signal.SIGKILL)
+        killed.wait()
+    assert killed.returncode == -signal.SIGKILL
+    assert kill_at <= len(list(out.glob(".parts/*.json"))) < N_FRAMES
+    assert not (out / "windows.parquet").exists()
+
+    subprocess.run(movie_command(movie_files, out, 1, "--resume"), check=True)
+    resumed, whole = cd.open_study(out), cd.open_study(movie_files / "whole")
+    assert resumed.cells["status"].tolist().count("refused") == 3
+    assert resumed.cells["status"].tolist().count("ok") == N_FRAMES - 3
+    pd.testing.assert_frame_equal(
+        resumed.cells.drop(columns="seconds"), whole.cells.drop(columns="seconds"), check_exact=True
+    )
+    for name in ("windows", "edge", "consistency"):
+        pair = [(study.path / f"{name}.parquet").read_bytes() for study in (resumed, whole)]
+        assert pair[0] == pair[1], name
+    xr.testing.assert_identical(resumed.activity(0).load(), whole.activity(0).load())
+    names = [
+        {str(path.relative_to(study.path)) for path in study.path.rglob("*")} for study in (resumed, whole)
     ]
     assert names[0] == names[1]
