@@ -239,7 +239,9 @@ def test_labels_that_change_are_linked(run: Run, tmp_path: Path) -> None:
     values = disks() * np.array([3, 9, 4, 1, 2], dtype=np.uint8)[:, None, None]
     values[:, 36:42, 2:8] = np.array([7, 1, 2, 5, 6], dtype=np.uint8)[:, None, None]
     path = write(tmp_path / "labels.tif", values)
-    code, said, _ = run("movie", path, "-o", tmp_path / "out", *GRID, "--link")
+    code, said, _ = run("movie", path, "-o", tmp_path / "out", *GRID[:4], "--figures", -1, "--link")
     assert code == 0
+    drawn = {file.name for file in (tmp_path / "out" / "figures").iterdir()}
+    assert {"cell_00000.gif", "cell_00001.gif"} <= drawn
     assert "labels of 2 cells, linked by overlap" in said
     assert "10 of 10 frames of 2 cells mapped" in said

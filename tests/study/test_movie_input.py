@@ -284,3 +284,29 @@ def test_a_file_cut_short_anywhere_never_gives_a_wrong_frame(tmp_path: Path, mas
         assert isinstance(frames[-1], ReadError)
     assert refused > 50
     assert lost > 10
+
+
+def test_a_cell_that_fills_the_image_has_no_edge_that_moves(tmp_path: Path) -> None:
+    study = ran(tmp_path, np.ones_like(MASKS))
+    assert study.cells["status"].tolist() == ["ok"] * FRAMES
+    assert study.cells["touches_border"].all()
+    assert set(study.edge["status"]) == {"on the image's border", "last frame"}
+    assert study.edge["velocity"].isna().all()
+
+
+@pytest.mark.parametrize("side", [1, 2])
+def test_a_cell_of_a_few_pixels_has_no_empty_window(tmp_path: Path, side: int) -> None:
+    values = np.zeros_like(MASKS)
+    values[:, 20 : 20 + side, 20 : 20 + side] = 1
+    study = ran(tmp_path, values, COUNTS)
+    assert study.cells["status"].tolist() == ["ok"] * FRAMES
+    assert (study.windows["area"] > 0).all()
+    assert study.windows["mean"].notna().all()
+    velocity = study.edge.loc[study.edge["time"] < FRAMES - 1, "velocity"]
+    np.testing.assert_allclose(velocity, 0.0, atol=1e-5)
+
+
+@pytest.mark.xfail(strict=True, reason="a stack is said to be linked, though there is nothing to link in it")
+def test_a_stack_is_not_said_to_be_linked(masks: Path) -> None:
+    inputs = open_movie(masks, None, SMALL.model_copy(update={"link": True}))
+    assert "linked" not in inputs.understood["masks"]

@@ -38,6 +38,15 @@ def test_a_stopped_run_goes_on_to_the_same_results(
     assert_same_movie(whole, resumed)
 
 
+def test_a_run_with_the_other_tracker_goes_on_too(inputs: MovieInputs, tmp_path: Path) -> None:
+    parameters = inputs.parameters.model_copy(update={"tracker": "demons"})
+    demons = open_movie(inputs.masks.path, None, parameters)
+    with pytest.raises(Stopped):
+        run_movie(demons, tmp_path / "out", progress=stop_after(4))
+    resumed = run_movie(demons, tmp_path / "out", resume=True)
+    assert_same_movie(run_movie(demons, tmp_path / "whole"), resumed)
+
+
 def test_a_run_may_be_stopped_again_and_again(inputs: MovieInputs, whole: cd.Study, tmp_path: Path) -> None:
     for done in (2, 3, 5):
         with pytest.raises(Stopped):
