@@ -80,20 +80,17 @@ def movie_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")
-@pytest.mark.parametrize(("workers", "kill_at"), [(1, 3), (2, 10)])
-def test_a_killed_movie_is_resumed_to_the_same_results(
-    movie_files: Path, tmp_path: Path, workers: int, kill_at: int
-) -> None:
+def test_a_killed_movie_is_resumed_to_the_same_results(movie_files: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    killed = subprocess.Popen(movie_command(movie_files, out, workers), start_new_session=True)
+    killed = subprocess.Popen(movie_command(movie_files, out, 2), start_new_session=True)
     try:
-        while len(list(out.glob(".parts/*.json"))) < kill_at and killed.poll() is None:
+        while len(list(out.glob(".parts/*.json"))) < 10 and killed.poll() is None:
             time.sleep(0.002)
     finally:
         os.killpg(killed.pid, signal.SIGKILL)
         killed.wait()
     assert killed.returncode == -signal.SIGKILL
-    assert kill_at <= len(list(out.glob(".parts/*.json"))) < N_FRAMES
+    assert 10 <= len(list(out.glob(".parts/*.json"))) < N_FRAMES
     assert not (out / "windows.parquet").exists()
 
     subprocess.run(movie_command(movie_files, out, 1, "--resume"), check=True)
