@@ -87,7 +87,6 @@ def test_a_complete_movie_is_left_as_it_is(run: Run, masks: Path, tmp_path: Path
     assert {path: path.stat().st_mtime_ns for path in out.rglob("*")} == before
 
 
-@pytest.mark.xfail(strict=True, reason="a bar over no drawings counts as a study that was complete already")
 def test_a_fresh_run_without_figures_is_not_called_complete_already(
     run: Run, masks: Path, tmp_path: Path
 ) -> None:
@@ -144,7 +143,6 @@ def test_the_depth_of_the_first_layer(run: Run, masks: Path, tmp_path: Path) -> 
     assert not (tmp_path / "other").exists()
 
 
-@pytest.mark.xfail(strict=True, reason="--layers does not overrule the depth_um of the parameters file")
 def test_given_layers_overrule_the_depth_of_a_parameters_file(run: Run, masks: Path, tmp_path: Path) -> None:
     (tmp_path / "p.toml").write_text("depth_um = 0.7\npixel_size_um = 0.5\nsectors = 8\n")
     common = ("movie", masks, "-o", tmp_path / "out", "--figures", 0, "--parameters", tmp_path / "p.toml")

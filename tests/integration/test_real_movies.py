@@ -8,7 +8,8 @@ import pytest
 import tifffile
 
 import cytodisk as cd
-from cytodisk.study.movie_run import open_movie, run_movie
+from cytodisk.study.movie_inputs import open_movie
+from cytodisk.study.movie_run import run_movie
 from cytodisk.study.parameters import MovieParameters
 
 GRID = MovieParameters(layers=8, sectors=36)

@@ -16,7 +16,8 @@ from cytodisk.plot import movie as pages
 from cytodisk.plot.consistency import draw_by_layer
 from cytodisk.plot.movie import draw_movie_figures
 from cytodisk.plot.movie_edge import draw_mean_velocity, fastest_frame
-from cytodisk.study.movie_run import open_movie, run_movie
+from cytodisk.study.movie_inputs import open_movie
+from cytodisk.study.movie_run import run_movie
 from cytodisk.study.parameters import MovieParameters
 
 FRAMES, GAP, SHAPE = 8, 3, (50, 150)

@@ -5,7 +5,8 @@ from movie_files import SMALL, Stopped, assert_same_movie, stop_after, write_mov
 
 import cytodisk as cd
 from cytodisk.errors import ReadError, StudyError
-from cytodisk.study.movie_run import MovieInputs, open_movie, run_movie
+from cytodisk.study.movie_inputs import MovieInputs, open_movie
+from cytodisk.study.movie_run import run_movie
 
 FRAMES, GAP = 8, 6
 

@@ -14,7 +14,8 @@ from cytodisk.analysis.consistency import centroid_displacement, consecutive_cor
 from cytodisk.errors import ParameterError
 from cytodisk.io.tables import CELL_COLUMNS, CONSISTENCY_COLUMNS, EDGE_COLUMNS, TRACK_COLUMNS, WINDOW_COLUMNS
 from cytodisk.simulate.moving_cells import SimulatedMovie
-from cytodisk.study.movie_run import open_movie, run_movie
+from cytodisk.study.movie_inputs import open_movie
+from cytodisk.study.movie_run import run_movie
 
 FRAMES, GAP = 8, 6
 PIXEL_UM, INTERVAL_S = 0.16, 5.0

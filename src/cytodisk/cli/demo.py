@@ -34,7 +34,8 @@ def demo_command(
     Nothing is downloaded. OUT/input holds the simulated files, OUT/study the results.
     """
     from cytodisk.study.demo import compare_with_truth, write_demo_input
-    from cytodisk.study.movie_run import open_movie, run_movie
+    from cytodisk.study.movie_inputs import open_movie
+    from cytodisk.study.movie_run import run_movie
     from cytodisk.study.parameters import MovieParameters
 
     console = console_for(quiet)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from cytodisk.io.study_folder import Study
-    from cytodisk.study.movie_run import MovieInputs
+    from cytodisk.study.movie_inputs import MovieInputs
 
 MOVIE_HELP = """Follow cells through a movie: maps, activity of a signal, edge velocity, into a study folder.
 
@@ -96,7 +96,8 @@ def movie_command(
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.errors import ParameterError
-    from cytodisk.study.movie_run import open_movie, run_movie
+    from cytodisk.study.movie_inputs import open_movie
+    from cytodisk.study.movie_run import run_movie
     from cytodisk.study.parameters import MovieParameters, parameters_from
 
     if layers is not None and depth_um is not None:
@@ -146,11 +147,13 @@ def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int)
     cells = sorted(study.cells["cell"].unique())
     wanted = cells if figures < 0 else cells[:figures]
     missing = [cell for cell in wanted if not any((study.path / "figures").glob(f"cell_{cell:05d}*.gif"))]
+    if not missing:
+        return
     with progress_bar(quiet, "drawings") as progress:
         for number, cell in enumerate(missing):
             progress(number, len(missing))
             draw_movie_figures(study, int(cell), image)
-        progress(len(wanted), len(wanted))
+        progress(len(missing), len(missing))
 
 
 def finish_movie(console: "Console", study: "Study") -> None:

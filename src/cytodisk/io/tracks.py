@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -110,27 +110,45 @@ def list_tracks(file: FrameFile, kind: Kind, link: bool) -> list[CellTrack]:
     if kind != "labels":
         return [CellTrack(0, 1, 0, file.n_frames - 1, None)]
     found: dict[int, dict[int, int]] = {}
-    tracks = link_labels(_label_frames(file)) if link else _labels_as_tracks(file)
+    damaged: list[int] = []
+    frames = _label_frames(file, damaged)
+    tracks = link_labels(frames) if link else _labels_as_tracks(frames)
     for time, in_frame in enumerate(tracks):
         for label, track in in_frame.items():
             found.setdefault(track, {})[time] = label
     if not found:
         raise MaskError(f"{file.path} holds no label in any of its {file.n_frames} frames")
-    return [
+    cells = [
         CellTrack(cell, track, min(found[track]), max(found[track]), found[track])
         for cell, track in enumerate(sorted(found))
     ]
+    for time in damaged:
+        cells = _with_damaged(cells, time)
+    return cells
 
 
-def _labels_as_tracks(file: FrameFile) -> list[dict[int, int]]:
-    return [{int(label): int(label) for label in np.unique(frame) if label} for frame in _label_frames(file)]
+def _with_damaged(tracks: list[CellTrack], time: int) -> list[CellTrack]:
+    """Give a damaged frame that no cell spans to the cells nearest in time, so that their rows tell of it."""
+    away = [max(track.first - time, time - track.last, 0) for track in tracks]
+    nearest = min(away)
+    return [
+        replace(track, first=min(track.first, time), last=max(track.last, time))
+        if distance == nearest > 0
+        else track
+        for track, distance in zip(tracks, away, strict=True)
+    ]
 
 
-def _label_frames(file: FrameFile) -> Iterator[Any]:
-    """Frames as label images; a damaged one counts as empty here, and has its reason in the run."""
+def _labels_as_tracks(frames: Iterable[Any]) -> list[dict[int, int]]:
+    return [{int(label): int(label) for label in np.unique(frame) if label} for frame in frames]
+
+
+def _label_frames(file: FrameFile, damaged: list[int]) -> Iterator[Any]:
+    """Frames as label images; a damaged one is noted, and counts as empty here."""
     for time in range(file.n_frames):
         frame = read_frame(file, time)
         if isinstance(frame, ReadError):
+            damaged.append(time)
             yield np.zeros(file.image_shape, dtype=np.uint8)
             continue
         if not np.issubdtype(frame.dtype, np.integer):
