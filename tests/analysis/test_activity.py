@@ -54,7 +54,7 @@ def test_tables_have_their_dims_coordinates_and_units(case: Case) -> None:
         "area": "µm²",
         "centroid_y": "px",
         "centroid_x": "px",
-        "frame_status": None,
+        "status": None,
         "reason": None,
     }
     np.testing.assert_array_equal(activity.time, np.arange(9))
@@ -98,7 +98,7 @@ def test_a_frame_without_a_map_is_nan_with_its_reason(case: Case) -> None:
         lost = np.isnan(activity[name].to_numpy().reshape(9, -1))
         np.testing.assert_array_equal(lost.all(axis=1), ~present)
         np.testing.assert_array_equal(lost.any(axis=1), ~present)
-    status, reason = activity.frame_status.to_numpy(), activity.reason.to_numpy()
+    status, reason = activity.status.to_numpy(), activity.reason.to_numpy()
     np.testing.assert_array_equal(status, np.where(present, "ok", "refused"))
     assert all("is empty" in text for text in reason[~present])
     assert set(reason[present]) == {""}

@@ -222,7 +222,10 @@ def test_the_depth_decides_the_layers(files: tuple[Path, Path], tmp_path: Path) 
     """About 20 px of radius at 0.16 µm: 0.4 µm is an eighth of it, which four or so rings have."""
     inputs = open_movie(*files, SMALL.model_copy(update={"depth_um": 0.4}))
     assert inputs.grid.layers in (3, 4, 5)
-    assert "the first layer is about 0.4 µm deep in the first frame" in inputs.understood["windows"]
+    assert (
+        "the first layer is about 0.42 µm deep in the first frame of the first cell (wanted 0.4 µm)"
+        in inputs.understood["windows"]
+    )
     half = open_movie(*files, SMALL.model_copy(update={"depth_um": 0.2}))
     assert half.grid.layers == pytest.approx(2 * inputs.grid.layers, abs=1)
 

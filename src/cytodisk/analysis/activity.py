@@ -43,7 +43,7 @@ def sample_movie(
     -------
     Dataset with dims (time, channel, layer, sector)
         mean, sd, min, max, n_pixels, n_nan as for `sample`; area, centroid_y, centroid_x of the windows and
-        frame_status, reason by frame. A frame without a map is NaN with its reason. The coordinate time_s is
+        status, reason by frame. A frame without a map is NaN with its reason. The coordinate time_s is
         there when the frame interval is known; units are in the attrs of each variable.
 
     Raises
@@ -107,7 +107,7 @@ def activity_dataset(
     for name, values in tables.items():
         scaled = values * (pixel_size_um or 1.0) ** 2 if name == "area" else values
         data[name] = (dims[values.ndim], scaled, {"units": units.get(name, "a.u.")})
-    data["frame_status"] = ("time", np.array(status, dtype=str))
+    data["status"] = ("time", np.array(status, dtype=str))
     data["reason"] = ("time", np.array(reasons, dtype=str))
     times = first_time + np.arange(len(status))
     layers, sectors = tables["area"].shape[1:]

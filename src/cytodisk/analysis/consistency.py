@@ -52,7 +52,8 @@ def centroid_displacement(movie: DiskMovie, activity: xr.Dataset) -> xr.DataArra
     -------
     DataArray with dims (time, layer, sector)
         In µm when the movie knows its scale, else px, as attrs `units` says; of frame t to t + 1, stored at
-        t: the last is NaN. Its mean over windows is the paper's measure.
+        t: the last is NaN, and so is a step at which tracking started anew. Its mean over windows is the
+        paper's measure.
 
     References
     ----------
@@ -60,6 +61,9 @@ def centroid_displacement(movie: DiskMovie, activity: xr.Dataset) -> xr.DataArra
     """
     centroids = np.stack([activity["centroid_y"].to_numpy(), activity["centroid_x"].to_numpy()], axis=-1)
     steps = displacement_between(movie.registered(centroids)) * (movie.pixel_size_um or 1.0)
+    for time, record in enumerate(movie.records[1:]):
+        if record.boundary is not None and record.boundary.restarted:
+            steps[time] = np.nan  # windows before and after have nothing to do with each other
     coords = {name: activity[name] for name in ("time", "layer", "sector")}
     units = "px" if movie.pixel_size_um is None else "µm"
     return xr.DataArray(

@@ -41,7 +41,7 @@ def demo_command(
     console = console_for(quiet)
     truth, masks, signal = write_demo_input(out / "input", seed, overwrite=overwrite)
     console.print(f"A simulated cell in {len(truth.masks)} frames, with two signals, is in {masks.parent}.")
-    console.print(f"The same by hand: cytodisk movie {masks} --signal {signal} -o {out / 'study'}\n")
+    console.print(f"The same by hand: cytodisk movie {masks} --signal {signal} -o {out / 'mine'}\n")
     inputs = open_movie(masks, signal, MovieParameters())
     say_movie(console, inputs)
     with progress_bar(quiet, "frames") as progress:

@@ -38,7 +38,7 @@ CELL_COLUMNS: Columns = (
     ("angle_distortion", pa.float64(), "1"),
     ("angle_distortion_p95", pa.float64(), "1"),
     ("empty_windows", pa.int64(), ""),
-    ("harmonic_weights", pa.string(), ""),
+    ("relaxation_start", pa.string(), ""),
     ("steps", pa.int64(), ""),
     ("converged", pa.bool_(), ""),
     ("seconds", pa.float64(), "s"),

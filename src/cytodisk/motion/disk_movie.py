@@ -15,7 +15,7 @@ from cytodisk.errors import MapError, ParameterError
 from cytodisk.motion.registration import RigidTransform
 from cytodisk.motion.tracking import TrackedBoundary, point_angles
 
-_BORDER_PX = 1.0  # a point nearer than this to the image's border lies on it
+_BORDER_PX = 0.25  # outlines lie half a pixel outside the first row if they are cut off, inside if not
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +145,8 @@ class DiskMovie(Sequence[DiskMap]):
     @property
     def on_border(self) -> BoolArray:
         """Whether each tracked point lies on the image's border, shape (T, N)."""
-        return np.stack([on_border(points, self.image_shape) for points in self.points_yx])
+        points = self._by_frame((self.n_points, 2), lambda found: found.outline_points_yx)
+        return np.stack([on_border(frame, self.image_shape) for frame in points])
 
     def registered(self, points_yx: FloatArray) -> FloatArray:
         """Points of all frames in the movie's common frame: rigid motion taken out.
@@ -179,7 +180,7 @@ class DiskMovie(Sequence[DiskMap]):
 
 
 def on_border(points_yx: FloatArray, image_shape: tuple[int, int]) -> BoolArray:
-    """Whether points lie on the image's border, shape (N,); NaN does not.
+    """Whether points of an outline lie where the image's border cuts a cell off, shape (N,); NaN does not.
 
     Parameters
     ----------

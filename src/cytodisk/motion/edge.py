@@ -161,7 +161,7 @@ def _sector_weights(
     """
     n = len(here.s)
     shape = (int(image_shape[0]), int(image_shape[1]))
-    off = ~(on_border(here.points_yx, shape) | on_border(there.points_yx, shape))
+    off = ~(on_border(here.outline_points_yx, shape) | on_border(there.outline_points_yx, shape))
     half = np.pi / n
     low, high = point_angles(n) - half, point_angles(n) + half
     edges = 2.0 * np.pi * np.arange(sectors + 1) / sectors

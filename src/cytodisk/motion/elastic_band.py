@@ -84,7 +84,7 @@ def relax_band(
             if new_value <= value:
                 break
             scale *= 0.5
-        if new_value > value:  # the polygon's corners leave no descent: this is as far as it goes
+        if not new_value <= value:  # the polygon's corners leave no descent: this is as far as it goes
             _displace(points, target, arc, places, motion, tangent, d, by_motion, gaps)
             break
         places, motion, value = new_places, new_motion, new_value

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -54,12 +54,12 @@ def status_of(fault: CytodiskError | None) -> str:
     return "unreadable" if isinstance(fault, ReadError) else "refused"
 
 
-def map_frames(masks: Iterable[Any], settings: MovieSettings) -> Iterator[FrameResult]:
+def map_frames(masks: Sequence[Any], settings: MovieSettings) -> Iterator[FrameResult]:
     """Map the frames of a movie one by one; each is ready to be used and dropped before the next is read.
 
     Parameters
     ----------
-    masks : iterable of array_like of shape (H, W)
+    masks : sequence of array_like of shape (H, W)
         Masks of one cell. An entry may be an error of this package instead: the frame then has that fault.
     settings : MovieSettings
 
@@ -69,8 +69,8 @@ def map_frames(masks: Iterable[Any], settings: MovieSettings) -> Iterator[FrameR
         In order; a frame that cannot be mapped has its fault, and the next one goes on from the last map.
     """
     last: MappedFrame | None = None
-    for time, mask in enumerate(masks):
-        result = map_one(time, mask, last, settings)
+    for time in range(len(masks)):
+        result = map_one(time, masks[time], last, settings)
         last = result.mapped or last
         yield result
 
@@ -219,7 +219,7 @@ def parse_masks(masks: Any) -> tuple[Any, float | None, float | None]:
         if set(masks.dims) != {"time", "y", "x"}:
             raise MaskError(f"masks have the dims {list(masks.dims)}: a movie of one cell has time, y, x")
         masks = masks.transpose("time", "y", "x")
-    if not isinstance(masks, list | tuple) and not hasattr(masks, "__getitem__"):
+    if not (hasattr(masks, "__getitem__") and hasattr(masks, "__len__")):
         raise MaskError(
             f"masks must be an array (T, H, W) or a sequence of frames, got {type(masks).__name__}"
         )

@@ -62,7 +62,7 @@ class MappedFrame:
     disk : DiskMap
     boundary : TrackedBoundary
     reference : TrackedBoundary
-        What this frame was registered to; itself in a first frame.
+        What this frame was registered to; itself in a first frame and where tracking started anew.
     """
 
     disk: DiskMap
@@ -113,7 +113,8 @@ def map_frame(time: int, mask: Any, last: MappedFrame | None, settings: MovieSet
     anchor = None
     if not boundary.restarted and settings.method == "newton":
         anchor = carried_inside(cell, contour, boundary.s, last.disk, last.boundary.contour, last.boundary.s)
-    return MappedFrame(_map(cell, angles, settings, anchor), boundary, reference)
+    disk = _map(cell, angles, settings, anchor)
+    return MappedFrame(disk, boundary, boundary if boundary.restarted else reference)
 
 
 def _map(cell: CellMesh, angles: Any, settings: MovieSettings, anchor_uv: Any = None) -> DiskMap:

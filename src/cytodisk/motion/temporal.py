@@ -36,7 +36,8 @@ def tracked_angles(contour: Contour, s: FloatArray, angles: FloatArray) -> Float
     y = np.concatenate([angles[-_OVERHANG:] - turn, angles, angles[:_OVERHANG] + turn])
     at = s[0] + np.mod(contour.arc[:-1] - s[0], length)
     found = PchipInterpolator(x, y)(at)
-    gaps = np.mod(np.diff(found, append=found[:1]), turn)
+    found = np.unwrap(found)  # the outline's first point may lie within the turn
+    gaps = np.diff(found, append=found[0] + turn)
     gaps = np.maximum(gaps, _LEAST_GAP * turn / len(gaps))
     steps = np.cumsum(gaps) * (turn / gaps.sum())
     return np.asarray(found[0] + np.concatenate([[0.0], steps[:-1]]))

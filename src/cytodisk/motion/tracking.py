@@ -64,7 +64,7 @@ class TrackingSettings:
             )
         if (
             isinstance(self.renew_every, bool)
-            or not isinstance(self.renew_every, int)
+            or not isinstance(self.renew_every, int | np.integer)
             or self.renew_every < 1
         ):
             raise ParameterError(
@@ -112,6 +112,11 @@ class TrackedBoundary:
     def points_yx(self) -> FloatArray:
         """Tracked points in the image, shape (N, 2), (row, column) in pixels."""
         return self.contour.at(self.s)
+
+    @property
+    def outline_points_yx(self) -> FloatArray:
+        """Points of the unsmoothed outline that the tracked points belong to, shape (N, 2)."""
+        return self.contour.outline_at(self.s)
 
     @property
     def normals_yx(self) -> FloatArray:
@@ -197,7 +202,7 @@ def follow(
     overlap = _overlap(here, transform.of(contour))
     if overlap < _LEAST_OVERLAP:
         why = f"outlines overlap by {overlap:.0%} only (frames {last.time} and {time})"
-        return _restart(time, contour, transform, len(last.s), why)
+        return _restart(time, contour, transform, last, why)
     if settings.tracker == "demons":
         return _follow_demons(time, contour, last, transform, settings.demons)
     here, there = last.alignment.of(last.contour), alignment.of(contour)
@@ -216,14 +221,17 @@ def _follow_demons(
     parameters: DemonsParameters,
 ) -> TrackedBoundary:
     here, there = last.transform.of(last.contour), transform.of(contour)
-    points = propagate(here, there, here.at(last.s), parameters)
+    try:
+        points = propagate(here, there, here.at(last.s), parameters)
+    except ParameterError as fault:  # of a cell of a few pixels; the movie goes on
+        return _restart(time, contour, transform, last, f"demons cannot follow the outline: {fault}")
     edge, share = nearest_on_outline(points, there.points_yx)
     s = there.arc[edge] + share * (there.arc[edge + 1] - there.arc[edge])
     residual = float(np.linalg.norm(there.at(s) - points, axis=1).mean())
     steps = np.mod(np.diff(s, append=s[:1]) + 0.5 * there.length, there.length) - 0.5 * there.length
     if abs(steps.sum() - there.length) > 1e-6 * there.length:
         why = f"demons points do not go once around the outline (frames {last.time} and {time})"
-        return _restart(time, contour, transform, len(s), why)
+        return _restart(time, contour, transform, last, why)
     ordered = np.maximum(steps, _LEAST_GAP * there.length / len(s))
     ordered *= there.length / ordered.sum()
     placed = s[0] + np.concatenate([[0.0], np.cumsum(ordered)[:-1]])
@@ -231,11 +239,17 @@ def _follow_demons(
     return TrackedBoundary(time, contour, placed, transform, transform, residual, violations)
 
 
-def _restart(time: int, contour: Contour, transform: RigidTransform, n: int, why: str) -> TrackedBoundary:
+def _restart(
+    time: int, contour: Contour, transform: RigidTransform, last: TrackedBoundary, why: str
+) -> TrackedBoundary:
+    """Points anew, with the disk turned to the cell as it was in the last frame."""
     angles = boundary_angles(transform(contour.outline_yx))
-    return TrackedBoundary(
-        time, contour, _at_even_angles(contour, angles, n), transform, transform, restarted=why
-    )
+    before = last.transform(last.points_yx)
+    away = before - before.mean(axis=0)
+    lead = point_angles(len(last.s)) - np.arctan2(away[:, 0], away[:, 1])
+    angles = angles + float(np.angle(np.exp(1j * lead).sum()))
+    s = _at_even_angles(contour, angles, len(last.s))
+    return TrackedBoundary(time, contour, s, transform, transform, restarted=why)
 
 
 def _at_even_angles(contour: Contour, angles: FloatArray, n: int) -> FloatArray:

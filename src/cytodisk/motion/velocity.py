@@ -11,6 +11,8 @@ from cytodisk.errors import ParameterError, WindowError
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.edge import FRAMES, EdgeMotion, Frame, edge_motion, mean_by_sector, normal_displacement
 
+_MOST_JITTER_PX = 10.0  # beyond that a mask says nothing about its edge
+
 
 def edge_velocity(movie: DiskMovie, sectors: int = 60, *, frame: Frame = "lab") -> xr.DataArray:
     """Outward velocity of the cell's edge by frame and sector.
@@ -116,7 +118,7 @@ def edge_changes(
         An argument is out of its range.
     """
     _check(sectors, frame)
-    check_jitter(jitter_px, repeats)
+    check_jitter(jitter_px, repeats, seed)
     rows: dict[int, EdgeMotion] = {}
     for time, (here, there) in _pairs(movie):
         rows[time] = edge_motion(
@@ -156,16 +158,18 @@ def edge_changes(
     return xr.Dataset(columns, attrs={"frame": frame})
 
 
-def check_jitter(jitter_px: Any, repeats: Any) -> None:
+def check_jitter(jitter_px: Any, repeats: Any, seed: Any) -> None:
     """Raise ParameterError unless the arguments of the error bar make sense."""
-    if not (isinstance(jitter_px, int | float | np.number) and 0 <= jitter_px < np.inf):
+    if not (isinstance(jitter_px, int | float | np.number) and 0 <= jitter_px <= _MOST_JITTER_PX):
         raise ParameterError(
-            f"jitter_px must be a number of at least 0, got {jitter_px!r}: 0.5 is the default"
+            f"jitter_px must be 0 to {_MOST_JITTER_PX:g}, got {jitter_px!r}: 0.5 is the default"
         )
     if isinstance(repeats, bool) or not isinstance(repeats, int | np.integer) or repeats < 2:
         raise ParameterError(
             f"repeats must be a whole number of at least 2, got {repeats!r}: 8 is the default"
         )
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise ParameterError(f"seed must be a whole number of at least 0, got {seed!r}: 0 is the default")
 
 
 def velocity_unit(pixel_size_um: float | None, frame_interval_s: float | None) -> str:

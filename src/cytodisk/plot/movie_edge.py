@@ -142,7 +142,7 @@ def _draw_arrows(sheet: Sheet, top: float, movie: CellMovie, velocity: FloatArra
         return
     distance = normal_displacement(here, there)
     for boundary in (here, there):
-        distance[on_border(boundary.points_yx, movie.maps.image_shape)] = np.nan
+        distance[on_border(boundary.outline_points_yx, movie.maps.image_shape)] = np.nan
     ax = sheet.axes(4.0, top, _ARROWS, _TALL)
     ax.set_anchor("NW")
     draw_velocity_arrows(
@@ -159,7 +159,7 @@ def _draw_arrows(sheet: Sheet, top: float, movie: CellMovie, velocity: FloatArra
     )
     stamp = time_stamp(time, movie.interval_s)
     stamp += "" if movie.interval_s is None else f" (frame {time})"
-    sheet.text(4.0, HEADING_MM + 3.0, f"fastest step, from {stamp} to the next frame", fontsize=7.5)
+    sheet.text(4.0, HEADING_MM + 3.0, f"most motion, from {stamp} to the next frame", fontsize=7.5)
 
 
 def _draw_tracks(sheet: Sheet, top: float, movie: CellMovie) -> None:

@@ -17,7 +17,7 @@ from cytodisk.io.tracks import CellTrack, list_tracks, read_frame
 from cytodisk.study.map_run import check_signal, common_pixel_size
 from cytodisk.study.one_frame import Scale
 from cytodisk.study.parameters import MovieParameters
-from cytodisk.windows.grid import PolarWindows, layers_for_depth, polar_windows
+from cytodisk.windows.grid import PolarWindows, first_depth, layers_for_depth, polar_windows
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,8 @@ class MovieInputs:
     grid : PolarWindows
     scale : Scale
         The given one, or else the files' own.
+    first_depth_um : float or None
+        Thickness of the first layer in the first frame of the first cell, where `depth_um` was asked for.
     """
 
     masks: FrameFile
@@ -44,6 +46,7 @@ class MovieInputs:
     parameters: MovieParameters
     grid: PolarWindows
     scale: Scale
+    first_depth_um: float | None = None
 
     @property
     def understood(self) -> dict[str, str]:
@@ -61,8 +64,9 @@ class MovieInputs:
             )
         if self.parameters.depth_um is not None:
             words["windows"] = (
-                f"{self.grid.layers} layers × {self.grid.sectors} sectors; the first layer is about "
-                f"{self.parameters.depth_um:g} µm deep in the first frame"
+                f"layers {self.grid.layers}, sectors {self.grid.sectors}; the first layer is about "
+                f"{self.first_depth_um:.2g} µm deep in the first frame of the first cell (wanted "
+                f"{self.parameters.depth_um:g} µm)"
             )
         return words
 
@@ -112,11 +116,11 @@ def open_movie(
         parameters.pixel_size_um or common_pixel_size(mask_file, signal_file),
         parameters.frame_interval_s or _frame_interval(mask_file, signal_file),
     )
-    layers = parameters.layers
+    layers, depth_um = parameters.layers, None
     if parameters.depth_um is not None:
-        layers = _layers(mask_file, tracks, parameters, scale)
+        layers, depth_um = _layers(mask_file, tracks, parameters, scale)
     grid = polar_windows(layers, parameters.sectors, parameters.spacing)
-    return MovieInputs(mask_file, kind, tracks, signal_file, parameters, grid, scale)
+    return MovieInputs(mask_file, kind, tracks, signal_file, parameters, grid, scale, depth_um)
 
 
 def _check_masks(masks: FrameFile) -> None:
@@ -161,8 +165,8 @@ def _frame_interval(masks: FrameFile, signal: FrameFile | None) -> float | None:
 
 def _layers(
     masks: FrameFile, tracks: tuple[CellTrack, ...], parameters: MovieParameters, scale: Scale
-) -> int:
-    """Layers for the wanted depth on the first frame that can be used of the first cell that has one."""
+) -> tuple[int, float]:
+    """Layers for the wanted depth, and the depth they give, on the first frame that can be used."""
     depth = parameters.depth_um
     if scale.pixel_size_um is None or depth is None:
         raise ParameterError("depth_um needs a pixel size: pass it as --pixel-size, or layers instead")
@@ -172,7 +176,9 @@ def _layers(
         except CytodiskError:
             continue  # has its row in the run; the next frame serves as well
         perimeter = float(edge_lengths(smooth_closed(trace_outline(mask), 1.0)).sum())
-        return layers_for_depth(depth / scale.pixel_size_um, report.area_px, perimeter, parameters.spacing)
+        cell = report.area_px, perimeter, parameters.spacing
+        layers = layers_for_depth(depth / scale.pixel_size_um, *cell)
+        return layers, float(first_depth(layers, *cell)) * scale.pixel_size_um
     raise MaskError(f"no frame of {masks.path} can be used")
 
 

@@ -64,7 +64,8 @@ def _finish_track(
             _complete_edge(folder, track, time, grid.sectors, scale, rows)
             here |= _edge_arrays(folder, key)
         if before is not None:
-            _add_consistency(folder, track.cell, time - 1, scale, channels, before, here)
+            there = None if row.get("restarted") else here
+            _add_consistency(folder, track.cell, time - 1, scale, channels, before, there)
         cell.append(time, here, row["status"], row["reason"])
         before = here
     if before is not None:

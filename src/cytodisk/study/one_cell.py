@@ -147,7 +147,7 @@ def cell_columns(
         "angle_distortion": distortion.angle,
         "angle_distortion_p95": distortion.angle_percentiles[95],
         "empty_windows": int((windows.areas <= 0).sum()),
-        "harmonic_weights": disk.start,
+        "relaxation_start": disk.start,
         "steps": disk.steps,
         "converged": disk.converged,
     }

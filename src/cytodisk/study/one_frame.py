@@ -86,10 +86,18 @@ def measure_frame(task: FrameTask) -> FrameRows:
     columns = window_columns(place, windows, task.signal, task.parameters.nan, scale.pixel_size_um)
     row = frame_row(place, task.label) | cell_columns(frame.disk, windows, task.signal, scale.pixel_size_um)
     row |= _track_columns(frame, scale)
+    row["doubts"] = "; ".join(filter(None, [row["doubts"], _jump(task)]))
     save_frame(task.map_path, frame)
     edge = None if task.before is None else _edge_before(task, task.before)
     row |= {"status": "ok", "reason": "", "seconds": task.seconds + clock.perf_counter() - started}
     return FrameRows(row, {"windows": columns}, edge)
+
+
+def _jump(task: FrameTask) -> str:
+    """Remark on a cell that is nowhere where it was in the frame before."""
+    if task.before is None or (task.before.disk.mask & task.frame.disk.mask).any():
+        return ""
+    return f"the cell does not touch its place in frame {task.before.time}: it moved far, or is another one"
 
 
 def frame_row(place: tuple[int, int, float | None], label: int) -> dict[str, Any]:

@@ -29,6 +29,9 @@ PACKAGES = (
 )
 
 
+_NUMERIC = ("numpy", "scipy", "numba", "pythoncdt", "qdldl", "shapely", "scikit-image", "SimpleITK")
+
+
 def installed(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
     """Version of each package, "not installed" where it is missing."""
     found = {}
@@ -74,6 +77,7 @@ def describe_run(
     settings = parameters.model_dump(mode="json")
     fingerprint: dict[str, Any] = {f"{role} sha256": value for role, value in hashes.items()}
     fingerprint |= {"cytodisk": installed(("cytodisk",))["cytodisk"]} | settings
+    fingerprint["packages"] = installed(_NUMERIC)
     fingerprint |= {"pixel_size_um": pixel_size_um, "frame_interval_s": frame_interval_s}
     return {
         "status": "running",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -158,7 +158,24 @@ def layers_for_depth(depth: float, area: float, perimeter: float, spacing: Spaci
     if not 0 < depth < np.inf:
         raise WindowError(f"depth must be above 0, got {depth!r}")
     counts = np.arange(1, _MOST_LAYERS + 1)
-    share = 1.0 / counts if spacing == "area" else 1.0 - (1.0 - 1.0 / counts) ** 2
+    return int(counts[np.abs(first_depth(counts, area, perimeter, spacing) - depth).argmin()])
+
+
+def first_depth(layers: Any, area: float, perimeter: float, spacing: Spacing = "area") -> Any:
+    """Thickness of the first of so many layers on a cell; see `layers_for_depth`.
+
+    Parameters
+    ----------
+    layers : int, or ndarray of int
+    area, perimeter : float
+        Of the cell.
+    spacing : {"area", "radius"}
+
+    Returns
+    -------
+    float or ndarray of float
+        In the unit of the perimeter.
+    """
+    share = 1.0 / layers if spacing == "area" else 1.0 - (1.0 - 1.0 / layers) ** 2
     root = np.sqrt(np.maximum(perimeter**2 - 4.0 * np.pi * share * area, 0.0))
-    thickness = (perimeter - root) / (2.0 * np.pi)
-    return int(counts[np.abs(thickness - depth).argmin()])
+    return (perimeter - root) / (2.0 * np.pi)
