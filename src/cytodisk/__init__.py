@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from cytodisk.geometry.mask import MaskReport as MaskReport
     from cytodisk.geometry.mask import clean_mask as clean_mask
     from cytodisk.io.frames import read_image as read_image
-    from cytodisk.io.study_folder import Study as Study
-    from cytodisk.io.study_folder import open_study as open_study
+    from cytodisk.io.study import Study as Study
+    from cytodisk.io.study import open_study as open_study
     from cytodisk.motion.disk_movie import DiskMovie as DiskMovie
     from cytodisk.motion.map_movie import map_movie as map_movie
     from cytodisk.motion.velocity import boundary_velocity as boundary_velocity
@@ -49,13 +49,13 @@ _HOME = {
     "map_movie": "motion.map_movie",
     "map_to_disk": "disk.mapping",
     "MaskReport": "geometry.mask",
-    "open_study": "io.study_folder",
+    "open_study": "io.study",
     "polar_windows": "windows.grid",
     "PolarWindows": "windows.grid",
     "read_image": "io.frames",
     "sample": "windows.sample",
     "sample_movie": "analysis.activity",
-    "Study": "io.study_folder",
+    "Study": "io.study",
 }
 _MODULES = ("errors", "simulate")
 

@@ -44,8 +44,9 @@ def map_study(masks: Path, tmp_path_factory: pytest.TempPathFactory) -> cd.Study
 
 def test_a_study_knows_what_it_is_of(movie_study: cd.Study, map_study: cd.Study) -> None:
     assert (movie_study.is_movie, map_study.is_movie) == (True, False)
-    assert map_study.edge is None
-    assert map_study.consistency is None
+    for name in ("edge", "consistency"):
+        with pytest.raises(ReadError, match=f"is not that of a movie: it has no {name}"):
+            getattr(map_study, name)
     assert ": 1 cells in 4 frames, 36 rows of windows" in repr(movie_study)
     assert ": 4 cells, 36 rows of windows" in repr(map_study)
 

@@ -11,7 +11,7 @@ from PIL import Image
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError, SignalError
-from cytodisk.io.study_folder import Study
+from cytodisk.io.study import Study
 from cytodisk.plot import movie as pages
 from cytodisk.plot.consistency import draw_by_layer
 from cytodisk.plot.movie import draw_movie_figures

@@ -11,7 +11,7 @@ from cytodisk.cli.console import Masks, Quiet, Signal, console_for, count, fail,
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from cytodisk.io.study_folder import Study
+    from cytodisk.io.study import Study
     from cytodisk.study.map_run import MapInputs
 
 MAP_HELP = """Map masks onto the disk and sample a signal in windows, into a study folder.

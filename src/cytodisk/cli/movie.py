@@ -11,7 +11,7 @@ from cytodisk.cli.console import Quiet, Signal, console_for, count, fail, parse_
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from cytodisk.io.study_folder import Study
+    from cytodisk.io.study import Study
     from cytodisk.study.movie_inputs import MovieInputs
 
 MOVIE_HELP = """Follow cells through a movie: maps, activity of a signal, edge velocity, into a study folder.
@@ -179,8 +179,6 @@ def finish_movie(console: "Console", study: "Study") -> None:
 
 
 def _say_measures(console: "Console", study: "Study", mapped: Any) -> None:
-    if study.edge is None or study.consistency is None:
-        return
     speed, unit = study.edge["velocity"], study.edge.attrs["units"]["velocity"]
     length = study.consistency.attrs["units"]["centroid_displacement"]
     console.print(

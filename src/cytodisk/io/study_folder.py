@@ -1,4 +1,4 @@
-"""A study: the folder that a run writes its results to, piece by piece, and that can be read back."""
+"""A study: the folder that a run writes its results to, piece by piece."""
 
 from __future__ import annotations
 
@@ -12,15 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
-import xarray as xr
 
-from cytodisk.disk.disk_map import DiskMap, load_map
-from cytodisk.errors import ReadError, StudyError
+from cytodisk.errors import StudyError
 from cytodisk.files import lock, replacing
-from cytodisk.io.activity_store import open_activity
 from cytodisk.io.tables import (
     CELL_COLUMNS,
     CONSISTENCY_COLUMNS,
@@ -30,8 +26,6 @@ from cytodisk.io.tables import (
     Columns,
     schema,
 )
-from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
-from cytodisk.motion.frame_file import load_boundary
 
 PARAMETERS, PROVENANCE = "parameters.toml", "provenance.json"
 CELLS, WINDOWS, EDGE = "cells.parquet", "windows.parquet", "edge.parquet"
@@ -170,7 +164,7 @@ class StudyFolder:
     @staticmethod
     def is_complete(path: str | os.PathLike[str], provenance: dict[str, Any]) -> bool:
         """Whether a folder holds the whole of the same run already."""
-        there = _read_provenance(Path(path)) or {}
+        there = read_provenance(Path(path)) or {}
         return there.get("status") == "complete" and there.get("fingerprint") == provenance["fingerprint"]
 
     def note(self, name: str, value: Any) -> None:
@@ -285,192 +279,8 @@ class StudyFolder:
         return schema(columns, *(str(unit) for unit in units))
 
 
-@dataclass(frozen=True)
-class Study:
-    """The reading side of a study.
-
-    Attributes
-    ----------
-    path : Path
-    cells : DataFrame
-        One row a cell, or a frame of a cell, with its status and the reason; units in
-        `cells.attrs["units"]`.
-    windows : DataFrame
-        One row a cell, time, channel, layer and sector; units in `windows.attrs["units"]`.
-    edge : DataFrame or None
-        For a movie, one row a cell, time and sector: edge velocity, areas won and lost.
-    consistency : DataFrame or None
-        For a movie, one row a cell, time, channel and layer: the paper's measures.
-    provenance : dict
-        Versions, inputs with their hashes, parameters, times.
-    """
-
-    path: Path
-    cells: pd.DataFrame
-    windows: pd.DataFrame
-    edge: pd.DataFrame | None
-    consistency: pd.DataFrame | None
-    provenance: dict[str, Any]
-
-    def __repr__(self) -> str:
-        what = f"{len(self.cells)} cells"
-        if self.is_movie:
-            what = f"{self.cells['cell'].nunique()} cells in {self.cells['time'].nunique()} frames"
-        return f"<Study {self.path}: {what}, {len(self.windows)} rows of windows>"
-
-    @property
-    def is_movie(self) -> bool:
-        """Whether the run was that of a movie."""
-        return self.edge is not None
-
-    def map(self, cell: int, time: int | None = None) -> DiskMap:
-        """Read the map of one cell, in one frame of a movie.
-
-        Parameters
-        ----------
-        cell : int
-            Its number in the tables.
-        time : int, optional
-            Number of the frame, for a movie.
-
-        Returns
-        -------
-        DiskMap
-
-        Raises
-        ------
-        ReadError
-            There is no such map, as the row in `cells` says.
-        """
-        if self.is_movie != (time is not None):
-            raise ReadError(
-                f"study {self.path}: pass {'cell and time' if self.is_movie else 'the cell alone'}"
-            )
-        key = part_key(cell, time)
-        rows = self._rows_of(cell)
-        if time is not None:
-            rows = rows[rows["time"] == time]
-            if rows.empty:
-                raise ReadError(f"cell {cell} of {self.path} is not in frame {time}")
-        path = self._map_path(key)
-        if not path.exists():
-            frame = "" if time is None else f", frame {time},"
-            raise ReadError(f"cell {cell}{frame} of {self.path} has no map: {rows['reason'].iloc[0]}")
-        return load_map(path)
-
-    def activity(self, cell: int = 0) -> xr.Dataset:
-        """Activity of one cell of a movie, read from disk when asked for.
-
-        Parameters
-        ----------
-        cell : int
-
-        Returns
-        -------
-        Dataset with dims (time, channel, layer, sector)
-            Statistics of the signal and geometry of the windows; edge velocity and areas by (time, sector);
-            status and reason by frame. Units are in the attrs of each variable.
-
-        Raises
-        ------
-        ReadError
-            The study is not a movie's, or has no such cell.
-        """
-        self._rows_of(cell)
-        return open_activity(self.path / ACTIVITY, cell)
-
-    def movie(self, cell: int = 0) -> DiskMovie:
-        """Maps of one cell through time, each read from disk when asked for.
-
-        Parameters
-        ----------
-        cell : int
-
-        Returns
-        -------
-        DiskMovie
-            Its frame 0 is the first frame of the recording, which the cell may enter later.
-
-        Raises
-        ------
-        ReadError
-            The study is not a movie's, or has no such cell.
-        """
-        rows = self._rows_of(cell)
-        if not self.is_movie:
-            raise ReadError(f"study {self.path} is not that of a movie: use map({cell})")
-        at = {int(row["time"]): row for _, row in rows.iterrows()}
-        last = max(at)
-        records = [self._record(cell, time, at.get(time)) for time in range(last + 1)]
-        height, width = self.provenance["image_shape"]
-        return DiskMovie(
-            tuple(records),
-            (height, width),
-            self.provenance["pixel_size_um"],
-            self.provenance["frame_interval_s"],
-            lambda time: load_map(self._map_path(part_key(cell, time))),
-        )
-
-    def _record(self, cell: int, time: int, row: Any) -> FrameRecord:
-        if row is None:
-            return FrameRecord("missing", f"cell {cell} is not in frame {time} yet", None)
-        if row["status"] != "ok":
-            return FrameRecord(row["status"], row["reason"], None)
-        path = self._map_path(part_key(cell, time))
-        return FrameRecord("ok", "", lambda: load_boundary(path))
-
-    def _map_path(self, key: str) -> Path:
-        return self.path / MAPS / f"cell_{key}.npz"
-
-    def _rows_of(self, cell: int) -> pd.DataFrame:
-        rows = self.cells[self.cells["cell"] == cell]
-        if rows.empty:
-            count = self.cells["cell"].nunique()
-            raise ReadError(f"study {self.path} has no cell {cell}: it has {count} cells from 0")
-        return rows
-
-
-def open_study(path: str | os.PathLike[str]) -> Study:
-    """Read a study folder.
-
-    Parameters
-    ----------
-    path : path-like
-
-    Returns
-    -------
-    Study
-
-    Raises
-    ------
-    ReadError
-        The folder is not a study, is damaged, or its run is not complete.
-    """
-    folder = Path(path)
-    provenance = _read_provenance(folder)
-    if provenance is None:
-        raise ReadError(f"{folder} is no study: it has no readable {PROVENANCE}")
-    if provenance.get("status") != "complete":
-        raise ReadError(f"study {folder} is not complete: run the same command again with --resume")
-    try:
-        tables = [_read_table(folder / name) for name in (CELLS, WINDOWS)]
-        movie = provenance.get("run") == "movie"
-        more = [_read_table(folder / name) if movie else None for name in (EDGE, CONSISTENCY)]
-        return Study(folder, tables[0], tables[1], more[0], more[1], provenance)
-    except (OSError, pa.ArrowException) as error:
-        raise ReadError(f"study {folder} is damaged: {error}") from error
-
-
-def _read_table(path: Path) -> pd.DataFrame:
-    table = pq.read_table(path)
-    frame: pd.DataFrame = table.to_pandas()
-    units = {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in table.schema}
-    frame.attrs["units"] = units
-    return frame
-
-
 def _make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite: bool) -> None:
-    there = _read_provenance(folder)
+    there = read_provenance(folder)
     if there is None:
         raise StudyError(f"output folder {folder} is not empty and holds no study: pass another folder")
     if overwrite:
@@ -523,7 +333,8 @@ def _short(value: Any) -> str:
     return text if len(text) <= 24 else f"{text[:8]}…"
 
 
-def _read_provenance(folder: Path) -> dict[str, Any] | None:
+def read_provenance(folder: Path) -> dict[str, Any] | None:
+    """What a folder says of its run; None if it holds no study."""
     try:
         found = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, json.JSONDecodeError):

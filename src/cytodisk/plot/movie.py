@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.arrays import FloatArray
-from cytodisk.io.study_folder import Study
+from cytodisk.io.study import Study
 from cytodisk.plot.animation import write_animation
 from cytodisk.plot.consistency import consistency_sheet
 from cytodisk.plot.kymograph import bar_beside, draw_layers, draw_velocity_map, shown_layers

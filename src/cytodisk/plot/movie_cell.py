@@ -11,7 +11,8 @@ import xarray as xr
 
 from cytodisk.arrays import FloatArray
 from cytodisk.files import replacing
-from cytodisk.io.study_folder import FIGURES, Study, part_key
+from cytodisk.io.study import Study
+from cytodisk.io.study_folder import FIGURES, part_key
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.plot.sheet import Sheet
 from cytodisk.plot.style import DPI

@@ -13,7 +13,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.files import replacing
 from cytodisk.io.frames import open_frames
-from cytodisk.io.study_folder import Study
+from cytodisk.io.study import Study
 from cytodisk.simulate.moving_cells import SimulatedMovie, movie
 
 FRAMES = 40

@@ -17,7 +17,8 @@ from cytodisk.errors import CytodiskError, ParameterError, ReadError, SignalErro
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.io.frames import FrameFile, open_frames
 from cytodisk.io.masks import CellMask, Kind, read_cells, understood_as
-from cytodisk.io.study_folder import PARAMETERS, Study, StudyFolder, alone_in, open_study, part_key
+from cytodisk.io.study import Study, open_study
+from cytodisk.io.study_folder import PARAMETERS, StudyFolder, alone_in, part_key
 from cytodisk.study.one_cell import CellResult, CellTask, DrawCell, measure_cell
 from cytodisk.study.parameters import MapParameters, write_parameters
 from cytodisk.study.provenance import describe_run

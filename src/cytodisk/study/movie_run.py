@@ -14,15 +14,8 @@ import xarray as xr
 
 from cytodisk.errors import MaskError, ParameterError, ReadError
 from cytodisk.io.frames import FrameFile
-from cytodisk.io.study_folder import (
-    MOVIE_TABLES,
-    PARAMETERS,
-    Study,
-    StudyFolder,
-    alone_in,
-    open_study,
-    part_key,
-)
+from cytodisk.io.study import Study, open_study
+from cytodisk.io.study_folder import MOVIE_TABLES, PARAMETERS, StudyFolder, alone_in, part_key
 from cytodisk.io.tracks import CellTrack, read_frame
 from cytodisk.motion.demons import DemonsParameters
 from cytodisk.motion.frame_file import load_frame

@@ -85,6 +85,12 @@ def parameters_from(
             merged = tomllib.loads(path.read_text(encoding="utf-8"))
         except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
             raise ParameterError(f"parameters file {path} cannot be read: {error}") from error
+    foreign = sorted(set(merged) & set(MovieParameters.model_fields) - set(of.model_fields))
+    if foreign:
+        raise ParameterError(
+            f"parameters file {path} is that of a movie ({', '.join(foreign)}): use cytodisk movie, or take "
+            "these out"
+        )
     if values.get("layers") is not None:
         merged.pop("depth_um", None)  # the two exclude each other, and what is given now counts
     merged |= {name: value for name, value in values.items() if value is not None}
