@@ -47,7 +47,7 @@ def test_a_study_knows_what_it_is_of(movie_study: cd.Study, map_study: cd.Study)
     for name in ("edge", "consistency"):
         with pytest.raises(ReadError, match=f"is not that of a movie: it has no {name}"):
             getattr(map_study, name)
-    assert ": 1 cells in 4 frames, 36 rows of windows" in repr(movie_study)
+    assert ": 1 cells in 4 frames>" in repr(movie_study)
     assert ": 4 cells, 36 rows of windows" in repr(map_study)
 
 
