@@ -48,7 +48,7 @@ def test_a_study_knows_what_it_is_of(movie_study: cd.Study, map_study: cd.Study)
         with pytest.raises(ReadError, match=f"is not that of a movie: it has no {name}"):
             getattr(map_study, name)
     assert ": 1 cells in 4 frames>" in repr(movie_study)
-    assert ": 4 cells, 36 rows of windows" in repr(map_study)
+    assert ": 4 cells>" in repr(map_study)
 
 
 def test_a_map_is_that_of_its_frame(movie_study: cd.Study, masks: Path) -> None:
