@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from cytodisk.io.frames import read_image as read_image
     from cytodisk.io.study import Study as Study
     from cytodisk.io.study import open_study as open_study
+    from cytodisk.motion.demons import DemonsParameters as DemonsParameters
     from cytodisk.motion.disk_movie import DiskMovie as DiskMovie
     from cytodisk.motion.map_movie import map_movie as map_movie
     from cytodisk.motion.velocity import boundary_velocity as boundary_velocity
@@ -40,6 +41,7 @@ _HOME = {
     "certify": "disk.certificate",
     "clean_mask": "geometry.mask",
     "consecutive_correlation": "analysis.consistency",
+    "DemonsParameters": "motion.demons",
     "DiskMap": "disk.disk_map",
     "DiskMovie": "motion.disk_movie",
     "Distortion": "disk.distortion",

@@ -15,8 +15,10 @@ import xarray as xr
 from cytodisk.disk.circle import Align
 from cytodisk.disk.disk_map import DiskMap, Method, load_map
 from cytodisk.errors import CytodiskError, MapError, MaskError, ParameterError, ReadError, StudyError
+from cytodisk.motion.demons import DemonsParameters
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
 from cytodisk.motion.mapped_frame import MappedFrame, MovieSettings, map_frame
+from cytodisk.motion.matching import SMOOTHNESS_PX2
 from cytodisk.motion.tracking import Tracker, TrackingSettings
 
 _KEPT = 4  # maps that a movie on disk keeps in memory
@@ -103,6 +105,8 @@ def map_movie(
     tracker: Tracker = "matching",
     register: bool = True,
     tension: float = 0.01,
+    smoothness_px2: float = SMOOTHNESS_PX2,
+    demons: DemonsParameters | None = None,
     renew_every: int = 5,
     method: Method = "newton",
     shape_weight: float = 0.005,
@@ -130,6 +134,10 @@ def map_movie(
         Take out rigid motion before tracking (paper, algorithm 1).
     tension : float
         For "matching", from 0 (points stay with matter) to 1 (equidistant in each frame).
+    smoothness_px2 : float
+        For "matching", how far displacements are alike along the boundary, in square pixels.
+    demons : DemonsParameters, optional
+        For "demons"; by default the paper's.
     renew_every : int
         Frames after which the reference of the registration is renewed.
     method, shape_weight, edge_length, align
@@ -162,7 +170,9 @@ def map_movie(
     u-Unwrap, section 3 (i), appendix A.1 and A.2.2.
     """
     settings = MovieSettings(
-        TrackingSettings(tracker=tracker, tension=tension, register=register, renew_every=renew_every),
+        TrackingSettings(
+            tracker, tension, smoothness_px2, register, renew_every, demons or DemonsParameters()
+        ),
         method,
         shape_weight,
         edge_length,
