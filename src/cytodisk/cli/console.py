@@ -78,4 +78,4 @@ def progress_bar(quiet: bool, unit: str) -> Iterator[Callable[[int, int], None]]
             print(f"Stopped; what was done is kept{of_all}: run it again with --resume.", file=sys.stderr)
             raise typer.Exit(130) from None
         if not bar.tasks[task].total and not quiet:
-            print("this study is complete already: nothing was run or drawn again", file=sys.stderr)
+            print("this study is complete already: nothing was run again", file=sys.stderr)
