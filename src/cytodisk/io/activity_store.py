@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cytodisk.analysis.activity import STATISTICS
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.windows.grid import PolarWindows
 
 _FRAMES_PER_CHUNK = 64
 _ZARR: dict[str, Any] = {"zarr_format": 2, "consolidated": False}  # format 3 has no strings yet
-_STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
-_GEOMETRY = ("area", "centroid_y", "centroid_x")
-_EDGE = (
+GEOMETRY = ("area", "centroid_y", "centroid_x")
+EDGE_VARIABLES = (
     "velocity",
     "velocity_cell_frame",
     "velocity_error",
@@ -132,11 +132,11 @@ class CellActivity:
         layers, sectors = self._grid.layers, self._grid.sectors
         names = self._channels
         shapes: dict[str, tuple[tuple[str, ...], tuple[int, ...]]] = {}
-        shapes |= dict.fromkeys(_GEOMETRY, (("layer", "sector"), (layers, sectors)))
-        shapes |= dict.fromkeys(_EDGE, (("sector",), (sectors,)))
+        shapes |= dict.fromkeys(GEOMETRY, (("layer", "sector"), (layers, sectors)))
+        shapes |= dict.fromkeys(EDGE_VARIABLES, (("sector",), (sectors,)))
         if names:
             three = ("channel", "layer", "sector"), (len(names), layers, sectors)
-            shapes = dict.fromkeys(_STATISTICS, three) | shapes
+            shapes = dict.fromkeys(STATISTICS, three) | shapes
         data: dict[str, Any] = {}
         for name, (dims, shape) in shapes.items():
             values = [

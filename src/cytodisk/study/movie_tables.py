@@ -10,7 +10,7 @@ import numpy as np
 
 from cytodisk.analysis.activity import STATISTICS
 from cytodisk.analysis.consistency import correlation_over_sectors, displacement_between
-from cytodisk.io.activity_store import ActivityStore
+from cytodisk.io.activity_store import EDGE_VARIABLES, GEOMETRY, ActivityStore
 from cytodisk.io.study_folder import ACTIVITY, StudyFolder, part_key
 from cytodisk.io.tracks import CellTrack
 from cytodisk.motion.registration import RigidTransform
@@ -78,7 +78,7 @@ def _frame_arrays(
 ) -> dict[str, Any]:
     """A frame's windows as arrays: statistics (C, L, S), geometry (L, S), and its rigid motion."""
     part = folder.part_table(key, "windows")
-    columns = {name: part.column(name).to_numpy(zero_copy_only=False) for name in _GEOMETRY}
+    columns = {name: part.column(name).to_numpy(zero_copy_only=False) for name in GEOMETRY}
     shape = (-1, grid.layers, grid.sectors)
     arrays: dict[str, Any] = {name: values.reshape(shape)[0] for name, values in columns.items()}
     if channels:
@@ -89,20 +89,9 @@ def _frame_arrays(
     return arrays
 
 
-_GEOMETRY = ("area", "centroid_y", "centroid_x")
-_EDGE = (
-    "velocity",
-    "velocity_cell_frame",
-    "velocity_error",
-    "protruded_area",
-    "retracted_area",
-    "edge_length",
-)
-
-
 def _edge_arrays(folder: StudyFolder, key: str) -> dict[str, Any]:
     part = folder.part_table(key, "edge")
-    return {name: part.column(name).to_numpy() for name in _EDGE}
+    return {name: part.column(name).to_numpy() for name in EDGE_VARIABLES}
 
 
 def _complete_edge(

@@ -10,6 +10,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 import xarray as xr
 
+from cytodisk.analysis.activity import STATISTICS
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_to_disk
 from cytodisk.errors import CytodiskError, ReadError
@@ -195,7 +196,7 @@ def window_columns(
     if signal is not None:
         data = sample(windows, signal, nan=nan)
         channels = [str(name) for name in data["channel"].to_numpy()]
-        statistics = {name: data[name].to_numpy().ravel() for name in SAMPLED}
+        statistics = {name: data[name].to_numpy().ravel() for name in STATISTICS}
         status = np.where(np.isnan(statistics["mean"]), "NaN in signal", "ok").tolist()
     repeats = len(channels)
     rows = n_windows * repeats
@@ -209,16 +210,13 @@ def window_columns(
         "channel": [name for name in channels for _ in range(n_windows)],
         "layer": layer,
         "sector": sector,
-        **{name: statistics.get(name, nothing) for name in SAMPLED},
+        **{name: statistics.get(name, nothing) for name in STATISTICS},
         "area": np.tile(windows.areas.ravel() * pixel**2, repeats),
         "centroid_y": np.tile(windows.centroids_yx[..., 0].ravel(), repeats),
         "centroid_x": np.tile(windows.centroids_yx[..., 1].ravel(), repeats),
         "eccentricity": np.tile(windows.eccentricities.ravel(), repeats),
         "status": status,
     }
-
-
-SAMPLED = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
 
 
 def _since(started: float) -> float:
