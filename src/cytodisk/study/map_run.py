@@ -7,13 +7,12 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from typing import TypeAlias
 
 import numpy as np
 import xarray as xr
 
-from cytodisk.errors import CytodiskError, ParameterError, ReadError, SignalError
+from cytodisk.errors import CytodiskError, ReadError, SignalError
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.io.frames import FrameFile, open_frames
 from cytodisk.io.masks import CellMask, Kind, read_cells, understood_as
@@ -22,6 +21,7 @@ from cytodisk.io.study_folder import PARAMETERS, StudyFolder, alone_in, part_key
 from cytodisk.study.one_cell import CellResult, CellTask, DrawCell, measure_cell
 from cytodisk.study.parameters import MapParameters, write_parameters
 from cytodisk.study.provenance import describe_run
+from cytodisk.study.run_steps import check_options, finish_run, input_paths
 from cytodisk.study.workers import worker_pool
 from cytodisk.windows.grid import polar_windows
 
@@ -144,11 +144,8 @@ def run_map(
     StudyError
         The folder cannot be used.
     """
-    if workers < 1:
-        raise ParameterError(f"workers must be at least 1, got {workers}")
-    if resume and overwrite:
-        raise ParameterError("resume and overwrite exclude each other: pass one of them")
-    paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
+    check_options(workers, resume, overwrite)
+    paths = input_paths(inputs.masks, inputs.signal)
     provenance = describe_run(paths, inputs.parameters, inputs.understood, inputs.pixel_size_um)
     with alone_in(out):
         if resume and StudyFolder.is_complete(out, provenance):
@@ -172,9 +169,7 @@ def run_map(
             for row in rows
             if row["reason"] or row["doubts"]
         ]
-        folder.note("warnings", warnings)
-        folder.note("finished", datetime.now(UTC).isoformat(timespec="seconds"))
-        folder.finish([part_key(cell) for cell in cells])
+        finish_run(folder, [part_key(cell) for cell in cells], warnings)
         return open_study(folder.path)
 
 

@@ -6,13 +6,12 @@ import os
 import time as clock
 from collections import deque
 from concurrent.futures import Executor, Future
-from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from cytodisk.errors import MaskError, ParameterError, ReadError
+from cytodisk.errors import MaskError, ReadError
 from cytodisk.io.frames import FrameFile
 from cytodisk.io.study import Study, open_study
 from cytodisk.io.study_folder import MOVIE_TABLES, PARAMETERS, StudyFolder, alone_in, part_key
@@ -28,6 +27,7 @@ from cytodisk.study.movie_tables import finish_tables
 from cytodisk.study.one_frame import FrameRows, FrameTask, measure_frame, unmapped_row
 from cytodisk.study.parameters import MovieParameters, write_parameters
 from cytodisk.study.provenance import describe_run
+from cytodisk.study.run_steps import check_options, finish_run, input_paths
 from cytodisk.study.workers import worker_pool
 
 
@@ -67,11 +67,8 @@ def run_movie(
     StudyError
         The folder cannot be used.
     """
-    if workers < 1:
-        raise ParameterError(f"workers must be at least 1, got {workers}")
-    if resume and overwrite:
-        raise ParameterError("resume and overwrite exclude each other: pass one of them")
-    paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
+    check_options(workers, resume, overwrite)
+    paths = input_paths(inputs.masks, inputs.signal)
     provenance = describe_run(
         paths, inputs.parameters, inputs.understood, inputs.scale.pixel_size_um, inputs.scale.frame_interval_s
     )
@@ -90,9 +87,7 @@ def run_movie(
         channels = inputs.signal.channels if inputs.signal else ()
         finish_tables(folder, inputs.tracks, inputs.grid, inputs.scale, channels)
         rows = folder.rows()
-        folder.note("warnings", [_warning(row) for row in rows if _warning(row)])
-        folder.note("finished", datetime.now(UTC).isoformat(timespec="seconds"))
-        folder.finish(inputs.keys)
+        finish_run(folder, inputs.keys, [_warning(row) for row in rows if _warning(row)])
         return open_study(folder.path)
 
 
