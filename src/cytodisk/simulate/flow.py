@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from cytodisk.arrays import FloatArray
+from cytodisk.simulate.fluctuation import NO_FLUCTUATION, Fluctuation
 
 _STEPS_PER_FRAME = 3
 _CALM = 0.3  # share of the cell's radius within which radial motion fades to nothing
@@ -91,13 +92,16 @@ class Flow:
     push_width, push_angle : ndarray of shape (K,) and dtype float
         Standard deviation in pixels; direction, in radians.
     ruffles : Ruffles
+    fluctuation : Fluctuation
     growth : float
         Outward speed, in pixels per frame.
 
     Notes
     -----
     A push moves points along one direction, by a speed that depends only on where they are from its place.
-    So the path forth is the path back: alone it returns exactly, and overlapping ones return nearly.
+    So the path forth is the path back: alone it returns exactly, and overlapping ones return nearly. A
+    fluctuation moves points along their ray from the centre, which neither turns nor crosses another: there
+    all of its pushes together return exactly, and a cell that every ray leaves once stays one.
     """
 
     radius: float
@@ -105,12 +109,17 @@ class Flow:
     push_width: FloatArray = field(default_factory=no_numbers)
     push_angle: FloatArray = field(default_factory=no_numbers)
     ruffles: Ruffles = NO_RUFFLES
+    fluctuation: Fluctuation = NO_FLUCTUATION
     growth: float = 0.0
 
     @property
     def moves(self) -> bool:
         """Whether there is any motion in the frame of the cell."""
-        return bool(self.push.low.size or self.ruffles.waves.size or self.growth)
+        return bool(self.push.low.size or self._moves_radially)
+
+    @property
+    def _moves_radially(self) -> bool:
+        return bool(self.growth or self.ruffles.waves.size or self.fluctuation.angle.size)
 
     def shape_at_start(self, points_yx: FloatArray) -> FloatArray:
         """Points after the pushes have risen to their levels at frame 0.
@@ -125,8 +134,16 @@ class Flow:
         ndarray of shape (K + N, 2) and dtype float
         """
         level = self.push.level(0.0) / 10.0
+        height = self.fluctuation.level(0.0) / 10.0
+
+        def rise(points: FloatArray, _: float) -> FloatArray:
+            pushed = self._pushed(points, level)
+            if not height.size:
+                return pushed
+            return pushed + self._radial(points, lambda angle: self.fluctuation.shares(angle) @ height)
+
         for step in range(10):
-            points_yx = _runge_kutta(lambda points, _: self._pushed(points, level), points_yx, step, 1.0)
+            points_yx = _runge_kutta(rise, points_yx, step, 1.0)
         return points_yx
 
     def carry(self, points_yx: FloatArray, start: float, stop: float) -> FloatArray:
@@ -151,7 +168,16 @@ class Flow:
         return points_yx
 
     def _velocity(self, points_yx: FloatArray, frame: float) -> FloatArray:
-        return self._pushed(points_yx, self.push.rate(frame)) + self._radial(points_yx, frame)
+        velocity = self._pushed(points_yx, self.push.rate(frame))
+        if not self._moves_radially:
+            return velocity
+        return velocity + self._radial(points_yx, lambda angle: self._outward_speed(angle, frame))
+
+    def _outward_speed(self, angle: FloatArray, frame: float) -> FloatArray:
+        speed = self.growth + self.ruffles(angle, frame)
+        if self.fluctuation.angle.size:
+            speed = speed + self.fluctuation.shares(angle) @ self.fluctuation.rate(frame)
+        return speed
 
     def _pushed(self, points_yx: FloatArray, rate: FloatArray) -> FloatArray:
         """Velocity for a speed of each push."""
@@ -161,15 +187,13 @@ class Flow:
         direction = np.column_stack([np.sin(self.push_angle), np.cos(self.push_angle)])
         return np.asarray(np.exp(-0.5 * square / self.push_width**2) @ (rate[:, None] * direction))
 
-    def _radial(self, points_yx: FloatArray, frame: float) -> FloatArray:
-        """Growth and ruffles, faded out at the centre, where outward has no direction."""
-        if not (self.growth or self.ruffles.waves.size):
-            return np.zeros_like(points_yx)
+    def _radial(self, points_yx: FloatArray, speed_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        """Velocity for an outward speed by angle, faded out at the centre, where outward has no direction."""
         distance = np.hypot(points_yx[:, 0], points_yx[:, 1])
         share = np.minimum(distance / (_CALM * self.radius), 1.0)
         fade = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
         angle = np.arctan2(points_yx[:, 0], points_yx[:, 1])
-        speed = fade * (self.growth + self.ruffles(angle, frame)) / np.maximum(distance, 1e-9)
+        speed = fade * speed_at(angle) / np.maximum(distance, 1e-9)
         return np.asarray(speed[:, None] * points_yx)
 
 

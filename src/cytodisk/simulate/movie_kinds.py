@@ -7,9 +7,10 @@ from typing import Literal, get_args
 import numpy as np
 
 from cytodisk.arrays import FloatArray
-from cytodisk.geometry.polygon import signed_area
 from cytodisk.simulate.flow import NO_RUFFLES, NOTHING, Flow, Ruffles, Swing, no_numbers
+from cytodisk.simulate.fluctuation import NO_FLUCTUATION, Fluctuation, random_fluctuation
 from cytodisk.simulate.pose import Pose
+from cytodisk.simulate.resting_shapes import ANGLE, egg, lobed, of_area, outward, polar, waves
 
 MovieKind = Literal[
     "bulging",
@@ -23,10 +24,9 @@ MovieKind = Literal[
     "growing",
     "still",
     "dropping",
+    "fluctuating",
 ]
 MOVIE_KINDS: tuple[MovieKind, ...] = get_args(MovieKind)
-
-_ANGLE = np.linspace(0.0, 2.0 * np.pi, 2000, endpoint=False)
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,8 @@ class Habits:
     turn_deg : float
         In degrees per frame.
     protrusion_px : float or None
-        Height of the largest protrusion, in pixels; None for a kind that has none.
+        Height of the largest protrusion, in pixels; None for a kind that has none. For "fluctuating" three
+        standard deviations of the edge about its mean place.
     jitter_px : float
         Standard deviation of the drawn edge about the true one, in pixels.
     dropped : float
@@ -66,6 +67,7 @@ HABITS: dict[MovieKind, Habits] = {
     "growing": Habits(speed_px=1.0),
     "still": Habits(jitter_px=1.0),
     "dropping": Habits(protrusion_px=15.0, dropped=0.15),
+    "fluctuating": Habits(protrusion_px=12.0),
 }
 
 
@@ -102,6 +104,7 @@ class _Motion:
     neck: Swing = NOTHING
     neck_width: float = 1.0
     ruffles: Ruffles = NO_RUFFLES
+    fluctuation: Fluctuation = NO_FLUCTUATION
 
 
 def plan_movie(kind: MovieKind, random: np.random.Generator, radius: float, habits: Habits) -> Plan:
@@ -123,7 +126,7 @@ def plan_movie(kind: MovieKind, random: np.random.Generator, radius: float, habi
     motion = _MAKERS[kind](random, radius, habits.protrusion_px or 0.0)
     y, x = motion.outline_yx.T
     places = [int(np.cos(np.arctan2(y, x) - angle).argmax()) for angle in motion.push_at]
-    normal = _outward(motion.outline_yx)[places]
+    normal = outward(motion.outline_yx)[places]
     growing = kind == "growing"
     flow = Flow(
         radius=radius,
@@ -131,6 +134,7 @@ def plan_movie(kind: MovieKind, random: np.random.Generator, radius: float, habi
         push_width=motion.push_width,
         push_angle=np.arctan2(normal[:, 0], normal[:, 1]),
         ruffles=motion.ruffles,
+        fluctuation=motion.fluctuation,
         growth=habits.speed_px if growing else 0.0,
     )
     pose = Pose(
@@ -148,7 +152,7 @@ def plan_movie(kind: MovieKind, random: np.random.Generator, radius: float, habi
 
 def _bulging(random: np.random.Generator, radius: float, height: float) -> _Motion:
     return _Motion(
-        _lobed(random, radius, 0.03),
+        lobed(random, radius, 0.03),
         push=_swing(random, height * random.uniform(0.7, 1.0, 5), (20.0, 30.0)),
         push_width=radius / 45.0 * random.uniform(8.0, 12.0, 5),
         push_at=_spread(random, 5),
@@ -162,7 +166,7 @@ def _migrating(random: np.random.Generator, radius: float, height: float) -> _Mo
     share = np.concatenate([random.uniform(0.6, 1.0, 4), random.uniform(0.3, 0.6, 4), [0.6]])
     width = np.concatenate([random.uniform(10.0, 13.0, 4), random.uniform(7.0, 9.0, 4), [11.0]])
     return _Motion(
-        _egg(random, radius),
+        egg(random, radius),
         push=_swing(random, height * share, (18.0, 30.0)),
         push_width=radius / 45.0 * width,
         push_at=np.concatenate([front, side, [np.pi]]),
@@ -171,12 +175,12 @@ def _migrating(random: np.random.Generator, radius: float, height: float) -> _Mo
 
 
 def _rigid(random: np.random.Generator, radius: float, height: float) -> _Motion:
-    return _Motion(_lobed(random, radius, 0.1))
+    return _Motion(lobed(random, radius, 0.1))
 
 
 def _necking(random: np.random.Generator, radius: float, height: float) -> _Motion:
     """Two lobes whose waist of 1.25 radii narrows to a ninth of the radius: 5 px of 45."""
-    outline = _of_area(_polar(1.0 + 0.38 * np.cos(2.0 * _ANGLE) + _waves(random, 0.02)), radius)
+    outline = of_area(polar(1.0 + 0.38 * np.cos(2.0 * ANGLE) + waves(random, 0.02)), radius)
     y, x = outline.T
     waist = 2.0 * np.abs(y[np.abs(x) < 2.0]).mean()
     narrowing = np.log(waist / (radius / 9.0))
@@ -189,7 +193,7 @@ def _neutrophil(random: np.random.Generator, radius: float, height: float) -> _M
     places = np.concatenate([np.radians([-45.0, 5.0, 50.0]), np.radians([-110.0, 110.0])])
     share = np.concatenate([random.uniform(0.75, 1.0, 3), random.uniform(0.4, 0.7, 2)])
     return _Motion(
-        _lobed(random, radius, 0.04),
+        lobed(random, radius, 0.04),
         push=_swing(random, height * share, (22.0, 36.0)),
         push_width=radius / 45.0 * random.uniform(12.0, 15.0, 5),
         push_at=places + random.uniform(-0.25, 0.25, 5),
@@ -200,7 +204,7 @@ def _neutrophil(random: np.random.Generator, radius: float, height: float) -> _M
 
 def _spiky(random: np.random.Generator, radius: float, height: float) -> _Motion:
     return _Motion(
-        _lobed(random, radius, 0.03),
+        lobed(random, radius, 0.03),
         push=_swing(random, height * random.uniform(0.6, 1.0, 12), (24.0, 36.0)),
         push_width=random.uniform(3.0, 3.5, 12),
         push_at=_spread(random, 12),
@@ -211,11 +215,18 @@ def _ruffling(random: np.random.Generator, radius: float, height: float) -> _Mot
     period = random.uniform(16.0, 24.0, 3) * random.choice([-1.0, 1.0])
     speed = 2.0 * np.pi / np.abs(period) * height * np.array([0.3, 0.45, 0.25])
     ruffles = Ruffles(np.array([3.0, 5.0, 8.0]), speed, period, random.uniform(-np.pi, np.pi, 3))
-    return _Motion(_lobed(random, radius, 0.03), ruffles=ruffles)
+    return _Motion(lobed(random, radius, 0.03), ruffles=ruffles)
 
 
 def _growing(random: np.random.Generator, radius: float, height: float) -> _Motion:
-    return _Motion(radius * _polar(np.ones_like(_ANGLE)))
+    return _Motion(radius * polar(np.ones_like(ANGLE)))
+
+
+def _fluctuating(random: np.random.Generator, radius: float, height: float) -> _Motion:
+    directions = _spread(random, int(random.integers(14, 21)))
+    return _Motion(
+        lobed(random, radius, 0.03), fluctuation=random_fluctuation(random, directions, height / 3.0)
+    )
 
 
 _MAKERS: dict[MovieKind, Callable[[np.random.Generator, float, float], _Motion]] = {
@@ -230,36 +241,8 @@ _MAKERS: dict[MovieKind, Callable[[np.random.Generator, float, float], _Motion]]
     "growing": _growing,
     "still": _rigid,
     "dropping": _bulging,
+    "fluctuating": _fluctuating,
 }
-
-
-def _lobed(random: np.random.Generator, radius: float, roughness: float) -> FloatArray:
-    return _of_area(_polar(1.0 + _waves(random, roughness)), radius)
-
-
-def _egg(random: np.random.Generator, radius: float) -> FloatArray:
-    """Blunt and broad towards +x, narrow towards -x, where it bends aside."""
-    ahead = np.cos(_ANGLE)
-    broad = 0.86 + 0.36 * ahead
-    bent = random.choice([-1.0, 1.0]) * random.uniform(0.05, 0.15) * (ahead - 1.0) ** 2
-    shape = np.column_stack([broad * np.sin(_ANGLE) + bent, 0.95 * ahead - 0.2 * ahead**2])
-    return _of_area(shape * (1.0 + _waves(random, 0.02))[:, None], radius)
-
-
-def _waves(random: np.random.Generator, roughness: float) -> FloatArray:
-    mode = np.arange(2, 7)
-    height = roughness * random.uniform(0.5, 1.0, mode.size) * (2.0 / mode) ** 0.5
-    phase = random.uniform(-np.pi, np.pi, mode.size)
-    return np.asarray(height @ np.cos(np.outer(mode, _ANGLE) + phase[:, None]))
-
-
-def _polar(distance: FloatArray) -> FloatArray:
-    return np.asarray(distance[:, None] * np.column_stack([np.sin(_ANGLE), np.cos(_ANGLE)]))
-
-
-def _of_area(outline_yx: FloatArray, radius: float) -> FloatArray:
-    """The outline scaled to the area of a disk."""
-    return np.asarray(outline_yx * radius * np.sqrt(np.pi / signed_area(outline_yx)))
 
 
 def _spread(random: np.random.Generator, count: int) -> FloatArray:
@@ -279,10 +262,3 @@ def _between(
 ) -> Swing:
     swing = _swing(random, np.array(high), period)
     return Swing(np.array(low), swing.high, swing.period, swing.phase)
-
-
-def _outward(outline_yx: FloatArray) -> FloatArray:
-    """Outward unit normal at each point of an outline that runs from +x towards +y."""
-    along = np.roll(outline_yx, -1, axis=0) - np.roll(outline_yx, 1, axis=0)
-    normal = np.column_stack([-along[:, 1], along[:, 0]])
-    return np.asarray(normal / np.hypot(normal[:, 0], normal[:, 1])[:, None])

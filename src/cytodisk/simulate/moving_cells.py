@@ -3,18 +3,16 @@
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 import xarray as xr
 
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import ParameterError
+from cytodisk.simulate.coupling import coupled_stretch, partly_followed
 from cytodisk.simulate.drawing import check_at_least
-from cytodisk.simulate.jitter import evenly_spaced, jittered
-from cytodisk.simulate.movie_kinds import HABITS, MOVIE_KINDS, Habits, MovieKind, Plan, plan_movie
+from cytodisk.simulate.jitter import jittered
+from cytodisk.simulate.movie_kinds import HABITS, MOVIE_KINDS, Habits, MovieKind, plan_movie
 from cytodisk.simulate.movie_signals import Scene, camera, expected_counts, rasterised
-
-_BOUNDARY_POINTS = 3000
-_INTERIOR_SPACING = np.sqrt(2.0)  # pixels: one point in two square pixels
+from cytodisk.simulate.paths import normal_displacement, paths
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +32,9 @@ class SimulatedMovie:
     normal_displacement_px : ndarray of shape (T, N) and dtype float
         How far each boundary point moves until the next frame, along the outward normal it has in this one;
         NaN in the last frame.
+    coupled : ndarray of shape (N,) and dtype float
+        Whether channel "edge" follows the edge's velocity at each boundary point: 1 where it does, 0 where
+        it follows that of another cell, and between them a smooth transition.
     present : ndarray of shape (T,) and dtype bool
         False where the mask is empty because the frame was dropped.
     signal : DataArray with dims (time, channel, y, x) and dtype uint16, or None
@@ -43,7 +44,7 @@ class SimulatedMovie:
     kind : str
     seed : int
     lag_frames : int
-        By how many frames channel "edge" follows the edge's velocity.
+        By how many frames channel "edge" follows the edge's velocity, where it does.
     pixel_size_um, frame_interval_s : float
     """
 
@@ -51,6 +52,7 @@ class SimulatedMovie:
     boundary_yx: FloatArray
     interior_yx: FloatArray
     normal_displacement_px: FloatArray
+    coupled: FloatArray
     present: BoolArray
     signal: xr.DataArray | None
     truth: xr.DataArray | None
@@ -59,15 +61,6 @@ class SimulatedMovie:
     lag_frames: int
     pixel_size_um: float
     frame_interval_s: float
-
-
-@dataclass(frozen=True, eq=False)
-class _Path:
-    """Places of the pushes in the cell's frame, boundary and interior in the image, in a run of frames."""
-
-    places_yx: FloatArray
-    boundary_yx: FloatArray
-    interior_yx: FloatArray
 
 
 def movie(
@@ -82,6 +75,7 @@ def movie(
     jitter_px: float | None = None,
     dropped: float | None = None,
     lag_frames: int = 4,
+    coupled: float = 1.0,
     pixel_size_um: float = 0.16,
     frame_interval_s: float = 5.0,
     margin: int = 10,
@@ -97,7 +91,8 @@ def movie(
         One of `MOVIE_KINDS`: "bulging" and "dropping" (five protrusions come and go; "dropping" loses
         frames), "migrating", "neutrophil" (crawl; the second changes its whole shape), "translating",
         "turning" (rigid), "necking" (a waist closes to 5 px and opens), "spiky" (filopodia), "ruffling"
-        (waves travel around the edge), "growing" (a disk), "still" (nothing moves, but masks jitter).
+        (waves travel around the edge), "growing" (a disk), "still" (nothing moves, but masks jitter),
+        "fluctuating" (the edge moves by smooth noise that has no period, so that a lag can be told).
     seed : int
         Places, phases, widths and directions; the same arguments give the same movie.
     frames : int
@@ -109,7 +104,8 @@ def movie(
     turn_deg : float, optional
         Of the whole cell and its direction in degrees per frame, positive from +x towards +y.
     protrusion_px : float, optional
-        Height of the largest protrusion in pixels, at least 0; only for kinds that have protrusions.
+        Height of the largest protrusion in pixels, at least 0; only for kinds that have protrusions. For
+        "fluctuating" three standard deviations of the edge about its mean place.
     jitter_px : float, optional
         Standard deviation of the drawn outline about the true one in pixels, at least 0. Smooth along the
         edge, independent between frames.
@@ -117,6 +113,11 @@ def movie(
         Share of frames with an empty mask and no signal, from 0 to below 1; never the first or last.
     lag_frames : int
         By how many frames the "edge" channel follows the edge's velocity; negative: leads it.
+    coupled : float
+        Share of the edge, from 0 to 1, along which the "edge" channel follows the edge's velocity: one
+        stretch from a random place on. Elsewhere it follows, at the same boundary points, the velocity of
+        another cell of the kind, drawn independently; within 30 of the 3000 boundary points the one goes
+        over into the other. Kinds without chance ("growing", "still") have nothing else to follow.
     pixel_size_um, frame_interval_s : float
         Above 0; stored with the signal.
     margin : int
@@ -133,20 +134,23 @@ def movie(
     ParameterError
         An unknown kind, a number out of its range, or a protrusion for a kind that has none.
     """
-    _check(seed, frames, radius_px, lag_frames, pixel_size_um, frame_interval_s, margin)
+    _check(seed, frames, radius_px, lag_frames, coupled, pixel_size_um, frame_interval_s, margin)
     habits = _habits(kind, speed_px, turn_deg, protrusion_px, jitter_px, dropped)
     plan = plan_movie(kind, np.random.default_rng([seed, 0]), radius_px, habits)
     around = abs(lag_frames) if signals else 0
-    path = _carried(plan, _at_start(plan), -around, frames + around + 1)
+    path = paths(plan, -around, frames + around + 1)
     shown = slice(around, around + frames)
     drawn = jittered(path.boundary_yx[shown], habits.jitter_px, np.random.default_rng([seed, 1]))
     shape, shift = _image_frame(drawn, margin)
     present = _present(frames, habits.dropped, np.random.default_rng([seed, 2]))
     displacement = normal_displacement(path.boundary_yx)
     boundary = path.boundary_yx[shown] + shift
+    stretch = coupled_stretch(coupled, np.random.default_rng([seed, 5]))
     signal, truth = None, None
     if signals:
-        followed = displacement[around - lag_frames : around - lag_frames + frames]
+        other = plan_movie(kind, np.random.default_rng([seed, 6]), radius_px, habits)
+        followed = partly_followed(displacement, stretch, other, -around)
+        followed = followed[around - lag_frames : around - lag_frames + frames]
         scene = Scene(plan, path.places_yx[shown], boundary, followed, shape, shift, present)
         truth = expected_counts(scene, np.random.default_rng([seed, 3]), pixel_size_um, frame_interval_s)
         signal = camera(truth, np.random.default_rng([seed, 4]))
@@ -157,6 +161,7 @@ def movie(
         boundary_yx=boundary,
         interior_yx=path.interior_yx[shown] + shift,
         normal_displacement_px=displacement,
+        coupled=stretch,
         present=present,
         signal=signal,
         truth=truth,
@@ -166,14 +171,6 @@ def movie(
         pixel_size_um=pixel_size_um,
         frame_interval_s=frame_interval_s,
     )
-
-
-def normal_displacement(boundary_yx: FloatArray) -> FloatArray:
-    """How far points of an edge move until the next frame along their outward normal; NaN in the last."""
-    along = np.roll(boundary_yx, -1, axis=1) - np.roll(boundary_yx, 1, axis=1)
-    step = np.diff(boundary_yx, axis=0, append=np.nan * boundary_yx[:1])
-    outward = step[..., 0] * -along[..., 1] + step[..., 1] * along[..., 0]
-    return np.asarray(outward / np.hypot(along[..., 0], along[..., 1]))
 
 
 def _habits(
@@ -213,6 +210,7 @@ def _check(
     frames: int,
     radius_px: float,
     lag_frames: int,
+    coupled: float,
     pixel_size_um: float,
     frame_interval_s: float,
     margin: int,
@@ -221,6 +219,11 @@ def _check(
         _check_whole(name, value, least)
     _check_whole("lag_frames", lag_frames, -frames)
     check_at_least("radius_px", radius_px, 10.0)
+    check_at_least("coupled", coupled, 0.0)
+    if coupled > 1.0:
+        raise ParameterError(
+            f"coupled must be a share from 0 to 1, got {coupled!r}: pass 0.5 for half the edge"
+        )
     check_at_least("pixel_size_um", pixel_size_um, 1e-9)
     check_at_least("frame_interval_s", frame_interval_s, 1e-9)
 
@@ -230,36 +233,6 @@ def _check_whole(name: str, value: int, least: int) -> None:
     check_at_least(name, value, least)
     if value != int(value):
         raise ParameterError(f"{name} must be a whole number, got {value!r}: pass {int(value)}")
-
-
-def _at_start(plan: Plan) -> FloatArray:
-    """Places, boundary points that are evenly spaced in the image, and interior points, in frame 0."""
-    pushed = plan.flow.shape_at_start(np.concatenate([plan.places_yx, plan.outline_yx]))
-    places, outline = pushed[: len(plan.places_yx)], pushed[len(plan.places_yx) :]
-    boundary = evenly_spaced(plan.pose.to_image(outline, 0.0), _BOUNDARY_POINTS)
-    points = np.concatenate([boundary, _inside(boundary)])
-    return np.concatenate([places, plan.pose.to_cell(points, 0.0)])
-
-
-def _inside(outline_yx: FloatArray) -> FloatArray:
-    """Square lattice of points inside an outline."""
-    low, high = outline_yx.min(axis=0), outline_yx.max(axis=0)
-    rows, columns = (np.arange(a, b, _INTERIOR_SPACING) for a, b in zip(low, high, strict=True))
-    lattice = np.stack(np.meshgrid(rows, columns, indexing="ij"), axis=-1).reshape(-1, 2)
-    return lattice[shapely.contains_xy(shapely.Polygon(outline_yx), lattice)]
-
-
-def _carried(plan: Plan, points_yx: FloatArray, first: int, stop: int) -> _Path:
-    """Points of frame 0 in the frames from `first` (0 or before) up to `stop`."""
-    later, earlier = [points_yx], [points_yx]
-    for frame in range(stop - 1):
-        later.append(plan.flow.carry(later[-1], frame, frame + 1))
-    for frame in range(0, first, -1):
-        earlier.append(plan.flow.carry(earlier[-1], frame, frame - 1))
-    path = np.stack(earlier[:0:-1] + later)
-    places = len(plan.places_yx)
-    image = np.stack([plan.pose.to_image(path[k, places:], first + k) for k in range(len(path))])
-    return _Path(path[:, :places], image[:, :_BOUNDARY_POINTS], image[:, _BOUNDARY_POINTS:])
 
 
 def _image_frame(drawn_yx: FloatArray, margin: int) -> tuple[tuple[int, int], FloatArray]:

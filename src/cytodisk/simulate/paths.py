@@ -1,0 +1,98 @@
+"""Paths of a simulated cell's material points through the image."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from cytodisk.arrays import FloatArray
+from cytodisk.simulate.jitter import evenly_spaced
+from cytodisk.simulate.movie_kinds import Plan
+
+BOUNDARY_POINTS = 3000
+_INTERIOR_SPACING = np.sqrt(2.0)  # pixels: one point in two square pixels
+
+
+@dataclass(frozen=True, eq=False)
+class Paths:
+    """Where points are in a run of T frames.
+
+    Attributes
+    ----------
+    places_yx : ndarray of shape (T, K, 2) and dtype float
+        Of the pushes, in the cell's frame.
+    boundary_yx : ndarray of shape (T, N, 2) and dtype float
+        In pixels of the image, from where the cell's centre is in frame 0.
+    interior_yx : ndarray of shape (T, P, 2) and dtype float
+        As `boundary_yx`.
+    """
+
+    places_yx: FloatArray
+    boundary_yx: FloatArray
+    interior_yx: FloatArray
+
+
+def paths(plan: Plan, first: int, stop: int, *, interior: bool = True) -> Paths:
+    """Carry a cell's points from frame 0 back to a first frame and on to a last.
+
+    Parameters
+    ----------
+    plan : Plan
+    first : int
+        0 or below.
+    stop : int
+        One after the last frame.
+    interior : bool
+        Whether there are points inside; the edge alone is faster.
+
+    Returns
+    -------
+    Paths
+        The boundary is evenly spaced in the image in frame 0, and so is the interior.
+    """
+    points_yx = _at_start(plan, interior)
+    later, earlier = [points_yx], [points_yx]
+    for frame in range(stop - 1):
+        later.append(plan.flow.carry(later[-1], frame, frame + 1))
+    for frame in range(0, first, -1):
+        earlier.append(plan.flow.carry(earlier[-1], frame, frame - 1))
+    path = np.stack(earlier[:0:-1] + later)
+    places = len(plan.places_yx)
+    image = np.stack([plan.pose.to_image(path[k, places:], first + k) for k in range(len(path))])
+    return Paths(path[:, :places], image[:, :BOUNDARY_POINTS], image[:, BOUNDARY_POINTS:])
+
+
+def normal_displacement(boundary_yx: FloatArray) -> FloatArray:
+    """How far points of an edge move until the next frame along their outward normal.
+
+    Parameters
+    ----------
+    boundary_yx : ndarray of shape (T, N, 2) and dtype float
+        In pixels.
+
+    Returns
+    -------
+    ndarray of shape (T, N) and dtype float
+        In pixels, outward positive; NaN in the last frame.
+    """
+    along = np.roll(boundary_yx, -1, axis=1) - np.roll(boundary_yx, 1, axis=1)
+    step = np.diff(boundary_yx, axis=0, append=np.nan * boundary_yx[:1])
+    outward = step[..., 0] * -along[..., 1] + step[..., 1] * along[..., 0]
+    return np.asarray(outward / np.hypot(along[..., 0], along[..., 1]))
+
+
+def _at_start(plan: Plan, interior: bool) -> FloatArray:
+    """Places, boundary points that are evenly spaced in the image, and interior points, in frame 0."""
+    pushed = plan.flow.shape_at_start(np.concatenate([plan.places_yx, plan.outline_yx]))
+    places, outline = pushed[: len(plan.places_yx)], pushed[len(plan.places_yx) :]
+    boundary = evenly_spaced(plan.pose.to_image(outline, 0.0), BOUNDARY_POINTS)
+    points = np.concatenate([boundary, _inside(boundary)]) if interior else boundary
+    return np.concatenate([places, plan.pose.to_cell(points, 0.0)])
+
+
+def _inside(outline_yx: FloatArray) -> FloatArray:
+    """Square lattice of points inside an outline."""
+    low, high = outline_yx.min(axis=0), outline_yx.max(axis=0)
+    rows, columns = (np.arange(a, b, _INTERIOR_SPACING) for a, b in zip(low, high, strict=True))
+    lattice = np.stack(np.meshgrid(rows, columns, indexing="ij"), axis=-1).reshape(-1, 2)
+    return lattice[shapely.contains_xy(shapely.Polygon(outline_yx), lattice)]
