@@ -1,0 +1,257 @@
+"""Kymographs: intensity through time along a line of the image, or along the tracked edge."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.analysis.activity import parse_signals
+from cytodisk.analysis.boundary_depth import places_at_depth
+from cytodisk.arrays import AnyArray, BoolArray, FloatArray
+from cytodisk.errors import ParameterError, SignalError
+from cytodisk.motion.disk_movie import DiskMovie
+from cytodisk.motion.tracking import point_angles
+
+_ROUNDING = 1e-9  # of the spacing: a line's end at a whole number of steps is a place
+
+
+def line_kymograph(signals: Any, line_yx: Any, *, width_px: int = 1, spacing_px: float = 1.0) -> xr.DataArray:
+    """Intensity along a line in every frame, linear between pixels and averaged over the line's width.
+
+    Parameters
+    ----------
+    signals : array_like of shape (T, H, W) or (T, C, H, W), DataArray or sequence
+        A DataArray has the dims time, (channel,) y, x; a sequence may read its frames when asked for them.
+    line_yx : array_like of shape (M, 2)
+        Corners of the line, (row, column) in pixels, pixel centres at integers.
+    width_px : int
+        Lines that are averaged, a pixel apart, side by side and centred on `line_yx`.
+    spacing_px : float
+        From one place on the line to the next, in pixels.
+
+    Returns
+    -------
+    DataArray with dims (time, distance), and channel if the signals have it
+        distance from the line's first point, in µm when attrs `pixel_size_um` of the signals is known, else
+        px, as its attrs `units` say; y and x of each place in pixels; time_s when attrs `frame_interval_s`
+        is known. What is left of the line behind the last whole step is not sampled.
+
+    Raises
+    ------
+    SignalError
+        The signals are not a movie.
+    ParameterError
+        The line is none, or leaves the image, or a number is out of its range.
+
+    References
+    ----------
+    u-Unwrap, Fig. 1C.
+    """
+    line = _parse_line(line_yx)
+    _check_sampling(width_px, spacing_px)
+    frames, channels, shape = _parse_movie(signals)
+    distance, places, normals = _along(line, spacing_px)
+    offsets = np.arange(width_px) - 0.5 * (width_px - 1)
+    band = places[:, None] + offsets[:, None] * normals[:, None]
+    _check_inside(band.reshape(-1, 2), shape, width_px)
+    rows = [bilinear(frame, band).mean(axis=-1) for frame in _each(frames, channels, shape)]
+    size, interval = (_attribute(signals, name) for name in ("pixel_size_um", "frame_interval_s"))
+    coords: dict[str, Any] = {
+        "distance": ("distance", distance * (size or 1.0), {"units": "px" if size is None else "µm"}),
+        "y": ("distance", places[:, 0], {"units": "px"}),
+        "x": ("distance", places[:, 1], {"units": "px"}),
+    }
+    attrs = {"width_px": width_px, "spacing_px": float(spacing_px)}
+    return _kymograph(np.array(rows), "distance", channels, coords, interval, attrs).rename("line_kymograph")
+
+
+def boundary_kymograph(movie: DiskMovie, signals: Any, depth: float, *, points: int = 360) -> xr.DataArray:
+    """Intensity along the tracked edge of a cell, at a depth below it, in every frame.
+
+    From each point of the edge the ray of the map is followed, on which the angle of the disk stays the
+    same, up to the first place whose distance from the outline is the depth. The same point is the same
+    part of the edge in every frame.
+
+    Parameters
+    ----------
+    movie : DiskMovie
+    signals : array_like of shape (T, H, W) or (T, C, H, W), DataArray or sequence
+        As for `sample_movie`.
+    depth : float
+        In µm when the movie knows its scale, else in pixels; 0 is the edge itself, half of whose light
+        comes from outside the cell.
+    points : int
+        Angles of the disk, evenly spaced.
+
+    Returns
+    -------
+    DataArray with dims (time, point), and channel if the signals have it
+        NaN where a ray comes nowhere that deep, where the edge is the image's border, and in frames without
+        a map. Coordinates angle, in radians; y and x (time, point), the places in pixels; time_s when the
+        frame interval is known. attrs hold depth and depth_units.
+
+    Raises
+    ------
+    SignalError
+        The signals do not fit the movie.
+    ParameterError
+        The depth or the number of points is out of its range.
+    """
+    if isinstance(depth, bool) or not isinstance(depth, int | float | np.number) or not 0 <= depth < np.inf:
+        raise ParameterError(f"depth must be a number of at least 0, got {depth!r}")
+    if isinstance(points, bool) or not isinstance(points, int | np.integer) or points < 1:
+        raise ParameterError(f"points must be a whole number of at least 1, got {points!r}")
+    frames, names = parse_signals(signals, len(movie), movie.image_shape)
+    channels = names if np.ndim(frames[0]) == 3 else None
+    angles, size = point_angles(points), movie.pixel_size_um or 1.0
+    places = np.full((len(movie), points, 2), np.nan)
+    rows = np.full((len(movie), *([] if channels is None else [len(channels)]), points), np.nan)
+    for time, frame in enumerate(_each(frames, channels, movie.image_shape)):
+        if movie.records[time].has_map:
+            places[time] = places_at_depth(movie[time], angles, depth / size)
+            rows[time] = bilinear(frame, places[time])
+    coords: dict[str, Any] = {
+        "point": np.arange(points),
+        "angle": ("point", angles, {"units": "rad"}),
+        "y": (("time", "point"), places[..., 0], {"units": "px"}),
+        "x": (("time", "point"), places[..., 1], {"units": "px"}),
+    }
+    attrs = {"depth": float(depth), "depth_units": "px" if movie.pixel_size_um is None else "µm"}
+    named = _kymograph(rows, "point", channels, coords, movie.frame_interval_s, attrs)
+    return named.rename("boundary_kymograph")
+
+
+def bilinear(frame: AnyArray, points_yx: FloatArray) -> FloatArray:
+    """Values of an image between its pixels.
+
+    Parameters
+    ----------
+    frame : ndarray of shape (..., H, W)
+    points_yx : ndarray of shape (*P, 2) and dtype float
+        (row, column) in pixels; beyond the outermost pixel centres those count.
+
+    Returns
+    -------
+    ndarray of shape (..., *P) and dtype float
+        NaN where the point is NaN, or a pixel that has a share in it.
+    """
+    last = np.array(frame.shape[-2:]) - 1
+    known: BoolArray = np.all(np.isfinite(points_yx), axis=-1)
+    points = np.clip(np.where(known[..., None], points_yx, 0.0), 0, last)
+    low = np.minimum(np.floor(points).astype(np.int64), np.maximum(last - 1, 0))
+    share = points - low
+    out = np.zeros((*frame.shape[:-2], *known.shape))
+    for down in (0, 1):
+        for right in (0, 1):
+            row, column = (np.minimum(low + np.array([down, right]), last)[..., axis] for axis in (0, 1))
+            weight = np.abs(1 - down - share[..., 0]) * np.abs(1 - right - share[..., 1])
+            # A pixel without a share says nothing, not even NaN.
+            out += np.where(weight > 0.0, frame[..., row, column], 0.0) * weight
+    return np.where(known, out, np.nan)
+
+
+def _parse_line(line_yx: Any) -> FloatArray:
+    try:
+        line = np.asarray(line_yx, dtype=np.float64)
+    except (TypeError, ValueError):
+        line = np.empty(0)
+    if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
+        raise ParameterError(
+            f"line_yx must be two or more points (row, column) of finite numbers, got shape {line.shape}"
+        )
+    moved = np.append(True, (np.diff(line, axis=0) != 0).any(axis=1))
+    if moved.sum() < 2:
+        raise ParameterError("line_yx has no length: pass points that differ")
+    return np.asarray(line[moved])
+
+
+def _check_sampling(width_px: Any, spacing_px: Any) -> None:
+    if isinstance(width_px, bool) or not isinstance(width_px, int | np.integer) or width_px < 1:
+        raise ParameterError(f"width_px must be a whole number of at least 1, got {width_px!r}")
+    number = isinstance(spacing_px, int | float | np.number) and not isinstance(spacing_px, bool)
+    if not number or not 0 < spacing_px < np.inf:
+        raise ParameterError(f"spacing_px must be a positive number, got {spacing_px!r}: 1 is the default")
+
+
+def _parse_movie(signals: Any) -> tuple[Any, list[str] | None, tuple[int, int]]:
+    """Frames, the channels' names if there are channels, and the images' shape."""
+    if isinstance(signals, xr.DataArray):
+        sizes = signals.sizes
+        frames, names = parse_signals(signals, sizes.get("time", 0), (sizes.get("y", 0), sizes.get("x", 0)))
+    else:
+        if not hasattr(signals, "__getitem__") or not hasattr(signals, "__len__") or not len(signals):
+            raise SignalError(f"signals must be frames of a movie, got {type(signals).__name__}")
+        first = np.shape(signals[0])
+        if len(first) not in (2, 3):
+            raise SignalError(
+                f"a frame of the signals has shape {first}: pass (time, y, x) or (time, channel, y, x)"
+            )
+        frames, names = parse_signals(signals, len(signals), (first[-2], first[-1]))
+    shape = np.shape(frames[0])
+    return frames, names if len(shape) == 3 else None, (shape[-2], shape[-1])
+
+
+def _along(line: FloatArray, spacing: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Distance, position and normal of each place on a line."""
+    steps = np.diff(line, axis=0)
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*steps.T))])
+    distance = spacing * np.arange(int(arc[-1] / spacing * (1.0 + _ROUNDING)) + 1)
+    distance = np.minimum(distance, arc[-1])
+    segment = np.clip(np.searchsorted(arc, distance, side="right") - 1, 0, len(steps) - 1)
+    direction = steps / np.diff(arc)[:, None]
+    places = line[segment] + (distance - arc[segment])[:, None] * direction[segment]
+    return distance, places, np.column_stack([-direction[segment, 1], direction[segment, 0]])
+
+
+def _check_inside(points: FloatArray, shape: tuple[int, int], width_px: int) -> None:
+    last = np.array(shape) - 1.0
+    outside = ((points < -_ROUNDING) | (points > last + _ROUNDING)).any(axis=1)
+    if outside.any():
+        y, x = points[outside][0]
+        raise ParameterError(
+            f"line_yx leaves the image at (row, column) ({y:.1f}, {x:.1f}): an image of shape {shape} has "
+            f"places from (0, 0) to ({shape[0] - 1}, {shape[1] - 1}); width_px is {width_px}"
+        )
+
+
+def _each(frames: Any, channels: list[str] | None, shape: tuple[int, int]) -> Iterator[AnyArray]:
+    wanted = shape if channels is None else (len(channels), *shape)
+    for time in range(len(frames)):
+        frame = np.asarray(frames[time])
+        if frame.shape != wanted:
+            raise SignalError(
+                f"frame {time} of the signals has shape {frame.shape}, those before {wanted}: save all alike"
+            )
+        yield frame
+
+
+def _attribute(signals: Any, name: str) -> float | None:
+    value = getattr(signals, "attrs", {}).get(name)
+    if value is None:
+        return None
+    if not isinstance(value, int | float | np.number) or not 0 < value < np.inf:
+        raise ParameterError(f"signals.attrs[{name!r}] must be a positive number, got {value!r}")
+    return float(value)
+
+
+def _kymograph(
+    rows: FloatArray,
+    along: str,
+    channels: list[str] | None,
+    coords: dict[str, Any],
+    frame_interval_s: float | None,
+    attrs: dict[str, Any],
+) -> xr.DataArray:
+    """Values of shape (T, [C,] D) with their coordinates, as (time, along[, channel])."""
+    times = np.arange(len(rows))
+    known: dict[str, Any] = {"time": ("time", times, {"units": "frame"})}
+    if frame_interval_s is not None:
+        known["time_s"] = ("time", times * frame_interval_s, {"units": "s"})
+    if channels is None:
+        return xr.DataArray(rows, known | coords, ("time", along), attrs={"units": "a.u."} | attrs)
+    known["channel"] = channels
+    values = np.moveaxis(rows, 1, 2)
+    return xr.DataArray(values, known | coords, ("time", along, "channel"), attrs={"units": "a.u."} | attrs)
