@@ -140,7 +140,7 @@ class Flow:
             pushed = self._pushed(points, level)
             if not height.size:
                 return pushed
-            return pushed + self._radial(points, lambda angle: self.fluctuation.shares(angle) @ height)
+            return pushed + self._radial(points, lambda angle: self.fluctuation(angle, height))
 
         for step in range(10):
             points_yx = _runge_kutta(rise, points_yx, step, 1.0)
@@ -176,7 +176,7 @@ class Flow:
     def _outward_speed(self, angle: FloatArray, frame: float) -> FloatArray:
         speed = self.growth + self.ruffles(angle, frame)
         if self.fluctuation.angle.size:
-            speed = speed + self.fluctuation.shares(angle) @ self.fluctuation.rate(frame)
+            speed = speed + self.fluctuation(angle, self.fluctuation.rate(frame))
         return speed
 
     def _pushed(self, points_yx: FloatArray, rate: FloatArray) -> FloatArray:

@@ -1,6 +1,7 @@
 """Broad-band random motion of an edge, exact at every time and without memory of earlier ones."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -11,6 +12,7 @@ _SMOOTHNESS = 1.5  # frames over which the velocity is smooth
 _HIGHEST = 3.0  # radians per frame; beyond it lies less than 1e-5 of the velocity's variance
 _COSINES = 240  # so many that nothing comes back within a thousand frames
 _OVERLAP = 0.6  # width of a push over the distance of neighbours
+_DIRECTIONS = np.linspace(-np.pi, np.pi, 2049)
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,23 +51,29 @@ class Fluctuation:
         speed = self.height * self.frequency
         return np.asarray(-(speed * np.sin(self.frequency * frame + self.phase)).sum(axis=1))
 
-    def shares(self, angle: FloatArray) -> FloatArray:
-        """What each push counts for at angles from the cell's heading.
+    def __call__(self, angle: FloatArray, of_pushes: FloatArray) -> FloatArray:
+        """Sum of the pushes around the edge.
 
         Parameters
         ----------
         angle : ndarray of shape (N,) and dtype float
-            In radians.
+            From the cell's heading, in radians from -π to π.
+        of_pushes : ndarray of shape (K,) and dtype float
+            Level or rate of each push.
 
         Returns
         -------
-        ndarray of shape (N, K) and dtype float
-            The squares of a row sum to 1, so every place of the edge fluctuates as much as a push alone.
+        ndarray of shape (N,) and dtype float
+            Interpolated between 2048 directions. There the squares of what the pushes count for sum to 1,
+            so every place of the edge fluctuates as much as a push alone.
         """
-        # The cosine of the difference as a product of matrices: many times faster than by element.
-        aligned = np.column_stack([np.cos(angle), np.sin(angle)]) @ [np.cos(self.angle), np.sin(self.angle)]
-        bump = np.exp((aligned - 1.0) / self.width**2)
-        return np.asarray(bump / np.sqrt(np.einsum("nk,nk->n", bump, bump))[:, None])
+        return np.interp(angle, _DIRECTIONS, self._shares @ of_pushes)
+
+    @cached_property
+    def _shares(self) -> FloatArray:
+        """What each push counts for in each direction, shape (2049, K)."""
+        bump = np.exp((np.cos(_DIRECTIONS[:, None] - self.angle) - 1.0) / self.width**2)
+        return np.asarray(bump / np.sqrt((bump**2).sum(axis=1, keepdims=True)))
 
 
 NO_FLUCTUATION = Fluctuation(np.zeros(0), 1.0, *np.zeros((3, 0, 0)))
