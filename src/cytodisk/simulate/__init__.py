@@ -5,18 +5,22 @@ from cytodisk.simulate.movie_kinds import MOVIE_KINDS
 from cytodisk.simulate.moving_cells import SimulatedMovie, movie
 from cytodisk.simulate.random_cells import branching, migrating, random_smooth, random_spiky
 from cytodisk.simulate.random_masks import KINDS, random_mask
+from cytodisk.simulate.series import SERIES_KINDS, coupled_series, independent_series
 from cytodisk.simulate.signals import SimulatedCell, cell_with_signal, linear_signal, ring_signal
 
 __all__ = [
     "KINDS",
     "MOVIE_KINDS",
+    "SERIES_KINDS",
     "SimulatedCell",
     "SimulatedMovie",
     "branching",
     "cell_with_signal",
+    "coupled_series",
     "disk",
     "dumbbell",
     "ellipse",
+    "independent_series",
     "linear_signal",
     "migrating",
     "movie",

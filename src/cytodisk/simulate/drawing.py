@@ -15,6 +15,13 @@ def check_at_least(name: str, value: Any, least: float) -> None:
         raise ParameterError(f"{name} must be a number of at least {least}, got {value!r}: pass a larger one")
 
 
+def check_whole(name: str, value: Any, least: float) -> None:
+    """Raise unless a parameter is a whole number that is large enough."""
+    check_at_least(name, value, least)
+    if value != int(value):
+        raise ParameterError(f"{name} must be a whole number, got {value!r}: pass {int(value)}")
+
+
 def pixel_grid(half_height: float, half_width: float) -> tuple[FloatArray, FloatArray]:
     """Row and column of every pixel, counted from the central one."""
     rows, columns = int(np.floor(half_height + 1e-9)), int(np.floor(half_width + 1e-9))

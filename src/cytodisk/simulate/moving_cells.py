@@ -8,7 +8,7 @@ import xarray as xr
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import ParameterError
 from cytodisk.simulate.coupling import coupled_stretch, partly_followed
-from cytodisk.simulate.drawing import check_at_least
+from cytodisk.simulate.drawing import check_at_least, check_whole
 from cytodisk.simulate.jitter import jittered
 from cytodisk.simulate.movie_kinds import HABITS, MOVIE_KINDS, Habits, MovieKind, plan_movie
 from cytodisk.simulate.movie_signals import Scene, camera, expected_counts, rasterised
@@ -216,8 +216,8 @@ def _check(
     margin: int,
 ) -> None:
     for name, value, least in (("seed", seed, 0), ("frames", frames, 2), ("margin", margin, 0)):
-        _check_whole(name, value, least)
-    _check_whole("lag_frames", lag_frames, -frames)
+        check_whole(name, value, least)
+    check_whole("lag_frames", lag_frames, -frames)
     check_at_least("radius_px", radius_px, 10.0)
     check_at_least("coupled", coupled, 0.0)
     if coupled > 1.0:
@@ -226,13 +226,6 @@ def _check(
         )
     check_at_least("pixel_size_um", pixel_size_um, 1e-9)
     check_at_least("frame_interval_s", frame_interval_s, 1e-9)
-
-
-def _check_whole(name: str, value: int, least: int) -> None:
-    """Raise unless a parameter is a whole number that is large enough."""
-    check_at_least(name, value, least)
-    if value != int(value):
-        raise ParameterError(f"{name} must be a whole number, got {value!r}: pass {int(value)}")
 
 
 def _image_frame(drawn_yx: FloatArray, margin: int) -> tuple[tuple[int, int], FloatArray]:

@@ -1,0 +1,210 @@
+"""Activity and edge velocity as random series with known correlations, without a cell or an image."""
+
+from typing import Literal, get_args
+
+import numpy as np
+import xarray as xr
+from scipy.signal import lfilter, oaconvolve
+
+from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.errors import ParameterError
+from cytodisk.simulate.drawing import check_at_least, check_whole
+
+SeriesKind = Literal["white", "ar1", "slow", "smooth", "oscillating"]
+SERIES_KINDS: tuple[SeriesKind, ...] = get_args(SeriesKind)
+
+_MEMORY = 400  # frames; less than 1e-8 of "slow" is left after them
+_SMOOTH_DEVIATION = 2.0  # frames
+_OSCILLATION_DAMPING, _OSCILLATION_PERIOD = 0.9, 10.0
+_REACH = 4.0  # correlation lengths beyond which noise counts for nothing
+
+
+def independent_series(
+    kind: SeriesKind,
+    seed: int,
+    frames: int,
+    layers: int,
+    sectors: int,
+    *,
+    correlation_length: float = 1.0,
+) -> tuple[xr.DataArray, xr.DataArray]:
+    """Activity and velocity that have nothing to do with each other: every correlation found is false.
+
+    Parameters
+    ----------
+    kind : {"white", "ar1", "slow", "smooth", "oscillating"}
+        Correlation through time: none; autoregressive of first order with 0.8, or with 0.95, from a frame to
+        the next; noise under a Gaussian of standard deviation 2 frames; autoregressive of second order with a
+        peak of its spectrum at a period of 10 frames.
+    seed : int
+        At least 0; the same arguments give the same series.
+    frames, layers, sectors : int
+        At least 1.
+    correlation_length : float
+        Windows over which the correlation between neighbours falls to exp(-1/2), along the edge, where the
+        last sector is the first one's neighbour, and inwards; 0: windows are independent.
+
+    Returns
+    -------
+    activity : DataArray with dims (time, layer, sector)
+    velocity : DataArray with dims (time, sector)
+        Gaussian and stationary from the first frame to the last, of mean 0 and variance 1, without NaN: the
+        last frame has a velocity too, which a measured one has not.
+
+    Raises
+    ------
+    ParameterError
+        An unknown kind or a number out of its range.
+
+    Notes
+    -----
+    Each series is a moving average of white noise with the impulse response of its kind, 400 frames long. So
+    it is stationary without a burn-in, and its autocorrelation is that of the response.
+    """
+    _check(kind, seed, frames, layers, sectors, correlation_length)
+    velocity = _velocity(kind, seed, frames, sectors, correlation_length)
+    activity = _activity(kind, seed, frames, (layers, sectors), correlation_length)
+    return _labelled(activity, velocity)
+
+
+def coupled_series(
+    kind: SeriesKind,
+    seed: int,
+    frames: int,
+    layers: int,
+    sectors: int,
+    *,
+    lag_frames: int,
+    windows: BoolArray,
+    strength: float = 0.5,
+    correlation_length: float = 1.0,
+) -> tuple[xr.DataArray, xr.DataArray]:
+    """Activity that follows the velocity of its sector in given windows, and only there.
+
+    In those windows the activity at t is `strength` times the velocity at t - `lag_frames` plus independent
+    noise, so that it keeps variance 1 and the correlation at that lag is `strength`. All other windows have
+    the activity that `independent_series` gives them.
+
+    Parameters
+    ----------
+    kind, seed, frames, layers, sectors, correlation_length
+        See `independent_series`.
+    lag_frames : int
+        By how many frames activity follows velocity, at least -`frames`; negative: leads it.
+    windows : array_like of shape (layers, sectors) and dtype bool
+        Where.
+    strength : float
+        From -1 to 1.
+
+    Returns
+    -------
+    activity : DataArray with dims (time, layer, sector)
+    velocity : DataArray with dims (time, sector)
+
+    Raises
+    ------
+    ParameterError
+        An unknown kind, a number out of its range, or windows of another shape.
+    """
+    _check(kind, seed, frames, layers, sectors, correlation_length)
+    check_whole("lag_frames", lag_frames, -frames)
+    check_at_least("strength", strength, -1.0)
+    if strength > 1.0:
+        raise ParameterError(f"strength must be a number from -1 to 1, got {strength!r}")
+    coupled = np.asarray(windows)
+    if coupled.dtype != bool or coupled.shape != (layers, sectors):
+        raise ParameterError(
+            f"windows must be bool of shape ({layers}, {sectors}), got {coupled.dtype} of shape "
+            f"{coupled.shape}: pass True for each window that follows the velocity"
+        )
+    around = abs(lag_frames)
+    run = _velocity(kind, seed, frames + around, sectors, correlation_length)
+    velocity = run[max(lag_frames, 0) :][:frames]
+    followed = run[max(-lag_frames, 0) :][:frames, None, :]
+    noise = _activity(kind, seed, frames, (layers, sectors), correlation_length)
+    mixed = strength * followed + np.sqrt(1.0 - strength**2) * noise
+    return _labelled(np.where(coupled, mixed, noise), velocity)
+
+
+def _check(
+    kind: SeriesKind, seed: int, frames: int, layers: int, sectors: int, correlation_length: float
+) -> None:
+    if kind not in SERIES_KINDS:
+        raise ParameterError(f"kind must be one of {', '.join(SERIES_KINDS)}, got {kind!r}")
+    check_whole("seed", seed, 0)
+    for name, value in (("frames", frames), ("layers", layers), ("sectors", sectors)):
+        check_whole(name, value, 1)
+    check_at_least("correlation_length", correlation_length, 0.0)
+
+
+def _velocity(kind: SeriesKind, seed: int, frames: int, sectors: int, length: float) -> FloatArray:
+    along = _around(sectors, length)
+    noise = np.random.default_rng([seed, 0]).normal(size=(frames + _MEMORY - 1, sectors))
+    return _through_time(kind, noise @ along.T)
+
+
+def _activity(kind: SeriesKind, seed: int, frames: int, shape: tuple[int, int], length: float) -> FloatArray:
+    inwards, along = _inwards(shape[0], length), _around(shape[1], length)
+    size = (frames + _MEMORY - 1, inwards.shape[1], shape[1])
+    noise = np.random.default_rng([seed, 1]).normal(size=size)
+    return _through_time(kind, inwards @ noise @ along.T)
+
+
+def _through_time(kind: SeriesKind, noise: FloatArray) -> FloatArray:
+    """Series of variance 1 from white noise of variance 1 that starts `_MEMORY` - 1 frames earlier."""
+    response = _impulse_response(kind).reshape(-1, *[1] * (noise.ndim - 1))
+    return np.asarray(oaconvolve(noise, response, mode="valid", axes=0))
+
+
+def _impulse_response(kind: SeriesKind) -> FloatArray:
+    """Weights of the noise of this frame and the earlier ones, the sum of their squares 1."""
+    impulse = np.eye(1, _MEMORY)[0]
+    turn = 2.0 * np.pi / _OSCILLATION_PERIOD
+    feedback = {
+        "white": [1.0],
+        "ar1": [1.0, -0.8],
+        "slow": [1.0, -0.95],
+        "oscillating": [1.0, -2.0 * _OSCILLATION_DAMPING * np.cos(turn), _OSCILLATION_DAMPING**2],
+    }
+    if kind == "smooth":
+        time = np.arange(_MEMORY) - 0.5 * _MEMORY
+        response = np.exp(-0.5 * (time / _SMOOTH_DEVIATION) ** 2)
+    else:
+        response = np.asarray(lfilter([1.0], feedback[kind], impulse))
+    return np.asarray(response / np.linalg.norm(response))
+
+
+def _around(count: int, length: float) -> FloatArray:
+    """Matrix (count, count) that correlates independent noise around a ring and keeps its variance."""
+    apart = np.arange(float(count))[:, None] - np.arange(count)
+    turns = np.arange(-1, 2 + int(_REACH * length / count)) * count
+    turns = np.union1d(turns, -turns)
+    return _unit_rows(_bell(apart[..., None] + turns, length).sum(axis=-1))
+
+
+def _inwards(count: int, length: float) -> FloatArray:
+    """Matrix (count, M) that correlates independent noise along a line that goes on beyond both ends."""
+    beyond = int(np.ceil(_REACH * length))
+    apart = np.arange(float(count))[:, None] - np.arange(-beyond, count + beyond)
+    return _unit_rows(_bell(apart, length))
+
+
+def _bell(apart: FloatArray, length: float) -> FloatArray:
+    """Weights whose correlation with themselves falls to exp(-1/2) over a length."""
+    if not length:
+        return np.where(apart == 0.0, 1.0, 0.0)
+    return np.asarray(np.exp(-((apart / length) ** 2)))
+
+
+def _unit_rows(weights: FloatArray) -> FloatArray:
+    return np.asarray(weights / np.linalg.norm(weights, axis=1, keepdims=True))
+
+
+def _labelled(activity: FloatArray, velocity: FloatArray) -> tuple[xr.DataArray, xr.DataArray]:
+    dims = ("time", "layer", "sector")
+    coords = {name: np.arange(size) for name, size in zip(dims, activity.shape, strict=True)}
+    of_edge = {name: coords[name] for name in ("time", "sector")}
+    return (
+        xr.DataArray(activity, coords, dims, name="activity"),
+        xr.DataArray(velocity, of_edge, ("time", "sector"), name="velocity", attrs={"units": "px/frame"}),
+    )
