@@ -9,6 +9,10 @@ if TYPE_CHECKING:
     from cytodisk.analysis.activity import sample_movie as sample_movie
     from cytodisk.analysis.consistency import centroid_displacement as centroid_displacement
     from cytodisk.analysis.consistency import consecutive_correlation as consecutive_correlation
+    from cytodisk.analysis.correlation import correlation_by_layer as correlation_by_layer
+    from cytodisk.analysis.correlation import cross_correlate as cross_correlate
+    from cytodisk.analysis.peaks import peak_correlation as peak_correlation
+    from cytodisk.analysis.series import prepare_series as prepare_series
     from cytodisk.disk.certificate import Certificate as Certificate
     from cytodisk.disk.certificate import certify as certify
     from cytodisk.disk.disk_map import DiskMap as DiskMap
@@ -41,6 +45,8 @@ _HOME = {
     "certify": "disk.certificate",
     "clean_mask": "geometry.mask",
     "consecutive_correlation": "analysis.consistency",
+    "correlation_by_layer": "analysis.correlation",
+    "cross_correlate": "analysis.correlation",
     "DemonsParameters": "motion.demons",
     "DiskMap": "disk.disk_map",
     "DiskMovie": "motion.disk_movie",
@@ -52,8 +58,10 @@ _HOME = {
     "map_to_disk": "disk.mapping",
     "MaskReport": "geometry.mask",
     "open_study": "io.study",
+    "peak_correlation": "analysis.peaks",
     "polar_windows": "windows.grid",
     "PolarWindows": "windows.grid",
+    "prepare_series": "analysis.series",
     "read_image": "io.frames",
     "sample": "windows.sample",
     "sample_movie": "analysis.activity",

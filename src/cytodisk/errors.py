@@ -43,3 +43,7 @@ class StudyError(CytodiskError, OSError):
 
 class MissingPartError(CytodiskError, ImportError):
     """An optional part is not installed; the message names the `pip install` to type."""
+
+
+class StationarityWarning(UserWarning):
+    """The level of many series drifts: what correlates may do so for no other reason."""

@@ -1,0 +1,148 @@
+"""Two sets of series side by side: parsed, named, and laid out for correlation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.arrays import FloatArray
+from cytodisk.errors import ParameterError
+
+_DIMS = ("time", "channel", "layer", "sector")
+_NAMELESS = {1: ("time",), 2: ("time", "sector"), 3: ("time", "layer", "sector"), 4: _DIMS}
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """Series of `a` and `b` on common axes.
+
+    Attributes
+    ----------
+    a : ndarray of shape (T, *B, *H)
+    b : ndarray of shape (T, *B)
+        What each series of `a` along H is compared with.
+    own, others : tuple of str
+        Dims of B, of H.
+    coords : dict
+        Of these dims, where there are any.
+    """
+
+    a: FloatArray
+    b: FloatArray
+    own: tuple[str, ...]
+    others: tuple[str, ...]
+    coords: dict[str, Any]
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """Dims of a window."""
+        return self.own + self.others
+
+
+def named_series(a: Any, b: Any) -> tuple[xr.DataArray, xr.DataArray, float | None]:
+    """Two sets of series with names and the same frames, and the seconds between frames.
+
+    Parameters
+    ----------
+    a, b : DataArray or array_like
+        See `cross_correlate`.
+
+    Returns
+    -------
+    a, b : DataArray with dims (time, …)
+        Without coordinates that are not dims.
+    frame_interval_s : float or None
+        From the coordinate time_s, where one of both has it.
+
+    Raises
+    ------
+    ParameterError
+        They are not numbers by time, have different frames or windows, or frames that are not evenly
+        spaced.
+    """
+    first, second = _named(a, "a"), _named(b, "b")
+    if first.sizes["time"] != second.sizes["time"]:
+        raise ParameterError(
+            f"a has {first.sizes['time']} frames, b {second.sizes['time']}: pass the same frames of both"
+        )
+    intervals = {step for step in (_interval(first, "a"), _interval(second, "b")) if step is not None}
+    if len(intervals) > 1:
+        raise ParameterError(f"a and b have other seconds between frames: {sorted(intervals)}")
+    first, second = (series.reset_coords(drop=True) for series in (first, second))
+    try:
+        xr.align(first, second, join="exact")
+    except (xr.AlignmentError, ValueError) as error:
+        raise ParameterError(f"a and b do not have the same frames and windows: {error}") from error
+    return first, second, next(iter(intervals), None)
+
+
+def paired(a: xr.DataArray, b: xr.DataArray) -> Pair:
+    """Lay out series so that those of `a` which share one of `b` lie side by side.
+
+    Parameters
+    ----------
+    a, b : DataArray
+        Of `named_series`.
+
+    Returns
+    -------
+    Pair
+        Its `own` dims always hold the sector, where there is one.
+    """
+    own = [str(dim) for dim in b.dims if dim != "time"]
+    if "sector" in a.dims and "sector" not in own:
+        own.append("sector")
+    others = [str(dim) for dim in a.dims if dim not in ("time", *own)]
+    sizes = dict(a.sizes) | dict(b.sizes)
+    series_a = a.expand_dims({dim: sizes[dim] for dim in own if dim not in a.dims})
+    series_b = b.expand_dims({dim: sizes[dim] for dim in own if dim not in b.dims})
+    coords = {str(name): values for name, values in (a.coords | b.coords).items() if name != "time"}
+    return Pair(
+        series_a.transpose("time", *own, *others).to_numpy(),
+        series_b.transpose("time", *own).to_numpy(),
+        tuple(own),
+        tuple(others),
+        coords,
+    )
+
+
+def _named(values: Any, name: Literal["a", "b"]) -> xr.DataArray:
+    if isinstance(values, xr.Dataset):
+        raise ParameterError(
+            f"{name} is a Dataset: pass one of its variables, such as {name}['mean'].sel(channel=…)"
+        )
+    if not isinstance(values, xr.DataArray):
+        array = np.asarray(values)
+        if array.ndim not in _NAMELESS:
+            raise ParameterError(
+                f"{name} must have time first and up to three more axes, got shape {array.shape}"
+            )
+        values = xr.DataArray(array, dims=_NAMELESS[array.ndim])
+    if "time" not in values.dims:
+        raise ParameterError(f"{name} has the dims {list(values.dims)}: one must be time")
+    if "lag" in values.dims or "surrogate" in values.dims:
+        raise ParameterError(f"{name} has the dims {list(values.dims)}: pass series in time")
+    if values.dtype.kind not in "biuf":
+        raise ParameterError(f"{name} must hold numbers, got dtype {values.dtype}")
+    if not values.size:
+        raise ParameterError(f"{name} is empty, shape {values.shape}: pass at least one frame and window")
+    series: xr.DataArray = values.transpose("time", ...).astype(np.float64)
+    return series
+
+
+def _interval(series: xr.DataArray, name: str) -> float | None:
+    """Seconds between frames; the frames must be evenly spaced."""
+    for coordinate in ("time", "time_s"):
+        if coordinate in series.coords and series.sizes["time"] > 2:
+            steps = np.diff(series[coordinate].to_numpy().astype(np.float64))
+            if not np.allclose(steps, steps[0], rtol=1e-6, atol=0.0):
+                raise ParameterError(
+                    f"{name} has frames {steps.min():g} to {steps.max():g} apart in {coordinate}: lags need "
+                    "even steps, so put NaN where a frame is missing"
+                )
+    if "time_s" not in series.coords or series.sizes["time"] < 2:
+        return None
+    return round(float(np.diff(series["time_s"].to_numpy()).mean()), 9)

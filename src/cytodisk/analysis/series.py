@@ -1,0 +1,160 @@
+"""Series in time made ready for correlation: detrended, differenced, standardised, checked for stationarity.
+
+All functions work along axis 0 and pass over NaN.
+"""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any, Literal, get_args
+
+import numpy as np
+import pandas as pd
+
+from cytodisk.arrays import FloatArray
+from cytodisk.errors import ParameterError
+
+Detrend = Literal["none", "linear", "median"]
+
+KPSS_LIMIT = 0.463
+"""Critical value of the KPSS statistic at 5 %."""
+
+
+def prepare_series(
+    values: Any,
+    *,
+    detrend: Detrend = "none",
+    detrend_frames: int | None = None,
+    difference: bool = False,
+    zscore: bool = False,
+) -> FloatArray:
+    """Take slow changes out of series, in the order of the arguments.
+
+    Parameters
+    ----------
+    values : array_like of shape (T, …)
+        One series a column; NaN stays NaN.
+    detrend : {"none", "linear", "median"}
+        Take out nothing, the straight line of least squares, or the moving median.
+    detrend_frames : int, optional
+        Frames of the moving median, centred and shorter at the ends; at least 3. Without it, T.
+    difference : bool
+        Replace frame t by the change from t - 1 to t; the first is NaN.
+    zscore : bool
+        Subtract each series' mean and divide by its standard deviation; a constant becomes 0. It changes no
+        Pearson correlation.
+
+    Returns
+    -------
+    ndarray of shape (T, …) and dtype float
+
+    Raises
+    ------
+    ParameterError
+        `detrend` is unknown, or the frames of the median are too few.
+    """
+    check_detrend(detrend, detrend_frames)
+    series = np.array(values, dtype=np.float64)
+    columns = series.reshape(len(series), -1)
+    if detrend == "linear":
+        columns = columns - _lines(columns)
+    elif detrend == "median":
+        columns = columns - _moving_median(columns, detrend_frames or len(columns))
+    if difference:
+        columns = np.diff(columns, axis=0, prepend=np.nan)
+    if zscore:
+        columns = standardised(columns)
+    return np.asarray(columns.reshape(series.shape))
+
+
+def check_detrend(detrend: str, frames: int | None) -> None:
+    """Raise ParameterError unless the way to detrend is known and its frames suffice."""
+    if detrend not in get_args(Detrend):
+        raise ParameterError(f"detrend must be one of {', '.join(get_args(Detrend))}, got {detrend!r}")
+    if frames is not None and (frames != int(frames) or frames < 3):
+        raise ParameterError(f"detrend_frames must be a whole number of at least 3, got {frames!r}")
+
+
+def standardised(columns: FloatArray) -> FloatArray:
+    """Each column minus its mean, divided by its standard deviation; a constant becomes 0."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # a column of all NaN stays so
+        centred = columns - np.nanmean(columns, axis=0)
+        spread = np.nanstd(columns, axis=0)
+        constant = np.nanmax(columns, axis=0) == np.nanmin(columns, axis=0)
+    return np.asarray(np.where(constant, centred * 0.0, centred / np.where(spread > 0, spread, 1.0)))
+
+
+def interpolated(columns: FloatArray) -> FloatArray:
+    """Columns with NaN filled in linearly in time, at the ends by the nearest value.
+
+    Parameters
+    ----------
+    columns : ndarray of shape (T, W) and dtype float
+
+    Returns
+    -------
+    ndarray of shape (T, W) and dtype float
+        A column of all NaN stays so.
+    """
+    frame = pd.DataFrame(columns)
+    return np.asarray(frame.interpolate(limit_direction="both").to_numpy(dtype=np.float64))
+
+
+def kpss(values: Any) -> FloatArray:
+    """KPSS statistic of each series: large where its level drifts.
+
+    Parameters
+    ----------
+    values : array_like of shape (T, …)
+        NaN is left out.
+
+    Returns
+    -------
+    ndarray of shape (…) and dtype float
+        Above `KPSS_LIMIT` a stationary series comes in 5 % of cases. NaN for a constant, or fewer than 10
+        values.
+
+    Notes
+    -----
+    The long-run variance takes in 12 (n / 100)^(1/4) lags, rounded up, with Bartlett weights.
+
+    References
+    ----------
+    Kwiatkowski, Phillips, Schmidt & Shin (1992), doi:10.1016/0304-4076(92)90104-Y.
+    """
+    series = np.asarray(values, dtype=np.float64)
+    columns = series.reshape(len(series), -1)
+    found = [_kpss(column[np.isfinite(column)]) for column in columns.T]
+    return np.array(found, dtype=np.float64).reshape(series.shape[1:])
+
+
+def _kpss(series: FloatArray) -> float:
+    count = series.size
+    if count < 10 or np.ptp(series) == 0:
+        return np.nan
+    residual = series - series.mean()
+    lags = int(np.ceil(12.0 * (count / 100.0) ** 0.25))
+    variance = residual @ residual
+    for lag in range(1, min(lags, count - 1) + 1):
+        variance += 2.0 * (1.0 - lag / (lags + 1.0)) * (residual[lag:] @ residual[:-lag])
+    walk = np.cumsum(residual)
+    return float((walk @ walk) / count / variance)
+
+
+def _lines(columns: FloatArray) -> FloatArray:
+    """Straight lines of least squares through columns with gaps."""
+    present = np.isfinite(columns)
+    count = np.maximum(present.sum(axis=0), 1)
+    time = np.broadcast_to(np.arange(len(columns), dtype=np.float64)[:, None], columns.shape)
+    middle = np.where(present, time, 0.0).sum(axis=0) / count
+    level = np.where(present, columns, 0.0).sum(axis=0) / count
+    away = np.where(present, time - middle, 0.0)
+    square = (away**2).sum(axis=0)
+    slope = (away * np.where(present, columns - level, 0.0)).sum(axis=0) / np.where(square > 0, square, 1.0)
+    return np.asarray(level + slope * (time - middle))
+
+
+def _moving_median(columns: FloatArray, frames: int) -> FloatArray:
+    rolling = pd.DataFrame(columns).rolling(frames, center=True, min_periods=1)
+    return np.asarray(rolling.median().to_numpy(dtype=np.float64))

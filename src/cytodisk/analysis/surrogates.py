@@ -1,0 +1,114 @@
+"""Surrogates: series as they might have been, had they nothing to do with the other signal.
+
+All series of a study are changed together, by the same random phases or the same shift, so that what
+neighbouring sectors have in common stays as it was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cytodisk.analysis.series import interpolated
+from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.errors import ParameterError
+
+Null = Literal["phase", "shift"]
+Surrogates = Callable[[FloatArray], FloatArray]
+
+
+def surrogates(null: Null, frames: int, count: int, seed: int) -> Surrogates:
+    """A function that makes surrogates of a series, the same way for each series it is given.
+
+    Parameters
+    ----------
+    null : {"phase", "shift"}
+        See `phase_randomised` and `circularly_shifted`.
+    frames : int
+    count : int
+        Surrogates a series.
+    seed : int
+
+    Returns
+    -------
+    callable
+        Takes a series (T,), gives (T, count), NaN where there are no values.
+
+    Raises
+    ------
+    ParameterError
+        An unknown null, no surrogates, or too few frames to shift.
+    """
+    if null not in get_args(Null):
+        raise ParameterError(f"null must be one of {', '.join(get_args(Null))}, got {null!r}")
+    if count != int(count) or count < 1:
+        raise ParameterError(f"surrogates must be a whole number of at least 1, got {count!r}")
+    random = np.random.default_rng(seed)
+    if null == "phase":
+        turns = np.exp(1j * random.uniform(0.0, 2.0 * np.pi, (frames + 1, count)))
+        return lambda series: phase_randomised(series, turns)
+    if frames < 2:
+        raise ParameterError(f"null 'shift' needs at least 2 frames, got {frames}")
+    shifts = random.integers(1, frames, count)
+    return lambda series: circularly_shifted(series, shifts)
+
+
+def phase_randomised(series: FloatArray, turns: NDArray[np.complex128]) -> FloatArray:
+    """Series with the same spectrum, hence the same autocorrelation, and other phases.
+
+    Parameters
+    ----------
+    series : ndarray of shape (T,) and dtype float
+        Gaps are filled in linearly first, and are gaps again in the surrogates; what lies before the first
+        and after the last value stays empty.
+    turns : ndarray of shape (T + 1, R) and dtype complex
+        Unit numbers by which the components are turned.
+
+    Returns
+    -------
+    ndarray of shape (T, R) and dtype float
+
+    Notes
+    -----
+    The spectrum is that of the series followed by its mirror image, of which the first half is kept. Without
+    the mirror, the jump from the last value to the first enters the spectrum, and slow series come out
+    significant twice as often as they should.
+
+    References
+    ----------
+    Theiler et al. (1992), doi:10.1016/0167-2789(92)90102-S; Prichard & Theiler (1994), same phases for all
+    series, doi:10.1103/PhysRevLett.73.951.
+    """
+    found = np.full((len(series), turns.shape[1]), np.nan)
+    present = np.flatnonzero(np.isfinite(series))
+    if not present.size:
+        return found
+    known = slice(present[0], present[-1] + 1)
+    whole = interpolated(series[known, None])[:, 0]
+    frames = len(whole)
+    centred = whole - whole.mean()
+    spectrum = np.fft.rfft(np.concatenate([centred, centred[::-1]]))
+    found[known] = np.fft.irfft(spectrum[:, None] * turns[: frames + 1], 2 * frames, axis=0)[:frames]
+    found[~np.isfinite(series)] = np.nan
+    return found
+
+
+def circularly_shifted(series: FloatArray, shifts: IntArray) -> FloatArray:
+    """Series moved in time, what leaves at the end coming in at the start.
+
+    Parameters
+    ----------
+    series : ndarray of shape (T,) and dtype float
+        Gaps move along.
+    shifts : ndarray of shape (R,) and dtype int
+        In frames.
+
+    Returns
+    -------
+    ndarray of shape (T, R) and dtype float
+    """
+    frames = len(series)
+    return np.asarray(series[(np.arange(frames)[:, None] - shifts) % frames])
