@@ -78,7 +78,8 @@ def _fitting(array: Any, name: str, velocity: xr.DataArray) -> tuple[FloatArray,
             f"got {came}"
         )
     for dim in ("time", "sector"):
-        if dim in array.coords and dim in velocity.coords and not array[dim].equals(velocity[dim]):
+        both = dim in array.coords and dim in velocity.coords
+        if both and not np.array_equal(array[dim].to_numpy(), velocity[dim].to_numpy()):
             raise ParameterError(f"{name} and velocity differ in the numbers of their {dim}s: pass the same")
     if not array.attrs.get("units"):
         raise ParameterError(f"{name}.attrs has no 'units': set it, as in {name}.assign_attrs(units='µm')")

@@ -250,7 +250,7 @@ def _table(runs: _Runs, patches: IntArray, velocity: xr.DataArray) -> pd.DataFra
     return pd.DataFrame(
         {
             "sector": sectors[runs.sector],
-            "kind": np.array(KINDS, dtype=object)[(runs.peak_velocity < 0).astype(np.int64)],
+            "kind": pd.Series(np.where(runs.peak_velocity < 0, KINDS[1], KINDS[0]), dtype=str),
             "onset": frames[runs.first],
             "end": frames[runs.stop],
             "peak": frames[runs.peak],
