@@ -117,7 +117,8 @@ def movie(
         Share of the edge, from 0 to 1, along which the "edge" channel follows the edge's velocity: one
         stretch from a random place on. Elsewhere it follows, at the same boundary points, the velocity of
         another cell of the kind, drawn independently; within 30 of the 3000 boundary points the one goes
-        over into the other. Kinds without chance ("growing", "still") have nothing else to follow.
+        over into the other. Whatever all movies of a kind share, like the steady advance of a front, both
+        cells have: "fluctuating" shares nothing, "growing" everything.
     pixel_size_um, frame_interval_s : float
         Above 0; stored with the signal.
     margin : int
