@@ -73,7 +73,7 @@ def boundary_kymograph(movie: DiskMovie, signals: Any, depth: float, *, points: 
 
     From each point of the edge the ray of the map is followed, on which the angle of the disk stays the
     same, up to the first place whose distance from the outline is the depth. The same point is the same
-    part of the edge in every frame.
+    part of the edge in every frame, as far as tracking went without starting anew.
 
     Parameters
     ----------

@@ -181,5 +181,5 @@ def _write_number(ax: Axes, table: xr.Dataset) -> None:
     """How many episodes and patches have a value at delay 0, above the axes."""
     here = table.sel(delay=0).isel(layer=0)
     count, patches = int(here["n"]), int(here["n_patches"])
-    plural = "" if patches == 1 else "es"
-    ax.set_title(f"{count} episodes in {patches} patch{plural}", loc="right", fontsize=7.0, color="0.3")
+    words = f"{count} episode{'' if count == 1 else 's'} in {patches} patch{'' if patches == 1 else 'es'}"
+    ax.set_title(words, loc="right", fontsize=7.0, color="0.3")
