@@ -288,6 +288,8 @@ LENGTH = xr.zeros_like(GOOD).assign_attrs(units="µm")
     [
         (np.zeros((5, 3)), {}, "velocity must be a DataArray with dims time and sector, got ndarray"),
         (GOOD.rename(sector="point"), {}, r"got \('time', 'point'\)"),
+        (GOOD[:0], {}, "velocity is empty"),
+        (GOOD[:, :0], {}, "velocity is empty"),
         (GOOD.assign_attrs(units=""), {}, "velocity.attrs has no 'units'"),
         (GOOD.where(GOOD != 0, np.inf), {}, "finite numbers, or NaN"),
         (GOOD.isel(time=[0, 1, 3, 4]), {}, r"follow each other, its time is 0, 1, 3, 4: reindex"),

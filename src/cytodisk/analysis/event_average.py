@@ -80,6 +80,8 @@ def average_around(
     as far as Student's t with one degree of freedom less than there are patches is from the normal
     distribution [1]_. Patches themselves are taken to be independent, which no one cell can show.
 
+    What goes on in the whole movie, such as bleaching, shows as a slope at any moment: take it out before.
+
     References
     ----------
     .. [1] Hesterberg, "What teachers should know about the bootstrap", 2015, section 5.3,

@@ -161,6 +161,8 @@ def _parse(velocity: Any) -> FloatArray:
         raise ParameterError(
             f"velocity must be a DataArray with dims time and sector, got {came}: pass that of edge_velocity"
         )
+    if not velocity.size:
+        raise ParameterError(f"velocity is empty: it has the sizes {dict(velocity.sizes)}")
     if not velocity.attrs.get("units"):
         raise ParameterError(
             "velocity.attrs has no 'units': set it, as in velocity.assign_attrs(units='µm/s'); "
