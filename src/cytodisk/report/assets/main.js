@@ -1,0 +1,22 @@
+"use strict";
+(async () => {
+  const page = window.cytodisk;
+  const read = (id) => JSON.parse(document.getElementById(id).textContent);
+  try {
+    page.pictures = read("pictures");
+    page.data = await page.unpack(read("data"));
+    page.palettes = Object.fromEntries(
+      Object.entries(page.data.palettes).map(([name, list]) => [name, page.colours(list)]),
+    );
+    await page.embed(read("figures"));
+    page.drawAlways();
+    page.connect();
+    page.set({ index: page.data.first });
+    await page.frameAt(page.data.first);
+    page.ready = true;
+    page.readyMilliseconds = performance.now();
+  } catch (error) {
+    document.getElementById("failed").hidden = false;
+    throw error;
+  }
+})();

@@ -1,0 +1,225 @@
+"""Pictures of a cell by frame: its pixels, and which window each of them lies in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.ndimage import map_coordinates
+
+from cytodisk.arrays import FloatArray
+from cytodisk.errors import ReadError
+from cytodisk.report.cell_data import CellData
+from cytodisk.report.encode import pack_labels, pack_picture
+from cytodisk.report.signal_file import FrameSource
+
+MOST_BYTES = 9_000_000
+"""Of pictures and labels together, as text; a longer movie is thinned out."""
+LONGEST_SIDE = 400
+"""Of a picture, in its own pixels."""
+OUTSIDE = 65535
+"""Label of a pixel outside the cell."""
+
+_MARGIN = 0.04  # of the box around the cell, on each side
+_SAMPLE = 3  # frames that are encoded to estimate the size of all
+_FINEST = 4  # labels a pixel and direction
+_PERCENTILES = (0.5, 99.9)
+
+
+@dataclass(frozen=True)
+class Box:
+    """The part of the image that is shown, and how finely.
+
+    Attributes
+    ----------
+    top, left, height, width : int
+        In pixels of the image.
+    scale : float
+        Pixels of the picture a pixel of the image.
+    """
+
+    top: int
+    left: int
+    height: int
+    width: int
+    scale: float
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(H, W) of the picture."""
+        return max(1, round(self.height * self.scale)), max(1, round(self.width * self.scale))
+
+    @property
+    def points_yx(self) -> FloatArray:
+        """Where the picture's pixels lie in the image, shape (H, W, 2)."""
+        rows, columns = self.shape
+        y = self.top - 0.5 + (np.arange(rows) + 0.5) * self.height / rows
+        x = self.left - 0.5 + (np.arange(columns) + 0.5) * self.width / columns
+        return np.stack(np.meshgrid(y, x, indexing="ij"), axis=-1)
+
+
+def box_around(cell: CellData) -> Box:
+    """The box that holds the cell in all frames.
+
+    Parameters
+    ----------
+    cell : CellData
+        With one mapped frame at least.
+
+    Returns
+    -------
+    Box
+        At most `LONGEST_SIDE` picture pixels long; finer than the image where the cell is small.
+    """
+    outlines = [record.boundary.contour.outline_yx for record in cell.maps.records if record.boundary]
+    low = np.min([outline.min(axis=0) for outline in outlines], axis=0)
+    high = np.max([outline.max(axis=0) for outline in outlines], axis=0)
+    margin = 2 + _MARGIN * (high - low).max()
+    top, left = np.maximum(np.floor(low - margin), 0).astype(int).tolist()
+    shape = np.array(cell.maps.image_shape)
+    bottom, right = np.minimum(np.ceil(high + margin) + 1, shape).astype(int).tolist()
+    height, width = bottom - top, right - left
+    return Box(top, left, height, width, min(_FINEST, LONGEST_SIDE / max(height, width)))
+
+
+def window_labels(cell: CellData, box: Box, time: int) -> Any:
+    """Number of the window at each pixel of a picture.
+
+    Parameters
+    ----------
+    cell : CellData
+    box : Box
+    time : int
+        A frame with a map.
+
+    Returns
+    -------
+    ndarray of shape (H, W) and dtype uint16
+        `OUTSIDE` outside the cell.
+    """
+    uv = cell.maps[time].to_disk(box.points_yx)
+    inside = np.isfinite(uv[..., 0])
+    labels = np.full(box.shape, OUTSIDE, dtype=np.uint16)
+    labels[inside] = np.minimum(cell.grid.window_of(uv[inside]), OUTSIDE - 1)
+    return labels
+
+
+def resampled(image: Any, box: Box) -> FloatArray:
+    """The box's part of an image: mean over the pixels that fall together, or interpolated.
+
+    Parameters
+    ----------
+    image : array_like of shape (H, W)
+    box : Box
+
+    Returns
+    -------
+    ndarray of the box's shape and dtype float
+    """
+    part = np.asarray(image, dtype=np.float64)
+    part = part[box.top : box.top + box.height, box.left : box.left + box.width]
+    if box.scale >= 1:  # each pixel of the image stays a square of one colour
+        points = np.moveaxis(box.points_yx, -1, 0) - np.array([box.top, box.left])[:, None, None]
+        return np.asarray(map_coordinates(part, points, order=0, mode="nearest"))
+    return _shares(part.shape[0], box.shape[0]) @ part @ _shares(part.shape[1], box.shape[1]).T
+
+
+def _shares(before: int, after: int) -> FloatArray:
+    """Weights of old pixels in fewer new ones along an axis, shape (after, before)."""
+    edges = np.linspace(0, before, after + 1)
+    low = np.maximum(edges[:-1, None], np.arange(before))
+    high = np.minimum(edges[1:, None], np.arange(1, before + 1))
+    overlap = np.maximum(high - low, 0.0)
+    return np.asarray(overlap / overlap.sum(axis=1, keepdims=True))
+
+
+@dataclass(frozen=True, eq=False)
+class Pictures:
+    """Encoder of a cell's frames.
+
+    Attributes
+    ----------
+    cell : CellData
+    box : Box
+    source : FrameSource or None
+        Without one there are labels alone.
+    """
+
+    cell: CellData
+    box: Box
+    source: FrameSource | None
+
+    def frame(self, time: int, limits: list[tuple[float, float]]) -> dict[str, Any]:
+        """Labels and channels of a frame, each None where there is none."""
+        labels = None
+        if self.cell.maps.records[time].has_map:
+            labels = pack_labels(window_labels(self.cell, self.box, time))
+        pixels = self._pixels(time)
+        if pixels is None:
+            return {"labels": labels, "channels": None}
+        pairs = zip(pixels, limits, strict=True)
+        channels = [pack_picture(resampled(image, self.box), *pair) for image, pair in pairs]
+        return {"labels": labels, "channels": channels}
+
+    def _pixels(self, time: int) -> Any:
+        try:
+            return None if self.source is None else self.source.frame(time)
+        except ReadError:  # has its row and its flag in the study
+            return None
+
+    def limits(self) -> list[tuple[float, float]]:
+        """Black and white of each channel, from frames spread over the movie."""
+        if self.source is None:
+            return []
+        found = [self._pixels(time) for time in self._spread()]
+        known = [pixels for pixels in found if pixels is not None]
+        return [self._limits_of([pixels[k] for pixels in known]) for k in range(len(self.source.channels))]
+
+    def _limits_of(self, images: list[Any]) -> tuple[float, float]:
+        parts = [resampled(image, self.box).ravel() for image in images]
+        values = np.concatenate(parts) if parts else np.zeros(0)
+        values = values[np.isfinite(values)]
+        if not values.size:
+            return 0.0, 1.0
+        low, high = np.percentile(values, _PERCENTILES).tolist()
+        return (low, high) if high > low else (low - 0.5, low + 0.5)
+
+    def _spread(self) -> list[int]:
+        frames = self.cell.frames
+        return sorted({frames[round(k)] for k in np.linspace(0, len(frames) - 1, _SAMPLE)})
+
+    def every(self, limits: list[tuple[float, float]]) -> int:
+        """Every so-manyth frame may be shown within `MOST_BYTES`, judged by some frames."""
+        largest = max(_size(self.frame(time, limits)) for time in self._spread())
+        return self.cell.every * max(1, int(np.ceil(largest * len(self.cell.frames) / MOST_BYTES)))
+
+
+def _size(frame: dict[str, Any]) -> int:
+    return len(frame["labels"] or "") + sum(len(text) for text in frame["channels"] or [])
+
+
+def encode_frames(
+    pictures: Pictures, limits: list[tuple[float, float]], progress: Callable[[int, int], None] | None
+) -> Iterator[dict[str, Any]]:
+    """Labels and channels of all shown frames, one after the other.
+
+    Parameters
+    ----------
+    pictures : Pictures
+    limits : list of (float, float)
+        Black and white of each channel.
+    progress : callable, optional
+        Called with the number of frames done and that of all.
+
+    Yields
+    ------
+    dict
+        As `Pictures.frame`.
+    """
+    frames = pictures.cell.frames
+    for number, time in enumerate(frames):
+        yield pictures.frame(time, limits)
+        if progress is not None:
+            progress(number + 1, len(frames))
