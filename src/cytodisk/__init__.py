@@ -11,6 +11,12 @@ if TYPE_CHECKING:
     from cytodisk.analysis.consistency import consecutive_correlation as consecutive_correlation
     from cytodisk.analysis.correlation import correlation_by_layer as correlation_by_layer
     from cytodisk.analysis.correlation import cross_correlate as cross_correlate
+    from cytodisk.analysis.distances import window_distances as window_distances
+    from cytodisk.analysis.event_average import average_around as average_around
+    from cytodisk.analysis.events import edge_events as edge_events
+    from cytodisk.analysis.kymograph import boundary_kymograph as boundary_kymograph
+    from cytodisk.analysis.kymograph import line_kymograph as line_kymograph
+    from cytodisk.analysis.pairs import correlate_pairs as correlate_pairs
     from cytodisk.analysis.peaks import peak_correlation as peak_correlation
     from cytodisk.analysis.series import prepare_series as prepare_series
     from cytodisk.disk.certificate import Certificate as Certificate
@@ -38,6 +44,8 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOME = {
+    "average_around": "analysis.event_average",
+    "boundary_kymograph": "analysis.kymograph",
     "boundary_velocity": "motion.velocity",
     "CellWindows": "windows.cell_windows",
     "centroid_displacement": "analysis.consistency",
@@ -45,14 +53,17 @@ _HOME = {
     "certify": "disk.certificate",
     "clean_mask": "geometry.mask",
     "consecutive_correlation": "analysis.consistency",
+    "correlate_pairs": "analysis.pairs",
     "correlation_by_layer": "analysis.correlation",
     "cross_correlate": "analysis.correlation",
     "DemonsParameters": "motion.demons",
     "DiskMap": "disk.disk_map",
     "DiskMovie": "motion.disk_movie",
     "Distortion": "disk.distortion",
+    "edge_events": "analysis.events",
     "edge_changes": "motion.velocity",
     "edge_velocity": "motion.velocity",
+    "line_kymograph": "analysis.kymograph",
     "load_map": "disk.disk_map",
     "map_movie": "motion.map_movie",
     "map_to_disk": "disk.mapping",
@@ -66,6 +77,7 @@ _HOME = {
     "sample": "windows.sample",
     "sample_movie": "analysis.activity",
     "Study": "io.study",
+    "window_distances": "analysis.distances",
 }
 _MODULES = ("errors", "simulate")
 

@@ -42,8 +42,8 @@ def sample_movie(
     Returns
     -------
     Dataset with dims (time, channel, layer, sector)
-        mean, sd, min, max, n_pixels, n_nan as for `sample`; area, centroid_y, centroid_x of the windows and
-        status, reason by frame. A frame without a map is NaN with its reason. The coordinate time_s is
+        mean, sd, min, max, n_pixels, n_nan as for `sample`; area of the windows and status, reason by frame;
+        centroid_y and centroid_x of the windows as coordinates, which go with any of the others. A frame without a map is NaN with its reason. The coordinate time_s is
         there when the frame interval is known; units are in the attrs of each variable.
 
     Raises
@@ -120,7 +120,16 @@ def activity_dataset(
     if frame_interval_s is not None:
         coords["time_s"] = ("time", times * frame_interval_s, {"units": "s"})
     attrs = {"pixel_size_um": pixel_size_um, "frame_interval_s": frame_interval_s}
-    return xr.Dataset(data, coords, attrs={name: value for name, value in attrs.items() if value is not None})
+    known = {name: value for name, value in attrs.items() if value is not None}
+    return with_places(xr.Dataset(data, coords, attrs=known))
+
+
+def with_places(activity: xr.Dataset) -> xr.Dataset:
+    """The Dataset with the windows' centroids as coordinates, which say how large a pixel is if it is known."""
+    scale = {name: value for name, value in activity.attrs.items() if name == "pixel_size_um"}
+    for name in ("centroid_y", "centroid_x"):
+        activity[name].attrs |= scale
+    return activity.set_coords(["centroid_y", "centroid_x"])
 
 
 def parse_signals(signals: Any, n_frames: int, image_shape: tuple[int, int]) -> tuple[Any, list[str]]:

@@ -12,7 +12,6 @@ import xarray as xr
 from cytodisk.analysis.confidence import effective_share, fisher_interval
 from cytodisk.analysis.lagged import LaggedSeries
 from cytodisk.analysis.pairing import Pair, named_series, paired
-from cytodisk.analysis.peaks import RULES, find_peak
 from cytodisk.analysis.series import KPSS_LIMIT, Detrend, kpss, prepare_series
 from cytodisk.analysis.surrogates import Null, Surrogates
 from cytodisk.analysis.surrogates import surrogates as make_surrogates
@@ -71,9 +70,9 @@ def cross_correlate(
     Dataset with the dims of the windows and lag
         correlation, of a[t] with b[t + lag]: at a positive lag `b` follows `a`; n, pairs; n_effective, what
         they are worth given the autocorrelations; low and high, the 95 % confidence interval by it. With
-        surrogates also threshold, the |correlation| that 5 % of surrogates exceed at some lag, and
-        null_nearest and null_largest, the peaks of the surrogates, for `peak_correlation`; with sectors
-        mean_correlation over them, mean_threshold and mean_null, see `correlation_by_layer`. The coordinate
+        surrogates also null, the largest |correlation| of each at any lag, and threshold, which 5 % of them
+        exceed; with sectors mean_null and mean_threshold, those of the mean over sectors, for
+        `correlation_by_layer`. The coordinate
         lag_s is there when `a` or `b` has time_s. Edge velocity stands at the start of its step, so it is
         half a frame later than its lag says.
 
@@ -93,7 +92,7 @@ def cross_correlate(
     u-Unwrap, section 4.3, Fig. 5.
     """
     first, second, interval_s = named_series(a, b)
-    lags = _lags(max_lag, min_pairs, first.sizes["time"])
+    lags = lags_within(max_lag, min_pairs, first.sizes["time"])
     frames = detrend_frames or (4 * max_lag + 1 if detrend == "median" and max_lag else None)
     options: dict[str, Any] = {
         "detrend": detrend,
@@ -131,8 +130,8 @@ def correlation_by_layer(correlations: xr.Dataset) -> xr.Dataset:
     -------
     Dataset with the dims of the windows but sector, and lag
         correlation, the mean over sectors; lower_quartile and upper_quartile over them. With surrogates also
-        threshold, null_nearest and null_largest of the mean, as those of `cross_correlate`: sectors of a
-        surrogate are changed together, so neighbours that move together are not taken for independent.
+        threshold and null of the mean, as those of `cross_correlate`: sectors of a surrogate are changed
+        together, so neighbours that move together are not taken for independent.
 
     Raises
     ------
@@ -148,7 +147,7 @@ def correlation_by_layer(correlations: xr.Dataset) -> xr.Dataset:
         "lower_quartile": quartiles.isel(quantile=0, drop=True),
         "upper_quartile": quartiles.isel(quantile=1, drop=True),
     }
-    for name in ("threshold", *(f"null_{rule}" for rule in RULES)):
+    for name in ("threshold", "null"):
         if f"mean_{name}" in correlations:
             data[name] = correlations[f"mean_{name}"]
     return xr.Dataset(data, attrs=correlations.attrs)
@@ -162,7 +161,7 @@ class _Run:
         windows = pair.a.shape[1:]
         own = len(pair.own)
         self._correlation, self._count = np.full((2, len(lags), *windows), np.nan)
-        self._null = {rule: np.full((surrogates, *windows), np.nan) for rule in RULES}
+        self._null = np.full((surrogates, *windows), np.nan)
         self._sector = pair.own.index(_SECTOR) if _SECTOR in pair.own else None
         if self._sector is not None and surrogates:
             self._merged = tuple(n for k, n in enumerate(windows) if k != self._sector)
@@ -215,9 +214,7 @@ class _Run:
         return table.reshape(len(table), *others, table.shape[-1])
 
     def _add_chance(self, place: tuple[Any, ...], chance: FloatArray) -> None:
-        for rule in RULES:
-            _, peak = find_peak(chance, self._lags, rule)
-            self._null[rule][(slice(None), *place)] = np.moveaxis(np.abs(peak), -1, 0)
+        self._null[(slice(None), *place)] = np.moveaxis(_largest(chance), -1, 0)
         if self._sector is not None:
             merged = tuple(k for axis, k in enumerate(place) if axis != self._sector)
             known = np.isfinite(chance)
@@ -227,23 +224,22 @@ class _Run:
     def _chance(self) -> dict[str, Any]:
         """What surrogates gave, of windows and of the mean over sectors."""
         dims = self._pair.dims
-        null = self._null
-        if not len(null["largest"]):
+        if not len(self._null):
             return {}
-        data: dict[str, Any] = {f"null_{rule}": (("surrogate", *dims), null[rule]) for rule in RULES}
-        data["threshold"] = (dims, _threshold(null["largest"]))
+        data: dict[str, Any] = {"null": (("surrogate", *dims), self._null)}
+        data["threshold"] = (dims, _threshold(self._null))
         if self._sector is not None:
             rest = tuple(dim for dim in dims if dim != _SECTOR)
             with np.errstate(invalid="ignore"):
                 mean = np.moveaxis(self._total / self._known, len(self._pair.own) - 1, 0)
-            for rule in RULES:
-                peaks = np.abs(find_peak(mean, self._lags, rule)[1])
-                data[f"mean_null_{rule}"] = (("surrogate", *rest), np.moveaxis(peaks, -1, 0))
-            data["mean_threshold"] = (rest, _threshold(data["mean_null_largest"][1]))
+            null = np.moveaxis(_largest(mean), -1, 0)
+            data["mean_null"] = (("surrogate", *rest), null)
+            data["mean_threshold"] = (rest, _threshold(null))
         return data
 
 
-def _lags(max_lag: int, min_pairs: int, frames: int) -> IntArray:
+def lags_within(max_lag: int, min_pairs: int, frames: int) -> IntArray:
+    """Lags from -max_lag to max_lag; ParameterError when a movie of so many frames is too short for them."""
     for name, value, least in (("max_lag", max_lag, 0), ("min_pairs", min_pairs, 3)):
         if isinstance(value, bool) or value != int(value) or value < least:
             raise ParameterError(f"{name} must be a whole number of at least {least}, got {value!r}")
@@ -273,6 +269,13 @@ def _drifting(a: xr.DataArray, b: xr.DataArray) -> dict[str, float]:
                 stacklevel=3,
             )
     return shares
+
+
+def _largest(curves: FloatArray) -> FloatArray:
+    """Largest magnitude along axis 0, NaN left out; NaN where there is nothing."""
+    magnitude = np.abs(curves)
+    nothing = np.isnan(magnitude).all(axis=0)
+    return np.where(nothing, np.nan, np.where(np.isnan(magnitude), -1.0, magnitude).max(axis=0))
 
 
 def _threshold(null: FloatArray) -> FloatArray:

@@ -56,8 +56,8 @@ class LaggedSeries:
         mean_b = self._product(self._present, values) / both
         square_a = self._product(self._squares, present) / both
         square_b = self._product(self._present, values**2) / both
-        variance_a = _variance(square_a, mean_a)
-        variance_b = _variance(square_b, mean_b)
+        variance_a = variance_of(square_a, mean_a)
+        variance_b = variance_of(square_b, mean_b)
         with np.errstate(invalid="ignore", divide="ignore"):
             found = self._product(self._values, values) / both - mean_a * mean_b
             found /= np.sqrt(variance_a)
@@ -86,7 +86,7 @@ def _shifted(series: FloatArray, lags: IntArray) -> FloatArray:
     return out
 
 
-def _variance(square: FloatArray, mean: FloatArray) -> FloatArray:
+def variance_of(square: FloatArray, mean: FloatArray) -> FloatArray:
     """Mean square minus squared mean; NaN where that is nothing but rounding."""
     variance = square - mean**2
     return np.where(variance > _CONSTANT * square, variance, np.nan)

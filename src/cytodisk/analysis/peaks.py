@@ -24,15 +24,17 @@ def peak_correlation(correlations: xr.Dataset, *, rule: Rule = "nearest") -> xr.
         Of `cross_correlate`, or its mean over sectors, of `correlation_by_layer`.
     rule : {"nearest", "largest"}
         "nearest", the paper's: of the most positive and the most negative correlation the one at the smaller
-        |lag|, of two as near the larger. "largest": the one that is larger in magnitude.
+        |lag|, of two as near the larger. With surrogates, only those count that reach the threshold, if any
+        does: else what chance puts near lag 0 would hide what does not lie there. "largest": the one that is
+        larger in magnitude.
 
     Returns
     -------
     Dataset with the dims of the windows
         correlation, lag (frames), lag_s when the interval is known; n, n_effective, low, high at the peak
-        where `correlations` has them. With surrogates also p, the share of surrogates whose peak, found by
-        the same rule over the same lags, is at least as large, and q, its Benjamini-Hochberg adjustment over
-        all windows. NaN where a window has no correlation.
+        where `correlations` has them. With surrogates also p, the share of surrogates that are at least as
+        large at any lag, and q, its Benjamini-Hochberg adjustment over all windows. NaN where a window has no
+        correlation.
 
     Raises
     ------
@@ -49,7 +51,8 @@ def peak_correlation(correlations: xr.Dataset, *, rule: Rule = "nearest") -> xr.
     check_rule(rule)
     curves = correlations["correlation"].transpose("lag", ...)
     lags = correlations["lag"].to_numpy()
-    place, found = find_peak(curves.to_numpy(), lags, rule)
+    threshold = correlations["threshold"].to_numpy() if "threshold" in correlations else None
+    place, found = find_peak(curves.to_numpy(), lags, rule, threshold)
     dims, nothing = curves.dims[1:], np.isnan(found)
     data: dict[str, Any] = {"correlation": (dims, found)}
     data["lag"] = (dims, np.where(nothing, np.nan, lags[place]), {"units": "frame"})
@@ -61,8 +64,8 @@ def peak_correlation(correlations: xr.Dataset, *, rule: Rule = "nearest") -> xr.
             values = correlations[name].transpose("lag", ...).to_numpy()
             at_peak = np.take_along_axis(values, place[None], axis=0)[0]
             data[name] = (dims, np.where(nothing, np.nan, at_peak))
-    if f"null_{rule}" in correlations:
-        null = correlations[f"null_{rule}"].transpose("surrogate", ...).to_numpy()
+    if "null" in correlations:
+        null = correlations["null"].transpose("surrogate", ...).to_numpy()
         p = p_value(found, null)
         data |= {"p": (dims, p), "q": (dims, false_discovery(p))}
     coords = {name: value for name, value in curves.coords.items() if "lag" not in value.dims}
@@ -75,7 +78,9 @@ def check_rule(rule: str) -> None:
         raise ParameterError(f"rule must be one of {', '.join(RULES)}, got {rule!r}")
 
 
-def find_peak(curves: FloatArray, lags: IntArray, rule: Rule) -> tuple[IntArray, FloatArray]:
+def find_peak(
+    curves: FloatArray, lags: IntArray, rule: Rule, threshold: FloatArray | None = None
+) -> tuple[IntArray, FloatArray]:
     """Where the peak of curves lies by a rule, and its value.
 
     Parameters
@@ -84,6 +89,8 @@ def find_peak(curves: FloatArray, lags: IntArray, rule: Rule) -> tuple[IntArray,
         By lag.
     lags : ndarray of shape (K,) and dtype int
     rule : {"nearest", "largest"}
+    threshold : ndarray of shape (…) and dtype float, optional
+        For "nearest": peaks that reach it go before those that do not.
 
     Returns
     -------
@@ -96,13 +103,16 @@ def find_peak(curves: FloatArray, lags: IntArray, rule: Rule) -> tuple[IntArray,
     if rule == "largest":
         place = _first_best(np.abs(curves), away)
         return place, _at(curves, place)
+    if threshold is not None:
+        reached = np.abs(curves) >= threshold
+        curves = np.where(reached | ~reached.any(axis=0), curves, np.nan)
     high, low = _first_best(curves, away), _first_best(-curves, away)
     top, bottom = _at(curves, high), _at(curves, low)
     nearer = np.abs(lags[low]) < np.abs(lags[high])
     as_near = np.abs(lags[low]) == np.abs(lags[high])
     negative = nearer | (as_near & (-bottom > top))
     negative &= bottom < 0  # a curve above 0 has no negative peak, however near its minimum
-    negative |= top <= 0
+    negative |= ~(top > 0)
     return np.where(negative, low, high), np.where(negative, bottom, top)
 
 
@@ -124,7 +134,7 @@ def p_value(found: FloatArray, null: FloatArray) -> FloatArray:
     ----------
     found : ndarray of shape (…) and dtype float
     null : ndarray of shape (R, …) and dtype float
-        Magnitudes of the peaks of surrogates; NaN is left out.
+        Largest magnitudes of surrogates over lags; NaN is left out.
 
     Returns
     -------

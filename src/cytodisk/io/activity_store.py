@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cytodisk.analysis.activity import STATISTICS
+from cytodisk.analysis.activity import STATISTICS, with_places
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.windows.grid import PolarWindows
 
@@ -196,4 +196,4 @@ def open_activity(path: Path, cell: int) -> xr.Dataset:
         found: xr.Dataset = xr.open_zarr(path, group=group_name(cell), chunks=None, **_ZARR)
     except (OSError, KeyError, ValueError) as error:
         raise ReadError(f"{path} has no activity of cell {cell}: {error}") from error
-    return found
+    return with_places(found)
