@@ -3,6 +3,7 @@
 import typer
 
 from cytodisk.cli.console import fail
+from cytodisk.cli.correlate import CORRELATE_HELP, REPORT_HELP, correlate_command, report_command
 from cytodisk.cli.demo import demo_command, info_command
 from cytodisk.cli.map import MAP_HELP, check_command, map_command
 from cytodisk.cli.movie import MOVIE_HELP, movie_command
@@ -17,6 +18,8 @@ app = typer.Typer(
 )
 app.command("map", help=MAP_HELP)(map_command)
 app.command("movie", help=MOVIE_HELP)(movie_command)
+app.command("correlate", help=CORRELATE_HELP)(correlate_command)
+app.command("report", help=REPORT_HELP)(report_command)
 app.command("check")(check_command)
 app.command("info")(info_command)
 app.command("demo")(demo_command)

@@ -16,6 +16,7 @@ import xarray as xr
 from cytodisk.disk.disk_map import DiskMap, load_map
 from cytodisk.errors import ReadError
 from cytodisk.io.activity_store import open_activity
+from cytodisk.io.correlation_store import Correlation, list_correlations, read_correlation
 from cytodisk.io.study_folder import (
     ACTIVITY,
     CELLS,
@@ -27,6 +28,7 @@ from cytodisk.io.study_folder import (
     part_key,
     read_provenance,
 )
+from cytodisk.io.tables import read_table
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
 from cytodisk.motion.frame_file import load_boundary
 
@@ -58,7 +60,7 @@ class Study:
     @cached_property
     def windows(self) -> pd.DataFrame:
         """One row a cell, time, channel, layer and sector; units in `attrs["units"]`. Read when asked for."""
-        return _read_table(self.path / WINDOWS)
+        return read_table(self.path / WINDOWS)
 
     @cached_property
     def edge(self) -> pd.DataFrame:
@@ -71,6 +73,30 @@ class Study:
         return self._movie_table(CONSISTENCY)
 
     @property
+    def correlations(self) -> list[tuple[str, str]]:
+        """Pairs of names (signal, with) that were correlated."""
+        return list_correlations(self.path)
+
+    def correlation(self, signal: str, with_: str = "velocity") -> Correlation:
+        """Read a correlation.
+
+        Parameters
+        ----------
+        signal, with_ : str
+            As they were given to `cytodisk correlate`.
+
+        Returns
+        -------
+        Correlation
+
+        Raises
+        ------
+        ReadError
+            It is not there; the message lists those that are.
+        """
+        return read_correlation(self.path, signal, with_)
+
+    @property
     def is_movie(self) -> bool:
         """Whether the run was that of a movie."""
         return self.provenance.get("run") == "movie"
@@ -78,7 +104,7 @@ class Study:
     def _movie_table(self, name: str) -> pd.DataFrame:
         if not self.is_movie:
             raise ReadError(f"study {self.path} is not that of a movie: it has no {name}")
-        return _read_table(self.path / name)
+        return read_table(self.path / name)
 
     def map(self, cell: int, time: int | None = None) -> DiskMap:
         """Read the map of one cell, in one frame of a movie.
@@ -213,14 +239,6 @@ def open_study(path: str | os.PathLike[str]) -> Study:
     try:
         for name in names:
             pq.read_schema(folder / name)
-        return Study(folder, _read_table(folder / CELLS), provenance)
+        return Study(folder, read_table(folder / CELLS), provenance)
     except (OSError, pa.ArrowException) as error:
         raise ReadError(f"study {folder} is damaged: {error}") from error
-
-
-def _read_table(path: Path) -> pd.DataFrame:
-    table = pq.read_table(path)
-    frame: pd.DataFrame = table.to_pandas()
-    units = {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in table.schema}
-    frame.attrs["units"] = units
-    return frame

@@ -31,7 +31,8 @@ PARAMETERS, PROVENANCE = "parameters.toml", "provenance.json"
 CELLS, WINDOWS, EDGE = "cells.parquet", "windows.parquet", "edge.parquet"
 CONSISTENCY, ACTIVITY = "consistency.parquet", "activity.zarr"
 MAPS, FIGURES, _PARTS, _LOCK = "maps", "figures", ".parts", ".lock"
-_OWN = (PARAMETERS, CELLS, WINDOWS, EDGE, CONSISTENCY, ACTIVITY, MAPS, FIGURES, _PARTS)
+_LATER = ("correlation", "report.html")  # what other commands wrote from these results
+_OWN = (PARAMETERS, CELLS, WINDOWS, EDGE, CONSISTENCY, ACTIVITY, MAPS, FIGURES, _PARTS, *_LATER)
 _PARTS_PER_GROUP = 64
 
 

@@ -1,8 +1,11 @@
 """The tables of a study: their columns, types and units."""
 
+from pathlib import Path
 from typing import Any, TypeAlias
 
+import pandas as pd
 import pyarrow as pa
+import pyarrow.parquet as pq
 
 Columns: TypeAlias = tuple[tuple[str, pa.DataType, str], ...]
 
@@ -124,3 +127,20 @@ def schema(columns: Columns, length_unit: str, velocity_unit: str = "") -> Any:
 
 def _unit(unit: str, length_unit: str, velocity_unit: str) -> str:
     return unit.replace("length", length_unit).replace("velocity", velocity_unit)
+
+
+def read_table(path: Path) -> pd.DataFrame:
+    """A table with the units of its columns in `attrs["units"]`."""
+    table = pq.read_table(path)
+    frame: pd.DataFrame = table.to_pandas()
+    units = {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in table.schema}
+    frame.attrs["units"] = units
+    return frame
+
+
+def write_table(frame: pd.DataFrame, path: Path) -> None:
+    """Write a table whose `attrs["units"]` hold the units of its columns."""
+    units = frame.attrs.get("units", {})
+    table = pa.Table.from_pandas(pd.DataFrame(frame, copy=False), preserve_index=False)
+    fields = [field.with_metadata({"unit": units.get(field.name, "")}) for field in table.schema]
+    pq.write_table(table.cast(pa.schema(fields)), path)

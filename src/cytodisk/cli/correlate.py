@@ -1,0 +1,220 @@
+"""`cytodisk correlate` and `cytodisk report`."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from cytodisk.cli.console import Quiet, console_for, count, progress_bar
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from cytodisk.io.correlation_store import Correlation
+    from cytodisk.io.study import Study
+
+DRIFTING = 0.25  # share of series whose level drifts, above which to say so
+
+CORRELATE_HELP = """Correlate a signal with the motion of the edge, or with another signal, window by window.
+
+STUDY is the folder of a movie, as cytodisk movie writes it. At a positive lag what comes second (--with)
+follows the signal. Tables and figures go to STUDY/correlation/SIGNAL~WITH.
+
+Examples:
+
+  cytodisk correlate out/ --signal VASP --with velocity --max-lag 20
+
+  cytodisk correlate out/ --signal Rac1 --with RhoA --pairs --format pdf,png
+
+  cytodisk correlate out/ --signal Rac1 --with Rac1 --against edge --detrend linear
+
+Exit code: 0 when done (a cell that cannot be correlated has a row with the reason), 2 if none could be.
+"""
+
+REPORT_HELP = """Write one HTML page that shows a study: red flags, windows, activity, velocity, correlation.
+
+The page holds all it needs: it opens in any browser, without a network, and can be sent as one file.
+
+Examples:
+
+  cytodisk report out/
+
+  cytodisk report out/ --cell 3
+"""
+
+StudyFolder = Annotated[Path, typer.Argument(help="Folder of a movie's study.", show_default=False)]
+
+
+def correlate_command(
+    study: StudyFolder,
+    signal: Annotated[
+        str | None, typer.Option(help="Channel of the study; not needed if it has but one.")
+    ] = None,
+    with_: Annotated[
+        str, typer.Option("--with", help="velocity, velocity_cell_frame or a channel.")
+    ] = "velocity",
+    max_lag: Annotated[
+        int | None, typer.Option(help="Longest lag, frames (default a quarter of the movie, at most 20).")
+    ] = None,
+    against: Annotated[
+        str | None,
+        typer.Option(
+            help="Of another signal: the same window, or the edge's of the sector (default window)."
+        ),
+    ] = None,
+    rule: Annotated[
+        str | None,
+        typer.Option(
+            help="Peak: nearest to lag 0 of what chance does not give, or largest (default nearest)."
+        ),
+    ] = None,
+    detrend: Annotated[str | None, typer.Option(help="none, linear or median (default none).")] = None,
+    detrend_frames: Annotated[
+        int | None, typer.Option(help="Frames of the moving median (default 4 × max lag + 1).")
+    ] = None,
+    difference: Annotated[
+        bool | None,
+        typer.Option("--difference", help="Correlate changes between frames.", show_default=False),
+    ] = None,
+    surrogates: Annotated[int | None, typer.Option(help="0 for no significance (default 1999).")] = None,
+    null: Annotated[
+        str | None, typer.Option(help="Surrogates by random phase or circular shift (default phase).")
+    ] = None,
+    min_pairs: Annotated[int | None, typer.Option(help="Fewest frames at a lag (default 10).")] = None,
+    seed: Annotated[int | None, typer.Option(help="Of the surrogates (default 0).")] = None,
+    pairs: Annotated[
+        bool | None,
+        typer.Option("--pairs", help="Also every window with every other, by distance.", show_default=False),
+    ] = None,
+    cell: Annotated[list[int] | None, typer.Option(help="Only this cell; can be given again.")] = None,
+    figures: Annotated[int, typer.Option(help="Draw this many cells, from the first; -1 for all.")] = 4,
+    formats: Annotated[str, typer.Option("--format", help="Of figures: png, pdf, svg, or several.")] = "png",
+    quiet: Quiet = False,
+) -> None:
+    from cytodisk.io.study import open_study
+    from cytodisk.plot.correlation_figures import parse_formats
+    from cytodisk.study.correlate import channels_of, correlate_study
+
+    wanted = parse_formats(formats)
+    there = open_study(study)
+    given = {
+        "max_lag": max_lag,
+        "against": against,
+        "rule": rule,
+        "detrend": detrend,
+        "detrend_frames": detrend_frames,
+        "difference": difference,
+        "surrogates": surrogates,
+        "null": null,
+        "min_pairs": min_pairs,
+        "seed": seed,
+        "pairs": pairs,
+    }
+    settings = {name: value for name, value in given.items() if value is not None}
+    chosen = signal if signal is not None else _only(channels_of(there))
+    console = console_for(quiet)
+    with progress_bar(quiet, "steps") as progress:
+        found = correlate_study(there, chosen, with_, cells=cell, progress=progress, **settings)
+    draw_correlation(quiet, there, found, figures, wanted)
+    say_correlation(console, found)
+
+
+def report_command(
+    study: StudyFolder,
+    cell: Annotated[
+        int | None, typer.Option(help="The cell to show (default that with the most frames).")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="The page (default STUDY/report.html).")
+    ] = None,
+    signal: Annotated[
+        Path | None, typer.Option(help="The movie's image, if it is no longer where it was.")
+    ] = None,
+    quiet: Quiet = False,
+) -> None:
+    from cytodisk.io.study import open_study
+
+    write_page(console_for(quiet), quiet, open_study(study), out, cell, signal)
+
+
+def write_page(
+    console: "Console",
+    quiet: bool,
+    study: "Study",
+    out: Path | None = None,
+    cell: int | None = None,
+    signal: Path | None = None,
+) -> None:
+    """Write the report and say where it is and what is wrong with the study."""
+    from cytodisk.io.frames import open_frames
+    from cytodisk.report.flags import red_flags
+    from cytodisk.report.page import write_report
+
+    image = open_frames(signal) if signal is not None else None
+    with progress_bar(quiet, "frames") as progress:
+        page = write_report(study, out, cell=cell, signal=image, progress=progress)
+    flags = red_flags(study)
+    for flag in flags:
+        console.print(f"red flag: {flag.what}")
+    if not flags:
+        console.print("no red flags")
+    console.print(f"report: {page} ({page.stat().st_size / 1e6:.1f} MB), open it in a browser")
+
+
+def draw_correlation(
+    quiet: bool, study: "Study", found: "Correlation", figures: int, formats: tuple[str, ...]
+) -> None:
+    """Draw the first cells that were correlated."""
+    from cytodisk.plot.correlation_figures import draw_correlation_figures
+
+    done = [int(cell) for cell in found.windows["cell"].unique()]
+    cells = done if figures < 0 else done[:figures]
+    if cells:
+        with progress_bar(quiet, "cells drawn") as progress:
+            for place, cell in enumerate(cells):
+                draw_correlation_figures(study, found, cell=cell, formats=formats)
+                progress(place + 1, len(cells))
+
+
+def say_correlation(console: "Console", found: "Correlation") -> None:
+    """Peaks by layer, and how many windows are significant."""
+    settings = found.settings
+    console.print(
+        f"{found.signal} with {found.with_}, lags to {settings['max_lag']} frames: at a positive lag "
+        f"{found.with_} follows {found.signal}"
+    )
+    layers, windows = found.layers, found.windows
+    for cell, rows in layers.groupby("cell"):
+        of_cell = windows[windows["cell"] == cell]
+        console.print(f"cell {cell}, mean over sectors by layer:")
+        for _, row in rows.iterrows():
+            console.print(_layer_words(row, of_cell[of_cell["layer"] == row["layer"]]))
+    for _, row in found.cells.iterrows():
+        if row["status"] != "ok":
+            console.print(f"cell {row['cell']} left out: {row['reason']}")
+        elif max(row["drifting_signal"], row["drifting_with"]) > DRIFTING:
+            console.print(
+                f"cell {row['cell']}: the level of {row['drifting_signal']:.0%} of the signal's series and "
+                f"{row['drifting_with']:.0%} of what it was correlated with drifts (chance gives 5 %), such as "
+                "by bleaching: see whether --detrend linear or --difference says the same"
+            )
+    console.print(f"{count(layers['cell'].nunique())} correlated: {found.path}")
+
+
+def _layer_words(row: Any, windows: Any) -> str:
+    lag = "" if row["lag_s"] != row["lag_s"] else f" ({row['lag_s']:+g} s)"
+    if row["correlation"] != row["correlation"]:
+        return f"  layer {row['layer']:>2}: no correlation, see n in windows.parquet"
+    words = f"  layer {row['layer']:>2}: {row['correlation']:+.2f} at lag {row['lag']:+.0f} frames{lag}"
+    if "q" not in row:
+        return words
+    share = (windows["q"] < 0.05).mean()
+    return f"{words}, q {row['q']:.3g}; {share:.0%} of its windows have q < 0.05"
+
+
+def _only(names: list[str]) -> str:
+    from cytodisk.errors import ParameterError
+
+    if len(names) == 1:
+        return names[0]
+    raise ParameterError(f"signal is not given: pass --signal with one of {', '.join(map(repr, names))}")

@@ -1,0 +1,172 @@
+"""Correlations of a study on disk: a folder for each pair of names, with its tables and settings."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+import pandas as pd
+
+from cytodisk.errors import ReadError, StudyError
+from cytodisk.io.tables import read_table, write_table
+
+CORRELATION = "correlation"
+SETTINGS = "settings.json"
+
+
+@dataclass(frozen=True)
+class Correlation:
+    """A correlation of a study, read from disk; tables are read when asked for.
+
+    Every table has its units by column in `attrs["units"]`.
+
+    Attributes
+    ----------
+    path : Path
+        Its folder.
+    signal, with_ : str
+        What was correlated: at a positive lag `with_` follows `signal`.
+    settings : dict
+        Parameters, versions and warnings.
+    """
+
+    path: Path
+    signal: str
+    with_: str
+    settings: dict[str, Any]
+
+    @cached_property
+    def cells(self) -> pd.DataFrame:
+        """One row a cell of the study: status, the reason if it was left out, share of drifting series."""
+        return self._table("cells")
+
+    @cached_property
+    def windows(self) -> pd.DataFrame:
+        """One row a window: correlation at the peak, its lag, n, confidence, p and q."""
+        return self._table("windows")
+
+    @cached_property
+    def layers(self) -> pd.DataFrame:
+        """One row a layer: the peak of the mean over sectors, its lag, p, q and threshold."""
+        return self._table("layers")
+
+    @cached_property
+    def curves(self) -> pd.DataFrame:
+        """One row a window and lag."""
+        return self._table("curves")
+
+    @cached_property
+    def layer_curves(self) -> pd.DataFrame:
+        """One row a layer and lag: mean over sectors, quartiles, threshold."""
+        return self._table("layer_curves")
+
+    @cached_property
+    def pairs(self) -> pd.DataFrame | None:
+        """One row a kind of distance, distance and lag; None when pairs were not asked for."""
+        return self._optional("pairs")
+
+    @cached_property
+    def events(self) -> pd.DataFrame | None:
+        """One row an episode of the edge; None unless `with_` is a velocity."""
+        return self._optional("events")
+
+    @cached_property
+    def event_averages(self) -> pd.DataFrame | None:
+        """One row a kind of episode, layer and delay: the signal around onsets; None as for `events`."""
+        return self._optional("event_averages")
+
+    def _optional(self, name: str) -> pd.DataFrame | None:
+        return self._table(name) if (self.path / f"{name}.parquet").exists() else None
+
+    def _table(self, name: str) -> pd.DataFrame:
+        try:
+            return read_table(self.path / f"{name}.parquet")
+        except OSError as error:
+            raise ReadError(f"{self.path} is damaged, correlate again: {error}") from error
+
+
+def correlation_path(study: Path, signal: str, with_: str) -> Path:
+    """Folder of a correlation; names that no file can have are written with %."""
+    return study / CORRELATION / f"{_quoted(signal)}~{_quoted(with_)}"
+
+
+def write_correlation(
+    study: Path, signal: str, with_: str, tables: Mapping[str, pd.DataFrame], settings: dict[str, Any]
+) -> Correlation:
+    """Write a correlation whole, in place of the one that was there.
+
+    Parameters
+    ----------
+    study : Path
+    signal, with_ : str
+    tables : dict of str to DataFrame
+        With units in `attrs`.
+    settings : dict
+
+    Returns
+    -------
+    Correlation
+
+    Raises
+    ------
+    StudyError
+        The folder cannot be written.
+    """
+    target = correlation_path(study, signal, with_)
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    try:
+        shutil.rmtree(temporary, ignore_errors=True)  # of an earlier process with this number
+        temporary.mkdir(parents=True)
+        for name, table in tables.items():
+            write_table(table, temporary / f"{name}.parquet")
+        content = {"signal": signal, "with": with_} | settings
+        text = json.dumps(content, indent=2, ensure_ascii=False)
+        (temporary / SETTINGS).write_text(text + "\n", encoding="utf-8")
+        if target.exists():
+            shutil.rmtree(target)
+        temporary.replace(target)
+    except OSError as error:
+        raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
+    return read_correlation(study, signal, with_)
+
+
+def read_correlation(study: Path, signal: str, with_: str) -> Correlation:
+    """Open a correlation.
+
+    Raises
+    ------
+    ReadError
+        It is not there; the message lists those that are.
+    """
+    path = correlation_path(study, signal, with_)
+    settings = _settings(path)
+    if settings is None:
+        there = [f"{a} with {b}" for a, b in list_correlations(study)]
+        advice = f"it has {'; '.join(there)}" if there else "run cytodisk correlate first"
+        raise ReadError(f"study {study} has no correlation of {signal!r} with {with_!r}: {advice}")
+    return Correlation(path, signal, with_, settings)
+
+
+def list_correlations(study: Path) -> list[tuple[str, str]]:
+    """Names of the signals that were correlated, in the order of their folders."""
+    found = [_settings(path) for path in sorted((study / CORRELATION).glob("[!.]*~*"))]
+    return [(settings["signal"], settings["with"]) for settings in found if settings is not None]
+
+
+def _settings(path: Path) -> dict[str, Any] | None:
+    try:
+        found = json.loads((path / SETTINGS).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError):
+        return None
+    return found if isinstance(found, dict) and {"signal", "with"} <= set(found) else None
+
+
+def _quoted(name: str) -> str:
+    return quote(name, safe=" +-,()").replace("~", "%7E")

@@ -1,0 +1,259 @@
+"""Correlate signals of a movie's study with the motion of the edge, or with each other, cell by cell."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import asdict
+from datetime import UTC, datetime
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from cytodisk.analysis.correlation import correlation_by_layer, cross_correlate
+from cytodisk.analysis.distances import window_distances
+from cytodisk.analysis.pairs import correlate_pairs
+from cytodisk.analysis.peaks import peak_correlation
+from cytodisk.errors import ParameterError, StationarityWarning, StudyError
+from cytodisk.io.correlation_store import Correlation, write_correlation
+from cytodisk.io.study import Study
+from cytodisk.study.correlation_settings import VELOCITIES, CorrelationSettings
+from cytodisk.study.edge_episodes import episode_tables
+from cytodisk.study.provenance import installed
+from cytodisk.windows.grid import polar_windows
+
+_LONGEST_LAG = 20  # frames, unless the user asks for more
+_SIDES = (("signal", "a"), ("with", "b"))
+_PAIRED_SURROGATES = 99  # of the mean over pairs, each of which costs as much as the mean itself
+
+Progress = Callable[[int, int], None]
+
+
+def correlate_study(
+    study: Study,
+    signal: str,
+    with_: str = "velocity",
+    *,
+    cells: list[int] | None = None,
+    progress: Progress | None = None,
+    **settings: Any,
+) -> Correlation:
+    """Correlate a signal with edge velocity or another signal in all cells of a study, and write the tables.
+
+    Parameters
+    ----------
+    study : Study
+        Of a movie.
+    signal : str
+        A channel of its tables.
+    with_ : str
+        "velocity", "velocity_cell_frame" or a channel. At a positive lag it follows `signal`.
+    cells : list of int, optional
+        All by default. A cell that cannot be correlated has a row in the table of cells that says why.
+    progress : callable, optional
+        Called with (steps done, in all).
+    **settings
+        Fields of `CorrelationSettings`: max_lag, against, rule, detrend, difference, surrogates, and others.
+
+    Returns
+    -------
+    Correlation
+        In STUDY/correlation/SIGNAL~WITH, in place of an earlier one.
+
+    Raises
+    ------
+    StudyError
+        The study is not that of a movie, or has no signal.
+    ParameterError
+        There is no such signal (the message lists those there are) or cell, a setting is out of range, or no
+        cell could be correlated.
+    """
+    chosen = _cells(study, cells)
+    options = CorrelationSettings.of(**settings)
+    names = channels_of(study)
+    _check_names(names, signal, with_, options)
+    max_lag = options.max_lag if options.max_lag is not None else _usual_lag(study, chosen)
+    found: dict[str, list[pd.DataFrame]] = {}
+    rows = []
+    for place, cell in enumerate(chosen):
+        step = _share_of(progress, place, len(chosen))
+        try:
+            tables, row = _correlate_cell(study, cell, signal, with_, max_lag, options, step)
+        except ParameterError as error:
+            tables, row = {}, {"status": "refused", "reason": str(error)}
+        rows.append({"cell": cell} | row)
+        for name, table in tables.items():
+            found.setdefault(name, []).append(_of_cell(table, cell))
+    if not found:
+        raise ParameterError(f"no cell of {study.path} can be correlated: {rows[0]['reason']}")
+    merged = {name: _merged(parts) for name, parts in found.items()} | {"cells": pd.DataFrame(rows)}
+    content: dict[str, Any] = asdict(options) | {"max_lag": max_lag}
+    content |= {"unit": "s" if study.provenance.get("frame_interval_s") else "frame"}
+    content |= {"cytodisk": installed(("cytodisk",))["cytodisk"]}
+    content |= {"written": datetime.now(UTC).isoformat(timespec="seconds")}
+    return write_correlation(study.path, signal, with_, merged, content)
+
+
+def channels_of(study: Study) -> list[str]:
+    """Names of the channels that a movie's study has in its windows.
+
+    Raises
+    ------
+    StudyError
+        It is not that of a movie, or was made without a signal.
+    """
+    if not study.is_movie:
+        raise StudyError(
+            f"study {study.path} is not that of a movie: without time there is nothing to correlate; use "
+            "cytodisk movie"
+        )
+    activity = study.activity(int(study.cells["cell"].iloc[0]))
+    if "mean" not in activity:
+        raise StudyError(f"study {study.path} has no signal: run cytodisk movie with --signal")
+    return [str(name) for name in activity["channel"].to_numpy()]
+
+
+def _correlate_cell(
+    study: Study,
+    cell: int,
+    signal: str,
+    with_: str,
+    max_lag: int,
+    options: CorrelationSettings,
+    progress: Progress | None,
+) -> tuple[dict[str, pd.DataFrame], dict[str, Any]]:
+    """Tables of one cell, and its row in the table of cells."""
+    activity = study.activity(cell)
+    a = activity["mean"].sel(channel=signal).load()
+    b = _other(activity, with_, options).load()
+    if not (np.isfinite(a).any() and np.isfinite(b).any()):
+        raise ParameterError(f"cell {cell} has no values of {signal if not np.isfinite(a).any() else with_}")
+    common = options.common()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", StationarityWarning)  # the shares are in the table, and are told
+        correlations = cross_correlate(a, b, max_lag, progress=progress, **common)
+    tables = _tables(correlations, options)
+    if options.pairs:
+        tables["pairs"] = _pairs(study, cell, activity, a, with_, max_lag, options)
+    row = {"status": "ok", "reason": "", "frames": a.sizes["time"], "no_events_because": ""}
+    if with_ in VELOCITIES:
+        try:
+            tables |= episode_tables(activity, a, with_, max_lag, options)
+        except ParameterError as error:
+            row["no_events_because"] = str(error)
+    row |= {f"drifting_{name}": correlations.attrs[f"drifting_{side}"] for name, side in _SIDES}
+    return tables, row
+
+
+def _other(activity: xr.Dataset, with_: str, options: CorrelationSettings) -> xr.DataArray:
+    """What the signal is correlated with, by sector or by window."""
+    if with_ in VELOCITIES:
+        return activity[with_]
+    other = activity["mean"].sel(channel=with_)
+    return other.isel(layer=0, drop=True) if options.against == "edge" else other
+
+
+def _tables(correlations: xr.Dataset, options: CorrelationSettings) -> dict[str, pd.DataFrame]:
+    by_layer = correlation_by_layer(correlations)
+    peaks = peak_correlation(correlations, rule=options.rule)
+    layers = peak_correlation(by_layer, rule=options.rule)
+    if "threshold" in by_layer:
+        layers = layers.assign(threshold=by_layer["threshold"])
+        peaks = peaks.assign(threshold=correlations["threshold"])
+    curves = correlations.drop_vars(["null", "threshold", "mean_null", "mean_threshold"], errors="ignore")
+    mean = by_layer.drop_vars("null", errors="ignore")
+    return {
+        "windows": _frame(peaks, ("layer", "sector")),
+        "layers": _frame(layers, ("layer",)),
+        "curves": _frame(curves, ("layer", "sector", "lag")),
+        "layer_curves": _frame(mean, ("layer", "lag")),
+    }
+
+
+def _pairs(
+    study: Study,
+    cell: int,
+    activity: xr.Dataset,
+    a: xr.DataArray,
+    with_: str,
+    max_lag: int,
+    options: CorrelationSettings,
+) -> pd.DataFrame:
+    parameters = study.provenance["parameters"]
+    grid = polar_windows(study.provenance["layers"], parameters["sectors"], parameters["spacing"])
+    b = activity["mean"].sel(channel=with_).load()
+    common = options.common() | {"surrogates": min(options.surrogates, _PAIRED_SURROGATES)}
+    distances = window_distances(study.movie(cell), grid)
+    return _frame(correlate_pairs(a, b, max_lag, distances=distances, **common), ("along", "distance", "lag"))
+
+
+def _frame(dataset: xr.Dataset, index: tuple[str, ...]) -> pd.DataFrame:
+    """A Dataset as a table with its units; seconds of lags are a column, NaN when unknown."""
+    table = dataset.reset_coords(drop=False).to_dataframe(dim_order=list(index)).reset_index()
+    if "lag_s" not in table:
+        table.insert(list(table.columns).index("lag") + 1, "lag_s", np.nan)
+    units = {"lag": "frame", "lag_s": "s"}
+    known = {name: str(values.attrs.get("units", "1")) for name, values in dataset.variables.items()}
+    plain = dict.fromkeys(("layer", "sector", "along", "n", "n_effective"), "")
+    table.attrs = {"units": {name: (known | units | plain).get(name, "1") for name in table.columns}}
+    return table
+
+
+def _of_cell(table: pd.DataFrame, cell: int) -> pd.DataFrame:
+    units = table.attrs["units"]
+    table = table.copy()
+    table.insert(0, "cell", cell)
+    table.attrs = {"units": {"cell": ""} | units}
+    return table
+
+
+def _merged(parts: list[pd.DataFrame]) -> pd.DataFrame:
+    units = parts[0].attrs["units"]
+    for part in parts:
+        part.attrs = {}  # pandas compares them one by one, which arrays do not survive
+    table = pd.concat(parts, ignore_index=True)
+    table.attrs = {"units": units}
+    return table
+
+
+def _cells(study: Study, cells: list[int] | None) -> list[int]:
+    there = sorted(int(cell) for cell in study.cells["cell"].unique())
+    missing = [cell for cell in cells or [] if cell not in there]
+    if missing:
+        raise ParameterError(
+            f"cells: study {study.path} has no cell {missing[0]}, it has {len(there)} from 0"
+        )
+    return sorted(set(cells)) if cells else there
+
+
+def _check_names(names: list[str], signal: str, with_: str, options: CorrelationSettings) -> None:
+    listed = ", ".join(repr(name) for name in names)
+    if signal not in names:
+        raise ParameterError(f"signal {signal!r} is not in the study: it has {listed}")
+    if with_ not in (*names, *VELOCITIES):
+        raise ParameterError(
+            f"with {with_!r} is not in the study: it has {', '.join(VELOCITIES)} and the signals {listed}"
+        )
+    if with_ == signal and options.against == "window":
+        raise ParameterError(
+            f"signal {signal!r} with itself in the same window is 1: pass against='edge' to compare it with "
+            "that of the outermost layer"
+        )
+    if options.pairs and with_ in VELOCITIES:
+        raise ParameterError(
+            "pairs need two signals: velocity has no windows inside; pass with another signal"
+        )
+
+
+def _usual_lag(study: Study, cells: list[int]) -> int:
+    """A quarter of the longest cell's frames, at most twenty."""
+    frames = max(study.activity(cell).sizes["time"] for cell in cells)
+    return max(1, min(_LONGEST_LAG, frames // 4))
+
+
+def _share_of(progress: Progress | None, place: int, cells: int) -> Progress | None:
+    if progress is None:
+        return None
+    return lambda done, total: progress(place * total + done, cells * total)

@@ -1,0 +1,83 @@
+"""Settings of a correlation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any, Literal, get_args
+
+from cytodisk.analysis.peaks import Rule, check_rule
+from cytodisk.analysis.series import Detrend, check_detrend
+from cytodisk.analysis.surrogates import Null
+from cytodisk.errors import ParameterError
+
+VELOCITIES = ("velocity", "velocity_cell_frame")
+
+Against = Literal["window", "edge"]
+
+
+@dataclass(frozen=True)
+class CorrelationSettings:
+    """What decides the result of `cytodisk correlate`, beside the study; see `cross_correlate`.
+
+    Attributes
+    ----------
+    max_lag : int or None
+        In frames; None for a quarter of the movie, at most 20.
+    against : {"window", "edge"}
+        Compare each window with the other signal's same window, or with its outermost one in the sector.
+    rule : {"nearest", "largest"}
+        See `peak_correlation`.
+    detrend : {"none", "linear", "median"}
+    detrend_frames : int or None
+    difference : bool
+    min_pairs : int
+    surrogates : int
+    null : {"phase", "shift"}
+    seed : int
+    pairs : bool
+        Also correlate every window of one signal with every window of the other.
+    """
+
+    max_lag: int | None = None
+    against: Against = "window"
+    rule: Rule = "nearest"
+    detrend: Detrend = "none"
+    detrend_frames: int | None = None
+    difference: bool = False
+    min_pairs: int = 10
+    surrogates: int = 1999
+    null: Null = "phase"
+    seed: int = 0
+    pairs: bool = False
+
+    @classmethod
+    def of(cls, **values: Any) -> CorrelationSettings:
+        """Settings from values by name.
+
+        Raises
+        ------
+        ParameterError
+            A name is unknown, or a value out of range.
+        """
+        known = [field.name for field in fields(cls)]
+        unknown = sorted(set(values) - set(known))
+        if unknown:
+            raise ParameterError(f"settings have no {unknown[0]!r}: they are {', '.join(known)}")
+        settings = cls(**values)
+        check_rule(settings.rule)
+        check_detrend(settings.detrend, settings.detrend_frames)
+        for name, choice in (("against", Against), ("null", Null)):
+            if getattr(settings, name) not in get_args(choice):
+                raise ParameterError(
+                    f"{name} must be one of {', '.join(get_args(choice))}, got {getattr(settings, name)!r}"
+                )
+        for name, least in (("surrogates", 0), ("seed", 0), ("min_pairs", 3), ("max_lag", 0)):
+            value = getattr(settings, name)
+            if value is not None and (isinstance(value, bool) or value != int(value) or value < least):
+                raise ParameterError(f"{name} must be a whole number of at least {least}, got {value!r}")
+        return settings
+
+    def common(self) -> dict[str, Any]:
+        """What `cross_correlate` and `correlate_pairs` both take."""
+        names = ("detrend", "detrend_frames", "difference", "min_pairs", "surrogates", "null", "seed")
+        return {name: getattr(self, name) for name in names}
