@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from cytodisk.arrays import FloatArray
 from cytodisk.geometry.locate import nearest_on_outline
@@ -70,6 +71,35 @@ def true_edge_velocity(
         held = total > 0.0
         velocity[time, held] = np.bincount(sector, weight * displacement, sectors)[held] / total[held]
     return velocity
+
+
+def share_by_sector(
+    movie: DiskMovie, boundary_yx: FloatArray, values: FloatArray, sectors: int
+) -> FloatArray:
+    """Mean of a property of the true edge over what each sector held of it, through the movie.
+
+    Parameters
+    ----------
+    movie : DiskMovie
+    boundary_yx : ndarray of shape (T, M, 2) and dtype float
+        Material points of the edge through time.
+    values : ndarray of shape (M,) and dtype float
+        One a point, such as whether the signal is coupled to the edge there.
+    sectors : int
+
+    Returns
+    -------
+    ndarray of shape (S,) and dtype float
+        Mean over frames with a map.
+    """
+    found = []
+    for time in np.flatnonzero(movie.mapped):
+        disk = movie[int(time)]
+        _, nearest = cKDTree(boundary_yx[time]).query(disk.vertices_yx[disk.boundary])
+        sector = sector_of(disk.boundary_angles, sectors)
+        total = np.bincount(sector, values[nearest], sectors)
+        found.append(total / np.maximum(np.bincount(sector, minlength=sectors), 1))
+    return np.asarray(np.mean(found, axis=0))
 
 
 def first_boundary_of(movie: DiskMovie) -> TrackedBoundary:

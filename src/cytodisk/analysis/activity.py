@@ -43,7 +43,8 @@ def sample_movie(
     -------
     Dataset with dims (time, channel, layer, sector)
         mean, sd, min, max, n_pixels, n_nan as for `sample`; area of the windows and status, reason by frame;
-        centroid_y and centroid_x of the windows as coordinates, which go with any of the others. A frame without a map is NaN with its reason. The coordinate time_s is
+        centroid_y and centroid_x of the windows as coordinates, which go with any of the others. A frame
+        without a map is NaN with its reason. The coordinate time_s is
         there when the frame interval is known; units are in the attrs of each variable.
 
     Raises
@@ -125,7 +126,7 @@ def activity_dataset(
 
 
 def with_places(activity: xr.Dataset) -> xr.Dataset:
-    """The Dataset with the windows' centroids as coordinates, which say how large a pixel is if it is known."""
+    """The Dataset with the windows' centroids, and the size of a pixel where known, as coordinates."""
     scale = {name: value for name, value in activity.attrs.items() if name == "pixel_size_um"}
     for name in ("centroid_y", "centroid_x"):
         activity[name].attrs |= scale

@@ -12,8 +12,9 @@ import xarray as xr
 from cytodisk.analysis.confidence import effective_share, fisher_interval
 from cytodisk.analysis.lagged import LaggedSeries
 from cytodisk.analysis.pairing import Pair, named_series, paired
-from cytodisk.analysis.series import KPSS_LIMIT, Detrend, kpss, prepare_series
-from cytodisk.analysis.surrogates import Null, Surrogates
+from cytodisk.analysis.parameters import whole_number
+from cytodisk.analysis.series import KPSS_LIMIT, Detrend, default_frames, kpss, prepare_series
+from cytodisk.analysis.surrogates import Null, Surrogates, check_null
 from cytodisk.analysis.surrogates import surrogates as make_surrogates
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import ParameterError, StationarityWarning
@@ -93,10 +94,11 @@ def cross_correlate(
     """
     first, second, interval_s = named_series(a, b)
     lags = lags_within(max_lag, min_pairs, first.sizes["time"])
-    frames = detrend_frames or (4 * max_lag + 1 if detrend == "median" and max_lag else None)
+    surrogates = whole_number("surrogates", surrogates, 0)
+    check_null(null)
     options: dict[str, Any] = {
         "detrend": detrend,
-        "detrend_frames": frames,
+        "detrend_frames": default_frames(detrend, detrend_frames, max_lag),
         "difference": difference,
         "zscore": zscore,
     }
@@ -141,7 +143,9 @@ def correlation_by_layer(correlations: xr.Dataset) -> xr.Dataset:
     if "correlation" not in correlations or _SECTOR not in correlations["correlation"].dims:
         raise ParameterError("correlations must be the Dataset that cross_correlate returns, with sectors")
     curves = correlations["correlation"]
-    quartiles = curves.quantile([0.25, 0.75], dim=_SECTOR)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # lags without a correlation have no quartiles
+        quartiles = curves.quantile([0.25, 0.75], dim=_SECTOR)
     data = {
         "correlation": curves.mean(_SECTOR),
         "lower_quartile": quartiles.isel(quantile=0, drop=True),
@@ -240,9 +244,7 @@ class _Run:
 
 def lags_within(max_lag: int, min_pairs: int, frames: int) -> IntArray:
     """Lags from -max_lag to max_lag; ParameterError when a movie of so many frames is too short for them."""
-    for name, value, least in (("max_lag", max_lag, 0), ("min_pairs", min_pairs, 3)):
-        if isinstance(value, bool) or value != int(value) or value < least:
-            raise ParameterError(f"{name} must be a whole number of at least {least}, got {value!r}")
+    max_lag, min_pairs = whole_number("max_lag", max_lag, 0), whole_number("min_pairs", min_pairs, 3)
     if frames - max_lag < min_pairs:
         most = frames - min_pairs
         advice = f"pass at most {most}" if most >= 0 else "that is too short a movie"

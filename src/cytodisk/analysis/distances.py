@@ -10,14 +10,15 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
+from cytodisk.analysis.parameters import whole_number
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.errors import ParameterError, WindowError
+from cytodisk.errors import WindowError
 from cytodisk.geometry.locate import TriangleLocator
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.windows.grid import PolarWindows
 
-_DIMS = ("layer", "sector", "other_layer", "other_sector")
+DISTANCE_DIMS = ("layer", "sector", "other_layer", "other_sector")
 _LOOK_EVERY = 0.5  # pixels between the places at which a straight line must be inside the cell
 
 
@@ -53,8 +54,7 @@ def window_distances(cell: DiskMap | DiskMovie, grid: PolarWindows, *, frames: i
     shortest path along edges of the mesh and across pairs of its triangles, by Dijkstra, which is up to 4 %
     too long.
     """
-    if frames != int(frames) or frames < 1:
-        raise ParameterError(f"frames must be a whole number of at least 1, got {frames!r}")
+    frames = whole_number("frames", frames, 1)
     maps: list[DiskMap] = []
     scale = 1.0
     if isinstance(cell, DiskMap):
@@ -72,13 +72,13 @@ def window_distances(cell: DiskMap | DiskMovie, grid: PolarWindows, *, frames: i
     shape = (grid.layers, grid.sectors, grid.layers, grid.sectors)
     data: dict[str, Any] = {
         name: (
-            _DIMS,
+            DISTANCE_DIMS,
             scale * np.mean([table[name] for table in tables], axis=0).reshape(shape),
             {"units": units},
         )
         for name in tables[0]
     }
-    coords = {dim: np.arange(size) for dim, size in zip(_DIMS, shape, strict=True)}
+    coords = {dim: np.arange(size) for dim, size in zip(DISTANCE_DIMS, shape, strict=True)}
     return xr.Dataset(data, coords, attrs={"units": units})
 
 

@@ -127,6 +127,8 @@ def _named(values: Any, name: Literal["a", "b"]) -> xr.DataArray:
         raise ParameterError(f"{name} has the dims {list(values.dims)}: pass series in time")
     if values.dtype.kind not in "biuf":
         raise ParameterError(f"{name} must hold numbers, got dtype {values.dtype}")
+    if np.isinf(values).any():
+        raise ParameterError(f"{name} holds infinite numbers: put NaN where there is no value")
     if not values.size:
         raise ParameterError(f"{name} is empty, shape {values.shape}: pass at least one frame and window")
     series: xr.DataArray = values.transpose("time", ...).astype(np.float64)
@@ -138,6 +140,8 @@ def _interval(series: xr.DataArray, name: str) -> float | None:
     for coordinate in ("time", "time_s"):
         if coordinate in series.coords and series.sizes["time"] > 2:
             steps = np.diff(series[coordinate].to_numpy().astype(np.float64))
+            if steps.min() <= 0.0:
+                raise ParameterError(f"{name} goes back in {coordinate}, or stands still: sort it by time")
             if not np.allclose(steps, steps[0], rtol=1e-6, atol=0.0):
                 raise ParameterError(
                     f"{name} has frames {steps.min():g} to {steps.max():g} apart in {coordinate}: lags need "

@@ -11,11 +11,12 @@ import xarray as xr
 from scipy.spatial.distance import cdist
 
 from cytodisk.analysis.correlation import ALPHA, lags_within
-from cytodisk.analysis.distances import disk_distances
+from cytodisk.analysis.distances import DISTANCE_DIMS, disk_distances
 from cytodisk.analysis.pair_blocks import DistanceBins, distributions, mean_by_bin
 from cytodisk.analysis.pairing import named_series
-from cytodisk.analysis.series import Detrend, prepare_series
-from cytodisk.analysis.surrogates import Null, Surrogates
+from cytodisk.analysis.parameters import whole_number
+from cytodisk.analysis.series import Detrend, default_frames, prepare_series
+from cytodisk.analysis.surrogates import Null, Surrogates, check_null
 from cytodisk.analysis.surrogates import surrogates as make_surrogates
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import ParameterError
@@ -90,7 +91,9 @@ def correlate_pairs(
         if set(series.dims) != {"time", *_WINDOW}:
             raise ParameterError(f"{name} has the dims {list(series.dims)}: pass (time, layer, sector)")
     lags = lags_within(max_lag, min_pairs, first.sizes["time"])
-    frames = detrend_frames or (4 * max_lag + 1 if detrend == "median" and max_lag else None)
+    surrogates = whole_number("surrogates", surrogates, 0)
+    check_null(null)
+    frames = default_frames(detrend, detrend_frames, max_lag)
     options: dict[str, Any] = {"detrend": detrend, "detrend_frames": frames, "difference": difference}
     tables = [prepare_series(_flat(series), **options) for series in (first, second)]
     apart, units, kind = _distances(distances, a, b, (first.sizes["layer"], first.sizes["sector"]))
@@ -168,13 +171,17 @@ def _distances(given: Any, a: Any, b: Any, shape: tuple[int, int]) -> tuple[dict
     units = getattr(given, "attrs", {}).get("units", "")
     found = {}
     for name, table in tables.items():
-        values = np.asarray(table, dtype=np.float64)
+        if isinstance(table, xr.DataArray) and set(table.dims) == set(DISTANCE_DIMS):
+            table = table.transpose(*DISTANCE_DIMS)
+        values = np.asarray(table)
+        if values.dtype.kind not in "biuf":
+            raise ParameterError(f"distances must be numbers, got dtype {values.dtype}")
         if values.size != windows**2:
             raise ParameterError(
                 f"distances have shape {values.shape}: {shape[0]} layers × {shape[1]} sectors need "
                 f"{windows} × {windows}, as window_distances gives for the same grid"
             )
-        found[str(name)] = values.reshape(windows, windows)
+        found[str(name)] = values.astype(np.float64).reshape(windows, windows)
         if not np.isfinite(found[str(name)]).all() or (found[str(name)] < 0).any():
             raise ParameterError("distances must be finite and not below 0")
     return found, units, ", ".join(found)
@@ -196,10 +203,9 @@ def _scale(series: xr.DataArray) -> tuple[str]:
 
 
 def _edges(tables: list[FloatArray], bins: int) -> FloatArray:
-    if isinstance(bins, bool) or bins != int(bins) or bins < 1:
-        raise ParameterError(f"bins must be a whole number of at least 1, got {bins!r}")
+    count = whole_number("bins", bins, 1)
     longest = max(float(table.max()) for table in tables)
-    return np.linspace(0.0, longest or 1.0, int(bins) + 1)
+    return np.linspace(0.0, longest or 1.0, count + 1)
 
 
 def _centres(edges: FloatArray) -> FloatArray:

@@ -11,10 +11,14 @@ from typing import Any, Literal, get_args
 import numpy as np
 import pandas as pd
 
+from cytodisk.analysis.parameters import whole_number
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
 
 Detrend = Literal["none", "linear", "median"]
+
+_ROUNDING = 64.0 * np.finfo(np.float64).eps
+"""Share of the largest magnitude below which a spread is nothing but rounding."""
 
 KPSS_LIMIT = 0.463
 """Critical value of the KPSS statistic at 5 %."""
@@ -51,17 +55,26 @@ def prepare_series(
     Raises
     ------
     ParameterError
-        `detrend` is unknown, or the frames of the median are too few.
+        `detrend` is unknown, the frames of the median are too few, or there are no values by time.
+
+    Notes
+    -----
+    What rounding leaves of a straight line, or of its differences, is made one constant: it would correlate.
     """
     check_detrend(detrend, detrend_frames)
+    frames = None if detrend_frames is None else int(detrend_frames)
     series = np.array(values, dtype=np.float64)
+    if not series.ndim or not series.size:
+        raise ParameterError(f"values must have time first and not be empty, got shape {series.shape}")
     columns = series.reshape(len(series), -1)
     if detrend == "linear":
         columns = columns - _lines(columns)
     elif detrend == "median":
-        columns = columns - _moving_median(columns, detrend_frames or len(columns))
+        columns = columns - _moving_median(columns, frames or len(columns))
     if difference:
         columns = np.diff(columns, axis=0, prepend=np.nan)
+    if difference or detrend != "none":
+        columns = _without_rounding(columns, series.reshape(columns.shape))
     if zscore:
         columns = standardised(columns)
     return np.asarray(columns.reshape(series.shape))
@@ -71,17 +84,23 @@ def check_detrend(detrend: str, frames: int | None) -> None:
     """Raise ParameterError unless the way to detrend is known and its frames suffice."""
     if detrend not in get_args(Detrend):
         raise ParameterError(f"detrend must be one of {', '.join(get_args(Detrend))}, got {detrend!r}")
-    if frames is not None and (frames != int(frames) or frames < 3):
-        raise ParameterError(f"detrend_frames must be a whole number of at least 3, got {frames!r}")
+    if frames is not None:
+        whole_number("detrend_frames", frames, 3)
+
+
+def default_frames(detrend: str, frames: int | None, max_lag: int) -> int | None:
+    """Frames of the moving median: those asked for, else 4 max_lag + 1, which keeps what the lags compare."""
+    return 4 * max_lag + 1 if frames is None and detrend == "median" and max_lag else frames
 
 
 def standardised(columns: FloatArray) -> FloatArray:
-    """Each column minus its mean, divided by its standard deviation; a constant becomes 0."""
+    """Each column minus its mean, divided by its standard deviation; a constant, but for rounding, becomes 0."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a column of all NaN stays so
         centred = columns - np.nanmean(columns, axis=0)
         spread = np.nanstd(columns, axis=0)
-        constant = np.nanmax(columns, axis=0) == np.nanmin(columns, axis=0)
+        extent = np.nanmax(columns, axis=0) - np.nanmin(columns, axis=0)
+        constant = extent <= _ROUNDING * np.nanmax(np.abs(columns), axis=0)
     return np.asarray(np.where(constant, centred * 0.0, centred / np.where(spread > 0, spread, 1.0)))
 
 
@@ -131,7 +150,7 @@ def kpss(values: Any) -> FloatArray:
 
 def _kpss(series: FloatArray) -> float:
     count = series.size
-    if count < 10 or np.ptp(series) == 0:
+    if count < 10 or np.ptp(series) <= _ROUNDING * np.abs(series).max():
         return np.nan
     residual = series - series.mean()
     lags = int(np.ceil(12.0 * (count / 100.0) ** 0.25))
@@ -140,6 +159,15 @@ def _kpss(series: FloatArray) -> float:
         variance += 2.0 * (1.0 - lag / (lags + 1.0)) * (residual[lag:] @ residual[:-lag])
     walk = np.cumsum(residual)
     return float((walk @ walk) / count / variance)
+
+
+def _without_rounding(columns: FloatArray, before: FloatArray) -> FloatArray:
+    """Columns, made constant where they vary by no more than rounding of what they were before."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # a column of all NaN stays so
+        extent = np.nanmax(columns, axis=0) - np.nanmin(columns, axis=0)
+        rounding = extent <= _ROUNDING * np.nanmax(np.abs(before), axis=0)
+        return np.asarray(np.where(rounding, columns * 0.0 + np.nanmean(columns, axis=0), columns))
 
 
 def _lines(columns: FloatArray) -> FloatArray:

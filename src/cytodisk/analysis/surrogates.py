@@ -12,6 +12,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from cytodisk.analysis.parameters import whole_number
 from cytodisk.analysis.series import interpolated
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import ParameterError
@@ -40,13 +41,11 @@ def surrogates(null: Null, frames: int, count: int, seed: int) -> Surrogates:
     Raises
     ------
     ParameterError
-        An unknown null, no surrogates, or too few frames to shift.
+        An unknown null, no surrogates, a seed below 0, or too few frames to shift.
     """
-    if null not in get_args(Null):
-        raise ParameterError(f"null must be one of {', '.join(get_args(Null))}, got {null!r}")
-    if count != int(count) or count < 1:
-        raise ParameterError(f"surrogates must be a whole number of at least 1, got {count!r}")
-    random = np.random.default_rng(seed)
+    check_null(null)
+    count = whole_number("surrogates", count, 1)
+    random = np.random.default_rng(whole_number("seed", seed, 0))
     if null == "phase":
         turns = np.exp(1j * random.uniform(0.0, 2.0 * np.pi, (frames + 1, count)))
         return lambda series: phase_randomised(series, turns)
@@ -54,6 +53,12 @@ def surrogates(null: Null, frames: int, count: int, seed: int) -> Surrogates:
         raise ParameterError(f"null 'shift' needs at least 2 frames, got {frames}")
     shifts = random.integers(1, frames, count)
     return lambda series: circularly_shifted(series, shifts)
+
+
+def check_null(null: str) -> None:
+    """Raise ParameterError unless there are such surrogates."""
+    if null not in get_args(Null):
+        raise ParameterError(f"null must be one of {', '.join(get_args(Null))}, got {null!r}")
 
 
 def phase_randomised(series: FloatArray, turns: NDArray[np.complex128]) -> FloatArray:

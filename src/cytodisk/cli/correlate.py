@@ -92,10 +92,9 @@ def correlate_command(
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.io.study import open_study
-    from cytodisk.plot.correlation_figures import parse_formats
     from cytodisk.study.correlate import channels_of, correlate_study
 
-    wanted = parse_formats(formats)
+    wanted = _formats(formats)
     there = open_study(study)
     given = {
         "max_lag": max_lag,
@@ -194,9 +193,9 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
             console.print(f"cell {row['cell']} left out: {row['reason']}")
         elif max(row["drifting_signal"], row["drifting_with"]) > DRIFTING:
             console.print(
-                f"cell {row['cell']}: the level of {row['drifting_signal']:.0%} of the signal's series and "
-                f"{row['drifting_with']:.0%} of what it was correlated with drifts (chance gives 5 %), such as "
-                "by bleaching: see whether --detrend linear or --difference says the same"
+                f"cell {row['cell']}: the level drifts, as by bleaching, in {row['drifting_signal']:.0%} of "
+                f"the signal's series and {row['drifting_with']:.0%} of the others (chance gives 5 %): see "
+                "whether --detrend linear or --difference says the same"
             )
     console.print(f"{count(layers['cell'].nunique())} correlated: {found.path}")
 
@@ -210,6 +209,15 @@ def _layer_words(row: Any, windows: Any) -> str:
         return words
     share = (windows["q"] < 0.05).mean()
     return f"{words}, q {row['q']:.3g}; {share:.0%} of its windows have q < 0.05"
+
+
+def _formats(text: str) -> tuple[str, ...]:
+    from cytodisk.errors import ParameterError
+
+    wanted = tuple(dict.fromkeys(part.strip().lower() for part in text.split(",")))
+    if not set(wanted) <= {"png", "pdf", "svg"}:
+        raise ParameterError(f"format must be png, pdf, svg or several with commas between, got {text!r}")
+    return wanted
 
 
 def _only(names: list[str]) -> str:

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from cytodisk.cli.console import Quiet, console_for, progress_bar
+from cytodisk.cli.correlate import draw_correlation, say_correlation, write_page
 from cytodisk.cli.movie import draw_movie, finish_movie, say_movie
 
 
@@ -29,10 +30,11 @@ def demo_command(
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in OUT/study.")] = False,
     quiet: Quiet = False,
 ) -> None:
-    """Simulate a moving cell with two signals, follow it, and compare with the known answer.
+    """Simulate a moving cell with two signals, follow it, correlate, report, compare with the known answer.
 
-    Nothing is downloaded. OUT/input holds the simulated files, OUT/study the results.
+    Nothing is downloaded. OUT/input holds the simulated files, OUT/study the results, with report.html.
     """
+    from cytodisk.study.correlate import correlate_study
     from cytodisk.study.demo import compare_with_truth, write_demo_input
     from cytodisk.study.movie_inputs import open_movie
     from cytodisk.study.movie_run import run_movie
@@ -55,5 +57,11 @@ def demo_command(
         )
     draw_movie(quiet, study, inputs, 1)
     finish_movie(console, study)
+    with progress_bar(quiet, "steps") as progress:
+        found = correlate_study(study, "edge", "velocity", progress=progress)
+    draw_correlation(quiet, study, found, 1, ("png",))
+    say_correlation(console, found)
+    write_page(console, quiet, study)
+    console.print("")
     for what, answer in compare_with_truth(study, truth).items():
         console.print(f"{what}: {answer}")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import asdict
-from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
@@ -92,7 +91,6 @@ def correlate_study(
     content: dict[str, Any] = asdict(options) | {"max_lag": max_lag}
     content |= {"unit": "s" if study.provenance.get("frame_interval_s") else "frame"}
     content |= {"cytodisk": installed(("cytodisk",))["cytodisk"]}
-    content |= {"written": datetime.now(UTC).isoformat(timespec="seconds")}
     return write_correlation(study.path, signal, with_, merged, content)
 
 

@@ -8,7 +8,12 @@ from typing import Any
 import numpy as np
 import tifffile
 
-from cytodisk.analysis.accuracy import first_boundary_of, tracking_error, true_edge_velocity
+from cytodisk.analysis.accuracy import (
+    first_boundary_of,
+    share_by_sector,
+    tracking_error,
+    true_edge_velocity,
+)
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.files import replacing
@@ -16,8 +21,9 @@ from cytodisk.io.frames import open_frames
 from cytodisk.io.study import Study
 from cytodisk.simulate.moving_cells import SimulatedMovie, movie
 
-FRAMES = 40
-_LONGEST_LAG = 10  # frames
+FRAMES = 60
+_COUPLED = 0.5  # share of the edge along which the signal follows its velocity
+_MOSTLY = 0.95  # share of a sector that must be coupled, or not, for it to count
 
 
 def write_demo_input(
@@ -43,7 +49,7 @@ def write_demo_input(
     StudyError
         The folder cannot be written, or holds something else.
     """
-    truth = movie("migrating", seed, frames=FRAMES)
+    truth = movie("fluctuating", seed, frames=FRAMES, speed_px=0.5, turn_deg=0.4, coupled=_COUPLED)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -71,7 +77,7 @@ def compare_with_truth(study: Study, truth: SimulatedMovie) -> dict[str, str]:
     Parameters
     ----------
     study : Study
-        Of the files that `write_demo_input` wrote.
+        Of the files that `write_demo_input` wrote, with its edge signal correlated with velocity.
     truth : SimulatedMovie
 
     Returns
@@ -84,7 +90,7 @@ def compare_with_truth(study: Study, truth: SimulatedMovie) -> dict[str, str]:
         "boundary": _boundary_words(study, truth),
         "edge velocity": _velocity_words(study, truth, activity["velocity"].to_numpy()),
         "signal": _signal_words(study, truth),
-        "lag": _lag_words(truth, activity["mean"].sel(channel="edge", layer=0).to_numpy(), activity),
+        "lag": _lag_words(study, truth),
     }
 
 
@@ -131,24 +137,21 @@ def _signal_words(study: Study, truth: SimulatedMovie) -> str:
     return f"sum over windows against counts in the cell: at most {worst:.0e} off, in any frame and channel"
 
 
-def _lag_words(truth: SimulatedMovie, edge: FloatArray, activity: Any) -> str:
-    """Lag at which the outermost layer's edge signal follows velocity best, against the simulated one."""
-    velocity = activity["velocity"].to_numpy()
-    lags = range(-_LONGEST_LAG, _LONGEST_LAG + 1)
-    best = max(lags, key=lambda lag: _correlation_at(velocity, edge, lag))
-    interval = truth.frame_interval_s
+def _lag_words(study: Study, truth: SimulatedMovie) -> str:
+    """The lag of the edge signal where it follows the edge, and what was found where it does not."""
+    found = study.correlation("edge", "velocity").windows
+    outer = found[found["layer"] == 0].sort_values("sector")
+    share = share_by_sector(study.movie(0), truth.boundary_yx, truth.coupled, len(outer))
+    coupled, others = outer[share > _MOSTLY], outer[share < 1.0 - _MOSTLY]
+    interval, lag = truth.frame_interval_s, -float(coupled["lag"].median())
+    right = (coupled["lag"] + truth.lag_frames).abs() <= 1
     return (
-        f"the edge signal follows edge velocity by {best * interval:g} s ({best} frames); simulated were "
-        f"{truth.lag_frames * interval:g} s ({truth.lag_frames} frames)"
+        f"where the edge signal was made to follow edge velocity by {truth.lag_frames * interval:g} s "
+        f"({truth.lag_frames} frames), it is found to follow by {lag * interval:g} s ({lag:g} frames), "
+        f"within a frame in {right.sum()} of {len(coupled)} sectors, q < 0.05 in "
+        f"{(coupled['q'] < 0.05).sum()}; where it has nothing to do with velocity, q < 0.05 in "
+        f"{(others['q'] < 0.05).sum()} of {len(others)}"
     )
-
-
-def _correlation_at(velocity: FloatArray, signal: FloatArray, lag: int) -> float:
-    """Correlation over frames and sectors of the velocity with the signal `lag` frames later."""
-    frames = len(velocity) - abs(lag)
-    early, late = velocity[max(0, -lag) :][:frames], signal[max(0, lag) :][:frames]
-    both = np.isfinite(early) & np.isfinite(late)
-    return float(np.corrcoef(early[both], late[both])[0, 1])
 
 
 def _signal(truth: SimulatedMovie) -> Any:
