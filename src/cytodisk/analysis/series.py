@@ -94,7 +94,7 @@ def default_frames(detrend: str, frames: int | None, max_lag: int) -> int | None
 
 
 def standardised(columns: FloatArray) -> FloatArray:
-    """Each column minus its mean, divided by its standard deviation; a constant, but for rounding, becomes 0."""
+    """Each column minus its mean, divided by its standard deviation; a constant up to rounding becomes 0."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a column of all NaN stays so
         centred = columns - np.nanmean(columns, axis=0)
