@@ -1,0 +1,287 @@
+"""Whether correlations are found where they are and only there, and what it costs.
+
+Prints three Markdown tables.
+
+1. False positives: windows of simulated activity and velocity that have nothing to do with each other,
+   3 layers × 12 sectors, 199 surrogates: share with p < 0.05 and with q < 0.05, in percent, with its standard
+   error over movies (windows of one movie are correlated). Of 199 surrogates p is a multiple of 0.005, so
+   that "p < 0.05" means 0.045 at most. The last rows are over all kinds.
+2. Detection: movies of images through the whole pipeline. Channel "edge" follows the edge's velocity with a
+   known lag along half of the edge, and that of another cell along the rest. "lag found": windows of layers 0
+   and 1 in coupled sectors whose peak lies within one frame of the truth; "found": those with q < 0.05;
+   "false": windows of all layers in sectors that are not coupled with q < 0.05; all in percent, with the
+   standard error over movies. "no threshold" is the paper's rule without surrogates' help.
+3. Pairs: time and peak memory of all pairs of 1200 windows at 41 lags of 500 frames, each in a process of
+   its own.
+
+Ends with status 1 if the default, "phase", has not between 3 % and 7 % false positives over all kinds, or if
+"nearest" finds less than 95 % of the lags, or 5 % or more of the windows that are not coupled.
+"""
+
+import argparse
+import multiprocessing
+import os
+import resource
+import sys
+import time
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from scipy.spatial import cKDTree
+
+from cytodisk.analysis.activity import sample_movie
+from cytodisk.analysis.correlation import cross_correlate
+from cytodisk.analysis.pairs import correlate_pairs
+from cytodisk.analysis.peaks import peak_correlation
+from cytodisk.analysis.surrogates import Null
+from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.errors import StationarityWarning
+from cytodisk.motion.disk_movie import DiskMovie
+from cytodisk.motion.edge import sector_of
+from cytodisk.motion.map_movie import map_movie
+from cytodisk.motion.velocity import edge_velocity
+from cytodisk.simulate import SERIES_KINDS, SimulatedMovie, independent_series, movie
+from cytodisk.simulate.series import SeriesKind
+from cytodisk.windows.grid import polar_windows
+
+ALPHA = 0.05
+NULLS: tuple[Null, ...] = ("phase", "shift")
+FRAMES = (40, 100, 200)
+LAGS = (-4, 3, 0)
+RULES = ("nearest", "largest", "no threshold")
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+_LAYERS, _SECTORS = 10, 60
+_COUPLED_LAYERS = 2
+_MAX_LAG = 20
+
+
+@dataclass(frozen=True)
+class Independent:
+    """Simulated movies without any correlation: kind of series, their null, and how long."""
+
+    kind: SeriesKind
+    null: Null
+    frames: int
+    seeds: range
+
+
+@dataclass(frozen=True)
+class Coupled:
+    """One movie of images in which the edge follows the velocity."""
+
+    lag: int
+    seed: int
+    frames: int
+    cache: Path | None
+
+
+def pool(workers: int) -> ProcessPoolExecutor:
+    """Fresh processes that compute with one thread each."""
+    os.environ |= dict.fromkeys(_THREADS, "1")
+    return ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"))
+
+
+def percent(shares: Sequence[float] | FloatArray) -> str:
+    """Mean of the movies' shares in percent, with its standard error."""
+    values = 100.0 * np.asarray(shares)
+    error = values.std(ddof=1) / np.sqrt(values.size) if values.size > 1 else np.nan
+    return f"{values.mean():.1f} ± {error:.1f}"
+
+
+def print_row(cells: Iterable[object], head: bool = False) -> None:
+    """Print a row of a table, below the first the line that makes it a head."""
+    shown = [str(cell) for cell in cells]
+    print(f"| {' | '.join(shown)} |", flush=True)
+    if head:
+        print(f"|{'---|' * len(shown)}", flush=True)
+
+
+def false_shares(trial: Independent) -> FloatArray:
+    """Shares of windows with p, and with q, below 0.05, shape (movies, 2)."""
+    warnings.simplefilter("ignore", StationarityWarning)
+    max_lag = min(20, trial.frames // 4)
+    found = []
+    for seed in trial.seeds:
+        activity, velocity = independent_series(trial.kind, seed, trial.frames, 3, 12)
+        correlations = cross_correlate(
+            activity, velocity, max_lag, surrogates=199, null=trial.null, seed=10_000 + seed
+        )
+        peak = peak_correlation(correlations, rule="largest")
+        found.append([float((peak[name] < ALPHA).mean()) for name in ("p", "q")])
+    return np.array(found)
+
+
+def false_positives(movies: int, workers: int) -> bool:
+    """Print how often independent series seem correlated; whether that is as often as it should be."""
+    print(f"\nFalse positives in percent of windows, {movies} movies a row\n")
+    print_row(["kind", "frames", *(f"{null}: {name} < 0.05" for null in NULLS for name in "pq")], head=True)
+    rows = [(kind, frames) for kind in SERIES_KINDS for frames in FRAMES]
+    seeds = range(movies)
+    trials = [Independent(kind, null, frames, seeds) for kind, frames in rows for null in NULLS]
+    tables = []
+    with pool(workers) as processes:
+        results = processes.map(false_shares, trials)
+        for kind, frames in rows:
+            tables.append(np.concatenate([next(results) for _ in NULLS], axis=1))
+            print_row([kind, frames, *map(percent, tables[-1].T)])
+    for place, frames in enumerate(FRAMES):
+        print_row(["all", frames, *map(percent, np.concatenate(tables[place :: len(FRAMES)]).T)])
+    every = np.concatenate(tables)
+    print_row(["all", "all", *map(percent, every.T)])
+    share = float(every[:, 0].mean())
+    good = 0.03 <= share <= 0.07
+    print(f"\n{verdict(good)}: {share:.1%} of the windows have p < 0.05 with 'phase' (required: 3 to 7 %)")
+    return good
+
+
+def coupled_share(truth: SimulatedMovie, mapped: DiskMovie) -> FloatArray:
+    """How much the edge of each sector is coupled, mean over the movie, shape (sectors,)."""
+    share = np.zeros((len(mapped), _SECTORS))
+    for time_, boundary_yx in enumerate(truth.boundary_yx):
+        disk = mapped[time_]
+        u, v = disk.vertices_uv[disk.boundary].T
+        sector = sector_of(np.arctan2(v, u), _SECTORS)
+        _, nearest = cKDTree(boundary_yx).query(disk.vertices_yx[disk.boundary])
+        total = np.bincount(sector, truth.coupled[nearest], _SECTORS)
+        count = np.bincount(sector, minlength=_SECTORS)
+        share[time_] = np.where(count > 0, total / np.maximum(count, 1), np.nan)
+    return np.asarray(np.nanmean(share, axis=0))
+
+
+def series_of(trial: Coupled) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Activity (T, layer, sector), velocity (T, sector) and coupling (sector) of a movie of images."""
+    name = f"coupled_{trial.lag}_{trial.seed}_{trial.frames}.npz"
+    if trial.cache is not None and (trial.cache / name).exists():
+        with np.load(trial.cache / name) as stored:
+            return stored["activity"], stored["velocity"], stored["share"]
+    truth = movie("fluctuating", trial.seed, frames=trial.frames, lag_frames=trial.lag, coupled=0.5)
+    mapped = map_movie(truth.masks)
+    sampled = sample_movie(mapped, polar_windows(_LAYERS, _SECTORS), truth.signal)
+    activity = sampled["mean"].sel(channel="edge").to_numpy()
+    velocity = edge_velocity(mapped, _SECTORS).to_numpy()
+    share = coupled_share(truth, mapped)
+    if trial.cache is not None:
+        trial.cache.mkdir(parents=True, exist_ok=True)
+        np.savez(trial.cache / name, activity=activity, velocity=velocity, share=share)
+    return activity, velocity, share
+
+
+def peak_by(correlations: xr.Dataset, rule: str) -> xr.Dataset:
+    """Peak by a rule of the table."""
+    if rule == "largest":
+        return peak_correlation(correlations, rule="largest")
+    return peak_correlation(
+        correlations.drop_vars("threshold") if rule == "no threshold" else correlations, rule="nearest"
+    )
+
+
+def detected(trial: Coupled) -> dict[str, list[float]]:
+    """By rule: share of coupled windows with the right lag, with q < 0.05; of the others with q < 0.05."""
+    warnings.simplefilter("ignore", StationarityWarning)
+    activity, velocity, share = series_of(trial)
+    correlations = cross_correlate(activity, velocity, _MAX_LAG, surrogates=999, seed=trial.seed)
+    on, off = share > 0.95, share < 0.05
+    found = {}
+    for rule in RULES:
+        peak = peak_by(correlations, rule)
+        near: BoolArray = np.abs(peak["lag"].to_numpy() + trial.lag) <= 1.0  # the edge follows: b goes before
+        significant: BoolArray = peak["q"].to_numpy() < ALPHA
+        coupled = slice(0, _COUPLED_LAYERS), on
+        found[rule] = [float(near[coupled].mean()), float(significant[coupled].mean())]
+        found[rule].append(float(significant[:, off].mean()))
+    return found
+
+
+def detection(movies: int, frames: int, workers: int, cache: Path | None) -> bool:
+    """Print how surely lags are found; whether the default does so well enough."""
+    print(f"\nDetection in percent of windows, {movies} movies of {frames} frames a lag, 999 surrogates\n")
+    print_row(["lag of edge", "rule", "lag found", "found", "false"], head=True)
+    trials = [Coupled(lag, seed, frames, cache) for lag in LAGS for seed in range(movies)]
+    failures = []
+    with pool(workers) as processes:
+        results: Iterator[dict[str, list[float]]] = processes.map(detected, trials)
+        for lag in LAGS:
+            found = [next(results) for _ in range(movies)]
+            for rule in RULES:
+                shares = np.array([figures[rule] for figures in found])
+                print_row([lag, rule, *map(percent, shares.T)])
+                right, _, false = shares.mean(axis=0)
+                if rule == "nearest" and (right < 0.95 or false >= 0.05):
+                    failures.append(f"lag {lag}: {right:.1%} of lags found, {false:.1%} false")
+    print(f"\n{verdict(not failures)}: 'nearest' (required: 95 % of lags, less than 5 % false)")
+    print(*failures, sep="\n")
+    return not failures
+
+
+def cost_of_pairs(missing: float, frames: int, windows: tuple[int, int]) -> tuple[float, float, float]:
+    """Seconds of one run, and memory before it and at its peak, in MB."""
+    random = np.random.default_rng(0)
+    a, b = random.normal(size=(2, frames, *windows))
+    if missing:
+        a[random.random(a.shape) < missing] = np.nan
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+    start = time.perf_counter()
+    correlate_pairs(a, b, 20)
+    return (
+        time.perf_counter() - start,
+        before,
+        resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0,
+    )
+
+
+def pairs(frames: int, windows: tuple[int, int]) -> None:
+    """Print what correlations of all pairs cost."""
+    count = windows[0] * windows[1]
+    print(f"\nAll pairs of {count} windows, 41 lags, {frames} frames\n")
+    print_row(["series", "seconds", "MB before", "MB at the peak"], head=True)
+    for name in _THREADS:
+        os.environ.pop(name, None)
+    for name, missing in (("whole", 0.0), ("1 % missing", 0.01)):
+        with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as process:
+            figures = process.submit(cost_of_pairs, missing, frames, windows).result()
+        print_row([name, *(f"{figure:.0f}" for figure in figures)])
+
+
+def verdict(good: bool) -> str:
+    """What to print before a required figure."""
+    return "ok" if good else "FAILED"
+
+
+def parse_arguments() -> argparse.Namespace:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--workers", type=int, default=2, help="processes (default 2)")
+    parser.add_argument("--movies", type=int, default=200, help="of independent series a row (default 200)")
+    parser.add_argument("--image-movies", type=int, default=8, help="of images a lag (default 8)")
+    parser.add_argument("--frames", type=int, default=150, help="of a movie of images (default 150)")
+    parser.add_argument("--cache", type=Path, help="folder that keeps the series of the movies of images")
+    parser.add_argument("--only", choices=("false", "detection", "pairs"), help="one of the three tables")
+    parser.add_argument("--quick", action="store_true", help="20 movies of series, 2 of images, 300 windows")
+    return parser.parse_args()
+
+
+def main() -> int:
+    """Run the benchmark."""
+    arguments = parse_arguments()
+    movies, image_movies, windows = arguments.movies, arguments.image_movies, (20, 60)
+    if arguments.quick:
+        movies, image_movies, windows = 20, 2, (5, 60)
+    good = True
+    if arguments.only in (None, "false"):
+        good &= false_positives(movies, arguments.workers)
+    if arguments.only in (None, "detection"):
+        good &= detection(image_movies, arguments.frames, arguments.workers, arguments.cache)
+    if arguments.only in (None, "pairs"):
+        pairs(500, windows)
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
