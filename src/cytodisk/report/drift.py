@@ -105,7 +105,7 @@ def signal_drifts(study: Study) -> list[Drift]:
 
 def _drifts(windows: pd.DataFrame) -> Iterator[Drift]:
     means = mean_by_frame(windows).rename("mean").reset_index()
-    for (cell, channel), rows in means.groupby(["cell", "channel"]):  # type: ignore[misc]
+    for (cell, channel), rows in means.groupby(["cell", "channel"]):
         time, mean = (np.asarray(rows[name], dtype=np.float64) for name in ("time", "mean"))
         change = relative_trend(time, mean)
         if abs(change) > LARGEST_CHANGE:

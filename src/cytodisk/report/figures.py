@@ -9,22 +9,30 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.colors import to_hex
 
-from cytodisk.errors import MissingPartError
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS, nice_length
+from cytodisk.report.bokeh_parts import (
+    MISSING,
+    add_colour_bar,
+    add_outline,
+    add_pixels,
+    bare_figure,
+    bokeh,
+    colour_mapper,
+    numbers,
+    source_of,
+    title_of,
+)
 from cytodisk.report.cell_data import CellData
 from cytodisk.report.pictures import Box
 
 if TYPE_CHECKING:
     from bokeh.models import Plot
 
-MISSING = "#d9d9d9"
 LAG_COLOURS = "PuOr"
 
 _LEFT, _RIGHT_FRAME = 54, 512  # px: room for the axes of the right column, and width of its frames
 _SQUARE = 262  # px: height of the views on the left
 _MAP, _STRIP = 118, 44  # px: heights of frames on the right
-_FONT = "11px"
-_INK = "#333333"
 _WINDOW, _LAYER = "#D55E00", "#0072B2"  # of Okabe and Ito, told apart by all
 _MOST_LINES = 1500  # windows whose borders are drawn on a disk
 
@@ -32,26 +40,6 @@ _MOST_LINES = 1500  # windows whose borders are drawn on a disk
 def palette(name: str) -> list[str]:
     """256 colours of a colour map as "#rrggbb"."""
     return [to_hex(colour) for colour in mpl.colormaps[name](np.linspace(0, 1, 256))]
-
-
-def bokeh() -> Any:
-    """The plotting library.
-
-    Raises
-    ------
-    MissingPartError
-        It is not installed.
-    """
-    try:
-        import bokeh.embed
-        import bokeh.models
-        import bokeh.plotting
-        import bokeh.resources
-    except ImportError as error:
-        raise MissingPartError(
-            "the report page needs Bokeh, which is not installed: pip install 'cytodisk[report]'"
-        ) from error
-    return bokeh
 
 
 def library_script() -> str:
@@ -81,111 +69,19 @@ def figures_of(cell: CellData, box: Box, *, correlated: bool) -> dict[str, Any]:
     return {name: bokeh().embed.json_item(plot) for name, plot in plots.items()}
 
 
-def _figure(x: tuple[float, float], y: tuple[float, float], width: int, height: int, **options: Any) -> Any:
-    """A bare figure; `width` and `height` are those of the frame inside the axes."""
-    plot = bokeh().plotting.figure(
-        frame_width=width,
-        frame_height=height,
-        x_range=bokeh().models.Range1d(*x),
-        y_range=bokeh().models.Range1d(*y),
-        tools="",
-        toolbar_location=None,
-        outline_line_color=None,
-        background_fill_color="#ffffff",
-        border_fill_color="#ffffff",
-        min_border=4,
-        **options,
-    )
-    plot.grid.visible = False
-    plot.toolbar.active_drag = None
-    plot.axis.major_label_text_font_size = _FONT
-    plot.axis.axis_label_text_font_size = _FONT
-    plot.axis.axis_label_text_font_style = "normal"
-    plot.axis.axis_label_standoff = 4
-    plot.axis.major_label_text_color = _INK
-    plot.axis.axis_label_text_color = _INK
-    plot.axis.minor_tick_line_color = None
-    plot.axis.major_tick_in = 0
-    plot.axis.axis_line_color = "#999999"
-    plot.axis.major_tick_line_color = "#999999"
-    return plot
-
-
-def _source(**columns: Any) -> Any:
-    return bokeh().models.ColumnDataSource(data=columns)
-
-
-def _pixels(plot: Any, x: float, y: float, width: float, height: float) -> None:
-    """An RGBA image whose source is called "pixels"."""
-    empty = np.zeros((1, 1), dtype=np.uint32)
-    source = _source(image=[empty], x=[x], y=[y], dw=[width], dh=[height])
-    source.name = "pixels"
-    plot.image_rgba(image="image", x="x", y="y", dw="dw", dh="dh", source=source)
-
-
-def _outline(plot: Any, black: float = 4.5, white: float = 2.0) -> None:
-    """A line that stands out from every colour, white on black; its source is called "highlight"."""
-    source = _source(x=[], y=[])
-    source.name = "highlight"
-    plot.line("x", "y", source=source, line_color="black", line_width=black, line_join="miter")
-    plot.line("x", "y", source=source, line_color="white", line_width=white, line_join="miter")
-
-
-def _colour_bar(plot: Any, mapper: Any) -> None:
-    """A colour bar, and beside it a title called "unit" that the scripts fill."""
-    bar = bokeh().models.ColorBar(
-        color_mapper=mapper,
-        width=10,
-        label_standoff=5,
-        padding=3,
-        margin=2,
-        ticker=bokeh().models.BasicTicker(desired_num_ticks=4),
-        formatter=_numbers(),
-        major_label_text_font_size=_FONT,
-        major_tick_line_color="#666666",
-        major_tick_in=0,
-        major_tick_out=3,
-        background_fill_color=None,
-    )
-    plot.add_layout(bar, "right")
-    plot.add_layout(_title("unit", "a.u.", "center"), "right")
-
-
-def _numbers() -> Any:
-    return bokeh().models.BasicTickFormatter(power_limit_low=-4, power_limit_high=6)
-
-
-def _title(name: str | None, text: str, align: str = "left") -> Any:
-    return bokeh().models.Title(
-        name=name,
-        text=text,
-        text_font_size=_FONT,
-        text_font_style="normal",
-        text_color=_INK,
-        standoff=1,
-        align=align,
-    )
-
-
-def _mapper(colours: Sequence[str]) -> Any:
-    return bokeh().models.LinearColorMapper(
-        name="colours", palette=list(colours), low=0.0, high=1.0, nan_color=MISSING
-    )
-
-
 def _cell(box: Box, pixel_size_um: float | None) -> Any:
     top, left = box.top - 0.5, box.left - 0.5
     shrink = min(_SQUARE / box.height, (_SQUARE - 8) / box.width)
-    plot = _figure(
+    plot = bare_figure(
         (left, left + box.width),
         (top + box.height, top),
         round(box.width * shrink),
         round(box.height * shrink),
     )
     plot.axis.visible = False
-    _pixels(plot, left, top, box.width, box.height)
+    add_pixels(plot, left, top, box.width, box.height)
     _scale_bar(plot, box, pixel_size_um)
-    _colour_bar(plot, _mapper(palette(SIGNAL_COLOURS)))
+    add_colour_bar(plot, colour_mapper(palette(SIGNAL_COLOURS)))
     return plot
 
 
@@ -211,9 +107,9 @@ def _scale_bar(plot: Any, box: Box, pixel_size_um: float | None) -> None:
 
 def _disk(cell: CellData, colours: Sequence[str]) -> Any:
     """The unit disk, v down as y in the image."""
-    plot = _figure((-1.16, 1.16), (1.16, -1.16), _SQUARE - 22, _SQUARE - 22)
+    plot = bare_figure((-1.16, 1.16), (1.16, -1.16), _SQUARE - 22, _SQUARE - 22)
     plot.axis.visible = False
-    _pixels(plot, -1, -1, 2, 2)
+    add_pixels(plot, -1, -1, 2, 2)
     _disk_lines(plot, cell)
     sectors = cell.grid.sectors
     shown = sorted({round(k * sectors / 4) % sectors for k in range(4)})
@@ -227,8 +123,8 @@ def _disk(cell: CellData, colours: Sequence[str]) -> Any:
         text_font_size="10px",
         text_color="#555555",
     )
-    _outline(plot)
-    _colour_bar(plot, _mapper(colours))
+    add_outline(plot)
+    add_colour_bar(plot, colour_mapper(colours))
     return plot
 
 
@@ -262,7 +158,7 @@ def _time_figure(cell: CellData, y: tuple[float, float], height: int, bottom: bo
     step, label = cell.time_step
     half = 0.5 * cell.every
     x = (cell.frames[0] - half) * step, (cell.frames[-1] + half) * step
-    plot = _figure(x, y, _RIGHT_FRAME, height, min_border_left=_LEFT)
+    plot = bare_figure(x, y, _RIGHT_FRAME, height, min_border_left=_LEFT)
     plot.xaxis.axis_label = label
     plot.xaxis.visible = bottom
     return plot
@@ -283,8 +179,8 @@ def _map(cell: CellData, colours: Sequence[str], guide: str, *, bottom: bool) ->
     plot = _time_figure(cell, (-0.5, sectors - 0.5), _MAP, bottom)
     plot.yaxis.axis_label = "sector"
     plot.yaxis.ticker = bokeh().models.FixedTicker(ticks=sorted({round(k * sectors / 4) for k in range(4)}))
-    mapper = _mapper(colours)
-    source = _source(
+    mapper = colour_mapper(colours)
+    source = source_of(
         image=[np.full((1, 1), np.nan, dtype=np.float32)],
         x=[plot.x_range.start],
         y=[-0.5],
@@ -300,24 +196,24 @@ def _map(cell: CellData, colours: Sequence[str], guide: str, *, bottom: bool) ->
             )
         )
     _time_marks(plot)
-    _outline(plot, 3.5, 1.5)
-    _colour_bar(plot, mapper)
+    add_outline(plot, 3.5, 1.5)
+    add_colour_bar(plot, mapper)
     return plot
 
 
 def _strip(cell: CellData, title: str, *, bottom: bool = False) -> Any:
     """One number against time."""
     plot = _time_figure(cell, (0.0, 1.0), _STRIP, bottom)
-    plot.title = _title(None, title)
+    plot.title = title_of(None, title)
     plot.min_border_top = 0
-    plot.yaxis.formatter = _numbers()
+    plot.yaxis.formatter = numbers()
     plot.yaxis.ticker = bokeh().models.BasicTicker(desired_num_ticks=2, mantissas=[1, 2, 5])
     plot.ygrid.visible = True
     plot.ygrid.grid_line_color = "#eeeeee"
-    missing = _source(left=[], right=[])
+    missing = source_of(left=[], right=[])
     missing.name = "missing"
     plot.quad("left", "right", top=1e12, bottom=-1e12, source=missing, color=MISSING, line_color=None)
-    line = _source(x=[], y=[])
+    line = source_of(x=[], y=[])
     line.name = "line"
     plot.line("x", "y", source=line, line_color=_LAYER, line_width=1.4)
     plot.scatter("x", "y", source=line, size=3, color=_LAYER)
@@ -328,7 +224,7 @@ def _strip(cell: CellData, title: str, *, bottom: bool = False) -> Any:
 def _curve(cell: CellData) -> Any:
     """Correlation against lag."""
     unit = "frame" if cell.interval_s is None else "s"
-    plot = _figure((-1.0, 1.0), (-1.0, 1.0), _SQUARE - 20, _SQUARE - 66, min_border_left=_LEFT)
+    plot = bare_figure((-1.0, 1.0), (-1.0, 1.0), _SQUARE - 20, _SQUARE - 66, min_border_left=_LEFT)
     plot.xaxis.axis_label = f"lag ({unit})"
     plot.yaxis.axis_label = "correlation r"
     for name, columns in (
@@ -338,7 +234,7 @@ def _curve(cell: CellData) -> Any:
         ("window", ("lag", "r")),
         ("peak", ("lag", "r")),
     ):
-        source = _source(**{column: [] for column in columns})
+        source = source_of(**{column: [] for column in columns})
         source.name = name
         _curve_glyph(plot, name, source)
     for dimension in ("height", "width"):

@@ -13,11 +13,13 @@ from cytodisk.errors import ParameterError, SignalError, StudyError
 from cytodisk.files import replacing
 from cytodisk.io.study import Study
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS
+from cytodisk.report.bokeh_parts import bokeh
 from cytodisk.report.cell_data import CellData
 from cytodisk.report.correlations import pairs_of
 from cytodisk.report.encode import json_for_script
-from cytodisk.report.figures import LAG_COLOURS, bokeh, figures_of, library_script, palette
-from cytodisk.report.flags import Flag, red_flags
+from cytodisk.report.figures import LAG_COLOURS, figures_of, library_script, palette
+from cytodisk.report.flag import Flag
+from cytodisk.report.flags import red_flags
 from cytodisk.report.pictures import OUTSIDE, Pictures, box_around, encode_frames
 from cytodisk.report.signal_file import FoundSignal, FrameSource, find_signal
 from cytodisk.report.words import MOST_PLACES, page_words
@@ -50,7 +52,7 @@ def write_report(
         By default the one with the most mapped frames.
     signal : FrameSource, optional
         The movie behind the windows, with the study's channels; by default the file that the study names,
-        if it is still there and unchanged. Otherwise the page shows the windows over plain masks, and says so.
+        if it is still there and unchanged. Otherwise the page shows windows over plain masks, and says so.
     progress : callable, optional
         Called with the number of frames done and that of all.
 

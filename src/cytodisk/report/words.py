@@ -10,7 +10,7 @@ import pandas as pd
 
 from cytodisk.io.study import Study
 from cytodisk.report.cell_data import CellData
-from cytodisk.report.flags import Flag
+from cytodisk.report.flag import Flag
 from cytodisk.report.pictures import Box
 from cytodisk.report.signal_file import FoundSignal
 

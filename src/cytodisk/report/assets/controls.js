@@ -96,11 +96,11 @@
   const listen = (name, figure) => {
     const under = (event) => (within(figure, event) ? UNDER[name](event) : null);
     figure.js_event_callbacks = {
-      mousemove: [(_, event) => page.set({ hover: under(event ?? _) })],
+      mousemove: [(event) => page.set({ hover: under(event) })],
       mouseleave: [() => page.set({ hover: null })],
       tap: [
-        (_, event) => {
-          const at = under(event ?? _);
+        (event) => {
+          const at = under(event);
           if (at?.index !== undefined) goTo(at.index);
           page.pin(at);
           announce();
@@ -111,7 +111,7 @@
 
   const listenStrip = (figure) => {
     figure.js_event_callbacks = {
-      tap: [(_, event) => within(figure, event ?? _) && goTo(indexAt((event ?? _).x))],
+      tap: [(event) => within(figure, event) && goTo(indexAt(event.x))],
     };
   };
 
@@ -182,6 +182,7 @@
     else for (const name of ["mean", "area", "velocity"]) write(`read-${name}`, "–");
     if (at && data.pairs.length) readPair(at);
     else for (const name of ["correlation", "lag", "p", "q"]) write(`read-${name}`, "–");
+    byId("readout").classList.toggle("idle", !at);
     byId("read-pin").hidden = !state.pinned;
     const slider = byId("time");
     slider.value = state.index;

@@ -34,7 +34,9 @@ window.cytodisk = { ready: false, shown: null, drawMilliseconds: null };
     const context = canvas.getContext("2d", { willReadFrequently: true });
     context.drawImage(bitmap, 0, 0);
     const { data } = context.getImageData(0, 0, width, height);
-    return Uint8Array.from({ length: width * height }, (_, k) => data[4 * k]);
+    const grey = new Uint8Array(width * height);
+    for (let k = 0; k < grey.length; k++) grey[k] = data[4 * k];
+    return grey;
   };
 
   const decodeFrame = async ({ labels, channels }, shape) => ({
@@ -45,12 +47,19 @@ window.cytodisk = { ready: false, shown: null, drawMilliseconds: null };
   const MOST_KEPT = 60;
   const kept = new Map();
 
-  // A promise of a decoded frame; the ones asked for last are kept.
-  page.frameAt = (index) => {
+  // A promise of a decoded frame; the ones asked for last are kept. The next one is made ready as well.
+  const fetchFrame = (index) => {
     const found = kept.get(index) ?? decodeFrame(page.pictures[index], page.data.picture.shape);
     kept.delete(index);
     kept.set(index, found);
     if (kept.size > MOST_KEPT) kept.delete(kept.keys().next().value);
+    return found;
+  };
+
+  page.frameAt = (index) => {
+    const found = fetchFrame(index);
+    const next = (index + 1) % page.pictures.length;
+    void found.then(() => fetchFrame(next));
     return found;
   };
 })();

@@ -8,7 +8,7 @@
   const PAPER = 0xffffffff;
   const MASK = 0xffd9d9d9;
   const HATCH = 0xff9a9a9a;
-  const DISK_SIZE = 520;
+  const DISK_SIZE = 480;
 
   page.colours = (list) =>
     Uint32Array.from(list, (text) => {
@@ -33,16 +33,26 @@
     return mixed >>> 0;
   };
 
+  // Plain loops, as these run over every pixel in every frame.
+  const lookUp = (numbers, table) => {
+    const pixels = new Uint32Array(numbers.length);
+    for (let k = 0; k < numbers.length; k++) pixels[k] = table[numbers[k]];
+    return pixels;
+  };
+
   const pixelColours = (grey, [low, high], limits, palette) => {
     const table = Uint32Array.from({ length: 256 }, (_, k) =>
       page.colourOf(palette, limits, low + ((high - low) * k) / 255),
     );
-    return Uint32Array.from(grey, (value) => table[value]);
+    return lookUp(grey, table);
   };
 
   const windowColours = (labels, values, limits, palette) => {
-    const table = Uint32Array.from(values, (value) => page.colourOf(palette, limits, value));
-    return Uint32Array.from(labels, (label) => (label === OUTSIDE ? PAPER : table[label]));
+    const table = new Uint32Array(OUTSIDE + 1).fill(PAPER);
+    values.forEach((value, window) => {
+      table[window] = page.colourOf(palette, limits, value);
+    });
+    return lookUp(labels, table);
   };
 
   const drawBorders = (pixels, labels, width) => {
@@ -125,12 +135,14 @@
     const colours = Uint32Array.from(values, (value) => page.colourOf(palette, limits, value));
     const pale = Array.from(values, (value, k) => Number.isFinite(value) && doubtful(k));
     const soft = colours.map((colour) => blend(colour, WHITE, 0.7));
-    const pixels = Uint32Array.from(diskWindows(), (window, k) => {
-      if (window < 0) return 0;
-      if (!pale[window]) return colours[window];
-      const diagonal = (k % DISK_SIZE) + Math.floor(k / DISK_SIZE);
-      return diagonal % 9 < 2 ? HATCH : soft[window];
-    });
+    const of = diskWindows();
+    const pixels = new Uint32Array(of.length);
+    for (let k = 0; k < of.length; k++) {
+      const window = of[k];
+      if (window < 0) continue;
+      if (!pale[window]) pixels[k] = colours[window];
+      else pixels[k] = ((k % DISK_SIZE) + Math.floor(k / DISK_SIZE)) % 9 < 2 ? HATCH : soft[window];
+    }
     return { pixels, shape: [DISK_SIZE, DISK_SIZE] };
   };
 })();

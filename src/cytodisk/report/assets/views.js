@@ -5,10 +5,19 @@
   const figures = {};
   const drawn = {};
 
+  // Takes out stops of the Tab key, as no key does anything there.
+  const passOver = (root) => {
+    for (const element of root.querySelectorAll("*")) {
+      element.removeAttribute("tabindex");
+      if (element.shadowRoot) passOver(element.shadowRoot);
+    }
+  };
+
   page.embed = async (items) => {
     for (const [name, item] of Object.entries(items)) {
       await Bokeh.embed.embed_item(item, `figure-${name}`);
       figures[name] = Bokeh.documents.at(-1).roots()[0];
+      passOver(document.getElementById(`figure-${name}`));
     }
   };
   page.figures = figures;
