@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from cytodisk.motion.velocity import boundary_velocity as boundary_velocity
     from cytodisk.motion.velocity import edge_changes as edge_changes
     from cytodisk.motion.velocity import edge_velocity as edge_velocity
+    from cytodisk.report.page import write_report as write_report
+    from cytodisk.study.correlate import correlate_study as correlate_study
     from cytodisk.windows.cell_windows import CellWindows as CellWindows
     from cytodisk.windows.grid import PolarWindows as PolarWindows
     from cytodisk.windows.grid import polar_windows as polar_windows
@@ -54,6 +56,7 @@ _HOME = {
     "clean_mask": "geometry.mask",
     "consecutive_correlation": "analysis.consistency",
     "correlate_pairs": "analysis.pairs",
+    "correlate_study": "study.correlate",
     "correlation_by_layer": "analysis.correlation",
     "cross_correlate": "analysis.correlation",
     "DemonsParameters": "motion.demons",
@@ -78,6 +81,7 @@ _HOME = {
     "sample_movie": "analysis.activity",
     "Study": "io.study",
     "window_distances": "analysis.distances",
+    "write_report": "report.page",
 }
 _MODULES = ("errors", "simulate")
 
