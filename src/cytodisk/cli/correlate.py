@@ -1,7 +1,8 @@
 """`cytodisk correlate` and `cytodisk report`."""
 
+import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 
 import typer
 
@@ -12,6 +13,8 @@ if TYPE_CHECKING:
 
     from cytodisk.io.correlation_store import Correlation
     from cytodisk.io.study import Study
+
+Format = Literal["png", "pdf", "svg"]
 
 DRIFTING = 0.25  # share of series whose level drifts, above which to say so
 
@@ -161,7 +164,7 @@ def write_page(
 
 
 def draw_correlation(
-    quiet: bool, study: "Study", found: "Correlation", figures: int, formats: tuple[str, ...]
+    quiet: bool, study: "Study", found: "Correlation", figures: int, formats: tuple[Format, ...]
 ) -> None:
     """Draw the first cells that were correlated."""
     from cytodisk.plot.correlation_figures import draw_correlation_figures
@@ -179,15 +182,15 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
     """Peaks by layer, and how many windows are significant."""
     settings = found.settings
     console.print(
-        f"{found.signal} with {found.with_}, lags to {settings['max_lag']} frames: at a positive lag "
-        f"{found.with_} follows {found.signal}"
+        f"signal {found.signal!r} with {found.with_}, lags to {settings['max_lag']} frames: "
+        f"at a positive lag {found.with_} follows the signal"
     )
     layers, windows = found.layers, found.windows
     for cell, rows in layers.groupby("cell"):
         of_cell = windows[windows["cell"] == cell]
         console.print(f"cell {cell}, mean over sectors by layer:")
-        for _, row in rows.iterrows():
-            console.print(_layer_words(row, of_cell[of_cell["layer"] == row["layer"]]))
+        for layer in rows.itertuples():
+            console.print(_layer_words(layer, of_cell[of_cell["layer"] == layer.layer]))
     for _, row in found.cells.iterrows():
         if row["status"] != "ok":
             console.print(f"cell {row['cell']} left out: {row['reason']}")
@@ -201,23 +204,24 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
 
 
 def _layer_words(row: Any, windows: Any) -> str:
-    lag = "" if row["lag_s"] != row["lag_s"] else f" ({row['lag_s']:+g} s)"
-    if row["correlation"] != row["correlation"]:
-        return f"  layer {row['layer']:>2}: no correlation, see n in windows.parquet"
-    words = f"  layer {row['layer']:>2}: {row['correlation']:+.2f} at lag {row['lag']:+.0f} frames{lag}"
-    if "q" not in row:
+    layer = f"  layer {row.layer:>2}"
+    if not math.isfinite(row.correlation):
+        return f"{layer}  no correlation: too few frames, or a signal that does not vary"
+    seconds = f" ({row.lag_s:+.4g} s)" if math.isfinite(row.lag_s) else ""
+    words = f"{layer}  {row.correlation:+.2f} at lag {row.lag:+.0f}{seconds}"
+    if "q" not in windows:
         return words
     share = (windows["q"] < 0.05).mean()
-    return f"{words}, q {row['q']:.3g}; {share:.0%} of its windows have q < 0.05"
+    return f"{words}, q = {row.q:.2g}; q < 0.05 in {share:.0%} of its windows"
 
 
-def _formats(text: str) -> tuple[str, ...]:
+def _formats(text: str) -> tuple["Format", ...]:
     from cytodisk.errors import ParameterError
 
     wanted = tuple(dict.fromkeys(part.strip().lower() for part in text.split(",")))
-    if not set(wanted) <= {"png", "pdf", "svg"}:
+    if not set(wanted) <= set(get_args(Format)):
         raise ParameterError(f"format must be png, pdf, svg or several with commas between, got {text!r}")
-    return wanted
+    return cast(tuple[Format, ...], wanted)
 
 
 def _only(names: list[str]) -> str:
