@@ -12,6 +12,7 @@ from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 
 import cytodisk as cd
+from cytodisk.io.correlation_store import write_correlation
 from cytodisk.io.study import Study
 from cytodisk.report.page import write_report
 from cytodisk.simulate.moving_cells import SimulatedMovie
@@ -74,25 +75,11 @@ def bare_study(masks: Path) -> Study:
     return run_movie(open_movie(masks, None, _SMALL), masks.with_name("bare"))
 
 
-@pytest.fixture
-def correlated_study(study: Study, monkeypatch: pytest.MonkeyPatch) -> Study:
-    correlate(monkeypatch)
-    return study
-
-
-def correlate(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Give every study the correlations of `correlated`."""
-    pairs = property(lambda _: [(NAMES[1], "velocity")])
-    monkeypatch.setattr(Study, "correlations", pairs, raising=False)
-    monkeypatch.setattr(Study, "correlation", lambda *_: correlated(), raising=False)
-
-
 @pytest.fixture(scope="session")
 def written(study: Study) -> Path:
-    """The page of the study with correlations."""
-    with pytest.MonkeyPatch.context() as monkeypatch:
-        correlate(monkeypatch)
-        return write_report(study, study.path.with_name("report.html"))
+    """The page of the study with a correlation."""
+    write_correlation(study.path, NAMES[1], "velocity", correlated(), {"max_lag": 3})
+    return write_report(study, study.path.with_name("report.html"))
 
 
 @pytest.fixture(scope="session")

@@ -92,6 +92,11 @@ def test_hover_on_the_disk_shows_in_every_view(page: Page, study: Study) -> None
     curve = page.js("cytodisk.figures.curve.select('window')[0].data")
     assert curve["lag"] == [5.0 * lag for lag in LAGS]
     np.testing.assert_allclose(curve["r"], 0.1 * LAGS, atol=1e-6)
+    chance = page.js("cytodisk.figures.curve.select('null')[0].data")
+    np.testing.assert_allclose(chance["high"], 0.4, atol=1e-6)
+    assert page.text("curve-layer") == "mean of layer 1: r 0.0500 at −5.00 s, q 0.00200"
+    page.hover("disk", 1.1, 1.1)
+    np.testing.assert_allclose(page.js("cytodisk.figures.curve.select('null')[0].data.high"), 0.25, atol=1e-6)
 
 
 def test_hover_on_the_cell_and_the_maps(page: Page, study: Study) -> None:

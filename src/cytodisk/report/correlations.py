@@ -9,14 +9,15 @@ import numpy as np
 import pandas as pd
 
 from cytodisk.arrays import FloatArray
-from cytodisk.io.study import Study
+from cytodisk.io.correlation_store import Correlation
 from cytodisk.report.cell_data import CellData
 from cytodisk.report.encode import pack_floats
 
 MOST_CURVE_NUMBERS = 1_500_000
 """Of curves of single windows that a page holds; beyond, only peaks and the layers' curves are shown."""
 
-_PEAK = ("correlation", "lag", "p", "q", "n", "n_effective", "low", "high")
+_PEAK = ("correlation", "lag", "p", "q", "n", "n_effective", "low", "high", "threshold")
+_LAYER_PEAK = ("correlation", "lag", "p", "q", "threshold")
 _CURVE = ("correlation", "low", "high")
 
 
@@ -30,41 +31,38 @@ def pairs_of(cell: CellData) -> tuple[list[dict[str, Any]], list[str]]:
     Returns
     -------
     pairs : list of dict
-        For the page's scripts; empty if nothing was correlated.
+        For the page's scripts; empty if nothing was correlated. What was not computed, as p and q without
+        surrogates, is NaN.
     notes : list of str
         What was left out, in words.
     """
-    study: Any = cell.study
-    found = [(names, study.correlation(*names)) for names in correlated(cell.study)]
-    numbers = sum(len(_of(cell, one.curves)) * len(_CURVE) for _, one in found)
+    found = [cell.study.correlation(*names) for names in cell.study.correlations]
+    known = [one for one in found if len(_of(cell, one.windows))]
+    notes = [
+        f"correlation of {one.signal} with {one.with_}, which this cell has not"
+        for one in found
+        if one not in known
+    ]
+    numbers = sum(len(_of(cell, one.curves)) * len(_CURVE) for one in known)
     with_curves = numbers <= MOST_CURVE_NUMBERS
-    pairs = [_pair(cell, names, one, with_curves) for names, one in found]
-    left_out = (
-        [] if with_curves else ["correlation curves of single windows (only those of layers are shown)"]
-    )
-    return [pair for pair in pairs if pair is not None], left_out
+    if not with_curves:
+        notes.append("correlation curves of single windows (only those of layers are shown)")
+    return [_pair(cell, one, with_curves) for one in known], notes
 
 
-def correlated(study: Study) -> list[tuple[str, str]]:
-    """Pairs of names that were correlated in a study."""
-    return list(getattr(study, "correlations", []))
-
-
-def _pair(cell: CellData, names: tuple[str, str], found: Any, with_curves: bool) -> dict[str, Any] | None:
+def _pair(cell: CellData, found: Correlation, with_curves: bool) -> dict[str, Any]:
     windows, layers = _of(cell, found.windows), _of(cell, found.layers)
     layer_curves = _of(cell, found.layer_curves)
-    if windows.empty:
-        return None
     lags = np.unique(layer_curves["lag"].to_numpy())
     curves = _of(cell, found.curves) if with_curves else None
     return {
-        "signal": names[0],
-        "with": names[1],
+        "signal": found.signal,
+        "with": found.with_,
         "lags": lags.tolist(),
-        "windows": {name: pack_floats(_grid(cell, windows, name)) for name in _PEAK if name in windows},
+        "windows": {name: pack_floats(_grid(cell, windows, name)) for name in _PEAK},
         "curves": None if curves is None else dict(_curves(cell, curves, lags)),
+        "layers": {name: pack_floats(_layer(cell, layers, name)) for name in _LAYER_PEAK},
         "layer_curves": pack_floats(_curve(cell, layer_curves, "correlation", lags)),
-        "threshold": pack_floats(_layer(cell, layers, "threshold")),
     }
 
 
@@ -79,13 +77,15 @@ def _of(cell: CellData, table: pd.DataFrame) -> pd.DataFrame:
 
 def _grid(cell: CellData, table: pd.DataFrame, name: str) -> FloatArray:
     values = np.full((cell.grid.layers, cell.grid.sectors), np.nan)
-    values[table["layer"].to_numpy(), table["sector"].to_numpy()] = table[name].to_numpy(dtype=np.float64)
+    if name in table:
+        values[table["layer"].to_numpy(), table["sector"].to_numpy()] = table[name].to_numpy(dtype=np.float64)
     return values
 
 
 def _layer(cell: CellData, table: pd.DataFrame, name: str) -> FloatArray:
     values = np.full(cell.grid.layers, np.nan)
-    values[table["layer"].to_numpy()] = table[name].to_numpy(dtype=np.float64)
+    if name in table:
+        values[table["layer"].to_numpy()] = table[name].to_numpy(dtype=np.float64)
     return values
 
 

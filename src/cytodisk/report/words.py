@@ -152,6 +152,10 @@ def _settings(study: Study) -> Iterator[tuple[str, str]]:
         yield role, f"{told['path']} – {told.get('read as', '')} (sha256 {told.get('sha256', '')[:16]}…)"
     for name, value in provenance.get("parameters", {}).items():
         yield name, "not set" if value is None else value if isinstance(value, str) else json.dumps(value)
+    for signal, with_ in study.correlations:
+        told = study.correlation(signal, with_).settings
+        words = [f"{name} {value}" for name, value in told.items() if name not in ("signal", "with", "unit")]
+        yield f"correlation of {signal} with {with_}", ", ".join(words)
     for name in ("started", "finished", "python", "platform"):
         if name in provenance:
             yield name, str(provenance[name])

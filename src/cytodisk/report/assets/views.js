@@ -166,7 +166,7 @@
     const values = (lagged ? windows.lag : windows.correlation).values.map((value) => value * scale);
     const top = lagged ? largest(page.pair().lags) * scale || 1 : Math.ceil(10 * largest(values)) / 10 || 1;
     const palette = lagged ? page.palettes.lag : page.palettes.diverging;
-    const doubtful = (k) => !(windows.q.values[k] < 0.05);
+    const doubtful = (k) => windows.q.values[k] >= 0.05;
     const { pixels, shape } = page.paintDisk(values, [-top, top], palette, doubtful);
     setPixels("peaks", pixels, shape);
     part("peaks", "colours").palette = lagged ? page.data.palettes.lag : page.data.palettes.diverging;
@@ -177,6 +177,8 @@
     text("curve-hint", `positive lag: ${other} follows ${signal}`);
   };
 
+  // A lag in the unit of the axis.
+  page.lagWords = (lag) => page.withUnit(lag * page.lagScale(), page.lagUnit());
   page.lagScale = () => page.data.interval_s ?? 1;
   page.lagUnit = () => (page.data.interval_s === null ? "frames" : "s");
 
@@ -186,14 +188,14 @@
   };
 
   const drawCurve = () => {
-    const { lags, layer_curves: layers, curves, windows, threshold } = page.pair();
+    const { lags, layers, layer_curves: layerCurves, curves, windows } = page.pair();
     const at = page.focus();
     const layer = at?.layer ?? page.state.layer;
     const lag = lags.map((value) => value * page.lagScale());
-    const bar = threshold.values[layer];
-    part("curve", "layer").data = { lag, r: row(layers, layer) };
-    part("curve", "null").data = { lag, low: lag.map(() => -bar), high: lag.map(() => bar) };
     const number = at && page.windowOf(at.layer, at.sector);
+    const bar = at ? windows.threshold.values[number] : layers.threshold.values[layer];
+    part("curve", "layer").data = { lag, r: row(layerCurves, layer) };
+    part("curve", "null").data = { lag, low: lag.map(() => -bar), high: lag.map(() => bar) };
     const known = at && curves;
     part("curve", "window").data = known ? { lag, r: row(curves.correlation, number) } : { lag: [], r: [] };
     part("curve", "band").data = known
@@ -202,12 +204,15 @@
     part("curve", "peak").data = at
       ? { lag: [windows.lag.values[number] * page.lagScale()], r: [windows.correlation.values[number]] }
       : { lag: [], r: [] };
-    const reach = largest([...row(layers, layer), bar || 0, ...(known ? [...row(curves.low, number), ...row(curves.high, number)] : [])].filter(Number.isFinite));
+    const reach = largest([...row(layerCurves, layer), bar || 0, ...(known ? [...row(curves.low, number), ...row(curves.high, number)] : [])].filter(Number.isFinite));
     const top = Math.min(1, Math.ceil(5 * (reach || 1)) / 5);
     figures.curve.y_range.setv({ start: -top, end: top });
     figures.curve.x_range.setv({ start: lag[0], end: lag.at(-1) });
     text("curve-window", at ? `layer ${at.layer}, sector ${at.sector}` : "point at a window");
-    text("curve-layer", `mean of layer ${layer}`);
+    const peak = Object.fromEntries(Object.entries(layers).map(([name, array]) => [name, array.values[layer]]));
+    const found = `r ${page.digits(peak.correlation)} at ${page.lagWords(peak.lag)}, q ${page.digits(peak.q)}`;
+    text("curve-layer", `mean of layer ${layer}: ${found}`);
+    text("curve-null", `95 % of chance for the ${at ? "window" : "layer"}`);
   };
 
   const drawStrip = (name, array) => {
