@@ -1,0 +1,136 @@
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.signal import lfilter
+
+from cytodisk.analysis.surrogates import circularly_shifted, phase_randomised, surrogates
+from cytodisk.errors import ParameterError
+
+NAN = np.nan
+
+
+def slow(seed: int, frames: int) -> Any:
+    """Autoregressive noise with 0.8 from a frame to the next."""
+    return lfilter([1.0], [1.0, -0.8], np.random.default_rng(seed).normal(size=frames + 100))[100:]
+
+
+def turned(angle: Any, frames: int) -> Any:
+    """The same turns for each component, or one for each, as one surrogate takes them."""
+    return np.exp(1j * np.broadcast_to(angle, frames + 1))[:, None]
+
+
+def mirrored_autocorrelation(series: Any) -> Any:
+    """Mean product of a centred series and its mirror image with itself, at each distance in the ring."""
+    ring = np.concatenate([series, series[::-1]]) - series.mean()
+    return np.array([(ring * np.roll(ring, -k)).mean() for k in range(len(ring))])
+
+
+@given(st.integers(0, 1000), st.integers(2, 30))
+def test_turns_that_are_known_on_paper(seed: int, frames: int) -> None:
+    series = 5.0 + slow(seed, frames)
+    centred = series - series.mean()
+    ring = np.concatenate([centred, centred[::-1]])
+    still = phase_randomised(series, turned(0.0, frames))[:, 0]
+    np.testing.assert_allclose(still, centred, atol=1e-12)
+    opposite = phase_randomised(series, turned(np.pi, frames))[:, 0]
+    np.testing.assert_allclose(opposite, -centred, atol=1e-12)
+    step = -np.pi * np.arange(frames + 1) / frames  # of each component, one frame later in the ring of 2 T
+    moved = phase_randomised(series, turned(3 * step, frames))[:, 0]
+    np.testing.assert_allclose(moved, np.roll(ring, 3)[:frames], atol=1e-12)
+
+
+@pytest.mark.parametrize("frames", [16, 17])
+def test_spectrum_is_that_of_the_mirrored_series(frames: int) -> None:
+    series = slow(1, frames)
+    angle = np.random.default_rng(2).uniform(0.0, 2.0 * np.pi, frames + 1)
+    first = phase_randomised(series, turned(angle, frames))[:, 0]
+    later = angle - np.pi * np.arange(frames + 1)  # the same surrogate T frames on: the rest of the ring
+    rest = phase_randomised(series, turned(later, frames))[:, 0]
+    power = np.abs(np.fft.rfft(np.concatenate([first, rest])))
+    expected = np.abs(np.fft.rfft(np.concatenate([series, series[::-1]]) - series.mean()))
+    np.testing.assert_allclose(power, expected, atol=1e-10)
+    assert not np.allclose(first, series - series.mean(), atol=0.1)
+
+
+def test_autocorrelation_is_kept_in_the_mean() -> None:
+    series = slow(3, 40)
+    found = surrogates("phase", 40, 40_000, 0)(series)
+    expected = mirrored_autocorrelation(series)
+    for lag in (0, 1, 5):
+        mean = (found[lag:] * found[: 40 - lag]).mean()
+        assert mean == pytest.approx(expected[lag], abs=0.05 * expected[0])
+
+
+def test_series_that_are_alike_stay_so() -> None:
+    common = slow(4, 60)
+    first, second = common + 0.5 * slow(5, 60), common + 0.5 * slow(6, 60)
+    make = surrogates("phase", 60, 4000, 1)
+    one, two = make(first), make(second)
+    product = np.mean((one * two).mean(axis=0))
+    assert product == pytest.approx(
+        np.mean((first - first.mean()) * (second - second.mean())), rel=0.1
+    )  # the ring's mean product is that of the series, as both are mirrored alike
+    np.testing.assert_allclose(make(3.0 * first - 7.0), 3.0 * one, atol=1e-10)
+    other = surrogates("phase", 60, 4000, 2)(second)
+    assert abs(np.mean((one * other).mean(axis=0))) < 0.1 * product
+
+
+def test_gaps_stay_gaps() -> None:
+    series = slow(7, 30)
+    series[[0, 1, 9, 10, 29]] = NAN
+    found = surrogates("phase", 30, 5, 0)(series)
+    np.testing.assert_array_equal(np.isnan(found), np.repeat(np.isnan(series)[:, None], 5, axis=1))
+    line = series.copy()
+    line[[9, 10]] = np.interp([9, 10], [8, 11], series[[8, 11]])  # filled in, hence no matter for the rest
+    same = surrogates("phase", 30, 5, 0)(line)
+    there = np.isfinite(series)
+    np.testing.assert_allclose(found[there], same[there], atol=1e-12)
+
+
+def test_empty_and_constant_series() -> None:
+    make = surrogates("phase", 12, 3, 0)
+    assert np.isnan(make(np.full(12, NAN))).all()
+    np.testing.assert_allclose(make(np.full(12, 4.0)), 0.0, atol=1e-14)
+    one = np.full(12, NAN)
+    one[4] = 2.0
+    assert np.isfinite(make(one)).sum() == 3
+
+
+@given(st.integers(0, 1000), st.integers(2, 25))
+def test_a_shift_is_a_permutation(seed: int, frames: int) -> None:
+    series = slow(seed, frames)
+    found = surrogates("shift", frames, 7, seed)(series)
+    np.testing.assert_array_equal(np.sort(found, axis=0), np.repeat(np.sort(series)[:, None], 7, axis=1))
+    assert (found != series[:, None]).any(axis=0).all()  # no shift by nothing
+
+
+def test_shifts_of_known_size() -> None:
+    found = circularly_shifted(np.array([1.0, 2.0, NAN, 4.0]), np.array([1, 3]))
+    np.testing.assert_array_equal(found, [[4.0, 2.0], [1.0, NAN], [2.0, 4.0], [NAN, 1.0]])
+
+
+@pytest.mark.parametrize("null", ["phase", "shift"])
+def test_the_seed_decides(null: Any) -> None:
+    series = slow(8, 50)
+    first, again, other = (surrogates(null, 50, 6, seed)(series) for seed in (3, 3, 4))
+    np.testing.assert_array_equal(first, again)
+    assert not np.array_equal(first, other)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("noise", 20, 5, 0), "null must be one of phase, shift, got 'noise'"),
+        (("phase", 20, 0, 0), "surrogates must be a whole number of at least 1, got 0"),
+        (("phase", 20, 2.5, 0), "surrogates .* got 2.5"),
+        (("phase", 20, 5, -1), "seed must be a whole number of at least 0, got -1"),
+        (("phase", 20, 5, None), "seed .* got None"),
+        (("shift", 1, 5, 0), "null 'shift' needs at least 2 frames, got 1"),
+    ],
+)
+def test_arguments_that_make_no_sense(arguments: Any, message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        surrogates(*arguments)
