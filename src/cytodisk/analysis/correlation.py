@@ -140,9 +140,9 @@ def correlation_by_layer(correlations: xr.Dataset) -> xr.Dataset:
     ParameterError
         There are no sectors.
     """
-    if "correlation" not in correlations or _SECTOR not in correlations["correlation"].dims:
+    curves = correlations.get("correlation") if isinstance(correlations, xr.Dataset) else None
+    if curves is None or _SECTOR not in curves.dims:
         raise ParameterError("correlations must be the Dataset that cross_correlate returns, with sectors")
-    curves = correlations["correlation"]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # lags without a correlation have no quartiles
         quartiles = curves.quantile([0.25, 0.75], dim=_SECTOR)
