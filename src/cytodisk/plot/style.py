@@ -27,6 +27,7 @@ SIGNAL_COLOURS = "viridis"
 DIVERGING_COLOURS = "RdBu_r"
 LAYER_COLOURS = "cividis"
 MISSING_COLOUR = "0.85"
+CHANCE_COLOUR, CHANCE_LINE = "0.93", "0.7"  # of the band that chance gives, and of its border
 LINE_COLOUR = "0.15"
 STATUS_COLOURS = {"ok": "#0072B2", "refused": "#E69F00", "unreadable": "#999999"}
 
@@ -46,7 +47,11 @@ PAPER: Any = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.formatter.use_mathtext": True,
+    "hatch.linewidth": 0.3,
     "savefig.facecolor": "white",
+    "svg.fonttype": "none",  # text stays text in vector files
+    "svg.hashsalt": "cytodisk",  # the same picture is the same file
+    "pdf.fonttype": 42,
 }
 """Matplotlib settings for print."""
 

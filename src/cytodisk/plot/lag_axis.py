@@ -1,0 +1,102 @@
+"""Lags and layers in pictures of correlations: units, names, and the rows of a cell."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+
+from cytodisk.errors import ParameterError
+
+
+@dataclass(frozen=True)
+class LagUnit:
+    """How lags are shown: the column of a table that holds them, and words for its unit.
+
+    Attributes
+    ----------
+    column : str
+        "lag_s", or "lag" where seconds are not known.
+    unit : str
+        "s" or "frames".
+    """
+
+    column: str
+    unit: str
+
+    @classmethod
+    def of(cls, table: pd.DataFrame) -> LagUnit:
+        """Seconds where the table has them, else frames."""
+        known = "lag_s" in table and bool(table["lag_s"].notna().any())
+        return cls("lag_s", "s") if known else cls("lag", "frames")
+
+    @property
+    def label(self) -> str:
+        """For an axis."""
+        return f"lag ({self.unit})"
+
+    def write(self, lag: float) -> str:
+        """A lag with its unit, as in "−20 s" or "1 frame"."""
+        unit = "frame" if self.unit == "frames" and abs(lag) == 1 else self.unit
+        return f"{signed(lag, 'g')} {unit}"
+
+
+def rows_of_cell(table: Any, cell: int, columns: set[str], name: str) -> pd.DataFrame:
+    """Rows of one cell in a table of a correlation.
+
+    Parameters
+    ----------
+    table : DataFrame
+    cell : int
+    columns : set of str
+        That it must have.
+    name : str
+        Of the argument, for the error.
+
+    Returns
+    -------
+    DataFrame
+
+    Raises
+    ------
+    ParameterError
+        It is no table, lacks a column, or has no row of the cell.
+    """
+    if not isinstance(table, pd.DataFrame):
+        raise ParameterError(f"{name} must be a table of a study's correlation, got {type(table).__name__}")
+    missing = sorted(columns - set(table.columns))
+    if missing:
+        raise ParameterError(f"{name} lacks the columns {', '.join(missing)}: pass a table of a correlation")
+    rows = table[table["cell"] == cell]
+    if rows.empty:
+        raise ParameterError(f"{name} has no cell {cell}: it has {sorted(set(table['cell']))}")
+    return rows
+
+
+def layer_names(layers: Sequence[int], count: int) -> list[str]:
+    """Names of layers, with what the first and last are.
+
+    Parameters
+    ----------
+    layers : sequence of int
+    count : int
+        Of all layers.
+
+    Returns
+    -------
+    list of str
+    """
+    places = {count - 1: " (centre)", 0: " (edge)"}
+    return [f"layer {layer}{places.get(layer, '')}" for layer in layers]
+
+
+def sides(signal: str, with_: str) -> str:
+    """What the sides of a lag axis mean: `with_` comes first at negative lags, `signal` at positive ones."""
+    return f"← {with_} first  ·  {signal} first →"
+
+
+def signed(number: float, form: str) -> str:
+    """A number in a format, with a true minus."""
+    return format(number, form).replace("-", "−")
