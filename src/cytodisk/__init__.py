@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from cytodisk.analysis.distances import window_distances as window_distances
     from cytodisk.analysis.event_average import average_around as average_around
     from cytodisk.analysis.events import edge_events as edge_events
+    from cytodisk.analysis.jitter import jitter_step as jitter_step
     from cytodisk.analysis.kymograph import boundary_kymograph as boundary_kymograph
     from cytodisk.analysis.kymograph import line_kymograph as line_kymograph
     from cytodisk.analysis.pairs import correlate_pairs as correlate_pairs
@@ -66,6 +67,7 @@ _HOME = {
     "edge_events": "analysis.events",
     "edge_changes": "motion.velocity",
     "edge_velocity": "motion.velocity",
+    "jitter_step": "analysis.jitter",
     "line_kymograph": "analysis.kymograph",
     "load_map": "disk.disk_map",
     "map_movie": "motion.map_movie",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from cytodisk.analysis.parameters import whole_number
 from cytodisk.analysis.series import KPSS_LIMIT, Detrend, default_frames, kpss, prepare_series
 from cytodisk.analysis.surrogates import Null, Surrogates, check_null
 from cytodisk.analysis.surrogates import surrogates as make_surrogates
-from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.errors import ParameterError, StationarityWarning
 
 ALPHA = 0.05
@@ -34,6 +34,7 @@ def cross_correlate(
     difference: bool = False,
     zscore: bool = False,
     min_pairs: int = 10,
+    skip_lags: Sequence[int] = (),
     surrogates: int = 0,
     null: Null = "phase",
     seed: int = 0,
@@ -56,6 +57,9 @@ def cross_correlate(
         `detrend_frames`.
     min_pairs : int
         Lags at which fewer frames have both values are NaN; at least 3.
+    skip_lags : sequence of int
+        Lags that are NaN, for `a` and its surrogates alike, such as those that jitter of the masks may have
+        made, see `jitter_step`.
     surrogates : int
         How many surrogates of `b` to compare with; 0 for none. 999 give p-values down to 0.001.
     null : {"phase", "shift"}
@@ -94,6 +98,7 @@ def cross_correlate(
     """
     first, second, interval_s = named_series(a, b)
     lags = lags_within(max_lag, min_pairs, first.sizes["time"])
+    _check_skipped(skip_lags, lags)
     surrogates = whole_number("surrogates", surrogates, 0)
     check_null(null)
     options: dict[str, Any] = {
@@ -107,6 +112,7 @@ def cross_correlate(
     attrs |= {
         "max_lag": max_lag,
         "min_pairs": min_pairs,
+        "skip_lags": [int(lag) for lag in skip_lags],
         "surrogates": surrogates,
         "null": null,
         "seed": seed,
@@ -114,7 +120,7 @@ def cross_correlate(
     attrs |= _drifting(first, second)
     pair = paired(first, second)
     changed = make_surrogates(null, len(pair.a), surrogates, seed) if surrogates else None
-    run = _Run(pair, lags, min_pairs, surrogates)
+    run = _Run(pair, lags, np.isin(lags, skip_lags), min_pairs, surrogates)
     run.correlate(changed, progress)
     order = [str(dim) for dim in (*first.dims, *second.dims) if dim != "time"]
     return run.dataset(list(dict.fromkeys(order)), interval_s).assign_attrs(attrs)
@@ -160,8 +166,8 @@ def correlation_by_layer(correlations: xr.Dataset) -> xr.Dataset:
 class _Run:
     """Tables of one correlation, filled series by series of `b`."""
 
-    def __init__(self, pair: Pair, lags: IntArray, min_pairs: int, surrogates: int):
-        self._pair, self._lags, self._min_pairs = pair, lags, min_pairs
+    def __init__(self, pair: Pair, lags: IntArray, skipped: BoolArray, min_pairs: int, surrogates: int):
+        self._pair, self._lags, self._skipped, self._min_pairs = pair, lags, skipped, min_pairs
         windows = pair.a.shape[1:]
         own = len(pair.own)
         self._correlation, self._count = np.full((2, len(lags), *windows), np.nan)
@@ -179,10 +185,12 @@ class _Run:
             lagged = LaggedSeries(self._series(place), self._lags)
             b = self._pair.b[(slice(None), *place)]
             found, count = lagged.correlate(b[:, None], self._min_pairs)
+            found[self._skipped] = np.nan
             self._correlation[(slice(None), *place)] = self._unfold(found)[..., 0]
             self._count[(slice(None), *place)] = self._unfold(np.broadcast_to(count, found.shape))[..., 0]
             if surrogates is not None:
                 chance, _ = lagged.correlate(surrogates(b), self._min_pairs)
+                chance[self._skipped] = np.nan
                 self._add_chance(place, self._unfold(chance))
             if progress is not None:
                 progress(done + 1, int(np.prod(own)))
@@ -253,6 +261,14 @@ def lags_within(max_lag: int, min_pairs: int, frames: int) -> IntArray:
             f"min_pairs {min_pairs}: {advice}"
         )
     return np.arange(-max_lag, max_lag + 1)
+
+
+def _check_skipped(skipped: Sequence[int], lags: IntArray) -> None:
+    unknown = [lag for lag in skipped if lag not in lags]
+    if unknown:
+        raise ParameterError(f"skip_lags has {unknown[0]!r}: lags run from {lags[0]} to {lags[-1]}")
+    if len(set(skipped)) == len(lags):
+        raise ParameterError("skip_lags leaves no lag: pass fewer, or a larger max_lag")
 
 
 def _drifting(a: xr.DataArray, b: xr.DataArray) -> dict[str, float]:

@@ -79,6 +79,9 @@ def correlate_command(
         bool | None,
         typer.Option("--difference", help="Correlate changes between frames.", show_default=False),
     ] = None,
+    skip_lags: Annotated[
+        str | None, typer.Option(help="Lags that do not count, such as -1,0 where masks jitter.")
+    ] = None,
     surrogates: Annotated[int | None, typer.Option(help="0 for no significance (default 1999).")] = None,
     null: Annotated[
         str | None, typer.Option(help="Surrogates by random phase or circular shift (default phase).")
@@ -109,6 +112,7 @@ def correlate_command(
         "surrogates": surrogates,
         "null": null,
         "min_pairs": min_pairs,
+        "skip_lags": _lags(skip_lags),
         "seed": seed,
         "pairs": pairs,
     }
@@ -194,7 +198,13 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
     for _, row in found.cells.iterrows():
         if row["status"] != "ok":
             console.print(f"cell {row['cell']} left out: {row['reason']}")
-        elif max(row["drifting_signal"], row["drifting_with"]) > DRIFTING:
+            continue
+        if abs(row["jitter"]) > 0:
+            console.print(
+                f"cell {row['cell']}: masks that jitter make {row['jitter']:+.2f} of the correlation at lag "
+                f"0, and {-row['jitter']:+.2f} at lag -1, in some layer: see what --skip-lags=-1,0 says"
+            )
+        if max(row["drifting_signal"], row["drifting_with"]) > DRIFTING:
             console.print(
                 f"cell {row['cell']}: the level drifts, as by bleaching, in {row['drifting_signal']:.0%} of "
                 f"the signal's series and {row['drifting_with']:.0%} of the others (chance gives 5 %): see "
@@ -213,6 +223,17 @@ def _layer_words(row: Any, windows: Any) -> str:
         return words
     share = (windows["q"] < 0.05).mean()
     return f"{words}, q = {row.q:.2g}; q < 0.05 in {share:.0%} of its windows"
+
+
+def _lags(text: str | None) -> tuple[int, ...] | None:
+    from cytodisk.errors import ParameterError
+
+    if text is None:
+        return None
+    try:
+        return tuple(int(part) for part in text.split(","))
+    except ValueError:
+        raise ParameterError(f"skip_lags must be whole numbers with commas between, got {text!r}") from None
 
 
 def _formats(text: str) -> tuple["Format", ...]:

@@ -13,6 +13,7 @@ import xarray as xr
 
 from cytodisk.analysis.correlation import correlation_by_layer, cross_correlate
 from cytodisk.analysis.distances import window_distances
+from cytodisk.analysis.jitter import JITTERED_LAGS, jitter_step
 from cytodisk.analysis.pairs import correlate_pairs
 from cytodisk.analysis.peaks import peak_correlation
 from cytodisk.errors import ParameterError, StationarityWarning, StudyError
@@ -24,6 +25,7 @@ from cytodisk.study.provenance import installed
 from cytodisk.windows.grid import polar_windows
 
 _LONGEST_LAG = 20  # frames, unless the user asks for more
+_LAGS_FOR_JITTER = 13
 _SIDES = (("signal", "a"), ("with", "b"))
 _PAIRED_SURROGATES = 99  # of the mean over pairs, each of which costs as much as the mean itself
 
@@ -131,11 +133,14 @@ def _correlate_cell(
     common = options.common()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StationarityWarning)  # the shares are in the table, and are told
-        correlations = cross_correlate(a, b, max_lag, progress=progress, **common)
+        correlations = cross_correlate(
+            a, b, max_lag, skip_lags=options.skip_lags, progress=progress, **common
+        )
     tables = _tables(correlations, options)
     if options.pairs:
         tables["pairs"] = _pairs(study, cell, activity, a, with_, max_lag, options)
-    row = {"status": "ok", "reason": "", "frames": a.sizes["time"], "no_events_because": ""}
+    row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "no_events_because": ""}
+    row["jitter"] = _jitter(correlations, with_, options)
     if with_ in VELOCITIES:
         try:
             tables |= episode_tables(activity, a, with_, max_lag, options)
@@ -168,6 +173,15 @@ def _tables(correlations: xr.Dataset, options: CorrelationSettings) -> dict[str,
         "curves": _frame(curves, ("layer", "sector", "lag")),
         "layer_curves": _frame(mean, ("layer", "lag")),
     }
+
+
+def _jitter(correlations: xr.Dataset, with_: str, options: CorrelationSettings) -> float:
+    """Largest mark of jitter in any layer, 0 for none; NaN where there can be none to be seen."""
+    skips = set(options.skip_lags) & set(JITTERED_LAGS)
+    if with_ not in VELOCITIES or skips or correlations.sizes["lag"] < _LAGS_FOR_JITTER:
+        return float("nan")
+    steps = jitter_step(correlation_by_layer(correlations)).to_numpy()
+    return float(steps[np.abs(steps).argmax()])
 
 
 def _pairs(

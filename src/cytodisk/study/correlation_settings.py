@@ -31,6 +31,8 @@ class CorrelationSettings:
     detrend_frames : int or None
     difference : bool
     min_pairs : int
+    skip_lags : tuple of int
+        Lags that do not count, such as -1 and 0 where masks jitter, see `jitter_step`.
     surrogates : int
     null : {"phase", "shift"}
     seed : int
@@ -45,6 +47,7 @@ class CorrelationSettings:
     detrend_frames: int | None = None
     difference: bool = False
     min_pairs: int = 10
+    skip_lags: tuple[int, ...] = ()
     surrogates: int = 1999
     null: Null = "phase"
     seed: int = 0
