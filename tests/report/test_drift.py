@@ -12,6 +12,11 @@ def test_trend_of_a_line() -> None:
     assert relative_trend(TIME, 80 + TIME) == pytest.approx(20 / 90)
 
 
+def test_trend_of_a_long_movie() -> None:
+    time = np.arange(5000.0)
+    assert relative_trend(time, 200 - 0.02 * time) == pytest.approx(-100 / 150, rel=0.01)
+
+
 def test_one_wrong_frame_changes_nothing() -> None:
     mean = 100 - TIME
     mean[5] = 1e6

@@ -1,5 +1,8 @@
 import builtins
+import html
 import re
+import shlex
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +13,8 @@ from report_study import FRAMES, GAP, NAMES
 
 from cytodisk.errors import MissingPartError, ParameterError, SignalError, StudyError
 from cytodisk.io.frames import open_frames
-from cytodisk.io.study import Study
+from cytodisk.io.study import Study, open_study
+from cytodisk.report import page
 from cytodisk.report.page import write_report
 from cytodisk.report.signal_file import find_signal
 from cytodisk.simulate.moving_cells import SimulatedMovie
@@ -135,3 +139,20 @@ def test_other_cells_and_their_page(truth: SimulatedMovie, tmp_path: Path) -> No
     assert "All cells of the study (2)" in text
     assert f"cell 0, frame {GAP}" in text
     assert f'data-frame="{GAP}"' not in text
+
+
+def test_frames_larger_than_expected_are_thinned_out(
+    study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(page, "MOST_BYTES", 15_000)
+    text = write_report(study, tmp_path / "report.html").read_text(encoding="utf-8")
+    every, shown = re.findall(r"One frame in (\d) is shown, (\d) of 8", text)[0]
+    assert int(shown) == -(-FRAMES // int(every)) < FRAMES
+
+
+def test_command_to_type_is_quoted(study: Study, tmp_path: Path) -> None:
+    """As the page has it for a study without correlations."""
+    fresh = tmp_path / "my study"
+    shutil.copytree(study.path, fresh, ignore=shutil.ignore_patterns("correlation"))
+    text = html.unescape(write_report(open_study(fresh)).read_text(encoding="utf-8"))
+    assert f"cytodisk correlate 'my study' --signal {shlex.quote(NAMES[0])} --with velocity" in text

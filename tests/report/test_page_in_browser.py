@@ -218,6 +218,6 @@ def test_without_signal_correlation_or_scale(
     assert page.text("read-area").endswith(" px²")
     assert number(page.text("read-area")) == pytest.approx(float(window["area"]), rel=5e-3)
     assert page.text("now") == "frame 0"
-    assert "cytodisk correlate bare --signal NAME" in browser.find_element(By.CLASS_NAME, "absent").text
+    assert "No signal, so no correlation." in browser.find_element(By.CLASS_NAME, "absent").text
     assert page.js(f"cytodisk.data.frames.length === {FRAMES}")
     assert [entry for entry in browser.get_log("browser") if entry["level"] != "INFO"] == []

@@ -18,7 +18,7 @@ from cytodisk.plot.time_axis import time_scale
 from cytodisk.report.encode import pack_floats
 from cytodisk.windows.grid import PolarWindows, polar_windows
 
-MOST_ARRAY_BYTES = 8_000_000
+MOST_ARRAY_BYTES = 5_000_000
 """Of numbers by frame and window; more frames are thinned out."""
 
 _BY_WINDOW = ("mean", "sd")

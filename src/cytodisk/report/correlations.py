@@ -13,7 +13,7 @@ from cytodisk.io.correlation_store import Correlation
 from cytodisk.report.cell_data import CellData
 from cytodisk.report.encode import pack_floats
 
-MOST_CURVE_NUMBERS = 1_500_000
+MOST_CURVE_NUMBERS = 900_000
 """Of curves of single windows that a page holds; beyond, only peaks and the layers' curves are shown."""
 
 _PEAK = ("correlation", "lag", "p", "q", "n", "n_effective", "low", "high", "threshold")

@@ -19,6 +19,8 @@ LARGEST_CHANGE = 0.15
 STEADINESS = 0.5
 """Kendall's τ of a trend: it goes one way, rather than up and down."""
 
+_MOST_FRAMES = 500  # that a trend is fitted to, as time and memory grow with their square
+
 
 @dataclass(frozen=True)
 class Drift:
@@ -79,6 +81,8 @@ def relative_trend(time: FloatArray, mean: FloatArray) -> float:
     ----------
     Sen, "Estimates of the regression coefficient based on Kendall's tau", 1968.
     """
+    every = max(1, mean.size // _MOST_FRAMES)
+    time, mean = time[::every], mean[::every]
     middle = float(np.median(mean)) if mean.size else 0.0
     if mean.size < FEWEST_FRAMES or middle == 0.0 or np.ptp(mean) == 0.0:
         return 0.0

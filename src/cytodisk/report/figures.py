@@ -34,6 +34,7 @@ _LEFT, _RIGHT_FRAME = 54, 512  # px: room for the axes of the right column, and 
 _SQUARE = 262  # px: height of the views on the left
 _MAP, _STRIP = 118, 44  # px: heights of frames on the right
 _WINDOW, _LAYER = "#D55E00", "#0072B2"  # of Okabe and Ito, told apart by all
+_MOST_DOTS = 100  # frames that a line shows as dots
 _MOST_LINES = 1500  # windows whose borders are drawn on a disk
 
 
@@ -97,11 +98,12 @@ def _scale_bar(plot: Any, box: Box, pixel_size_um: float | None) -> None:
         [y - 0.02 * box.height],
         [f"{length:g} {unit}"],
         text_color="white",
-        text_outline_color="black",
         text_align="center",
         text_baseline="bottom",
         text_font_size="13px",
-        text_font_style="bold",
+        background_fill_color="black",
+        background_fill_alpha=0.5,
+        padding=2,
     )
 
 
@@ -216,7 +218,7 @@ def _strip(cell: CellData, title: str, *, bottom: bool = False) -> Any:
     line = source_of(x=[], y=[])
     line.name = "line"
     plot.line("x", "y", source=line, line_color=_LAYER, line_width=1.4)
-    plot.scatter("x", "y", source=line, size=3, color=_LAYER)
+    plot.scatter("x", "y", source=line, size=3 if len(cell.frames) <= _MOST_DOTS else 1, color=_LAYER)
     _time_marks(plot)
     return plot
 

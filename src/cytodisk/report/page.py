@@ -20,7 +20,7 @@ from cytodisk.report.encode import json_for_script
 from cytodisk.report.figures import LAG_COLOURS, figures_of, library_script, palette
 from cytodisk.report.flag import Flag
 from cytodisk.report.flags import red_flags
-from cytodisk.report.pictures import OUTSIDE, Pictures, box_around, encode_frames
+from cytodisk.report.pictures import MOST_BYTES, OUTSIDE, Pictures, box_around, encode_frames, size_of
 from cytodisk.report.signal_file import FoundSignal, FrameSource, find_signal
 from cytodisk.report.words import MOST_PLACES, page_words
 
@@ -134,6 +134,8 @@ def _render(cell: CellData, found: FoundSignal, progress: Progress | None) -> st
     limits = Pictures(cell, box, found.source).limits()
     cell = cell.every_frames(Pictures(cell, box, found.source).every(limits))
     pictures = list(encode_frames(Pictures(cell, box, found.source), limits, progress))
+    while sum(map(size_of, pictures)) > MOST_BYTES and len(pictures) > 1:  # larger than the frames judged by
+        cell, pictures = cell.every_frames(2 * cell.every), pictures[::2]
     pairs, left_out = pairs_of(cell)
     data = cell.as_json() | {
         "pairs": pairs,

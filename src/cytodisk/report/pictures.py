@@ -15,7 +15,7 @@ from cytodisk.report.cell_data import CellData
 from cytodisk.report.encode import pack_labels, pack_picture
 from cytodisk.report.signal_file import FrameSource
 
-MOST_BYTES = 9_000_000
+MOST_BYTES = 10_000_000
 """Of pictures and labels together, as text; a longer movie is thinned out."""
 LONGEST_SIDE = 400
 """Of a picture, in its own pixels."""
@@ -192,11 +192,12 @@ class Pictures:
 
     def every(self, limits: list[tuple[float, float]]) -> int:
         """Every so-manyth frame may be shown within `MOST_BYTES`, judged by some frames."""
-        largest = max(_size(self.frame(time, limits)) for time in self._spread())
+        largest = max(size_of(self.frame(time, limits)) for time in self._spread())
         return self.cell.every * max(1, int(np.ceil(largest * len(self.cell.frames) / MOST_BYTES)))
 
 
-def _size(frame: dict[str, Any]) -> int:
+def size_of(frame: dict[str, Any]) -> int:
+    """Length of an encoded frame as text."""
     return len(frame["labels"] or "") + sum(len(text) for text in frame["channels"] or [])
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -59,8 +60,8 @@ def page_words(
         "facts": list(_facts(cell)),
         "flags": [_flag(flag, cell.cell) for flag in flags],
         "pixels_words": "with its windows" if found.source else "as windows: no pixels to show",
-        "folder": study.path.name or ".",
-        "signal_hint": cell.channels[0] if cell.channels else "NAME",
+        "folder": shlex.quote(study.path.name or "."),
+        "signal_hint": shlex.quote(cell.channels[0]) if cell.channels else None,
         "reduced": _reduced(cell, found, box, left_out),
         "statuses": statuses,
         "others": others,
@@ -115,7 +116,7 @@ def _reduced(cell: CellData, found: FoundSignal, box: Box, left_out: Sequence[st
     words = []
     if cell.every > 1:
         words.append(
-            f"Every {cell.every}th frame is shown, {len(cell.frames)} of {cell.whole.sizes['time']}; all are "
+            f"One frame in {cell.every} is shown, {len(cell.frames)} of {cell.whole.sizes['time']}; all are "
             "in the study, and red flags are from all."
         )
     if found.source is not None:

@@ -55,7 +55,7 @@
     return lookUp(labels, table);
   };
 
-  const drawBorders = (pixels, labels, width) => {
+  const drawBorders = (pixels, labels, width, outline) => {
     const last = labels.length - width;
     for (let k = 0; k < last; k++) {
       const here = labels[k];
@@ -63,7 +63,7 @@
       const below = labels[k + width];
       if (here === right && here === below) continue;
       const edge = here === OUTSIDE || right === OUTSIDE || below === OUTSIDE;
-      pixels[k] = blend(pixels[k], WHITE, edge ? 0.95 : 0.3);
+      pixels[k] = edge ? blend(pixels[k], outline, 0.95) : blend(pixels[k], WHITE, 0.3);
     }
   };
 
@@ -102,7 +102,7 @@
     if (grey) pixels = pixelColours(grey, limits[channel], range, page.palettes.signal);
     else if (decoded.labels) pixels = windowColours(decoded.labels, values, range, page.palettes.signal);
     if (decoded.labels) {
-      drawBorders(pixels, decoded.labels, shape[1]);
+      drawBorders(pixels, decoded.labels, shape[1], grey ? WHITE : BLACK);
       if (highlighted !== null) drawHighlight(pixels, decoded.labels, shape[1], highlighted);
     }
     return { pixels, shape };
@@ -134,7 +134,7 @@
   page.paintDisk = (values, limits, palette, doubtful = () => false) => {
     const colours = Uint32Array.from(values, (value) => page.colourOf(palette, limits, value));
     const pale = Array.from(values, (value, k) => Number.isFinite(value) && doubtful(k));
-    const soft = colours.map((colour) => blend(colour, WHITE, 0.7));
+    const soft = colours.map((colour) => blend(colour, WHITE, 0.55));
     const of = diskWindows();
     const pixels = new Uint32Array(of.length);
     for (let k = 0; k < of.length; k++) {

@@ -212,7 +212,7 @@
     const peak = Object.fromEntries(Object.entries(layers).map(([name, array]) => [name, array.values[layer]]));
     const found = `r ${page.digits(peak.correlation)} at ${page.lagWords(peak.lag)}, q ${page.digits(peak.q)}`;
     text("curve-layer", `mean of layer ${layer}: ${found}`);
-    text("curve-null", `95 % of chance for the ${at ? "window" : "layer"}`);
+    text("curve-null", `chance for the ${at ? "window" : "mean"}`);
   };
 
   const drawStrip = (name, array) => {
@@ -233,7 +233,7 @@
 
   const drawIntensity = () => {
     const { name, unit, whole_mean: mean } = page.channel();
-    const words = mean ? `mean ${name} of the cell (${unit})` : "mean intensity: choose a channel";
+    const words = mean ? `mean ${name} of the cell (${unit})` : "mean intensity: not of window areas";
     figures.intensity.title.text = plain(words);
     drawStrip("intensity", mean);
   };
