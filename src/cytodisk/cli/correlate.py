@@ -187,7 +187,7 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
     settings = found.settings
     console.print(
         f"signal {found.signal!r} with {found.with_}, lags to {settings['max_lag']} frames: "
-        f"at a positive lag {found.with_} follows the signal"
+        f"at a positive lag {found.with_} follows the signal, at a negative one it comes first"
     )
     layers, windows = found.layers, found.windows
     for cell, rows in layers.groupby("cell"):

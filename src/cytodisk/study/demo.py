@@ -49,7 +49,7 @@ def write_demo_input(
     StudyError
         The folder cannot be written, or holds something else.
     """
-    truth = movie("fluctuating", seed, frames=FRAMES, speed_px=0.5, turn_deg=0.4, coupled=_COUPLED)
+    truth = movie("fluctuating", seed, frames=FRAMES, speed_px=0.5, coupled=_COUPLED)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
