@@ -1,3 +1,5 @@
+import shutil
+
 import numpy as np
 import pytest
 from report_study import LAGS, LAYERS, NAMES, SECTORS, correlated
@@ -27,6 +29,13 @@ def test_tables_become_arrays(plain: CellData) -> None:
     np.testing.assert_allclose(pair["curves"]["correlation"][1, 5], 0.1 * LAGS)
     np.testing.assert_allclose(pair["layer_curves"], np.full((LAYERS, len(LAGS)), 0.05))
     np.testing.assert_allclose(pair["layers"]["threshold"], 0.25)
+
+
+def test_those_with_velocity_come_first(study: Study, plain: CellData) -> None:
+    folder = write_correlation(study.path, NAMES[1], NAMES[0], correlated(), {}).path
+    pairs, _ = pairs_of(plain)
+    assert [pair["with"] for pair in pairs] == ["velocity", NAMES[0]]
+    shutil.rmtree(folder)
 
 
 def test_what_was_not_computed_is_unknown(study: Study, plain: CellData) -> None:

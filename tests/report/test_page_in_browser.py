@@ -206,6 +206,7 @@ def test_windows_that_are_not_significant_are_hatched(page: Page) -> None:
 
     assert colours(0) == 1
     assert colours(2) == 2
+    assert page.text("peaks-key") == "hatched: not significant (q ≥ 0.05)"
 
 
 def test_without_signal_correlation_or_scale(

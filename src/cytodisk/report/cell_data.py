@@ -22,6 +22,7 @@ MOST_ARRAY_BYTES = 5_000_000
 """Of numbers by frame and window; more frames are thinned out."""
 
 _BY_WINDOW = ("mean", "sd")
+_SHOWN = (*_BY_WINDOW, "n_pixels", "area", "velocity", "velocity_error", "status", "reason")
 _QUALITY = ("area", "tracking_residual", "area_distortion")
 _LARGE, _USUAL = 99.0, 75.0  # percentiles of speed that the colours of velocity go by
 _FAULTY = 3.0  # times the usual speed, beyond which it is a fault of the mask
@@ -45,8 +46,9 @@ class CellData:
 
     @cached_property
     def whole(self) -> xr.Dataset:
-        """Activity in all frames."""
-        return self.study.activity(self.cell).load()
+        """Activity in all frames, as far as the page shows it."""
+        activity = self.study.activity(self.cell)
+        return activity[[name for name in _SHOWN if name in activity]].load()
 
     @cached_property
     def activity(self) -> xr.Dataset:

@@ -31,12 +31,13 @@ def pairs_of(cell: CellData) -> tuple[list[dict[str, Any]], list[str]]:
     Returns
     -------
     pairs : list of dict
-        For the page's scripts; empty if nothing was correlated. What was not computed, as p and q without
-        surrogates, is NaN.
+        For the page's scripts, those with velocity first; empty if nothing was correlated. What was not
+        computed, as p and q without surrogates, is NaN.
     notes : list of str
         What was left out, in words.
     """
-    found = [cell.study.correlation(*names) for names in cell.study.correlations]
+    names = sorted(cell.study.correlations, key=lambda pair: not pair[1].startswith("velocity"))
+    found = [cell.study.correlation(*pair) for pair in names]
     known = [one for one in found if len(_of(cell, one.windows))]
     notes = [
         f"correlation of {one.signal} with {one.with_}, which this cell has not"

@@ -83,7 +83,7 @@
 
   const wedge = ({ layer, sector }) => {
     const { radii, sectors } = page.data;
-    const steps = 16;
+    const steps = Math.max(4, Math.ceil(120 / sectors));
     const angle = (k) => (2 * Math.PI * (sector + k / steps)) / sectors;
     const arc = (radius) =>
       Array.from({ length: steps + 1 }, (_, k) => [radius * Math.cos(angle(k)), radius * Math.sin(angle(k))]);
@@ -171,6 +171,8 @@
     setPixels("peaks", pixels, shape);
     part("peaks", "colours").palette = lagged ? page.data.palettes.lag : page.data.palettes.diverging;
     setColours("peaks", [-top, top], lagged ? page.lagUnit() : "r");
+    const tested = windows.q.values.some(Number.isFinite);
+    text("peaks-key", tested ? "hatched: not significant (q ≥ 0.05)" : "significance was not computed");
     text("peaks-name", lagged ? "Lag of the peak" : "Peak correlation");
     text("peaks-title", `${signal} with ${other}`);
     text("curve-title", `${signal} with ${other}`);
@@ -212,7 +214,7 @@
     const peak = Object.fromEntries(Object.entries(layers).map(([name, array]) => [name, array.values[layer]]));
     const found = `r ${page.digits(peak.correlation)} at ${page.lagWords(peak.lag)}, q ${page.digits(peak.q)}`;
     text("curve-layer", `mean of layer ${layer}: ${found}`);
-    text("curve-null", `chance for the ${at ? "window" : "mean"}`);
+    text("curve-null", Number.isFinite(bar) ? `chance for the ${at ? "window" : "mean"}` : "chance: not computed");
   };
 
   const drawStrip = (name, array) => {
