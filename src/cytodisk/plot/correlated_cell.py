@@ -19,6 +19,10 @@ from cytodisk.plot.sheet import Sheet
 VELOCITY_NAMES = {"velocity": "velocity", "velocity_cell_frame": "velocity (cell frame)"}
 """What edge velocities are called in pictures."""
 
+_HEADING_MM, _LINE_MM = 13.0, 3.5
+_CHARACTER_MM, _BOLD_MM = 1.4, 1.9  # mean width at 7 points, and bold at 8
+_LONGEST_NAME = 18
+
 
 @dataclass(frozen=True, eq=False)
 class CellCorrelation:
@@ -58,6 +62,13 @@ class CellCorrelation:
         return f"{name} at the edge" if self.correlation.settings.get("against") == "edge" else name
 
     @property
+    def first_names(self) -> tuple[str, str]:
+        """Signal and other quantity in a few characters, for the words about which comes first."""
+        channels, other = self.movie.channels, self.correlation.with_
+        last = "velocity" if self.by_velocity else self.movie.shown_name(channels.index(other))
+        return _shortened(self.signal_name), _shortened(last)
+
+    @property
     def with_words(self) -> str:
         """The same in headings."""
         return f"edge {self.with_name}" if self.by_velocity else self.with_name
@@ -86,14 +97,70 @@ class CellCorrelation:
         """Rows of the cell in a table, which may not be there."""
         return pd.DataFrame() if table is None else table[table["cell"] == self.cell]
 
-    def write_heading(self, sheet: Sheet, what: str, *, raw: bool = False) -> None:
-        """What the page shows, and below it of which cell and, unless values are raw, how it was made."""
-        settings = self.correlation.settings
-        facts = [f"cell {self.cell}", f"{self.movie.grid.layers} layers × {self.movie.grid.sectors} sectors"]
+    def heading(self, width_mm: float, what: str, *, raw: bool = False) -> Heading:
+        """What a page shows, and of which cell and, unless values are raw, how it was made.
+
+        Parameters
+        ----------
+        width_mm : float
+            Of the page: long lines are broken.
+        what : str
+        raw : bool
+        """
+        grid, settings = self.movie.grid, self.correlation.settings
+        facts = [f"cell {self.cell}", f"{grid.layers} layers × {grid.sectors} sectors"]
         facts.append(f"{self.movie.frames} frames")
         if not raw and settings.get("detrend", "none") != "none":
             facts.append(f"{settings['detrend']} detrending")
         if not raw and settings.get("difference"):
-            facts.append("differences")
-        sheet.text(LEFT_MM, 4.5, what, fontsize=8, weight="bold")
-        sheet.text(LEFT_MM, 8.3, " · ".join(facts), color="0.3")
+            facts.append("differences between frames")
+        if not raw and settings.get("skip_lags"):
+            lags = ", ".join(f"{lag:g}".replace("-", "−") for lag in settings["skip_lags"])
+            facts.append(f"without lag {lags}")
+        room = width_mm - 2 * LEFT_MM
+        title = _broken(what.split(" "), " ", int(room / _BOLD_MM))
+        return Heading(title, _broken(facts, " · ", int(room / _CHARACTER_MM)))
+
+
+@dataclass(frozen=True)
+class Heading:
+    """Lines above a page.
+
+    Attributes
+    ----------
+    title, facts : list of str
+        The first bold, the second grey.
+    """
+
+    title: list[str]
+    facts: list[str]
+
+    @property
+    def height_mm(self) -> float:
+        """From the page's upper border to what comes below."""
+        return _HEADING_MM + _LINE_MM * (len(self.title) + len(self.facts) - 2)
+
+    def write(self, sheet: Sheet) -> None:
+        """Put the lines on the page."""
+        top = 4.5
+        for words in self.title:
+            sheet.text(LEFT_MM, top, words, fontsize=8, weight="bold")
+            top += _LINE_MM
+        for words in self.facts:
+            sheet.text(LEFT_MM, top + 0.3, words, color="0.3")
+            top += _LINE_MM
+
+
+def _broken(parts: list[str], between: str, most: int) -> list[str]:
+    """Parts joined into lines of at most so many characters, if they are that short themselves."""
+    lines = [parts[0]]
+    for part in parts[1:]:
+        if len(lines[-1]) + len(between) + len(part) <= most:
+            lines[-1] += between + part
+        else:
+            lines.append(part)
+    return lines
+
+
+def _shortened(name: str) -> str:
+    return name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"

@@ -213,8 +213,9 @@ def _share_axes(axes: Sequence[Axes], curves: pd.DataFrame, unit: LagUnit) -> No
     largest = curves[[name for name in columns if name in curves]].abs().to_numpy(dtype=np.float64)
     reach = max(_ROOM * float(np.nanmax(largest, initial=0.0)), _LEAST_REACH)
     lags = curves[unit.column].to_numpy(dtype=np.float64)
+    half = 0.5 if np.ptp(lags) == 0 else 0.0
     for ax in axes:
-        ax.set(xlim=(lags.min(), lags.max()), ylim=(-reach, reach))
+        ax.set(xlim=(lags.min() - half, lags.max() + half), ylim=(-reach, reach))
         ax.xaxis.set_major_locator(MaxNLocator(6, steps=TICK_STEPS, integer=unit.unit == "frames"))
         ax.yaxis.set_major_locator(MaxNLocator(4, steps=TICK_STEPS, symmetric=True))
         ax.tick_params(labelbottom=ax is axes[-1])

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.axes import Axes
 
 from cytodisk.plot.correlated_cell import CellCorrelation
 from cytodisk.plot.correlation import curve_key, draw_correlation_curves, draw_map_pair
@@ -15,19 +16,18 @@ from cytodisk.plot.events import draw_event_average, draw_events
 from cytodisk.plot.kymograph import bar_beside, shown_layers
 from cytodisk.plot.lag_axis import sides
 from cytodisk.plot.movie_cell import LEFT_MM
-from cytodisk.plot.pairs import PairTable, draw_pairs
+from cytodisk.plot.pair_table import PairTable, drawn_kinds
+from cytodisk.plot.pairs import draw_pairs
 from cytodisk.plot.sheet import Sheet
 from cytodisk.plot.strip import time_stamp
-from cytodisk.plot.style import SINGLE_COLUMN_MM, colour_bar
+from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM, colour_bar
 
-_TOP = 13.0  # mm, below the heading
 _CURVE, _CURVE_GAP, _CURVE_LEFT = 17.0, 5.5, 14.0  # mm
 _PANEL, _PANEL_GAP, _TALLEST = 31.0, 1.5, 1.45  # mm, mm, height over width
 _MAP_LEFT, _MAP, _MAP_HEIGHT, _MAP_BAR = 14.0, 62.0, 48.0, 18.0  # mm
 _EPISODES, _AVERAGE_LEFT, _AVERAGE = 80.0, 124.0, 53.0  # mm
 _PAIR_LEFT, _PAIR_GAP, _PAIR_LINES, _PAIR_IMAGE, _PAIR_BAR = 14.0, 5.0, 30.0, 34.0, 18.0  # mm
 _KEY, _KEY_POINTS = 6.5, 21.0  # height of the key above the average in mm, and of what stands on it
-_ALONG = ("straight", "interior", "edge")
 
 
 def curves_page(one: CellCorrelation) -> Sheet | None:
@@ -35,10 +35,12 @@ def curves_page(one: CellCorrelation) -> Sheet | None:
     curves = one.rows(one.correlation.layer_curves)
     if curves.empty or not curves["correlation"].notna().any():
         return None
+    heading = one.heading(SINGLE_COLUMN_MM, f"{one.signal_name} with {one.with_words}")
+    head = heading.height_mm
     count = len(shown_layers(int(curves["layer"].nunique())))
-    first = _TOP + 10.5
+    first = head + 10.5
     sheet = Sheet(first + count * (_CURVE + _CURVE_GAP) + 6.5, SINGLE_COLUMN_MM)
-    one.write_heading(sheet, f"{one.signal_name} with {one.with_words}")
+    heading.write(sheet)
     axes = [
         sheet.axes(_CURVE_LEFT, first + k * (_CURVE + _CURVE_GAP), SINGLE_COLUMN_MM - _CURVE_LEFT - 4, _CURVE)
         for k in range(count)
@@ -48,20 +50,22 @@ def curves_page(one: CellCorrelation) -> Sheet | None:
         curves,
         cell=one.cell,
         peaks=one.correlation.layers,
-        signal=one.signal_name,
-        with_=one.with_name,
+        signal=one.first_names[0],
+        with_=one.first_names[1],
     )
     chance = "threshold" in curves and bool(curves["threshold"].notna().any())
-    _write_key(sheet, curve_key(chance=chance), 11.0, columns=2)
+    _write_key(sheet, curve_key(chance=chance), head - 2.0, columns=2)
     return sheet
 
 
 def maps_page(one: CellCorrelation) -> Sheet:
     """The signal in the outermost layer, and what it was correlated with, by time and sector."""
-    sheet = Sheet(_TOP + 4.0 + _MAP_HEIGHT + 9.0)
-    one.write_heading(sheet, f"{one.signal_name} and {one.with_words}", raw=True)
+    heading = one.heading(DOUBLE_COLUMN_MM, f"{one.signal_name} and {one.with_words}", raw=True)
+    head = heading.height_mm
+    sheet = Sheet(head + 4.0 + _MAP_HEIGHT + 9.0)
+    heading.write(sheet)
     lefts = (_MAP_LEFT, _MAP_LEFT + _MAP + _MAP_BAR + 3.0)
-    axes = [sheet.axes(left, _TOP + 3.0, _MAP, _MAP_HEIGHT) for left in lefts]
+    axes = [sheet.axes(left, head + 3.0, _MAP, _MAP_HEIGHT) for left in lefts]
     other = one.correlation.with_
     unit = one.movie.unit(other) if one.by_velocity else None
     title = f"{one.with_words}: protrusion red, retraction blue"
@@ -86,27 +90,29 @@ def peaks_page(one: CellCorrelation) -> Sheet | None:
     peaks, movie = one.peaks, one.movie
     if not movie.mapped or not np.isfinite(peaks.correlation).any():
         return None
+    heading = one.heading(SINGLE_COLUMN_MM, f"{one.signal_name} with {one.with_words}: peaks")
+    head = heading.height_mm
     time = movie.mapped[len(movie.mapped) // 2]
     windows = movie.windows(time)
     high, wide = np.ptp(windows.disk.outline_yx, axis=0)
     height = _PANEL * float(np.clip(high / wide, 1.0, _TALLEST))
     key = peak_key(peaks)
     row = height + 8.0
-    sheet = Sheet(_TOP + 2 * row + 5.5 + (4.0 if key else 0.0), SINGLE_COLUMN_MM)
-    one.write_heading(sheet, f"{one.signal_name} with {one.with_words}: peaks")
+    sheet = Sheet(head + 2 * row + 5.5 + (4.0 if key else 0.0), SINGLE_COLUMN_MM)
+    heading.write(sheet)
     lefts = (LEFT_MM, LEFT_MM + _PANEL + _PANEL_GAP)
     stamp = f"on the cell, {time_stamp(time, movie.interval_s)}"
     for left, words in zip(lefts, ("on the disk", stamp), strict=True):
-        sheet.text(left + 0.5 * _PANEL, _TOP, words, ha="center")
+        sheet.text(left + 0.5 * _PANEL, head, words, ha="center")
     for number, (shown, label) in enumerate(_shown(peaks)):
-        top = _TOP + 2.0 + number * row
+        top = head + 2.0 + number * row
         disk, cell = (sheet.axes(left, top, _PANEL, height) for left in lefts)
         drawn = draw_peaks_on_disk(disk, peaks, movie.grid, shown)
         draw_peaks_on_cell(cell, peaks, windows, shown, pixel_size_um=movie.pixel_size_um)
         bar = sheet.axes(lefts[1] + _PANEL + 2.0, top + 0.1 * height, 2.2, 0.8 * height)
         colour_bar(drawn, bar, label, extend=_extend(peaks, shown))
-    foot = _TOP + 2 * row + 1.0
-    sheet.text(LEFT_MM, foot + 2.0, "lag: " + sides(one.signal_name, one.with_name))
+    foot = head + 2 * row + 1.0
+    sheet.text(LEFT_MM, foot + 2.0, "lag: " + sides(*one.first_names))
     if key:
         _write_key(sheet, key, foot + 3.5, columns=2)
     return sheet
@@ -115,16 +121,18 @@ def peaks_page(one: CellCorrelation) -> Sheet | None:
 def pairs_page(one: CellCorrelation) -> Sheet | None:
     """Correlation of all pairs of windows by distance and lag; None when pairs were not asked for."""
     pairs = one.correlation.pairs
-    rows = one.rows(pairs)
-    if pairs is None or rows.empty or not rows["correlation"].notna().any():
+    kinds = [] if pairs is None else drawn_kinds(pairs, one.cell)
+    if pairs is None or not kinds:
         return None
-    kinds = [kind for kind in _ALONG if kind in set(rows["along"])]
     tables = [PairTable.of(pairs, along=kind, cell=one.cell) for kind in kinds]
-    top, second = _TOP + 5.0, _TOP + 5.0 + _PAIR_LINES + 4.0
-    width = (180.0 - _PAIR_LEFT - _PAIR_BAR - 2 * _PAIR_GAP) / 3
+    width = (DOUBLE_COLUMN_MM - _PAIR_LEFT - _PAIR_BAR - 2 * _PAIR_GAP) / 3
     page = _PAIR_LEFT + len(kinds) * (width + _PAIR_GAP) - _PAIR_GAP + _PAIR_BAR
-    sheet = Sheet(second + _PAIR_IMAGE + 21.5, max(page, SINGLE_COLUMN_MM))
-    one.write_heading(sheet, f"{one.signal_name} with {one.with_name}, all pairs of windows")
+    page = max(page, SINGLE_COLUMN_MM)
+    heading = one.heading(page, f"{one.signal_name} with {one.with_name}, all pairs of windows")
+    top = heading.height_mm + 5.0
+    second = top + _PAIR_LINES + 4.0
+    sheet = Sheet(second + _PAIR_IMAGE + 21.5, page)
+    heading.write(sheet)
     limit = max(float(np.nanmax(np.abs(table.correlation))) for table in tables)
     columns = []
     for number, kind in enumerate(kinds):
@@ -144,24 +152,27 @@ def events_page(one: CellCorrelation) -> Sheet | None:
     events, averages = one.rows(one.correlation.events), one.rows(one.correlation.event_averages)
     if events.empty or averages.empty:
         return None
-    sheet = Sheet(_TOP + 4.0 + _MAP_HEIGHT + 9.0)
-    one.write_heading(sheet, f"episodes of the edge, and {one.signal_name} around onsets of protrusion")
-    ax = sheet.axes(_MAP_LEFT, _TOP + 3.0, _EPISODES, _MAP_HEIGHT)
+    what = f"episodes of the edge, and {one.signal_name} around onsets of protrusion"
+    heading = one.heading(DOUBLE_COLUMN_MM, what)
+    head = heading.height_mm
+    sheet = Sheet(head + 4.0 + _MAP_HEIGHT + 9.0)
+    heading.write(sheet)
+    ax = sheet.axes(_MAP_LEFT, head + 3.0, _EPISODES, _MAP_HEIGHT)
     draw_events(ax, one.velocity, events)
     ax.set_title("episodes outlined, onsets bold", loc="left", y=1.0, pad=2.5)
-    _draw_average(sheet, one, averages)
+    around = sheet.axes(_AVERAGE_LEFT, head + 3.0 + _KEY, _AVERAGE, _MAP_HEIGHT - _KEY)
+    _draw_average(around, one, averages)
     return sheet
 
 
-def _draw_average(sheet: Sheet, one: CellCorrelation, averages: pd.DataFrame) -> None:
+def _draw_average(ax: Axes, one: CellCorrelation, averages: pd.DataFrame) -> None:
     """The signal around onsets, its key above the axes, where no line can run through it."""
-    ax = sheet.axes(_AVERAGE_LEFT, _TOP + 3.0 + _KEY, _AVERAGE, _MAP_HEIGHT - _KEY)
     average = _average(averages, "protrusion")
     if not np.isfinite(average["mean"]).any():
         ax.set_axis_off()
         ax.text(0.5, 0.5, "no onset of protrusion is known", ha="center", color="0.3")
         return
-    lines = draw_event_average(ax, average, label=one.signal_name)
+    lines = draw_event_average(ax, average, label=one.first_names[0])
     place: Any = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.2, "borderpad": 0.0}
     ax.legend(handles=lines, ncols=2, frameon=False, handlelength=1.4, labelspacing=0.25, **place)
     count = ax.get_title(loc="right")
@@ -204,7 +215,7 @@ def _write_pair_notes(sheet: Sheet, one: CellCorrelation, tables: list[PairTable
     if any((np.abs(table.correlation) >= table.threshold).any() for table in tables):
         facts.append("outlined: beyond chance")
     facts.append(f"bins of fewer than {min(table.fewest for table in tables)} pairs left out")
-    sheet.text(LEFT_MM, sheet.height_mm - 5.8, f"lag: {sides(one.signal_name, one.with_name)}")
+    sheet.text(LEFT_MM, sheet.height_mm - 5.8, f"lag: {sides(*one.first_names)}")
     sheet.text(LEFT_MM, sheet.height_mm - 2.2, " · ".join(facts), color="0.3")
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,128 +13,20 @@ from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
-from cytodisk.plot.lag_axis import LagUnit, rows_of_cell
 from cytodisk.plot.outlines import outline_sides
+from cytodisk.plot.pair_table import PairTable
 from cytodisk.plot.style import CHANCE_COLOUR, CHANCE_LINE, DIVERGING_COLOURS, LINE_COLOUR, colour_map
 from cytodisk.plot.time_axis import TICK_STEPS
 
 LAG_0_COLOUR, PEAK_COLOUR = "#0072B2", "#D55E00"
 OUTLINE_NAME = "beyond chance"
 
-_FEWEST = 0.5  # pairs in a bin that is drawn, over the windows: fewer are noise, mostly the farthest
 _APART, _WIDTH = -0.15, 0.05  # of the longest distance: place and width of the bin at distance 0
 _LEFT = -0.2
 _ROOM = 1.08  # of the correlation's axis over what it holds
 _BAND_OPACITY = 0.2
 _LEGEND: Any = {"borderaxespad": 0.1, "handlelength": 1.0, "columnspacing": 1.0, "borderpad": 0.2}
-_COLUMNS = {"cell", "along", "distance", "lag", "correlation", "lower_quartile", "upper_quartile", "n"}
-_KINDS = {
-    "straight": "straight distance",
-    "interior": "distance inside the cell",
-    "edge": "distance along the edge",
-}
-
-
-@dataclass(frozen=True, eq=False)
-class PairTable:
-    """Correlation of pairs for one kind of distance.
-
-    Attributes
-    ----------
-    along : str
-        Kind of distance.
-    distance : ndarray of shape (D,) and dtype float
-        Middles of the bins that hold pairs; the first may be 0, of windows paired with themselves.
-    lag : ndarray of shape (K,) and dtype float
-    correlation, lower, upper : ndarray of shape (D, K) and dtype float
-        Mean over pairs, and quartiles.
-    threshold : float
-        NaN when it was not tested.
-    lag_unit : LagUnit
-    distance_unit : str
-    fewest : int
-        Pairs that a bin must hold, half as many as there are windows; others are left out.
-    """
-
-    along: str
-    distance: FloatArray
-    lag: FloatArray
-    correlation: FloatArray
-    lower: FloatArray
-    upper: FloatArray
-    threshold: float
-    lag_unit: LagUnit
-    distance_unit: str
-    fewest: int
-
-    @classmethod
-    def of(cls, pairs: pd.DataFrame, *, along: str = "straight", cell: int = 0) -> PairTable:
-        """Bins with enough pairs of one cell and kind of distance.
-
-        Parameters
-        ----------
-        pairs : DataFrame
-            `pairs` of a study's correlation, with the unit of distances in `attrs["units"]`.
-        along : str
-        cell : int
-
-        Raises
-        ------
-        ParameterError
-            The table lacks columns, the cell or the kind of distance.
-        """
-        rows = rows_of_cell(pairs, cell, _COLUMNS, "pairs")
-        if along not in set(rows["along"]):
-            raise ParameterError(f"along must be one of {sorted(set(rows['along']))}, got {along!r}")
-        rows = rows[rows["along"] == along]
-        fewest = _fewest(rows)
-        rows = rows[(rows["n"] >= fewest) & rows["correlation"].notna()]
-        if rows.empty:
-            raise ParameterError(f"pairs has no correlation of cell {cell} along {along!r}")
-        unit = LagUnit.of(rows)
-        names = ("correlation", "lower_quartile", "upper_quartile")
-        wide = [rows.pivot(index="distance", columns=unit.column, values=name) for name in names]
-        return cls(
-            along=along,
-            distance=wide[0].index.to_numpy(dtype=np.float64),
-            lag=wide[0].columns.to_numpy(dtype=np.float64),
-            correlation=wide[0].to_numpy(dtype=np.float64),
-            lower=wide[1].to_numpy(dtype=np.float64),
-            upper=wide[2].to_numpy(dtype=np.float64),
-            threshold=float(rows["threshold"].iloc[0]) if "threshold" in rows else np.nan,
-            lag_unit=unit,
-            distance_unit=str(pairs.attrs.get("units", {}).get("distance", "")),
-            fewest=fewest,
-        )
-
-    @property
-    def title(self) -> str:
-        """What the distance is."""
-        return _KINDS.get(self.along, f"distance ({self.along})")
-
-    @property
-    def label(self) -> str:
-        """Of the axis of distance."""
-        return f"{self.title} ({self.distance_unit})" if self.distance_unit else self.title
-
-    @property
-    def peak(self) -> int:
-        """Index of the lag at which the mean's magnitude is largest, of all distances."""
-        place = int(np.nanargmax(np.abs(self.correlation)))
-        return place % len(self.lag)
-
-    @property
-    def width(self) -> float:
-        """Of a bin: the middle of the first above 0 is half of it."""
-        above = self.distance[self.distance > 0]
-        return 2.0 * float(above[0]) if above.size == 1 else float(np.diff(above).min(initial=np.inf))
-
-    @property
-    def longest(self) -> float:
-        """End of the last bin."""
-        return float(self.distance[-1]) + 0.5 * self.width
 
 
 def draw_pairs(
@@ -192,12 +83,6 @@ def draw_pairs(
     axes[0].tick_params(labelbottom=False)
     axes[1].set_xlabel(table.label)
     return lines, image
-
-
-def _fewest(rows: pd.DataFrame) -> int:
-    """Half as many pairs as there are windows, whose square all pairs are."""
-    every = rows.drop_duplicates("distance")["n"].sum()
-    return max(1, int(np.ceil(_FEWEST * np.sqrt(float(every)))))
 
 
 def _draw_lines(ax: Axes, table: PairTable) -> list[Line2D]:
