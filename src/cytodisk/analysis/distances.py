@@ -15,10 +15,12 @@ from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
 from cytodisk.geometry.locate import TriangleLocator
+from cytodisk.geometry.polygon import edge_lengths, smooth_closed
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.windows.grid import PolarWindows
 
 DISTANCE_DIMS = ("layer", "sector", "other_layer", "other_sector")
+_SMOOTHING_PX = 1.0  # of the edge, whose stair steps of pixels are up to 8 % too long
 _LOOK_EVERY = 0.5  # pixels between the places at which a straight line must be inside the cell
 
 
@@ -51,8 +53,9 @@ def window_distances(cell: DiskMap | DiskMovie, grid: PolarWindows, *, frames: i
     -----
     A window's centre is the middle of its radii and angles on the disk, brought to the cell. The way through
     the inside is the straight line where that stays in the cell (looked at every half pixel), else the
-    shortest path along edges of the mesh and across pairs of its triangles, by Dijkstra, which is up to 4 %
-    too long.
+    shortest path along edges of the mesh and across pairs of its triangles, by Dijkstra, which is too long:
+    around the slot of a U by 2 % in the mean and at most 9 %. The edge is smoothed over a pixel, as for the
+    map's angles, before its length is taken.
     """
     frames = whole_number("frames", frames, 1)
     maps: list[DiskMap] = []
@@ -113,7 +116,7 @@ def _along_edge(disk: DiskMap, angles: FloatArray) -> FloatArray:
     loop = disk.vertices_yx[disk.boundary]
     uv = disk.vertices_uv[disk.boundary]
     theta = np.unwrap(np.arctan2(uv[:, 1], uv[:, 0]))
-    steps = np.linalg.norm(np.roll(loop, -1, axis=0) - loop, axis=1)
+    steps = edge_lengths(smooth_closed(loop, _SMOOTHING_PX))
     along = np.concatenate([[0.0], np.cumsum(steps)])
     place = np.interp((angles - theta[0]) % (2.0 * np.pi), np.append(theta - theta[0], 2.0 * np.pi), along)
     apart = np.abs(place[:, None] - place)

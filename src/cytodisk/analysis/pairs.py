@@ -22,6 +22,7 @@ from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import ParameterError
 
 _FRAMES_FOR_DISTANCE = 20
+_SURROGATES_AT_ONCE = 8  # in memory
 _WINDOW = ("layer", "sector")
 
 
@@ -143,8 +144,12 @@ def _chance(
 ) -> dict[str, Any]:
     """Band of the surrogates' means, and what their largest exceeds."""
     dims = ("along", "distance", "lag")
-    series = np.stack([changed(column) for column in b.T], axis=1)  # (T, V, R)
-    means = np.stack([mean_by_bin(a, series[..., k], lags, min_pairs, bins, step) for k in range(count)])
+    means = np.empty((count, len(bins), bins[0].count, lags.size))
+    for first in range(0, count, _SURROGATES_AT_ONCE):
+        which = slice(first, min(first + _SURROGATES_AT_ONCE, count))
+        series = np.stack([changed(column, which) for column in b.T], axis=1)  # (T, V, some)
+        for k, some in enumerate(np.moveaxis(series, -1, 0), first):
+            means[k] = mean_by_bin(a, some, lags, min_pairs, bins, step)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # bins without pairs have no mean
         low, high = np.nanquantile(means, [0.5 * ALPHA, 1.0 - 0.5 * ALPHA], axis=0)

@@ -6,8 +6,7 @@ neighbouring sectors have in common stays as it was.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Literal, get_args
+from typing import Literal, Protocol, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,13 @@ from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import ParameterError
 
 Null = Literal["phase", "shift"]
-Surrogates = Callable[[FloatArray], FloatArray]
+_ALL = slice(None)
+
+
+class Surrogates(Protocol):
+    """Makes surrogates of a series (T,), shape (T, R): all of them, or some."""
+
+    def __call__(self, series: FloatArray, which: slice = _ALL) -> FloatArray: ...
 
 
 def surrogates(null: Null, frames: int, count: int, seed: int) -> Surrogates:
@@ -35,8 +40,8 @@ def surrogates(null: Null, frames: int, count: int, seed: int) -> Surrogates:
 
     Returns
     -------
-    callable
-        Takes a series (T,), gives (T, count), NaN where there are no values.
+    Surrogates
+        Takes a series (T,), gives (T, count), NaN where there are no values; with a slice, those alone.
 
     Raises
     ------
@@ -48,11 +53,11 @@ def surrogates(null: Null, frames: int, count: int, seed: int) -> Surrogates:
     random = np.random.default_rng(whole_number("seed", seed, 0))
     if null == "phase":
         turns = np.exp(1j * random.uniform(0.0, 2.0 * np.pi, (frames + 1, count)))
-        return lambda series: phase_randomised(series, turns)
+        return lambda series, which=_ALL: phase_randomised(series, turns[:, which])
     if frames < 2:
         raise ParameterError(f"null 'shift' needs at least 2 frames, got {frames}")
     shifts = random.integers(1, frames, count)
-    return lambda series: circularly_shifted(series, shifts)
+    return lambda series, which=_ALL: circularly_shifted(series, shifts[which])
 
 
 def check_null(null: str) -> None:
