@@ -37,12 +37,18 @@ def named(values: Any, *dims: str, interval_s: float | None = None) -> xr.DataAr
     return array
 
 
+def plain(x: Any, y: Any) -> float:
+    """Pearson correlation written out."""
+    x, y = x - x.mean(), y - y.mean()
+    return float(x @ y / np.sqrt((x @ x) * (y @ y)))
+
+
 def one(a: Any, b: Any, lag: int, least: int = 10) -> tuple[float, int]:
-    """Correlation of a[t] with b[t + lag] by SciPy, and the number of pairs."""
+    """Correlation of a[t] with b[t + lag], and the number of pairs."""
     frames = len(a)
     x, y = a[max(0, -lag) : frames - max(0, lag)], b[max(0, lag) : frames + min(0, lag)]
     both = np.isfinite(x) & np.isfinite(y)
-    return (pearsonr(x[both], y[both])[0] if both.sum() >= least else NAN), int(both.sum())
+    return (plain(x[both], y[both]) if both.sum() >= least else NAN), int(both.sum())
 
 
 @pytest.mark.parametrize(("in_a", "in_b"), [(0.0, 0.0), (0.2, 0.0), (0.0, 0.2), (0.2, 0.2)])
@@ -61,6 +67,10 @@ def test_every_lag_of_every_window(in_a: float, in_b: float, offset: float) -> N
             assert int(at["n"]) == n
     share = effective_share(a, b[:, None, :])
     np.testing.assert_allclose(found["n_effective"], found["n"] * share[..., None])
+    x, y = a[:-4, 1, 2], b[4:, 2]
+    both = np.isfinite(x * y)
+    r = float(found["correlation"].isel(layer=1, sector=2).sel(lag=4))
+    assert r == pytest.approx(pearsonr(x[both], y[both])[0], abs=1e-12)
     low, high = fisher_interval(found["correlation"].to_numpy(), found["n_effective"].to_numpy(), 0.95)
     np.testing.assert_allclose(found["low"], low)
     np.testing.assert_allclose(found["high"], high)
@@ -115,7 +125,7 @@ B_DIMS = {
     "a_dims", [("layer", "sector"), ("sector", "layer"), ("sector",), ("channel", "layer", "sector")]
 )
 @pytest.mark.parametrize("kind", B_DIMS)
-@pytest.mark.parametrize("count", [0, 9])
+@pytest.mark.parametrize("count", [0, 3])
 def test_broadcasting_by_name(a_dims: Any, kind: str, count: int) -> None:
     sizes = {"layer": LAYERS, "sector": SECTORS, "channel": 3}
     b_dims = B_DIMS[kind]
