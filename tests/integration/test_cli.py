@@ -293,9 +293,11 @@ def test_demo_once_and_again(run: Run, tmp_path: Path) -> None:
     demo = tmp_path / "demo"
     code, said, _ = run("demo", "-o", demo)
     assert code == 0
-    assert "40 of 40 frames of 1 cell mapped, each one to one" in said
-    for line in ("boundary: after 39 frames", "edge velocity: error ", "signal: sum over windows", "lag: "):
+    assert "60 of 60 frames of 1 cell mapped, each one to one" in said
+    for line in ("boundary: after 59 frames", "edge velocity: error ", "signal: sum over windows", "lag: "):
         assert line in said
+    assert "made to follow edge velocity by 20 s (4 frames), it is found to follow by 20 s (4 frames)" in said
+    assert f"report: {demo / 'study' / 'report.html'}" in said
     study = cd.open_study(demo / "study")
     assert (study.provenance["length_unit"], study.provenance["velocity_unit"]) == ("µm", "µm/s")
     assert any((demo / "study" / "figures").iterdir())

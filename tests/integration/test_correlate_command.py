@@ -1,0 +1,132 @@
+"""`cytodisk correlate` and `cytodisk report`, from files to tables, figures and the page."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import Run, assert_refused, content, write
+
+import cytodisk as cd
+from cytodisk.simulate import movie
+
+GRID = ("--layers", "3", "--sectors", "12", "--figures", "0", "--quiet")
+FEW = ("--surrogates", "99", "--max-lag", "8")
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A study with two channels, without a scale."""
+    folder = tmp_path_factory.mktemp("study")
+    shown = movie("fluctuating", 5, frames=30, radius_px=18, lag_frames=-3)
+    assert shown.signal is not None
+    masks = write(folder / "masks.tif", shown.masks.astype(np.uint8), metadata={"axes": "TYX"})
+    names = {"axes": "TCYX", "Channel": {"Name": ["material", "edge"]}}
+    signal = write(folder / "signal.ome.tif", shown.signal.to_numpy(), metadata=names)
+    import sys
+    from unittest import mock
+
+    from cytodisk import cli
+
+    arguments = ["cytodisk", "movie", str(masks), "--signal", str(signal), "-o", str(folder / "out"), *GRID]
+    with mock.patch.object(sys, "argv", arguments), pytest.raises(SystemExit) as stop:
+        cli.main()
+    assert not stop.value.code
+    return folder / "out"
+
+
+def test_a_signal_with_velocity(run: Run, study: Path) -> None:
+    code, said, _ = run(
+        "correlate", study, "--signal", "edge", "--with", "velocity", *FEW, "--format", "svg,pdf"
+    )
+    assert code == 0
+    assert (
+        "signal 'edge' with velocity, lags to 8 frames: at a positive lag velocity follows the signal" in said
+    )
+    assert "layer  0  +0." in said
+    assert "at lag +3, q = " in said
+    found = cd.open_study(study).correlation("edge", "velocity")
+    assert found.layers.set_index("layer").loc[0, "lag"] == 3  # the signal leads by three frames
+    assert np.isnan(found.windows["lag_s"]).all()  # the interval is not known
+    suffixes = {path.suffix for path in (found.path / "figures").iterdir()}
+    assert suffixes == {".svg", ".pdf"}
+
+
+def test_two_signals_and_pairs(run: Run, study: Path) -> None:
+    command = ("correlate", study, "--signal", "material", "--with", "edge", "--pairs", "--detrend", "linear")
+    code, said, _ = run(*command, "--surrogates", "9", "--max-lag", "5", "--figures", "1")
+    assert code == 0
+    assert "1 cell correlated" in said
+    found = cd.open_study(study).correlation("material", "edge")
+    assert found.settings["detrend"] == "linear"
+    assert found.pairs is not None
+    assert any("pairs" in path.name for path in (found.path / "figures").iterdir())
+
+
+def test_lags_may_be_left_out(run: Run, study: Path) -> None:
+    code, _, _ = run("correlate", study, "--signal", "edge", *FEW, "--skip-lags=-1,0", "--figures", "0", "-q")
+    assert code == 0
+    curves = cd.open_study(study).correlation("edge").curves.set_index("lag")["correlation"]
+    assert curves.loc[[-1, 0]].isna().all()
+    assert curves.loc[[-2, 1]].notna().all()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((), "signal is not given: pass --signal with one of 'material', 'edge'"),
+        (("--signal", "VASP"), "signal 'VASP' is not in the study: it has 'material', 'edge'"),
+        (("--signal", "edge", "--with", "speed"), "with 'speed' is not in the study"),
+        (("--signal", "edge", "--max-lag", "25"), "max_lag 25 leaves 5 pairs of 30 frames"),
+        (("--signal", "edge", "--format", "jpg"), "format must be png, pdf, svg"),
+        (("--signal", "edge", "--skip-lags", "a"), "skip_lags must be whole numbers"),
+        (("--signal", "edge", "--skip-lags", "90"), "skip_lags has 90"),
+        (("--signal", "edge", "--cell", "4"), "has no cell 4"),
+        (("--signal", "edge", "--rule", "first"), "rule must be one of nearest, largest"),
+    ],
+)
+def test_faults_end_in_words(run: Run, study: Path, arguments: tuple[str, ...], words: str) -> None:
+    assert_refused(run("correlate", study, *arguments), words)
+
+
+def test_what_is_no_movie(run: Run, study: Path, tmp_path: Path) -> None:
+    assert_refused(run("correlate", tmp_path), "is no study")
+    assert_refused(run("report", tmp_path / "nothing"), "is no study")
+    mask = write(tmp_path / "mask.tif", cd.simulate.random_smooth(0, radius=14).astype(np.uint8))
+    run("map", mask, "-o", tmp_path / "maps", *GRID)
+    assert_refused(run("correlate", tmp_path / "maps"), "is not that of a movie", "cytodisk movie")
+    assert_refused(run("report", tmp_path / "maps"), "movie")
+
+
+def test_a_report_of_it(run: Run, study: Path, tmp_path: Path) -> None:
+    run("correlate", study, "--signal", "edge", *FEW, "--figures", "0", "-q")
+    code, said, _ = run("report", study)
+    assert code == 0
+    page = study / "report.html"
+    assert f"report: {page} (" in said
+    assert "<script" in page.read_text(encoding="utf-8")
+    code, _, _ = run("report", study, "-o", tmp_path / "mine.html", "-q")
+    assert code == 0
+    assert abs((tmp_path / "mine.html").stat().st_size - page.stat().st_size) < 1000
+    before = content(study)
+    assert_refused(run("report", study, "--cell", "7"), "no cell 7")
+    assert_refused(run("report", study, "--signal", study / "nothing.tif"), "nothing.tif")
+    assert content(study) == before
+
+
+def test_a_movie_run_again_takes_old_correlations_away(run: Run, study: Path, tmp_path: Path) -> None:
+    """What was correlated belongs to the results that are replaced."""
+    folder = study.parent
+    movie_command = (
+        "movie",
+        folder / "masks.tif",
+        "--signal",
+        folder / "signal.ome.tif",
+        "-o",
+        tmp_path / "out",
+    )
+    run(*movie_command, *GRID)
+    run("correlate", tmp_path / "out", "--signal", "edge", *FEW, "--figures", "0", "-q")
+    assert cd.open_study(tmp_path / "out").correlations == [("edge", "velocity")]
+    code, _, _ = run(*movie_command, *GRID, "--overwrite")
+    assert code == 0
+    assert cd.open_study(tmp_path / "out").correlations == []
