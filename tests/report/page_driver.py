@@ -83,3 +83,8 @@ def requests(browser: webdriver.Chrome) -> list[str]:
     sent: list[Any] = [m["params"] for m in messages if m["method"] == "Network.requestWillBeSent"]
     urls = [str(params["request"]["url"]) for params in sent]
     return [url for url in urls if not url.startswith(("data:", "blob:", "about:"))]
+
+
+def errors(browser: webdriver.Chrome) -> list[str]:
+    """What the page complained of since it was opened."""
+    return [str(entry["message"]) for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from page_driver import Page, requests
+from page_driver import Page, errors, requests
 from report_study import FRAMES, GAP, LAGS, LAYERS, NAMES, SECTORS
 from selenium import webdriver
 from selenium.webdriver.common.by import By
@@ -31,7 +31,7 @@ def disk_point(layer: int, sector: int) -> tuple[float, float]:
 def test_loads_alone_and_in_silence(page: Page, browser: webdriver.Chrome) -> None:
     assert requests(browser) == [browser.current_url]
     assert browser.current_url.startswith("file://")
-    assert [entry for entry in browser.get_log("browser") if entry["level"] != "INFO"] == []
+    assert errors(browser) == []
     assert page.js("document.documentElement.scrollWidth <= innerWidth")
     assert not page.control("failed").is_displayed()
     figures = page.js("Object.keys(cytodisk.figures)")
@@ -46,7 +46,7 @@ def test_names_stay_names(page: Page, browser: webdriver.Chrome) -> None:
     Select(page.control("channel")).select_by_index(1)
     page.settle()
     assert page.text("disk-title") == f"mean {NAMES[1]}"
-    assert [entry for entry in browser.get_log("browser") if entry["level"] != "INFO"] == []
+    assert errors(browser) == []
 
 
 def test_slider_and_play(page: Page, browser: webdriver.Chrome) -> None:
@@ -221,4 +221,4 @@ def test_without_signal_correlation_or_scale(
     assert page.text("now") == "frame 0"
     assert "No signal, so no correlation." in browser.find_element(By.CLASS_NAME, "absent").text
     assert page.js(f"cytodisk.data.frames.length === {FRAMES}")
-    assert [entry for entry in browser.get_log("browser") if entry["level"] != "INFO"] == []
+    assert errors(browser) == []
