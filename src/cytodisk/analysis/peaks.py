@@ -162,7 +162,7 @@ def false_discovery(p: FloatArray) -> FloatArray:
     known = np.isfinite(p)
     values = p[known]
     order = np.argsort(values)
-    ranked = values[order] * values.size / np.arange(1, values.size + 1)
+    ranked = values[order] * (values.size / np.arange(1, values.size + 1))  # so that no q is below its p
     adjusted = np.minimum.accumulate(ranked[::-1])[::-1]
     q = np.full(p.shape, np.nan)
     within = np.empty_like(values)
