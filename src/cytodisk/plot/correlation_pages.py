@@ -39,7 +39,7 @@ def curves_page(one: CellCorrelation) -> Sheet | None:
     head = heading.height_mm
     count = len(shown_layers(int(curves["layer"].nunique())))
     first = head + 10.5
-    sheet = Sheet(first + count * (_CURVE + _CURVE_GAP) + 6.5, SINGLE_COLUMN_MM)
+    sheet = Sheet(first + count * (_CURVE + _CURVE_GAP) + 7.5, SINGLE_COLUMN_MM)
     heading.write(sheet)
     axes = [
         sheet.axes(_CURVE_LEFT, first + k * (_CURVE + _CURVE_GAP), SINGLE_COLUMN_MM - _CURVE_LEFT - 4, _CURVE)

@@ -1,0 +1,169 @@
+"""The pages of a correlation of a small study, as files."""
+
+import re
+import struct
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+import tifffile
+from matplotlib.figure import Figure
+
+import cytodisk as cd
+from cytodisk.errors import ParameterError, ReadError, StudyError
+from cytodisk.io.correlation_store import Correlation
+from cytodisk.plot.correlation_figures import draw_correlation_figures
+from cytodisk.simulate import movie
+from cytodisk.study.correlate import correlate_study
+from cytodisk.study.movie_inputs import open_movie
+from cytodisk.study.movie_run import run_movie
+from cytodisk.study.parameters import MovieParameters
+
+SMALL = MovieParameters(layers=3, sectors=8)
+SHORT, LONG = "Rac1", "a very long name of a channel, much too long"
+FEW: Any = {"max_lag": 5, "surrogates": 19}
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> cd.Study:
+    folder = tmp_path_factory.mktemp("correlation_pages")
+    truth = movie("fluctuating", 1, frames=24, radius_px=20, lag_frames=2)
+    assert truth.signal is not None
+    masks, signal = folder / "masks.tif", folder / "signal.ome.tif"
+    tifffile.imwrite(masks, truth.masks.astype(np.uint8), metadata={"axes": "TYX"}, photometric="minisblack")
+    metadata = {
+        "axes": "TCYX",
+        "Channel": {"Name": [SHORT, LONG]},
+        "PhysicalSizeX": 0.2,
+        "PhysicalSizeY": 0.2,
+    }
+    metadata |= {"TimeIncrement": 5.0, "TimeIncrementUnit": "s"}
+    values = truth.signal.transpose("time", "channel", "y", "x").to_numpy()[:, :2]
+    tifffile.imwrite(signal, values, metadata=metadata, photometric="minisblack", ome=True)
+    return run_movie(open_movie(masks, signal, SMALL), folder / "out")
+
+
+@pytest.fixture(scope="module")
+def with_velocity(study: cd.Study) -> Correlation:
+    return correlate_study(study, LONG, **FEW, detrend="linear", skip_lags=(-1, 0))
+
+
+@pytest.fixture
+def saved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Figure]]:
+    """Every figure written: nothing is cut off at the border, and no text is smaller than 6 points."""
+    figures: list[Figure] = []
+    write = Figure.savefig
+
+    def note(figure: Figure, *args: object, **options: object) -> None:
+        figures.append(figure)
+        write(figure, *args, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Figure, "savefig", note)
+    yield figures
+    for figure in figures:
+        extent = figure.get_tightbbox()
+        assert extent.x0 >= 0
+        assert extent.y0 >= 0
+        assert (extent.max <= figure.get_size_inches()).all()
+        texts = figure.findobj(lambda artist: hasattr(artist, "get_fontsize"))
+        assert min(text.get_fontsize() for text in texts if text.get_text()) >= 6.0
+
+
+def _pixels_across(path: Path) -> int:
+    return int(struct.unpack(">I", path.read_bytes()[16:20])[0])
+
+
+def names(paths: list[Path]) -> list[str]:
+    return [path.name for path in paths]
+
+
+def test_pages_of_a_signal_with_velocity(
+    study: cd.Study, with_velocity: Correlation, saved: list[Figure]
+) -> None:
+    steps: list[tuple[int, int]] = []
+    paths = draw_correlation_figures(study, with_velocity, progress=lambda *step: steps.append(step))
+    assert names(paths) == [f"cell_00000_{what}.png" for what in ("curves", "maps", "peaks", "events")]
+    assert {path.parent for path in paths} == {with_velocity.path / "figures"}
+    assert sorted(path.name for path in paths[0].parent.iterdir()) == sorted(names(paths))
+    assert steps == [(done, 5) for done in range(6)]
+    for path, wide in zip(paths, (85, 180, 85, 180), strict=True):
+        assert _pixels_across(path) == pytest.approx(wide / 25.4 * 200, abs=1.0)
+    curves = saved[0]
+    assert curves.axes[-1].get_xlabel().startswith("lag (s)\n← velocity first")
+    words = " ".join(text.get_text() for text in curves.texts)
+    assert "linear detrending" in words
+    assert "without lag −1, 0" in words
+
+
+def test_pages_of_two_signals(study: cd.Study, saved: list[Figure]) -> None:
+    found = correlate_study(study, SHORT, LONG, **FEW, pairs=True)
+    paths = draw_correlation_figures(study, found)
+    assert names(paths) == [f"cell_00000_{what}.png" for what in ("curves", "maps", "peaks", "pairs")]
+    assert len(saved[-1].axes) >= 6  # two for each kind of distance
+    edge = correlate_study(study, LONG, LONG, **FEW, against="edge")
+    draw_correlation_figures(study, edge)
+    assert any("at the edge" in text.get_text() for text in saved[4].texts)
+
+
+def test_without_surrogates_nothing_is_called_significant(study: cd.Study, saved: list[Figure]) -> None:
+    found = correlate_study(study, LONG, "velocity_cell_frame", max_lag=4, surrogates=0)
+    draw_correlation_figures(study, found)
+    words = [
+        text.get_text() for figure in saved for text in figure.findobj(lambda one: hasattr(one, "get_text"))
+    ]
+    assert not any("significant" in word or "chance" in word for word in words)
+
+
+def without_numbers(found: Correlation) -> Correlation:
+    empty = replace(found)
+    for name in ("windows", "layers", "curves", "layer_curves"):
+        table = getattr(found, name)
+        empty.__dict__[name] = table.assign(correlation=np.nan, **{"q": np.nan} if "q" in table else {})
+    empty.__dict__["events"] = empty.__dict__["event_averages"] = None
+    return empty
+
+
+def test_a_cell_without_numbers_has_its_maps_alone(study: cd.Study, with_velocity: Correlation) -> None:
+    paths = draw_correlation_figures(study, without_numbers(with_velocity))
+    assert names(paths) == ["cell_00000_maps.png"]
+
+
+def test_text_stays_text_and_the_same_picture_is_the_same_file(
+    study: cd.Study, with_velocity: Correlation
+) -> None:
+    files: list[dict[Path, bytes]] = []
+    for _ in range(2):
+        paths = draw_correlation_figures(study, with_velocity, formats=("svg",))
+        paths += draw_correlation_figures(study, without_numbers(with_velocity), formats=["pdf"])
+        files.append({path: path.read_bytes() for path in paths})
+    assert files[0] == files[1]
+    *pages, (printed, content) = files[0].items()
+    assert len(pages) == 4
+    for path, page in pages:
+        assert re.search(rb"<text[^>]*>cell 0", page), path
+    assert printed.suffix == ".pdf"
+    assert content.startswith(b"%PDF")
+    assert b"/FontFile2" in content  # TrueType, not drawn shapes
+
+
+def test_what_cannot_be_drawn_is_refused(study: cd.Study, with_velocity: Correlation, tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match="formats must be of png, pdf, svg, got 'jpg'"):
+        draw_correlation_figures(study, with_velocity, formats=("png", "jpg"))
+    with pytest.raises(ParameterError, match=r"cell 4 is not in .*: it has \[0\]"):
+        draw_correlation_figures(study, with_velocity, cell=4)
+    refused = replace(with_velocity)
+    refused.__dict__["cells"] = pd.DataFrame({"cell": [0], "status": ["refused"], "reason": ["too short"]})
+    with pytest.raises(ParameterError, match="cell 0 has no correlation to draw: too short"):
+        draw_correlation_figures(study, refused)
+    with pytest.raises(ReadError, match="damaged"):
+        draw_correlation_figures(study, replace(with_velocity, path=tmp_path))
+    blocked = replace(with_velocity, path=tmp_path)
+    for name in ("cells", "windows", "layers", "layer_curves"):
+        blocked.__dict__[name] = getattr(with_velocity, name)
+    (tmp_path / "figures").write_text("")
+    with pytest.raises(StudyError, match="cannot write"):
+        draw_correlation_figures(study, blocked)
