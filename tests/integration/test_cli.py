@@ -304,7 +304,11 @@ def test_demo_once_and_again(run: Run, tmp_path: Path) -> None:
     before = content(demo)
     code, again, _ = run("demo", "-o", demo, "--quiet")
     assert (code, again) == (0, "")
-    assert content(demo) == before
+    after = content(demo)
+    for name in before:
+        # Bokeh numbers the parts of a page through the life of a process.
+        assert name == "study/report.html" or after[name] == before[name]
+    before = after
     assert_refused(run("demo", "-o", demo, "--seed", 1), "holds something else", "--overwrite")
     assert content(demo) == before
 
