@@ -108,7 +108,7 @@ def test_a_report_of_it(run: Run, study: Path, tmp_path: Path) -> None:
     assert code == 0
     assert (tmp_path / "mine.html").stat().st_size == pytest.approx(page.stat().st_size, rel=0.01)
     before = content(study)
-    assert_refused(run("report", study, "--cell", "7"), "no cell 7")
+    assert_refused(run("report", study, "--cell", "7"), "got 7")
     assert_refused(run("report", study, "--signal", study / "nothing.tif"), "nothing.tif")
     assert content(study) == before
 
