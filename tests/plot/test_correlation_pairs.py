@@ -102,6 +102,12 @@ def test_bins_with_few_pairs_are_left_out() -> None:
     assert np.isfinite(gap.correlation[[0, 1, 3]]).all()
 
 
+def test_a_bin_between_gaps_is_a_dot(axes: list[Axes]) -> None:
+    for line in draw_pairs(axes, pairs(n=np.repeat([16, 80, 4, 156, 0], 5)))[0]:
+        assert line.get_marker() == "."
+        assert list(line.get_markevery()) == [True, False, True]
+
+
 def test_what_was_not_tested_has_neither_band_nor_outline(axes: list[Axes]) -> None:
     draw_pairs(axes, pairs(lag_s=np.nan).drop(columns="threshold"))
     assert not axes[0].patches

@@ -19,7 +19,7 @@ from cytodisk.plot.consistency import layer_colours
 from cytodisk.plot.kymograph import draw_activity_map, draw_velocity_map, shown_layers
 from cytodisk.plot.lag_axis import LagUnit, layer_names, rows_of_cell, sides, signed
 from cytodisk.plot.style import CHANCE_COLOUR, CHANCE_LINE, LINE_COLOUR
-from cytodisk.plot.time_axis import TICK_STEPS
+from cytodisk.plot.time_axis import TICK_STEPS, stands_alone
 
 PEAK_NAME = "peak"
 
@@ -190,7 +190,9 @@ def _draw_curve(ax: Axes, curve: pd.DataFrame, unit: LagUnit, colour: FloatArray
     ax.axvline(0.0, color="0.35", linewidth=0.5, linestyle=(0, (4, 3)), zorder=0.5)
     low, high = (curve[f"{name}_quartile"].to_numpy(dtype=np.float64) for name in ("lower", "upper"))
     ax.fill_between(lag, low, high, color=colour, alpha=_BAND_OPACITY, linewidth=0)
-    (line,) = ax.plot(lag, curve["correlation"], color=colour, linewidth=1.0)
+    mean = curve["correlation"].to_numpy(dtype=np.float64)
+    dots: Any = {"marker": ".", "markersize": 3.0, "markevery": stands_alone(mean)}
+    (line,) = ax.plot(lag, mean, color=colour, linewidth=1.0, **dots)
     return line
 
 

@@ -211,7 +211,7 @@ def _extend(peaks: PeakMap, shown: Shown) -> str:
 def _write_pair_notes(sheet: Sheet, one: CellCorrelation, tables: list[PairTable]) -> None:
     facts = ["coloured bands: quartiles of pairs"]
     if any(np.isfinite(table.threshold) for table in tables):
-        facts.append("grey: chance, 95 % at all distances and lags")
+        facts.append("grey band: chance, 95 % at all distances and lags")
     if any((np.abs(table.correlation) >= table.threshold).any() for table in tables):
         facts.append("outlined: beyond chance")
     facts.append(f"bins of fewer than {min(table.fewest for table in tables)} pairs left out")

@@ -17,7 +17,7 @@ from cytodisk.errors import ParameterError
 from cytodisk.plot.outlines import outline_sides
 from cytodisk.plot.pair_table import PairTable
 from cytodisk.plot.style import CHANCE_COLOUR, CHANCE_LINE, DIVERGING_COLOURS, LINE_COLOUR, colour_map
-from cytodisk.plot.time_axis import TICK_STEPS
+from cytodisk.plot.time_axis import TICK_STEPS, stands_alone
 
 LAG_0_COLOUR, PEAK_COLOUR = "#0072B2", "#D55E00"
 OUTLINE_NAME = "beyond chance"
@@ -106,7 +106,8 @@ def _draw_line(ax: Axes, table: PairTable, lag: int, colour: str, name: str) -> 
     mean, low, high = (values[:, lag] for values in (table.correlation, table.lower, table.upper))
     away = table.distance[~apart]
     ax.fill_between(away, low[~apart], high[~apart], color=colour, alpha=_BAND_OPACITY, linewidth=0)
-    (line,) = ax.plot(away, mean[~apart], color=colour, linewidth=1.0, label=name)
+    dots: Any = {"marker": ".", "markersize": 3.0, "markevery": stands_alone(mean[~apart])}
+    (line,) = ax.plot(away, mean[~apart], color=colour, linewidth=1.0, label=name, **dots)
     if apart.any():
         x = (_APART + (0.25 if colour == PEAK_COLOUR else -0.25) * _WIDTH) * table.longest
         ax.vlines(x, low[apart], high[apart], color=colour, alpha=2 * _BAND_OPACITY, linewidth=1.6)
