@@ -20,7 +20,7 @@ VELOCITY_NAMES = {"velocity": "velocity", "velocity_cell_frame": "velocity (cell
 """What edge velocities are called in pictures."""
 
 _HEADING_MM, _LINE_MM = 13.0, 3.5
-_CHARACTER_MM, _BOLD_MM = 1.4, 1.9  # mean width at 7 points, and bold at 8
+_CHARACTER_MM, _BOLD_MM = 1.22, 1.9  # mean width at 7 points, and bold at 8
 _LONGEST_NAME = 18
 
 

@@ -26,7 +26,13 @@ _APART, _WIDTH = -0.15, 0.05  # of the longest distance: place and width of the 
 _LEFT = -0.2
 _ROOM = 1.08  # of the correlation's axis over what it holds
 _BAND_OPACITY = 0.2
-_LEGEND: Any = {"borderaxespad": 0.1, "handlelength": 1.0, "columnspacing": 1.0, "borderpad": 0.2}
+_LEGEND: Any = {
+    "borderaxespad": 0.1,
+    "handlelength": 1.0,
+    "columnspacing": 1.0,
+    "borderpad": 0.2,
+    "markerscale": 0.0,
+}
 
 
 def draw_pairs(
