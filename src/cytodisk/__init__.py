@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from cytodisk.motion.velocity import boundary_velocity as boundary_velocity
     from cytodisk.motion.velocity import edge_changes as edge_changes
     from cytodisk.motion.velocity import edge_velocity as edge_velocity
+    from cytodisk.report.flags import red_flags as red_flags
     from cytodisk.report.page import write_report as write_report
     from cytodisk.study.correlate import correlate_study as correlate_study
     from cytodisk.windows.cell_windows import CellWindows as CellWindows
@@ -79,6 +80,7 @@ _HOME = {
     "PolarWindows": "windows.grid",
     "prepare_series": "analysis.series",
     "read_image": "io.frames",
+    "red_flags": "report.flags",
     "sample": "windows.sample",
     "sample_movie": "analysis.activity",
     "Study": "io.study",

@@ -25,7 +25,15 @@ def correlated() -> dict[str, pd.DataFrame]:
     layers = layers.assign(correlation=0.05, lag=-1, p=0.001, q=0.002)
     layer_curves = layers[["cell", "layer"]].merge(pd.DataFrame({"lag": LAGS}), how="cross")
     layer_curves["correlation"] = 0.05
-    tables = {"windows": windows, "layers": layers, "curves": curves, "layer_curves": layer_curves}
+    cells = pd.DataFrame({"cell": [0], "status": "ok", "reason": "", "frames": FRAMES, "jitter": 0.0})
+    cells = cells.assign(drifting_signal=0.0, drifting_with=0.0)
+    tables = {
+        "cells": cells,
+        "windows": windows,
+        "layers": layers,
+        "curves": curves,
+        "layer_curves": layer_curves,
+    }
     for table in tables.values():
         table.attrs["units"] = dict.fromkeys(table, "")
     return tables

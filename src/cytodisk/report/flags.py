@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from cytodisk.io.study import Study
-from cytodisk.report import mask_flags, motion_flags
+from cytodisk.report import correlation_flags, mask_flags, motion_flags
 from cytodisk.report.flag import Flag, counted
 
 
@@ -26,7 +26,7 @@ def red_flags(study: Study) -> list[Flag]:
     -----
     A frame is compared with the other frames of its own cell where cells differ by nature (area, velocity),
     by the median of absolute values, so that the faults themselves do not raise the bar; the thresholds are
-    the constants of `mask_flags`, `motion_flags` and `drift`.
+    the constants of `mask_flags`, `motion_flags`, `drift` and `correlation_flags`.
     """
     found = [flag for rule in _RULES for flag in rule(study)]
     return [*found, *_other_warnings(study, found)]
@@ -59,4 +59,7 @@ _RULES: tuple[Callable[[Study], Iterator[Flag]], ...] = (
     motion_flags.drift,
     mask_flags.distortion,
     mask_flags.nan_pixels,
+    correlation_flags.jitter,
+    correlation_flags.drifting_series,
+    correlation_flags.left_out,
 )
