@@ -23,7 +23,7 @@ def effective_share(a: FloatArray, b: FloatArray) -> FloatArray:
     Returns
     -------
     ndarray of shape (…) and dtype float
-        From above 0 to 1. NaN for a constant series.
+        From above 0 to 1; 1 in fewer than 5 frames, whose autocorrelation is not known.
 
     Notes
     -----

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -117,7 +117,7 @@ def cross_correlate(
         "null": null,
         "seed": seed,
     }
-    attrs |= _drifting(first, second)
+    attrs |= drifting_shares(first, second)
     pair = paired(first, second)
     changed = make_surrogates(null, len(pair.a), surrogates, seed) if surrogates else None
     run = _Run(pair, lags, np.isin(lags, skip_lags), min_pairs, surrogates)
@@ -264,6 +264,8 @@ def lags_within(max_lag: int, min_pairs: int, frames: int) -> IntArray:
 
 
 def _check_skipped(skipped: Sequence[int], lags: IntArray) -> None:
+    if not isinstance(skipped, Iterable):
+        raise ParameterError(f"skip_lags must be a sequence of lags, got {skipped!r}: pass [{skipped!r}]")
     unknown = [lag for lag in skipped if lag not in lags]
     if unknown:
         raise ParameterError(f"skip_lags has {unknown[0]!r}: lags run from {lags[0]} to {lags[-1]}")
@@ -271,7 +273,7 @@ def _check_skipped(skipped: Sequence[int], lags: IntArray) -> None:
         raise ParameterError("skip_lags leaves no lag: pass fewer, or a larger max_lag")
 
 
-def _drifting(a: xr.DataArray, b: xr.DataArray) -> dict[str, float]:
+def drifting_shares(a: xr.DataArray, b: xr.DataArray) -> dict[str, float]:
     """Share of the series whose level drifts; warns where it is large."""
     shares = {}
     for name, series in (("a", a), ("b", b)):

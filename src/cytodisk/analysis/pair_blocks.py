@@ -42,7 +42,7 @@ def correlation_blocks(
     whole = all((mask == mask[:, :1]).all() for mask in present)
     if whole:
         both = present[0][:, 0] & present[1][:, 0]
-        early, late = _unit(early[both]), _unit(late[both])
+        early, late = unit_columns(early[both]), unit_columns(late[both])
         enough = both.sum() >= min_pairs
     for first in range(0, a.shape[1], _BLOCK):
         rows = slice(first, min(first + _BLOCK, a.shape[1]))
@@ -183,7 +183,7 @@ def mean_by_bin(
     return found
 
 
-def _unit(series: FloatArray) -> FloatArray:
+def unit_columns(series: FloatArray) -> FloatArray:
     """Columns with mean 0 and length 1, so that their products are correlations; NaN for a constant."""
     if not len(series):
         return series

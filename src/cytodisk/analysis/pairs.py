@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -10,19 +9,19 @@ import numpy as np
 import xarray as xr
 from scipy.spatial.distance import cdist
 
-from cytodisk.analysis.correlation import ALPHA, lags_within
+from cytodisk.analysis.correlation import ALPHA, drifting_shares, lags_within
 from cytodisk.analysis.distances import DISTANCE_DIMS, disk_distances
-from cytodisk.analysis.pair_blocks import DistanceBins, distributions, mean_by_bin
+from cytodisk.analysis.pair_blocks import DistanceBins, distributions
+from cytodisk.analysis.pair_chance import chance_of_pairs
 from cytodisk.analysis.pairing import named_series
 from cytodisk.analysis.parameters import whole_number
 from cytodisk.analysis.series import Detrend, default_frames, prepare_series
-from cytodisk.analysis.surrogates import Null, Surrogates, check_null
+from cytodisk.analysis.surrogates import Null, check_null
 from cytodisk.analysis.surrogates import surrogates as make_surrogates
-from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
 
 _FRAMES_FOR_DISTANCE = 20
-_SURROGATES_AT_ONCE = 8  # in memory
 _WINDOW = ("layer", "sector")
 
 
@@ -71,12 +70,18 @@ def correlate_pairs(
         correlation, the mean over pairs of windows; sd, lower_quartile and upper_quartile over them
         (quartiles to 0.005); n, pairs of windows. With surrogates also null_low and null_high, between which
         95 % of them lie, and threshold, which the mean's magnitude exceeds at some distance and lag in 5 % of
-        them. Coordinates distance, the middle of its bin; lag (frames), lag_s where the interval is known.
+        them (bins with fewer pairs than half the windows left out). Coordinates distance, the middle of its
+        bin; lag (frames), lag_s where the interval is known.
 
     Raises
     ------
     ParameterError
         The series do not fit each other or the distances, or as for `cross_correlate`.
+
+    Warns
+    -----
+    StationarityWarning
+        As for `cross_correlate`.
 
     References
     ----------
@@ -97,6 +102,7 @@ def correlate_pairs(
     frames = default_frames(detrend, detrend_frames, max_lag)
     options: dict[str, Any] = {"detrend": detrend, "detrend_frames": frames, "difference": difference}
     tables = [prepare_series(_flat(series), **options) for series in (first, second)]
+    drifting = drifting_shares(*(xr.DataArray(table) for table in tables))
     apart, units, kind = _distances(distances, a, b, (first.sizes["layer"], first.sizes["sector"]))
     edges = _edges(list(apart.values()), bins)
     sorted_pairs = [DistanceBins.of(table, edges) for table in apart.values()]
@@ -106,7 +112,11 @@ def correlate_pairs(
     data: dict[str, Any] = {name: (dims, values) for name, values in found.items()}
     if surrogates:
         changed = make_surrogates(null, len(tables[1]), surrogates, seed)
-        data |= _chance(tables[0], tables[1], changed, surrogates, lags, min_pairs, sorted_pairs, steps)
+        chance = chance_of_pairs(
+            tables[0], tables[1], changed, surrogates, lags, min_pairs, sorted_pairs, ALPHA, steps
+        )
+        data |= {"null_low": (dims, chance.low), "null_high": (dims, chance.high)}
+        data["threshold"] = ("along", chance.threshold)
     coords: dict[str, Any] = {
         "along": list(apart),
         "distance": ("distance", _centres(edges), {"units": units}),
@@ -116,7 +126,8 @@ def correlate_pairs(
         coords["lag_s"] = ("lag", lags * interval_s, {"units": "s"})
     attrs = {"distance": kind, "units": units, "surrogates": surrogates, "null": null, "seed": seed}
     attrs |= {name: value for name, value in options.items() if value is not None}
-    out = xr.Dataset(data, coords, attrs)
+    out = xr.Dataset(data, coords, attrs | drifting)
+    out["n"] = out["n"].astype(np.int64)
     return out if isinstance(distances, xr.Dataset) else out.isel(along=0, drop=True)
 
 
@@ -130,32 +141,6 @@ class _Steps:
         self._done += 1
         if self._progress is not None:
             self._progress(self._done, self._total)
-
-
-def _chance(
-    a: FloatArray,
-    b: FloatArray,
-    changed: Surrogates,
-    count: int,
-    lags: IntArray,
-    min_pairs: int,
-    bins: list[DistanceBins],
-    step: Callable[[], None],
-) -> dict[str, Any]:
-    """Band of the surrogates' means, and what their largest exceeds."""
-    dims = ("along", "distance", "lag")
-    means = np.empty((count, len(bins), bins[0].count, lags.size))
-    for first in range(0, count, _SURROGATES_AT_ONCE):
-        which = slice(first, min(first + _SURROGATES_AT_ONCE, count))
-        series = np.stack([changed(column, which) for column in b.T], axis=1)  # (T, V, some)
-        for k, some in enumerate(np.moveaxis(series, -1, 0), first):
-            means[k] = mean_by_bin(a, some, lags, min_pairs, bins, step)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # bins without pairs have no mean
-        low, high = np.nanquantile(means, [0.5 * ALPHA, 1.0 - 0.5 * ALPHA], axis=0)
-        largest = np.nanmax(np.abs(means), axis=(2, 3))
-        threshold = np.nanquantile(largest, 1.0 - ALPHA, axis=0, method="higher")
-    return {"null_low": (dims, low), "null_high": (dims, high), "threshold": ("along", threshold)}
 
 
 def _flat(series: xr.DataArray) -> FloatArray:

@@ -198,7 +198,10 @@ def _pairs(
     b = activity["mean"].sel(channel=with_).load()
     common = options.common() | {"surrogates": min(options.surrogates, _PAIRED_SURROGATES)}
     distances = window_distances(study.movie(cell), grid)
-    return _frame(correlate_pairs(a, b, max_lag, distances=distances, **common), ("along", "distance", "lag"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", StationarityWarning)  # as for the windows themselves
+        found = correlate_pairs(a, b, max_lag, distances=distances, **common)
+    return _frame(found, ("along", "distance", "lag"))
 
 
 def _frame(dataset: xr.Dataset, index: tuple[str, ...]) -> pd.DataFrame:
