@@ -8,7 +8,7 @@ from cytodisk.analysis.distances import disk_distances
 from cytodisk.analysis.pairs import correlate_pairs
 from cytodisk.analysis.series import prepare_series
 from cytodisk.analysis.surrogates import surrogates
-from cytodisk.errors import ParameterError
+from cytodisk.errors import ParameterError, StationarityWarning
 
 NAN = np.nan
 LAYERS, SECTORS, FRAMES = 2, 3, 30
@@ -307,9 +307,9 @@ def test_surrogates_of_all_at_once_and_one_by_one_agree(monkeypatch: pytest.Monk
     a[7], b[11] = np.nan, np.nan  # frames that all windows miss
     a[:, 1, 2] = 3.0  # a window that does not vary
     distances = np.abs(np.subtract.outer(np.arange(15.0), np.arange(15.0)))
-    fast = cd.correlate_pairs(a, b, 4, distances=distances, bins=6, surrogates=40)
+    fast = correlate_pairs(a, b, 4, distances=distances, bins=6, surrogates=40)
     monkeypatch.setattr("cytodisk.analysis.pair_chance._same_gaps", lambda series: False)
-    slow = cd.correlate_pairs(a, b, 4, distances=distances, bins=6, surrogates=40)
+    slow = correlate_pairs(a, b, 4, distances=distances, bins=6, surrogates=40)
     for name in ("null_low", "null_high", "threshold"):
         np.testing.assert_allclose(fast[name], slow[name], atol=1e-12)
 
@@ -319,14 +319,14 @@ def test_far_bins_with_few_pairs_do_not_set_the_threshold() -> None:
     a, b = random.normal(size=(2, 40, 2, 10))
     distances = np.ones((20, 20))
     distances[0, 1] = distances[1, 0] = 50.0  # two pairs alone in their bin, whose mean is noise
-    with_it = cd.correlate_pairs(a, b, 5, distances=distances, bins=10, surrogates=99)
-    without = cd.correlate_pairs(a, b, 5, distances=np.ones((20, 20)), bins=1, surrogates=99)
+    with_it = correlate_pairs(a, b, 5, distances=distances, bins=10, surrogates=99)
+    without = correlate_pairs(a, b, 5, distances=np.ones((20, 20)), bins=1, surrogates=99)
     assert with_it["n"].isel(lag=0).max() == 398
     np.testing.assert_allclose(with_it["threshold"], without["threshold"], rtol=0.1)
 
 
 def test_series_that_drift_are_told() -> None:
     walk = np.cumsum(np.random.default_rng(0).normal(size=(100, 2, 3)), axis=0)
-    with pytest.warns(cd.errors.StationarityWarning):
-        found = cd.correlate_pairs(walk, walk, 5)
+    with pytest.warns(StationarityWarning):
+        found = correlate_pairs(walk, walk, 5)
     assert found.attrs["drifting_a"] > 0.25
