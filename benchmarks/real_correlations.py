@@ -82,10 +82,8 @@ def main() -> int:
             for channel in channels_of(study):
                 found = correlate_study(study, channel)
                 show(name, found)
-                mark = found.cells["jitter"].iloc[0]
-                print(
-                    f"\nMark of jitter: {mark:+.2f}; series that drift: {found.cells['drifting_signal'].iloc[0]:.0%}"
-                )
+                mark, drifting = found.cells[["jitter", "drifting_signal"]].iloc[0]
+                print(f"\nMark of jitter: {mark:+.2f}; series of the signal that drift: {drifting:.0%}")
                 if mark:
                     show(name, correlate_study(study, channel, skip_lags=(-1, 0)))
     return 0

@@ -199,6 +199,11 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
         if row["status"] != "ok":
             console.print(f"cell {row['cell']} left out: {row['reason']}")
             continue
+        if row["restarts"]:
+            console.print(
+                f"cell {row['cell']}: tracking started anew {row['restarts']:.0f} times; sectors need not be "
+                "the same places before and after, so cut the movie there and correlate the parts"
+            )
         if abs(row["jitter"]) > 0:
             console.print(
                 f"cell {row['cell']}: masks that jitter make {row['jitter']:+.2f} of the correlation at lag "

@@ -140,6 +140,7 @@ def _correlate_cell(
     if options.pairs:
         tables["pairs"] = _pairs(study, cell, activity, a, with_, max_lag, options)
     row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "no_events_because": ""}
+    row["restarts"] = _restarts(study, cell)
     row["jitter"] = _jitter(correlations, with_, options)
     if with_ in VELOCITIES:
         try:
@@ -173,6 +174,12 @@ def _tables(correlations: xr.Dataset, options: CorrelationSettings) -> dict[str,
         "curves": _frame(curves, ("layer", "sector", "lag")),
         "layer_curves": _frame(mean, ("layer", "lag")),
     }
+
+
+def _restarts(study: Study, cell: int) -> int:
+    """How often tracking started anew: a sector may then be another place of the cell."""
+    tracked = study.cells.loc[study.cells["cell"] == cell, "restarted"]
+    return int((tracked.fillna("") != "").sum())
 
 
 def _jitter(correlations: xr.Dataset, with_: str, options: CorrelationSettings) -> float:
