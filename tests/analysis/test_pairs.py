@@ -217,7 +217,9 @@ def test_chance_by_brute_force(null: Any, missing: float) -> None:
     a, b = noise(12, FRAMES, LAYERS, SECTORS, missing=missing), noise(13, FRAMES, LAYERS, SECTORS)
     distances = some_distances()
     found = correlate_pairs(a, b, 1, distances=distances, bins=2, surrogates=19, null=null, seed=4)
-    changed = np.stack([surrogates(null, FRAMES, 19, 4)(x) for x in b.reshape(FRAMES, -1).T], axis=1)
+    changed = np.stack(
+        [surrogates(null, FRAMES, 19, 4, 4).together(x) for x in b.reshape(FRAMES, -1).T], axis=1
+    )
     means = np.empty((19, 3, 3))
     for k, number, lag in np.ndindex(19, 3, 3):
         means[k, number, lag] = by_hand(a, changed[..., k], lag - 1)[in_bin(distances, number, 2)].mean()

@@ -57,41 +57,65 @@ def test_spectrum_is_that_of_the_mirrored_series(frames: int) -> None:
 
 def test_autocorrelation_is_kept_in_the_mean() -> None:
     series = slow(3, 40)
-    found = surrogates("phase", 40, 40_000, 0)(series)
+    found = surrogates("phase", 40, 40_000, 0).alone(series)
     expected = mirrored_autocorrelation(series)
     for lag in (0, 1, 5):
         mean = (found[lag:] * found[: 40 - lag]).mean()
         assert mean == pytest.approx(expected[lag], abs=0.05 * expected[0])
 
 
-def test_series_that_are_alike_stay_so() -> None:
-    common = slow(4, 60)
-    first, second = common + 0.5 * slow(5, 60), common + 0.5 * slow(6, 60)
-    make = surrogates("phase", 60, 4000, 1)
+def test_what_series_have_in_common_stays_at_every_lag_and_with_its_sign() -> None:
+    """Covariances over lags are those of the series, divided by the frames: one follows the other."""
+    first = slow(4, 60)
+    second = np.roll(first, 5) + 0.5 * slow(6, 60)
+    make = surrogates("phase", 60, 20_000, 1).together
     one, two = make(first), make(second)
-    product = np.mean((one * two).mean(axis=0))
-    assert product == pytest.approx(
-        np.mean((first - first.mean()) * (second - second.mean())), rel=0.1
-    )  # the ring's mean product is that of the series, as both are mirrored alike
+    x, y = first - first.mean(), second - second.mean()
+    for lag in (-5, -1, 0, 1, 5):
+        early, late = slice(max(0, -lag), 60 - max(0, lag)), slice(max(0, lag), 60 + min(0, lag))
+        found = np.mean((one[early] * two[late]).mean(axis=0))
+        assert found == pytest.approx((x[early] * y[late]).sum() / 60, abs=0.03 * x.std() * y.std())
     np.testing.assert_allclose(make(3.0 * first - 7.0), 3.0 * one, atol=1e-10)
-    other = surrogates("phase", 60, 4000, 2)(second)
-    assert abs(np.mean((one * other).mean(axis=0))) < 0.1 * product
+    other = surrogates("phase", 60, 20_000, 2).together(second)
+    assert abs(np.mean((one[:-5] * other[5:]).mean(axis=0))) < 0.03 * x.std() * y.std()
+
+
+def test_a_series_that_starts_late_stays_like_its_neighbour() -> None:
+    first = slow(4, 60)
+    late = first.copy()
+    late[:12] = NAN
+    make = surrogates("phase", 60, 4000, 1).together
+    one, two = make(first)[12:], make(late)[12:]
+    alike = [np.corrcoef(a, b)[0, 1] for a, b in zip(one.T, two.T, strict=True)]
+    assert np.mean(alike) > 0.8
+
+
+@pytest.mark.parametrize("max_lag", [0, 3, 5])
+def test_shifts_are_longer_than_lags_reach(max_lag: int) -> None:
+    """Else what is true at lag 0 would come back at another one."""
+    series = np.arange(24.0)
+    moved = surrogates("shift", 24, 200, 0, max_lag).alone(series)[0]
+    shifts = (24 - moved) % 24
+    assert shifts.min() == 2 * max_lag + 1
+    assert shifts.max() == 24 - 2 * max_lag - 1
+    with pytest.raises(ParameterError, match="needs at least 26 frames at max_lag 6, got 24"):
+        surrogates("shift", 24, 5, 0, 6)
 
 
 def test_gaps_stay_gaps() -> None:
     series = slow(7, 30)
     series[[0, 1, 9, 10, 29]] = NAN
-    found = surrogates("phase", 30, 5, 0)(series)
+    found = surrogates("phase", 30, 5, 0).alone(series)
     np.testing.assert_array_equal(np.isnan(found), np.repeat(np.isnan(series)[:, None], 5, axis=1))
     line = series.copy()
     line[[9, 10]] = np.interp([9, 10], [8, 11], series[[8, 11]])  # filled in, hence no matter for the rest
-    same = surrogates("phase", 30, 5, 0)(line)
+    same = surrogates("phase", 30, 5, 0).alone(line)
     there = np.isfinite(series)
     np.testing.assert_allclose(found[there], same[there], atol=1e-12)
 
 
 def test_empty_and_constant_series() -> None:
-    make = surrogates("phase", 12, 3, 0)
+    make = surrogates("phase", 12, 3, 0).alone
     assert np.isnan(make(np.full(12, NAN))).all()
     np.testing.assert_allclose(make(np.full(12, 4.0)), 0.0, atol=1e-14)
     one = np.full(12, NAN)
@@ -102,7 +126,7 @@ def test_empty_and_constant_series() -> None:
 @given(st.integers(0, 1000), st.integers(2, 25))
 def test_a_shift_is_a_permutation(seed: int, frames: int) -> None:
     series = slow(seed, frames)
-    found = surrogates("shift", frames, 7, seed)(series)
+    found = surrogates("shift", frames, 7, seed).alone(series)
     np.testing.assert_array_equal(np.sort(found, axis=0), np.repeat(np.sort(series)[:, None], 7, axis=1))
     assert (found != series[:, None]).any(axis=0).all()  # no shift by nothing
 
@@ -115,7 +139,7 @@ def test_shifts_of_known_size() -> None:
 @pytest.mark.parametrize("null", ["phase", "shift"])
 def test_the_seed_decides(null: Any) -> None:
     series = slow(8, 50)
-    first, again, other = (surrogates(null, 50, 6, seed)(series) for seed in (3, 3, 4))
+    first, again, other = (surrogates(null, 50, 6, seed).together(series) for seed in (3, 3, 4))
     np.testing.assert_array_equal(first, again)
     assert not np.array_equal(first, other)
 
@@ -128,7 +152,7 @@ def test_the_seed_decides(null: Any) -> None:
         (("phase", 20, 2.5, 0), "surrogates .* got 2.5"),
         (("phase", 20, 5, -1), "seed must be a whole number of at least 0, got -1"),
         (("phase", 20, 5, None), "seed .* got None"),
-        (("shift", 1, 5, 0), "null 'shift' needs at least 2 frames, got 1"),
+        (("shift", 1, 5, 0), "null 'shift' needs at least 2 frames at max_lag 0, got 1"),
     ],
 )
 def test_arguments_that_make_no_sense(arguments: Any, message: str) -> None:

@@ -13,14 +13,20 @@ from cytodisk.analysis.confidence import effective_share, fisher_interval
 from cytodisk.analysis.lagged import LaggedSeries
 from cytodisk.analysis.pairing import Pair, named_series, paired
 from cytodisk.analysis.parameters import whole_number
-from cytodisk.analysis.series import KPSS_LIMIT, Detrend, default_frames, kpss, prepare_series
+from cytodisk.analysis.series import (
+    DRIFTING_SHARE,
+    Detrend,
+    default_frames,
+    drifts,
+    kpss,
+    prepare_series,
+)
 from cytodisk.analysis.surrogates import Null, Surrogates, check_null
 from cytodisk.analysis.surrogates import surrogates as make_surrogates
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.errors import ParameterError, StationarityWarning
 
 ALPHA = 0.05
-_DRIFTING = 0.25  # share of series above the KPSS limit, of which one in twenty is expected, at which to warn
 _SECTOR = "sector"
 
 
@@ -119,7 +125,7 @@ def cross_correlate(
     }
     attrs |= drifting_shares(first, second)
     pair = paired(first, second)
-    changed = make_surrogates(null, len(pair.a), surrogates, seed) if surrogates else None
+    changed = make_surrogates(null, len(pair.a), surrogates, seed, max_lag) if surrogates else None
     run = _Run(pair, lags, np.isin(lags, skip_lags), min_pairs, surrogates)
     run.correlate(changed, progress)
     order = [str(dim) for dim in (*first.dims, *second.dims) if dim != "time"]
@@ -138,8 +144,9 @@ def correlation_by_layer(correlations: xr.Dataset) -> xr.Dataset:
     -------
     Dataset with the dims of the windows but sector, and lag
         correlation, the mean over sectors; lower_quartile and upper_quartile over them. With surrogates also
-        threshold and null of the mean, as those of `cross_correlate`: sectors of a surrogate are changed
-        together, so neighbours that move together are not taken for independent.
+        threshold and null of the mean, as those of `cross_correlate`, but of surrogates that keep how sectors
+        correlate with each other at every lag (`filtered_noise`): neighbours that move together, and waves
+        that run around the edge, are not taken for independent.
 
     Raises
     ------
@@ -189,9 +196,10 @@ class _Run:
             self._correlation[(slice(None), *place)] = self._unfold(found)[..., 0]
             self._count[(slice(None), *place)] = self._unfold(np.broadcast_to(count, found.shape))[..., 0]
             if surrogates is not None:
-                chance, _ = lagged.correlate(surrogates(b), self._min_pairs)
-                chance[self._skipped] = np.nan
-                self._add_chance(place, self._unfold(chance))
+                chance = self._by_chance(lagged, surrogates.alone(b))
+                self._null[(slice(None), *place)] = np.moveaxis(_largest(chance), -1, 0)
+                if self._sector is not None:
+                    self._add_to_mean(place, self._by_chance(lagged, surrogates.together(b)))
             if progress is not None:
                 progress(done + 1, int(np.prod(own)))
 
@@ -225,13 +233,16 @@ class _Run:
         others = self._pair.a.shape[1 + len(self._pair.own) :]
         return table.reshape(len(table), *others, table.shape[-1])
 
-    def _add_chance(self, place: tuple[Any, ...], chance: FloatArray) -> None:
-        self._null[(slice(None), *place)] = np.moveaxis(_largest(chance), -1, 0)
-        if self._sector is not None:
-            merged = tuple(k for axis, k in enumerate(place) if axis != self._sector)
-            known = np.isfinite(chance)
-            self._total[merged] += np.where(known, chance, 0.0)
-            self._known[merged] += known
+    def _by_chance(self, lagged: LaggedSeries, series: FloatArray) -> FloatArray:
+        chance, _ = lagged.correlate(series, self._min_pairs)
+        chance[self._skipped] = np.nan
+        return self._unfold(chance)
+
+    def _add_to_mean(self, place: tuple[Any, ...], chance: FloatArray) -> None:
+        merged = tuple(k for axis, k in enumerate(place) if axis != self._sector)
+        known = np.isfinite(chance)
+        self._total[merged] += np.where(known, chance, 0.0)
+        self._known[merged] += known
 
     def _chance(self) -> dict[str, Any]:
         """What surrogates gave, of windows and of the mean over sectors."""
@@ -277,14 +288,13 @@ def drifting_shares(a: xr.DataArray, b: xr.DataArray) -> dict[str, float]:
     """Share of the series whose level drifts; warns where it is large."""
     shares = {}
     for name, series in (("a", a), ("b", b)):
-        statistic = kpss(series)
-        known = np.isfinite(statistic)
-        share = float((statistic[known] > KPSS_LIMIT).mean()) if known.any() else 0.0
+        known = np.isfinite(kpss(series))
+        share = float(drifts(series)[known].mean()) if known.any() else 0.0
         shares[f"drifting_{name}"] = share
-        if share > _DRIFTING:
+        if share > DRIFTING_SHARE:
             warnings.warn(
-                f"the level of {share:.0%} of the series of {name} drifts (KPSS test; chance gives "
-                f"{ALPHA:.0%}): they may correlate for that alone; detrend, or take first differences",
+                f"the level of {share:.0%} of the series of {name} drifts (chance gives {ALPHA:.0%}): they "
+                "may correlate for that alone; detrend, or take first differences",
                 StationarityWarning,
                 stacklevel=3,
             )

@@ -60,7 +60,7 @@ def correlate_pairs(
     detrend, detrend_frames, difference, min_pairs
         As for `cross_correlate`.
     surrogates, null, seed
-        As for `cross_correlate`; each costs as much as the result itself.
+        As for `correlation_by_layer`, whose means are over many windows, too.
     progress : callable, optional
         Called with (steps done, in all).
 
@@ -111,7 +111,7 @@ def correlate_pairs(
     dims = ("along", "distance", "lag")
     data: dict[str, Any] = {name: (dims, values) for name, values in found.items()}
     if surrogates:
-        changed = make_surrogates(null, len(tables[1]), surrogates, seed)
+        changed = make_surrogates(null, len(tables[1]), surrogates, seed, max_lag).together
         chance = chance_of_pairs(
             tables[0], tables[1], changed, surrogates, lags, min_pairs, sorted_pairs, ALPHA, steps
         )

@@ -10,9 +10,10 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 import pandas as pd
+from scipy.stats import kendalltau
 
 from cytodisk.analysis.parameters import whole_number
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import ParameterError
 
 Detrend = Literal["none", "linear", "median"]
@@ -22,6 +23,12 @@ _ROUNDING = 64.0 * np.finfo(np.float64).eps
 
 KPSS_LIMIT = 0.463
 """Critical value of the KPSS statistic at 5 %."""
+
+DRIFTING_SHARE = 0.25
+"""Share of series that drift, of which chance gives one in twenty, above which to say so."""
+
+_FEWEST_FOR_KPSS = 50  # values; in 30 a straight line has 0.44
+_ONE_WAY = 0.5  # Kendall's τ of a series that goes one way rather than up and down
 
 
 def prepare_series(
@@ -146,6 +153,34 @@ def kpss(values: Any) -> FloatArray:
     columns = series.reshape(len(series), -1)
     found = [_kpss(column[np.isfinite(column)]) for column in columns.T]
     return np.array(found, dtype=np.float64).reshape(series.shape[1:])
+
+
+def drifts(values: Any) -> BoolArray:
+    """Which series drift: do not stay about one level.
+
+    Parameters
+    ----------
+    values : array_like of shape (T, …)
+        NaN is left out.
+
+    Returns
+    -------
+    ndarray of shape (…) and dtype bool
+        Whether the KPSS statistic is above its limit. In fewer than 50 values it does not rise above it even
+        on a straight line: there, whether Kendall's τ with time is beyond 0.5.
+    """
+    series = np.asarray(values, dtype=np.float64)
+    columns = series.reshape(len(series), -1)
+    found = [_drifts(column[np.isfinite(column)]) for column in columns.T]
+    return np.array(found, dtype=bool).reshape(series.shape[1:])
+
+
+def _drifts(series: FloatArray) -> bool:
+    if series.size >= _FEWEST_FOR_KPSS:
+        return _kpss(series) > KPSS_LIMIT
+    if series.size < 3 or np.ptp(series) == 0:
+        return False
+    return bool(abs(kendalltau(np.arange(series.size), series).statistic) > _ONE_WAY)
 
 
 def _kpss(series: FloatArray) -> float:

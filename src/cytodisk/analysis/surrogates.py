@@ -1,11 +1,8 @@
-"""Surrogates: series as they might have been, had they nothing to do with the other signal.
-
-All series of a study are changed together, by the same random phases or the same shift, so that what
-neighbouring sectors have in common stays as it was.
-"""
+"""Surrogates: series as they might have been, had they nothing to do with the other signal."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal, Protocol, get_args
 
 import numpy as np
@@ -20,28 +17,47 @@ Null = Literal["phase", "shift"]
 _ALL = slice(None)
 
 
-class Surrogates(Protocol):
+class Change(Protocol):
     """Makes surrogates of a series (T,), shape (T, R): all of them, or some."""
 
     def __call__(self, series: FloatArray, which: slice = _ALL) -> FloatArray: ...
 
 
-def surrogates(null: Null, frames: int, count: int, seed: int) -> Surrogates:
-    """A function that makes surrogates of a series, the same way for each series it is given.
+@dataclass(frozen=True)
+class Surrogates:
+    """Two ways to change series, each the same for all series it is given.
+
+    Attributes
+    ----------
+    alone : Change
+        For one series at a time: keeps its autocorrelation, also where there are few frames.
+    together : Change
+        For means over many series: keeps also how they correlate with each other at every lag, so that
+        neighbours that move together, or waves that run along them, are not taken for independent.
+    """
+
+    alone: Change
+    together: Change
+
+
+def surrogates(null: Null, frames: int, count: int, seed: int, max_lag: int = 0) -> Surrogates:
+    """Functions that make surrogates of series.
 
     Parameters
     ----------
     null : {"phase", "shift"}
-        See `phase_randomised` and `circularly_shifted`.
+        `phase_randomised` alone and `filtered_noise` together, or `circularly_shifted` for both.
     frames : int
     count : int
         Surrogates a series.
     seed : int
+    max_lag : int
+        Longest lag at which they will be correlated: shifts are longer than twice that, or what was true
+        would come back at another lag.
 
     Returns
     -------
     Surrogates
-        Takes a series (T,), gives (T, count), NaN where there are no values; with a slice, those alone.
 
     Raises
     ------
@@ -51,13 +67,25 @@ def surrogates(null: Null, frames: int, count: int, seed: int) -> Surrogates:
     check_null(null)
     count = whole_number("surrogates", count, 1)
     random = np.random.default_rng(whole_number("seed", seed, 0))
-    if null == "phase":
-        turns = np.exp(1j * random.uniform(0.0, 2.0 * np.pi, (frames + 1, count)))
-        return lambda series, which=_ALL: phase_randomised(series, turns[:, which])
-    if frames < 2:
-        raise ParameterError(f"null 'shift' needs at least 2 frames, got {frames}")
-    shifts = random.integers(1, frames, count)
-    return lambda series, which=_ALL: circularly_shifted(series, shifts[which])
+    if null == "shift":
+        least, most = 2 * max_lag + 1, frames - 2 * max_lag - 1
+        if most < least:
+            raise ParameterError(
+                f"null 'shift' needs at least {4 * max_lag + 2} frames at max_lag {max_lag}, got {frames}: "
+                "pass a smaller max_lag, or null 'phase'"
+            )
+        shifts = random.integers(least, most + 1, count)
+
+        def shifted(series: FloatArray, which: slice = _ALL) -> FloatArray:
+            return circularly_shifted(series, shifts[which])
+
+        return Surrogates(shifted, shifted)
+    turns = np.exp(1j * random.uniform(0.0, 2.0 * np.pi, (frames + 1, count)))
+    noise = np.fft.rfft(random.normal(size=(2 * frames, count)), axis=0)
+    return Surrogates(
+        lambda series, which=_ALL: phase_randomised(series, turns[:, which]),
+        lambda series, which=_ALL: filtered_noise(series, noise[:, which]),
+    )
 
 
 def check_null(null: str) -> None:
@@ -85,12 +113,12 @@ def phase_randomised(series: FloatArray, turns: NDArray[np.complex128]) -> Float
     -----
     The spectrum is that of the series followed by its mirror image, of which the first half is kept. Without
     the mirror, the jump from the last value to the first enters the spectrum, and slow series come out
-    significant twice as often as they should.
+    significant twice as often as they should. The mirror knows no direction of time, so these surrogates of
+    two series that follow each other do not: see `filtered_noise`.
 
     References
     ----------
-    Theiler et al. (1992), doi:10.1016/0167-2789(92)90102-S; Prichard & Theiler (1994), same phases for all
-    series, doi:10.1103/PhysRevLett.73.951.
+    Theiler et al. (1992), doi:10.1016/0167-2789(92)90102-S.
     """
     found = np.full((len(series), turns.shape[1]), np.nan)
     present = np.flatnonzero(np.isfinite(series))
@@ -104,6 +132,44 @@ def phase_randomised(series: FloatArray, turns: NDArray[np.complex128]) -> Float
     found[known] = np.fft.irfft(spectrum[:, None] * turns[: frames + 1], 2 * frames, axis=0)[:frames]
     found[~np.isfinite(series)] = np.nan
     return found
+
+
+def filtered_noise(series: FloatArray, noise: NDArray[np.complex128]) -> FloatArray:
+    """Common white noise, filtered by a series: what all series that share the noise have in common stays.
+
+    Parameters
+    ----------
+    series : ndarray of shape (T,) and dtype float
+        Gaps are filled in linearly first, and are gaps again in the surrogates; what lies before the first
+        and after the last value counts as 0.
+    noise : ndarray of shape (T + 1, R) and dtype complex
+        Spectrum of 2 T values of white noise.
+
+    Returns
+    -------
+    ndarray of shape (T, R) and dtype float
+
+    Notes
+    -----
+    Two series x, y that filter the same noise have the covariances Σ x(t) y(t + lag) of the series
+    themselves, at every lag and with its sign; zeros behind the series keep its ends apart.
+
+    References
+    ----------
+    Prichard & Theiler (1994), doi:10.1103/PhysRevLett.73.951, with random amplitudes.
+    """
+    found = np.full((len(series), noise.shape[1]), np.nan)
+    present = np.isfinite(series)
+    if not present.any():
+        return found
+    known = np.flatnonzero(present)
+    span = slice(known[0], known[-1] + 1)
+    whole = np.zeros(2 * len(series))
+    filled = interpolated(series[span, None])[:, 0]
+    whole[span] = filled - filled.mean()
+    turned = np.fft.rfft(whole)[:, None] * noise
+    found[present] = np.fft.irfft(turned, len(whole), axis=0)[: len(series)][present]
+    return np.asarray(found / np.sqrt(len(filled)))
 
 
 def circularly_shifted(series: FloatArray, shifts: IntArray) -> FloatArray:
