@@ -218,7 +218,7 @@ def test_chance_by_brute_force(null: Any, missing: float) -> None:
     distances = some_distances()
     found = correlate_pairs(a, b, 1, distances=distances, bins=2, surrogates=19, null=null, seed=4)
     changed = np.stack(
-        [surrogates(null, FRAMES, 19, 4, 4).together(x) for x in b.reshape(FRAMES, -1).T], axis=1
+        [surrogates(null, FRAMES, 19, 4, 1).together(x) for x in b.reshape(FRAMES, -1).T], axis=1
     )
     means = np.empty((19, 3, 3))
     for k, number, lag in np.ndindex(19, 3, 3):
