@@ -175,7 +175,16 @@ def test_numbers_out_of_range_are_refused(
         boundary_kymograph(movie, signals, depth, **options)
 
 
+@pytest.mark.parametrize("other", [np.zeros((2, 9, 9)), "study", None])
+def test_what_is_no_movie_is_refused(signals: xr.DataArray, other: Any) -> None:
+    words = rf"movie must be a DiskMovie, got {type(other).__name__}: pass study\.movie\(cell\)"
+    with pytest.raises(ParameterError, match=words):
+        boundary_kymograph(other, signals, 1.0)
+
+
 def test_signals_that_do_not_fit_are_refused(movie: DiskMovie, signals: xr.DataArray) -> None:
+    with pytest.raises(SignalError, match=r"got the path 'movie\.tif': read it, as cd\.read_image"):
+        boundary_kymograph(movie, "movie.tif", 1.0)
     with pytest.raises(SignalError, match="4 frames, the movie 5"):
         boundary_kymograph(movie, signals[:4], 1.0)
     frames = [*signals.to_numpy()[:4], signals.to_numpy()[4, :1]]

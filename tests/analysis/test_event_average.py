@@ -33,12 +33,12 @@ def events_of(velocity: xr.DataArray) -> pd.DataFrame:
 
 
 def test_the_velocity_around_its_own_onsets() -> None:
-    velocity = pulses({0: [5, 12], 3: [8]})
+    velocity = pulses({0: [5, 12], 3: [8], 5: [6, 13]})
     average = average_around(velocity, events_of(velocity), before=3, after=4)
     assert average["mean"].dims == ("delay",)
     assert average["delay"].to_numpy().tolist() == [-3, -2, -1, 0, 1, 2, 3, 4]
     assert average["mean"].to_numpy().tolist() == [0, 0, 0, 1, 1, 0, 0, 0]
-    assert set(average["n"].to_numpy()) == set(average["n_patches"].to_numpy()) == {3}
+    assert set(average["n"].to_numpy()) == set(average["n_patches"].to_numpy()) == {5}
     np.testing.assert_array_equal(average["lower"], average["mean"])  # all alike: no spread
     np.testing.assert_array_equal(average["upper"], average["mean"])
     assert average["mean"].attrs["units"] == "px/frame"
@@ -134,25 +134,44 @@ def test_own_means_are_those_of_what_is_there() -> None:
 
 def test_whole_patches_are_drawn() -> None:
     """Ten sectors that see one event are one event: they do not make the band narrower."""
-    alone = pulses({0: [5], 20: [5], 40: [5]}, sectors=60)
-    together = pulses({s: [5] for start in (0, 20, 40) for s in range(start, start + 10)}, sectors=60)
-    signal = by_sector(np.repeat([[1.0, 4.0, 2.0]], 20, axis=0).repeat(20, axis=1), "a.u.")
-    one, many = (average_around(signal, events_of(v), before=0, after=0) for v in (alone, together))
-    assert (int(one["n"][0]), int(many["n"][0]), int(many["n_patches"][0])) == (3, 30, 3)
+    starts = range(0, 100, 20)
+    alone = pulses({start: [5] for start in starts}, sectors=100)
+    together = pulses({s: [5] for start in starts for s in range(start, start + 10)}, sectors=100)
+    signal = by_sector(np.repeat([[1.0, 4.0, 2.0, 2.0, 3.0]], 20, axis=0).repeat(20, axis=1), "a.u.")
+    one, many = (
+        average_around(signal, events_of(v), before=0, after=0, confidence=0.999) for v in (alone, together)
+    )
+    assert (int(one["n"][0]), int(many["n"][0]), int(many["n_patches"][0])) == (5, 50, 5)
     for name in ("mean", "lower", "upper"):
         np.testing.assert_allclose(one[name], many[name])
-    assert float(one["lower"][0]) == 1.0  # of three patches one may be drawn three times
-    assert float(one["upper"][0]) == 4.0
+    means = 1.0, 2.4, 4.0
+    assert means[0] <= float(one["lower"][0]) < means[1] < float(one["upper"][0]) <= means[2]
 
 
-def test_one_patch_has_no_band() -> None:
-    velocity = pulses({3: [5], 4: [5]})
+@pytest.mark.parametrize("patches", [1, 2, 4, 5])
+def test_few_patches_have_no_band(patches: int) -> None:
+    velocity = pulses({s: [5] for start in range(patches) for s in (4 * start, 4 * start + 1)}, sectors=24)
     average = average_around(velocity, events_of(velocity), before=1, after=1)
+    assert set(average["n_patches"].to_numpy()) == {patches}
+    assert np.isfinite(average["mean"]).all()
+    for name in ("lower", "upper"):
+        assert np.isfinite(average[name]).to_numpy().tolist() == [patches == 5] * 3
+
+
+def test_the_band_ends_where_patches_become_few() -> None:
+    """Two of six episodes begin too early to be seen three frames before."""
+    starts = [2, 2, 5, 8, 11, 14]
+    velocity = pulses({2 * place: [start] for place, start in enumerate(starts)}, sectors=12)
+    average = average_around(velocity, events_of(velocity), before=3, after=1)
+    assert average["n_patches"].to_numpy().tolist() == [4, 6, 6, 6, 6]
+    assert np.isnan(average["upper"]).to_numpy().tolist() == [True, False, False, False, False]
+
+
+def test_without_draws_there_is_no_band() -> None:
+    velocity = pulses({s: [5] for s in range(0, 12, 2)}, sectors=12)
+    average = average_around(velocity, events_of(velocity), before=1, after=1, bootstrap=0)
     assert np.isfinite(average["mean"]).all()
     assert np.isnan(average["lower"]).all()
-    assert np.isnan(average["upper"]).all()
-    two = pulses({1: [5], 4: [5]})
-    assert np.isnan(average_around(two, events_of(two), before=1, after=1, bootstrap=0)["lower"]).all()
 
 
 def test_draws_depend_on_the_seed_alone() -> None:
@@ -165,9 +184,13 @@ def test_draws_depend_on_the_seed_alone() -> None:
     assert not np.array_equal(first["lower"], other["lower"])
 
 
-@pytest.mark.parametrize("patches", [10, 30])
-@pytest.mark.parametrize("confidence", [0.8, 0.95])
-def test_the_band_holds_the_true_mean_as_often_as_it_says(patches: int, confidence: float) -> None:
+@pytest.mark.parametrize(
+    ("patches", "confidence", "share"),
+    [(5, 0.8, 0.8), (5, 0.95, 0.915), (10, 0.8, 0.8), (10, 0.95, 0.95), (30, 0.8, 0.8), (30, 0.95, 0.95)],
+)
+def test_the_band_holds_the_true_mean_as_often_as_it_says(
+    patches: int, confidence: float, share: float
+) -> None:
     """Independent experiments, a hundred at a time as layers: each has patches of two sectors."""
     rounds, at_once, sectors = 20, 100, 3 * patches
     velocity = pulses({s: [2] for s in range(sectors) if s % 3 < 2}, frames=6, sectors=sectors)
@@ -183,7 +206,7 @@ def test_the_band_holds_the_true_mean_as_often_as_it_says(patches: int, confiden
         )
         assert set(average["n_patches"].to_numpy().ravel()) == {patches}
         held += int(((average["lower"] <= 3.0) & (average["upper"] >= 3.0)).sum())
-    low, high = binom.ppf([0.0005, 0.9995], rounds * at_once, confidence)
+    low, high = binom.ppf([0.0005, 0.9995], rounds * at_once, share)
     assert low <= held <= high
 
 

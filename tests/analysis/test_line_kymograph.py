@@ -1,3 +1,4 @@
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -142,6 +143,8 @@ def test_lines_that_make_no_sense_are_refused(line: Any, options: dict[str, Any]
         (np.zeros((2, 2, 2, 9, 9)), r"shape \(2, 2, 9, 9\)"),
         (7, "got int"),
         ([], "frames of a movie"),
+        ("movie.tif", r"got the path 'movie\.tif': read it, as cd\.read_image"),
+        (Path("movie.tif"), r"got the path .*movie\.tif.*read_image"),
         (np.zeros((3, 9, 9), dtype=complex), "numbers"),
         ([np.zeros((9, 9)), np.zeros((9, 8))], r"frame 1 of the signals has shape \(9, 8\)"),
         (xr.DataArray(np.zeros((9, 9)), dims=("y", "x")), r"dims \['y', 'x'\]"),

@@ -2,15 +2,19 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import imageio.v3 as imageio
 import numpy as np
 import pandas as pd
 import pytest
 import tifffile
+import typer
 from command_line import Run, assert_refused, content, write
+from rich.progress import Progress
 
 import cytodisk as cd
+from cytodisk.cli.console import progress_bar
 
 GRID = ("--layers", "3", "--sectors", "8", "--figures", "0")
 
@@ -41,6 +45,7 @@ def test_flags_reach_the_parameters(run: Run, mask: Path, tmp_path: Path) -> Non
     found = cd.open_study(tmp_path / "out").provenance["parameters"]
     assert found == {
         "kind": "mask",
+        "channels": None,
         "method": "harmonic",
         "shape_weight": 0.01,
         "edge_length": 2.0,
@@ -270,7 +275,81 @@ def test_check_names_what_is_wrong(run: Run, tmp_path: Path) -> None:
     assert code == 1
     assert "1\t1\t1\tyes\t1 fragment" in said
     assert "2\t2\t1\tno\tmask of shape (30, 30) is empty" in said
-    assert "3 cells: 2 usable (0 of them doubtful), 1 not usable" in said
+    assert "3 frames: 2 usable (0 of them doubtful), 1 not usable" in said
+
+
+def test_check_counts_cells_of_labels(run: Run, tmp_path: Path) -> None:
+    labels = np.zeros((30, 60), dtype=np.uint8)
+    labels[5:25, 5:25], labels[5:25, 35:50] = 1, 2
+    assert "2 cells: 2 usable (0 of them" in run("check", write(tmp_path / "labels.tif", labels))[1]
+
+
+def test_names_of_channels(run: Run, mask: Path, tmp_path: Path) -> None:
+    counts = np.ones((2, 40, 50), dtype=np.uint16)
+    signal = tmp_path / "signal.ome.tif"
+    names = {"axes": "CYX", "Channel": {"Name": ["488", "velocity"]}}
+    tifffile.imwrite(signal, counts, photometric="minisblack", metadata=names)
+    given = ("--signal", signal, "--channels", "Rac1, RhoA")
+    for command in (("map", mask, "-o", tmp_path / "out"), ("check", mask)):
+        refused = run(*command, *given[:2])
+        assert_refused(
+            refused, "has a channel 'velocity'", "pass other names for its 2 channels, as --channels"
+        )
+        refused = run(*command, *given[:3], "Rac1,Rac1")
+        assert_refused(refused, "channels: two channels have one name, got ('Rac1', 'Rac1')")
+        assert not (tmp_path / "out").exists()
+    assert run("check", mask, *given)[0] == 0
+    code, said, _ = run("map", mask, "-o", tmp_path / "out", *GRID, *given)
+    assert code == 0
+    assert "signal: channels Rac1, RhoA; " in said
+    assert set(cd.open_study(tmp_path / "out").windows["channel"]) == {"Rac1", "RhoA"}
+
+
+@pytest.fixture
+def bar(monkeypatch: pytest.MonkeyPatch) -> list[object]:
+    """Totals with which bars begin."""
+    totals: list[object] = []
+    begin = Progress.add_task
+
+    def spy(self: Progress, *words: Any, **options: Any) -> Any:
+        totals.append(options["total"])
+        return begin(self, *words, **options)
+
+    monkeypatch.setattr(Progress, "add_task", spy)
+    return totals
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({}, "Stopped; what was done is kept (3 of 7 cells): run it again with --resume."),
+        ({"again": "run it again"}, "Stopped; what was done is kept (3 of 7 cells): run it again."),
+        ({"stopped": "Stopped; nothing was changed."}, "Stopped; nothing was changed."),
+    ],
+)
+def test_what_is_said_when_stopped(
+    capsys: pytest.CaptureFixture[str], options: dict[str, str], words: str
+) -> None:
+    def run_until_stopped() -> None:
+        with progress_bar(True, "cells", **options) as progress:
+            progress(3, 7)
+            raise KeyboardInterrupt
+
+    with pytest.raises(typer.Exit) as stop:
+        run_until_stopped()
+    assert stop.value.exit_code == 130
+    assert capsys.readouterr().err == words + "\n"
+
+
+def test_only_a_run_can_be_complete_already(capsys: pytest.CaptureFixture[str], bar: list[object]) -> None:
+    with progress_bar(False, "cells"):
+        pass
+    assert "this study is complete already" in capsys.readouterr().err
+    for options in ({"stopped": "Stopped."}, {"total": 4}):
+        with progress_bar(False, "cells", **options):
+            pass
+        assert "complete" not in capsys.readouterr().err
+    assert bar == [None, None, 4]
 
 
 def test_check_of_a_file_that_cannot_be_read(run: Run, mask: Path, tmp_path: Path) -> None:

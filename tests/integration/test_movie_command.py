@@ -120,6 +120,43 @@ def test_flags_reach_the_parameters(run: Run, masks: Path, tmp_path: Path) -> No
         assert found[name] == value, name
 
 
+def test_names_of_channels(run: Run, masks: Path, signal: Path, tmp_path: Path) -> None:
+    common = ("movie", masks, "-o", tmp_path / "out", *GRID)
+    for names, words in (
+        ("a", "channels must be as many names as"),
+        ("a,", "channels: every channel needs a name that can be printed, got ('a', '')"),
+        ("a,velocity", "channels: velocity is the name of the edge's velocity"),
+    ):
+        assert_refused(run(*common, "--signal", signal, "--channels", names), words)
+    assert_refused(run(*common, "--channels", "a,b"), "there is no signal: pass it as --signal")
+    assert not (tmp_path / "out").exists()
+    code, said, _ = run(*common, "--signal", signal, "--channels", "actin, myosin")
+    assert code == 0
+    assert "signal: channels actin, myosin; 5 frames" in said
+    kept = ("--parameters", tmp_path / "out" / "parameters.toml")
+    again = run("movie", masks, "--signal", signal, "-o", tmp_path / "again", "--figures", 0, *kept)
+    assert again[0] == 0
+    for name in ("out", "again"):
+        study = cd.open_study(tmp_path / name)
+        assert study.activity(0)["channel"].to_numpy().tolist() == ["actin", "myosin"]
+
+
+def test_a_run_that_is_stopped_says_how_to_go_on(
+    run: Run, masks: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    out = tmp_path / "out"
+    with monkeypatch.context() as patch:
+        patch.setattr("cytodisk.plot.movie.draw_movie_figures", stop)
+        code, _, error = run("movie", masks, "-o", out, *GRID[:4])
+    assert code == 130
+    assert "what was done is kept (0 of 1 drawings): run it again with --resume." in error
+    assert run("movie", masks, "-o", out, *GRID[:4], "--resume")[0] == 0
+    assert any((out / "figures").glob("*.gif"))
+
+
 def test_without_registration_nothing_is_taken_out(run: Run, masks: Path, tmp_path: Path) -> None:
     """The disk moves by 2 px a frame; registration finds that, and is switched off by its flag."""
     for name, flags in (("with", ()), ("without", ("--no-register",))):

@@ -149,8 +149,10 @@ def test_a_file_is_no_output_folder(tmp_path: Path) -> None:
 
 
 def test_open_study_says_why_not(tmp_path: Path) -> None:
-    with pytest.raises(ReadError, match=r"is no study: it has no readable provenance\.json"):
+    with pytest.raises(ReadError, match=r"study .*nowhere does not exist: check the path"):
         cd.open_study(tmp_path / "nowhere")
+    with pytest.raises(ReadError, match=r"is no study: it has no readable provenance\.json"):
+        cd.open_study(tmp_path)
     StudyFolder.start(tmp_path / "half", run())
     with pytest.raises(ReadError, match="is not complete: run the same command again with --resume"):
         cd.open_study(tmp_path / "half")
@@ -176,5 +178,5 @@ def test_a_map_that_is_not_there_has_a_reason(tmp_path: Path) -> None:
 def test_a_cell_that_is_not_there(tmp_path: Path) -> None:
     finished(tmp_path / "out")
     study = cd.open_study(tmp_path / "out")
-    with pytest.raises(ReadError, match=r"has no cell 9: it has 2 cells from 0"):
+    with pytest.raises(ReadError, match=r"has no cell 9: it has the cells 0 to 1"):
         study.map(9)

@@ -115,7 +115,7 @@ def test_a_frame_that_is_not_there(movie_study: cd.Study) -> None:
 @pytest.mark.parametrize("cell", [1, -1])
 def test_a_cell_that_is_not_there(movie_study: cd.Study, cell: int) -> None:
     for read in (movie_study.movie, movie_study.activity, lambda number: movie_study.map(number, 0)):
-        with pytest.raises(ReadError, match=rf"has no cell {cell}: it has 1 cells from 0"):
+        with pytest.raises(ReadError, match=rf"has no cell {cell}: it has only cell 0"):
             read(cell)
 
 

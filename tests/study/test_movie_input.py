@@ -12,6 +12,7 @@ import cytodisk as cd
 from cytodisk.errors import CytodiskError, MaskError, ParameterError, ReadError, SignalError, StudyError
 from cytodisk.io.frames import open_frames
 from cytodisk.io.tracks import read_frame
+from cytodisk.study.map_run import open_inputs
 from cytodisk.study.movie_inputs import open_movie
 from cytodisk.study.movie_run import run_movie
 from cytodisk.study.parameters import MovieParameters, parameters_from
@@ -310,3 +311,47 @@ def test_a_cell_of_a_few_pixels_has_no_empty_window(tmp_path: Path, side: int) -
 def test_a_stack_is_not_said_to_be_linked(masks: Path) -> None:
     inputs = open_movie(masks, None, SMALL.model_copy(update={"link": True}))
     assert "linked" not in inputs.understood["masks"]
+
+
+@pytest.fixture
+def named(tmp_path: Path) -> Any:
+    """Writes a signal with names of channels; gives its path."""
+
+    def write(*names: str) -> Path:
+        metadata = {"axes": "TCYX", "Channel": {"Name": list(names)}}
+        path, counts = tmp_path / "named.ome.tif", COUNTS[:, : len(names)]
+        tifffile.imwrite(path, counts, photometric="minisblack", ome=True, metadata=metadata)
+        return path
+
+    return write
+
+
+def test_given_names_overrule_those_of_the_file(tmp_path: Path, masks: Path, named: Any) -> None:
+    given = SMALL.model_copy(update={"channels": ("Rac1", "RhoA")})
+    study = run_movie(open_movie(masks, named("488", "velocity"), given), tmp_path / "out")
+    assert study.activity(0)["channel"].to_numpy().tolist() == ["Rac1", "RhoA"]
+    assert set(study.windows["channel"]) == {"Rac1", "RhoA"}
+    assert study.provenance["parameters"]["channels"] == ["Rac1", "RhoA"]
+    assert "channels Rac1, RhoA" in study.provenance["inputs"]["signal"]["read as"]
+    again = parameters_from({}, study.path / "parameters.toml", MovieParameters)
+    assert again == given
+
+
+@pytest.mark.parametrize("opened", [open_movie, open_inputs])
+def test_names_that_are_not_those_of_the_channels(masks: Path, named: Any, opened: Any) -> None:
+    given = SMALL.model_copy(update={"channels": ("Rac1", "RhoA", "Cdc42")})
+    words = (
+        r"channels must be as many names as .*named\.ome\.tif has channels, which are 2 .*, got 3 \('Rac1', "
+    )
+    with pytest.raises(ParameterError, match=words):
+        opened(masks, named("a", "b"), given)
+    with pytest.raises(ParameterError, match=r"channels are named .*, but there is no signal: .* --signal"):
+        opened(masks, None, given)
+
+
+@pytest.mark.parametrize("opened", [open_movie, open_inputs])
+@pytest.mark.parametrize("name", ["velocity", "velocity_cell_frame"])
+def test_a_channel_with_the_name_of_the_velocity(masks: Path, named: Any, opened: Any, name: str) -> None:
+    words = f"named.ome.tif has a channel '{name}', which is the name of the edge's velocity: .* --channels"
+    with pytest.raises(SignalError, match=words):
+        opened(masks, named("Rac1", name), SMALL)

@@ -171,5 +171,5 @@ def test_a_damaged_frame_at_the_end_of_the_recording_is_not_passed_over(tmp_path
 
 def test_a_cell_that_is_not_there_is_named(study: cd.Study) -> None:
     for read in (study.movie, study.activity, lambda cell: study.map(cell, 0)):
-        with pytest.raises(ReadError, match="has no cell 3: it has 3 cells from 0"):
+        with pytest.raises(ReadError, match="has no cell 3: it has the cells 0 to 2"):
             read(3)

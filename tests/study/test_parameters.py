@@ -9,6 +9,7 @@ from cytodisk.errors import ParameterError
 from cytodisk.study.parameters import MapParameters, parameters_from, write_parameters
 
 POSITIVE = st.floats(1e-6, 1e6)
+NAMES = st.text(min_size=1, max_size=9).filter(lambda name: name.isprintable() and name.strip())
 NUMBER = st.floats(-1e6, 1e6)
 
 
@@ -26,6 +27,7 @@ NUMBER = st.floats(-1e6, 1e6)
             "spacing": st.sampled_from(["area", "radius"]),
             "nan": st.sampled_from(["propagate", "omit"]),
             "pixel_size_um": st.none() | POSITIVE,
+            "channels": st.none() | st.lists(NAMES, min_size=1, max_size=4, unique=True).map(tuple),
         },
     )
 )
@@ -41,7 +43,7 @@ def test_parameters_survive_the_file(
 def test_every_parameter_that_is_set_stands_in_the_file(tmp_path: Path) -> None:
     write_parameters(MapParameters(), tmp_path / "a.toml")
     names = set(tomllib.loads((tmp_path / "a.toml").read_text(encoding="utf-8")))
-    assert names == set(MapParameters.model_fields) - {"pixel_size_um"}
+    assert names == set(MapParameters.model_fields) - {"pixel_size_um", "channels"}
 
 
 def test_given_values_overrule_the_file(tmp_path: Path) -> None:
@@ -62,6 +64,14 @@ def test_given_values_overrule_the_file(tmp_path: Path) -> None:
         ({"kind": "cells"}, "kind: Input should be 'auto', 'mask', 'stack' or 'labels', got 'cells'"),
         ({"align": "left"}, "align: .*got 'left'"),
         ({"pixel_size_um": -1.0}, "pixel_size_um: Input should be greater than 0, got -1.0"),
+        ({"channels": ()}, r"channels: every channel needs a name that can be printed, got \(\)"),
+        ({"channels": ("Rac1", " ")}, "channels: every channel needs a name"),
+        ({"channels": ("Rac1", "a\nb")}, "channels: every channel needs a name"),
+        ({"channels": ("a", "b", "a")}, r"channels: two channels have one name, got \('a', 'b', 'a'\)"),
+        ({"channels": ("a", "velocity")}, "channels: velocity is the name of the edge's velocity"),
+        ({"channels": ("velocity_cell_frame",)}, "channels: velocity_cell_frame is the name of the edge's"),
+        ({"channels": "Rac1"}, "channels: Input should be a valid tuple, got 'Rac1'"),
+        ({"channels": (1, 2)}, "channels: Input should be a valid string, got 1"),
         ({"colour": "red"}, "colour: Extra inputs are not permitted, got 'red'"),
     ],
 )
@@ -80,6 +90,13 @@ def test_numbers_must_be_finite(name: str, value: float) -> None:
 def test_all_faults_are_named_at_once() -> None:
     with pytest.raises(ParameterError, match=r"layers: .*; sectors: "):
         parameters_from({"layers": 0, "sectors": 0})
+
+
+@pytest.mark.parametrize("name", ['say "Rac1"', "back\\slash", "µ ~/.:", "#1 = [x]"])
+def test_any_name_of_a_channel_survives_the_file(tmp_path: Path, name: str) -> None:
+    parameters = parameters_from({"channels": (name, "other")})
+    write_parameters(parameters, tmp_path / "a.toml")
+    assert parameters_from({}, tmp_path / "a.toml").channels == (name, "other")
 
 
 @pytest.mark.parametrize("content", [b"layers = ", b"\xff\xfe", None])

@@ -20,6 +20,7 @@ Normalisation: TypeAlias = Literal["none", "mean", "sd"]
 
 # What must be known of an episode for its moment to be known.
 _KNOWN: dict[Moment, str] = {"onset": "onset_known", "peak": "complete", "end": "end_known"}
+_LEAST_PATCHES = 5  # with fewer the band is far too narrow
 _COLUMNS = ("sector", "kind", "patch")
 
 
@@ -63,7 +64,7 @@ def average_around(
     Returns
     -------
     Dataset with the dims of `activity` but time and sector, and delay
-        mean; lower and upper, the band (NaN where fewer than two patches have a value); n and n_patches, the
+        mean; lower and upper, the band (NaN where fewer than five patches have a value); n and n_patches, the
         episodes and patches that have a value there: NaN and what lies beyond the movie count for nothing.
         Coordinates delay, in frames, and delay_s where frames are evenly spaced in known time.
 
@@ -78,7 +79,9 @@ def average_around(
     whole patches, as many as there are, with replacement, and takes percentiles of the means over the
     episodes of those drawn. With few patches plain percentiles are too narrow: they are taken further out,
     as far as Student's t with one degree of freedom less than there are patches is from the normal
-    distribution [1]_. Patches themselves are taken to be independent, which no one cell can show.
+    distribution [1]_. In simulations of independent, normal patches a band of 95 % held the true mean in
+    91 % of experiments with 5 patches, 93 % with 6 and 94 % with 10 or 30; with 4 or fewer in 88 % or less,
+    which is why there is none. Patches are taken to be independent, which no one cell can show.
 
     What goes on in the whole movie, such as bleaching, shows as a slope at any moment: take it out before.
 
@@ -214,9 +217,9 @@ def _resampled(sums: FloatArray, counts: FloatArray, bootstrap: int, seed: int) 
 
 
 def _band(means: FloatArray, patches: IntArray, confidence: float) -> tuple[FloatArray, FloatArray]:
-    """Percentiles of the means, expanded for the number of patches; NaN with fewer than two."""
+    """Percentiles of the means, expanded for the number of patches; NaN with too few of them."""
     known = np.isfinite(means).sum(axis=0)
-    usable = (patches >= 2) & (known > 0)
+    usable = (patches >= _LEAST_PATCHES) & (known > 0)
     degrees = np.maximum(patches - 1, 1)
     tail = ndtr(student.ppf(0.5 * (1.0 - confidence), degrees) * np.sqrt((degrees + 1.0) / degrees))
     ordered = np.sort(np.where(np.isfinite(means), means, np.inf), axis=0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from typing import Any
 
@@ -34,7 +35,7 @@ def line_kymograph(signals: Any, line_yx: Any, *, width_px: int = 1, spacing_px:
 
     Returns
     -------
-    DataArray with dims (time, distance), and channel if the signals have it
+    DataArray with dims (time, distance), or (time, distance, channel) if the signals have channels
         distance from the line's first point, in µm when attrs `pixel_size_um` of the signals is known, else
         px, as its attrs `units` say; y and x of each place in pixels; time_s when attrs `frame_interval_s`
         is known. What is left of the line behind the last whole step is not sampled.
@@ -52,6 +53,7 @@ def line_kymograph(signals: Any, line_yx: Any, *, width_px: int = 1, spacing_px:
     """
     line = _parse_line(line_yx)
     _check_sampling(width_px, spacing_px)
+    _refuse_path(signals)
     frames, channels, shape = _parse_movie(signals)
     distance, places, normals = _along(line, spacing_px)
     offsets = np.arange(width_px) - 0.5 * (width_px - 1)
@@ -78,6 +80,7 @@ def boundary_kymograph(movie: DiskMovie, signals: Any, depth: float, *, points: 
     Parameters
     ----------
     movie : DiskMovie
+        Of `map_movie`, or a cell's of a study: `study.movie(cell)`.
     signals : array_like of shape (T, H, W) or (T, C, H, W), DataArray or sequence
         As for `sample_movie`.
     depth : float
@@ -88,7 +91,7 @@ def boundary_kymograph(movie: DiskMovie, signals: Any, depth: float, *, points: 
 
     Returns
     -------
-    DataArray with dims (time, point), and channel if the signals have it
+    DataArray with dims (time, point), or (time, point, channel) if the signals have channels
         NaN where a ray comes nowhere that deep, where the edge is the image's border, and in frames without
         a map. Coordinates angle, in radians; y and x (time, point), the places in pixels; time_s when the
         frame interval is known. attrs hold depth and depth_units.
@@ -98,8 +101,14 @@ def boundary_kymograph(movie: DiskMovie, signals: Any, depth: float, *, points: 
     SignalError
         The signals do not fit the movie.
     ParameterError
-        The depth or the number of points is out of its range.
+        The movie is none, or the depth or the number of points is out of its range.
     """
+    if not isinstance(movie, DiskMovie):
+        raise ParameterError(
+            f"movie must be a DiskMovie, got {type(movie).__name__}: pass study.movie(cell), "
+            "or map_movie(masks)"
+        )
+    _refuse_path(signals)
     if isinstance(depth, bool) or not isinstance(depth, int | float | np.number) or not 0 <= depth < np.inf:
         raise ParameterError(f"depth must be a number of at least 0, got {depth!r}")
     if isinstance(points, bool) or not isinstance(points, int | np.integer) or points < 1:
@@ -174,6 +183,14 @@ def _check_sampling(width_px: Any, spacing_px: Any) -> None:
     number = isinstance(spacing_px, int | float | np.number) and not isinstance(spacing_px, bool)
     if not number or not 0 < spacing_px < np.inf:
         raise ParameterError(f"spacing_px must be a positive number, got {spacing_px!r}: 1 is the default")
+
+
+def _refuse_path(signals: Any) -> None:
+    if isinstance(signals, str | bytes | os.PathLike):
+        raise SignalError(
+            f"signals must be frames of a movie, got the path {signals!r}: read it, as "
+            "cd.read_image(path, unnamed='T')"
+        )
 
 
 def _parse_movie(signals: Any) -> tuple[Any, list[str] | None, tuple[int, int]]:

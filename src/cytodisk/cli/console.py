@@ -17,7 +17,13 @@ Masks = Annotated[
 Signal = Annotated[
     Path | None, typer.Option(help="Image to sample, of the same height and width: TIFF or PNG.")
 ]
+Channels = Annotated[
+    str | None,
+    typer.Option(help="Names of the signal's channels, as Rac1,RhoA; overrule the file's own."),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+
+RESUME = "run it again with --resume"
 
 
 def fail(message: str) -> None:
@@ -25,8 +31,12 @@ def fail(message: str) -> None:
     raise SystemExit(2)
 
 
-def count(cells: int) -> str:
-    return "1 cell" if cells == 1 else f"{cells} cells"
+def count(number: int, of: str = "cell") -> str:
+    return f"1 {of}" if number == 1 else f"{number} {of}s"
+
+
+def parse_channels(text: str | None) -> tuple[str, ...] | None:
+    return None if text is None else tuple(part.strip() for part in text.split(","))
 
 
 def parse_align(text: str | None) -> Any:
@@ -50,8 +60,30 @@ def console_for(quiet: bool) -> "Console":
 
 
 @contextmanager
-def progress_bar(quiet: bool, unit: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar on stderr with rate and time left; gives a function to call with (done, in all)."""
+def progress_bar(
+    quiet: bool, unit: str, *, total: int | None = None, stopped: str | None = None, again: str = RESUME
+) -> Iterator[Callable[[int, int], None]]:
+    """A bar on stderr with rate and time left; Ctrl-C within ends the command with exit code 130.
+
+    Parameters
+    ----------
+    quiet : bool
+        Show no bar.
+    unit : str
+        What is counted, in the plural.
+    total : int, optional
+        How many there are, where that is known before the first is done.
+    stopped : str, optional
+        What to print at Ctrl-C. By default the bar is that of a run whose parts are kept: it says how many
+        are done, and a run that reports nothing was complete before.
+    again : str
+        How such a run goes on.
+
+    Yields
+    ------
+    callable
+        To call with (done, in all).
+    """
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -63,7 +95,7 @@ def progress_bar(quiet: bool, unit: str) -> Iterator[Callable[[int, int], None]]
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), disable=quiet, transient=True) as bar:
-        task = bar.add_task(unit, total=None, rate="")
+        task = bar.add_task(unit, total=total, rate="")
 
         def report(done: int, total: int) -> None:
             speed = bar.tasks[task].speed
@@ -73,9 +105,10 @@ def progress_bar(quiet: bool, unit: str) -> Iterator[Callable[[int, int], None]]
         try:
             yield report
         except KeyboardInterrupt:
-            done, total = bar.tasks[task].completed, bar.tasks[task].total
-            of_all = f" ({done:.0f} of {total:.0f} {unit})" if total else ""
-            print(f"Stopped; what was done is kept{of_all}: run it again with --resume.", file=sys.stderr)
+            done, known = bar.tasks[task].completed, bar.tasks[task].total
+            of_all = f" ({done:.0f} of {known:.0f} {unit})" if known else ""
+            kept = f"Stopped; what was done is kept{of_all}: {again}."
+            print(kept if stopped is None else stopped, file=sys.stderr)
             raise typer.Exit(130) from None
-        if not bar.tasks[task].total and not quiet:
+        if stopped is None and not bar.tasks[task].total and not quiet:
             print("this study is complete already: nothing was run again", file=sys.stderr)

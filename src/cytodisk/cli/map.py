@@ -6,7 +6,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cytodisk.cli.console import Masks, Quiet, Signal, console_for, count, fail, parse_align, progress_bar
+from cytodisk.cli.console import (
+    Channels,
+    Masks,
+    Quiet,
+    Signal,
+    console_for,
+    count,
+    fail,
+    parse_align,
+    parse_channels,
+    progress_bar,
+)
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -34,6 +45,7 @@ def map_command(
     masks: Masks,
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)],
     signal: Signal = None,
+    channels: Channels = None,
     kind: Annotated[str | None, typer.Option(help="What MASKS is: auto, mask, stack or labels.")] = None,
     layers: Annotated[int | None, typer.Option(help="Windows from edge to centre (default 10).")] = None,
     sectors: Annotated[int | None, typer.Option(help="Windows around the edge (default 60).")] = None,
@@ -75,6 +87,7 @@ def map_command(
 
     given = {
         "kind": kind,
+        "channels": parse_channels(channels),
         "layers": layers,
         "sectors": sectors,
         "spacing": spacing,
@@ -106,9 +119,10 @@ def map_command(
 def check_command(
     masks: Masks,
     signal: Signal = None,
+    channels: Channels = None,
     kind: Annotated[str, typer.Option(help="What MASKS is: auto, mask, stack or labels.")] = "auto",
 ) -> None:
-    """Say what is wrong with masks before a run: a line a cell.
+    """Say what is wrong with masks before a run: a line a cell, or a frame of a stack.
 
     Exit code: 0 when all can be used, 1 if any cannot, 2 if the file cannot be read at all.
 
@@ -117,7 +131,8 @@ def check_command(
     from cytodisk.study.map_run import check_cells, open_inputs
     from cytodisk.study.parameters import parameters_from
 
-    inputs = open_inputs(masks, signal, parameters_from({"kind": kind}))
+    given = {"kind": kind, "channels": parse_channels(channels)}
+    inputs = open_inputs(masks, signal, parameters_from(given))
     console = console_for(False)
     say_inputs(console, inputs)
     unusable = doubtful = looked_at = 0
@@ -129,9 +144,9 @@ def check_command(
         remarks = reason or "; ".join([*doubts, *notes])
         usable = "no" if reason else "doubtful" if doubts else "yes"
         print(f"{found.cell}\t{found.frame}\t{found.label}\t{usable}\t{remarks}")
+    what = count(looked_at, "frame" if inputs.kind == "stack" else "cell")
     console.print(
-        f"{count(looked_at)}: {looked_at - unusable} usable ({doubtful} of them doubtful), "
-        f"{unusable} not usable"
+        f"{what}: {looked_at - unusable} usable ({doubtful} of them doubtful), {unusable} not usable"
     )
     raise typer.Exit(1 if unusable else 0)
 

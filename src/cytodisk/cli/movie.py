@@ -6,7 +6,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cytodisk.cli.console import Quiet, Signal, console_for, count, fail, parse_align, progress_bar
+from cytodisk.cli.console import (
+    RESUME,
+    Channels,
+    Quiet,
+    Signal,
+    console_for,
+    count,
+    fail,
+    parse_align,
+    parse_channels,
+    progress_bar,
+)
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -36,6 +47,7 @@ def movie_command(
     masks: Movie,
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)],
     signal: Signal = None,
+    channels: Channels = None,
     kind: Annotated[
         str | None, typer.Option(help="What MASKS is: auto, stack (one cell) or labels (a label a cell).")
     ] = None,
@@ -104,6 +116,7 @@ def movie_command(
         raise ParameterError("layers and depth_um exclude each other: pass --layers or --depth-um")
     given = {
         "kind": kind,
+        "channels": parse_channels(channels),
         "link": link,
         "layers": layers,
         "depth_um": depth_um,
@@ -138,7 +151,7 @@ def say_movie(console: "Console", inputs: "MovieInputs") -> None:
     )
 
 
-def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int) -> None:
+def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int, again: str = RESUME) -> None:
     """Draw cells that have no figures yet, so that a run that was stopped while drawing goes on."""
     from cytodisk.plot.movie import draw_movie_figures
 
@@ -149,11 +162,10 @@ def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int)
     missing = [cell for cell in wanted if not any((study.path / "figures").glob(f"cell_{cell:05d}*.gif"))]
     if not missing:
         return
-    with progress_bar(quiet, "drawings") as progress:
+    with progress_bar(quiet, "drawings", total=len(missing), again=again) as progress:
         for number, cell in enumerate(missing):
-            progress(number, len(missing))
             draw_movie_figures(study, int(cell), image)
-        progress(len(missing), len(missing))
+            progress(number + 1, len(missing))
 
 
 def finish_movie(console: "Console", study: "Study") -> None:

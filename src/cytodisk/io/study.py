@@ -73,16 +73,16 @@ class Study:
         return self._movie_table(CONSISTENCY)
 
     @property
-    def correlations(self) -> list[tuple[str, str]]:
-        """Pairs of names (signal, with) that were correlated."""
+    def correlations(self) -> list[tuple[str, ...]]:
+        """What was correlated: (signal, with), or (signal, with, name) for a variant."""
         return list_correlations(self.path)
 
-    def correlation(self, signal: str, with_: str = "velocity") -> Correlation:
+    def correlation(self, signal: str, with_: str = "velocity", name: str = "") -> Correlation:
         """Read a correlation.
 
         Parameters
         ----------
-        signal, with_ : str
+        signal, with_, name : str
             As they were given to `cytodisk correlate`.
 
         Returns
@@ -94,7 +94,7 @@ class Study:
         ReadError
             It is not there; the message lists those that are.
         """
-        return read_correlation(self.path, signal, with_)
+        return read_correlation(self.path, signal, with_, name)
 
     @property
     def is_movie(self) -> bool:
@@ -208,8 +208,9 @@ class Study:
     def _rows_of(self, cell: int) -> pd.DataFrame:
         rows = self.cells[self.cells["cell"] == cell]
         if rows.empty:
-            count = self.cells["cell"].nunique()
-            raise ReadError(f"study {self.path} has no cell {cell}: it has {count} cells from 0")
+            first, last = self.cells["cell"].min(), self.cells["cell"].max()
+            there = f"only cell {first}" if first == last else f"the cells {first} to {last}"
+            raise ReadError(f"study {self.path} has no cell {cell}: it has {there}")
         return rows
 
 
@@ -227,10 +228,12 @@ def open_study(path: str | os.PathLike[str]) -> Study:
     Raises
     ------
     ReadError
-        The folder is not a study, is damaged, or its run is not complete.
+        The folder does not exist, is not a study, is damaged, or its run is not complete.
     """
     folder = Path(path)
     provenance = read_provenance(folder)
+    if provenance is None and not folder.exists():
+        raise ReadError(f"study {folder} does not exist: check the path")
     if provenance is None:
         raise ReadError(f"{folder} is no study: it has no readable {PROVENANCE}")
     if provenance.get("status") != "complete":

@@ -21,7 +21,7 @@ from cytodisk.io.study_folder import PARAMETERS, StudyFolder, alone_in, part_key
 from cytodisk.study.one_cell import CellResult, CellTask, DrawCell, measure_cell
 from cytodisk.study.parameters import MapParameters, write_parameters
 from cytodisk.study.provenance import describe_run
-from cytodisk.study.run_steps import check_options, finish_run, input_paths
+from cytodisk.study.run_steps import check_options, finish_run, input_paths, name_channels
 from cytodisk.study.workers import worker_pool
 from cytodisk.windows.grid import polar_windows
 
@@ -85,7 +85,7 @@ def open_inputs(
 
     Raises
     ------
-    ReadError, MaskError, SignalError
+    ReadError, MaskError, SignalError, ParameterError
         A file is missing, damaged, or does not fit.
     """
     mask_file = open_frames(masks, unnamed="T")
@@ -93,6 +93,8 @@ def open_inputs(
     signal_file = None
     if signal is not None:
         signal_file = open_frames(signal, unnamed="T" if mask_file.n_frames > 1 else "C")
+    signal_file = name_channels(signal_file, parameters.channels)
+    if signal_file is not None:
         check_signal(mask_file, signal_file)
     polar_windows(parameters.layers, parameters.sectors, parameters.spacing)  # raises if it makes no sense
     pixel_size_um = parameters.pixel_size_um or common_pixel_size(mask_file, signal_file)
@@ -206,7 +208,7 @@ def check_signal(masks: FrameFile, signal: FrameFile) -> None:
     if len(signal.channels) > _MOST_UNNAMED and signal.channels[0] == "0":
         raise SignalError(
             f"signal {signal.path} has {len(signal.channels)} planes without names, where one image is due: "
-            "pass one frame, or name its axes and channels in the file"
+            "pass one frame, or name its axes in the file, and its channels there or with --channels"
         )
     if signal.n_frames not in (1, masks.n_frames):
         raise SignalError(

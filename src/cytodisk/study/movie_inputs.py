@@ -17,6 +17,7 @@ from cytodisk.io.tracks import CellTrack, list_tracks, read_frame
 from cytodisk.study.map_run import check_signal, common_pixel_size
 from cytodisk.study.one_frame import Scale
 from cytodisk.study.parameters import MovieParameters
+from cytodisk.study.run_steps import name_channels
 from cytodisk.windows.grid import PolarWindows, first_depth, layers_for_depth, polar_windows
 
 
@@ -110,6 +111,8 @@ def open_movie(
     if signal is not None:
         signal_file = open_frames(signal, unnamed="T")
         _check_frames(mask_file, signal_file)
+    signal_file = name_channels(signal_file, parameters.channels)
+    if signal_file is not None:
         check_signal(mask_file, signal_file)
     tracks = tuple(list_tracks(mask_file, kind, parameters.link))
     scale = Scale(

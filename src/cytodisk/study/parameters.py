@@ -1,24 +1,28 @@
 """Parameters of a run, from flags or a file; the file in every study can be fed back."""
 
+import json
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from cytodisk.errors import ParameterError
 from cytodisk.files import replacing
+from cytodisk.study.correlation_settings import VELOCITIES
 
 
 class MapParameters(BaseModel):
     """What decides the result of `cytodisk map`, beside the input files.
 
     Lengths in pixels unless the name says otherwise; see `map_to_disk`, `polar_windows` and `sample`.
+    `channels` are the names of the signal's channels, in the place of the file's own.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     kind: Literal["auto", "mask", "stack", "labels"] = "auto"
+    channels: tuple[str, ...] | None = None
     method: Literal["newton", "harmonic"] = "newton"
     shape_weight: Annotated[float, Field(gt=0)] = 0.005
     edge_length: Annotated[float, Field(ge=0.25, le=10)] = 0.9
@@ -28,6 +32,20 @@ class MapParameters(BaseModel):
     spacing: Literal["area", "radius"] = "area"
     nan: Literal["propagate", "omit"] = "propagate"
     pixel_size_um: Annotated[float, Field(gt=0)] | None = None
+
+    @field_validator("channels")
+    @classmethod
+    def _names(cls, channels: tuple[str, ...] | None) -> tuple[str, ...] | None:
+        if channels is None:
+            return None
+        if not channels or any(not name.strip() or not name.isprintable() for name in channels):
+            raise ValueError("every channel needs a name that can be printed")
+        if len(set(channels)) < len(channels):
+            raise ValueError("two channels have one name")
+        taken = [name for name in channels if name in VELOCITIES]
+        if taken:
+            raise ValueError(f"{taken[0]} is the name of the edge's velocity")
+        return channels
 
 
 class MovieParameters(MapParameters):
@@ -97,11 +115,13 @@ def parameters_from(
     try:
         return of(**merged)
     except ValidationError as error:
-        faults = [
-            f"{fault['loc'][0] if fault['loc'] else '?'}: {fault['msg']}, got {repr(fault['input'])[:40]}"
-            for fault in error.errors()
-        ]
+        faults = [_fault_words(fault) for fault in error.errors()]
         raise ParameterError("parameters: " + "; ".join(dict.fromkeys(faults))) from error
+
+
+def _fault_words(fault: Any) -> str:
+    name = fault["loc"][0] if fault["loc"] else "?"
+    return f"{name}: {fault['msg'].removeprefix('Value error, ')}, got {repr(fault['input'])[:40]}"
 
 
 def write_parameters(parameters: MapParameters, path: Path) -> None:
@@ -123,7 +143,7 @@ def _toml(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return f'"{value}"'
+        return json.dumps(value, ensure_ascii=False)  # its escapes are those of TOML
     if isinstance(value, tuple):
         return "[" + ", ".join(_toml(item) for item in value) + "]"
     return repr(value)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
-from cytodisk.errors import ParameterError
+from cytodisk.errors import ParameterError, SignalError
 from cytodisk.io.frames import FrameFile
 from cytodisk.io.study_folder import StudyFolder
+from cytodisk.study.correlation_settings import VELOCITIES
 
 
 def check_options(workers: int, resume: bool, overwrite: bool) -> None:
@@ -22,6 +24,45 @@ def check_options(workers: int, resume: bool, overwrite: bool) -> None:
 def input_paths(masks: FrameFile, signal: FrameFile | None) -> dict[str, Path]:
     """Files of a run by their role."""
     return {"masks": masks.path} | ({"signal": signal.path} if signal is not None else {})
+
+
+def name_channels(signal: FrameFile | None, channels: tuple[str, ...] | None) -> FrameFile | None:
+    """The signal with the names that were given to its channels, or else with its own.
+
+    Parameters
+    ----------
+    signal : FrameFile or None
+    channels : tuple of str, or None
+        As `MapParameters` takes them.
+
+    Returns
+    -------
+    FrameFile or None
+
+    Raises
+    ------
+    ParameterError
+        There is no signal, or it has more or fewer channels.
+    SignalError
+        A name in the file is one of the edge's velocity.
+    """
+    if channels is None:
+        for name in VELOCITIES:
+            if signal is not None and name in signal.channels:
+                raise SignalError(
+                    f"signal {signal.path} has a channel {name!r}, which is the name of the edge's velocity: "
+                    f"pass other names for its {len(signal.channels)} channels, as --channels"
+                )
+        return signal
+    given = ", ".join(map(repr, channels))
+    if signal is None:
+        raise ParameterError(f"channels are named ({given}), but there is no signal: pass it as --signal")
+    if len(channels) != len(signal.channels):
+        raise ParameterError(
+            f"channels must be as many names as {signal.path} has channels, which are {len(signal.channels)} "
+            f"({signal.axes} {signal.shape}), got {len(channels)} ({given})"
+        )
+    return replace(signal, channels=channels)
 
 
 def finish_run(folder: StudyFolder, keys: Sequence[str], warnings: Sequence[str]) -> None:
