@@ -16,6 +16,7 @@ from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.plot.style import signal_limits
 from cytodisk.plot.time_axis import time_scale
 from cytodisk.report.encode import pack_floats
+from cytodisk.report.names import shown_name, without_folders
 from cytodisk.windows.grid import PolarWindows, polar_windows
 
 MOST_ARRAY_BYTES = 5_000_000
@@ -134,13 +135,16 @@ class CellData:
     def _reasons(self) -> list[str]:
         """Why a shown frame has no map; empty if it has one."""
         pairs = zip(self.activity["status"].to_numpy(), self.activity["reason"].to_numpy(), strict=True)
-        return ["" if status == "ok" else f"{status}: {reason}" for status, reason in pairs]
+        return [
+            "" if status == "ok" else without_folders(f"{status}: {reason}", self.study)
+            for status, reason in pairs
+        ]
 
     def _channels(self) -> Iterator[dict[str, Any]]:
         for number, name in enumerate(self.channels):
             values = self.activity.isel(channel=number)
             yield {
-                "name": shown_name(name, len(self.channels)),
+                "name": shown_name(name),
                 "unit": self.unit("mean"),
                 "mean": pack_floats(values["mean"]),
                 "sd": pack_floats(values["sd"]),
@@ -154,13 +158,6 @@ class CellData:
         rows = self.study.cells[self.study.cells["cell"] == self.cell].set_index("time")
         rows = rows.reindex(self.frames)
         return {name: pack_floats(rows[name]) for name in _QUALITY}
-
-
-def shown_name(name: str, count: int) -> str:
-    """Name of a channel for headings: files without names number them."""
-    if name.isdigit():
-        return f"channel {name}" if count > 1 else "signal"
-    return name
 
 
 def velocity_limit(velocity: FloatArray) -> float:

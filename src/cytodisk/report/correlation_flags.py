@@ -8,6 +8,7 @@ import pandas as pd
 
 from cytodisk.io.study import Study
 from cytodisk.report.flag import Flag, Place, counted
+from cytodisk.report.names import correlation_name
 
 LARGEST_DRIFTING_SHARE = 0.25
 """Share of a cell's series whose level drifts; of steady ones one in twenty seems to."""
@@ -55,7 +56,7 @@ def left_out(study: Study) -> Iterator[Flag]:
         cells = study.correlation(*names).cells
         refused = cells[cells["status"] != "ok"]
         places += [
-            Place(int(cell), None, f"{' with '.join(names)}: {reason}")
+            Place(int(cell), None, f"{correlation_name(names)}: {reason}")
             for cell, reason in zip(refused["cell"], refused["reason"], strict=True)
         ]
     if places:
@@ -70,7 +71,7 @@ def left_out(study: Study) -> Iterator[Flag]:
 
 def _rows(study: Study) -> Iterator[tuple[str, pd.Series[float]]]:
     """Correlated cells of all correlations, with the names of what was correlated."""
-    for signal, with_ in study.correlations:
-        cells = study.correlation(signal, with_).cells
+    for names in study.correlations:
+        cells = study.correlation(*names).cells
         for _, row in cells[cells["status"] == "ok"].iterrows():
-            yield f"{signal} with {with_}", row
+            yield correlation_name(names), row

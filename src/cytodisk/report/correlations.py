@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,11 +12,12 @@ from cytodisk.arrays import FloatArray
 from cytodisk.io.correlation_store import Correlation
 from cytodisk.report.cell_data import CellData
 from cytodisk.report.encode import pack_floats
+from cytodisk.report.names import correlation_name, differences, labels_of, shown_name
 
 MOST_CURVE_NUMBERS = 900_000
 """Of curves of single windows that a page holds; beyond, only peaks and the layers' curves are shown."""
 
-_PEAK = ("correlation", "lag", "p", "q", "n", "n_effective", "low", "high", "threshold")
+_PEAK = ("correlation", "lag", "p", "q", "threshold")  # low and high hold for a lag chosen beforehand
 _LAYER_PEAK = ("correlation", "lag", "p", "q", "threshold")
 _CURVE = ("correlation", "low", "high")
 
@@ -36,29 +37,42 @@ def pairs_of(cell: CellData) -> tuple[list[dict[str, Any]], list[str]]:
     notes : list of str
         What was left out, in words.
     """
-    names = sorted(cell.study.correlations, key=lambda pair: not pair[1].startswith("velocity"))
-    found = [cell.study.correlation(*pair) for pair in names]
-    known = [one for one in found if len(_of(cell, one.windows))]
+    names = sorted(cell.study.correlations, key=lambda names: not names[1].startswith("velocity"))
+    found = [(pair, cell.study.correlation(*pair)) for pair in names]
+    known = [(pair, one) for pair, one in found if len(_of(cell, one.windows))]
+    shown = {pair for pair, _ in known}
     notes = [
-        f"correlation of {one.signal} with {one.with_}, which this cell has not"
-        for one in found
-        if one not in known
+        f"correlation of {correlation_name(pair)}, which this cell has not"
+        for pair in names
+        if pair not in shown
     ]
-    numbers = sum(len(_of(cell, one.curves)) * len(_CURVE) for one in known)
+    numbers = sum(len(_of(cell, one.curves)) * len(_CURVE) for _, one in known)
     with_curves = numbers <= MOST_CURVE_NUMBERS
     if not with_curves:
         notes.append("correlation curves of single windows (only those of layers are shown)")
-    return [_pair(cell, one, with_curves) for one in known], notes
+    labels = labels_of([(pair, one.settings) for pair, one in known])
+    pairs = [
+        {"label": label, "differs": _differs(pair, one)} | _pair(cell, one, with_curves)
+        for label, (pair, one) in zip(labels, known, strict=True)
+    ]
+    return pairs, notes
+
+
+def _differs(names: Sequence[str], found: Correlation) -> str:
+    """Name of the variant, and what in its settings is not the default."""
+    told = ", ".join(names[2:3])
+    words = differences(found.settings)
+    return f"{told}: {words}" if told and words else told or words
 
 
 def _pair(cell: CellData, found: Correlation, with_curves: bool) -> dict[str, Any]:
     windows, layers = _of(cell, found.windows), _of(cell, found.layers)
     layer_curves = _of(cell, found.layer_curves)
-    lags = np.unique(layer_curves["lag"].to_numpy())
     curves = _of(cell, found.curves) if with_curves else None
+    lags = np.unique(pd.concat([table["lag"] for table in (layer_curves, curves) if table is not None]))
     return {
-        "signal": found.signal,
-        "with": found.with_,
+        "signal": shown_name(found.signal),
+        "with": shown_name(found.with_),
         "lags": lags.tolist(),
         "windows": {name: pack_floats(_grid(cell, windows, name)) for name in _PEAK},
         "curves": None if curves is None else dict(_curves(cell, curves, lags)),

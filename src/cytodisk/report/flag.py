@@ -22,11 +22,14 @@ class Place:
         Number of the frame; None for the cell as a whole, or a study without time.
     note : str
         What was found there, in words; empty if the flag says all.
+    sector : int or None
+        Where on the edge, if it is one place of it.
     """
 
     cell: int
     time: int | None
     note: str = ""
+    sector: int | None = None
 
 
 @dataclass(frozen=True)

@@ -104,8 +104,9 @@ def fast_edge(study: Study) -> Iterator[Flag]:
         bar = max(SMALLEST_FAST_STEP_PX * pixel, VELOCITY_SPREADS * _spread(rows["velocity"].to_numpy()))
         for time, fast in rows[speed > bar].groupby("time"):
             top = fast.iloc[int(np.abs(fast["velocity"].to_numpy()).argmax())]
-            note = f"up to {top['velocity']:+.3g} {unit} in sector {int(top['sector'])}".replace("-", "−")
-            places.append(Place(int(str(cell)), int(str(time)), note))
+            sector = int(top["sector"])
+            note = f"up to {top['velocity']:+.2g} {unit} in sector {sector}".replace("-", "−")
+            places.append(Place(int(str(cell)), int(str(time)), note, sector))
     if places:
         yield Flag(
             "velocity outliers",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.errors import ParameterError, SignalError, StudyError
+from cytodisk.errors import ParameterError, StudyError
 from cytodisk.files import replacing
 from cytodisk.io.study import Study
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS
@@ -21,7 +22,7 @@ from cytodisk.report.figures import LAG_COLOURS, figures_of, library_script, pal
 from cytodisk.report.flag import Flag
 from cytodisk.report.flags import red_flags
 from cytodisk.report.pictures import MOST_BYTES, OUTSIDE, Pictures, box_around, encode_frames, size_of
-from cytodisk.report.signal_file import FoundSignal, FrameSource, find_signal
+from cytodisk.report.signal_file import FoundSignal, FrameSource, shown_signal
 from cytodisk.report.words import MOST_PLACES, page_words
 
 REPORT = "report.html"
@@ -68,7 +69,7 @@ def write_report(
     ParameterError
         The study has no such cell, none of its frames is mapped, or a page cannot hold so many windows.
     SignalError
-        The signal has other channels or fewer frames than the study.
+        The signal has images of another size, other channels or fewer frames than the study.
     MissingPartError
         Bokeh is not installed.
     """
@@ -77,8 +78,7 @@ def write_report(
     shown = _open_cell(study, usual if cell is None else cell)
     if path is None:
         path = study.path / (REPORT if shown.cell == usual else f"report_cell_{shown.cell:05d}.html")
-    found = find_signal(study) if signal is None else FoundSignal(signal)
-    html = _render(shown, _checked(shown, found), progress)
+    html = _render(shown, shown_signal(study, signal), progress)
     with replacing(path) as temporary:
         temporary.write_text(html, encoding="utf-8")
     return path
@@ -114,17 +114,31 @@ def _open_cell(study: Study, cell: int) -> CellData:
     return data.thinned()
 
 
-def _checked(cell: CellData, found: FoundSignal) -> FoundSignal:
-    source = found.source
-    if source is None:
-        return found
-    last = max(int(time) for time in cell.whole["time"].to_numpy())
-    if len(source.channels) != len(cell.channels) or source.n_frames <= last:
-        raise SignalError(
-            f"signal has {source.n_frames} frames of {len(source.channels)} channels, the study's has "
-            f"{len(cell.channels)} channels and at least {last + 1} frames: pass the movie that was measured"
-        )
-    return found
+def page_flags(study: Study, signal: FrameSource | None = None) -> list[Flag]:
+    """The red flags that stand on the page of a study.
+
+    Parameters
+    ----------
+    study : Study
+        Of a movie.
+    signal : FrameSource, optional
+        As for `write_report`.
+
+    Returns
+    -------
+    list of Flag
+        Those of `red_flags`, and before them one if the signal cannot be shown.
+
+    Raises
+    ------
+    SignalError
+        As for `write_report`.
+    """
+    return _flags(study, shown_signal(study, signal))
+
+
+def _flags(study: Study, found: FoundSignal) -> list[Flag]:
+    return [*_signal_flags(study, found), *red_flags(study)]
 
 
 def _render(cell: CellData, found: FoundSignal, progress: Progress | None) -> str:
@@ -147,8 +161,7 @@ def _render(cell: CellData, found: FoundSignal, progress: Progress | None) -> st
             "lag": palette(LAG_COLOURS),
         },
     }
-    flags = [*_signal_flags(found), *red_flags(cell.study)]
-    words = page_words(cell, flags, found, box, left_out)
+    words = page_words(cell, _flags(cell.study, found), found, box, left_out)
     template = Environment(autoescape=True, undefined=StrictUndefined).from_string(_asset("page.html"))
     return template.render(
         words
@@ -169,7 +182,7 @@ def _any(pictures: list[dict[str, Any]]) -> bool:
     return any(frame["labels"] for frame in pictures)
 
 
-def _signal_flags(found: FoundSignal) -> list[Flag]:
+def _signal_flags(study: Study, found: FoundSignal) -> list[Flag]:
     if not found.fault:
         return []
     return [
@@ -177,7 +190,8 @@ def _signal_flags(found: FoundSignal) -> list[Flag]:
             "signal not shown",
             f"the movie's pixels are not on this page: {found.fault}",
             "The cell is drawn as its windows alone; all numbers are those of the run.",
-            "Put the file back where it was and write the page again.",
+            "Put the file back where it was, or name the place where it is now: cytodisk report "
+            f"{shlex.quote(study.path.name or '.')} --signal FILE",
         )
     ]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import pandas as pd
@@ -12,12 +13,14 @@ import pandas as pd
 from cytodisk.io.study import Study
 from cytodisk.report.cell_data import CellData
 from cytodisk.report.flag import Flag
+from cytodisk.report.names import correlation_name, file_name, without_folders
 from cytodisk.report.pictures import Box
 from cytodisk.report.signal_file import FoundSignal
 
 MOST_PLACES = 30
 """Frames that are listed of a flag and cell; the table has them all."""
 _MOST_GROUPS = 6
+_HEADING = ("signal", "with", "name", "unit")  # settings of a correlation that stand in its name
 
 _FILES = {
     "cells.parquet": "one row a cell and frame: area, distortion, tracking, status and its reason",
@@ -58,7 +61,7 @@ def page_words(
     return {
         "title": study.path.resolve().name,
         "facts": list(_facts(cell)),
-        "flags": [_flag(flag, cell.cell) for flag in flags],
+        "flags": [_flag(flag, cell.cell, study) for flag in flags],
         "pixels_words": "with its windows" if found.source else "as windows: no pixels to show",
         "folder": shlex.quote(study.path.name or "."),
         "signal_hint": shlex.quote(cell.channels[0]) if cell.channels else None,
@@ -89,8 +92,10 @@ def _facts(cell: CellData) -> Iterator[tuple[str, str]]:
     yield "cytodisk", _version(study)
 
 
-def _flag(flag: Flag, shown: int) -> dict[str, Any]:
+def _flag(flag: Flag, shown: int, study: Study) -> dict[str, Any]:
     """A flag's places gathered by cell and, where there are few, by what was found."""
+    places = tuple(replace(place, note=without_folders(place.note, study)) for place in flag.places)
+    flag = replace(flag, what=without_folders(flag.what, study), places=places)
     cells = sorted({place.cell for place in flag.places}, key=lambda cell: (cell != shown, cell))
     groups = [group for cell in cells for group in _groups(flag, cell, shown)]
     more = sum(max(1, len(group["times"])) for group in groups[_MOST_GROUPS:])
@@ -104,7 +109,7 @@ def _groups(flag: Flag, cell: int, shown: int) -> Iterator[dict[str, Any]]:
     by_note = len(notes) <= _MOST_GROUPS
     for note in notes if by_note else [""]:
         times = [
-            {"time": place.time, "note": place.note, "shown": cell == shown}
+            {"time": place.time, "note": place.note, "shown": cell == shown, "sector": place.sector}
             for place in places
             if place.time is not None and (not by_note or place.note == note)
         ]
@@ -147,17 +152,27 @@ def _other_cells(study: Study) -> tuple[list[str], list[dict[str, Any]]]:
     return [str(status) for status in counts.columns], rows
 
 
+def _setting(given: Any, used: Any) -> str:
+    """A parameter, or what the run used where none was given."""
+    if given is None:
+        return "not set" if used is None else f"{used:.6g} (not given: from the files or the cells)"
+    return given if isinstance(given, str) else json.dumps(given)
+
+
 def _settings(study: Study) -> Iterator[tuple[str, str]]:
     provenance = study.provenance
     for role, told in provenance.get("inputs", {}).items():
-        yield role, f"{told['path']} – {told.get('read as', '')} (sha256 {told.get('sha256', '')[:16]}…)"
+        yield (
+            role,
+            f"{file_name(told['path'])} – {told.get('read as', '')} (sha256 {told.get('sha256', '')[:16]}…)",
+        )
     for name, value in provenance.get("parameters", {}).items():
-        yield name, "not set" if value is None else value if isinstance(value, str) else json.dumps(value)
-    for signal, with_ in study.correlations:
-        told = study.correlation(signal, with_).settings
-        words = [f"{name} {value}" for name, value in told.items() if name not in ("signal", "with", "unit")]
-        yield f"correlation of {signal} with {with_}", ", ".join(words)
-    for name in ("started", "finished", "python", "platform"):
+        yield name, _setting(value, provenance.get(name))
+    for names in study.correlations:
+        told = study.correlation(*names).settings
+        words = [f"{name} {value}" for name, value in told.items() if name not in _HEADING]
+        yield f"correlation of {correlation_name(names)}", ", ".join(words)
+    for name in ("started", "finished", "python"):
         if name in provenance:
             yield name, str(provenance[name])
     versions = provenance.get("versions", {})

@@ -2,7 +2,8 @@
 // Buttons, slider, keys and the pointer.
 (() => {
   const page = window.cytodisk;
-  const MILLISECONDS = 150;
+  const MILLISECONDS = 150; // a frame
+  const SPEECH_DELAY = 300;
   const byId = (id) => document.getElementById(id);
   const write = (id, words) => {
     const element = byId(id);
@@ -21,17 +22,24 @@
     page.set({ playing });
   };
 
-  const stepLayer = (by) => {
-    const { state, data } = page;
-    const layer = Math.min(Math.max(state.layer + by, 0), data.layers - 1);
-    page.set({ layer, ...(state.pinned && { pinned: { ...state.pinned, layer } }) });
+  // Maps, pin and what lies under a resting pointer go to a layer together.
+  const goToLayer = (wanted) => {
+    const { pinned, hover } = page.state;
+    const layer = Math.min(Math.max(wanted, 0), page.data.layers - 1);
+    page.set({
+      layer,
+      pinned: pinned && { ...pinned, layer },
+      hover: hover && { ...hover, layer },
+    });
   };
+
+  const stepLayer = (by) => goToLayer((page.focus()?.layer ?? page.state.layer) + by);
 
   const stepSector = (by) => {
     const { state, data } = page;
-    const at = state.pinned ?? { layer: state.layer, sector: by > 0 ? -1 : 0 };
+    const at = page.focus() ?? { layer: state.layer, sector: by > 0 ? -1 : 0 };
     const sector = (at.sector + by + data.sectors) % data.sectors;
-    page.set({ pinned: { layer: at.layer, sector } });
+    page.set({ layer: at.layer, pinned: { layer: at.layer, sector } });
   };
 
   const KEYS = {
@@ -45,8 +53,17 @@
     Escape: () => page.set({ pinned: null, hover: null }),
   };
 
+  // Chords are the browser's (Alt and an arrow go back), but for the keys that type [ and ]:
+  // AltGr on many keyboards, which counts as Ctrl and Alt on some systems, and Option on a Mac.
+  const isChord = (event) => {
+    if (event.getModifierState("AltGraph")) return false;
+    if (event.altKey && "[]".includes(event.key)) return event.ctrlKey || event.metaKey;
+    return event.ctrlKey || event.metaKey || event.altKey;
+  };
+
   const onKey = (event) => {
-    if (event.ctrlKey || event.metaKey || !(event.key in KEYS)) return;
+    if (event.key === "Tab") byPointer = false;
+    if (isChord(event) || !(event.key in KEYS)) return;
     const { tagName } = event.target;
     if (tagName === "SELECT" && event.key !== "Escape") return; // moves within its list
     if (event.key === " " && ["BUTTON", "SUMMARY", "A"].includes(tagName)) return; // presses it
@@ -55,7 +72,20 @@
     announce();
   };
 
+  // A control that was used with the pointer gives its keys back to the page; one that was reached
+  // with the Tab key keeps them.
+  let byPointer = false;
+  const giveBack = ({ target }) => {
+    const control = target.closest?.("button, summary, select, input");
+    if (byPointer && control) control.blur();
+  };
+
   const announce = () => {
+    clearTimeout(speaking);
+    if (page.state.playing) {
+      write("spoken", "playing");
+      return;
+    }
     const at = page.focus();
     const { state, data } = page;
     const words = [`frame ${state.frame}`, `layer ${at?.layer ?? state.layer}`];
@@ -66,6 +96,13 @@
       words.push(`velocity ${page.withUnit(data.velocity.values[at.index * data.sectors + at.sector], data.units.velocity)}`);
     }
     write("spoken", words.join(", "));
+  };
+
+  // Once things rest: not every frame and window on the way.
+  let speaking = null;
+  const announceSoon = () => {
+    clearTimeout(speaking);
+    speaking = setTimeout(announce, SPEECH_DELAY);
   };
 
   const within = ({ x_range: x, y_range: y }, event) =>
@@ -121,25 +158,42 @@
       if (STRIPS.includes(name)) listenStrip(figure);
     }
     document.addEventListener("keydown", onKey);
+    document.addEventListener("pointerdown", () => {
+      byPointer = true;
+    }, true);
+    document.addEventListener("change", giveBack);
+    document.addEventListener("click", (event) => {
+      if (!event.target.closest("select, label")) giveBack(event); // a list has only just opened
+    });
     byId("time").addEventListener("input", (event) => goTo(event.target.valueAsNumber));
     byId("play").addEventListener("click", () => play(!page.state.playing));
-    for (const name of ["channel", "layer", "pair"]) {
+    for (const name of ["channel", "pair"]) {
       byId(name)?.addEventListener("change", (event) => page.set({ [name]: Number(event.target.value) }));
     }
     for (const name of ["peak", "colours"]) {
       byId(name)?.addEventListener("change", (event) => page.set({ [name]: event.target.value }));
     }
-    byId("layer").addEventListener("change", () => {
-      const { pinned, layer } = page.state;
-      if (pinned) page.set({ pinned: { ...pinned, layer } });
-    });
+    byId("layer").addEventListener("change", (event) => goToLayer(Number(event.target.value)));
+    connectFlags();
+  };
+
+  const connectFlags = () => {
     for (const button of document.querySelectorAll("button[data-frame]")) {
       button.addEventListener("click", () => {
+        const { frame, sector } = button.dataset;
         play(false);
-        goTo(page.indexOfFrame(Number(button.dataset.frame)));
+        goTo(page.indexOfFrame(Number(frame)));
+        if (sector !== undefined) page.set({ layer: 0, pinned: { layer: 0, sector: Number(sector) } });
         byId("explorer").scrollIntoView({ block: "start" });
       });
     }
+    for (const button of document.querySelectorAll("button.why")) {
+      button.addEventListener("click", () => {
+        const open = button.closest(".flag").classList.toggle("open");
+        button.setAttribute("aria-expanded", String(open));
+      });
+    }
+    document.documentElement.classList.add("live");
   };
 
   const readWindow = (at) => {
@@ -163,11 +217,11 @@
     const number = page.windowOf(at.layer, at.sector);
     const of = (name) => windows[name]?.values[number];
     const lag = of("lag");
-    const seconds = page.data.interval_s === null ? "" : ` (${page.digits(lag * page.lagScale())} s)`;
-    write("read-correlation", page.digits(of("correlation")));
-    write("read-lag", Number.isFinite(lag) ? `${String(lag).replace("-", "−")} frames${seconds}` : "–");
-    write("read-p", page.digits(of("p")));
-    write("read-q", page.digits(of("q")));
+    const seconds = page.data.interval_s === null ? "" : ` (${page.lagWords(lag)})`;
+    write("read-correlation", page.fixed(of("correlation")));
+    write("read-lag", Number.isFinite(lag) ? `${page.frameWords(lag)}${seconds}` : "–");
+    write("read-p", page.chance(of("p")));
+    write("read-q", page.chance(of("q")));
   };
 
   page.drawControls = () => {
@@ -192,5 +246,6 @@
     const button = byId("play");
     button.setAttribute("aria-pressed", String(state.playing));
     button.textContent = state.playing ? "❚❚ Pause" : "▶ Play";
+    announceSoon();
   };
 })();

@@ -79,6 +79,23 @@
     return text.replace("-", "−");
   };
 
+  const signed = (text) => text.replace("-", "−");
+  const known = (value) => typeof value === "number" && Number.isFinite(value);
+
+  // Correlations with two decimals; p and q with two digits; lags, which are whole frames, without zeros.
+  page.fixed = (value) => (known(value) ? signed(value.toFixed(2).replace(/^-(0\.00)$/, "$1")) : "–");
+  page.chance = (value) => (known(value) ? signed(String(Number(value.toPrecision(2)))) : "–");
+  page.frameWords = (lag) => `${signed(String(lag))} ${Math.abs(lag) === 1 ? "frame" : "frames"}`;
+
+  // A lag, in frames, in the unit of the axis.
+  page.lagScale = () => page.data.interval_s ?? 1;
+  page.lagUnit = () => (page.data.interval_s === null ? "frames" : "s");
+  page.lagWords = (lag) => {
+    if (!known(lag)) return "–";
+    const { interval_s: interval } = page.data;
+    return interval === null ? page.frameWords(lag) : `${signed(String(Number((lag * interval).toPrecision(3))))} s`;
+  };
+
   page.withUnit = (value, unit) => {
     const text = page.digits(value);
     return text === "–" || !unit ? text : `${text} ${unit}`;

@@ -160,7 +160,7 @@
   const largest = (values) => values.reduce((top, value) => (Math.abs(value) > top ? Math.abs(value) : top), 0);
 
   const drawPeaks = () => {
-    const { windows, signal, with: other } = page.pair();
+    const { windows, signal, with: other, differs } = page.pair();
     const lagged = page.state.peak === "lag";
     const scale = lagged ? page.lagScale() : 1;
     const values = (lagged ? windows.lag : windows.correlation).values.map((value) => value * scale);
@@ -170,19 +170,16 @@
     const { pixels, shape } = page.paintDisk(values, [-top, top], palette, doubtful);
     setPixels("peaks", pixels, shape);
     part("peaks", "colours").palette = lagged ? page.data.palettes.lag : page.data.palettes.diverging;
-    setColours("peaks", [-top, top], lagged ? page.lagUnit() : "r");
+    setColours("peaks", [-top, top], lagged ? page.lagUnit() : "correlation");
     const tested = windows.q.values.some(Number.isFinite);
     text("peaks-key", tested ? "hatched: not significant (q ≥ 0.05)" : "significance was not computed");
     text("peaks-name", lagged ? "Lag of the peak" : "Peak correlation");
-    text("peaks-title", `${signal} with ${other}`);
-    text("curve-title", `${signal} with ${other}`);
+    for (const name of ["peaks", "curve"]) {
+      text(`${name}-title`, `${signal} with ${other}`);
+      text(`${name}-differs`, differs);
+    }
     text("curve-hint", `positive lag: ${other} follows ${signal}`);
   };
-
-  // A lag in the unit of the axis.
-  page.lagWords = (lag) => page.withUnit(lag * page.lagScale(), page.lagUnit());
-  page.lagScale = () => page.data.interval_s ?? 1;
-  page.lagUnit = () => (page.data.interval_s === null ? "frames" : "s");
 
   const row = (array, number) => {
     const length = array.shape.at(-1);
@@ -209,12 +206,17 @@
     const reach = largest([...row(layerCurves, layer), bar || 0, ...(known ? [...row(curves.low, number), ...row(curves.high, number)] : [])].filter(Number.isFinite));
     const top = Math.min(1, Math.ceil(5 * (reach || 1)) / 5);
     figures.curve.y_range.setv({ start: -top, end: top });
-    figures.curve.x_range.setv({ start: lag[0], end: lag.at(-1) });
-    text("curve-window", at ? `layer ${at.layer}, sector ${at.sector}` : "point at a window");
+    const ends = [lag[0] ?? 0, lag.at(-1) ?? 0];
+    figures.curve.x_range.setv(ends[0] < ends[1] ? { start: ends[0], end: ends[1] } : { start: -1, end: 1 });
+    const correlated = at && Number.isFinite(windows.correlation.values[number]);
+    const name = at && `layer ${at.layer}, sector ${at.sector}`;
+    const band = known ? ", band: 95 % at each lag by itself" : "";
+    text("curve-window", !at ? "point at a window" : correlated ? `${name}${band}` : `${name}: not correlated`);
     const peak = Object.fromEntries(Object.entries(layers).map(([name, array]) => [name, array.values[layer]]));
-    const found = `r ${page.digits(peak.correlation)} at ${page.lagWords(peak.lag)}, q ${page.digits(peak.q)}`;
-    text("curve-layer", `mean of layer ${layer}: ${found}`);
-    text("curve-null", Number.isFinite(bar) ? `chance for the ${at ? "window" : "mean"}` : "chance: not computed");
+    const found = `r ${page.fixed(peak.correlation)} at ${page.lagWords(peak.lag)}, q ${page.chance(peak.q)}`;
+    text("curve-layer", `mean of layer ${layer}: ${Number.isFinite(peak.correlation) ? found : "not correlated"}`);
+    const whose = at ? "window" : "mean";
+    text("curve-null", Number.isFinite(bar) ? `chance for the ${whose}, 95 % over all lags` : `chance for the ${whose}: not known`);
   };
 
   const drawStrip = (name, array) => {
