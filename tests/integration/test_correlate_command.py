@@ -53,7 +53,7 @@ def test_a_signal_with_velocity(run: Run, study: Path) -> None:
 
 def test_two_signals_and_pairs(run: Run, study: Path) -> None:
     command = ("correlate", study, "--signal", "material", "--with", "edge", "--pairs", "--detrend", "linear")
-    code, said, _ = run(*command, "--surrogates", "9", "--max-lag", "5", "--figures", "1")
+    code, said, _ = run(*command, "--surrogates", "19", "--max-lag", "5", "--figures", "1")
     assert code == 0
     assert "1 cell correlated" in said
     found = cd.open_study(study).correlation("material", "edge")
@@ -90,7 +90,7 @@ def test_faults_end_in_words(run: Run, study: Path, arguments: tuple[str, ...], 
 
 def test_what_is_no_movie(run: Run, study: Path, tmp_path: Path) -> None:
     assert_refused(run("correlate", tmp_path), "is no study")
-    assert_refused(run("report", tmp_path / "nothing"), "is no study")
+    assert_refused(run("report", tmp_path / "nothing"), "does not exist")
     mask = write(tmp_path / "mask.tif", cd.simulate.random_smooth(0, radius=14).astype(np.uint8))
     run("map", mask, "-o", tmp_path / "maps", *GRID)
     assert_refused(run("correlate", tmp_path / "maps"), "is not that of a movie", "cytodisk movie")
@@ -130,3 +130,20 @@ def test_a_movie_run_again_takes_old_correlations_away(run: Run, study: Path, tm
     code, _, _ = run(*movie_command, *GRID, "--overwrite")
     assert code == 0
     assert cd.open_study(tmp_path / "out").correlations == []
+
+
+def test_what_is_replaced_is_told_and_a_name_keeps_both(run: Run, study: Path) -> None:
+    command = ("correlate", study, "--signal", "edge", *FEW, "--figures", "0")
+    run(*command, "--name", "raw")
+    code, said, _ = run(*command, "--name", "raw", "--detrend", "linear", "--sectors", "3:8")
+    assert code == 0
+    assert "this replaced the correlation with detrend 'none', sectors None: --name NAME keeps both" in said
+    assert "of 18 windows, q < 0.05 takes 4 beyond all 99 surrogates" in said
+    names = cd.open_study(study).correlations
+    assert ("edge", "velocity", "raw") in names
+    for arguments, words in (
+        (("--frames", "5"), "frames must be FIRST:LAST, such as 10:80, got '5'"),
+        (("--without-frames", "3:4"), "without_frames must be whole numbers with commas between"),
+        (("--surrogates", "5"), "at least 19"),
+    ):
+        assert_refused(run(*command, *arguments), words)

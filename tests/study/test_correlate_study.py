@@ -79,7 +79,7 @@ def test_the_same_seed_gives_the_same_bytes(study: cd.Study) -> None:
 
 
 def test_two_signals_and_their_pairs(study: cd.Study) -> None:
-    found = correlate_study(study, "material", "edge", max_lag=3, pairs=True, surrogates=9)
+    found = correlate_study(study, "material", "edge", max_lag=3, pairs=True, surrogates=19)
     pairs = found.pairs
     assert pairs is not None
     assert set(pairs["along"]) == {"straight", "interior", "edge"}
@@ -128,13 +128,13 @@ def test_episodes_and_averages_stand_beside(study: cd.Study) -> None:
 def test_what_cannot_be_correlated_is_refused(study: cd.Study, call: dict, message: str) -> None:
     before = list_correlations(study.path)
     with pytest.raises(ParameterError, match=message):
-        correlate_study(study, **({"signal": "edge", "surrogates": 9} | call))
+        correlate_study(study, **({"signal": "edge", "surrogates": 19} | call))
     assert list_correlations(study.path) == before
 
 
 def test_a_correlation_that_is_not_there_lists_those_that_are(study: cd.Study) -> None:
     correlate_study(study, "edge", max_lag=3, surrogates=0)
-    with pytest.raises(ReadError, match=r"no correlation of 'edge' with 'nothing': .*edge with vel"):
+    with pytest.raises(ReadError, match=r"no correlation of edge with nothing: .*edge with vel"):
         study.correlation("edge", "nothing")
 
 
@@ -155,7 +155,7 @@ def test_short_cells_have_a_row_with_the_reason(tmp_path: Path) -> None:
     truth = type(truth)(**(vars(truth) | {"masks": labels, "signal": _twice(truth.signal)}))
     masks, signal = write_movie(tmp_path, truth)
     study = run_movie(open_movie(masks, signal, SMALL), tmp_path / "out")
-    found = correlate_study(study, "edge", max_lag=5, surrogates=9)
+    found = correlate_study(study, "edge", max_lag=5, surrogates=19)
     cells = found.cells.set_index("cell")
     assert cells["status"].tolist() == ["ok", "refused"]
     assert "fewer than min_pairs 10" in cells.loc[1, "reason"]
@@ -179,7 +179,7 @@ def test_a_damaged_correlation_says_so(study: cd.Study) -> None:
     with pytest.raises(ReadError, match="is damaged, correlate again"):
         _ = study.correlation("edge").windows
     (found.path / "settings.json").write_text("{", encoding="utf-8")
-    with pytest.raises(ReadError, match="no correlation of 'edge'"):
+    with pytest.raises(ReadError, match="no correlation of edge with velocity"):
         study.correlation("edge")
     assert json.loads((correlate_study(study, "edge", surrogates=0).path / "settings.json").read_text())
 
@@ -189,3 +189,74 @@ def _twice(signal: object) -> object:
 
     assert isinstance(signal, xr.DataArray)
     return xr.concat([signal, signal], dim="x")
+
+
+def test_some_frames_and_sectors(study: cd.Study) -> None:
+    """What is left out is as if it were not there: the same as correlating the rest by hand."""
+    settings = {"max_lag": 3, "frames": (4, 30), "without_frames": (12,), "sectors": (10, 2), **FEW}
+    found = correlate_study(study, "edge", name="part", **settings)
+    assert sorted(found.windows["sector"].unique()) == [0, 1, 2, 10, 11]
+    activity = study.activity(0).load()
+    signal = activity["mean"].sel(channel="edge", sector=[0, 1, 2, 10, 11], time=slice(4, 30)).copy()
+    velocity = activity["velocity"].sel(sector=[0, 1, 2, 10, 11], time=slice(4, 30)).copy()
+    signal.loc[{"time": 12}] = np.nan
+    velocity.loc[{"time": [11, 12, 30]}] = np.nan
+    expected = cd.peak_correlation(cd.cross_correlate(signal, velocity, 3, surrogates=49))
+    table = found.windows.set_index(["layer", "sector"])["correlation"].unstack("sector").to_numpy()
+    np.testing.assert_array_equal(table, expected["correlation"].transpose("layer", "sector"))
+    assert found.settings["sectors"] == [10, 2]
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"frames": (90, 99)}, "frames 90:99 are not in the movie: it has 0:35"),
+        ({"frames": (20, 10)}, "frames must go from the first to the last"),
+        ({"without_frames": (3, 77)}, "without_frames has 77: the movie has 0:35"),
+        ({"sectors": (0, 12)}, "sectors 0:12 are not on the edge: it has 0:11"),
+        ({"surrogates": 5}, "surrogates must be 0, or at least 19"),
+        ({"max_lag": "x"}, "max_lag must be a whole number of at least 0, got 'x'"),
+    ],
+)
+def test_parts_that_are_not_there(study: cd.Study, settings: dict, message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        correlate_study(study, "edge", **settings)
+
+
+def test_variants_stand_beside_each_other(study: cd.Study) -> None:
+    correlate_study(study, "edge", max_lag=3, surrogates=0)
+    correlate_study(study, "edge", max_lag=4, surrogates=0, detrend="linear", name="linear")
+    assert ("edge", "velocity", "linear") in study.correlations
+    assert ("edge", "velocity") in study.correlations
+    assert study.correlation("edge").settings["max_lag"] == 3
+    assert study.correlation("edge", "velocity", "linear").settings["detrend"] == "linear"
+
+
+def test_a_crash_while_replacing_loses_nothing(study: cd.Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = correlate_study(study, "edge", max_lag=3, surrogates=0).windows
+
+    def no_room(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("cytodisk.io.correlation_store.write_table", no_room)
+        with pytest.raises(StudyError, match="No space left on device"):
+            correlate_study(study, "edge", max_lag=4, surrogates=0)
+    pd.testing.assert_frame_equal(study.correlation("edge").windows, before)
+    assert not list((study.path / "correlation").glob(".*"))
+
+
+def test_a_cut_off_table_says_so(study: cd.Study) -> None:
+    found = correlate_study(study, "edge", max_lag=3, surrogates=0)
+    table = found.path / "layers.parquet"
+    table.write_bytes(table.read_bytes()[:100])
+    with pytest.raises(ReadError, match="is damaged, correlate again"):
+        _ = study.correlation("edge").layers
+    correlate_study(study, "edge", max_lag=3, surrogates=0)
+
+
+def test_jitter_is_looked_for_whatever_the_lags(study: cd.Study) -> None:
+    assert correlate_study(study, "edge", max_lag=2, surrogates=0).cells["jitter"].notna().all()
+    short = correlate_study(study, "edge", max_lag=2, surrogates=0, frames=(0, 13), name="short")
+    assert short.cells["jitter"].isna().all()  # fewer than six lags
+    assert correlate_study(study, "edge", surrogates=0, skip_lags=(-1, 0)).cells["jitter"].item() == 0.0

@@ -15,6 +15,8 @@ _AFTER = np.array([-2.0, 5.0, 10.0, -3.0]) / 10.0  # and at 0
 _NORMAL = 1.4826  # of the median absolute deviation
 _SURE, _WORTH_SAYING = 5.0, 0.03
 JITTERED_LAGS = (-1, 0)
+JITTERED_DIFFERENCES = (-2, -1, 0, 1)
+"""Lags at which jitter correlates once first differences are taken."""
 
 
 def jitter_step(by_layer: xr.Dataset) -> xr.DataArray:

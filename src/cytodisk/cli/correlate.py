@@ -1,6 +1,7 @@
 """`cytodisk correlate` and `cytodisk report`."""
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
     from cytodisk.io.study import Study
 
 Format = Literal["png", "pdf", "svg"]
-
-DRIFTING = 0.25  # share of series whose level drifts, above which to say so
 
 CORRELATE_HELP = """Correlate a signal with the motion of the edge, or with another signal, window by window.
 
@@ -92,7 +91,17 @@ def correlate_command(
         bool | None,
         typer.Option("--pairs", help="Also every window with every other, by distance.", show_default=False),
     ] = None,
+    frames: Annotated[str | None, typer.Option(help="First and last frame that count, as 10:80.")] = None,
+    without_frames: Annotated[
+        str | None, typer.Option(help="Frames that do not count, such as 17,24 where the mask is wrong.")
+    ] = None,
+    sectors: Annotated[
+        str | None, typer.Option(help="First and last sector that count, as 40:55, or 50:5 around 0.")
+    ] = None,
     cell: Annotated[list[int] | None, typer.Option(help="Only this cell; can be given again.")] = None,
+    name: Annotated[
+        str | None, typer.Option(help="Keeps the result beside others of the same signals.")
+    ] = None,
     figures: Annotated[int, typer.Option(help="Draw this many cells, from the first; -1 for all.")] = 4,
     formats: Annotated[str, typer.Option("--format", help="Of figures: png, pdf, svg, or several.")] = "png",
     quiet: Quiet = False,
@@ -112,17 +121,23 @@ def correlate_command(
         "surrogates": surrogates,
         "null": null,
         "min_pairs": min_pairs,
-        "skip_lags": _lags(skip_lags),
+        "skip_lags": numbers("skip_lags", skip_lags),
+        "frames": first_and_last("frames", frames),
+        "without_frames": numbers("without_frames", without_frames),
+        "sectors": first_and_last("sectors", sectors),
+        "name": name,
         "seed": seed,
         "pairs": pairs,
     }
     settings = {name: value for name, value in given.items() if value is not None}
     chosen = signal if signal is not None else _only(channels_of(there))
     console = console_for(quiet)
-    with progress_bar(quiet, "steps") as progress:
+    before = earlier_settings(there, chosen, with_, name or "")
+    with progress_bar(quiet, "percent") as progress:
         found = correlate_study(there, chosen, with_, cells=cell, progress=progress, **settings)
     draw_correlation(quiet, there, found, figures, wanted)
     say_correlation(console, found)
+    say_replaced(console, before, found.settings)
 
 
 def report_command(
@@ -196,26 +211,50 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
         for layer in rows.itertuples():
             console.print(_layer_words(layer, of_cell[of_cell["layer"] == layer.layer]))
     for _, row in found.cells.iterrows():
-        if row["status"] != "ok":
-            console.print(f"cell {row['cell']} left out: {row['reason']}")
-            continue
-        if row["restarts"]:
-            console.print(
-                f"cell {row['cell']}: tracking started anew {row['restarts']:.0f} times; sectors need not be "
-                "the same places before and after, so cut the movie there and correlate the parts"
-            )
-        if abs(row["jitter"]) > 0:
-            console.print(
-                f"cell {row['cell']}: masks that jitter make {row['jitter']:+.2f} of the correlation at lag "
-                f"0, and {-row['jitter']:+.2f} at lag -1, in some layer: see what --skip-lags=-1,0 says"
-            )
-        if max(row["drifting_signal"], row["drifting_with"]) > DRIFTING:
-            console.print(
-                f"cell {row['cell']}: the level drifts, as by bleaching, in {row['drifting_signal']:.0%} of "
-                f"the signal's series and {row['drifting_with']:.0%} of the others (chance gives 5 %): see "
-                "whether --detrend linear or --difference says the same"
-            )
+        for words in _doubts(row, settings):
+            console.print(f"cell {row['cell']}{words}")
+    _say_power(console, settings, windows)
     console.print(f"{count(layers['cell'].nunique())} correlated: {found.path}")
+
+
+def _doubts(row: Any, settings: dict[str, Any]) -> Iterator[str]:
+    """What speaks against a cell's correlations."""
+    from cytodisk.analysis.series import DRIFTING_SHARE
+    from cytodisk.study.correlation_settings import VELOCITIES
+
+    if row["status"] != "ok":
+        yield f" left out: {row['reason']}"
+        return
+    if row["restarts"]:
+        yield (
+            f": tracking started anew {row['restarts']:.0f} times; sectors need not be the same places "
+            "before and after, so correlate the stretches one by one with --frames"
+        )
+    if settings["with"] in VELOCITIES and not math.isfinite(row["jitter"]):
+        yield ": too few frames to see whether masks jitter, which correlates by itself at lags -1 and 0"
+    elif abs(row["jitter"]) > 0:
+        lags = "-2,-1,0,1" if settings["difference"] else "-1,0"
+        yield (
+            f": masks that jitter make {row['jitter']:+.2f} of the correlation at lag 0, and "
+            f"{-row['jitter']:+.2f} at lag -1, in some layer: see what --skip-lags={lags} says"
+        )
+    if max(row["drifting_signal"], row["drifting_with"]) > DRIFTING_SHARE:
+        yield (
+            f": the level drifts, as by bleaching, in {row['drifting_signal']:.0%} of the signal's series "
+            f"and {row['drifting_with']:.0%} of the others (chance gives 5 %): see whether --detrend linear "
+            "or --difference says the same"
+        )
+
+
+def _say_power(console: "Console", settings: dict[str, Any], windows: Any) -> None:
+    """How many windows must be beyond all surrogates for any q to be below 0.05."""
+    tested = windows.groupby("cell").size().max()
+    fewest = math.ceil(tested / (0.05 * (settings["surrogates"] + 1)))
+    if settings["surrogates"] and fewest > 1:
+        console.print(
+            f"of {tested} windows, q < 0.05 takes {fewest} beyond all {settings['surrogates']} surrogates; a "
+            "smaller patch needs more --surrogates, or --sectors"
+        )
 
 
 def _layer_words(row: Any, windows: Any) -> str:
@@ -230,7 +269,22 @@ def _layer_words(row: Any, windows: Any) -> str:
     return f"{words}, q = {row.q:.2g}; q < 0.05 in {share:.0%} of its windows"
 
 
-def _lags(text: str | None) -> tuple[int, ...] | None:
+def earlier_settings(study: "Study", *names: str) -> dict[str, Any] | None:
+    """Settings of a correlation that the next one will replace."""
+    there = {(*one, "")[:3] for one in study.correlations}
+    return study.correlation(*names).settings if names in there else None
+
+
+def say_replaced(console: "Console", before: dict[str, Any] | None, now: dict[str, Any]) -> None:
+    """Say which settings the replaced correlation had, if others."""
+    if before is None:
+        return
+    changed = [f"{name} {before.get(name)!r}" for name in now if before.get(name) != now[name]]
+    if changed:
+        console.print(f"this replaced the correlation with {', '.join(changed)}: --name NAME keeps both")
+
+
+def numbers(name: str, text: str | None) -> tuple[int, ...] | None:
     from cytodisk.errors import ParameterError
 
     if text is None:
@@ -238,7 +292,19 @@ def _lags(text: str | None) -> tuple[int, ...] | None:
     try:
         return tuple(int(part) for part in text.split(","))
     except ValueError:
-        raise ParameterError(f"skip_lags must be whole numbers with commas between, got {text!r}") from None
+        raise ParameterError(f"{name} must be whole numbers with commas between, got {text!r}") from None
+
+
+def first_and_last(name: str, text: str | None) -> tuple[int, int] | None:
+    from cytodisk.errors import ParameterError
+
+    if text is None:
+        return None
+    try:
+        first, last = (int(part) for part in text.split(":"))
+    except ValueError:
+        raise ParameterError(f"{name} must be FIRST:LAST, such as 10:80, got {text!r}") from None
+    return first, last
 
 
 def _formats(text: str) -> tuple["Format", ...]:

@@ -13,6 +13,7 @@ from typing import Any
 from urllib.parse import quote
 
 import pandas as pd
+import pyarrow as pa
 
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.io.tables import read_table, write_table
@@ -33,13 +34,16 @@ class Correlation:
         Its folder.
     signal, with_ : str
         What was correlated: at a positive lag `with_` follows `signal`.
+    name : str
+        Of a variant; empty for none.
     settings : dict
-        Parameters, versions and warnings.
+        What was asked for, and the version of cytodisk.
     """
 
     path: Path
     signal: str
     with_: str
+    name: str
     settings: dict[str, Any]
 
     @cached_property
@@ -88,17 +92,23 @@ class Correlation:
     def _table(self, name: str) -> pd.DataFrame:
         try:
             return read_table(self.path / f"{name}.parquet")
-        except OSError as error:
+        except (OSError, pa.ArrowException) as error:
             raise ReadError(f"{self.path} is damaged, correlate again: {error}") from error
 
 
-def correlation_path(study: Path, signal: str, with_: str) -> Path:
-    """Folder of a correlation; names that no file can have are written with %."""
-    return study / CORRELATION / f"{_quoted(signal)}~{_quoted(with_)}"
+def correlation_path(study: Path, signal: str, with_: str, name: str = "") -> Path:
+    """Folder of a correlation; what no file name can hold is written with %."""
+    names = (signal, with_, name) if name else (signal, with_)
+    return study / CORRELATION / "~".join(_quoted(part) for part in names)
 
 
 def write_correlation(
-    study: Path, signal: str, with_: str, tables: Mapping[str, pd.DataFrame], settings: dict[str, Any]
+    study: Path,
+    signal: str,
+    with_: str,
+    tables: Mapping[str, pd.DataFrame],
+    settings: dict[str, Any],
+    name: str = "",
 ) -> Correlation:
     """Write a correlation whole, in place of the one that was there.
 
@@ -109,6 +119,8 @@ def write_correlation(
     tables : dict of str to DataFrame
         With units in `attrs`.
     settings : dict
+    name : str
+        Of a variant, which stands beside the others.
 
     Returns
     -------
@@ -119,25 +131,29 @@ def write_correlation(
     StudyError
         The folder cannot be written.
     """
-    target = correlation_path(study, signal, with_)
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    target = correlation_path(study, signal, with_, name)
+    temporary, old = (target.with_name(f".{target.name}.{os.getpid()}.{what}") for what in ("tmp", "old"))
     try:
-        shutil.rmtree(temporary, ignore_errors=True)  # of an earlier process with this number
+        for left in (temporary, old):
+            shutil.rmtree(left, ignore_errors=True)  # of an earlier process with this number
         temporary.mkdir(parents=True)
-        for name, table in tables.items():
-            write_table(table, temporary / f"{name}.parquet")
-        content = {"signal": signal, "with": with_} | settings
+        for table_name, table in tables.items():
+            write_table(table, temporary / f"{table_name}.parquet")
+        content = {"signal": signal, "with": with_, "name": name} | settings
         text = json.dumps(content, indent=2, ensure_ascii=False)
         (temporary / SETTINGS).write_text(text + "\n", encoding="utf-8")
         if target.exists():
-            shutil.rmtree(target)
+            target.replace(old)  # it is there until the new one is
         temporary.replace(target)
     except OSError as error:
         raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
-    return read_correlation(study, signal, with_)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+    shutil.rmtree(old, ignore_errors=True)
+    return read_correlation(study, signal, with_, name)
 
 
-def read_correlation(study: Path, signal: str, with_: str) -> Correlation:
+def read_correlation(study: Path, signal: str, with_: str, name: str = "") -> Correlation:
     """Open a correlation.
 
     Raises
@@ -145,19 +161,25 @@ def read_correlation(study: Path, signal: str, with_: str) -> Correlation:
     ReadError
         It is not there; the message lists those that are.
     """
-    path = correlation_path(study, signal, with_)
+    path = correlation_path(study, signal, with_, name)
     settings = _settings(path)
     if settings is None:
-        there = [f"{a} with {b}" for a, b in list_correlations(study)]
+        there = [titled(*names) for names in list_correlations(study)]
         advice = f"it has {'; '.join(there)}" if there else "run cytodisk correlate first"
-        raise ReadError(f"study {study} has no correlation of {signal!r} with {with_!r}: {advice}")
-    return Correlation(path, signal, with_, settings)
+        raise ReadError(f"study {study} has no correlation of {titled(signal, with_, name)}: {advice}")
+    return Correlation(path, signal, with_, name, settings)
 
 
-def list_correlations(study: Path) -> list[tuple[str, str]]:
-    """Names of the signals that were correlated, in the order of their folders."""
+def list_correlations(study: Path) -> list[tuple[str, ...]]:
+    """What was correlated, in the order of the folders: (signal, with), or (signal, with, name)."""
     found = [_settings(path) for path in sorted((study / CORRELATION).glob("[!.]*~*"))]
-    return [(settings["signal"], settings["with"]) for settings in found if settings is not None]
+    names = [(known["signal"], known["with"], known.get("name", "")) for known in found if known is not None]
+    return [one if one[2] else one[:2] for one in names]
+
+
+def titled(signal: str, with_: str, name: str = "") -> str:
+    """A correlation in words, such as "Rac1 with velocity (linear)"."""
+    return f"{signal} with {with_}" + (f" ({name})" if name else "")
 
 
 def _settings(path: Path) -> dict[str, Any] | None:
@@ -169,4 +191,5 @@ def _settings(path: Path) -> dict[str, Any] | None:
 
 
 def _quoted(name: str) -> str:
-    return quote(name, safe=" +-,()").replace("~", "%7E")
+    quoted = quote(name, safe=" +-,()").replace("~", "%7E")
+    return f"%2E{quoted[1:]}" if quoted.startswith(".") else quoted  # a dot in front hides a folder

@@ -31,7 +31,7 @@ PARAMETERS, PROVENANCE = "parameters.toml", "provenance.json"
 CELLS, WINDOWS, EDGE = "cells.parquet", "windows.parquet", "edge.parquet"
 CONSISTENCY, ACTIVITY = "consistency.parquet", "activity.zarr"
 MAPS, FIGURES, _PARTS, _LOCK = "maps", "figures", ".parts", ".lock"
-_LATER = ("correlation", "report.html")  # what other commands wrote from these results
+_LATER = ("correlation", "report.html", "report_cell_*.html")  # what other commands wrote from these results
 _OWN = (PARAMETERS, CELLS, WINDOWS, EDGE, CONSISTENCY, ACTIVITY, MAPS, FIGURES, _PARTS, *_LATER)
 _PARTS_PER_GROUP = 64
 
@@ -288,7 +288,8 @@ def _make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite
         # The old provenance stays, marked, until the new one replaces it: a kill leaves a known study.
         _write_json(folder / PROVENANCE, there | {"status": "being replaced", "fingerprint": {}})
         for name in _OWN:
-            _remove(folder / name)
+            for file in folder.glob(name):
+                _remove(file)
         return
     if not resume:
         raise StudyError(

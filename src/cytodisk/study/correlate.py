@@ -13,21 +13,23 @@ import xarray as xr
 
 from cytodisk.analysis.correlation import correlation_by_layer, cross_correlate
 from cytodisk.analysis.distances import window_distances
-from cytodisk.analysis.jitter import JITTERED_LAGS, jitter_step
+from cytodisk.analysis.jitter import JITTERED_DIFFERENCES, JITTERED_LAGS, jitter_step
 from cytodisk.analysis.pairs import correlate_pairs
 from cytodisk.analysis.peaks import peak_correlation
+from cytodisk.arrays import IntArray
 from cytodisk.errors import ParameterError, StationarityWarning, StudyError
 from cytodisk.io.correlation_store import Correlation, write_correlation
 from cytodisk.io.study import Study
+from cytodisk.study.chosen_series import chosen_sectors, chosen_series
 from cytodisk.study.correlation_settings import VELOCITIES, CorrelationSettings
 from cytodisk.study.edge_episodes import episode_tables
 from cytodisk.study.provenance import installed
 from cytodisk.windows.grid import polar_windows
 
 _LONGEST_LAG = 20  # frames, unless the user asks for more
-_LAGS_FOR_JITTER = 13
+_LEAST_LAG_FOR_JITTER, _LAG_FOR_JITTER = 6, 10
 _SIDES = (("signal", "a"), ("with", "b"))
-_PAIRED_SURROGATES = 99  # of the mean over pairs, each of which costs as much as the mean itself
+_PAIRED_SURROGATES = 99  # of the mean over pairs at most, which take longer than those of windows
 
 Progress = Callable[[int, int], None]
 
@@ -61,7 +63,7 @@ def correlate_study(
     Returns
     -------
     Correlation
-        In STUDY/correlation/SIGNAL~WITH, in place of an earlier one.
+        In STUDY/correlation/SIGNAL~WITH, or SIGNAL~WITH~NAME, in place of an earlier one.
 
     Raises
     ------
@@ -79,9 +81,9 @@ def correlate_study(
     found: dict[str, list[pd.DataFrame]] = {}
     rows = []
     for place, cell in enumerate(chosen):
-        step = _share_of(progress, place, len(chosen))
+        steps = _Steps(progress, place, len(chosen), 2 if options.pairs else 1)
         try:
-            tables, row = _correlate_cell(study, cell, signal, with_, max_lag, options, step)
+            tables, row = _correlate_cell(study, cell, signal, with_, max_lag, options, steps)
         except ParameterError as error:
             tables, row = {}, {"status": "refused", "reason": str(error)}
         rows.append({"cell": cell} | row)
@@ -90,10 +92,10 @@ def correlate_study(
     if not found:
         raise ParameterError(f"no cell of {study.path} can be correlated: {rows[0]['reason']}")
     merged = {name: _merged(parts) for name, parts in found.items()} | {"cells": pd.DataFrame(rows)}
-    content: dict[str, Any] = asdict(options) | {"max_lag": max_lag}
-    content |= {"unit": "s" if study.provenance.get("frame_interval_s") else "frame"}
-    content |= {"cytodisk": installed(("cytodisk",))["cytodisk"]}
-    return write_correlation(study.path, signal, with_, merged, content)
+    content: dict[str, Any] = asdict(options) | {"max_lag": max_lag, "cells": cells}
+    content["pair_surrogates"] = min(options.surrogates, _PAIRED_SURROGATES) if options.pairs else 0
+    content["cytodisk"] = installed(("cytodisk",))["cytodisk"]
+    return write_correlation(study.path, signal, with_, merged, content, options.name)
 
 
 def channels_of(study: Study) -> list[str]:
@@ -122,10 +124,10 @@ def _correlate_cell(
     with_: str,
     max_lag: int,
     options: CorrelationSettings,
-    progress: Progress | None,
+    steps: _Steps,
 ) -> tuple[dict[str, pd.DataFrame], dict[str, Any]]:
     """Tables of one cell, and its row in the table of cells."""
-    activity = study.activity(cell)
+    activity = chosen_series(study.activity(cell), options)
     a = activity["mean"].sel(channel=signal).load()
     b = _other(activity, with_, options).load()
     if not (np.isfinite(a).any() and np.isfinite(b).any()):
@@ -134,20 +136,24 @@ def _correlate_cell(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StationarityWarning)  # the shares are in the table, and are told
         correlations = cross_correlate(
-            a, b, max_lag, skip_lags=options.skip_lags, progress=progress, **common
+            a, b, max_lag, skip_lags=options.skip_lags, progress=steps.of_phase(0), **common
         )
+        jitter = _jitter(a, b, options) if with_ in VELOCITIES else 0.0
     tables = _tables(correlations, options)
     if options.pairs:
-        tables["pairs"] = _pairs(study, cell, activity, a, with_, max_lag, options)
-    row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "no_events_because": ""}
-    row["restarts"] = _restarts(study, cell)
-    row["jitter"] = _jitter(correlations, with_, options)
+        tables["pairs"] = _pairs(study, cell, activity, a, with_, max_lag, options, steps.of_phase(1))
+    row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "jitter": jitter}
+    row["restarts"] = _restarts(study, cell, activity["time"].to_numpy())
+    row |= {f"drifting_{name}": correlations.attrs[f"drifting_{side}"] for name, side in _SIDES}
+    row |= {"no_events_because": "", "event_threshold": np.nan, "event_noise": np.nan}
     if with_ in VELOCITIES:
         try:
-            tables |= episode_tables(activity, a, with_, max_lag, options)
+            episodes = episode_tables(activity, a, with_, max_lag, options)
         except ParameterError as error:
             row["no_events_because"] = str(error)
-    row |= {f"drifting_{name}": correlations.attrs[f"drifting_{side}"] for name, side in _SIDES}
+        else:
+            tables |= episodes
+            row |= {f"event_{name}": episodes["events"].attrs[name] for name in ("threshold", "noise")}
     return tables, row
 
 
@@ -176,18 +182,22 @@ def _tables(correlations: xr.Dataset, options: CorrelationSettings) -> dict[str,
     }
 
 
-def _restarts(study: Study, cell: int) -> int:
-    """How often tracking started anew: a sector may then be another place of the cell."""
-    tracked = study.cells.loc[study.cells["cell"] == cell, "restarted"]
-    return int((tracked.fillna("") != "").sum())
+def _restarts(study: Study, cell: int, times: IntArray) -> int:
+    """How often tracking started anew within frames: a sector may then be another place of the cell."""
+    rows = study.cells[(study.cells["cell"] == cell) & study.cells["time"].isin(times[1:])]
+    return int((rows["restarted"].fillna("") != "").sum())
 
 
-def _jitter(correlations: xr.Dataset, with_: str, options: CorrelationSettings) -> float:
-    """Largest mark of jitter in any layer, 0 for none; NaN where there can be none to be seen."""
-    skips = set(options.skip_lags) & set(JITTERED_LAGS)
-    if with_ not in VELOCITIES or skips or correlations.sizes["lag"] < _LAGS_FOR_JITTER:
+def _jitter(a: xr.DataArray, b: xr.DataArray, options: CorrelationSettings) -> float:
+    """Largest mark of jitter in any layer; 0 for none, or where its lags are left out; NaN if unknown."""
+    marked = JITTERED_LAGS if not options.difference else JITTERED_DIFFERENCES
+    if set(marked) <= set(options.skip_lags):
+        return 0.0
+    lag = min(_LAG_FOR_JITTER, a.sizes["time"] - options.min_pairs)
+    if lag < _LEAST_LAG_FOR_JITTER:
         return float("nan")
-    steps = jitter_step(correlation_by_layer(correlations)).to_numpy()
+    found = cross_correlate(a, b, lag, detrend=options.detrend, min_pairs=options.min_pairs)
+    steps = jitter_step(correlation_by_layer(found)).to_numpy()
     return float(steps[np.abs(steps).argmax()])
 
 
@@ -199,15 +209,17 @@ def _pairs(
     with_: str,
     max_lag: int,
     options: CorrelationSettings,
+    progress: Progress | None,
 ) -> pd.DataFrame:
     parameters = study.provenance["parameters"]
     grid = polar_windows(study.provenance["layers"], parameters["sectors"], parameters["spacing"])
     b = activity["mean"].sel(channel=with_).load()
     common = options.common() | {"surrogates": min(options.surrogates, _PAIRED_SURROGATES)}
-    distances = window_distances(study.movie(cell), grid)
+    sectors = chosen_sectors(options, grid.sectors)
+    distances = window_distances(study.movie(cell), grid).isel(sector=sectors, other_sector=sectors)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StationarityWarning)  # as for the windows themselves
-        found = correlate_pairs(a, b, max_lag, distances=distances, **common)
+        found = correlate_pairs(a, b, max_lag, distances=distances, progress=progress, **common)
     return _frame(found, ("along", "distance", "lag"))
 
 
@@ -251,6 +263,12 @@ def _cells(study: Study, cells: list[int] | None) -> list[int]:
 
 
 def _check_names(names: list[str], signal: str, with_: str, options: CorrelationSettings) -> None:
+    clash = sorted(set(names) & set(VELOCITIES))
+    if clash:
+        raise ParameterError(
+            f"the study has a channel called {clash[0]!r}, as the velocity of the edge is: run cytodisk "
+            "movie again with --channels to name it otherwise"
+        )
     listed = ", ".join(repr(name) for name in names)
     if signal not in names:
         raise ParameterError(f"signal {signal!r} is not in the study: it has {listed}")
@@ -260,8 +278,8 @@ def _check_names(names: list[str], signal: str, with_: str, options: Correlation
         )
     if with_ == signal and options.against == "window":
         raise ParameterError(
-            f"signal {signal!r} with itself in the same window is 1: pass against='edge' to compare it with "
-            "that of the outermost layer"
+            f"signal {signal!r} with itself in the same window is 1: pass against 'edge' to compare it "
+            "with that of the outermost layer"
         )
     if options.pairs and with_ in VELOCITIES:
         raise ParameterError(
@@ -275,7 +293,17 @@ def _usual_lag(study: Study, cells: list[int]) -> int:
     return max(1, min(_LONGEST_LAG, frames // 4))
 
 
-def _share_of(progress: Progress | None, place: int, cells: int) -> Progress | None:
-    if progress is None:
-        return None
-    return lambda done, total: progress(place * total + done, cells * total)
+class _Steps:
+    """Percents of all cells, from steps of the phases of one."""
+
+    def __init__(self, progress: Progress | None, place: int, cells: int, phases: int):
+        self._progress, self._place, self._cells, self._phases = progress, place, cells, phases
+
+    def of_phase(self, phase: int) -> Progress | None:
+        """What to call with the steps done, and all steps, of a phase."""
+        if self._progress is None:
+            return None
+        report, total = self._progress, 100 * self._cells
+        return lambda done, steps: report(
+            100 * self._place + round(100 * (phase + done / steps) / self._phases), total
+        )

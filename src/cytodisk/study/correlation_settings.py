@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args
 
+from cytodisk.analysis.parameters import whole_number
 from cytodisk.analysis.peaks import Rule, check_rule
 from cytodisk.analysis.series import Detrend, check_detrend
 from cytodisk.analysis.surrogates import Null
 from cytodisk.errors import ParameterError
 
+FEWEST_SURROGATES = 19
 VELOCITIES = ("velocity", "velocity_cell_frame")
 
 Against = Literal["window", "edge"]
@@ -38,6 +40,13 @@ class CorrelationSettings:
     seed : int
     pairs : bool
         Also correlate every window of one signal with every window of the other.
+    frames, sectors : (int, int) or None
+        First and last that are used, both counted; sectors 50 to 5 go on over the last. None for all.
+    without_frames : tuple of int
+        Frames that are left out, such as those whose mask is wrong, with the steps of the edge from and to
+        them.
+    name : str
+        Keeps the result beside others of the same signals.
     """
 
     max_lag: int | None = None
@@ -52,6 +61,10 @@ class CorrelationSettings:
     null: Null = "phase"
     seed: int = 0
     pairs: bool = False
+    frames: tuple[int, int] | None = None
+    without_frames: tuple[int, ...] = ()
+    sectors: tuple[int, int] | None = None
+    name: str = ""
 
     @classmethod
     def of(cls, **values: Any) -> CorrelationSettings:
@@ -75,9 +88,15 @@ class CorrelationSettings:
                     f"{name} must be one of {', '.join(get_args(choice))}, got {getattr(settings, name)!r}"
                 )
         for name, least in (("surrogates", 0), ("seed", 0), ("min_pairs", 3), ("max_lag", 0)):
-            value = getattr(settings, name)
-            if value is not None and (isinstance(value, bool) or value != int(value) or value < least):
-                raise ParameterError(f"{name} must be a whole number of at least {least}, got {value!r}")
+            if getattr(settings, name) is not None:
+                whole_number(name, getattr(settings, name), least)
+        if 0 < settings.surrogates < FEWEST_SURROGATES:
+            raise ParameterError(
+                f"surrogates must be 0, or at least {FEWEST_SURROGATES} for any p to reach 0.05, got "
+                f"{settings.surrogates}"
+            )
+        if settings.frames is not None and settings.frames[1] < settings.frames[0]:
+            raise ParameterError(f"frames must go from the first to the last, got {settings.frames}")
         return settings
 
     def common(self) -> dict[str, Any]:
