@@ -78,15 +78,20 @@ def test_each_layer_has_its_curve_and_its_bands() -> None:
     assert [ax.get_xlabel() for ax in axes[:-1]] == ["", "", ""]
 
 
-def test_peaks_beyond_chance_are_full() -> None:
+def test_peaks_are_full_by_q_and_not_by_the_band_of_their_layer() -> None:
     axes, table = stack(4), curves()
-    draw_correlation_curves(axes, table, cell=1, peaks=peaks(table))
-    for ax, height in zip(axes, (0.1, 0.3, 0.4, 0.6), strict=True):
+    found = peaks(table)
+    # By themselves layers 3 and 5 of 6 are beyond the band; of all layers only 0 and 5 have a small q.
+    q = found["layer"].map({0: 0.01, 1: 0.5, 2: 0.3, 3: 0.05, 4: 0.2, 5: 0.049})
+    draw_correlation_curves(axes, table, cell=1, peaks=found.assign(q=q))
+    for ax, height, full in zip(axes, (0.1, 0.3, 0.4, 0.6), (True, False, False, True), strict=True):
         (dot,) = dots(ax)
         assert list(np.asarray(dot.get_xdata())) == [-10.0]
         np.testing.assert_allclose(np.asarray(dot.get_ydata()), [height])
-        assert is_open(dot) == (height < 0.4)
+        assert is_open(dot) == (not full)
         assert ax.get_title(loc="right") == f"{height:.2f} at −10 s"
+    words = [handle.get_label() for handle in curve_key()]
+    assert words[2:] == ["chance (95 %, each layer alone)", "peak, q < 0.05 (○ q ≥ 0.05)"]
 
 
 def test_lags_without_an_interval_are_frames() -> None:

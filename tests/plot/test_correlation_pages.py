@@ -92,11 +92,13 @@ def test_pages_of_a_signal_with_velocity(
     assert steps == [(done, 5) for done in range(6)]
     for path, wide in zip(paths, (85, 180, 85, 180), strict=True):
         assert _pixels_across(path) == pytest.approx(wide / 25.4 * 200, abs=1.0)
+    for figure in saved:
+        words = " ".join(text.get_text() for text in figure.texts)
+        assert "linear detrending" in words
+        assert "without lags −1, 0" in words
+        assert "grey: not used" not in words
     curves = saved[0]
     assert curves.axes[-1].get_xlabel().startswith("lag (s)\n← velocity first")
-    words = " ".join(text.get_text() for text in curves.texts)
-    assert "linear detrending" in words
-    assert "without lag −1, 0" in words
 
 
 def test_pages_of_two_signals(study: cd.Study, saved: list[Figure]) -> None:
@@ -107,6 +109,31 @@ def test_pages_of_two_signals(study: cd.Study, saved: list[Figure]) -> None:
     edge = correlate_study(study, LONG, LONG, **FEW, against="edge")
     draw_correlation_figures(study, edge)
     assert any("at the edge" in text.get_text() for text in saved[4].texts)
+
+
+def test_notes_of_pairs_say_which_way_is_up(study: cd.Study, saved: list[Figure]) -> None:
+    draw_correlation_figures(study, correlate_study(study, SHORT, LONG, **FEW, pairs=True))
+    words = [text.get_text() for text in saved[-1].texts]
+    assert f"lag: ↓ {LONG[:17]}… first  ·  ↑ Rac1 first" in words
+    assert sum("left out" in line for line in words) == 1
+
+
+def test_what_was_not_used_is_grey(study: cd.Study, with_velocity: Correlation, saved: list[Figure]) -> None:
+    some = {"sectors": [6, 1], "frames": [2, 20], "without_frames": [4, 9, 10], "detrend": "none"}
+    draw_correlation_figures(study, replace(with_velocity, settings=with_velocity.settings | some))
+    for figure in saved:
+        words = " ".join(text.get_text() for text in figure.texts)
+        assert "only sectors 6–1 · only frames 2–20 · without frames 4, 9–10" in words.replace(
+            "frames 4, 9–10 ·", "frames 4, 9–10"
+        )
+    _, maps, _, events = saved
+    for figure in (maps, events):
+        assert any("grey: not used" in text.get_text() for text in figure.texts)
+        shown = np.isfinite(np.ma.filled(figure.axes[0].images[0].get_array().astype(float), np.nan))
+        assert list(np.flatnonzero(shown.any(axis=1))) == [0, 1, 6, 7]
+        times = set(np.flatnonzero(shown.any(axis=0)).tolist())
+        assert times == set(range(2, 21)) - {4, 9, 10}
+    assert any("averages not detrended" in text.get_text() for text in events.texts)
 
 
 def test_without_surrogates_nothing_is_called_significant(study: cd.Study, saved: list[Figure]) -> None:

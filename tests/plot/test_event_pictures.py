@@ -6,11 +6,12 @@ import pytest
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
 
 from cytodisk.analysis.event_average import average_around
 from cytodisk.analysis.events import edge_events
 from cytodisk.errors import ParameterError
-from cytodisk.plot.events import ONSET_NAME, draw_event_average, draw_events
+from cytodisk.plot.events import ONSET_NAME, band_key, draw_event_average, draw_events
 
 
 @pytest.fixture
@@ -75,6 +76,22 @@ def test_known_onsets_are_marked(ax: Axes, velocity: xr.DataArray, events: pd.Da
     }
 
 
+def test_many_patches_leave_thin_onsets_of_protrusions(ax: Axes) -> None:
+    values = np.where(np.arange(40)[:, None] % 4 < 2, 1.0, -1.0) * np.where(np.arange(16) % 2, 1.0, -1.0)
+    coords = {"time": np.arange(40), "sector": np.arange(16)}
+    velocity = xr.DataArray(values, coords, ("time", "sector"), attrs={"units": "px/frame"})
+    events = edge_events(velocity, threshold=0.5)
+    assert events["patch"].nunique() > 150
+    drawn = draw_events(ax, velocity, events)
+    (marks,) = [one for one in ax.collections if one.get_gid() == ONSET_NAME]
+    assert isinstance(marks, LineCollection)
+    assert sides(drawn) == set()
+    starts = events[(events["kind"] == "protrusion") & events["onset_known"]]
+    assert len(sides(marks)) == len(starts) < len(events) / 2
+    few = draw_events(Figure().add_subplot(), velocity, events[events["patch"] < 150])
+    assert sides(few)
+
+
 def test_no_events_draw_the_map_alone(ax: Axes, velocity: xr.DataArray, events: pd.DataFrame) -> None:
     assert sides(draw_events(ax, velocity, events[:0])) == set()
     (image,) = ax.images
@@ -102,8 +119,13 @@ def average_of(velocity: xr.DataArray, events: pd.DataFrame, layers: int = 6, **
     return average_around(activity, events, before=2, after=3, **options)
 
 
+def with_bands(average: xr.Dataset) -> xr.Dataset:
+    """Bands that so few patches do not give."""
+    return average.assign(lower=average["mean"] - 1.0, upper=average["mean"] + 2.0)
+
+
 def test_layers_against_delay(ax: Axes, velocity: xr.DataArray, events: pd.DataFrame) -> None:
-    average = average_of(velocity, events.assign(patch=range(len(events))))
+    average = with_bands(average_of(velocity, events.assign(patch=range(len(events)))))
     lines = draw_event_average(ax, average, label="Rac1")
     assert [line.get_label() for line in lines] == [
         "layer 0 (edge)",
@@ -115,10 +137,13 @@ def test_layers_against_delay(ax: Axes, velocity: xr.DataArray, events: pd.DataF
         np.testing.assert_array_equal(line.get_xdata(), [-4.0, -2.0, 0.0, 2.0, 4.0, 6.0])
         np.testing.assert_array_equal(line.get_ydata(), average["mean"].isel(layer=layer))
     bands = [one for one in ax.collections if isinstance(one, PolyCollection)]
-    assert len(bands) == 4
-    low, high = bands[1].get_paths()[0].get_extents().intervaly
-    assert low == float(average["lower"].isel(layer=2).min())
-    assert high == float(average["upper"].isel(layer=2).max())
+    for band, layer in zip(bands, (0, 5), strict=True):  # those between would hide them
+        low, high = band.get_paths()[0].get_extents().intervaly
+        assert low == float(average["lower"].isel(layer=layer).min())
+        assert high == float(average["upper"].isel(layer=layer).max())
+    assert len({line.get_linestyle() for line in lines[:3]}) == 3 - 1  # dashes of both kinds are "--"
+    names = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert names[-1] == "95 %, bootstrap of patches (layers 0, 5)"
     (zero,) = [line for line in ax.lines if line not in lines]
     assert list(np.asarray(zero.get_xdata())) == [0.0, 0.0]
     assert ax.get_xlabel() == "delay after onset of protrusion (s)"
@@ -153,3 +178,12 @@ def test_averages_that_cannot_be_drawn_are_refused(
         draw_event_average(ax, velocity)  # type: ignore[arg-type]
     with pytest.raises(ParameterError, match=r"select one channel, as in average.sel\(channel=…\)"):
         draw_event_average(ax, average_of(velocity, events).expand_dims("channel"))
+
+
+def test_bands_have_a_key_where_there_are_any(velocity: xr.DataArray, events: pd.DataFrame) -> None:
+    average = average_of(velocity, events, layers=2, confidence=0.9)
+    (key,) = band_key(with_bands(average))
+    assert key.get_label() == "90 %, bootstrap of patches"
+    assert band_key(average) == []
+    with pytest.raises(ParameterError, match="must be the Dataset of average_around"):
+        band_key(xr.Dataset())

@@ -211,12 +211,17 @@ def test_mean_velocity_and_spread() -> None:
     assert ax.get_ylabel() == "edge velocity (µm/s)"
 
 
-def test_fastest_frame_is_not_that_of_a_fault() -> None:
+def test_fastest_frame_is_that_of_the_largest_leap_too() -> None:
     velocity = np.full((5, 20), 0.1)
     velocity[2] = -0.3
     velocity[3, 4] = 100.0
     velocity[4] = np.nan
+    assert fastest_frame(velocity) == 3
+    velocity[3, 4] = 0.1
     assert fastest_frame(velocity) == 2
+    velocity[1, 1:] = np.nan
+    velocity[1, 0] = 0.5  # the mean of those that are known
+    assert fastest_frame(velocity) == 1
     assert fastest_frame(np.full((3, 4), np.nan)) is None
 
 

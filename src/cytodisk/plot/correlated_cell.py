@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,9 +11,10 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.io.correlation_store import Correlation
 from cytodisk.plot.correlation_cell import PeakMap
+from cytodisk.plot.correlation_settings import settings_words, used_windows
 from cytodisk.plot.movie_cell import LEFT_MM, CellMovie
 from cytodisk.plot.sheet import Sheet
 
@@ -83,43 +85,60 @@ class CellCorrelation:
         """Of the time axis."""
         return {"frame_interval_s": self.movie.interval_s, "first_frame": self.movie.first}
 
+    @cached_property
+    def used(self) -> BoolArray:
+        """Which frames and sectors the correlation used, shape (T, S)."""
+        movie = self.movie
+        return used_windows(self.correlation.settings, movie.first, movie.frames, movie.grid.sectors)
+
+    @property
+    def drawn_time(self) -> int:
+        """Number of the frame with a map in the middle of those that were used."""
+        within = np.any(self.used, axis=1).tolist()
+        times = [time for time in self.movie.mapped if within[time - self.movie.first]] or self.movie.mapped
+        return times[len(times) // 2]
+
     def activity(self, name: str, layer: int = 0) -> FloatArray:
-        """Mean of a signal in a layer, shape (T, S)."""
+        """Mean of a signal in a layer, shape (T, S); NaN where it was not used."""
         values = self.movie.activity["mean"].sel(channel=name).isel(layer=layer)
-        return np.asarray(values.transpose("time", "sector"), dtype=np.float64)
+        return np.where(self.used, np.asarray(values.transpose("time", "sector"), dtype=np.float64), np.nan)
 
     @property
     def velocity(self) -> xr.DataArray:
-        """What stands for the motion of the edge, by time and sector."""
-        return self.movie.activity[self.correlation.with_].transpose("time", "sector").load()
+        """What stands for the motion of the edge, by time and sector; NaN where it was not used."""
+        velocity = self.movie.activity[self.correlation.with_].transpose("time", "sector").load()
+        return velocity.where(self.used)
 
     def rows(self, table: pd.DataFrame | None) -> pd.DataFrame:
         """Rows of the cell in a table, which may not be there."""
         return pd.DataFrame() if table is None else table[table["cell"] == self.cell]
 
-    def heading(self, width_mm: float, what: str, *, raw: bool = False) -> Heading:
-        """What a page shows, and of which cell and, unless values are raw, how it was made.
+    def used_events(self) -> pd.DataFrame:
+        """Episodes of the edge in the frames and sectors that were used."""
+        events = self.rows(self.correlation.events)
+        if events.empty:
+            return events
+        first, used = self.movie.first, self.used
+        spans = zip(events["onset"] - first, events["end"] - first, events["sector"], strict=True)
+        return events[[bool(used[onset:end, sector].any()) for onset, end, sector in spans]]
+
+    def heading(self, width_mm: float, what: str, *notes: str) -> Heading:
+        """What a page shows, and of which cell and how it was made.
 
         Parameters
         ----------
         width_mm : float
             Of the page: long lines are broken.
         what : str
-        raw : bool
+        *notes : str
+            More to say below it.
         """
-        grid, settings = self.movie.grid, self.correlation.settings
+        grid = self.movie.grid
         facts = [f"cell {self.cell}", f"{grid.layers} layers × {grid.sectors} sectors"]
         facts.append(f"{self.movie.frames} frames")
-        if not raw and settings.get("detrend", "none") != "none":
-            facts.append(f"{settings['detrend']} detrending")
-        if not raw and settings.get("difference"):
-            facts.append("differences between frames")
-        if not raw and settings.get("skip_lags"):
-            lags = ", ".join(f"{lag:g}".replace("-", "−") for lag in settings["skip_lags"])
-            facts.append(f"without lag {lags}")
-        room = width_mm - 2 * LEFT_MM
-        title = _broken(what.split(" "), " ", int(room / _BOLD_MM))
-        return Heading(title, _broken(facts, " · ", int(room / _CHARACTER_MM)))
+        facts += [*settings_words(self.correlation.settings), *notes]
+        title = broken_lines(what.split(" "), " ", width_mm - 2 * LEFT_MM, _BOLD_MM)
+        return Heading(title, broken_lines(facts, " · ", width_mm - 2 * LEFT_MM))
 
 
 @dataclass(frozen=True)
@@ -151,11 +170,26 @@ class Heading:
             top += _LINE_MM
 
 
-def _broken(parts: list[str], between: str, most: int) -> list[str]:
-    """Parts joined into lines of at most so many characters, if they are that short themselves."""
+def broken_lines(
+    parts: Sequence[str], between: str, room_mm: float, character_mm: float = _CHARACTER_MM
+) -> list[str]:
+    """Parts joined into lines that fit into the room, if the parts themselves do.
+
+    Parameters
+    ----------
+    parts : sequence of str
+    between : str
+        Put between parts on a line.
+    room_mm, character_mm : float
+        Length of a line, and of a character.
+
+    Returns
+    -------
+    list of str
+    """
     lines = [parts[0]]
     for part in parts[1:]:
-        if len(lines[-1]) + len(between) + len(part) <= most:
+        if len(lines[-1]) + len(between) + len(part) <= int(room_mm / character_mm):
             lines[-1] += between + part
         else:
             lines.append(part)

@@ -26,6 +26,7 @@ PEAK_NAME = "peak"
 _BAND_OPACITY = 0.3
 _LEAST_REACH = 0.1  # of the correlation's axis, so that noise alone does not fill it
 _ROOM = 1.08  # of that axis over what it holds
+_ALPHA = 0.05  # share of false discoveries that is accepted
 _CURVES = {"cell", "layer", "lag", "correlation", "lower_quartile", "upper_quartile"}
 _PEAKS = {"cell", "layer", "lag", "correlation"}
 
@@ -50,7 +51,7 @@ def draw_correlation_curves(
         upper_quartile; lag_s, seconds, and threshold where they are known.
     cell : int
     peaks : DataFrame, optional
-        Its `layers`: the peak of each, a full dot where it is beyond the threshold.
+        Its `layers`: the peak of each, an open dot where q, over all layers and cells, is 0.05 or more.
     signal, with_ : str
         Names for the words at the lags: at a positive lag the signal comes first.
 
@@ -58,7 +59,8 @@ def draw_correlation_curves(
     -------
     list of Line2D
         The means, one a layer, dark for the edge. Coloured bands are the quartiles over sectors; the grey
-        one, from -threshold to threshold, holds the whole curve of 95 of 100 surrogates.
+        one, from -threshold to threshold, holds the whole curve of 95 of 100 surrogates of that layer by
+        itself: a peak beyond it can still have q of 0.05 or more, as one layer in twenty is by chance.
 
     Raises
     ------
@@ -82,7 +84,7 @@ def draw_correlation_curves(
         lines.append(_draw_curve(ax, one, unit, colour))
         ax.set_title(name, loc="left", y=1.0, pad=2.0)
         if marks is not None:
-            _mark_peak(ax, marks[marks["layer"] == layer], one, unit, colour)
+            _mark_peak(ax, marks[marks["layer"] == layer], unit, colour)
     _share_axes(axes, curves[curves["layer"].isin(layers)], unit)
     axes[-1].set_xlabel(f"{unit.label}\n{sides(signal, with_)}", parse_math=False)
     return lines
@@ -112,11 +114,11 @@ def curve_key(*, peaks: bool = True, chance: bool = True) -> list[Any]:
                 facecolor=CHANCE_COLOUR,
                 edgecolor=CHANCE_LINE,
                 linewidth=0.4,
-                label="chance (95 %, at all lags)",
+                label="chance (95 %, each layer alone)",
             )
         )
     if peaks:
-        words = "peak beyond chance (○ within)" if chance else "peak"
+        words = f"peak, q < {_ALPHA:g} (○ q ≥ {_ALPHA:g})" if chance else "peak"
         handles.append(Line2D([], [], color=dark, marker="o", markersize=3.5, linewidth=0, label=words))
     return handles
 
@@ -196,17 +198,16 @@ def _draw_curve(ax: Axes, curve: pd.DataFrame, unit: LagUnit, colour: FloatArray
     return line
 
 
-def _mark_peak(ax: Axes, peak: pd.DataFrame, curve: pd.DataFrame, unit: LagUnit, colour: FloatArray) -> None:
-    """A dot at the peak, and its numbers above the axes."""
+def _mark_peak(ax: Axes, peak: pd.DataFrame, unit: LagUnit, colour: FloatArray) -> None:
+    """A dot at the peak, open where q is not small, and its numbers above the axes."""
     if len(peak) != 1 or not np.isfinite(peak["correlation"].iloc[0]):
         return
     height, lag = float(peak["correlation"].iloc[0]), float(peak[unit.column].iloc[0])
-    threshold = _threshold(curve)
-    within = bool(np.isfinite(threshold) and abs(height) < threshold)
+    doubtful = "q" in peak and bool(peak["q"].iloc[0] >= _ALPHA)
     (dot,) = ax.plot([lag], [height], "o", color=colour, markersize=3.5, markeredgewidth=0.8, clip_on=False)
-    dot.set(markerfacecolor="white" if within else colour, gid=PEAK_NAME, zorder=4)
+    dot.set(markerfacecolor="white" if doubtful else colour, gid=PEAK_NAME, zorder=4)
     words = f"{signed(height, '.2f')} at {unit.write(lag)}"
-    ax.set_title(words, loc="right", y=1.0, pad=2.0, fontsize=7.0, color="0.3" if within else LINE_COLOUR)
+    ax.set_title(words, loc="right", y=1.0, pad=2.0, fontsize=7.0, color="0.3" if doubtful else LINE_COLOUR)
 
 
 def _share_axes(axes: Sequence[Axes], curves: pd.DataFrame, unit: LagUnit) -> None:

@@ -24,11 +24,12 @@ from cytodisk.errors import ParameterError
 from cytodisk.plot.cell import draw_window_means
 from cytodisk.plot.disk import disk_polygons, draw_disk_means
 from cytodisk.plot.lag_axis import LagUnit, rows_of_cell
+from cytodisk.plot.strip import sector_arcs
 from cytodisk.plot.style import DIVERGING_COLOURS, LINE_COLOUR, MISSING_COLOUR, colour_map
 from cytodisk.windows.cell_windows import CellWindows
 from cytodisk.windows.grid import PolarWindows
 
-PALE_NAME, OUTLINE_NAME = "not significant", "significant"
+PALE_NAME, OUTLINE_NAME, SECTOR_NAME = "not significant", "significant", "sector"
 
 LAG_COLOURS = "PuOr"
 """Diverging as those of correlations, for colour-blind eyes too, and not taken for them."""
@@ -38,6 +39,7 @@ Shown: TypeAlias = Literal["correlation", "lag"]
 _PALE = 0.4  # how far windows that are not significant let the page's white through
 _HATCH, _HATCH_COLOUR = "/////", "0.5"
 _PERCENTILE, _STEP = 99.0, 0.1  # limits of correlations: what 99 % stay within, rounded up
+_NUMBER_AWAY, _NUMBER_SIZE = 7.0, 6.0  # points: of a sector's number from the edge, and its height
 _MOST_VECTOR = 3000  # windows; more become pixels inside vector files
 _COLUMNS = {"cell", "layer", "sector", "correlation", "lag"}
 
@@ -156,7 +158,7 @@ def draw_peaks_on_disk(
     PolyCollection
         One polygon a window, by window number, for a colour bar. Windows that are not significant are
         translucent, and covered by a hatch with the gid "not significant"; the outline of the others has
-        the gid "significant".
+        the gid "significant". Four sectors have their numbers.
 
     Raises
     ------
@@ -166,7 +168,7 @@ def draw_peaks_on_disk(
         The peaks are of another grid.
     """
     values, colours, limits = peaks.picture(shown, limit)
-    drawn = draw_disk_means(ax, grid, values, cmap=colours, limits=limits)
+    drawn = draw_disk_means(ax, grid, values, cmap=colours, limits=limits, number_sectors=True)
     _fade(ax, disk_polygons(grid), peaks, drawn)
     return drawn
 
@@ -197,7 +199,7 @@ def draw_peaks_on_cell(
     Returns
     -------
     PolyCollection
-        As of `draw_peaks_on_disk`.
+        As of `draw_peaks_on_disk`; numbers of sectors, with the gid "sector", stand where they begin.
 
     Raises
     ------
@@ -213,15 +215,18 @@ def draw_peaks_on_cell(
     values, colours, limits = peaks.picture(shown, limit)
     drawn = draw_window_means(ax, windows, values, cmap=colours, limits=limits, pixel_size_um=pixel_size_um)
     _fade(ax, [polygon[:, ::-1] for polygon in windows.polygons()], peaks, drawn)
+    _number_sectors(ax, windows)
     return drawn
 
 
-def peak_key(peaks: PeakMap) -> list[Any]:
+def peak_key(peaks: PeakMap, *, missing: str = "no correlation") -> list[Any]:
     """Handles of a legend: what is pale, framed and grey, of windows that are there.
 
     Parameters
     ----------
     peaks : PeakMap
+    missing : str
+        What grey means.
 
     Returns
     -------
@@ -236,7 +241,7 @@ def peak_key(peaks: PeakMap) -> list[Any]:
         if pale < known:
             handles.append(Patch(label=f"q < {peaks.alpha:g}", **frame | {"edgecolor": LINE_COLOUR}))
     if known < peaks.correlation.size:
-        handles.append(Patch(facecolor=MISSING_COLOUR, linewidth=0, label="no correlation"))
+        handles.append(Patch(facecolor=MISSING_COLOUR, linewidth=0, label=missing))
     return handles
 
 
@@ -257,6 +262,29 @@ def _fade(ax: Axes, polygons_xy: Sequence[FloatArray], peaks: PeakMap, drawn: Po
     if others:
         framed: Any = {"fill": False, "edgecolor": LINE_COLOUR, "linewidth": 0.6, "zorder": 2.5}
         ax.add_artist(PathPatch(_region(others), gid=OUTLINE_NAME, **framed))
+
+
+def _number_sectors(ax: Axes, windows: CellWindows) -> None:
+    """Numbers of the four sectors that have theirs on the disk, outside the cell at their beginning."""
+    arcs = sector_arcs(windows)
+    for quarter in range(4):
+        number = len(arcs) * quarter // 4
+        y, x = arcs[number][0]
+        down, right = arcs[number][-1] - arcs[number - 1][0]
+        # Sectors follow one another clockwise on the page: where they go down, outwards is to the right.
+        away = _NUMBER_AWAY * np.array([down, right]) / max(np.hypot(down, right), 1e-9)
+        ax.annotate(
+            str(number),
+            (x, y),
+            xytext=tuple(away.tolist()),
+            textcoords="offset points",
+            ha="center",
+            va="center_baseline",
+            fontsize=_NUMBER_SIZE,
+            annotation_clip=False,
+            gid=SECTOR_NAME,
+            arrowprops={"arrowstyle": "-", "linewidth": 0.5, "shrinkA": 3.0, "shrinkB": 0.0},
+        )
 
 
 def _region(polygons_xy: Sequence[FloatArray]) -> Path:

@@ -9,10 +9,11 @@ import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 
-from cytodisk.plot.correlated_cell import CellCorrelation
+from cytodisk.plot.correlated_cell import CellCorrelation, broken_lines
 from cytodisk.plot.correlation import curve_key, draw_correlation_curves, draw_map_pair
 from cytodisk.plot.correlation_cell import PeakMap, Shown, draw_peaks_on_cell, draw_peaks_on_disk, peak_key
-from cytodisk.plot.events import draw_event_average, draw_events
+from cytodisk.plot.correlation_settings import detrending
+from cytodisk.plot.events import band_key, draw_event_average, draw_events
 from cytodisk.plot.kymograph import bar_beside, shown_layers
 from cytodisk.plot.lag_axis import sides
 from cytodisk.plot.movie_cell import LEFT_MM
@@ -23,11 +24,13 @@ from cytodisk.plot.strip import time_stamp
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM, colour_bar
 
 _CURVE, _CURVE_GAP, _CURVE_LEFT = 17.0, 5.5, 14.0  # mm
-_PANEL, _PANEL_GAP, _TALLEST = 31.0, 1.5, 1.45  # mm, mm, height over width
+_PANEL, _PANEL_GAP, _TALLEST = 29.5, 4.0, 1.45  # mm, mm, height over width
 _MAP_LEFT, _MAP, _MAP_HEIGHT, _MAP_BAR = 14.0, 62.0, 48.0, 18.0  # mm
 _EPISODES, _AVERAGE_LEFT, _AVERAGE = 80.0, 124.0, 53.0  # mm
 _PAIR_LEFT, _PAIR_GAP, _PAIR_LINES, _PAIR_IMAGE, _PAIR_BAR = 14.0, 5.0, 30.0, 34.0, 18.0  # mm
-_KEY, _KEY_POINTS = 6.5, 21.0  # height of the key above the average in mm, and of what stands on it
+_KEY, _KEY_POINTS = 10.0, 31.0  # height of the key above the average in mm, and of what stands on it
+_KEY_LEFT = -0.05  # of the axes of the average: its key is wider than they are
+_LINE = 3.6  # mm
 
 
 def curves_page(one: CellCorrelation) -> Sheet | None:
@@ -60,7 +63,7 @@ def curves_page(one: CellCorrelation) -> Sheet | None:
 
 def maps_page(one: CellCorrelation) -> Sheet:
     """The signal in the outermost layer, and what it was correlated with, by time and sector."""
-    heading = one.heading(DOUBLE_COLUMN_MM, f"{one.signal_name} and {one.with_words}", raw=True)
+    heading = one.heading(DOUBLE_COLUMN_MM, f"{one.signal_name} and {one.with_words}", *_map_notes(one))
     head = heading.height_mm
     sheet = Sheet(head + 4.0 + _MAP_HEIGHT + 9.0)
     heading.write(sheet)
@@ -92,26 +95,26 @@ def peaks_page(one: CellCorrelation) -> Sheet | None:
         return None
     heading = one.heading(SINGLE_COLUMN_MM, f"{one.signal_name} with {one.with_words}: peaks")
     head = heading.height_mm
-    time = movie.mapped[len(movie.mapped) // 2]
+    time = one.drawn_time
     windows = movie.windows(time)
     high, wide = np.ptp(windows.disk.outline_yx, axis=0)
     height = _PANEL * float(np.clip(high / wide, 1.0, _TALLEST))
-    key = peak_key(peaks)
-    row = height + 8.0
-    sheet = Sheet(head + 2 * row + 5.5 + (4.0 if key else 0.0), SINGLE_COLUMN_MM)
+    key = peak_key(peaks, missing="no correlation" if one.used.all() else "no correlation, or not used")
+    row = height + 9.0
+    sheet = Sheet(head + 2 * row + 7.5 + (4.0 if key else 0.0), SINGLE_COLUMN_MM)
     heading.write(sheet)
     lefts = (LEFT_MM, LEFT_MM + _PANEL + _PANEL_GAP)
     stamp = f"on the cell, {time_stamp(time, movie.interval_s)}"
     for left, words in zip(lefts, ("on the disk", stamp), strict=True):
         sheet.text(left + 0.5 * _PANEL, head, words, ha="center")
     for number, (shown, label) in enumerate(_shown(peaks)):
-        top = head + 2.0 + number * row
+        top = head + 4.0 + number * row
         disk, cell = (sheet.axes(left, top, _PANEL, height) for left in lefts)
         drawn = draw_peaks_on_disk(disk, peaks, movie.grid, shown)
         draw_peaks_on_cell(cell, peaks, windows, shown, pixel_size_um=movie.pixel_size_um)
-        bar = sheet.axes(lefts[1] + _PANEL + 2.0, top + 0.1 * height, 2.2, 0.8 * height)
+        bar = sheet.axes(lefts[1] + _PANEL + 3.0, top + 0.1 * height, 2.2, 0.8 * height)
         colour_bar(drawn, bar, label, extend=_extend(peaks, shown))
-    foot = head + 2 * row + 1.0
+    foot = head + 2 * row + 3.0
     sheet.text(LEFT_MM, foot + 2.0, "lag: " + sides(*one.first_names))
     if key:
         _write_key(sheet, key, foot + 3.5, columns=2)
@@ -131,7 +134,9 @@ def pairs_page(one: CellCorrelation) -> Sheet | None:
     heading = one.heading(page, f"{one.signal_name} with {one.with_name}, all pairs of windows")
     top = heading.height_mm + 5.0
     second = top + _PAIR_LINES + 4.0
-    sheet = Sheet(second + _PAIR_IMAGE + 21.5, page)
+    notes = broken_lines(_pair_notes(tables), " · ", page - 2 * LEFT_MM)
+    foot = second + _PAIR_IMAGE + 15.7
+    sheet = Sheet(foot + _LINE * len(notes) + 2.2, page)
     heading.write(sheet)
     limit = max(float(np.nanmax(np.abs(table.correlation))) for table in tables)
     columns = []
@@ -143,23 +148,28 @@ def pairs_page(one: CellCorrelation) -> Sheet | None:
     _share_pairs(columns)
     columns[0][0].set_ylabel("correlation")
     colour_bar(image, bar_beside(columns[-1][1]), "correlation")
-    _write_pair_notes(sheet, one, tables)
+    sheet.text(LEFT_MM, foot, f"lag: {sides(*one.first_names, upright=True)}")
+    for number, words in enumerate(notes):
+        sheet.text(LEFT_MM, foot + _LINE * (number + 1), words, color="0.3")
     return sheet
 
 
 def events_page(one: CellCorrelation) -> Sheet | None:
     """Episodes of the edge, and the signal around onsets of protrusion; None when there are none."""
-    events, averages = one.rows(one.correlation.events), one.rows(one.correlation.event_averages)
+    events, averages = one.used_events(), one.rows(one.correlation.event_averages)
     if events.empty or averages.empty:
         return None
     what = f"episodes of the edge, and {one.signal_name} around onsets of protrusion"
-    heading = one.heading(DOUBLE_COLUMN_MM, what)
+    heading = one.heading(DOUBLE_COLUMN_MM, what, *_event_notes(one))
     head = heading.height_mm
     sheet = Sheet(head + 4.0 + _MAP_HEIGHT + 9.0)
     heading.write(sheet)
     ax = sheet.axes(_MAP_LEFT, head + 3.0, _EPISODES, _MAP_HEIGHT)
-    draw_events(ax, one.velocity, events)
-    ax.set_title("episodes outlined, onsets bold", loc="left", y=1.0, pad=2.5)
+    outlines = draw_events(ax, one.velocity, events)
+    words = (
+        "episodes outlined, onsets bold" if len(outlines.get_segments()) else "onsets of protrusion marked"
+    )
+    ax.set_title(words, loc="left", y=1.0, pad=2.5)
     around = sheet.axes(_AVERAGE_LEFT, head + 3.0 + _KEY, _AVERAGE, _MAP_HEIGHT - _KEY)
     _draw_average(around, one, averages)
     return sheet
@@ -173,11 +183,25 @@ def _draw_average(ax: Axes, one: CellCorrelation, averages: pd.DataFrame) -> Non
         ax.text(0.5, 0.5, "no onset of protrusion is known", ha="center", color="0.3")
         return
     lines = draw_event_average(ax, average, label=one.first_names[0])
-    place: Any = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.2, "borderpad": 0.0}
-    ax.legend(handles=lines, ncols=2, frameon=False, handlelength=1.4, labelspacing=0.25, **place)
+    key: Any = {"loc": "lower left", "frameon": False, "borderaxespad": 0.2, "borderpad": 0.0}
+    key |= {"handlelength": 1.8, "labelspacing": 0.25}
+    if band := band_key(average):
+        ax.add_artist(ax.legend(handles=band, bbox_to_anchor=(_KEY_LEFT, 1.0), **key))
+    else:
+        words = "no band: too few patches"
+        ax.text(_KEY_LEFT, 1.02, words, color="0.3", transform=ax.transAxes)
+    above = 1.0 + _LINE / (_MAP_HEIGHT - _KEY)
+    ax.legend(handles=lines, ncols=2, bbox_to_anchor=(_KEY_LEFT, above), **key)
     count = ax.get_title(loc="right")
     ax.set_title("", loc="right")
     ax.set_title(count, loc="left", pad=_KEY_POINTS, fontsize=7.0, color="0.3")
+
+
+def _event_notes(one: CellCorrelation) -> list[str]:
+    settings = one.correlation.settings
+    notes = [] if detrending(settings) else ["averages not detrended"]
+    notes += ["averages of values, not of differences"] if settings.get("difference") else []
+    return notes + ["grey: not used"] * (not one.used.all())
 
 
 def _average(table: pd.DataFrame, kind: str) -> xr.Dataset:
@@ -190,7 +214,7 @@ def _average(table: pd.DataFrame, kind: str) -> xr.Dataset:
         average = average.assign_coords(delay_s=("delay", seconds))
     for name in ("mean", "lower", "upper"):
         average[name].attrs["units"] = units
-    return average.assign_attrs(kind=kind, at="onset", normalise="mean")
+    return average.assign_attrs(kind=kind, at="onset", normalise="mean", confidence=0.95)
 
 
 def _place(one: CellCorrelation) -> int:
@@ -208,15 +232,20 @@ def _extend(peaks: PeakMap, shown: Shown) -> str:
     return "both" if below and above else "min" if below else "max" if above else "neither"
 
 
-def _write_pair_notes(sheet: Sheet, one: CellCorrelation, tables: list[PairTable]) -> None:
+def _map_notes(one: CellCorrelation) -> list[str]:
+    """What the maps show other than what was correlated."""
+    settings = one.correlation.settings
+    changed = settings.get("detrend", "none") != "none" or settings.get("difference")
+    return ["values as measured"] * bool(changed) + ["grey: not used"] * (not one.used.all())
+
+
+def _pair_notes(tables: list[PairTable]) -> list[str]:
     facts = ["coloured bands: quartiles of pairs"]
     if any(np.isfinite(table.threshold) for table in tables):
         facts.append("grey band: chance, 95 % at all distances and lags")
     if any((np.abs(table.correlation) >= table.threshold).any() for table in tables):
         facts.append("outlined: beyond chance")
-    facts.append(f"bins of fewer than {min(table.fewest for table in tables)} pairs left out")
-    sheet.text(LEFT_MM, sheet.height_mm - 5.8, f"lag: {sides(*one.first_names)}")
-    sheet.text(LEFT_MM, sheet.height_mm - 2.2, " · ".join(facts), color="0.3")
+    return [*facts, f"bins of fewer than {min(table.fewest for table in tables)} pairs left out"]
 
 
 def _share_pairs(columns: list[list[Any]]) -> None:

@@ -27,12 +27,14 @@ _LABEL_RADIUS = 1.1
 _LEAST_POINTS = 6.0  # that can be read in print
 
 
-def frame_disk(ax: Axes) -> None:
+def frame_disk(ax: Axes, sectors: int | None = None) -> None:
     """Fit the axes to the unit disk, hide them, and draw the circle with ticks every 30°, labels every 90°.
 
     Parameters
     ----------
     ax : Axes
+    sectors : int, optional
+        Of the windows: labels then give the sector that begins there, or holds the angle, too.
     """
     ax.set_aspect("equal")
     ax.set_xlim(-_REACH, _REACH)
@@ -51,7 +53,11 @@ def frame_disk(ax: Axes) -> None:
         (270, "center", "bottom"),
     ):
         u, v = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-        ax.text(_LABEL_RADIUS * u, _LABEL_RADIUS * v, f"{degrees}°", ha=across, va=down, fontsize=size)
+        words = f"{degrees}°"
+        if sectors is not None:
+            number = sectors * degrees // 360
+            words = f"sector {number} ({words})" if across == "center" else f"{number}\n{words}"
+        ax.text(_LABEL_RADIUS * u, _LABEL_RADIUS * v, words, ha=across, va=down, fontsize=size)
 
 
 def draw_disk_image(
@@ -136,6 +142,7 @@ def draw_disk_means(
     *,
     cmap: str | Colormap = SIGNAL_COLOURS,
     limits: tuple[float, float] | None = None,
+    number_sectors: bool = False,
 ) -> PolyCollection:
     """Fill each window of the disk with the colour of its value.
 
@@ -148,6 +155,8 @@ def draw_disk_means(
     cmap : str or Colormap
     limits : (float, float), optional
         Of the colours; by default percentiles 1 and 99.5 of the values.
+    number_sectors : bool
+        Write the numbers of the sectors at 0°, 90°, 180° and 270° too.
 
     Returns
     -------
@@ -163,7 +172,7 @@ def draw_disk_means(
     """
     table = window_values(values, (grid.layers, grid.sectors))
     drawn = add_filled_windows(ax, disk_polygons(grid), table, cmap, limits)
-    frame_disk(ax)
+    frame_disk(ax, grid.sectors if number_sectors else None)
     return drawn
 
 

@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from cytodisk.analysis.time_steps import frame_interval, frame_numbers
@@ -20,9 +21,11 @@ from cytodisk.plot.time_axis import TICK_STEPS, time_scale
 
 ONSET_NAME = "onset"
 
-_OUTLINE_WIDTH, _ONSET_WIDTH = 0.4, 1.3  # points
-_COLUMNS = {"sector", "onset", "end", "onset_known", "patch"}
+_OUTLINE_WIDTH, _ONSET_WIDTH, _THIN_ONSET = 0.4, 1.3, 0.6  # points
+_MOST_OUTLINED = 150  # patches
+_COLUMNS = {"sector", "kind", "onset", "end", "onset_known", "patch"}
 _BAND_OPACITY = 0.18
+_DASHES: Any = ("-", (0, (4.0, 1.2)), (0, (1.2, 1.0)), (0, (5.0, 1.2, 1.2, 1.2)))
 _DELAY_UNITS = {"frame": "frames", "s": "s"}
 
 
@@ -41,7 +44,9 @@ def draw_events(ax: Axes, velocity: xr.DataArray, events: pd.DataFrame) -> LineC
     -------
     LineCollection
         The outlines, one line a side of a window; a patch is open where it goes around sector 0. Bold
-        lines with the gid "onset", in a second collection, mark the onsets that are known.
+        lines with the gid "onset", in a second collection, mark the onsets that are known. Of more than
+        150 patches, whose lines would hide the map, there are no outlines, and thin lines at the onsets of
+        protrusions alone.
 
     Raises
     ------
@@ -58,10 +63,12 @@ def draw_events(ax: Axes, velocity: xr.DataArray, events: pd.DataFrame) -> LineC
     draw_velocity_map(ax, velocity, frame_interval_s=interval, first_frame=first, unit=unit)
     step = time_scale(first + len(patches), interval)[0]
     scale = np.array([step, 1.0])
-    outlines = _sides(patches) + np.array([first - 0.5, -0.5])
-    onsets = _onset_sides(velocity, events)
+    many = events["patch"].nunique() > _MOST_OUTLINED
+    outlines = (_sides(patches) + np.array([first - 0.5, -0.5]))[: 0 if many else None]
+    onsets = _onset_sides(velocity, events[events["kind"] == "protrusion"] if many else events)
     drawn = LineCollection(outlines * scale, colors=LINE_COLOUR, linewidths=_OUTLINE_WIDTH, capstyle="round")
-    starts = LineCollection(onsets * scale, colors=LINE_COLOUR, linewidths=_ONSET_WIDTH, capstyle="butt")
+    width = _THIN_ONSET if many else _ONSET_WIDTH
+    starts = LineCollection(onsets * scale, colors=LINE_COLOUR, linewidths=width, capstyle="butt")
     starts.set_gid(ONSET_NAME)
     ax.add_collection(drawn, autolim=False)
     ax.add_collection(starts, autolim=False)
@@ -82,7 +89,8 @@ def draw_event_average(ax: Axes, average: xr.Dataset, *, label: str = "mean") ->
     Returns
     -------
     list of Line2D
-        One a layer, dark for the edge; their bands are the collections of the axes.
+        One a layer, dark for the edge, each with its own dashes. Bands are drawn for the outermost and the
+        innermost layer only, as more would hide each other; `band_key` says what they are.
 
     Raises
     ------
@@ -93,10 +101,15 @@ def draw_event_average(ax: Axes, average: xr.Dataset, *, label: str = "mean") ->
     delays, unit = _delays(average)
     layers = shown_layers(table.sizes["layer"])
     lines = []
-    for layer, colour in zip(layers, layer_colours(layers), strict=True):
+    for place, (layer, colour) in enumerate(zip(layers, layer_colours(layers), strict=True)):
         one = table.isel(layer=layer)
-        ax.fill_between(delays, one["lower"], one["upper"], color=colour, alpha=_BAND_OPACITY, linewidth=0)
-        lines += ax.plot(delays, one["mean"], color=colour, linewidth=0.9, label=_layer_name(table, layer))
+        if layer in (layers[0], layers[-1]):
+            low, high = one["lower"], one["upper"]
+            ax.fill_between(delays, low, high, color=colour, alpha=_BAND_OPACITY, linewidth=0)
+        # The last is solid as the first is: their colours differ most.
+        dashes = "-" if layer == layers[-1] else _DASHES[place % len(_DASHES)]
+        name = _layer_name(table, layer)
+        lines += ax.plot(delays, one["mean"], color=colour, linewidth=0.9, linestyle=dashes, label=name)
     ax.axvline(0.0, color="0.6", linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
     ax.set_xlim(delays[0], delays[-1])
     ax.set_xlabel(f"delay after {average.attrs['at']} of {average.attrs['kind']} ({_DELAY_UNITS[unit]})")
@@ -104,9 +117,40 @@ def draw_event_average(ax: Axes, average: xr.Dataset, *, label: str = "mean") ->
     ax.xaxis.set_major_locator(MaxNLocator(6, steps=TICK_STEPS, integer=unit == "frame"))
     ax.yaxis.set_major_locator(MaxNLocator(4, steps=TICK_STEPS))
     if "layer" in average.dims:
-        ax.legend(frameon=False, loc="best", handlelength=1.2, borderpad=0.0, labelspacing=0.25)
+        handles = [*lines, *band_key(average)]
+        ax.legend(
+            handles=handles, frameon=False, loc="best", handlelength=2.0, borderpad=0.0, labelspacing=0.25
+        )
     _write_number(ax, table)
     return lines
+
+
+def band_key(average: xr.Dataset) -> list[Any]:
+    """Handle of a legend for the bands of `draw_event_average`.
+
+    Parameters
+    ----------
+    average : Dataset
+        Of `average_around`.
+
+    Returns
+    -------
+    list of Artist
+        Empty where there is no band.
+
+    Raises
+    ------
+    ParameterError
+        It is no average, or has other dims.
+    """
+    table = _parse_average(average)
+    layers = shown_layers(table.sizes["layer"])
+    if not np.isfinite(table["lower"]).any():
+        return []
+    words = f"{average.attrs.get('confidence', 0.95):.0%}".replace("%", " %") + ", bootstrap of patches"
+    words += f" (layers {layers[0]}, {layers[-1]})" if len(layers) > 2 else ""
+    colour = (*layer_colours(layers)[0][:3], _BAND_OPACITY)
+    return [Patch(facecolor=colour, linewidth=0, label=words)]
 
 
 def _patch_image(velocity: xr.DataArray, events: Any, first: int) -> IntArray:

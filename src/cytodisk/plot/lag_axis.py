@@ -92,8 +92,10 @@ def layer_names(layers: Sequence[int], count: int) -> list[str]:
     return [f"layer {layer}{places.get(layer, '')}" for layer in layers]
 
 
-def sides(signal: str, with_: str) -> str:
+def sides(signal: str, with_: str, *, upright: bool = False) -> str:
     """What the sides of a lag axis mean: `with_` comes first at negative lags, `signal` at positive ones."""
+    if upright:
+        return f"↓ {with_} first  ·  ↑ {signal} first"
     return f"← {with_} first  ·  {signal} first →"
 
 
