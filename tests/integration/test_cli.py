@@ -341,6 +341,21 @@ def test_what_is_said_when_stopped(
     assert capsys.readouterr().err == words + "\n"
 
 
+def test_an_interrupt_of_compiled_code_is_an_interrupt() -> None:
+    """Numba, while it takes its arguments, turns one into a SystemError."""
+
+    def run_until(cause: BaseException | None) -> None:
+        with progress_bar(True, "frames"):
+            raise SystemError("returned a result with an exception set") from cause
+
+    with pytest.raises(typer.Exit) as stop:
+        run_until(KeyboardInterrupt())
+    assert stop.value.exit_code == 130
+    for other in (None, ValueError()):
+        with pytest.raises(SystemError):
+            run_until(other)
+
+
 def test_only_a_run_can_be_complete_already(capsys: pytest.CaptureFixture[str], bar: list[object]) -> None:
     with progress_bar(False, "cells"):
         pass

@@ -104,7 +104,9 @@ def progress_bar(
 
         try:
             yield report
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, SystemError) as error:
+            if not _is_interrupt(error):
+                raise
             done, known = bar.tasks[task].completed, bar.tasks[task].total
             of_all = f" ({done:.0f} of {known:.0f} {unit})" if known else ""
             kept = f"Stopped; what was done is kept{of_all}: {again}."
@@ -112,3 +114,10 @@ def progress_bar(
             raise typer.Exit(130) from None
         if stopped is None and not bar.tasks[task].total and not quiet:
             print("this study is complete already: nothing was run again", file=sys.stderr)
+
+
+def _is_interrupt(error: BaseException | None) -> bool:
+    """Whether Ctrl-C is behind an error: where compiled code is called it comes out as a SystemError."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__ or error.__context__
+    return error is not None
