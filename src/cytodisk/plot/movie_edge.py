@@ -156,7 +156,7 @@ def _draw_arrows(sheet: Sheet, top: float, movie: CellMovie, velocity: FloatArra
     )
     stamp = time_stamp(time, movie.interval_s)
     stamp += "" if movie.interval_s is None else f" (frame {time})"
-    sheet.text(4.0, HEADING_MM + 3.0, f"largest mean speed, from {stamp} to the next frame", fontsize=7.5)
+    sheet.text(4.0, HEADING_MM + 3.0, f"largest mean speed: {stamp} and the next", fontsize=7.5)
 
 
 def _draw_tracks(sheet: Sheet, top: float, movie: CellMovie) -> None:
