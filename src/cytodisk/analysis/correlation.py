@@ -69,8 +69,8 @@ def cross_correlate(
     surrogates : int
         How many surrogates of `b` to compare with; 0 for none. 999 give p-values down to 0.001.
     null : {"phase", "shift"}
-        Surrogates with random phases, or circularly shifted. Shifts are too few and too alike in short movies
-        to hold the level; `benchmarks/correlation.py` prints both.
+        Surrogates with random phases, or circularly shifted by more than twice the longest lag. Shifts are
+        few, no more than differ, and alike: `benchmarks/correlation.py` prints how they hold the level.
     seed : int
         Of the surrogates.
     progress : callable, optional
@@ -126,7 +126,7 @@ def cross_correlate(
     attrs |= drifting_shares(first, second)
     pair = paired(first, second)
     changed = make_surrogates(null, len(pair.a), surrogates, seed, max_lag) if surrogates else None
-    run = _Run(pair, lags, np.isin(lags, skip_lags), min_pairs, surrogates)
+    run = _Run(pair, lags, np.isin(lags, skip_lags), min_pairs, changed.count if changed else 0)
     run.correlate(changed, progress)
     order = [str(dim) for dim in (*first.dims, *second.dims) if dim != "time"]
     return run.dataset(list(dict.fromkeys(order)), interval_s).assign_attrs(attrs)

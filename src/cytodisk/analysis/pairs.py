@@ -111,9 +111,9 @@ def correlate_pairs(
     dims = ("along", "distance", "lag")
     data: dict[str, Any] = {name: (dims, values) for name, values in found.items()}
     if surrogates:
-        changed = make_surrogates(null, len(tables[1]), surrogates, seed, max_lag).together
+        changed = make_surrogates(null, len(tables[1]), surrogates, seed, max_lag)
         chance = chance_of_pairs(
-            tables[0], tables[1], changed, surrogates, lags, min_pairs, sorted_pairs, ALPHA, steps
+            tables[0], tables[1], changed.together, changed.count, lags, min_pairs, sorted_pairs, ALPHA, steps
         )
         data |= {"null_low": (dims, chance.low), "null_high": (dims, chance.high)}
         data["threshold"] = ("along", chance.threshold)

@@ -34,10 +34,13 @@ class Surrogates:
     together : Change
         For means over many series: keeps also how they correlate with each other at every lag, so that
         neighbours that move together, or waves that run along them, are not taken for independent.
+    count : int
+        How many there are: of shifts no more than differ.
     """
 
     alone: Change
     together: Change
+    count: int
 
 
 def surrogates(null: Null, frames: int, count: int, seed: int, max_lag: int = 0) -> Surrogates:
@@ -74,17 +77,18 @@ def surrogates(null: Null, frames: int, count: int, seed: int, max_lag: int = 0)
                 f"null 'shift' needs at least {4 * max_lag + 2} frames at max_lag {max_lag}, got {frames}: "
                 "pass a smaller max_lag, or null 'phase'"
             )
-        shifts = random.integers(least, most + 1, count)
+        shifts = random.permutation(np.arange(least, most + 1))[:count]
 
         def shifted(series: FloatArray, which: slice = _ALL) -> FloatArray:
             return circularly_shifted(series, shifts[which])
 
-        return Surrogates(shifted, shifted)
+        return Surrogates(shifted, shifted, len(shifts))
     turns = np.exp(1j * random.uniform(0.0, 2.0 * np.pi, (frames + 1, count)))
     noise = np.fft.rfft(random.normal(size=(2 * frames, count)), axis=0)
     return Surrogates(
         lambda series, which=_ALL: phase_randomised(series, turns[:, which]),
         lambda series, which=_ALL: filtered_noise(series, noise[:, which]),
+        count,
     )
 
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from cytodisk.io.correlation_store import Correlation
     from cytodisk.io.study import Study
 
+NOTHING_CHANGED = "Stopped; nothing was changed."
 Format = Literal["png", "pdf", "svg"]
 
 CORRELATE_HELP = """Correlate a signal with the motion of the edge, or with another signal, window by window.
@@ -133,7 +134,7 @@ def correlate_command(
     chosen = signal if signal is not None else _only(channels_of(there))
     console = console_for(quiet)
     before = earlier_settings(there, chosen, with_, name or "")
-    with progress_bar(quiet, "percent") as progress:
+    with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
         found = correlate_study(there, chosen, with_, cells=cell, progress=progress, **settings)
     draw_correlation(quiet, there, found, figures, wanted)
     say_correlation(console, found)
@@ -168,13 +169,12 @@ def write_page(
 ) -> None:
     """Write the report and say where it is and what is wrong with the study."""
     from cytodisk.io.frames import open_frames
-    from cytodisk.report.flags import red_flags
-    from cytodisk.report.page import write_report
+    from cytodisk.report.page import page_flags, write_report
 
     image = open_frames(signal) if signal is not None else None
-    with progress_bar(quiet, "frames") as progress:
+    with progress_bar(quiet, "frames", stopped=NOTHING_CHANGED) as progress:
         page = write_report(study, out, cell=cell, signal=image, progress=progress)
-    flags = red_flags(study)
+    flags = page_flags(study, image)
     for flag in flags:
         console.print(f"red flag: {flag.what}")
     if not flags:
@@ -191,7 +191,8 @@ def draw_correlation(
     done = [int(cell) for cell in found.windows["cell"].unique()]
     cells = done if figures < 0 else done[:figures]
     if cells:
-        with progress_bar(quiet, "cells drawn") as progress:
+        stopped = f"Stopped while drawing; the tables are in {found.path}."
+        with progress_bar(quiet, "cells drawn", total=len(cells), stopped=stopped) as progress:
             for place, cell in enumerate(cells):
                 draw_correlation_figures(study, found, cell=cell, formats=formats)
                 progress(place + 1, len(cells))

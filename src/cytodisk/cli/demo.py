@@ -8,8 +8,10 @@ from typing import Annotated
 import typer
 
 from cytodisk.cli.console import Quiet, console_for, progress_bar
-from cytodisk.cli.correlate import draw_correlation, say_correlation, write_page
+from cytodisk.cli.correlate import NOTHING_CHANGED, draw_correlation, say_correlation, write_page
 from cytodisk.cli.movie import draw_movie, finish_movie, say_movie
+
+_AGAIN = "run the same command again"
 
 
 def info_command() -> None:
@@ -46,7 +48,7 @@ def demo_command(
     console.print(f"The same by hand: cytodisk movie {masks} --signal {signal} -o {out / 'mine'}\n")
     inputs = open_movie(masks, signal, MovieParameters())
     say_movie(console, inputs)
-    with progress_bar(quiet, "frames") as progress:
+    with progress_bar(quiet, "frames", again=_AGAIN) as progress:
         study = run_movie(
             inputs,
             out / "study",
@@ -55,9 +57,9 @@ def demo_command(
             overwrite=overwrite,
             progress=progress,
         )
-    draw_movie(quiet, study, inputs, 1)
+    draw_movie(quiet, study, inputs, 1, again=_AGAIN)
     finish_movie(console, study)
-    with progress_bar(quiet, "steps") as progress:
+    with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
         found = correlate_study(study, "edge", "velocity", progress=progress)
     draw_correlation(quiet, study, found, 1, ("png",))
     say_correlation(console, found)
