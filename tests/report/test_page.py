@@ -15,7 +15,8 @@ from cytodisk.errors import MissingPartError, ParameterError, SignalError, Study
 from cytodisk.io.frames import open_frames
 from cytodisk.io.study import Study, open_study
 from cytodisk.report import page
-from cytodisk.report.page import write_report
+from cytodisk.report.flags import red_flags
+from cytodisk.report.page import page_flags, write_report
 from cytodisk.report.signal_file import find_signal
 from cytodisk.simulate.moving_cells import SimulatedMovie
 from cytodisk.study.movie_inputs import open_movie
@@ -75,6 +76,53 @@ def test_folder_that_is_not_there(study: Study, tmp_path: Path) -> None:
 def test_signal_that_does_not_fit(study: Study, masks: Path) -> None:
     with pytest.raises(SignalError, match="signal has 8 frames of 1 channels, the study's has 2 channels"):
         write_report(study, signal=open_frames(masks))
+
+
+def test_signal_of_another_size(study: Study, signal: Path, tmp_path: Path) -> None:
+    """Refused if it was given; a red flag and plain masks if it was found."""
+    height, width = study.provenance["image_shape"]
+    words = f"has images of {height} × {width} pixels, the study's masks have {height + 2} × {width}"
+    other = Study(study.path, study.cells, study.provenance | {"image_shape": [height + 2, width]})
+    with pytest.raises(SignalError, match=f"signal {words}: pass the movie that was measured"):
+        write_report(other, tmp_path / "report.html", signal=open_frames(signal))
+    assert not (tmp_path / "report.html").exists()
+    found = find_signal(other)
+    assert found.source is None
+    assert words in found.fault
+    assert "signal.ome.tif is not the movie that was measured" in page_flags(other)[0].what
+
+
+def test_flags_of_the_page_in_one_list(study: Study, tmp_path: Path) -> None:
+    gone = dict(study.provenance["inputs"]["signal"], path=str(tmp_path / "gone.tif"))
+    moved = Study(study.path, study.cells, study.provenance | {"inputs": {"signal": gone}})
+    flags = page_flags(moved)
+    assert [flag.name for flag in flags] == ["signal not shown", *(flag.name for flag in red_flags(study))]
+    assert "cytodisk report study --signal FILE" in flags[0].advice
+    assert page_flags(study) == red_flags(study)
+    text = html.unescape(write_report(moved, tmp_path / "report.html").read_text(encoding="utf-8"))
+    assert f"Red flags: {len(flags)}" in text
+    for flag in flags:
+        assert flag.what in text
+
+
+def test_page_tells_no_folder_and_no_computer(study: Study, tmp_path: Path) -> None:
+    gone = dict(study.provenance["inputs"]["signal"], path=str(tmp_path / "gone.tif"))
+    inputs = study.provenance["inputs"] | {"signal": gone}
+    warnings = [f"{study.provenance['inputs']['masks']['path']} is odd"]
+    moved = Study(study.path, study.cells, study.provenance | {"inputs": inputs, "warnings": warnings})
+    text = write_report(moved, tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "masks.tif is odd" in text
+    assert "gone.tif" in text
+    assert str(study.path.parent) not in text
+    assert str(tmp_path) not in text
+    assert study.provenance["platform"] not in text
+
+
+def test_settings_say_what_was_used(written: Path) -> None:
+    """The scale stands in the file, not among the parameters."""
+    text = written.read_text(encoding="utf-8")
+    assert "<th>pixel_size_um</th><td>0.16 (not given; this was found and used)</td>" in text
+    assert "<th>frame_interval_s</th><td>5 (not given; this was found and used)</td>" in text
 
 
 def test_missing_bokeh_names_what_to_type(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,15 +1,17 @@
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 from page_driver import Page, errors, requests
-from report_study import FRAMES, GAP, LAGS, LAYERS, NAMES, SECTORS
+from report_study import FRAMES, GAP, LAGS, LAYERS, NAMES, SECTORS, correlated
 from selenium import webdriver
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 
 import cytodisk as cd
+from cytodisk.io.correlation_store import write_correlation
 from cytodisk.io.study import Study
 from cytodisk.report.page import write_report
 
@@ -149,9 +151,74 @@ def test_keyboard(page: Page, browser: webdriver.Chrome) -> None:
     assert page.text("spoken").startswith("frame ")
 
 
+def test_chords_are_the_browsers_but_for_brackets(page: Page, browser: webdriver.Chrome) -> None:
+    """Returns whether the page took the key."""
+
+    def took(key: str, **modifiers: bool) -> bool:
+        event = {"key": key, "bubbles": True, "cancelable": True, **modifiers}
+        return bool(
+            browser.execute_script(
+                "return !document.body.dispatchEvent(new KeyboardEvent('keydown', arguments[0]))", event
+            )
+        )
+
+    assert took("ArrowRight")
+    for modifier in ("altKey", "ctrlKey", "metaKey"):
+        assert not took("ArrowLeft", **{modifier: True})
+    assert took("]", ctrlKey=True, altKey=True, modifierAltGraph=True)
+    assert took("[", altKey=True)
+    assert not took("[", ctrlKey=True)
+
+
+def test_keys_come_back_after_the_pointer(page: Page, browser: webdriver.Chrome) -> None:
+    def active() -> str:
+        element = browser.switch_to.active_element
+        return element.get_attribute("id") or element.tag_name
+
+    page.control("channel").click()
+    page.press(Keys.ARROW_DOWN)
+    page.press(Keys.ENTER)
+    page.wait("cytodisk.state.channel === 1")
+    assert active() == "body"
+    page.press(Keys.ARROW_RIGHT)
+    assert page.js("[cytodisk.state.frame, cytodisk.state.channel]") == [1, 1]
+    page.control("time").click()
+    assert active() == "body"
+    browser.find_element(By.CSS_SELECTOR, f"button[data-frame='{GAP}']").click()
+    page.press(" ")
+    assert page.js("cytodisk.state.playing") is True
+    page.press(" ")
+    page.press(Keys.TAB)
+    browser.execute_script("document.getElementById('layer').focus()")
+    page.press(Keys.ARROW_DOWN)
+    assert page.js("cytodisk.state.layer") == 1
+    assert active() == "layer"
+
+
+def test_layer_of_a_resting_pointer_follows(page: Page) -> None:
+    page.hover("activity", 10.0, 4.0)
+    page.press(Keys.ARROW_DOWN)
+    assert page.focus() == (1, 4, 2)
+    assert page.text("read-window") == "layer 1, sector 4"
+    assert "layer 1, sector 4" in page.text("spoken")
+    Select(page.control("layer")).select_by_value("3")
+    page.settle()
+    assert page.focus()[0] == page.js("cytodisk.state.layer") == 3
+
+
+def test_spoken_words_follow_the_slider(page: Page, browser: webdriver.Chrome) -> None:
+    page.press(Keys.ARROW_RIGHT)
+    assert page.text("spoken").startswith("frame 1,")
+    browser.execute_script(
+        "const slider = document.getElementById('time'); slider.value = 5;"
+        "slider.dispatchEvent(new Event('input'));"
+    )
+    page.wait("document.getElementById('spoken').textContent.startsWith('frame 5,')")
+
+
 def test_every_control_is_reached_and_seen(page: Page, browser: webdriver.Chrome) -> None:
     reached = {}
-    for _ in range(30):
+    for _ in range(40):
         browser.switch_to.active_element.send_keys(Keys.TAB)
         element = browser.switch_to.active_element
         if element.tag_name != "body":
@@ -174,6 +241,57 @@ def test_a_flag_leads_to_its_frame(page: Page, browser: webdriver.Chrome, study:
     missing = page.js("cytodisk.figures.area.select('missing')[0].data")
     assert (missing["left"], missing["right"]) == ([27.5], [32.5])
     assert page.js("cytodisk.labels") is None
+
+
+def test_flags_take_a_line_and_print_in_full(page: Page, browser: webdriver.Chrome) -> None:
+    line = "document.querySelector('.flag').getBoundingClientRect().height"
+    meaning = browser.find_element(By.CSS_SELECTOR, ".flag .meaning")
+    assert page.js(line) < 32
+    assert not meaning.is_displayed()
+    browser.find_element(By.CSS_SELECTOR, ".flag .why").click()
+    assert meaning.is_displayed()
+    browser.find_element(By.CSS_SELECTOR, ".flag .why").click()
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    try:
+        assert meaning.is_displayed()
+        assert not page.control("play").is_displayed()
+    finally:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+
+
+def test_a_flag_of_a_sector_pins_it(browser: webdriver.Chrome, study: Study, tmp_path: Path) -> None:
+    """The edge leaps in one place."""
+    edge = study.edge.copy()
+    edge.loc[(edge["time"] == 3) & (edge["sector"] == 7), "velocity"] = 50.0
+    leaping = Study(study.path, study.cells, study.provenance)
+    leaping.__dict__["edge"] = edge
+    page = Page(browser, write_report(leaping, tmp_path / "report.html"))
+    browser.find_element(By.CSS_SELECTOR, "button[data-frame='3'][data-sector='7']").click()
+    page.settle()
+    assert page.focus() == (0, 7, 3)
+
+
+def test_correlation_of_some_sectors(browser: webdriver.Chrome, study: Study, tmp_path: Path) -> None:
+    folder = tmp_path / "study"
+    shutil.copytree(study.path, folder, ignore=shutil.ignore_patterns("correlation"))
+    tables = correlated()
+    units = tables["windows"].attrs
+    for name in ("windows", "curves"):
+        tables[name] = tables[name][tables[name]["sector"] < 4]
+        tables[name].attrs = units
+    settings = {"detrend": "linear", "skip_lags": [-1, 0], "sectors": [0, 3]}
+    write_correlation(folder, NAMES[1], "velocity", tables, settings)
+    page = Page(browser, write_report(cd.open_study(folder)))
+    assert page.text("peaks-differs") == "linear detrending, without lags −1, 0, only sectors 0–3"
+    assert page.text("curve-differs") == page.text("peaks-differs")
+    assert page.text("peaks-key").endswith("grey: not correlated")
+    page.hover("peaks", *disk_point(1, 9))
+    assert page.text("read-correlation") == "–"
+    assert page.text("curve-window") == "layer 1, sector 9: not correlated"
+    page.hover("peaks", *disk_point(1, 2))
+    assert page.text("read-correlation") == "0.02"
+    assert page.text("curve-window") == "layer 1, sector 2, band: 95 % at each lag by itself"
+    assert errors(browser) == []
 
 
 def test_choices_change_what_is_drawn(page: Page) -> None:

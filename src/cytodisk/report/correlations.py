@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -52,17 +52,10 @@ def pairs_of(cell: CellData) -> tuple[list[dict[str, Any]], list[str]]:
         notes.append("correlation curves of single windows (only those of layers are shown)")
     labels = labels_of([(pair, one.settings) for pair, one in known])
     pairs = [
-        {"label": label, "differs": _differs(pair, one)} | _pair(cell, one, with_curves)
-        for label, (pair, one) in zip(labels, known, strict=True)
+        {"label": label, "differs": differences(one.settings)} | _pair(cell, one, with_curves)
+        for label, (_, one) in zip(labels, known, strict=True)
     ]
     return pairs, notes
-
-
-def _differs(names: Sequence[str], found: Correlation) -> str:
-    """Name of the variant, and what in its settings is not the default."""
-    told = ", ".join(names[2:3])
-    words = differences(found.settings)
-    return f"{told}: {words}" if told and words else told or words
 
 
 def _pair(cell: CellData, found: Correlation, with_curves: bool) -> dict[str, Any]:

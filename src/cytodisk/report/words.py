@@ -155,7 +155,7 @@ def _other_cells(study: Study) -> tuple[list[str], list[dict[str, Any]]]:
 def _setting(given: Any, used: Any) -> str:
     """A parameter, or what the run used where none was given."""
     if given is None:
-        return "not set" if used is None else f"{used:.6g} (not given: from the files or the cells)"
+        return "not set" if used is None else f"{used:.6g} (not given; this was found and used)"
     return given if isinstance(given, str) else json.dumps(given)
 
 
@@ -170,7 +170,11 @@ def _settings(study: Study) -> Iterator[tuple[str, str]]:
         yield name, _setting(value, provenance.get(name))
     for names in study.correlations:
         told = study.correlation(*names).settings
-        words = [f"{name} {value}" for name, value in told.items() if name not in _HEADING]
+        words = [
+            f"{name} {value if isinstance(value, str) else json.dumps(value)}"
+            for name, value in told.items()
+            if name not in _HEADING and not (value is None or value is False or value in ([], ""))
+        ]
         yield f"correlation of {correlation_name(names)}", ", ".join(words)
     for name in ("started", "finished", "python"):
         if name in provenance:

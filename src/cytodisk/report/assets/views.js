@@ -172,7 +172,9 @@
     part("peaks", "colours").palette = lagged ? page.data.palettes.lag : page.data.palettes.diverging;
     setColours("peaks", [-top, top], lagged ? page.lagUnit() : "correlation");
     const tested = windows.q.values.some(Number.isFinite);
-    text("peaks-key", tested ? "hatched: not significant (q ≥ 0.05)" : "significance was not computed");
+    const missing = windows.correlation.values.some((value) => !Number.isFinite(value));
+    const key = tested ? "hatched: not significant (q ≥ 0.05)" : "significance was not computed";
+    text("peaks-key", missing ? `${key}; grey: not correlated` : key);
     text("peaks-name", lagged ? "Lag of the peak" : "Peak correlation");
     for (const name of ["peaks", "curve"]) {
       text(`${name}-title`, `${signal} with ${other}`);
