@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from cytodisk import errors as errors
+    from cytodisk import plot as plot
     from cytodisk import simulate as simulate
     from cytodisk.analysis.activity import sample_movie as sample_movie
     from cytodisk.analysis.consistency import centroid_displacement as centroid_displacement
@@ -87,7 +88,7 @@ _HOME = {
     "window_distances": "analysis.distances",
     "write_report": "report.page",
 }
-_MODULES = ("errors", "simulate")
+_MODULES = ("errors", "plot", "simulate")
 
 __all__ = sorted([*_HOME, *_MODULES])
 
