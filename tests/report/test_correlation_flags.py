@@ -46,6 +46,14 @@ def test_each_fault_has_its_flag(tmp_path: Path, faults: dict[str, object], name
     assert flag.advice
 
 
+def test_a_variant_is_told_by_its_name(tmp_path: Path) -> None:
+    cells = pd.DataFrame({"cell": [0], "status": "refused", "reason": "too short"})
+    write_correlation(tmp_path, "0", "velocity", {"cells": cells}, {}, "early")
+    study = Study(tmp_path, pd.DataFrame(), {"run": "movie"})
+    (flag,) = correlation_flags.left_out(study)
+    assert [place.note for place in flag.places] == ["channel 0 with velocity (early): too short"]
+
+
 def test_a_study_without_correlations_has_none(tmp_path: Path) -> None:
     study = Study(tmp_path, pd.DataFrame(), {"run": "movie"})
     assert [flag for rule in RULES for flag in rule(study)] == []

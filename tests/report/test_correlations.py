@@ -31,6 +31,16 @@ def test_tables_become_arrays(plain: CellData) -> None:
     np.testing.assert_allclose(pair["layers"]["threshold"], 0.25)
 
 
+def test_variants_of_the_same_names_are_told_apart(study: Study, plain: CellData) -> None:
+    settings = {"detrend": "linear"}
+    folder = write_correlation(study.path, NAMES[1], "velocity", correlated(), settings, "steady").path
+    pairs, _ = pairs_of(plain)
+    shutil.rmtree(folder)
+    words = f"{NAMES[1]} with velocity"
+    assert [pair["label"] for pair in pairs] == [words, f"{words} (steady): linear detrending"]
+    assert [pair["differs"] for pair in pairs] == ["", "“steady”, linear detrending"]
+
+
 def test_those_with_velocity_come_first(study: Study, plain: CellData) -> None:
     folder = write_correlation(study.path, NAMES[1], NAMES[0], correlated(), {}).path
     pairs, _ = pairs_of(plain)
