@@ -31,15 +31,15 @@ def test_what_differs_is_said() -> None:
 
 def test_numbers_in_a_row_are_a_range() -> None:
     assert scope_words({"sectors": [3, 20]}) == ["only sectors 3–20"]
-    assert scope_words({"sectors": [0, 1, 2, 7, 9, 8]}) == ["only sectors 0–2, 7–9"]
-    assert scope_words({"frames": [[0, 5], [9, 9]]}) == ["only frames 0–5, 9"]
+    assert scope_words({"sectors": (7, 7), "frames": [50, 80]}) == ["only sectors 7", "only frames 50–80"]
     assert scope_words({"without_frames": [4, 9]}) == ["without frames 4, 9"]
+    assert scope_words({"without_frames": [0, 1, 2, 7, 9, 8]}) == ["without frames 0–2, 7–9"]
 
 
 def test_used_windows_are_those_of_the_settings() -> None:
     used = used_windows({"sectors": [4, 1], "frames": [11, 13], "without_frames": [12]}, 10, 5, 6)
     times, places = np.array([False, True, False, True, False]), np.array([1, 1, 0, 0, 1, 1], dtype=bool)
     np.testing.assert_array_equal(used, times[:, None] & places)
-    used = used_windows({"sectors": [0, 2, 3], "without_frames": [10, 14]}, 10, 5, 6)
-    np.testing.assert_array_equal(np.flatnonzero(used.any(axis=0)), [0, 2, 3])
+    used = used_windows({"sectors": [2, 3], "without_frames": [10, 14]}, 10, 5, 6)
+    np.testing.assert_array_equal(np.flatnonzero(used.any(axis=0)), [2, 3])
     np.testing.assert_array_equal(np.flatnonzero(used.any(axis=1)), [1, 2, 3])

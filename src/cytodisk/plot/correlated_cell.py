@@ -105,9 +105,12 @@ class CellCorrelation:
 
     @property
     def velocity(self) -> xr.DataArray:
-        """What stands for the motion of the edge, by time and sector; NaN where it was not used."""
+        """What stands for the motion of the edge, by time and sector; NaN where it was not used.
+
+        A step needs both of its frames.
+        """
         velocity = self.movie.activity[self.correlation.with_].transpose("time", "sector").load()
-        return velocity.where(self.used)
+        return velocity.where(self.used & np.append(self.used[1:], self.used[-1:] & False, axis=0))
 
     def rows(self, table: pd.DataFrame | None) -> pd.DataFrame:
         """Rows of the cell in a table, which may not be there."""

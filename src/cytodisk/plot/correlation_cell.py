@@ -219,14 +219,12 @@ def draw_peaks_on_cell(
     return drawn
 
 
-def peak_key(peaks: PeakMap, *, missing: str = "no correlation") -> list[Any]:
+def peak_key(peaks: PeakMap) -> list[Any]:
     """Handles of a legend: what is pale, framed and grey, of windows that are there.
 
     Parameters
     ----------
     peaks : PeakMap
-    missing : str
-        What grey means.
 
     Returns
     -------
@@ -241,7 +239,7 @@ def peak_key(peaks: PeakMap, *, missing: str = "no correlation") -> list[Any]:
         if pale < known:
             handles.append(Patch(label=f"q < {peaks.alpha:g}", **frame | {"edgecolor": LINE_COLOUR}))
     if known < peaks.correlation.size:
-        handles.append(Patch(facecolor=MISSING_COLOUR, linewidth=0, label=missing))
+        handles.append(Patch(facecolor=MISSING_COLOUR, linewidth=0, label="no correlation"))
     return handles
 
 

@@ -99,7 +99,7 @@ def peaks_page(one: CellCorrelation) -> Sheet | None:
     windows = movie.windows(time)
     high, wide = np.ptp(windows.disk.outline_yx, axis=0)
     height = _PANEL * float(np.clip(high / wide, 1.0, _TALLEST))
-    key = peak_key(peaks, missing="no correlation" if one.used.all() else "no correlation, or not used")
+    key = peak_key(peaks)
     row = height + 9.0
     sheet = Sheet(head + 2 * row + 7.5 + (4.0 if key else 0.0), SINGLE_COLUMN_MM)
     heading.write(sheet)

@@ -100,13 +100,11 @@ def _within(numbers: IntArray, ranges: list[tuple[int, int]]) -> BoolArray:
 
 
 def _ranges(settings: Mapping[str, Any], name: str) -> list[tuple[int, int]]:
-    """First and last of what a setting lists: two ends of sectors or frames, pairs, or single numbers."""
-    chosen = settings.get(name) or []
-    if any(isinstance(one, list | tuple) for one in chosen):
-        return [(int(one[0]), int(one[1])) if isinstance(one, list | tuple) else (one, one) for one in chosen]
-    if len(chosen) == 2 and name != "without_frames":
-        return [(int(chosen[0]), int(chosen[1]))]
-    numbers = sorted({int(one) for one in chosen})
+    """First and last of what was chosen: one pair for sectors and frames, runs of numbers else."""
+    chosen = [int(one) for one in settings.get(name) or []]
+    if name != "without_frames":
+        return [(chosen[0], chosen[1])] if chosen else []
+    numbers = sorted(set(chosen))
     breaks = [k + 1 for k, (here, there) in enumerate(pairwise(numbers)) if there != here + 1]
     parts = [numbers[low:high] for low, high in pairwise([0, *breaks, len(numbers)])]
     return [(part[0], part[-1]) for part in parts if part]
