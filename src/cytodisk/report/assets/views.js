@@ -160,7 +160,7 @@
   const largest = (values) => values.reduce((top, value) => (Math.abs(value) > top ? Math.abs(value) : top), 0);
 
   const drawPeaks = () => {
-    const { windows, signal, with: other, differs } = page.pair();
+    const { windows, signal, with: other, differs, label } = page.pair();
     const lagged = page.state.peak === "lag";
     const scale = lagged ? page.lagScale() : 1;
     const values = (lagged ? windows.lag : windows.correlation).values.map((value) => value * scale);
@@ -176,6 +176,7 @@
     const key = tested ? "hatched: not significant (q ≥ 0.05)" : "significance was not computed";
     text("peaks-key", missing ? `${key}; grey: not correlated` : key);
     text("peaks-name", lagged ? "Lag of the peak" : "Peak correlation");
+    document.getElementById("pair").title = label; // which may be longer than the list is wide
     for (const name of ["peaks", "curve"]) {
       text(`${name}-title`, `${signal} with ${other}`);
       text(`${name}-differs`, differs);
