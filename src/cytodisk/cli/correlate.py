@@ -280,7 +280,7 @@ def say_replaced(console: "Console", before: dict[str, Any] | None, now: dict[st
     """Say which settings the replaced correlation had, if others."""
     if before is None:
         return
-    changed = [f"{name} {before.get(name)!r}" for name in now if before.get(name) != now[name]]
+    changed = [f"{name} {before[name]!r}" for name in now if name in before and before[name] != now[name]]
     if changed:
         console.print(f"this replaced the correlation with {', '.join(changed)}: --name NAME keeps both")
 

@@ -6,12 +6,10 @@ from collections.abc import Iterator
 
 import pandas as pd
 
+from cytodisk.analysis.series import DRIFTING_SHARE
 from cytodisk.io.study import Study
 from cytodisk.report.flag import Flag, Place, counted
 from cytodisk.report.names import correlation_name
-
-LARGEST_DRIFTING_SHARE = 0.25
-"""Share of a cell's series whose level drifts; of steady ones one in twenty seems to."""
 
 
 def jitter(study: Study) -> Iterator[Flag]:
@@ -37,7 +35,7 @@ def drifting_series(study: Study) -> Iterator[Flag]:
     places = []
     for names, row in _rows(study):
         share = max(row.drifting_signal, row.drifting_with)
-        if share > LARGEST_DRIFTING_SHARE:
+        if share > DRIFTING_SHARE:
             places.append(Place(int(row.cell), None, f"{names}: {share:.0%} of the series"))
     if places:
         yield Flag(
