@@ -217,12 +217,12 @@ def test_chance_by_brute_force(null: Any, missing: float) -> None:
     a, b = noise(12, FRAMES, LAYERS, SECTORS, missing=missing), noise(13, FRAMES, LAYERS, SECTORS)
     distances = some_distances()
     found = correlate_pairs(a, b, 1, distances=distances, bins=2, surrogates=19, null=null, seed=4)
-    changed = np.stack(
-        [surrogates(null, FRAMES, 19, 4, 1).together(x) for x in b.reshape(FRAMES, -1).T], axis=1
-    )
-    means = np.empty((19, 3, 3))
-    for k, number, lag in np.ndindex(19, 3, 3):
+    change = surrogates(null, FRAMES, 19, 4, 1)
+    changed = np.stack([change.together(x) for x in b.reshape(FRAMES, -1).T], axis=1)
+    means = np.empty((change.count, 3, 3))
+    for k, number, lag in np.ndindex(*means.shape):
         means[k, number, lag] = by_hand(a, changed[..., k], lag - 1)[in_bin(distances, number, 2)].mean()
+    assert found.attrs["surrogates"] == change.count
     np.testing.assert_allclose(found["null_low"], np.quantile(means, 0.025, axis=0), atol=1e-12)
     np.testing.assert_allclose(found["null_high"], np.quantile(means, 0.975, axis=0), atol=1e-12)
     assert float(found["threshold"]) == pytest.approx(np.abs(means).max(axis=(1, 2)).max(), abs=1e-12)

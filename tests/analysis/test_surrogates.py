@@ -90,15 +90,18 @@ def test_a_series_that_starts_late_stays_like_its_neighbour() -> None:
     assert np.mean(alike) > 0.8
 
 
-@pytest.mark.parametrize("max_lag", [0, 3, 5])
-def test_shifts_are_longer_than_lags_reach(max_lag: int) -> None:
-    """Else what is true at lag 0 would come back at another one."""
-    series = np.arange(24.0)
-    moved = surrogates("shift", 24, 200, 0, max_lag).alone(series)[0]
-    shifts = (24 - moved) % 24
-    np.testing.assert_array_equal(np.sort(shifts), np.arange(2 * max_lag + 1, 24 - 2 * max_lag))  # each once
-    with pytest.raises(ParameterError, match="needs at least 26 frames at max_lag 6, got 24"):
-        surrogates("shift", 24, 5, 0, 6)
+@given(st.integers(0, 4), st.integers(0, 60), st.integers(0, 99))
+def test_shifts_share_no_lag(max_lag: int, more: int, seed: int) -> None:
+    """Else what is true at lag 0 would come back at another one, or the same count twice."""
+    frames = 4 * max_lag + 2 + more
+    make = surrogates("shift", frames, 200, seed, max_lag)
+    moved = make.alone(np.arange(float(frames)))[0]
+    shifts = np.sort((frames - moved) % frames)
+    assert make.count == len(shifts) >= 1
+    around = np.concatenate([[0.0], shifts, [frames]])
+    assert (np.diff(around) > 2 * max_lag).all()
+    with pytest.raises(ParameterError, match=f"needs at least {4 * max_lag + 2} frames at max_lag {max_lag}"):
+        surrogates("shift", 4 * max_lag + 1, 5, 0, max_lag)
 
 
 def test_gaps_stay_gaps() -> None:

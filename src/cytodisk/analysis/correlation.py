@@ -69,8 +69,9 @@ def cross_correlate(
     surrogates : int
         How many surrogates of `b` to compare with; 0 for none. 999 give p-values down to 0.001.
     null : {"phase", "shift"}
-        Surrogates with random phases, or circularly shifted by more than twice the longest lag. Shifts are
-        few, no more than differ, and alike: `benchmarks/correlation.py` prints how they hold the level.
+        Surrogates with random phases, or circularly shifted. Shifts that share no lag are few, at most
+        T / (2 max_lag + 1), so only long movies and short lags let p reach 0.05; attrs `surrogates` says how
+        many there were.
     seed : int
         Of the surrogates.
     progress : callable, optional
@@ -119,14 +120,14 @@ def cross_correlate(
         "max_lag": max_lag,
         "min_pairs": min_pairs,
         "skip_lags": [int(lag) for lag in skip_lags],
-        "surrogates": surrogates,
         "null": null,
         "seed": seed,
     }
     attrs |= drifting_shares(first, second)
     pair = paired(first, second)
     changed = make_surrogates(null, len(pair.a), surrogates, seed, max_lag) if surrogates else None
-    run = _Run(pair, lags, np.isin(lags, skip_lags), min_pairs, changed.count if changed else 0)
+    attrs["surrogates"] = changed.count if changed else 0
+    run = _Run(pair, lags, np.isin(lags, skip_lags), min_pairs, attrs["surrogates"])
     run.correlate(changed, progress)
     order = [str(dim) for dim in (*first.dims, *second.dims) if dim != "time"]
     return run.dataset(list(dict.fromkeys(order)), interval_s).assign_attrs(attrs)

@@ -124,7 +124,8 @@ def correlate_pairs(
     }
     if interval_s is not None:
         coords["lag_s"] = ("lag", lags * interval_s, {"units": "s"})
-    attrs = {"distance": kind, "units": units, "surrogates": surrogates, "null": null, "seed": seed}
+    count = changed.count if surrogates else 0
+    attrs = {"distance": kind, "units": units, "surrogates": count, "null": null, "seed": seed}
     attrs |= {name: value for name, value in options.items() if value is not None}
     out = xr.Dataset(data, coords, attrs | drifting)
     out["n"] = out["n"].astype(np.int64)

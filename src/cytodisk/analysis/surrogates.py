@@ -35,7 +35,7 @@ class Surrogates:
         For means over many series: keeps also how they correlate with each other at every lag, so that
         neighbours that move together, or waves that run along them, are not taken for independent.
     count : int
-        How many there are: of shifts no more than differ.
+        How many there are; shifts are few in a short movie.
     """
 
     alone: Change
@@ -55,8 +55,8 @@ def surrogates(null: Null, frames: int, count: int, seed: int, max_lag: int = 0)
         Surrogates a series.
     seed : int
     max_lag : int
-        Longest lag at which they will be correlated: shifts are longer than twice that, or what was true
-        would come back at another lag.
+        Longest lag at which they will be correlated: shifts differ from 0 and from each other by more than
+        twice that. Else what is true would come back at another lag, and the same would be counted often.
 
     Returns
     -------
@@ -71,13 +71,7 @@ def surrogates(null: Null, frames: int, count: int, seed: int, max_lag: int = 0)
     count = whole_number("surrogates", count, 1)
     random = np.random.default_rng(whole_number("seed", seed, 0))
     if null == "shift":
-        least, most = 2 * max_lag + 1, frames - 2 * max_lag - 1
-        if most < least:
-            raise ParameterError(
-                f"null 'shift' needs at least {4 * max_lag + 2} frames at max_lag {max_lag}, got {frames}: "
-                "pass a smaller max_lag, or null 'phase'"
-            )
-        shifts = random.permutation(np.arange(least, most + 1))[:count]
+        shifts = _shifts(frames, count, max_lag, random)
 
         def shifted(series: FloatArray, which: slice = _ALL) -> FloatArray:
             return circularly_shifted(series, shifts[which])
@@ -90,6 +84,18 @@ def surrogates(null: Null, frames: int, count: int, seed: int, max_lag: int = 0)
         lambda series, which=_ALL: filtered_noise(series, noise[:, which]),
         count,
     )
+
+
+def _shifts(frames: int, count: int, max_lag: int, random: np.random.Generator) -> IntArray:
+    """Shifts of which no two, and none and no shift, share a lag."""
+    least, most, apart = 2 * max_lag + 1, frames - 2 * max_lag - 1, 2 * max_lag + 1
+    if most < least:
+        raise ParameterError(
+            f"null 'shift' needs at least {4 * max_lag + 2} frames at max_lag {max_lag}, got {frames}: "
+            "pass a smaller max_lag, or null 'phase'"
+        )
+    first = least + random.integers((most - least) % apart + 1)
+    return np.asarray(random.permutation(np.arange(first, most + 1, apart))[:count])
 
 
 def check_null(null: str) -> None:

@@ -214,7 +214,7 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
     for _, row in found.cells.iterrows():
         for words in _doubts(row, settings):
             console.print(f"cell {row['cell']}{words}")
-    _say_power(console, settings, windows)
+    _say_power(console, found.cells, windows)
     console.print(f"{count(layers['cell'].nunique())} correlated: {found.path}")
 
 
@@ -247,14 +247,21 @@ def _doubts(row: Any, settings: dict[str, Any]) -> Iterator[str]:
         )
 
 
-def _say_power(console: "Console", settings: dict[str, Any], windows: Any) -> None:
+def _say_power(console: "Console", cells: Any, windows: Any) -> None:
     """How many windows must be beyond all surrogates for any q to be below 0.05."""
+    surrogates = int(cells["surrogates"].max())
+    if not surrogates:
+        return
     tested = windows.groupby("cell").size().max()
-    fewest = math.ceil(tested / (0.05 * (settings["surrogates"] + 1)))
-    if settings["surrogates"] and fewest > 1:
+    fewest = math.ceil(tested / (0.05 * (surrogates + 1)))
+    if fewest > tested:
         console.print(
-            f"of {tested} windows, q < 0.05 takes {fewest} beyond all {settings['surrogates']} surrogates; a "
-            "smaller patch needs more --surrogates, or --sectors"
+            f"{surrogates} surrogates are too few for any p to reach 0.05: see --null and --max-lag"
+        )
+    elif fewest > 1:
+        console.print(
+            f"of {tested} windows, q < 0.05 takes {fewest} beyond all {surrogates} surrogates; a smaller "
+            "patch needs more --surrogates, or --sectors"
         )
 
 

@@ -143,6 +143,7 @@ def _correlate_cell(
     if options.pairs:
         tables["pairs"] = _pairs(study, cell, activity, a, with_, max_lag, options, steps.of_phase(1))
     row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "jitter": jitter}
+    row["surrogates"] = correlations.attrs["surrogates"]
     row["restarts"] = _restarts(study, cell, activity["time"].to_numpy())
     row |= {f"drifting_{name}": correlations.attrs[f"drifting_{side}"] for name, side in _SIDES}
     row |= {"no_events_because": "", "event_threshold": np.nan, "event_noise": np.nan}
