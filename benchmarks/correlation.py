@@ -39,8 +39,8 @@ from typing import Literal
 
 import numpy as np
 import xarray as xr
-from scipy.spatial import cKDTree
 
+from cytodisk.analysis.accuracy import share_by_sector
 from cytodisk.analysis.activity import sample_movie
 from cytodisk.analysis.correlation import correlation_by_layer, cross_correlate
 from cytodisk.analysis.jitter import JITTERED_LAGS, jitter_step
@@ -49,11 +49,9 @@ from cytodisk.analysis.peaks import peak_correlation
 from cytodisk.analysis.surrogates import Null
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import StationarityWarning
-from cytodisk.motion.disk_movie import DiskMovie
-from cytodisk.motion.edge import sector_of
 from cytodisk.motion.map_movie import map_movie
 from cytodisk.motion.velocity import edge_velocity
-from cytodisk.simulate import SERIES_KINDS, SimulatedMovie, independent_series, movie
+from cytodisk.simulate import SERIES_KINDS, independent_series, movie
 from cytodisk.simulate.series import SeriesKind
 from cytodisk.windows.grid import polar_windows
 
@@ -174,20 +172,6 @@ def false_positives(movies: int, workers: int) -> bool:
     return not failures
 
 
-def coupled_share(truth: SimulatedMovie, mapped: DiskMovie) -> FloatArray:
-    """How much the edge of each sector is coupled, mean over the movie, shape (sectors,)."""
-    share = np.zeros((len(mapped), _SECTORS))
-    for time_, boundary_yx in enumerate(truth.boundary_yx):
-        disk = mapped[time_]
-        u, v = disk.vertices_uv[disk.boundary].T
-        sector = sector_of(np.arctan2(v, u), _SECTORS)
-        _, nearest = cKDTree(boundary_yx).query(disk.vertices_yx[disk.boundary])
-        total = np.bincount(sector, truth.coupled[nearest], _SECTORS)
-        count = np.bincount(sector, minlength=_SECTORS)
-        share[time_] = np.where(count > 0, total / np.maximum(count, 1), np.nan)
-    return np.asarray(np.nanmean(share, axis=0))
-
-
 def series_of(trial: Coupled) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Activity (T, layer, sector), velocity (T, sector) and coupling (sector) of a movie of images."""
     name = f"coupled_{trial.lag}_{trial.seed}_{trial.frames}.npz"
@@ -199,7 +183,7 @@ def series_of(trial: Coupled) -> tuple[FloatArray, FloatArray, FloatArray]:
     sampled = sample_movie(mapped, polar_windows(_LAYERS, _SECTORS), truth.signal)
     activity = sampled["mean"].sel(channel="edge").to_numpy()
     velocity = edge_velocity(mapped, _SECTORS).to_numpy()
-    share = coupled_share(truth, mapped)
+    share = share_by_sector(mapped, truth.boundary_yx, truth.coupled, _SECTORS)
     if trial.cache is not None:
         trial.cache.mkdir(parents=True, exist_ok=True)
         np.savez(trial.cache / name, activity=activity, velocity=velocity, share=share)
