@@ -1,13 +1,12 @@
 """`cytodisk correlate` and `cytodisk report`."""
 
-import math
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 
 import typer
 
-from cytodisk.cli.console import Quiet, console_for, count, progress_bar
+from cytodisk.cli.console import Quiet, console_for, progress_bar
+from cytodisk.cli.correlation_words import say_correlation, say_replaced
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -198,98 +197,10 @@ def draw_correlation(
                 progress(place + 1, len(cells))
 
 
-def say_correlation(console: "Console", found: "Correlation") -> None:
-    """Peaks by layer, and how many windows are significant."""
-    settings = found.settings
-    console.print(
-        f"signal {found.signal!r} with {found.with_}, lags to {settings['max_lag']} frames: "
-        f"at a positive lag {found.with_} follows the signal, at a negative one it comes first"
-    )
-    layers, windows = found.layers, found.windows
-    for cell, rows in layers.groupby("cell"):
-        of_cell = windows[windows["cell"] == cell]
-        console.print(f"cell {cell}, mean over sectors by layer:")
-        for layer in rows.itertuples():
-            console.print(_layer_words(layer, of_cell[of_cell["layer"] == layer.layer]))
-    for _, row in found.cells.iterrows():
-        for words in _doubts(row, settings):
-            console.print(f"cell {row['cell']}{words}")
-    _say_power(console, found.cells, windows)
-    console.print(f"{count(layers['cell'].nunique())} correlated: {found.path}")
-
-
-def _doubts(row: Any, settings: dict[str, Any]) -> Iterator[str]:
-    """What speaks against a cell's correlations."""
-    from cytodisk.analysis.series import DRIFTING_SHARE
-    from cytodisk.study.correlation_settings import VELOCITIES
-
-    if row["status"] != "ok":
-        yield f" left out: {row['reason']}"
-        return
-    if row["restarts"]:
-        yield (
-            f": tracking started anew {row['restarts']:.0f} times; sectors need not be the same places "
-            "before and after, so correlate the stretches one by one with --frames"
-        )
-    if settings["with"] in VELOCITIES and not math.isfinite(row["jitter"]):
-        yield ": too few frames to see whether masks jitter, which correlates by itself at lags -1 and 0"
-    elif abs(row["jitter"]) > 0:
-        lags = "-2,-1,0,1" if settings["difference"] else "-1,0"
-        yield (
-            f": masks that jitter make {row['jitter']:+.2f} of the correlation at lag 0, and "
-            f"{-row['jitter']:+.2f} at lag -1, in some layer: see what --skip-lags={lags} says"
-        )
-    if max(row["drifting_signal"], row["drifting_with"]) > DRIFTING_SHARE:
-        yield (
-            f": the level drifts, as by bleaching, in {row['drifting_signal']:.0%} of the signal's series "
-            f"and {row['drifting_with']:.0%} of the others (chance gives 5 %): see whether --detrend linear "
-            "or --difference says the same"
-        )
-
-
-def _say_power(console: "Console", cells: Any, windows: Any) -> None:
-    """How many windows must be beyond all surrogates for any q to be below 0.05."""
-    surrogates = int(cells["surrogates"].max())
-    if not surrogates:
-        return
-    tested = windows.groupby("cell").size().max()
-    fewest = math.ceil(tested / (0.05 * (surrogates + 1)))
-    if fewest > tested:
-        console.print(
-            f"{surrogates} surrogates are too few for any p to reach 0.05: see --null and --max-lag"
-        )
-    elif fewest > 1:
-        console.print(
-            f"of {tested} windows, q < 0.05 takes {fewest} beyond all {surrogates} surrogates; a smaller "
-            "patch needs more --surrogates, or --sectors"
-        )
-
-
-def _layer_words(row: Any, windows: Any) -> str:
-    layer = f"  layer {row.layer:>2}"
-    if not math.isfinite(row.correlation):
-        return f"{layer}  no correlation: too few frames, or a signal that does not vary"
-    seconds = f" ({row.lag_s:+.4g} s)" if math.isfinite(row.lag_s) else ""
-    words = f"{layer}  {row.correlation:+.2f} at lag {row.lag:+.0f}{seconds}"
-    if "q" not in windows:
-        return words
-    share = (windows["q"] < 0.05).mean()
-    return f"{words}, q = {row.q:.2g}; q < 0.05 in {share:.0%} of its windows"
-
-
 def earlier_settings(study: "Study", *names: str) -> dict[str, Any] | None:
     """Settings of a correlation that the next one will replace."""
     there = {(*one, "")[:3] for one in study.correlations}
     return study.correlation(*names).settings if names in there else None
-
-
-def say_replaced(console: "Console", before: dict[str, Any] | None, now: dict[str, Any]) -> None:
-    """Say which settings the replaced correlation had, if others."""
-    if before is None:
-        return
-    changed = [f"{name} {before[name]!r}" for name in now if name in before and before[name] != now[name]]
-    if changed:
-        console.print(f"this replaced the correlation with {', '.join(changed)}: --name NAME keeps both")
 
 
 def numbers(name: str, text: str | None) -> tuple[int, ...] | None:

@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from cytodisk.cli.console import Quiet, console_for, progress_bar
-from cytodisk.cli.correlate import NOTHING_CHANGED, draw_correlation, say_correlation, write_page
+from cytodisk.cli.correlate import NOTHING_CHANGED, draw_correlation, write_page
+from cytodisk.cli.correlation_words import say_correlation
 from cytodisk.cli.movie import draw_movie, finish_movie, say_movie
 
 _AGAIN = "run the same command again"

@@ -15,13 +15,13 @@ from cytodisk.analysis.correlation import correlation_by_layer, cross_correlate
 from cytodisk.analysis.distances import window_distances
 from cytodisk.analysis.jitter import JITTERED_DIFFERENCES, JITTERED_LAGS, jitter_step
 from cytodisk.analysis.pairs import correlate_pairs
-from cytodisk.analysis.peaks import peak_correlation
 from cytodisk.arrays import IntArray
 from cytodisk.errors import ParameterError, StationarityWarning, StudyError
 from cytodisk.io.correlation_store import Correlation, write_correlation
 from cytodisk.io.study import Study
 from cytodisk.study.chosen_series import chosen_sectors, chosen_series
 from cytodisk.study.correlation_settings import VELOCITIES, CorrelationSettings
+from cytodisk.study.correlation_tables import as_table, merged, of_cell, tables_of
 from cytodisk.study.edge_episodes import episode_tables
 from cytodisk.study.provenance import installed
 from cytodisk.windows.grid import polar_windows
@@ -88,14 +88,14 @@ def correlate_study(
             tables, row = {}, {"status": "refused", "reason": str(error)}
         rows.append({"cell": cell} | row)
         for name, table in tables.items():
-            found.setdefault(name, []).append(_of_cell(table, cell))
+            found.setdefault(name, []).append(of_cell(table, cell))
     if not found:
         raise ParameterError(f"no cell of {study.path} can be correlated: {rows[0]['reason']}")
-    merged = {name: _merged(parts) for name, parts in found.items()} | {"cells": pd.DataFrame(rows)}
+    tables = {name: merged(parts) for name, parts in found.items()} | {"cells": pd.DataFrame(rows)}
     content: dict[str, Any] = asdict(options) | {"max_lag": max_lag, "cells": cells}
     content["pair_surrogates"] = min(options.surrogates, _PAIRED_SURROGATES) if options.pairs else 0
     content["cytodisk"] = installed(("cytodisk",))["cytodisk"]
-    return write_correlation(study.path, signal, with_, merged, content, options.name)
+    return write_correlation(study.path, signal, with_, tables, content, options.name)
 
 
 def channels_of(study: Study) -> list[str]:
@@ -139,7 +139,7 @@ def _correlate_cell(
             a, b, max_lag, skip_lags=options.skip_lags, progress=steps.of_phase(0), **common
         )
         jitter = _jitter(a, b, options) if with_ in VELOCITIES else 0.0
-    tables = _tables(correlations, options)
+    tables = tables_of(correlations, options)
     if options.pairs:
         tables["pairs"] = _pairs(study, cell, activity, a, with_, max_lag, options, steps.of_phase(1))
     row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "jitter": jitter}
@@ -164,23 +164,6 @@ def _other(activity: xr.Dataset, with_: str, options: CorrelationSettings) -> xr
         return activity[with_]
     other = activity["mean"].sel(channel=with_)
     return other.isel(layer=0, drop=True) if options.against == "edge" else other
-
-
-def _tables(correlations: xr.Dataset, options: CorrelationSettings) -> dict[str, pd.DataFrame]:
-    by_layer = correlation_by_layer(correlations)
-    peaks = peak_correlation(correlations, rule=options.rule)
-    layers = peak_correlation(by_layer, rule=options.rule)
-    if "threshold" in by_layer:
-        layers = layers.assign(threshold=by_layer["threshold"])
-        peaks = peaks.assign(threshold=correlations["threshold"])
-    curves = correlations.drop_vars(["null", "threshold", "mean_null", "mean_threshold"], errors="ignore")
-    mean = by_layer.drop_vars("null", errors="ignore")
-    return {
-        "windows": _frame(peaks, ("layer", "sector")),
-        "layers": _frame(layers, ("layer",)),
-        "curves": _frame(curves, ("layer", "sector", "lag")),
-        "layer_curves": _frame(mean, ("layer", "lag")),
-    }
 
 
 def _restarts(study: Study, cell: int, times: IntArray) -> int:
@@ -221,36 +204,7 @@ def _pairs(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StationarityWarning)  # as for the windows themselves
         found = correlate_pairs(a, b, max_lag, distances=distances, progress=progress, **common)
-    return _frame(found, ("along", "distance", "lag"))
-
-
-def _frame(dataset: xr.Dataset, index: tuple[str, ...]) -> pd.DataFrame:
-    """A Dataset as a table with its units; seconds of lags are a column, NaN when unknown."""
-    table = dataset.reset_coords(drop=False).to_dataframe(dim_order=list(index)).reset_index()
-    if "lag_s" not in table:
-        table.insert(list(table.columns).index("lag") + 1, "lag_s", np.nan)
-    units = {"lag": "frame", "lag_s": "s"}
-    known = {name: str(values.attrs.get("units", "1")) for name, values in dataset.variables.items()}
-    plain = dict.fromkeys(("layer", "sector", "along", "n", "n_effective"), "")
-    table.attrs = {"units": {name: (known | units | plain).get(name, "1") for name in table.columns}}
-    return table
-
-
-def _of_cell(table: pd.DataFrame, cell: int) -> pd.DataFrame:
-    units = table.attrs["units"]
-    table = table.copy()
-    table.insert(0, "cell", cell)
-    table.attrs = {"units": {"cell": ""} | units}
-    return table
-
-
-def _merged(parts: list[pd.DataFrame]) -> pd.DataFrame:
-    units = parts[0].attrs["units"]
-    for part in parts:
-        part.attrs = {}  # pandas compares them one by one, which arrays do not survive
-    table = pd.concat(parts, ignore_index=True)
-    table.attrs = {"units": units}
-    return table
+    return as_table(found, ("along", "distance", "lag"))
 
 
 def _cells(study: Study, cells: list[int] | None) -> list[int]:
