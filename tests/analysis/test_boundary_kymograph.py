@@ -165,7 +165,7 @@ def test_channels_and_times(movie: DiskMovie, signals: xr.DataArray) -> None:
         (np.inf, {}, "depth"),
         ("1", {}, "depth"),
         (1.0, {"points": 0}, "points must be a whole number of at least 1, got 0"),
-        (1.0, {"points": 10.0}, "points"),
+        (1.0, {"points": 10.5}, "points"),
     ],
 )
 def test_numbers_out_of_range_are_refused(

@@ -294,7 +294,7 @@ LENGTH = xr.zeros_like(GOOD).assign_attrs(units="µm")
         (GOOD.where(GOOD != 0, np.inf), {}, "finite numbers, or NaN"),
         (GOOD.isel(time=[0, 1, 3, 4]), {}, r"follow each other, its time is 0, 1, 3, 4: reindex"),
         (GOOD, {"min_frames": 0}, "min_frames must be a whole number of at least 1, got 0"),
-        (GOOD, {"min_frames": 2.0}, "min_frames"),
+        (GOOD, {"min_frames": 2.5}, "min_frames"),
         (GOOD, {"threshold": -1}, "threshold must be a number of at least 0, got -1"),
         (GOOD, {"threshold": NAN}, "threshold"),
         (GOOD, {"threshold": "2"}, "threshold"),

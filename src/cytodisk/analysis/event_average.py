@@ -11,6 +11,7 @@ from scipy.special import ndtr
 from scipy.stats import t as student
 
 from cytodisk.analysis.events import KINDS, Kind
+from cytodisk.analysis.parameters import whole_number
 from cytodisk.analysis.time_steps import frame_interval, frame_numbers
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import ParameterError
@@ -91,6 +92,7 @@ def average_around(
        doi:10.1080/00031305.2015.1089789
     """
     _check_options(before, after, kind, at, normalise, bootstrap, seed, confidence)
+    before, after, bootstrap, seed = (int(number) for number in (before, after, bootstrap, seed))
     values, dims, shape = _parse(activity)
     chosen = _chosen(events, activity, kind, at)
     first = frame_numbers(activity, "activity")[0]
@@ -122,8 +124,7 @@ def _check_options(
 ) -> None:
     numbers = {"before": before, "after": after, "bootstrap": bootstrap, "seed": seed}
     for name, value in numbers.items():
-        if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 0:
-            raise ParameterError(f"{name} must be a whole number of at least 0, got {value!r}")
+        whole_number(name, value, 0)
     choices = {"kind": (kind, KINDS), "at": (at, get_args(Moment))}
     for name, (value, allowed) in (choices | {"normalise": (normalise, get_args(Normalisation))}).items():
         if value not in allowed:

@@ -12,6 +12,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from cytodisk.analysis.edge_area import area_by_step
+from cytodisk.analysis.parameters import whole_number
 from cytodisk.analysis.time_steps import frame_numbers, frame_seconds
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.errors import ParameterError
@@ -84,8 +85,7 @@ def edge_events(
     doi:10.1529/biophysj.105.070383, for edge velocity as a map whose patches are events.
     """
     values = _parse(velocity)
-    if isinstance(min_frames, bool) or not isinstance(min_frames, int | np.integer) or min_frames < 1:
-        raise ParameterError(f"min_frames must be a whole number of at least 1, got {min_frames!r}")
+    min_frames = whole_number("min_frames", min_frames, 1)
     areas = area_by_step(velocity, edge_length, protruded_area, retracted_area)
     noise = velocity_noise(velocity)
     limit = _threshold(threshold, noise, values)

@@ -11,6 +11,7 @@ import xarray as xr
 
 from cytodisk.analysis.activity import parse_signals
 from cytodisk.analysis.boundary_depth import places_at_depth
+from cytodisk.analysis.parameters import whole_number
 from cytodisk.arrays import AnyArray, BoolArray, FloatArray
 from cytodisk.errors import ParameterError, SignalError
 from cytodisk.motion.disk_movie import DiskMovie
@@ -53,6 +54,7 @@ def line_kymograph(signals: Any, line_yx: Any, *, width_px: int = 1, spacing_px:
     """
     line = _parse_line(line_yx)
     _check_sampling(width_px, spacing_px)
+    width_px = int(width_px)
     _refuse_path(signals)
     frames, channels, shape = _parse_movie(signals)
     distance, places, normals = _along(line, spacing_px)
@@ -111,8 +113,7 @@ def boundary_kymograph(movie: DiskMovie, signals: Any, depth: float, *, points: 
     _refuse_path(signals)
     if isinstance(depth, bool) or not isinstance(depth, int | float | np.number) or not 0 <= depth < np.inf:
         raise ParameterError(f"depth must be a number of at least 0, got {depth!r}")
-    if isinstance(points, bool) or not isinstance(points, int | np.integer) or points < 1:
-        raise ParameterError(f"points must be a whole number of at least 1, got {points!r}")
+    points = whole_number("points", points, 1)
     frames, names = parse_signals(signals, len(movie), movie.image_shape)
     channels = names if np.ndim(frames[0]) == 3 else None
     angles, size = point_angles(points), movie.pixel_size_um or 1.0
@@ -178,8 +179,7 @@ def _parse_line(line_yx: Any) -> FloatArray:
 
 
 def _check_sampling(width_px: Any, spacing_px: Any) -> None:
-    if isinstance(width_px, bool) or not isinstance(width_px, int | np.integer) or width_px < 1:
-        raise ParameterError(f"width_px must be a whole number of at least 1, got {width_px!r}")
+    whole_number("width_px", width_px, 1)
     number = isinstance(spacing_px, int | float | np.number) and not isinstance(spacing_px, bool)
     if not number or not 0 < spacing_px < np.inf:
         raise ParameterError(f"spacing_px must be a positive number, got {spacing_px!r}: 1 is the default")
