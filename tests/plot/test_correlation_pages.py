@@ -133,7 +133,7 @@ def test_what_was_not_used_is_grey(study: cd.Study, saved: list[Figure]) -> None
         assert shown_places(figure, 0) == right
         assert any("averages not detrended" in text.get_text() for text in figure.texts)
     keys = [text.get_text() for text in peaks.legends[0].get_texts()]
-    assert keys[-1] == "no correlation"
+    assert keys[-1] == "none, or not used"
 
 
 def shown_places(figure: Figure, axes: int) -> tuple[list[int], list[int]]:

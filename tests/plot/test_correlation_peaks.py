@@ -122,7 +122,7 @@ def test_windows_without_a_correlation_are_grey(ax: Axes, draw: Draw) -> None:
     np.testing.assert_array_equal(np.flatnonzero(missing), [5, 7, 15, 23])
     assert [handle.get_label() for handle in peak_key(peaks)] == [
         "not significant (q ≥ 0.05): 20 of 20",
-        "no correlation",
+        "none, or not used",
     ]
 
 

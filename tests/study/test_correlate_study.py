@@ -214,6 +214,12 @@ def test_some_frames_and_sectors(study: cd.Study) -> None:
         ({"frames": (20, 10)}, "frames must go from the first to the last"),
         ({"without_frames": (3, 77)}, "without_frames has 77: the movie has 0:35"),
         ({"sectors": (0, 12)}, "sectors 0:12 are not on the edge: it has 0:11"),
+        ({"sectors": (5, 4)}, "sectors 5:4 are the whole edge, or two swapped"),
+        ({"sectors": (3,)}, "sectors must be the first and the last"),
+        ({"sectors": (1.5, 7)}, "sectors must be a whole number of at least 0, got 1.5"),
+        ({"without_frames": 17}, "without_frames must be whole numbers"),
+        ({"name": 5}, "name must be a text of at most 60 letters"),
+        ({"name": "n" * 300}, "name must be a text of at most 60 letters"),
         ({"surrogates": 5}, "surrogates must be 0, or at least 19"),
         ({"max_lag": "x"}, "max_lag must be a whole number of at least 0, got 'x'"),
     ],
@@ -260,3 +266,55 @@ def test_jitter_is_looked_for_whatever_the_lags(study: cd.Study) -> None:
     short = correlate_study(study, "edge", max_lag=2, surrogates=0, frames=(0, 13), name="short")
     assert short.cells["jitter"].isna().all()  # fewer than six lags
     assert correlate_study(study, "edge", surrogates=0, skip_lags=(-1, 0)).cells["jitter"].item() == 0.0
+
+
+def test_numbers_of_numpy_are_numbers(study: cd.Study) -> None:
+    found = correlate_study(
+        study,
+        "edge",
+        cells=list(study.cells["cell"].unique()),
+        max_lag=np.int64(3),
+        frames=(np.int64(0), np.int64(30)),
+        skip_lags=np.array([-1, 0]),
+        surrogates=0,
+        name="numpy",
+    )
+    assert found.settings["skip_lags"] == [-1, 0]
+    assert found.settings["cells"] == [0]
+
+
+def test_a_folder_that_cannot_be_exchanged_stays(study: cd.Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither a failure between the two renames nor a kill there loses the old result."""
+    found = correlate_study(study, "edge", max_lag=3, surrogates=0)
+    before, rename = found.windows, Path.replace
+
+    def fail(self: Path, target: Path) -> Path:
+        if self.suffix == ".tmp" and not target.suffix:
+            raise OSError(28, "No space left on device")
+        return rename(self, target)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "replace", fail)
+        with pytest.raises(StudyError, match="No space left on device"):
+            correlate_study(study, "edge", max_lag=4, surrogates=0)
+    pd.testing.assert_frame_equal(study.correlation("edge").windows, before)
+    found.path.replace(found.path.with_name(f".{found.path.name}.old"))  # as a kill leaves it
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "replace", fail)
+        with pytest.raises(StudyError, match="No space left on device"):
+            correlate_study(study, "edge", max_lag=4, surrogates=0)
+    pd.testing.assert_frame_equal(study.correlation("edge").windows, before)
+
+
+def test_episodes_of_some_sectors_are_those_of_the_whole_edge(study: cd.Study) -> None:
+    whole = correlate_study(study, "edge", max_lag=3, surrogates=0).events
+    part = correlate_study(study, "edge", max_lag=3, surrogates=0, sectors=(10, 2), name="part").events
+    assert whole is not None
+    assert part is not None
+    expected = whole[whole["sector"].isin([10, 11, 0, 1, 2])].reset_index(drop=True)
+    pd.testing.assert_frame_equal(part, expected)
+
+
+def test_the_number_of_surrogates_is_that_which_was_made(study: cd.Study) -> None:
+    shifted = correlate_study(study, "edge", max_lag=2, null="shift", surrogates=99, name="shift")
+    assert shifted.settings["surrogates_made"] == shifted.cells["surrogates"].item() < 7

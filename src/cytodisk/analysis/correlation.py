@@ -294,7 +294,7 @@ def drifting_shares(a: xr.DataArray, b: xr.DataArray) -> dict[str, float]:
         shares[f"drifting_{name}"] = share
         if share > DRIFTING_SHARE:
             warnings.warn(
-                f"the level of {share:.0%} of the series of {name} drifts (chance gives {ALPHA:.0%}): they "
+                f"the level of {share:.0%} of the series of {name} drifts: they "
                 "may correlate for that alone; detrend, or take first differences",
                 StationarityWarning,
                 stacklevel=3,

@@ -25,7 +25,7 @@ KPSS_LIMIT = 0.463
 """Critical value of the KPSS statistic at 5 %."""
 
 DRIFTING_SHARE = 0.25
-"""Share of series that drift, of which chance gives one in twenty, above which to say so."""
+"""Share of series that drift above which to say so; steady but slow ones of few frames seem to, too."""
 
 _FEWEST_FOR_KPSS = 50  # values; in 30 a straight line has 0.44
 _ONE_WAY = 0.5  # Kendall's τ of a series that goes one way rather than up and down

@@ -65,7 +65,7 @@ def _doubts(row: Any, settings: dict[str, Any]) -> Iterator[str]:
     if max(row["drifting_signal"], row["drifting_with"]) > DRIFTING_SHARE:
         yield (
             f": the level drifts, as by bleaching, in {row['drifting_signal']:.0%} of the signal's series "
-            f"and {row['drifting_with']:.0%} of the others (chance gives 5 %): see whether --detrend linear "
+            f"and {row['drifting_with']:.0%} of the others: see whether --detrend linear "
             "or --difference says the same"
         )
 
@@ -75,11 +75,11 @@ def _say_power(console: "Console", cells: Any, windows: Any) -> None:
     surrogates = int(cells["surrogates"].max())
     if not surrogates:
         return
-    tested = windows.groupby("cell").size().max()
-    fewest = math.ceil(tested / (0.05 * (surrogates + 1)))
+    tested = int(windows.groupby("cell").size().max())
+    fewest = tested * 20 // (surrogates + 1) + 1  # q = tested / (number · (surrogates + 1)) < 1 / 20
     if fewest > tested:
         console.print(
-            f"{surrogates} surrogates are too few for any p to reach 0.05: see --null and --max-lag"
+            f"{surrogates} surrogates are too few for any q below 0.05: see --surrogates and --null"
         )
     elif fewest > 1:
         console.print(

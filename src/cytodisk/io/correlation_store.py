@@ -132,25 +132,38 @@ def write_correlation(
         The folder cannot be written.
     """
     target = correlation_path(study, signal, with_, name)
-    temporary, old = (target.with_name(f".{target.name}.{os.getpid()}.{what}") for what in ("tmp", "old"))
+    content = {"signal": signal, "with": with_, "name": name} | settings
+    text = json.dumps(content, indent=2, ensure_ascii=False)
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:
-        for left in (temporary, old):
-            shutil.rmtree(left, ignore_errors=True)  # of an earlier process with this number
+        shutil.rmtree(temporary, ignore_errors=True)  # of an earlier process with this number
         temporary.mkdir(parents=True)
         for table_name, table in tables.items():
             write_table(table, temporary / f"{table_name}.parquet")
-        content = {"signal": signal, "with": with_, "name": name} | settings
-        text = json.dumps(content, indent=2, ensure_ascii=False)
         (temporary / SETTINGS).write_text(text + "\n", encoding="utf-8")
-        if target.exists():
-            target.replace(old)  # it is there until the new one is
-        temporary.replace(target)
+        _exchange(target, temporary)
     except OSError as error:
         raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
-    shutil.rmtree(old, ignore_errors=True)
     return read_correlation(study, signal, with_, name)
+
+
+def _exchange(target: Path, new: Path) -> None:
+    """Put a folder in the place of another, which is there until the new one is, or comes back."""
+    old = target.with_name(f".{target.name}.old")
+    if old.exists() and not target.exists():
+        old.replace(target)  # an earlier process died between the two steps below
+    shutil.rmtree(old, ignore_errors=True)
+    if target.exists():
+        target.replace(old)
+    try:
+        new.replace(target)
+    except BaseException:
+        if old.exists():
+            old.replace(target)
+        raise
+    shutil.rmtree(old, ignore_errors=True)
 
 
 def read_correlation(study: Path, signal: str, with_: str, name: str = "") -> Correlation:

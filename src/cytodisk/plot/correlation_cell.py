@@ -239,7 +239,7 @@ def peak_key(peaks: PeakMap) -> list[Any]:
         if pale < known:
             handles.append(Patch(label=f"q < {peaks.alpha:g}", **frame | {"edgecolor": LINE_COLOUR}))
     if known < peaks.correlation.size:
-        handles.append(Patch(facecolor=MISSING_COLOUR, linewidth=0, label="no correlation"))
+        handles.append(Patch(facecolor=MISSING_COLOUR, linewidth=0, label="none, or not used"))
     return handles
 
 

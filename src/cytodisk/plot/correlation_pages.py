@@ -101,7 +101,8 @@ def peaks_page(one: CellCorrelation) -> Sheet | None:
     height = _PANEL * float(np.clip(high / wide, 1.0, _TALLEST))
     key = peak_key(peaks)
     row = height + 9.0
-    sheet = Sheet(head + 2 * row + 7.5 + (4.0 if key else 0.0), SINGLE_COLUMN_MM)
+    key_rows = -(-len(key) // 2)  # legends fill columns first: two of them
+    sheet = Sheet(head + 2 * row + 7.5 + 4.0 * key_rows, SINGLE_COLUMN_MM)
     heading.write(sheet)
     lefts = (LEFT_MM, LEFT_MM + _PANEL + _PANEL_GAP)
     stamp = f"on the cell, {time_stamp(time, movie.interval_s)}"

@@ -55,6 +55,8 @@ def chosen_sectors(settings: CorrelationSettings, count: int) -> list[int]:
     first, last = settings.sectors
     if not (0 <= first < count and 0 <= last < count):
         raise ParameterError(f"sectors {first}:{last} are not on the edge: it has 0:{count - 1}")
+    if first == last + 1:
+        raise ParameterError(f"sectors {first}:{last} are the whole edge, or two swapped: leave sectors out")
     around = range(first, last + 1 + (count if last < first else 0))
     return sorted(sector % count for sector in around)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -92,8 +92,9 @@ def correlate_study(
     if not found:
         raise ParameterError(f"no cell of {study.path} can be correlated: {rows[0]['reason']}")
     tables = {name: merged(parts) for name, parts in found.items()} | {"cells": pd.DataFrame(rows)}
-    content: dict[str, Any] = asdict(options) | {"max_lag": max_lag, "cells": cells}
-    content["pair_surrogates"] = min(options.surrogates, _PAIRED_SURROGATES) if options.pairs else 0
+    content: dict[str, Any] = asdict(options) | {"max_lag": max_lag, "cells": chosen if cells else None}
+    content["surrogates_made"] = max(int(row.get("surrogates", 0)) for row in rows)
+    content["pair_surrogates"] = max(int(row.get("pair_surrogates", 0)) for row in rows)
     content["cytodisk"] = installed(("cytodisk",))["cytodisk"]
     return write_correlation(study.path, signal, with_, tables, content, options.name)
 
@@ -144,12 +145,14 @@ def _correlate_cell(
         tables["pairs"] = _pairs(study, cell, activity, a, with_, max_lag, options, steps.of_phase(1))
     row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "jitter": jitter}
     row["surrogates"] = correlations.attrs["surrogates"]
+    row["pair_surrogates"] = tables["pairs"].attrs["surrogates"] if options.pairs else 0
     row["restarts"] = _restarts(study, cell, activity["time"].to_numpy())
     row |= {f"drifting_{name}": correlations.attrs[f"drifting_{side}"] for name, side in _SIDES}
     row |= {"no_events_because": "", "event_threshold": np.nan, "event_noise": np.nan}
     if with_ in VELOCITIES:
         try:
-            episodes = episode_tables(activity, a, with_, max_lag, options)
+            edge = chosen_series(study.activity(cell), replace(options, sectors=None))
+            episodes = episode_tables(edge, a, with_, max_lag, options)
         except ParameterError as error:
             row["no_events_because"] = str(error)
         else:
@@ -204,7 +207,9 @@ def _pairs(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StationarityWarning)  # as for the windows themselves
         found = correlate_pairs(a, b, max_lag, distances=distances, progress=progress, **common)
-    return as_table(found, ("along", "distance", "lag"))
+    table = as_table(found, ("along", "distance", "lag"))
+    table.attrs["surrogates"] = found.attrs["surrogates"]
+    return table
 
 
 def _cells(study: Study, cells: list[int] | None) -> list[int]:
@@ -214,7 +219,7 @@ def _cells(study: Study, cells: list[int] | None) -> list[int]:
         raise ParameterError(
             f"cells: study {study.path} has no cell {missing[0]}, it has {len(there)} from 0"
         )
-    return sorted(set(cells)) if cells else there
+    return sorted({int(cell) for cell in cells}) if cells else there
 
 
 def _check_names(names: list[str], signal: str, with_: str, options: CorrelationSettings) -> None:

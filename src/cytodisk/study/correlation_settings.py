@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args
+
+import numpy as np
 
 from cytodisk.analysis.parameters import whole_number
 from cytodisk.analysis.peaks import Rule, check_rule
@@ -13,6 +16,10 @@ from cytodisk.errors import ParameterError
 
 FEWEST_SURROGATES = 19
 VELOCITIES = ("velocity", "velocity_cell_frame")
+
+_LEAST = {"surrogates": 0, "seed": 0, "min_pairs": 3, "max_lag": 0}
+_PAIRS, _LISTS = ("frames", "sectors"), ("skip_lags", "without_frames")
+_LONGEST_NAME = 60
 
 Against = Literal["window", "edge"]
 
@@ -79,7 +86,7 @@ class CorrelationSettings:
         unknown = sorted(set(values) - set(known))
         if unknown:
             raise ParameterError(f"settings have no {unknown[0]!r}: they are {', '.join(known)}")
-        settings = cls(**values)
+        settings = cls(**{name: _parsed(name, value) for name, value in values.items()})
         check_rule(settings.rule)
         check_detrend(settings.detrend, settings.detrend_frames)
         for name, choice in (("against", Against), ("null", Null)):
@@ -87,9 +94,6 @@ class CorrelationSettings:
                 raise ParameterError(
                     f"{name} must be one of {', '.join(get_args(choice))}, got {getattr(settings, name)!r}"
                 )
-        for name, least in (("surrogates", 0), ("seed", 0), ("min_pairs", 3), ("max_lag", 0)):
-            if getattr(settings, name) is not None:
-                whole_number(name, getattr(settings, name), least)
         if 0 < settings.surrogates < FEWEST_SURROGATES:
             raise ParameterError(
                 f"surrogates must be 0, or at least {FEWEST_SURROGATES} for any p to reach 0.05, got "
@@ -103,3 +107,28 @@ class CorrelationSettings:
         """What `cross_correlate` and `correlate_pairs` both take."""
         names = ("detrend", "detrend_frames", "difference", "min_pairs", "surrogates", "null", "seed")
         return {name: getattr(self, name) for name in names}
+
+
+def _parsed(name: str, value: Any) -> Any:
+    """A value as the plain type that its setting has; ParameterError if it is none."""
+    if name in _LEAST and value is not None:
+        return whole_number(name, value, _LEAST[name])
+    if name in _PAIRS and value is not None:
+        numbers = _whole_numbers(name, value)
+        if len(numbers) != 2:
+            raise ParameterError(f"{name} must be the first and the last, such as (10, 80), got {value!r}")
+        return numbers
+    if name in _LISTS:
+        return _whole_numbers(name, value)
+    if name == "name" and (not isinstance(value, str) or len(value) > _LONGEST_NAME):
+        raise ParameterError(f"name must be a text of at most {_LONGEST_NAME} letters, got {value!r}")
+    return value
+
+
+def _whole_numbers(name: str, value: Any) -> tuple[int, ...]:
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        raise ParameterError(f"{name} must be whole numbers, such as (10, 80), got {value!r}")
+    numbers = tuple(value)
+    for number in numbers:
+        whole_number(name, abs(number) if isinstance(number, int | np.integer) else number, 0)
+    return tuple(int(number) for number in numbers)

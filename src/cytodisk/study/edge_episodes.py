@@ -20,8 +20,9 @@ def episode_tables(
     Parameters
     ----------
     activity : Dataset
-        Of one cell of a study.
+        Of one cell of a study, with its whole edge: patches of episodes are those of all sectors.
     signal : DataArray with dims (time, layer, sector)
+        Of the same frames; its sectors may be some of them.
     velocity : str
         Which of its velocities; areas are those of the lab, whose outlines they compare.
     reach : int
@@ -39,9 +40,12 @@ def episode_tables(
     ParameterError
         There are too few frames to tell noise from motion.
     """
-    counted = velocity == "velocity"
+    counted = velocity == "velocity"  # areas are those between outlines in the lab
     won, lost = (activity[name].load() if counted else None for name in ("protruded_area", "retracted_area"))
     events = edge_events(activity[velocity].load(), protruded_area=won, retracted_area=lost)
+    attrs = events.attrs
+    events = events[events["sector"].isin(signal["sector"].to_numpy())].reset_index(drop=True)
+    events.attrs = attrs | {"sectors": signal.sizes["sector"]}
     prepared = signal.copy(
         data=prepare_series(signal, detrend=settings.detrend, detrend_frames=settings.detrend_frames)
     )
