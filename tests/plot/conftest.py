@@ -1,3 +1,5 @@
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
@@ -36,3 +38,24 @@ def image(mask: BoolArray) -> FloatArray:
 @pytest.fixture
 def ax() -> Axes:
     return Figure().add_subplot()
+
+
+@pytest.fixture
+def saved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Figure]]:
+    """Every page that was written, and that nothing of it is cut off or smaller than 6 points."""
+    figures: list[Figure] = []
+    write = Figure.savefig
+
+    def note(figure: Figure, *args: object, **options: object) -> None:
+        figures.append(figure)
+        write(figure, *args, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Figure, "savefig", note)
+    yield figures
+    for figure in figures:
+        extent = figure.get_tightbbox()
+        assert extent.x0 >= 0
+        assert extent.y0 >= 0
+        assert (extent.max <= figure.get_size_inches()).all()
+        texts = figure.findobj(lambda artist: hasattr(artist, "get_fontsize"))
+        assert min(text.get_fontsize() for text in texts if text.get_text()) >= 6.0

@@ -2,7 +2,6 @@
 
 import re
 import struct
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -50,27 +49,6 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> cd.Study:
 @pytest.fixture(scope="module")
 def with_velocity(study: cd.Study) -> Correlation:
     return correlate_study(study, LONG, **FEW, detrend="linear", skip_lags=(-1, 0))
-
-
-@pytest.fixture
-def saved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Figure]]:
-    """Every figure written: nothing is cut off at the border, and no text is smaller than 6 points."""
-    figures: list[Figure] = []
-    write = Figure.savefig
-
-    def note(figure: Figure, *args: object, **options: object) -> None:
-        figures.append(figure)
-        write(figure, *args, **options)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(Figure, "savefig", note)
-    yield figures
-    for figure in figures:
-        extent = figure.get_tightbbox()
-        assert extent.x0 >= 0
-        assert extent.y0 >= 0
-        assert (extent.max <= figure.get_size_inches()).all()
-        texts = figure.findobj(lambda artist: hasattr(artist, "get_fontsize"))
-        assert min(text.get_fontsize() for text in texts if text.get_text()) >= 6.0
 
 
 def _pixels_across(path: Path) -> int:

@@ -1,5 +1,4 @@
 import struct
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -70,27 +69,6 @@ def scaled(tmp_path_factory: pytest.TempPathFactory, images: FloatArray) -> Stud
 def bare(tmp_path_factory: pytest.TempPathFactory) -> Study:
     """Without a signal or a scale."""
     return _study(tmp_path_factory.mktemp("bare"), None)
-
-
-@pytest.fixture
-def saved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Figure]]:
-    """Every page that was written, and that no text of it is cut off at the page's border."""
-    figures: list[Figure] = []
-    write = Figure.savefig
-
-    def note(figure: Figure, *args: object, **options: object) -> None:
-        figures.append(figure)
-        write(figure, *args, **options)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(Figure, "savefig", note)
-    yield figures
-    for figure in figures:
-        extent = figure.get_tightbbox()
-        width, height = figure.get_size_inches()
-        assert extent.x0 >= 0
-        assert extent.y0 >= 0
-        assert extent.x1 <= width
-        assert extent.y1 <= height
 
 
 def _names(paths: list[Path]) -> list[str]:

@@ -1,5 +1,4 @@
 import struct
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -13,27 +12,6 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError, SignalError, StudyError
 from cytodisk.plot.study import draw_cell_figures, draw_overview
 from cytodisk.windows.cell_windows import CellWindows
-
-
-@pytest.fixture
-def saved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Figure]]:
-    """Every figure that was written, and that no text of it is cut off at the page's border."""
-    figures: list[Figure] = []
-    write = Figure.savefig
-
-    def note(figure: Figure, *args: object, **options: object) -> None:
-        figures.append(figure)
-        write(figure, *args, **options)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(Figure, "savefig", note)
-    yield figures
-    for figure in figures:
-        extent = figure.get_tightbbox()
-        width, height = figure.get_size_inches()
-        assert extent.x0 >= 0
-        assert extent.y0 >= 0
-        assert extent.x1 <= width
-        assert extent.y1 <= height
 
 
 def _pixels_across(path: Path) -> int:

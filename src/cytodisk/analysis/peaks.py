@@ -32,9 +32,9 @@ def peak_correlation(correlations: xr.Dataset, *, rule: Rule = "nearest") -> xr.
     -------
     Dataset with the dims of the windows
         correlation, lag (frames), lag_s when the interval is known; n, n_effective, low, high at the peak
-        where `correlations` has them. With surrogates also p, the share of surrogates that are at least as
-        large at any lag, and q, its Benjamini-Hochberg adjustment over all windows. NaN where a window has no
-        correlation.
+        where `correlations` has them; the interval is that of a lag chosen beforehand, narrow for a peak.
+        With surrogates also p, the share of surrogates that are at least as large at any lag, and q, its
+        Benjamini-Hochberg adjustment over all windows. NaN where a window has no correlation.
 
     Raises
     ------

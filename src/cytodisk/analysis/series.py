@@ -6,6 +6,7 @@ All functions work along axis 0 and pass over NaN.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -149,10 +150,7 @@ def kpss(values: Any) -> FloatArray:
     ----------
     Kwiatkowski, Phillips, Schmidt & Shin (1992), doi:10.1016/0304-4076(92)90104-Y.
     """
-    series = np.asarray(values, dtype=np.float64)
-    columns = series.reshape(len(series), -1)
-    found = [_kpss(column[np.isfinite(column)]) for column in columns.T]
-    return np.array(found, dtype=np.float64).reshape(series.shape[1:])
+    return _of_each(_kpss, values)
 
 
 def drifts(values: Any) -> BoolArray:
@@ -169,10 +167,15 @@ def drifts(values: Any) -> BoolArray:
         Whether the KPSS statistic is above its limit. In fewer than 50 values it does not rise above it even
         on a straight line: there, whether Kendall's τ with time is beyond 0.5.
     """
+    return _of_each(_drifts, values).astype(bool)
+
+
+def _of_each(measure: Callable[[FloatArray], float], values: Any) -> FloatArray:
+    """A measure of each series without its NaN."""
     series = np.asarray(values, dtype=np.float64)
     columns = series.reshape(len(series), -1)
-    found = [_drifts(column[np.isfinite(column)]) for column in columns.T]
-    return np.array(found, dtype=bool).reshape(series.shape[1:])
+    found = [measure(column[np.isfinite(column)]) for column in columns.T]
+    return np.array(found, dtype=np.float64).reshape(series.shape[1:])
 
 
 def _drifts(series: FloatArray) -> bool:
