@@ -18,9 +18,11 @@ import tifffile
 import xarray as xr
 
 from cytodisk.errors import ReadError
+from cytodisk.io.npy import read_npy
 
 _TIFF = (".tif", ".tiff")
 _PICTURES = (".png",)
+_ARRAYS = (".npy",)
 _PNG: dict[str, Any] = {"extension": ".png", "plugin": "pillow"}
 _MICROMETRES = {
     "µm": 1.0,
@@ -93,6 +95,9 @@ class FrameFile:
             if self.path.suffix.lower() in _PICTURES:
                 with self.path.open("rb") as opened:
                     array = np.asarray(imageio.imread(opened, **_PNG))
+            elif self.path.suffix.lower() in _ARRAYS:
+                whole = read_npy(self.path)
+                array = np.array(whole[number] if "T" in self.axes else whole)
             else:
                 array = self._tiff_frame(number)
         rest = [axis for axis in self.axes if axis != "T"]
@@ -117,7 +122,7 @@ def open_frames(path: str | os.PathLike[str], *, unnamed: str = "T") -> FrameFil
     Parameters
     ----------
     path : path-like
-        TIFF, OME-TIFF, ImageJ TIFF or PNG.
+        TIFF, OME-TIFF, ImageJ TIFF, PNG, or an array saved by NumPy (Cellpose's `_seg.npy`: its masks).
     unnamed : {"T", "C"}
         What an axis without a name in the file is: frames or channels.
 
@@ -140,11 +145,12 @@ def open_frames(path: str | os.PathLike[str], *, unnamed: str = "T") -> FrameFil
     if file.is_dir():
         raise ReadError(f"{file} is a folder: pass one image file")
     suffix = file.suffix.lower()
-    if suffix not in _TIFF + _PICTURES:
-        raise ReadError(
-            f"{file} is no image that can be read ({', '.join(_TIFF + _PICTURES)}): convert it to TIFF"
-        )
+    known = _TIFF + _PICTURES + _ARRAYS
+    if suffix not in known:
+        raise ReadError(f"{file} is no image that can be read ({', '.join(known)}): convert it to TIFF")
     with _reading(file, "its header"):
+        if suffix in _ARRAYS:
+            return _open_array(file, unnamed)
         return _open_tiff(file, unnamed) if suffix in _TIFF else _open_picture(file)
 
 
@@ -154,7 +160,7 @@ def read_image(path: str | os.PathLike[str], *, unnamed: str = "C") -> xr.DataAr
     Parameters
     ----------
     path : path-like
-        TIFF, OME-TIFF, ImageJ TIFF or PNG.
+        TIFF, OME-TIFF, ImageJ TIFF, PNG, or an array saved by NumPy (Cellpose's `_seg.npy`: its masks).
     unnamed : {"C", "T"}
         What an axis without a name in the file is: channels or frames.
 
@@ -240,6 +246,14 @@ def _open_picture(file: Path) -> FrameFile:
         return FrameFile(file, "YX", shape, properties.dtype, ("0",), None, None)
     names = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha"), 2: ("grey", "alpha")}
     return FrameFile(file, "YXC", shape, properties.dtype, names[shape[2]], None, None)
+
+
+def _open_array(file: Path, unnamed: str) -> FrameFile:
+    array = read_npy(file)
+    if array.ndim not in (2, 3) or not array.size:
+        raise ReadError(f"{file} has shape {array.shape}: save an array of shape (H, W) or (frames, H, W)")
+    axes = "YX" if array.ndim == 2 else f"{unnamed}YX"
+    return _with_channel_names(FrameFile(file, axes, array.shape, array.dtype, (), None, None))
 
 
 def _named_axes(file: Path, axes: str, shape: tuple[int, ...], unnamed: str) -> tuple[str, tuple[int, ...]]:
