@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from cytodisk.analysis.pairs import correlate_pairs as correlate_pairs
     from cytodisk.analysis.peaks import peak_correlation as peak_correlation
     from cytodisk.analysis.series import prepare_series as prepare_series
+    from cytodisk.analysis.window_measures import measures_by_layer as measures_by_layer
+    from cytodisk.analysis.window_measures import window_measures as window_measures
     from cytodisk.disk.certificate import Certificate as Certificate
     from cytodisk.disk.certificate import certify as certify
     from cytodisk.disk.disk_map import DiskMap as DiskMap
@@ -42,8 +44,15 @@ if TYPE_CHECKING:
     from cytodisk.report.page import write_report as write_report
     from cytodisk.study.correlate import correlate_study as correlate_study
     from cytodisk.windows.cell_windows import CellWindows as CellWindows
+    from cytodisk.windows.edge_windows import EdgeGrid as EdgeGrid
+    from cytodisk.windows.edge_windows import EdgeWindows as EdgeWindows
+    from cytodisk.windows.edge_windows import edge_windows as edge_windows
     from cytodisk.windows.grid import PolarWindows as PolarWindows
     from cytodisk.windows.grid import polar_windows as polar_windows
+    from cytodisk.windows.on_cell import WindowsOnCell as WindowsOnCell
+    from cytodisk.windows.ring_windows import RingGrid as RingGrid
+    from cytodisk.windows.ring_windows import RingWindows as RingWindows
+    from cytodisk.windows.ring_windows import ring_windows as ring_windows
     from cytodisk.windows.sample import sample as sample
 
 __version__ = "0.1.0"
@@ -69,12 +78,16 @@ _HOME = {
     "edge_events": "analysis.events",
     "edge_changes": "motion.velocity",
     "edge_velocity": "motion.velocity",
+    "edge_windows": "windows.edge_windows",
+    "EdgeGrid": "windows.edge_windows",
+    "EdgeWindows": "windows.edge_windows",
     "jitter_step": "analysis.jitter",
     "line_kymograph": "analysis.kymograph",
     "load_map": "disk.disk_map",
     "map_movie": "motion.map_movie",
     "map_to_disk": "disk.mapping",
     "MaskReport": "geometry.mask",
+    "measures_by_layer": "analysis.window_measures",
     "open_study": "io.study",
     "peak_correlation": "analysis.peaks",
     "polar_windows": "windows.grid",
@@ -82,10 +95,15 @@ _HOME = {
     "prepare_series": "analysis.series",
     "read_image": "io.frames",
     "red_flags": "report.flags",
+    "ring_windows": "windows.ring_windows",
+    "RingGrid": "windows.ring_windows",
+    "RingWindows": "windows.ring_windows",
     "sample": "windows.sample",
     "sample_movie": "analysis.activity",
     "Study": "io.study",
     "window_distances": "analysis.distances",
+    "window_measures": "analysis.window_measures",
+    "WindowsOnCell": "windows.on_cell",
     "write_report": "report.page",
 }
 _MODULES = ("errors", "plot", "simulate")

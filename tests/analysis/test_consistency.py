@@ -59,10 +59,18 @@ def test_it_is_the_correlation_of_a_library(times: int, sectors: int, seed: int)
 def test_a_frame_without_signal_is_nan_on_both_sides() -> None:
     values = np.random.default_rng(1).normal(size=(5, 2, 8))
     values[2] = np.nan
-    values[4, 1, 3] = np.nan
+    values[4, 1, 2:] = np.nan
     lost = np.isnan(consecutive_correlation(table(values)))
     np.testing.assert_array_equal(lost[:, 0], [False, True, True, False, True])
     np.testing.assert_array_equal(lost[:, 1], [False, True, True, True, True])
+
+
+def test_sectors_that_are_empty_in_either_frame_are_left_out() -> None:
+    values = np.random.default_rng(2).normal(size=(2, 1, 8))
+    values[0, 0, 1] = values[1, 0, 5] = np.nan
+    held = [0, 2, 3, 4, 6, 7]
+    expected = np.corrcoef(values[0, 0, held], values[1, 0, held])[0, 1]
+    assert float(consecutive_correlation(table(values))[0, 0]) == pytest.approx(expected, abs=1e-12)
 
 
 def test_coordinates_go_on_without_the_sector() -> None:

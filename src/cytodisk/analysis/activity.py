@@ -3,23 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
 import xarray as xr
 
 from cytodisk.arrays import FloatArray
+from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import SignalError
 from cytodisk.motion.disk_movie import DiskMovie
-from cytodisk.windows.grid import PolarWindows
+from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.sample import sample
 
 STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
 
 
+class Grid(Protocol):
+    """What `sample_movie` needs of a grid: `PolarWindows`, `EdgeGrid` or `RingGrid`."""
+
+    @property
+    def layers(self) -> int: ...
+    @property
+    def sectors(self) -> int: ...
+    def on(self, disk: DiskMap, /) -> WindowsOnCell: ...
+
+
 def sample_movie(
     movie: DiskMovie,
-    grid: PolarWindows,
+    grid: Grid,
     signals: Any,
     *,
     nan: Literal["propagate", "omit"] = "propagate",
@@ -30,7 +41,8 @@ def sample_movie(
     Parameters
     ----------
     movie : DiskMovie
-    grid : PolarWindows
+    grid : PolarWindows, EdgeGrid or RingGrid
+        A window that is empty in a frame has n_pixels 0 and is NaN there.
     signals : array_like of shape (T, H, W) or (T, C, H, W), DataArray or sequence
         As many frames as the movie; a DataArray has the dims time, (channel,) y, x. A sequence may read its
         frames, (H, W) or (C, H, W), when asked for them.

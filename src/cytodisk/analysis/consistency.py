@@ -10,6 +10,8 @@ import xarray as xr
 from cytodisk.arrays import FloatArray
 from cytodisk.motion.disk_movie import DiskMovie
 
+_LEAST_SECTORS = 3  # for a correlation: any two points lie on a line
+
 
 def consecutive_correlation(activity: xr.DataArray) -> xr.DataArray:
     """Pearson correlation over sectors of each frame with the next, by layer.
@@ -22,8 +24,8 @@ def consecutive_correlation(activity: xr.DataArray) -> xr.DataArray:
     Returns
     -------
     DataArray with the dims of `activity` but sector
-        Of frame t with t + 1, stored at t: the last is NaN, as is a frame without signal, or one whose
-        signal does not vary.
+        Of frame t with t + 1, over the sectors that have a signal in both, stored at t: the last is NaN, as
+        is a pair with fewer than three such sectors, or in which a signal does not vary.
 
     References
     ----------
@@ -52,8 +54,8 @@ def centroid_displacement(movie: DiskMovie, activity: xr.Dataset) -> xr.DataArra
     -------
     DataArray with dims (time, layer, sector)
         In µm when the movie knows its scale, else px, as attrs `units` says; of frame t to t + 1, stored at
-        t: the last is NaN, and so is a step at which tracking started anew. Its mean over windows is the
-        paper's measure.
+        t: the last is NaN, and so is a step at which tracking started anew, or the window was empty before or
+        after. Its mean over windows is the paper's measure.
 
     References
     ----------
@@ -72,12 +74,23 @@ def centroid_displacement(movie: DiskMovie, activity: xr.Dataset) -> xr.DataArra
 
 
 def correlation_over_sectors(here: FloatArray, there: FloatArray) -> FloatArray:
-    """Pearson correlation over the last axis; NaN where a signal does not vary or is not there."""
-    a, b = (values - values.mean(axis=-1, keepdims=True) for values in (here, there))
-    constant = (np.ptp(here, axis=-1) == 0) | (np.ptp(there, axis=-1) == 0)
+    """Pearson correlation over the last axis, of the sectors that have a value in both.
+
+    NaN where these are fewer than three, or a signal does not vary.
+    """
+    both = np.isfinite(here) & np.isfinite(there)
+    count = both.sum(axis=-1)
+    usable = count >= _LEAST_SECTORS
+    centred = []
+    for values in (here, there):
+        held = np.where(both, values, 0.0)
+        middle = held.sum(axis=-1, keepdims=True) / np.maximum(count, 1)[..., None]
+        centred.append(np.where(both, values - middle, 0.0))
+        usable &= np.where(both, values, -np.inf).max(axis=-1) > np.where(both, values, np.inf).min(axis=-1)
+    a, b = centred
     with np.errstate(invalid="ignore", divide="ignore"):
         found = (a * b).sum(axis=-1) / np.sqrt((a**2).sum(axis=-1) * (b**2).sum(axis=-1))
-    return np.asarray(np.where(constant, np.nan, found))
+    return np.asarray(np.where(usable, found, np.nan))
 
 
 def displacement_between(positions: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""`CellWindows`: a grid of windows on one cell."""
+"""`CellWindows`: a polar grid of windows on one cell."""
 
 from __future__ import annotations
 
@@ -9,17 +9,18 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
 from cytodisk.windows.grid import PolarWindows
+from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.outlines import window_polygons
 from cytodisk.windows.weights import window_weights
 
 
 @dataclass(frozen=True, eq=False)
-class CellWindows:
-    """Windows in the cell.
+class CellWindows(WindowsOnCell):
+    """Polar windows in the cell: none is empty, and their areas sum to the mask's.
 
     Attributes
     ----------
@@ -36,50 +37,19 @@ class CellWindows:
         return window_weights(self.grid, self.disk)
 
     @property
-    def mask(self) -> Any:
+    def mask(self) -> BoolArray:
         """The cell's mask, shape (H, W) and dtype bool."""
         return self.disk.mask
 
-    @cached_property
-    def areas(self) -> FloatArray:
-        """Area of each window in square pixels, shape (layers, sectors); they sum to the mask's."""
-        return self._by_window(np.asarray(self.weights.sum(axis=1), dtype=np.float64).ravel())
-
-    @cached_property
-    def labels(self) -> IntArray:
-        """Number of the window with the largest share of each pixel, shape (H, W); -1 outside."""
-        by_pixel = sparse.csc_array(self.weights)
-        pixel = np.repeat(np.arange(by_pixel.shape[1]), np.diff(by_pixel.indptr))
-        order = np.lexsort((by_pixel.data, pixel))
-        last = np.cumsum(np.diff(by_pixel.indptr)) - 1
-        labels = np.full(self.mask.shape, -1, dtype=np.int64)
-        labels[self.mask] = by_pixel.indices[order][last]
-        return labels
+    @property
+    def layers(self) -> int:
+        """Number of layers."""
+        return self.grid.layers
 
     @property
-    def completeness(self) -> FloatArray:
-        """Share of windows that hold signal, by layer, shape (layers,)."""
-        return np.asarray((self.areas > 0).mean(axis=1))
-
-    @cached_property
-    def centroids_yx(self) -> FloatArray:
-        """Centre of mass of each window, shape (layers, sectors, 2), (row, column) in pixels."""
-        moments = self.weights @ np.argwhere(self.mask).astype(np.float64)
-        return np.asarray(moments.reshape(*self.areas.shape, 2) / self.areas[..., None])
-
-    @cached_property
-    def eccentricities(self) -> FloatArray:
-        """Eccentricity of the ellipse with each window's second moments, shape (layers, sectors), 0 to 1.
-
-        A pixel counts as a square of side 1, so no window has zero width.
-        """
-        points = np.argwhere(self.mask).astype(np.float64)
-        products = np.column_stack([points[:, 0] ** 2, points[:, 1] ** 2, points[:, 0] * points[:, 1]])
-        mean = (self.weights @ products).reshape(*self.areas.shape, 3) / self.areas[..., None]
-        y, x = self.centroids_yx[..., 0], self.centroids_yx[..., 1]
-        yy, xx, xy = mean[..., 0] - y * y + 1 / 12, mean[..., 1] - x * x + 1 / 12, mean[..., 2] - x * y
-        middle, root = 0.5 * (yy + xx), np.hypot(0.5 * (yy - xx), xy)
-        return np.asarray(np.sqrt(np.clip(2.0 * root / (middle + root), 0.0, 1.0)))
+    def sectors(self) -> int:
+        """Number of sectors."""
+        return self.grid.sectors
 
     def polygons(self) -> list[FloatArray]:
         """Outline of each window in the cell, by window number.
@@ -129,9 +99,6 @@ class CellWindows:
                 }
             )
         return {"type": "FeatureCollection", "features": features}
-
-    def _by_window(self, values: FloatArray) -> FloatArray:
-        return values.reshape(self.grid.layers, self.grid.sectors)
 
 
 def _number(value: Any) -> float | None:

@@ -121,14 +121,19 @@ def polar_windows(layers: int = 10, sectors: int = 60, spacing: Spacing = "area"
     ----------
     u-Unwrap, section 3, "Windowing the cell using the disk parameterization".
     """
+    check_counts(layers, sectors)
+    if spacing not in ("area", "radius"):
+        raise WindowError(f"spacing must be 'area' or 'radius', got {spacing!r}")
+    return PolarWindows(int(layers), int(sectors), spacing)
+
+
+def check_counts(layers: Any, sectors: Any) -> None:
+    """Raise WindowError unless layers and sectors are whole numbers of at least 1, and not too many."""
     for name, value in (("layers", layers), ("sectors", sectors)):
         if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
             raise WindowError(f"{name} must be a whole number of at least 1, got {value!r}")
     if layers * sectors > _MOST_WINDOWS:
         raise WindowError(f"layers × sectors must be at most {_MOST_WINDOWS}, got {layers} × {sectors}")
-    if spacing not in ("area", "radius"):
-        raise WindowError(f"spacing must be 'area' or 'radius', got {spacing!r}")
-    return PolarWindows(int(layers), int(sectors), spacing)
 
 
 def layers_for_depth(depth: float, area: float, perimeter: float, spacing: Spacing = "area") -> int:

@@ -1,29 +1,19 @@
 """Signal in windows: mean, spread, extremes and quantiles by one matrix product."""
 
 from collections.abc import Sequence
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
 from scipy import sparse
 
-from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError, SignalError
-
-
-class Windows(Protocol):
-    """What `sample` needs of windows on a cell, polar or edge-based."""
-
-    @property
-    def mask(self) -> BoolArray: ...
-    @property
-    def areas(self) -> FloatArray: ...
-    @property
-    def weights(self) -> sparse.csr_array: ...
+from cytodisk.windows.on_cell import WindowsOnCell
 
 
 def sample(
-    windows: Windows,
+    windows: WindowsOnCell,
     signal: Any,
     *,
     quantiles: Sequence[float] = (),
@@ -33,8 +23,8 @@ def sample(
 
     Parameters
     ----------
-    windows : CellWindows
-        Windows on one cell.
+    windows : WindowsOnCell
+        Windows on one cell, polar, edge-based or rings. An empty one has n_pixels 0 and no other statistics.
     signal : array_like of shape (H, W) or (C, H, W), or DataArray with dims (channel,) y, x
         Of the shape of the mask.
     quantiles : sequence of float
@@ -142,7 +132,7 @@ def _statistics(
     table = {"mean": mean, "sd": sd, "min": low, "max": high}
     if quantiles:
         table["quantile"] = _quantiles(weights, window, values, quantiles)
-    lost = n_pixels == 0 if nan == "omit" else n_nan > 0
+    lost = (n_pixels == 0) | ((n_nan > 0) & (nan == "propagate"))
     for column in table.values():
         column[lost] = np.nan
     return table | {"n_pixels": n_pixels, "n_nan": n_nan}

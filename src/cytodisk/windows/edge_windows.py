@@ -1,0 +1,229 @@
+"""Edge-based windows, the field's: layers by distance from the edge, sectors of the edge."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.disk.circle import boundary_angles
+from cytodisk.disk.disk_map import DiskMap
+from cytodisk.errors import WindowError
+from cytodisk.geometry.mask import clean_mask
+from cytodisk.geometry.outline import trace_outline
+from cytodisk.windows.edge_parts import depths_and_angles, part_places
+from cytodisk.windows.grid import check_counts
+from cytodisk.windows.on_cell import WindowsOnCell
+
+_PER_SIDE = 4  # parts along a pixel's side, as polar windows have at first
+
+
+@dataclass(frozen=True)
+class EdgeGrid:
+    """Layers of equal depth from the edge (0) inwards, sectors of equal length along the edge.
+
+    Attributes
+    ----------
+    layers, sectors : int
+    depth_px : float
+        Thickness of a layer in pixels: the same in all frames of a movie.
+
+    Raises
+    ------
+    WindowError
+        A count is not a positive whole number, or the depth is not above 0.
+    """
+
+    layers: int
+    sectors: int
+    depth_px: float
+
+    def __post_init__(self) -> None:
+        check_counts(self.layers, self.sectors)
+        number = isinstance(self.depth_px, int | float | np.number) and not isinstance(self.depth_px, bool)
+        if not (number and 0 < self.depth_px < np.inf):
+            raise WindowError(f"depth_px must be a number of pixels above 0, got {self.depth_px!r}")
+
+    def on(self, disk: DiskMap) -> EdgeWindows:
+        """Lay the grid along the edge of a cell.
+
+        Parameters
+        ----------
+        disk : DiskMap
+            Its outline and boundary angles are used, its inside is not.
+
+        Returns
+        -------
+        EdgeWindows
+        """
+        return EdgeWindows(self, CellEdge.of(disk))
+
+    def window_of(self, depth: FloatArray, angle: FloatArray) -> IntArray:
+        """Number of the window at a depth below a place of the edge.
+
+        Parameters
+        ----------
+        depth : ndarray of shape (...) and dtype float
+            In pixels.
+        angle : ndarray of shape (...) and dtype float
+            In radians.
+
+        Returns
+        -------
+        ndarray of shape (...) and dtype int
+            -1 for what lies deeper than the last layer.
+        """
+        layer = np.maximum(np.ceil(depth / self.depth_px - 1e-9).astype(np.int64) - 1, 0)
+        turn = np.mod(angle / (2.0 * np.pi), 1.0)
+        sector = np.minimum(np.floor(turn * self.sectors).astype(np.int64), self.sectors - 1)
+        return np.where(layer < self.layers, layer * self.sectors + sector, -1)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CellEdge:
+    """Outline of a cell with the angle of each of its points.
+
+    Attributes
+    ----------
+    mask : ndarray of shape (H, W) and dtype bool
+    outline_yx : ndarray of shape (B, 2) and dtype float
+        (row, column) in pixels.
+    angles : ndarray of shape (B,) and dtype float
+        In radians, strictly increasing, all within one turn.
+    """
+
+    mask: BoolArray
+    outline_yx: FloatArray
+    angles: FloatArray
+
+    @classmethod
+    def of(cls, cell: Any) -> CellEdge:
+        """Edge of a mask, whose angles are those of the upright disk, or of a DiskMap, with its own."""
+        if isinstance(cell, DiskMap):
+            return cls(cell.mask, cell.outline_yx, cell.boundary_angles)
+        mask, _ = clean_mask(cell)
+        outline = trace_outline(mask)
+        return cls(mask, outline, boundary_angles(outline))
+
+    @cached_property
+    def parts(self) -> tuple[FloatArray, FloatArray]:
+        """Depth and angle of each part of the mask's pixels, each (pixels, parts): `depths_and_angles`."""
+        places = part_places(np.argwhere(self.mask), _PER_SIDE)
+        return depths_and_angles(places, self.outline_yx, self.angles)
+
+    @property
+    def greatest_depth(self) -> float:
+        """Distance from the edge of the part that is deepest inside, in pixels."""
+        return float(self.parts[0].max())
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeWindows(WindowsOnCell):
+    """Edge-based windows in a cell; where the cell is thin, windows of inner layers are empty.
+
+    Attributes
+    ----------
+    grid : EdgeGrid
+    edge : CellEdge
+    """
+
+    grid: EdgeGrid
+    edge: CellEdge
+
+    @cached_property
+    def weights(self) -> sparse.csr_array:
+        """Share of each mask pixel (row-major order) in each window, (windows, pixels).
+
+        A column sums to less than 1 where a pixel, or a part of it, lies deeper than the last layer.
+        """
+        return part_weights(self.grid.window_of(*self.edge.parts), self.layers * self.sectors)
+
+    @property
+    def mask(self) -> BoolArray:
+        """The cell's mask, shape (H, W) and dtype bool."""
+        return self.edge.mask
+
+    @property
+    def layers(self) -> int:
+        """Number of layers."""
+        return self.grid.layers
+
+    @property
+    def sectors(self) -> int:
+        """Number of sectors."""
+        return self.grid.sectors
+
+    @property
+    def depth_px(self) -> float:
+        """Thickness of a layer in pixels."""
+        return self.grid.depth_px
+
+
+def edge_windows(
+    cell: Any, layers: int = 10, sectors: int = 60, depth_px: float | None = None
+) -> EdgeWindows:
+    """Edge-based windows of one cell: the field's, to compare with `polar_windows`.
+
+    The edge is divided into sectors of equal length, and every place in the cell belongs to the sector of
+    the edge point it is nearest to, and to a layer by its distance from there. Every pixel is divided into
+    4×4 parts, each of which goes whole to its window.
+
+    Parameters
+    ----------
+    cell : array_like of shape (H, W), or DiskMap
+        A mask, which `clean_mask` cleans; its sectors start where those of the upright disk do. Or a map: its
+        sectors are those of its polar windows, in a movie those of the tracked edge.
+    layers, sectors : int
+    depth_px : float, optional
+        Thickness of a layer in pixels. By default the cell's greatest depth divided by the layers, so that
+        they cover the cell; else what lies deeper belongs to no window, and `coverage` says how much.
+
+    Returns
+    -------
+    EdgeWindows
+        Its empty windows are counted in `n_empty`.
+
+    Raises
+    ------
+    MaskError
+        The mask is not that of one cell.
+    WindowError
+        A count is not a positive whole number, or the depth is not above 0.
+
+    Notes
+    -----
+    u-Register also moves the sides of windows like springs to make them more regular; here they are where
+    the nearest edge point changes.
+
+    References
+    ----------
+    Machacek et al., "Coordination of Rho GTPase activities during cell protrusion", Nature 461 (2009),
+    doi:10.1038/nature08242. u-Unwrap, sections 2 and 4.
+    """
+    check_counts(layers, sectors)
+    edge = CellEdge.of(cell)
+    depth = edge.greatest_depth / layers if depth_px is None else depth_px
+    return EdgeWindows(EdgeGrid(int(layers), int(sectors), depth), edge)
+
+
+def part_weights(window: IntArray, n_windows: int) -> sparse.csr_array:
+    """Share of each pixel in each window, from the window of each of its parts.
+
+    Parameters
+    ----------
+    window : ndarray of shape (P, parts) and dtype int
+        -1 for none.
+    n_windows : int
+
+    Returns
+    -------
+    csr_array of shape (n_windows, P)
+    """
+    pixel, part = np.nonzero(window >= 0)
+    share = np.full(len(pixel), 1.0 / window.shape[1])
+    shape = (n_windows, len(window))
+    return sparse.csr_array(sparse.coo_array((share, (window[pixel, part], pixel)), shape=shape))

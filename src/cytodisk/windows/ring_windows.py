@@ -1,0 +1,134 @@
+"""Rings and wedges around a cell's deepest point, as CellProfiler's radial distribution divides objects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+from skimage.graph import MCP_Geometric
+
+from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.disk.disk_map import DiskMap
+from cytodisk.windows.edge_windows import CellEdge, part_weights
+from cytodisk.windows.grid import check_counts
+from cytodisk.windows.on_cell import WindowsOnCell
+
+
+@dataclass(frozen=True)
+class RingGrid:
+    """Rings by the share of the way from the edge (0) to the deepest point, wedges by angle around it.
+
+    Attributes
+    ----------
+    layers, sectors : int
+
+    Raises
+    ------
+    WindowError
+        A count is not a positive whole number.
+    """
+
+    layers: int
+    sectors: int
+
+    def __post_init__(self) -> None:
+        check_counts(self.layers, self.sectors)
+
+    def on(self, disk: DiskMap) -> RingWindows:
+        """Lay the grid over a cell.
+
+        Parameters
+        ----------
+        disk : DiskMap
+            Its mask and outline are used, its inside is not.
+
+        Returns
+        -------
+        RingWindows
+        """
+        return RingWindows(self, CellEdge.of(disk))
+
+
+@dataclass(frozen=True, eq=False)
+class RingWindows(WindowsOnCell):
+    """Rings and wedges in a cell; they cover it, but where it is bent or branched some are empty.
+
+    Attributes
+    ----------
+    grid : RingGrid
+    edge : CellEdge
+    """
+
+    grid: RingGrid
+    edge: CellEdge
+
+    @cached_property
+    def weights(self) -> sparse.csr_array:
+        """Share of each mask pixel (row-major order) in each window, (windows, pixels); columns sum to 1."""
+        pixels = np.argwhere(self.mask)
+        depth, _ = self.edge.parts
+        centre = pixels[depth.max(axis=1).argmax()]
+        way = _way_from(centre, self.mask)[self.mask][:, None]
+        share = depth / np.maximum(depth + way, 1e-12)
+        layer = np.minimum((share * self.layers).astype(np.int64), self.layers - 1)
+        turn = np.mod(np.arctan2(*(pixels - centre).T) / (2.0 * np.pi), 1.0)[:, None]
+        sector = np.minimum((turn * self.sectors).astype(np.int64), self.sectors - 1)
+        return part_weights(layer * self.sectors + sector, self.layers * self.sectors)
+
+    @property
+    def mask(self) -> BoolArray:
+        """The cell's mask, shape (H, W) and dtype bool."""
+        return self.edge.mask
+
+    @property
+    def layers(self) -> int:
+        """Number of layers."""
+        return self.grid.layers
+
+    @property
+    def sectors(self) -> int:
+        """Number of sectors."""
+        return self.grid.sectors
+
+
+def ring_windows(cell: Any, layers: int = 10, sectors: int = 8) -> RingWindows:
+    """Rings and wedges around the deepest point of one cell, to compare with `polar_windows`.
+
+    A place belongs to a ring by d_edge / (d_edge + d_centre), its distance from the edge over the sum of
+    that and of its way through the cell from the deepest point; and to a wedge by its angle around that.
+
+    Parameters
+    ----------
+    cell : array_like of shape (H, W), or DiskMap
+        A mask, which `clean_mask` cleans, or a map, of which only the mask is used.
+    layers, sectors : int
+        Layer 0 is at the edge, sector 0 begins at +x and goes towards +y.
+
+    Returns
+    -------
+    RingWindows
+
+    Raises
+    ------
+    MaskError
+        The mask is not that of one cell.
+    WindowError
+        A count is not a positive whole number.
+
+    References
+    ----------
+    Carpenter et al., "CellProfiler", Genome Biology 7:R100 (2006), doi:10.1186/gb-2006-7-10-r100:
+    MeasureObjectIntensityDistribution, in which layers are counted from the centre.
+    """
+    grid = RingGrid(layers, sectors)
+    return RingWindows(grid, CellEdge.of(cell))
+
+
+def _way_from(centre: Any, mask: BoolArray) -> FloatArray:
+    """Length of the shortest way from one pixel to each pixel through the mask, shape (H, W)."""
+    walker = MCP_Geometric(np.where(mask, 1.0, np.inf))
+    lengths, _ = walker.find_costs([tuple(int(step) for step in centre)])
+    return np.asarray(lengths, dtype=np.float64)
