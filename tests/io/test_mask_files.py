@@ -8,7 +8,8 @@ from numpy.testing import assert_array_equal
 
 from cytodisk.errors import MaskError, ParameterError
 from cytodisk.io.frames import FrameFile, open_frames
-from cytodisk.io.masks import read_cells, understood_as
+from cytodisk.io.mask_files import MaskSource, SourceCell, read_source_cells
+from cytodisk.io.masks import Kind, understood_as
 
 ONE = np.zeros((20, 30), dtype=np.uint8)
 ONE[5:15, 5:12] = 1
@@ -19,6 +20,10 @@ TWO[5:15, 15:25] = 7
 def written(tmp_path: Path, values: np.ndarray) -> FrameFile:
     tifffile.imwrite(tmp_path / "a.tif", values, photometric="minisblack")
     return open_frames(tmp_path / "a.tif", unnamed="T")
+
+
+def read_cells(file: FrameFile, kind: Kind) -> list[SourceCell]:
+    return list(read_source_cells([MaskSource(file.path.name, file.path, file, kind)]))
 
 
 @pytest.mark.parametrize(
@@ -70,19 +75,20 @@ def test_an_unknown_kind(tmp_path: Path) -> None:
 
 
 def test_every_label_is_a_cell(tmp_path: Path) -> None:
-    cells = list(read_cells(written(tmp_path, np.stack([TWO, ONE])), "labels"))
+    cells = read_cells(written(tmp_path, np.stack([TWO, ONE])), "labels")
     assert [(found.cell, found.frame, found.label) for found in cells] == [(0, 0, 1), (1, 0, 7), (2, 1, 1)]
-    assert_array_equal(cells[1].mask, TWO == 7)
+    assert_array_equal(cells[1].mask, (TWO == 7)[4:16, 14:26])
+    assert (cells[1].corner, cells[1].image_shape) == ((4, 14), (20, 30))
 
 
 def test_every_frame_of_a_stack_is_a_cell(tmp_path: Path) -> None:
-    cells = list(read_cells(written(tmp_path, np.stack([ONE, ONE[::-1]])), "stack"))
+    cells = read_cells(written(tmp_path, np.stack([ONE, ONE[::-1]])), "stack")
     assert [(found.cell, found.frame, found.label) for found in cells] == [(0, 0, 1), (1, 1, 1)]
-    assert_array_equal(cells[1].mask, ONE[::-1])
+    assert_array_equal(cells[1].mask, ONE[::-1][4:16, 4:13])
 
 
 def test_a_frame_without_label_has_a_reason(tmp_path: Path) -> None:
-    cells = list(read_cells(written(tmp_path, np.stack([TWO, 0 * TWO])), "labels"))
+    cells = read_cells(written(tmp_path, np.stack([TWO, 0 * TWO])), "labels")
     assert [str(found.fault) if found.fault else "" for found in cells] == [
         "",
         "",
@@ -110,6 +116,6 @@ def test_a_single_label_keeps_its_number(tmp_path: Path) -> None:
 def test_negative_labels_are_a_fault(tmp_path: Path) -> None:
     values = TWO.astype(np.int16)
     values[0, 0] = -1
-    cells = list(read_cells(written(tmp_path, values), "labels"))
+    cells = read_cells(written(tmp_path, values), "labels")
     assert len(cells) == 1
     assert "negative labels (down to -1)" in str(cells[0].fault)

@@ -8,7 +8,7 @@ import pytest
 import cytodisk as cd
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.io.study_folder import StudyFolder, part_key
-from cytodisk.io.tables import CELL_COLUMNS, WINDOW_COLUMNS
+from cytodisk.io.tables import SOURCE_COLUMNS, WINDOW_COLUMNS
 
 
 def run(length_unit: str = "px", **settings: object) -> dict[str, object]:
@@ -53,7 +53,7 @@ def test_no_temporary_file_is_left(tmp_path: Path) -> None:
 @pytest.mark.parametrize("unit", ["px", "µm"])
 def test_units_stand_in_the_tables_metadata(tmp_path: Path, unit: str) -> None:
     finished(tmp_path / "out", unit)
-    for name, columns in (("cells.parquet", CELL_COLUMNS), ("windows.parquet", WINDOW_COLUMNS)):
+    for name, columns in (("cells.parquet", SOURCE_COLUMNS), ("windows.parquet", WINDOW_COLUMNS)):
         schema = pq.read_schema(tmp_path / "out" / name)
         found = {field.name: field.metadata[b"unit"].decode() for field in schema}
         assert found == {column: kind.replace("length", unit) for column, _, kind in columns}

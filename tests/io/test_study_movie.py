@@ -9,7 +9,8 @@ from numpy.testing import assert_array_equal
 
 import cytodisk as cd
 from cytodisk.errors import MapError, ReadError
-from cytodisk.study.map_run import open_inputs, run_map
+from cytodisk.study.map_inputs import open_inputs
+from cytodisk.study.map_run import run_map
 from cytodisk.study.movie_inputs import open_movie
 from cytodisk.study.movie_run import run_movie
 from cytodisk.study.parameters import MapParameters, MovieParameters

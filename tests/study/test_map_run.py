@@ -10,7 +10,8 @@ from numpy.testing import assert_array_equal
 import cytodisk as cd
 from cytodisk.errors import MaskError, ParameterError, ReadError, SignalError, StudyError
 from cytodisk.io.study_folder import alone_in, part_key
-from cytodisk.study.map_run import MapInputs, check_cells, open_inputs, run_map
+from cytodisk.study.map_inputs import MapInputs, open_inputs
+from cytodisk.study.map_run import check_cells, run_map
 from cytodisk.study.parameters import MapParameters, parameters_from
 
 WriteStack = Callable[[int], tuple[Path, Path]]
@@ -148,7 +149,7 @@ def test_cells_that_cannot_be_mapped_have_a_reason(tmp_path: Path) -> None:
     masks[2, 3:9, 3:9] = 1
     tifffile.imwrite(tmp_path / "masks.tif", masks, photometric="minisblack")
     inputs = open_inputs(tmp_path / "masks.tif", None, SMALL)
-    assert [(found.cell, bool(reason)) for found, reason, _, _ in check_cells(inputs)] == [
+    assert [(checked.found.cell, bool(checked.reason)) for checked in check_cells(inputs)] == [
         (0, False),
         (1, True),
         (2, False),

@@ -12,7 +12,7 @@ import cytodisk as cd
 from cytodisk.errors import CytodiskError, MaskError, ParameterError, ReadError, SignalError, StudyError
 from cytodisk.io.frames import open_frames
 from cytodisk.io.tracks import read_frame
-from cytodisk.study.map_run import open_inputs
+from cytodisk.study.map_inputs import open_inputs
 from cytodisk.study.movie_inputs import open_movie
 from cytodisk.study.movie_run import run_movie
 from cytodisk.study.parameters import MovieParameters, parameters_from

@@ -14,8 +14,22 @@ if TYPE_CHECKING:
 Masks = Annotated[
     Path, typer.Argument(help="Mask, stack of masks or label image: TIFF or PNG.", show_default=False)
 ]
+MaskFiles = Annotated[
+    Path,
+    typer.Argument(
+        help="Mask, stack of masks or label image (TIFF, PNG, Cellpose's _seg.npy), or a folder of them.",
+        show_default=False,
+    ),
+]
 Signal = Annotated[
     Path | None, typer.Option(help="Image to sample, of the same height and width: TIFF or PNG.")
+]
+SignalFiles = Annotated[
+    Path | None,
+    typer.Option(
+        help="Image to sample, of the same height and width: TIFF or PNG. For a folder of masks: a folder "
+        "of images with names as theirs, or how those names go on beside the masks, as _img."
+    ),
 ]
 Channels = Annotated[
     str | None,

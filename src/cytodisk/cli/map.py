@@ -1,6 +1,5 @@
 """`cytodisk map` and `cytodisk check`."""
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -8,32 +7,33 @@ import typer
 
 from cytodisk.cli.console import (
     Channels,
-    Masks,
+    MaskFiles,
     Quiet,
-    Signal,
+    SignalFiles,
     console_for,
-    count,
-    fail,
     parse_align,
     parse_channels,
     progress_bar,
 )
+from cytodisk.cli.map_totals import finish_map
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from cytodisk.io.study import Study
-    from cytodisk.study.map_run import MapInputs
+    from cytodisk.study.map_inputs import MapInputs
 
 MAP_HELP = """Map masks onto the disk and sample a signal in windows, into a study folder.
 
-MASKS is one mask, a stack of masks, or a label image (each label a cell), as TIFF or PNG.
+MASKS is one mask, a stack of masks, or a label image (each label a cell), as TIFF or PNG; or a folder of such
+files, as Cellpose writes them (_masks.tif, _cp_masks.png, _seg.npy). Cells are counted through all files.
 
 Examples:
 
   cytodisk map mask.tif -o out/
 
   cytodisk map masks.tif --signal image.ome.tif -o out/ --layers 10 --sectors 60 --workers 2
+
+  cytodisk map cellpose_folder/ --signal _img -o out/ --workers 4 --no-maps
 
   cytodisk map labels.tif -o out/ --parameters other_study/parameters.toml --resume
 
@@ -42,9 +42,9 @@ Exit code: 0 when done (refused cells have a row with the reason), 2 if nothing 
 
 
 def map_command(
-    masks: Masks,
+    masks: MaskFiles,
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)],
-    signal: Signal = None,
+    signal: SignalFiles = None,
     channels: Channels = None,
     kind: Annotated[str | None, typer.Option(help="What MASKS is: auto, mask, stack or labels.")] = None,
     layers: Annotated[int | None, typer.Option(help="Windows from edge to centre (default 10).")] = None,
@@ -74,6 +74,9 @@ def map_command(
     ] = None,
     workers: Annotated[int, typer.Option(help="Processes.")] = 1,
     figures: Annotated[int, typer.Option(help="Draw this many cells, from the first; -1 for all.")] = 8,
+    no_maps: Annotated[
+        bool, typer.Option("--no-maps", help="Do not keep the map of each cell: it saves disk space.")
+    ] = False,
     geojson: Annotated[
         bool, typer.Option("--geojson", help="Write window outlines beside the maps.")
     ] = False,
@@ -82,7 +85,8 @@ def map_command(
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.plot.study import draw_cell_figures
-    from cytodisk.study.map_run import open_inputs, run_map
+    from cytodisk.study.map_inputs import open_inputs
+    from cytodisk.study.map_run import run_map
     from cytodisk.study.parameters import parameters_from
 
     given = {
@@ -110,15 +114,16 @@ def map_command(
             overwrite=overwrite,
             draw=draw_cell_figures,
             draw_at_most=None if figures < 0 else figures,
+            maps=not no_maps,
             geojson=geojson,
             progress=progress,
         )
-    finish_map(console, study, figures)
+    finish_map(console, study, figures, inputs.is_folder)
 
 
 def check_command(
-    masks: Masks,
-    signal: Signal = None,
+    masks: MaskFiles,
+    signal: SignalFiles = None,
     channels: Channels = None,
     kind: Annotated[str, typer.Option(help="What MASKS is: auto, mask, stack or labels.")] = "auto",
 ) -> None:
@@ -128,26 +133,16 @@ def check_command(
 
     Example: cytodisk check labels.tif
     """
-    from cytodisk.study.map_run import check_cells, open_inputs
+    from cytodisk.cli.map_totals import say_checked
+    from cytodisk.study.map_inputs import open_inputs
+    from cytodisk.study.map_run import check_cells
     from cytodisk.study.parameters import parameters_from
 
     given = {"kind": kind, "channels": parse_channels(channels)}
     inputs = open_inputs(masks, signal, parameters_from(given))
     console = console_for(False)
     say_inputs(console, inputs)
-    unusable = doubtful = looked_at = 0
-    print("cell\tframe\tlabel\tusable\tremarks")
-    for found, reason, notes, doubts in check_cells(inputs):
-        looked_at += 1
-        unusable += bool(reason)
-        doubtful += bool(doubts)
-        remarks = reason or "; ".join([*doubts, *notes])
-        usable = "no" if reason else "doubtful" if doubts else "yes"
-        print(f"{found.cell}\t{found.frame}\t{found.label}\t{usable}\t{remarks}")
-    what = count(looked_at, "frame" if inputs.kind == "stack" else "cell")
-    console.print(
-        f"{what}: {looked_at - unusable} usable ({doubtful} of them doubtful), {unusable} not usable"
-    )
+    unusable = say_checked(console, inputs, check_cells(inputs))
     raise typer.Exit(1 if unusable else 0)
 
 
@@ -156,40 +151,3 @@ def say_inputs(console: "Console", inputs: "MapInputs") -> None:
         console.print(f"{role}: {words}")
     size = inputs.pixel_size_um
     console.print(f"pixel size: {size:g} µm" if size else "pixel size: unknown, results are in px")
-
-
-def finish_map(console: "Console", study: "Study", figures: int) -> None:
-    """Draw the overview and say what came out; exit code 2 if that is nothing, or a frame is damaged."""
-    from cytodisk.plot.study import draw_overview
-
-    cells = study.cells
-    if len(cells) > 1:
-        draw_overview(study.path / "figures" / "overview.png", cells)
-    mapped = cells[cells["status"] == "ok"]
-    console.print(f"{len(mapped)} of {count(len(cells))} mapped{', one to one' if len(mapped) else ''}")
-    if len(mapped):
-        console.print(
-            f"median {mapped['seconds'].median():.2f} s a cell; median area distortion (mean |log λ|) "
-            f"{mapped['area_distortion'].median():.3f}; empty windows {int(mapped['empty_windows'].sum())}"
-        )
-    remarks = mapped[mapped["notes"] != ""]
-    if len(remarks):
-        console.print(f"{count(len(remarks))} with remarks: column 'notes' of cells.parquet")
-    doubtful = mapped[mapped["doubts"] != ""]
-    for _, row in doubtful.head(20).iterrows():
-        console.print(f"look at cell {row['cell']} (frame {row['time']}): {row['doubts']}")
-    if len(doubtful) > 20:
-        console.print(f"… and at {len(doubtful) - 20} more: column 'doubts' of cells.parquet")
-    lost = cells[cells["status"] != "ok"]
-    for _, row in lost.head(20).iterrows():
-        print(f"cell {row['cell']} (frame {row['time']}) {row['status']}: {row['reason']}", file=sys.stderr)
-    if len(lost) > 20:
-        print(f"… and {len(lost) - 20} more: column 'reason' of cells.parquet", file=sys.stderr)
-    if 0 <= figures < len(mapped):
-        console.print(f"figures drawn for the first {count(figures)}: --figures -1 draws all")
-    console.print(f"results: {study.path}")
-    unreadable = int((cells["status"] == "unreadable").sum())
-    if not len(mapped):
-        fail(f"no cell could be mapped: {lost['reason'].iloc[0] if len(lost) else 'the file holds no cell'}")
-    if unreadable:
-        fail(f"damaged frames of the input: {unreadable}; all others are in {study.path}")

@@ -7,7 +7,7 @@ import os
 import zipfile
 import zlib
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
@@ -197,6 +197,25 @@ class DiskMap:
         out = np.full(size * size, np.nan)
         out[inside] = ndimage.map_coordinates(values, points[inside].T, order=1, mode="nearest")
         return out.reshape(size, size)
+
+    def placed(self, corner: tuple[int, int], image_shape: tuple[int, int]) -> DiskMap:
+        """The same map in the image that its mask was cut out of.
+
+        Parameters
+        ----------
+        corner : (int, int)
+            (row, column) of the mask's first pixel in the image.
+        image_shape : (int, int)
+
+        Returns
+        -------
+        DiskMap
+            Its mask has the shape of the image, its points are pixels of the image.
+        """
+        mask = np.zeros(image_shape, dtype=bool)
+        height, width = self.mask.shape
+        mask[corner[0] : corner[0] + height, corner[1] : corner[1] + width] = self.mask
+        return replace(self, mask=mask, vertices_yx=self.vertices_yx + np.array(corner, dtype=np.float64))
 
     def save(self, path: str | os.PathLike[str], beside: Mapping[str, FloatArray] | None = None) -> None:
         """Write the map to a compressed `.npz` file that `load_map` reads back.

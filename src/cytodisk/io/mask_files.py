@@ -124,7 +124,12 @@ def base_name(name: str) -> str:
     """The name of the image that a mask file belongs to, without its ending: "a" of "a_cp_masks.png"."""
     lower = name.lower()
     fitting = [ending for ending in ENDINGS if lower.endswith(ending)]
-    return name[: -max(map(len, fitting))] if fitting else Path(name).stem
+    return name[: -max(map(len, fitting))] if fitting else image_stem(name)
+
+
+def image_stem(name: str) -> str:
+    """A file's name without the ending that says how it is stored: "a" of "a.ome.tif"."""
+    return re.sub(r"(\.ome)?\.(tiff?|png|npy)$", "", name, flags=re.IGNORECASE)
 
 
 def natural_order(name: str) -> list[tuple[int, str]]:

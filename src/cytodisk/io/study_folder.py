@@ -6,9 +6,10 @@ import json
 import os
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from cytodisk.io.tables import (
     CELL_COLUMNS,
     CONSISTENCY_COLUMNS,
     EDGE_COLUMNS,
+    SOURCE_COLUMNS,
     TRACK_COLUMNS,
     WINDOW_COLUMNS,
     Columns,
@@ -32,8 +34,17 @@ CELLS, WINDOWS, EDGE = "cells.parquet", "windows.parquet", "edge.parquet"
 CONSISTENCY, ACTIVITY = "consistency.parquet", "activity.zarr"
 MAPS, FIGURES, _PARTS, _LOCK = "maps", "figures", ".parts", ".lock"
 _LATER = ("correlation", "report.html", "report_cell_*.html")  # what other commands wrote from these results
-_OWN = (PARAMETERS, CELLS, WINDOWS, EDGE, CONSISTENCY, ACTIVITY, MAPS, FIGURES, _PARTS, *_LATER)
-_PARTS_PER_GROUP = 64
+_COMPARED = ("layers.parquet", "comparison*.csv")  # beside cells, by a comparison of windows
+_OWN = (PARAMETERS, CELLS, WINDOWS, EDGE, CONSISTENCY, ACTIVITY, MAPS, FIGURES, _PARTS, *_LATER, *_COMPARED)
+_ROWS_AT_ONCE = 50_000  # of a table in memory while parts are merged
+_CELLS_AT_ONCE = 1000
+_UNITS = ("length_unit", "velocity_unit")  # of the provenance
+
+
+def _batched(items: Iterable[Any], size: int) -> Iterator[list[Any]]:
+    rest = iter(items)
+    while batch := list(islice(rest, size)):
+        yield batch
 
 
 @dataclass(frozen=True)
@@ -52,7 +63,7 @@ class Tables:
     others: dict[str, Columns]
 
 
-MAP_TABLES = Tables(CELL_COLUMNS, {"windows": WINDOW_COLUMNS})
+MAP_TABLES = Tables(SOURCE_COLUMNS, {"windows": WINDOW_COLUMNS})
 MOVIE_TABLES = Tables(
     (*CELL_COLUMNS, *TRACK_COLUMNS),
     {"windows": WINDOW_COLUMNS, "edge": EDGE_COLUMNS, "consistency": CONSISTENCY_COLUMNS},
@@ -190,7 +201,12 @@ class StudyFolder:
         """Where figures stand."""
         return self.path / FIGURES
 
-    def add_table(self, key: str, table: str, columns: dict[str, Any]) -> None:
+    def for_workers(self) -> StudyFolder:
+        """The same folder for other processes, without what only the main one needs."""
+        units = {name: self.provenance[name] for name in _UNITS if name in self.provenance}
+        return StudyFolder(self.path, units, self.tables)
+
+    def add_table(self, key: str, table: str, *columns: dict[str, Any]) -> None:
         """Write a part's rows for a table.
 
         Parameters
@@ -199,9 +215,11 @@ class StudyFolder:
             See `part_key`.
         table : str
             One of `self.tables.others`.
-        columns : dict of str to array
+        *columns : dict of str to array
+            One below the other, such as those of several cells.
         """
-        rows = pa.table(columns, schema=self._schema(self.tables.others[table]))
+        columns_schema = self._schema(self.tables.others[table])
+        rows = pa.concat_tables([pa.table(some, schema=columns_schema) for some in columns])
         with replacing(self._part(key, f"{table}.parquet")) as temporary:
             pq.write_table(rows, temporary)
 
@@ -221,12 +239,52 @@ class StudyFolder:
             self.add_table(key, table, columns)
         _write_json(self._part(key, "json"), row)
 
+    def add_cells(self, key: str, cells: Sequence[tuple[dict[str, Any], dict[str, dict[str, Any]]]]) -> None:
+        """Write several cells as one part.
+
+        Parameters
+        ----------
+        key : str
+            See `part_key`; that of the first cell.
+        cells : sequence of (row, tables)
+            As `add` takes them.
+        """
+        for table in self.tables.others:
+            columns = [tables[table] for _, tables in cells if table in tables]
+            if columns:
+                self.add_table(key, table, *columns)
+        _write_json(self._part(key, "json"), [row for row, _ in cells])
+
+    def read_rows(self, keys: Collection[str]) -> Iterator[dict[str, Any]]:
+        """The rows of all parts, one after the other.
+
+        Parameters
+        ----------
+        keys : collection of str
+
+        Yields
+        ------
+        dict
+            As it was passed to `add` or `add_cells`.
+
+        Raises
+        ------
+        StudyError
+            A part is missing, or there are others.
+        """
+        complete = self._complete()
+        if set(complete) != set(keys):
+            raise StudyError(
+                f"study {self.path} has {len(complete)} parts instead of {len(keys)}: "
+                "run the same command again with --resume"
+            )
+        for key in keys:
+            found = json.loads(self._part(key, "json").read_text(encoding="utf-8"))
+            yield from found if isinstance(found, list) else [found]
+
     def rows(self) -> list[dict[str, Any]]:
         """The rows of all complete parts, in the order of cells, then time."""
-        found = [
-            json.loads(part.read_text(encoding="utf-8")) for part in (self.path / _PARTS).glob("[0-9]*.json")
-        ]
-        return sorted(found, key=lambda row: (row["cell"], row["time"]))
+        return sorted(self.read_rows(self._complete()), key=lambda row: (row["cell"], row["time"]))
 
     def part_table(self, key: str, table: str) -> Any:
         """A part's rows for a table, as an Arrow table."""
@@ -245,39 +303,40 @@ class StudyFolder:
         StudyError
             A part is missing.
         """
-        missing = [key for key in keys if not self.has(key)]
-        rows = self.rows()
-        if missing or len(rows) != len(keys):
-            raise StudyError(
-                f"study {self.path} has {len(rows)} parts instead of {len(keys)}: "
-                "run the same command again with --resume"
-            )
-        columns = self.tables.cells
-        table = pa.Table.from_pylist(
-            [{name: row.get(name) for name, _, _ in columns} for row in rows], schema=self._schema(columns)
-        )
+        with replacing(self.path / CELLS) as temporary:
+            self._write_cells(keys, temporary)
         for name in self.tables.others:
             with replacing(self.path / f"{name}.parquet") as temporary:
                 self._merge(keys, name, temporary)
-        with replacing(self.path / CELLS) as temporary:
-            pq.write_table(table, temporary)
         self.note("status", "complete")
         shutil.rmtree(self.path / _PARTS, ignore_errors=True)  # the tables stand; parts are only in the way
 
     def _merge(self, keys: list[str], table: str, target: Path) -> None:
+        waiting: list[Any] = []
         with pq.ParquetWriter(target, self._schema(self.tables.others[table])) as writer:
-            for first in range(0, len(keys), _PARTS_PER_GROUP):
-                group = keys[first : first + _PARTS_PER_GROUP]
-                found = [self.part_table(key, table) for key in group if self.has_table(key, table)]
-                if found:
-                    writer.write_table(pa.concat_tables(found).combine_chunks())
+            for key in keys:
+                if self.has_table(key, table):
+                    waiting.append(self.part_table(key, table))
+                if waiting and (key == keys[-1] or sum(map(len, waiting)) >= _ROWS_AT_ONCE):
+                    writer.write_table(pa.concat_tables(waiting).combine_chunks())
+                    waiting = []
+
+    def _write_cells(self, keys: list[str], target: Path) -> None:
+        columns = self.tables.cells
+        columns_schema = self._schema(columns)
+        with pq.ParquetWriter(target, columns_schema) as writer:
+            for rows in _batched(self.read_rows(keys), _CELLS_AT_ONCE):
+                values = [{name: row.get(name) for name, _, _ in columns} for row in rows]
+                writer.write_table(pa.Table.from_pylist(values, schema=columns_schema))
+
+    def _complete(self) -> list[str]:
+        return [part.stem for part in (self.path / _PARTS).glob("[0-9]*.json")]
 
     def _part(self, key: str, suffix: str) -> Path:
         return self.path / _PARTS / f"{key}.{suffix}"
 
     def _schema(self, columns: Columns) -> Any:
-        units = self.provenance["length_unit"], self.provenance.get("velocity_unit", "")
-        return schema(columns, *(str(unit) for unit in units))
+        return schema(columns, *(str(self.provenance.get(unit, "")) for unit in _UNITS))
 
 
 def _make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite: bool) -> None:
@@ -344,6 +403,6 @@ def read_provenance(folder: Path) -> dict[str, Any] | None:
     return found if isinstance(found, dict) and "fingerprint" in found else None
 
 
-def _write_json(path: Path, content: dict[str, Any]) -> None:
+def _write_json(path: Path, content: Any) -> None:
     with replacing(path) as temporary:
         temporary.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")

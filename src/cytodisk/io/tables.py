@@ -47,6 +47,9 @@ CELL_COLUMNS: Columns = (
     ("seconds", pa.float64(), "s"),
 )
 
+# A map's cells, which may come from many files.
+SOURCE_COLUMNS: Columns = (CELL_COLUMNS[0], ("source", pa.string(), ""), *CELL_COLUMNS[1:])
+
 # What a movie's cells have in addition: how the frame was tracked and registered.
 TRACK_COLUMNS: Columns = (
     ("restarted", pa.string(), ""),

@@ -14,7 +14,7 @@ from cytodisk.io.frames import FrameFile, open_frames
 from cytodisk.io.masks import Kind, understood_as
 from cytodisk.io.study_folder import part_key
 from cytodisk.io.tracks import CellTrack, list_tracks, read_frame
-from cytodisk.study.map_run import check_signal, common_pixel_size
+from cytodisk.study.map_inputs import check_signal, common_pixel_size
 from cytodisk.study.one_frame import Scale
 from cytodisk.study.parameters import MovieParameters
 from cytodisk.study.run_steps import name_channels
@@ -115,8 +115,9 @@ def open_movie(
     if signal_file is not None:
         check_signal(mask_file, signal_file)
     tracks = tuple(list_tracks(mask_file, kind, parameters.link))
+    opened = [file for file in (signal_file, mask_file) if file is not None]
     scale = Scale(
-        parameters.pixel_size_um or common_pixel_size(mask_file, signal_file),
+        parameters.pixel_size_um or common_pixel_size(opened),
         parameters.frame_interval_s or _frame_interval(mask_file, signal_file),
     )
     layers, depth_um = parameters.layers, None

@@ -27,7 +27,7 @@ from cytodisk.study.movie_tables import finish_tables
 from cytodisk.study.one_frame import FrameRows, FrameTask, measure_frame, unmapped_row
 from cytodisk.study.parameters import MovieParameters, write_parameters
 from cytodisk.study.provenance import describe_run
-from cytodisk.study.run_steps import check_options, finish_run, input_paths
+from cytodisk.study.run_steps import check_options, finish_run
 from cytodisk.study.workers import worker_pool
 
 
@@ -68,7 +68,7 @@ def run_movie(
         The folder cannot be used.
     """
     check_options(workers, resume, overwrite)
-    paths = input_paths(inputs.masks, inputs.signal)
+    paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
     provenance = describe_run(
         paths, inputs.parameters, inputs.understood, inputs.scale.pixel_size_um, inputs.scale.frame_interval_s
     )

@@ -1,8 +1,8 @@
-"""One cell of a run: map it, sample it, and put the result into rows."""
+"""Cells of a run: map them, sample them, and put the results into rows."""
 
 import json
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
@@ -11,12 +11,14 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.analysis.activity import STATISTICS
+from cytodisk.disk.circle import Align
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_to_disk
 from cytodisk.errors import CytodiskError, ReadError
 from cytodisk.files import replacing
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
-from cytodisk.io.masks import CellMask
+from cytodisk.io.mask_files import SourceCell
+from cytodisk.io.study_folder import StudyFolder, part_key
 from cytodisk.study.parameters import MapParameters
 from cytodisk.windows.cell_windows import CellWindows
 from cytodisk.windows.grid import polar_windows
@@ -29,48 +31,85 @@ _PERIMETER_SMOOTHING_PX = 1.0
 
 @dataclass(frozen=True)
 class CellTask:
-    """Everything a worker needs for one cell."""
+    """One cell with its signal.
 
-    found: CellMask
+    Attributes
+    ----------
+    found : SourceCell
+    signal : DataArray with dims (channel, y, x), or None
+        Cut out as the cell's mask is.
+    fault : CytodiskError or None
+        Why the signal cannot be used.
+    image : DataArray with dims (channel, y, x), or None
+        The whole image, for a cell that is drawn.
+    drawn : bool
+    """
+
+    found: SourceCell
     signal: xr.DataArray | None
-    signal_fault: CytodiskError | None
-    parameters: MapParameters
-    pixel_size_um: float | None
-    map_path: Path
-    figures: Path | None
-    draw: DrawCell | None
-    geojson: bool = False
+    fault: CytodiskError | None
+    image: xr.DataArray | None
+    drawn: bool
 
 
 @dataclass(frozen=True)
-class CellResult:
-    """A cell's row and its rows of the tables, for `StudyFolder.add`; no tables when the cell has no map."""
+class CellSettings:
+    """What is the same for all cells of a run.
 
-    row: dict[str, Any]
-    tables: dict[str, dict[str, Any]]
+    Attributes
+    ----------
+    parameters : MapParameters
+    pixel_size_um : float or None
+    folder : StudyFolder
+        Where results go.
+    draw : callable, optional
+        As `run_map` takes it.
+    maps, geojson : bool
+        Whether maps, and outlines of windows, are written.
+    """
+
+    parameters: MapParameters
+    pixel_size_um: float | None
+    folder: StudyFolder
+    draw: DrawCell | None
+    maps: bool
+    geojson: bool
 
 
-def measure_cell(task: CellTask) -> CellResult:
-    """Map and sample one cell; a fault of its input becomes a row with the reason.
+Rows: TypeAlias = tuple[dict[str, Any], dict[str, dict[str, Any]]]
+
+
+def measure_part(cells: Sequence[CellTask], settings: CellSettings) -> int:
+    """Map and sample some cells, and write them as one part of the study.
 
     Parameters
     ----------
-    task : CellTask
+    cells : sequence of CellTask
+        At least one.
+    settings : CellSettings
 
     Returns
     -------
-    CellResult
-        The map is written to `task.map_path`, figures to `task.figures`.
+    int
+        How many cells are done.
 
     Raises
     ------
     StudyError
         A result cannot be written.
     """
+    key = part_key(cells[0].found.cell)
+    settings.folder.add_cells(key, [_measure_cell(task, settings) for task in cells])
+    return len(cells)
+
+
+def _measure_cell(task: CellTask, settings: CellSettings) -> Rows:
+    """Rows of one cell; a fault of its input becomes a row with the reason."""
     started = clock.perf_counter()
-    found, parameters = task.found, task.parameters
-    row: dict[str, Any] = {"cell": found.cell, "time": found.frame, "label": found.label}
-    fault = found.fault or task.signal_fault
+    found, parameters = task.found, settings.parameters
+    row: dict[str, Any] = {"cell": found.cell, "source": found.source}
+    row |= {"time": found.frame, "label": found.label}
+    fault = found.fault or task.fault
     if fault is None:
         try:
             disk = map_to_disk(
@@ -78,27 +117,44 @@ def measure_cell(task: CellTask) -> CellResult:
                 method=parameters.method,
                 shape_weight=parameters.shape_weight,
                 edge_length=parameters.edge_length,
-                align=parameters.align,
+                align=_in_crop(parameters.align, found.corner),
             )
         except CytodiskError as error:
             fault = error
     if fault is not None:
         status = "unreadable" if isinstance(fault, ReadError) else "refused"
-        return CellResult(row | {"status": status, "reason": str(fault), "seconds": _since(started)}, {})
+        return row | {"status": status, "reason": str(fault), "seconds": _since(started)}, {}
 
     windows = polar_windows(parameters.layers, parameters.sectors, parameters.spacing).on(disk)
-    columns = window_columns(
-        (found.cell, found.frame, None), windows, task.signal, parameters.nan, task.pixel_size_um
-    )
-    row |= cell_columns(disk, windows, task.signal, task.pixel_size_um)
-    disk.save(task.map_path)
-    if task.geojson:
-        with replacing(task.map_path.with_suffix(".geojson")) as temporary:
-            temporary.write_text(json.dumps(windows.geojson()), encoding="utf-8")
+    place = found.cell, found.frame, None
+    columns = window_columns(place, windows, task.signal, parameters.nan, settings.pixel_size_um)
+    row |= cell_columns(disk, windows, task.signal, settings.pixel_size_um)
+    for values in (columns, row):
+        for name, first in zip(("centroid_y", "centroid_x"), found.corner, strict=True):
+            values[name] = values[name] + float(first)
+    placed = windows
+    if settings.maps or settings.geojson or task.drawn:  # in pixels of the whole image
+        placed = windows.grid.on(disk.placed(found.corner, found.image_shape))
+        _write_map(placed, settings.folder.map_path(part_key(found.cell)), settings)
     seconds = _since(started)
-    if task.draw is not None and task.figures is not None:
-        task.draw(task.figures, f"cell_{found.cell:05d}", windows, task.signal, task.pixel_size_um)
-    return CellResult(row | {"status": "ok", "reason": "", "seconds": seconds}, {"windows": columns})
+    if task.drawn and settings.draw is not None:
+        name = f"cell_{found.cell:05d}"
+        settings.draw(settings.folder.figures, name, placed, task.image, settings.pixel_size_um)
+    return row | {"status": "ok", "reason": "", "seconds": seconds}, {"windows": columns}
+
+
+def _write_map(windows: CellWindows, path: Path, settings: CellSettings) -> None:
+    if settings.maps:
+        windows.disk.save(path)
+    if settings.geojson:
+        with replacing(path.with_suffix(".geojson")) as temporary:
+            temporary.write_text(json.dumps(windows.geojson()), encoding="utf-8")
+
+
+def _in_crop(align: Align, corner: tuple[int, int]) -> Align:
+    if isinstance(align, tuple):
+        return align[0] - corner[0], align[1] - corner[1]
+    return align
 
 
 def cell_columns(

@@ -2,7 +2,7 @@
 
 import hashlib
 import platform
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -44,7 +44,7 @@ def installed(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
 
 
 def describe_run(
-    inputs: Mapping[str, Path],
+    inputs: Mapping[str, Path | Sequence[Path]],
     parameters: MapParameters,
     understood: Mapping[str, str],
     pixel_size_um: float | None,
@@ -54,8 +54,8 @@ def describe_run(
 
     Parameters
     ----------
-    inputs : dict of role to Path
-        As "masks" and "signal".
+    inputs : dict of role to Path, or to a sequence of Path
+        As "masks" and "signal"; a sequence for files of one folder.
     parameters : MapParameters
     understood : dict of role to str
         What each input was read as, in words.
@@ -73,19 +73,16 @@ def describe_run(
     ReadError
         An input cannot be read.
     """
-    hashes = {role: _sha256(path) for role, path in inputs.items()}
+    described = {role: _describe_input(paths) for role, paths in inputs.items()}
     settings = parameters.model_dump(mode="json")
-    fingerprint: dict[str, Any] = {f"{role} sha256": value for role, value in hashes.items()}
+    fingerprint: dict[str, Any] = {f"{role} sha256": found["sha256"] for role, found in described.items()}
     fingerprint |= {"cytodisk": installed(("cytodisk",))["cytodisk"]} | settings
     fingerprint["packages"] = installed(_NUMERIC)
     fingerprint |= {"pixel_size_um": pixel_size_um, "frame_interval_s": frame_interval_s}
     return {
         "status": "running",
         "fingerprint": fingerprint,
-        "inputs": {
-            role: {"path": str(path), "sha256": hashes[role], "read as": understood[role]}
-            for role, path in inputs.items()
-        },
+        "inputs": {role: found | {"read as": understood[role]} for role, found in described.items()},
         "parameters": settings,
         "pixel_size_um": pixel_size_um,
         "frame_interval_s": frame_interval_s,
@@ -98,6 +95,23 @@ def describe_run(
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
         "warnings": [],
     }
+
+
+def _describe_input(paths: Path | Sequence[Path]) -> dict[str, Any]:
+    if isinstance(paths, Path):
+        return {"path": str(paths), "sha256": _sha256(paths)}
+    files = {path.name: _sha256_if_readable(path) for path in paths}
+    lines = "".join(f"{value}  {name}\n" for name, value in files.items())
+    whole = hashlib.sha256(lines.encode()).hexdigest()
+    return {"path": str(paths[0].parent), "sha256": whole, "files": files}
+
+
+def _sha256_if_readable(path: Path) -> str:
+    """A file of many that cannot be read has its row in the results, so it does not stop the run here."""
+    try:
+        return _sha256(path)
+    except ReadError:
+        return "unreadable"
 
 
 def _sha256(path: Path) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
-from pathlib import Path
 
 from cytodisk.errors import ParameterError, SignalError
 from cytodisk.io.frames import FrameFile
@@ -19,11 +18,6 @@ def check_options(workers: int, resume: bool, overwrite: bool) -> None:
         raise ParameterError(f"workers must be at least 1, got {workers}")
     if resume and overwrite:
         raise ParameterError("resume and overwrite exclude each other: pass one of them")
-
-
-def input_paths(masks: FrameFile, signal: FrameFile | None) -> dict[str, Path]:
-    """Files of a run by their role."""
-    return {"masks": masks.path} | ({"signal": signal.path} if signal is not None else {})
 
 
 def name_channels(signal: FrameFile | None, channels: tuple[str, ...] | None) -> FrameFile | None:
