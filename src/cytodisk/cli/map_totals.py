@@ -28,7 +28,8 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
     mapped, lost = cells[cells["status"] == "ok"], cells[cells["status"] != "ok"]
     if of_folder:
         _say_totals(console, cells, mapped)
-    console.print(f"{len(mapped)} of {count(len(cells))} mapped{', one to one' if len(mapped) else ''}")
+    else:
+        console.print(f"{len(mapped)} of {count(len(cells))} mapped{', one to one' if len(mapped) else ''}")
     if len(mapped):
         console.print(
             f"median {mapped['seconds'].median():.2f} s a cell; median area distortion (mean |log λ|) "
@@ -56,7 +57,7 @@ def _say_totals(console: "Console", cells: "pd.DataFrame", mapped: "pd.DataFrame
     numbers = [f"{status.get(name, 0)} {name}" for name in ("refused", "unreadable") if status.get(name, 0)]
     console.print(
         f"{count(cells['source'].nunique(), 'file')}, {count(len(cells))}: "
-        + ", ".join([f"{len(mapped)} mapped", *numbers])
+        + "; ".join([f"{len(mapped)} mapped{', one to one' if len(mapped) else ''}", *numbers])
     )
     border = int(mapped["touches_border"].astype(bool).sum())
     complete = int((mapped["empty_windows"] == 0).sum())

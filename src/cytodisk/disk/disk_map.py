@@ -6,7 +6,7 @@ import json
 import os
 import zipfile
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
@@ -27,7 +27,7 @@ from cytodisk.geometry.mask import MaskReport
 Method: TypeAlias = Literal["newton", "harmonic"]
 Start: TypeAlias = Literal["cotangent", "uniform", "previous"]
 
-_FORMAT = 1
+_FORMAT = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,10 +212,8 @@ class DiskMap:
         DiskMap
             Its mask has the shape of the image, its points are pixels of the image.
         """
-        mask = np.zeros(image_shape, dtype=bool)
-        height, width = self.mask.shape
-        mask[corner[0] : corner[0] + height, corner[1] : corner[1] + width] = self.mask
-        return replace(self, mask=mask, vertices_yx=self.vertices_yx + np.array(corner, dtype=np.float64))
+        vertices_yx = self.vertices_yx + np.array(corner, dtype=np.float64)
+        return replace(self, mask=_placed(self.mask, corner, image_shape), vertices_yx=vertices_yx)
 
     def save(self, path: str | os.PathLike[str], beside: Mapping[str, FloatArray] | None = None) -> None:
         """Write the map to a compressed `.npz` file that `load_map` reads back.
@@ -237,12 +235,14 @@ class DiskMap:
         if Path(path).suffix != ".npz":
             raise ParameterError(f"path must end in .npz, got {path}")
         facts = {name: getattr(self, name) for name in _FACTS}
-        header = {"format": _FORMAT, "report": asdict(self.report), **facts}
+        crop, corner = _cropped(self.mask)  # a cell is small in its image
+        place = {"corner": corner, "image_shape": list(self.mask.shape)}
+        header = {"format": _FORMAT, "report": asdict(self.report), **place, **facts}
         with replacing(path) as temporary:
             np.savez_compressed(
                 temporary,
                 header=np.array(json.dumps(header)),
-                mask=self.mask,
+                mask=crop,
                 **dict[str, Any](beside or {}),
                 **{name: getattr(self, name) for name in _ARRAYS},
             )
@@ -290,7 +290,7 @@ def load_map(path: str | os.PathLike[str]) -> DiskMap:
             if header["format"] != _FORMAT:
                 raise ReadError(f"{path} is a map of format {header['format']}: this version reads {_FORMAT}")
             return DiskMap(
-                mask=file["mask"],
+                mask=_placed(file["mask"], header["corner"], header["image_shape"]),
                 report=MaskReport(**header["report"]),
                 **{name: file[name] for name in _ARRAYS},
                 **{name: header[name] for name in _FACTS},
@@ -301,6 +301,20 @@ def load_map(path: str | os.PathLike[str]) -> DiskMap:
         if isinstance(error, ReadError):
             raise
         raise ReadError(f"{path} is not a map that DiskMap.save wrote: {error}") from error
+
+
+def _cropped(mask: BoolArray) -> tuple[BoolArray, list[int]]:
+    rows = np.flatnonzero(mask.any(axis=1))
+    strip = mask[rows[0] : rows[-1] + 1]
+    columns = np.flatnonzero(strip.any(axis=0))
+    return strip[:, columns[0] : columns[-1] + 1], [int(rows[0]), int(columns[0])]
+
+
+def _placed(mask: BoolArray, corner: Sequence[int], image_shape: Sequence[int]) -> BoolArray:
+    whole = np.zeros(tuple(image_shape), dtype=bool)
+    (y, x), (height, width) = corner, mask.shape
+    whole[y : y + height, x : x + width] = mask
+    return whole
 
 
 def _as_points(points: Any, name: str) -> tuple[FloatArray, tuple[int, ...]]:

@@ -1,6 +1,7 @@
 """Cells, signals and random masks with known answers, for the demo, the docs, tests and benchmarks."""
 
 from cytodisk.simulate.cells import disk, dumbbell, ellipse, star
+from cytodisk.simulate.label_images import label_image
 from cytodisk.simulate.movie_kinds import MOVIE_KINDS
 from cytodisk.simulate.moving_cells import SimulatedMovie, movie
 from cytodisk.simulate.random_cells import branching, migrating, random_smooth, random_spiky
@@ -21,6 +22,7 @@ __all__ = [
     "dumbbell",
     "ellipse",
     "independent_series",
+    "label_image",
     "linear_signal",
     "migrating",
     "movie",
