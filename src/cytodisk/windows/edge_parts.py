@@ -8,6 +8,8 @@ from numba import njit
 
 from cytodisk.arrays import FloatArray, IntArray
 
+_PIXELS_AT_ONCE = 16  # neighbours, so what is near to one is near to all
+
 
 def part_places(pixels_yx: IntArray, per_side: int) -> FloatArray:
     """Middle of each part of pixels that are divided into per_side × per_side parts.
@@ -50,7 +52,9 @@ def depths_and_angles(
         In radians.
     """
     ends = np.append(angles[1:], angles[0] + 2.0 * np.pi)
-    depth, angle = _nearest(places_yx, outline_yx, angles, ends)
+    shape = places_yx.shape[:2]
+    flat = np.ascontiguousarray(places_yx.reshape(-1, 2))
+    depth, angle = (found.reshape(shape) for found in _nearest(flat, shape[1], outline_yx, angles, ends))
     rim = depth < 1.0  # parts further off are within pixels that the outline does not cut
     rim[rim] = ~shapely.contains_xy(shapely.Polygon(outline_yx), *places_yx[rim].T)
     depth[rim] = 0.0
@@ -59,44 +63,46 @@ def depths_and_angles(
 
 @njit(cache=True)
 def _nearest(
-    places: FloatArray, outline: FloatArray, angles: FloatArray, ends: FloatArray
+    places: FloatArray, n_parts: int, outline: FloatArray, angles: FloatArray, ends: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """For each pixel the outline points that can be near enough, then of these the nearest edge by part."""
-    n_points, n_parts = len(outline), places.shape[1]
+    """Outline points that can be near enough to a few pixels, of these to each pixel, then by part."""
+    everything = np.arange(len(outline))
     longest = 0.0
-    for i in range(n_points):
-        j = (i + 1) % n_points
-        longest = max(longest, math.hypot(outline[j, 0] - outline[i, 0], outline[j, 1] - outline[i, 1]))
-    depth, angle = np.empty(places.shape[:2]), np.empty(places.shape[:2])
-    squared, chosen = np.empty(n_points), np.empty(n_points, dtype=np.int64)
-    for pixel in range(len(places)):
-        y, x = places[pixel, 0, 0], places[pixel, 0, 1]
-        reach = 0.0  # of the parts around the first one
-        for part in range(n_parts):
-            reach = max(reach, math.hypot(places[pixel, part, 0] - y, places[pixel, part, 1] - x))
-        least = np.inf
-        for i in range(n_points):
-            squared[i] = (outline[i, 0] - y) ** 2 + (outline[i, 1] - x) ** 2
-            least = min(least, squared[i])
-        # No part is further from the outline than this, and an edge is at most so far from its first point.
-        limit = (math.sqrt(least) + 2.0 * reach + longest) ** 2
-        n_chosen = 0
-        for i in range(n_points):
-            if squared[i] <= limit:
-                chosen[n_chosen] = i
-                n_chosen += 1
-        for part in range(n_parts):
-            py, px = places[pixel, part, 0], places[pixel, part, 1]
-            best = np.inf
-            for entry in range(n_chosen):
-                i = chosen[entry]
-                j = i + 1 if i + 1 < n_points else 0
-                ey, ex = outline[j, 0] - outline[i, 0], outline[j, 1] - outline[i, 1]
-                dy, dx = py - outline[i, 0], px - outline[i, 1]
-                along = min(max((dy * ey + dx * ex) / (ey * ey + ex * ex), 0.0), 1.0)
-                away = (dy - along * ey) ** 2 + (dx - along * ex) ** 2
-                if away < best:
-                    best = away
-                    angle[pixel, part] = angles[i] + along * (ends[i] - angles[i])
-            depth[pixel, part] = math.sqrt(best)
+    for i in everything:
+        there = outline[(i + 1) % len(outline)]
+        longest = max(longest, math.hypot(there[0] - outline[i, 0], there[1] - outline[i, 1]))
+    depth, angle = np.empty(len(places)), np.empty(len(places))
+    for first in range(0, len(places), _PIXELS_AT_ONCE * n_parts):
+        last = min(first + _PIXELS_AT_ONCE * n_parts, len(places))
+        around = _within_reach(outline, everything, places[first:last], longest)
+        for pixel in range(first, last, n_parts):
+            near = _within_reach(outline, around, places[pixel : pixel + n_parts], longest)
+            for part in range(pixel, pixel + n_parts):
+                y, x = places[part]
+                best = np.inf
+                for i in near:
+                    j = i + 1 if i + 1 < len(outline) else 0
+                    ey, ex = outline[j, 0] - outline[i, 0], outline[j, 1] - outline[i, 1]
+                    dy, dx = y - outline[i, 0], x - outline[i, 1]
+                    along = min(max((dy * ey + dx * ex) / (ey * ey + ex * ex), 0.0), 1.0)
+                    away = (dy - along * ey) ** 2 + (dx - along * ex) ** 2
+                    if away < best:
+                        best = away
+                        angle[part] = angles[i] + along * (ends[i] - angles[i])
+                depth[part] = math.sqrt(best)
     return depth, angle
+
+
+@njit(cache=True)
+def _within_reach(outline: FloatArray, among: IntArray, places: FloatArray, longest: float) -> IntArray:
+    """Outline points at which an edge can begin that is nearest to any of some places."""
+    y, x = places[0]
+    reach = 0.0  # from the first place to all
+    for place in places:
+        reach = max(reach, math.hypot(place[0] - y, place[1] - x))
+    squared = np.empty(len(among))
+    for entry, i in enumerate(among):
+        squared[entry] = (outline[i, 0] - y) ** 2 + (outline[i, 1] - x) ** 2
+    # The nearest edge of any place is at most √min + reach away from it, and as long as the longest.
+    limit = math.sqrt(squared.min()) + 2.0 * reach + longest
+    return among[squared <= limit**2]
