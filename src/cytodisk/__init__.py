@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from cytodisk.analysis.pairs import correlate_pairs as correlate_pairs
     from cytodisk.analysis.peaks import peak_correlation as peak_correlation
     from cytodisk.analysis.series import prepare_series as prepare_series
+    from cytodisk.analysis.shape.complexity import complexity_score as complexity_score
+    from cytodisk.analysis.shape.features import shape_features as shape_features
     from cytodisk.analysis.window_measures import measures_by_layer as measures_by_layer
     from cytodisk.analysis.window_measures import window_measures as window_measures
     from cytodisk.disk.certificate import Certificate as Certificate
@@ -66,6 +68,7 @@ _HOME = {
     "Certificate": "disk.certificate",
     "certify": "disk.certificate",
     "clean_mask": "geometry.mask",
+    "complexity_score": "analysis.shape.complexity",
     "consecutive_correlation": "analysis.consistency",
     "correlate_pairs": "analysis.pairs",
     "correlate_study": "study.correlate",
@@ -100,6 +103,7 @@ _HOME = {
     "RingWindows": "windows.ring_windows",
     "sample": "windows.sample",
     "sample_movie": "analysis.activity",
+    "shape_features": "analysis.shape.features",
     "Study": "io.study",
     "window_distances": "analysis.distances",
     "window_measures": "analysis.window_measures",

@@ -1,0 +1,1 @@
+"""Shape of cells in numbers: features by group, and the complexity score."""

@@ -1,0 +1,202 @@
+"""`complexity_score`: one number for how complex the shape of a cell is among others (paper appendix B)."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from scipy.stats import spearmanr
+
+from cytodisk.analysis.parameters import whole_number
+from cytodisk.analysis.shape.features import SCALE_FREE
+from cytodisk.arrays import FloatArray
+from cytodisk.errors import MissingPartError, ParameterError
+
+LEAST_CELLS = 10
+_NORMAL_QUARTILES = 1.349  # between the quartiles of a normal distribution with standard deviation 1
+
+
+def complexity_score(
+    features: pd.DataFrame, *, seed: int = 0, n_neighbors: int = 15, min_dist: float = 0.1
+) -> pd.DataFrame:
+    """Place cells on an axis from plain to complex shapes.
+
+    The scale-free features, made comparable, are laid out in a plane by UMAP; the score is the position along
+    the plane's principal axis, higher for cells with more edge for their area.
+
+    Parameters
+    ----------
+    features : DataFrame
+        As `shape_features` returns it, or several of them put together. `attrs["scale_free"]` names the
+        columns that count; without it they are all scale-free features of `shape_features`.
+    seed : int
+        Of UMAP. The same seed gives the same result.
+    n_neighbors : int
+        Of UMAP, at least 2: how many cells count as alike. At most one less than there are cells is used.
+    min_dist : float
+        Of UMAP, 0 to 1: how close together cells may come in the plane.
+
+    Returns
+    -------
+    DataFrame
+        Index and columns "cell" and "status" of `features`, then "complexity", "umap_1" and "umap_2", which
+        are relative to the mean of the cells, NaN for cells without features. `attrs["axis"]` is the
+        principal axis (umap_1, umap_2), of length 1, towards complex shapes; `attrs["axis_share"]` the share
+        of the variance along it: near 0.5 there is no such axis. `attrs["first_component"]` is the rank
+        correlation of the score with the first principal component of the features.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than 10 cells with features, a missing column, or a parameter out of its range.
+    MissingPartError
+        umap-learn is not installed.
+
+    Notes
+    -----
+    The median of each feature is taken away, what is left is divided by the spread between quartiles and
+    compressed by arsinh, which is a logarithm for large values, so that few extreme cells do not make the
+    axis. Eigenvectors have no sign: the axis points to where circularity falls (rank correlation).
+
+    The score has no unit and depends on the cells that are scored together: compare only scores that were
+    computed in one call.
+
+    References
+    ----------
+    u-Unwrap, appendix B. McInnes, Healy and Melville, "UMAP", 2018, arXiv:1802.03426.
+    """
+    seed, n_neighbors = whole_number("seed", seed, 0), whole_number("n_neighbors", n_neighbors, 2)
+    if isinstance(min_dist, bool) or not isinstance(min_dist, int | float) or not 0 <= min_dist <= 1:
+        raise ParameterError(f"min_dist must be a number from 0 to 1, got {min_dist!r}")
+    names, values = _measured(features)
+    known = np.isfinite(values).all(axis=1)
+    if known.sum() < LEAST_CELLS:
+        raise ParameterError(
+            f"features has {known.sum()} cells with numbers, and a complexity score is relative to other "
+            f"cells: pass at least {LEAST_CELLS}"
+        )
+    comparable = standardised(values[known])
+    plane = umap_plane(comparable, seed, min(n_neighbors, int(known.sum()) - 1), min_dist)
+    axis, share = principal_axis(plane)
+    circularity = values[known, names.index("circularity")]
+    score = plane @ axis
+    if _rank_correlation(score, circularity) > 0:
+        axis, score = -axis, -score
+    table = features[[name for name in ("cell", "status") if name in features]].copy()
+    for name, column in zip(("complexity", "umap_1", "umap_2"), (score, *plane.T), strict=True):
+        table[name] = np.nan
+        table.loc[known, name] = column
+    table.attrs = {
+        "axis": tuple(axis.tolist()),
+        "axis_share": share,
+        "first_component": abs(_rank_correlation(score, first_component(comparable))),
+        "units": dict.fromkeys(("complexity", "umap_1", "umap_2"), "1"),
+    }
+    return table
+
+
+def _measured(features: pd.DataFrame) -> tuple[list[str], FloatArray]:
+    """Names and values of the features that count."""
+    names = list(features.attrs.get("scale_free", SCALE_FREE))
+    missing = [name for name in dict.fromkeys([*names, "circularity"]) if name not in features]
+    if missing:
+        raise ParameterError(
+            f"features has no column {missing[0]!r}: pass the table that shape_features returns"
+        )
+    if "circularity" not in names:
+        names.append("circularity")
+    return names, features[names].to_numpy(np.float64)
+
+
+def standardised(values: FloatArray) -> FloatArray:
+    """Features made comparable: median 0, spread between quartiles as of a standard normal, tails compressed.
+
+    Parameters
+    ----------
+    values : ndarray of shape (cells, features) and dtype float
+
+    Returns
+    -------
+    ndarray of shape (cells, features that vary) and dtype float
+    """
+    centred = values - np.median(values, axis=0)
+    low, high = np.percentile(values, (25, 75), axis=0)
+    spread = (high - low) / _NORMAL_QUARTILES
+    spread = np.where(spread > 0, spread, values.std(axis=0))  # such as counts that are 0 for most cells
+    varies = spread > 1e-12 * np.maximum(1.0, np.abs(values).max(axis=0))
+    return np.asarray(np.arcsinh(centred[:, varies] / spread[varies]))
+
+
+def umap_plane(values: FloatArray, seed: int, n_neighbors: int, min_dist: float) -> FloatArray:
+    """Place cells in a plane so that alike ones are close together.
+
+    Parameters
+    ----------
+    values : ndarray of shape (cells, features) and dtype float
+    seed, n_neighbors, min_dist
+        As for `complexity_score`.
+
+    Returns
+    -------
+    ndarray of shape (cells, 2) and dtype float
+        Mean 0.
+
+    Raises
+    ------
+    MissingPartError
+        umap-learn is not installed.
+    """
+    # The start is spectral, which needs more cells than dimensions by some; few cells start from components.
+    start = "spectral" if len(values) > 2 * LEAST_CELLS else "pca"
+    reducer = _umap().UMAP(
+        n_neighbors=n_neighbors, min_dist=min_dist, init=start, random_state=seed, n_jobs=1
+    )
+    plane = np.asarray(reducer.fit_transform(values), dtype=np.float64)
+    return np.asarray(plane - plane.mean(axis=0))
+
+
+def _umap() -> Any:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ImportWarning)  # that TensorFlow, which is not used, is missing
+            import umap
+    except ImportError as error:
+        raise MissingPartError(
+            "the complexity score needs umap-learn, which is not installed: pip install 'cytodisk[umap]'"
+        ) from error
+    return umap
+
+
+def principal_axis(plane: FloatArray) -> tuple[FloatArray, float]:
+    """Direction of largest variance in a plane.
+
+    Parameters
+    ----------
+    plane : ndarray of shape (cells, 2) and dtype float
+
+    Returns
+    -------
+    axis : ndarray of shape (2,) and dtype float
+        Of length 1; its sign is arbitrary.
+    share : float
+        Of the variance, 0.5 to 1.
+    """
+    variances, vectors = np.linalg.eigh(np.cov(plane.T))
+    return np.asarray(vectors[:, -1]), float(variances[-1] / variances.sum())
+
+
+def first_component(values: FloatArray) -> FloatArray:
+    """Score of each cell on the first principal component, shape (cells,); its sign is arbitrary.
+
+    Parameters
+    ----------
+    values : ndarray of shape (cells, features) and dtype float
+    """
+    left, sizes, _ = np.linalg.svd(values - values.mean(axis=0), full_matrices=False)
+    return np.asarray(left[:, 0] * sizes[0])
+
+
+def _rank_correlation(first: FloatArray, second: FloatArray) -> float:
+    return float(spearmanr(first, second).statistic)

@@ -1,0 +1,197 @@
+"""`shape_features`: a row of numbers for the shape of each cell."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from scipy import ndimage
+
+from cytodisk.analysis.shape.cell_shape import crop_shape
+from cytodisk.analysis.shape.curvature import CURVATURE
+from cytodisk.analysis.shape.depth import DEPTH
+from cytodisk.analysis.shape.distortion import DISTORTION
+from cytodisk.analysis.shape.feature import Feature, FeatureGroup
+from cytodisk.analysis.shape.form import FORM
+from cytodisk.analysis.shape.fourier import FOURIER
+from cytodisk.analysis.shape.moments import MOMENTS
+from cytodisk.analysis.shape.size import SIZE
+from cytodisk.analysis.shape.skeleton import SKELETON
+from cytodisk.errors import CytodiskError, MaskError, ParameterError
+from cytodisk.geometry.mask import clean_mask
+
+GROUPS: tuple[FeatureGroup, ...] = (
+    SIZE,
+    FORM,
+    MOMENTS,
+    FOURIER,
+    CURVATURE,
+    DEPTH,
+    SKELETON,
+    DISTORTION,
+)
+FEATURES: tuple[Feature, ...] = tuple(feature for group in GROUPS for feature in group.features)
+SCALE_FREE: tuple[str, ...] = tuple(feature.name for feature in FEATURES if feature.scale_free)
+
+
+def shape_features(masks: Any, *, pixel_size_um: float | None = None) -> pd.DataFrame:
+    """Measure the shape of cells: size, form, moments, outline, curvature, depth, skeleton, harmonic map.
+
+    Each mask is first reduced to its largest piece without holes (`clean_mask`).
+
+    Parameters
+    ----------
+    masks : array_like of shape (H, W) or (N, H, W), or sequence of arrays of shape (H, W)
+        A label image (each whole number but 0 is a cell; a boolean image is one cell), a stack of masks of
+        one cell each, or a list of such masks, which may differ in size.
+    pixel_size_um : float, optional
+        Micrometres a pixel; without it lengths are in px.
+
+    Returns
+    -------
+    DataFrame
+        A row a cell: "cell" (its running number), "frame" (its place in the stack or list), "label", "status"
+        ("ok" or "refused"), "reason" (why there are no numbers), "notes" (what cleaning changed),
+        "touches_border", then the features, NaN for a refused cell. `attrs["units"]` and
+        `attrs["description"]` are dicts by column, `attrs["scale_free"]` is the list of features that stay
+        the same when the same shape is drawn larger.
+
+    Raises
+    ------
+    MaskError
+        `masks` is none of these, or a label image that holds no cell.
+    ParameterError
+        The pixel size is not a positive number.
+
+    Notes
+    -----
+    Scale-free features refer to the disk of the same area. None depends on place, turn or mirror image, up
+    to the pixels. A cell that touches the image border is measured as far as it is seen.
+
+    References
+    ----------
+    u-Unwrap, appendix B, describes shapes by features of another package; these are our own.
+    """
+    check_pixel_size(pixel_size_um)
+    rows = []
+    for cell, (frame, label, mask) in enumerate(_cells(masks)):
+        rows.append({"cell": cell, "frame": frame, "label": label} | shape_row(mask, pixel_size_um))
+    return feature_table(rows, pixel_size_um)
+
+
+def shape_row(mask: Any, pixel_size_um: float | None = None) -> dict[str, Any]:
+    """Status, remarks and features of one cell.
+
+    Parameters
+    ----------
+    mask : array_like of shape (H, W)
+    pixel_size_um : float, optional
+
+    Returns
+    -------
+    dict
+        By column of `shape_features`; without features if the cell cannot be measured.
+    """
+    row: dict[str, Any] = {"status": "ok", "reason": "", "notes": "", "touches_border": False}
+    try:
+        solid, report = clean_mask(mask)
+        row |= {"notes": "; ".join(report.notes), "touches_border": report.touches_border}
+        shape = crop_shape(solid)
+        values: dict[str, float] = {}
+        for group in GROUPS:
+            values |= group.measure(shape)
+    except CytodiskError as error:
+        return row | {"status": "refused", "reason": str(error)}
+    pixel = 1.0 if pixel_size_um is None else float(pixel_size_um)
+    return row | {feature.name: values[feature.name] * _scale(feature, pixel) for feature in FEATURES}
+
+
+def feature_table(rows: Sequence[dict[str, Any]], pixel_size_um: float | None) -> pd.DataFrame:
+    """Rows of cells as a table, with its units and descriptions.
+
+    Parameters
+    ----------
+    rows : sequence of dict
+        Each as `shape_row` returns it, with columns of its own before.
+    pixel_size_um : float or None
+        The scale that the rows are in.
+
+    Returns
+    -------
+    DataFrame
+        See `shape_features`.
+    """
+    before = [
+        name for name in (rows[0] if rows else {}) if name not in {feature.name for feature in FEATURES}
+    ]
+    names = [feature.name for feature in FEATURES]
+    table = pd.DataFrame(list(rows), columns=[*before, *names])
+    table[names] = table[names].astype(np.float64)
+    unit = "px" if pixel_size_um is None else "µm"
+    table.attrs["units"] = {feature.name: feature.unit.replace("length", unit) for feature in FEATURES}
+    table.attrs["scale_free"] = list(SCALE_FREE)
+    table.attrs["description"] = {feature.name: feature.description for feature in FEATURES}
+    return table
+
+
+def check_pixel_size(pixel_size_um: Any) -> None:
+    """Raise ParameterError unless a pixel size is a positive number or None."""
+    if pixel_size_um is None:
+        return
+    number = isinstance(pixel_size_um, int | float | np.number) and not isinstance(pixel_size_um, bool)
+    if not number or not 0 < pixel_size_um < np.inf:
+        raise ParameterError(
+            f"pixel_size_um must be a positive number, got {pixel_size_um!r}: leave it out if it is not known"
+        )
+
+
+def _scale(feature: Feature, pixel: float) -> float:
+    return {"length": pixel, "length²": pixel**2}.get(feature.unit, 1.0)
+
+
+def _cells(masks: Any) -> Iterator[tuple[int, int, Any]]:
+    """Frame, label and mask of each cell."""
+    if isinstance(masks, list | tuple) and masks and np.ndim(masks[0]) == 2:
+        yield from ((frame, 1, _boxed(mask)) for frame, mask in enumerate(masks))
+        return
+    array = np.asarray(masks)
+    if array.ndim == 3:
+        yield from ((frame, 1, _boxed(mask)) for frame, mask in enumerate(array))
+    elif array.ndim == 2 and np.issubdtype(array.dtype, np.integer):
+        yield from ((0, label, mask) for label, mask in _labelled(array))
+    elif array.ndim == 2:
+        yield 0, 1, _boxed(array)
+    else:
+        raise MaskError(
+            "masks must be a label image (H, W), a stack (N, H, W) or a list of masks, "
+            f"got shape {array.shape}: pass one channel"
+        )
+
+
+def _boxed(mask: Any) -> Any:
+    """What a mask holds, cropped to its box and a margin of a pixel where the image goes on."""
+    array = np.asarray(mask)
+    inside = array != 0
+    if array.ndim != 2 or not inside.any():
+        return mask
+    box = ndimage.find_objects(inside.astype(np.uint8))[0]
+    return array[_wider(box)]
+
+
+def _wider(box: Any) -> Any:
+    return tuple(slice(max(side.start - 1, 0), side.stop + 1) for side in box)
+
+
+def _labelled(image: np.ndarray[Any, Any]) -> Iterator[tuple[int, Any]]:
+    """Each label with its mask, cropped to its box and a margin of a pixel where the image goes on."""
+    if image.min(initial=0) < 0:
+        raise MaskError(f"masks has negative labels (down to {image.min()}): set what is no cell to 0")
+    labels, places = np.unique(image, return_inverse=True)
+    places = places.reshape(image.shape) + (1 if labels.size and labels[0] != 0 else 0)
+    found = labels[labels != 0]
+    if not found.size:
+        raise MaskError(f"masks is a label image of shape {image.shape} that holds no cell")
+    for place, (label, box) in enumerate(zip(found, ndimage.find_objects(places), strict=True), start=1):
+        yield int(label), places[_wider(box)] == place
