@@ -1,0 +1,45 @@
+"""
+What is wrong with a mask
+=========================
+
+A map needs one piece without holes. Cleaning makes sure of that and counts what it
+changed, so that nothing happens unseen. On the command line, ``cytodisk check
+masks.tif`` prints the same for every mask of a file.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import cytodisk as cd
+
+# %%
+# A cell that was segmented badly: a piece of a neighbour came with it, and a dim
+# nucleus was left out.
+mask = cd.simulate.migrating(seed=3)
+mask[5:30, 20:50] = True
+row, column = np.argwhere(mask).mean(axis=0).astype(int)
+mask[row - 8 : row + 8, column : column + 20] = False
+
+cleaned, report = cd.clean_mask(mask)
+print("notes: ", *report.notes, sep="\n  ")
+print("doubts:", *report.doubts, sep="\n  ")
+
+# %%
+# What came, and what is mapped.
+change = cleaned.astype(int) - mask
+figure, ax = plt.subplots(figsize=(5, 2.8))
+ax.imshow(mask, cmap="gray", alpha=0.4)
+ax.contour(cleaned, [0.5], colors="k", linewidths=1)
+ax.contourf(change, [-1.5, -0.5], colors=["#D55E00"])
+ax.contourf(change, [0.5, 1.5], colors=["#0072B2"])
+ax.set_title("mapped (black), dropped (orange), filled (blue)")
+ax.axis("off")
+plt.show()
+
+# %%
+# If nothing may be changed, say so: then such a mask is an error that says what came
+# and what to do.
+try:
+    cd.clean_mask(mask, fragments="error")
+except cd.errors.MaskError as error:
+    print(error)

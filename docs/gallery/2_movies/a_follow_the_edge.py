@@ -1,0 +1,89 @@
+"""
+Follow the edge of a moving cell
+================================
+
+Every place of the edge keeps its angle on the disk as the cell moves, so its velocity
+can be read through time. In a simulated movie the true velocity is known, and the two
+can be compared.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import cytodisk as cd
+from cytodisk.analysis.accuracy import true_edge_velocity
+
+truth = cd.simulate.movie("migrating", seed=0, frames=30)
+movie = cd.map_movie(
+    truth.masks,
+    pixel_size_um=truth.pixel_size_um,
+    frame_interval_s=truth.frame_interval_s,
+)
+print(movie)
+
+# %%
+# The outline through time, with the paths of some of its points.
+figure, ax = plt.subplots(figsize=(5, 4))
+cd.plot.draw_tracks(
+    ax,
+    movie.points_yx,
+    every=2,
+    frame_interval_s=movie.frame_interval_s,
+    pixel_size_um=movie.pixel_size_um,
+)
+plt.show()
+
+# %%
+# Edge velocity
+# -------------
+# In each of 60 sectors, in µm/s: protrusion is positive. Velocity belongs to the step
+# from a frame to the next, so the last frame has none.
+velocity = cd.edge_velocity(movie, sectors=60)
+figure, ax = plt.subplots(figsize=(5, 2.8))
+cd.plot.draw_velocity_map(ax, velocity, frame_interval_s=movie.frame_interval_s)
+plt.show()
+
+# %%
+# Against the truth
+# -----------------
+# The simulation knows how far each point of the edge goes. Averaged in the same
+# sectors, that is what a perfect tracker would find.
+true_px = true_edge_velocity(
+    movie.records[0].boundary,
+    truth.boundary_yx,
+    truth.normal_displacement_px,
+    sectors=60,
+)
+true = true_px * truth.pixel_size_um / truth.frame_interval_s
+found, known = velocity.to_numpy()[:-1].ravel(), true[:-1].ravel()
+print(f"correlation with the truth: {np.corrcoef(found, known)[0, 1]:.3f}")
+print(f"typical error: {1000 * np.sqrt(np.mean((found - known) ** 2)):.1f} nm/s")
+
+figure, ax = plt.subplots(figsize=(3, 2.8))
+ax.plot(known, found, ".", markersize=1.5, color="0.3")
+ax.axline((0, 0), slope=1, color="#D55E00", linewidth=0.8)
+ax.set(xlabel="true velocity (µm/s)", ylabel="found (µm/s)", aspect="equal")
+plt.show()
+
+# %%
+# Error bars
+# ----------
+# Masks are uncertain by a fraction of a pixel. ``edge_changes`` says what that does
+# to the velocity of each sector, and how much area was won and lost.
+changes = cd.edge_changes(movie, sectors=60, jitter_px=0.5)
+sector = 10
+figure, ax = plt.subplots(figsize=(5, 2.4))
+ax.errorbar(
+    changes["time_s"],
+    changes["velocity"].sel(sector=sector),
+    changes["velocity_error"].sel(sector=sector),
+    fmt="o",
+    markersize=2,
+    linewidth=0.7,
+    color="#0072B2",
+    label="found, ± its standard deviation",
+)
+ax.plot(changes["time_s"], true[:, sector], color="0.15", linewidth=0.8, label="true")
+ax.set(xlabel="time (s)", ylabel="velocity (µm/s)", title=f"sector {sector}")
+ax.legend(frameon=False)
+plt.show()

@@ -1,0 +1,47 @@
+"""
+Activity maps: a signal in every window through time
+====================================================
+
+Time runs to the right, sectors go up, and each layer has its own map: what a kymograph
+is for a line, this is for the whole cell.
+"""
+
+import matplotlib.pyplot as plt
+
+import cytodisk as cd
+
+truth = cd.simulate.movie("fluctuating", seed=0, frames=40)
+movie = cd.map_movie(
+    truth.masks,
+    pixel_size_um=truth.pixel_size_um,
+    frame_interval_s=truth.frame_interval_s,
+)
+activity = cd.sample_movie(movie, cd.polar_windows(layers=6, sectors=60), truth.signal)
+print(activity["mean"].sizes)
+
+# %%
+# Edge velocity above the signal in some layers. The simulated signal is bright where
+# the edge has just moved, and only near the edge.
+velocity = cd.edge_velocity(movie, sectors=60)
+mean = activity["mean"].sel(channel="edge")
+figure, axes = plt.subplots(4, 1, figsize=(5.6, 6.4), sharex=True)
+cd.plot.draw_layers(
+    axes, mean.to_numpy()[:, :3], velocity, frame_interval_s=movie.frame_interval_s
+)
+plt.show()
+
+# %%
+# One frame of it, in the cell.
+frame = 20
+windows = cd.polar_windows(layers=6, sectors=60).on(movie[frame])
+figure, axes = plt.subplots(1, 2, figsize=(5.6, 2.8))
+cd.plot.draw_cell(
+    axes[0],
+    truth.signal.isel(time=frame).sel(channel="edge"),
+    movie[frame],
+    cmap="viridis",
+)
+cd.plot.draw_window_means(
+    axes[1], windows, mean.isel(time=frame), pixel_size_um=movie.pixel_size_um
+)
+plt.show()

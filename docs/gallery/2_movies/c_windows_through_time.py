@@ -1,0 +1,51 @@
+"""
+Do windows stay in the same place?
+==================================
+
+The paper asks two things of windows that follow a cell: that the signal in a window is
+like that in the next frame, and that windows do not leap. Both can be measured on any
+movie.
+"""
+
+import matplotlib.pyplot as plt
+
+import cytodisk as cd
+
+truth = cd.simulate.movie("neutrophil", seed=0, frames=30)
+movie = cd.map_movie(
+    truth.masks,
+    pixel_size_um=truth.pixel_size_um,
+    frame_interval_s=truth.frame_interval_s,
+)
+grid = cd.polar_windows(layers=6, sectors=36)
+
+# %%
+# A cell that changes its whole shape. Colours belong to sectors: the same colour is
+# the same part of the edge.
+frames = [0, 10, 20, 29]
+figure, axes = plt.subplots(1, 4, figsize=(6.2, 2.4))
+cd.plot.draw_strip(
+    axes,
+    [grid.on(movie[frame]) for frame in frames],
+    [f"{frame * movie.frame_interval_s:g} s" for frame in frames],
+    pixel_size_um=movie.pixel_size_um,
+)
+plt.show()
+
+# %%
+# How alike consecutive frames are, by layer, and how far windows move when the rigid
+# motion of the cell is taken out. A window that is lost for a frame would show as a
+# peak.
+activity = cd.sample_movie(movie, grid, truth.signal)
+alike = cd.consecutive_correlation(activity["mean"].sel(channel="material"))
+moved = cd.centroid_displacement(movie, activity)
+layers = [0, 2, 4]
+figure, axes = plt.subplots(2, 1, figsize=(5, 4), sharex=True)
+for ax, values, label in (
+    (axes[0], alike, "correlation with the\nnext frame"),
+    (axes[1], moved.mean("sector"), f"mean displacement\n({moved.attrs['units']})"),
+):
+    cd.plot.draw_by_layer(
+        ax, values.to_numpy(), layers, label, frame_interval_s=movie.frame_interval_s
+    )
+plt.show()

@@ -1,0 +1,89 @@
+"""
+Find a lag that is known
+========================
+
+In this simulated movie the signal at the edge follows the edge's motion, four frames
+later, along half of the edge. Does the correlation find where, and when?
+"""
+
+import warnings
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import cytodisk as cd
+
+truth = cd.simulate.movie(
+    "fluctuating", seed=0, frames=60, speed_px=0.5, coupled=0.5, lag_frames=4
+)
+movie = cd.map_movie(
+    truth.masks,
+    pixel_size_um=truth.pixel_size_um,
+    frame_interval_s=truth.frame_interval_s,
+)
+grid = cd.polar_windows(layers=8, sectors=40)
+signal = cd.sample_movie(movie, grid, truth.signal)["mean"].sel(channel="edge")
+velocity = cd.edge_velocity(movie, sectors=40)
+
+# %%
+# Each window's signal with the velocity of its sector, at lags to both sides. At a
+# positive lag velocity follows the signal; here it comes first, so the lag is
+# negative. Surrogates of the velocity, with the same spectrum but random phases, tell
+# what chance gives.
+warnings.simplefilter("ignore", cd.errors.StationarityWarning)
+lags = cd.cross_correlate(signal, velocity, max_lag=15, surrogates=999)
+peaks = cd.peak_correlation(lags)
+significant = peaks["q"] < 0.05
+print("lag of the simulation:", -truth.lag_frames, "frames")
+print(
+    "lags found in layer 0:",
+    np.unique(
+        peaks["lag"].sel(layer=0).where(significant.sel(layer=0)), return_counts=True
+    ),
+)
+
+# %%
+# The mean over each layer has all its windows to go by: significant where no single
+# window is.
+by_layer = cd.correlation_by_layer(lags)
+figure, ax = plt.subplots(figsize=(5, 2.8))
+for layer, colour in ((0, "#0072B2"), (2, "#D55E00"), (6, "0.5")):
+    ax.plot(
+        by_layer["lag_s"],
+        by_layer["correlation"].sel(layer=layer),
+        color=colour,
+        label=f"layer {layer}",
+    )
+threshold = float(by_layer["threshold"].sel(layer=0))
+ax.axhspan(-threshold, threshold, color="0.93", zorder=0, label="chance (layer 0)")
+ax.axvline(
+    -truth.lag_frames * truth.frame_interval_s,
+    color="0.15",
+    linewidth=0.6,
+    linestyle=":",
+)
+ax.set(xlabel="lag (s)", ylabel="mean correlation")
+ax.legend(frameon=False)
+plt.show()
+
+# %%
+# Where it is: the truth, the peak of each window, and its lag. Windows that are not
+# significant are pale.
+frame = 30
+table = peaks.to_dataframe().reset_index().assign(cell=0)
+shown = cd.plot.PeakMap.of(table, grid)
+windows = grid.on(movie[frame])
+figure, axes = plt.subplots(1, 3, figsize=(6.4, 2.6))
+coupled = truth.boundary_yx[frame][truth.coupled > 0.5]
+cd.plot.draw_windows(axes[0], windows, color="0.7")
+axes[0].plot(coupled[:, 1], coupled[:, 0], ".", color="#b2182b", markersize=2)
+cd.plot.frame_cell(axes[0], movie[frame], pixel_size_um=truth.pixel_size_um)
+axes[0].set_title("where it is simulated")
+for ax, what, unit in ((axes[1], "correlation", None), (axes[2], "lag", "s")):
+    drawn = cd.plot.draw_peaks_on_cell(
+        ax, shown, windows, what, pixel_size_um=truth.pixel_size_um
+    )
+    figure.colorbar(
+        drawn, ax=ax, label=what if unit is None else f"{what} ({unit})", shrink=0.6
+    )
+plt.show()

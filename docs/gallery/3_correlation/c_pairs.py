@@ -1,0 +1,51 @@
+"""
+How far a coupling reaches
+==========================
+
+Every window of one signal with every window of another, by how far apart they are and
+by the lag: this shows how far what happens at one place goes with what happens
+elsewhere.
+"""
+
+import warnings
+
+import matplotlib.pyplot as plt
+
+import cytodisk as cd
+
+warnings.simplefilter("ignore", cd.errors.StationarityWarning)
+truth = cd.simulate.movie("ruffling", seed=0, frames=40)
+movie = cd.map_movie(
+    truth.masks,
+    pixel_size_um=truth.pixel_size_um,
+    frame_interval_s=truth.frame_interval_s,
+    register=False,  # waves that run around a cell look like a rotation
+)
+grid = cd.polar_windows(layers=4, sectors=32)
+signal = cd.sample_movie(movie, grid, truth.signal)["mean"].sel(channel="edge")
+
+# %%
+# Distances between windows: straight, through the inside of the cell, or along its
+# edge.
+distances = cd.window_distances(movie, grid)
+pairs = cd.correlate_pairs(
+    signal, signal, max_lag=12, distances=distances["edge"], bins=14
+)
+print(pairs)
+
+# %%
+# Waves travel around the edge of this cell: the farther apart along the edge, the
+# later. The ridges in the picture are the waves.
+figure, ax = plt.subplots(figsize=(5.4, 3))
+limit = float(abs(pairs["correlation"]).max())
+shown = ax.pcolormesh(
+    pairs["lag_s"],
+    pairs["distance"],
+    pairs["correlation"],
+    cmap="RdBu_r",
+    vmin=-limit,
+    vmax=limit,
+)
+ax.set(xlabel="lag (s)", ylabel="distance along the edge (µm)")
+figure.colorbar(shown, label="mean correlation")
+plt.show()

@@ -1,0 +1,47 @@
+"""
+Protrusions, and the signal around them
+=======================================
+
+An episode is a run of frames in which a sector of the edge goes out, or in. Averaged
+around their onsets, signals show what comes before and what after.
+"""
+
+import matplotlib.pyplot as plt
+
+import cytodisk as cd
+
+truth = cd.simulate.movie("fluctuating", seed=0, frames=80, speed_px=0.5, lag_frames=4)
+movie = cd.map_movie(
+    truth.masks,
+    pixel_size_um=truth.pixel_size_um,
+    frame_interval_s=truth.frame_interval_s,
+)
+signal = cd.sample_movie(movie, cd.polar_windows(layers=8, sectors=40), truth.signal)[
+    "mean"
+]
+velocity = cd.edge_velocity(movie, sectors=40)
+
+# %%
+# Episodes, one a row. Neighbouring sectors that move in the same step belong to one
+# patch.
+events = cd.edge_events(velocity)
+print(
+    events[["sector", "kind", "onset_s", "duration", "peak_velocity", "patch"]].head()
+)
+print(events.groupby("kind")["patch"].nunique())
+
+figure, ax = plt.subplots(figsize=(5.6, 2.8))
+cd.plot.draw_events(ax, velocity, events)
+plt.show()
+
+# %%
+# The mean signal around the onsets of protrusion. The simulated signal follows
+# velocity by four frames (20 s). The band comes from drawing patches anew, for
+# episodes of one patch are not independent.
+around = cd.average_around(
+    signal.sel(channel="edge", layer=[0, 1, 6]), events, before=10, after=15
+)
+figure, ax = plt.subplots(figsize=(5, 2.8))
+lines = cd.plot.draw_event_average(ax, around, label="mean signal (a.u.)")
+ax.legend(handles=[*lines, *cd.plot.band_key(around)], frameon=False)
+plt.show()
