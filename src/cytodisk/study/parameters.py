@@ -69,7 +69,7 @@ class MovieParameters(MapParameters):
     frame_interval_s: Annotated[float, Field(gt=0)] | None = None
 
 
-AnyParameters = TypeVar("AnyParameters", bound=MapParameters)
+AnyParameters = TypeVar("AnyParameters", bound=BaseModel)
 
 
 def parameters_from(
@@ -86,11 +86,12 @@ def parameters_from(
     path : Path, optional
         A TOML file as `parameters.toml` of a study.
     of : type
-        `MapParameters` or `MovieParameters`.
+        Such as `MapParameters` or `MovieParameters`.
 
     Returns
     -------
-    MapParameters or MovieParameters
+    BaseModel
+        Of that type.
 
     Raises
     ------
@@ -124,12 +125,12 @@ def _fault_words(fault: Any) -> str:
     return f"{name}: {fault['msg'].removeprefix('Value error, ')}, got {repr(fault['input'])[:40]}"
 
 
-def write_parameters(parameters: MapParameters, path: Path) -> None:
+def write_parameters(parameters: BaseModel, path: Path) -> None:
     """Write parameters as TOML; those that are not set are left out.
 
     Parameters
     ----------
-    parameters : MapParameters
+    parameters : BaseModel
     path : Path
     """
     lines = [

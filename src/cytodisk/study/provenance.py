@@ -8,9 +8,10 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+from pydantic import BaseModel
+
 from cytodisk.errors import ReadError
 from cytodisk.motion.velocity import velocity_unit
-from cytodisk.study.parameters import MapParameters
 
 PACKAGES = (
     "cytodisk",
@@ -45,7 +46,7 @@ def installed(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
 
 def describe_run(
     inputs: Mapping[str, Path | Sequence[Path]],
-    parameters: MapParameters,
+    parameters: BaseModel,
     understood: Mapping[str, str],
     pixel_size_um: float | None,
     frame_interval_s: float | None = None,
@@ -56,7 +57,7 @@ def describe_run(
     ----------
     inputs : dict of role to Path, or to a sequence of Path
         As "masks" and "signal"; a sequence for files of one folder.
-    parameters : MapParameters
+    parameters : BaseModel
     understood : dict of role to str
         What each input was read as, in words.
     pixel_size_um : float or None
