@@ -112,7 +112,7 @@ def map_command(
             workers=workers,
             resume=resume,
             overwrite=overwrite,
-            draw=draw_cell_figures,
+            draw=draw_cell_figures if figures else None,  # workers that draw nothing stay small
             draw_at_most=None if figures < 0 else figures,
             maps=not no_maps,
             geojson=geojson,

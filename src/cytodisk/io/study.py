@@ -138,7 +138,8 @@ class Study:
         path = self._map_path(key)
         if not path.exists():
             frame = "" if time is None else f", frame {time},"
-            raise ReadError(f"cell {cell}{frame} of {self.path} has no map: {rows['reason'].iloc[0]}")
+            reason = rows["reason"].iloc[0] or "it was not kept (--no-maps)"
+            raise ReadError(f"cell {cell}{frame} of {self.path} has no map: {reason}")
         return load_map(path)
 
     def activity(self, cell: int = 0) -> xr.Dataset:

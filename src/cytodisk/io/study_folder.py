@@ -6,10 +6,9 @@ import json
 import os
 import re
 import shutil
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ import pyarrow.parquet as pq
 
 from cytodisk.errors import StudyError
 from cytodisk.files import lock, replacing
+from cytodisk.io.merging import merge_tables, write_rows
 from cytodisk.io.tables import (
     CELL_COLUMNS,
     CONSISTENCY_COLUMNS,
@@ -36,15 +36,7 @@ MAPS, FIGURES, _PARTS, _LOCK = "maps", "figures", ".parts", ".lock"
 _LATER = ("correlation", "report.html", "report_cell_*.html")  # what other commands wrote from these results
 _COMPARED = ("layers.parquet", "comparison*.csv")  # beside cells, by a comparison of windows
 _OWN = (PARAMETERS, CELLS, WINDOWS, EDGE, CONSISTENCY, ACTIVITY, MAPS, FIGURES, _PARTS, *_LATER, *_COMPARED)
-_ROWS_AT_ONCE = 50_000  # of a table in memory while parts are merged
-_CELLS_AT_ONCE = 1000
 _UNITS = ("length_unit", "velocity_unit")  # of the provenance
-
-
-def _batched(items: Iterable[Any], size: int) -> Iterator[list[Any]]:
-    rest = iter(items)
-    while batch := list(islice(rest, size)):
-        yield batch
 
 
 @dataclass(frozen=True)
@@ -304,30 +296,13 @@ class StudyFolder:
             A part is missing.
         """
         with replacing(self.path / CELLS) as temporary:
-            self._write_cells(keys, temporary)
-        for name in self.tables.others:
+            write_rows(self.read_rows(keys), self._schema(self.tables.cells), temporary)
+        for name, columns in self.tables.others.items():
+            parts = (self.part_table(key, name) for key in keys if self.has_table(key, name))
             with replacing(self.path / f"{name}.parquet") as temporary:
-                self._merge(keys, name, temporary)
+                merge_tables(parts, self._schema(columns), temporary)
         self.note("status", "complete")
         shutil.rmtree(self.path / _PARTS, ignore_errors=True)  # the tables stand; parts are only in the way
-
-    def _merge(self, keys: list[str], table: str, target: Path) -> None:
-        waiting: list[Any] = []
-        with pq.ParquetWriter(target, self._schema(self.tables.others[table])) as writer:
-            for key in keys:
-                if self.has_table(key, table):
-                    waiting.append(self.part_table(key, table))
-                if waiting and (key == keys[-1] or sum(map(len, waiting)) >= _ROWS_AT_ONCE):
-                    writer.write_table(pa.concat_tables(waiting).combine_chunks())
-                    waiting = []
-
-    def _write_cells(self, keys: list[str], target: Path) -> None:
-        columns = self.tables.cells
-        columns_schema = self._schema(columns)
-        with pq.ParquetWriter(target, columns_schema) as writer:
-            for rows in _batched(self.read_rows(keys), _CELLS_AT_ONCE):
-                values = [{name: row.get(name) for name, _, _ in columns} for row in rows]
-                writer.write_table(pa.Table.from_pylist(values, schema=columns_schema))
 
     def _complete(self) -> list[str]:
         return [part.stem for part in (self.path / _PARTS).glob("[0-9]*.json")]

@@ -1,0 +1,53 @@
+"""Many small tables → one file, without ever holding all of it in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+_ROWS_AT_ONCE = 50_000
+_CELLS_AT_ONCE = 1000  # dicts, which take far more room than columns
+
+
+def merge_tables(parts: Iterable[Any], schema: Any, target: Path) -> None:
+    """Write tables one below the other.
+
+    Parameters
+    ----------
+    parts : iterable of pyarrow.Table
+        Read one by one.
+    schema : pyarrow.Schema
+        What all of them have.
+    target : Path
+    """
+    waiting: list[Any] = []
+    with pq.ParquetWriter(target, schema) as writer:
+        for part in parts:
+            waiting.append(part)
+            if sum(map(len, waiting)) >= _ROWS_AT_ONCE:
+                writer.write_table(pa.concat_tables(waiting).combine_chunks())
+                waiting = []
+        if waiting:
+            writer.write_table(pa.concat_tables(waiting).combine_chunks())
+
+
+def write_rows(rows: Iterable[dict[str, Any]], schema: Any, target: Path) -> None:
+    """Write rows as a table.
+
+    Parameters
+    ----------
+    rows : iterable of dict
+        Missing values are null; what the schema does not have is left out.
+    schema : pyarrow.Schema
+    target : Path
+    """
+    rest = iter(rows)
+    with pq.ParquetWriter(target, schema) as writer:
+        while some := list(islice(rest, _CELLS_AT_ONCE)):
+            values = [{name: row.get(name) for name in schema.names} for row in some]
+            writer.write_table(pa.Table.from_pylist(values, schema=schema))

@@ -1,0 +1,114 @@
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import imageio.v3 as imageio
+import numpy as np
+import pandas as pd
+import pytest
+import tifffile
+from command_line import Run, assert_refused
+
+import cytodisk as cd
+
+GRID = ("--layers", "3", "--sectors", "8", "--edge-length", "2", "--figures", "0")
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """As Cellpose's own data set: 000_img.png and 000_masks.png; one file is cut short, one is empty."""
+    (tmp_path / "cellpose").mkdir()
+    for number in range(3):
+        labels = cd.simulate.label_image(4, number)
+        picture = np.random.default_rng(number).integers(0, 255, (*labels.shape, 3)).astype(np.uint8)
+        imageio.imwrite(tmp_path / "cellpose" / f"{number:03d}_masks.png", labels)
+        imageio.imwrite(tmp_path / "cellpose" / f"{number:03d}_img.png", picture)
+    content = (tmp_path / "cellpose" / "001_masks.png").read_bytes()
+    (tmp_path / "cellpose" / "001b_masks.png").write_bytes(content[: len(content) // 2])
+    empty = np.zeros((40, 50, 3), dtype=np.uint8)
+    for number in (3, 4):
+        imageio.imwrite(tmp_path / "cellpose" / f"{number:03d}_masks.png", empty[..., 0])
+        imageio.imwrite(tmp_path / "cellpose" / f"{number:03d}_img.png", empty)
+    return tmp_path / "cellpose"
+
+
+def test_a_folder_is_mapped_and_its_totals_are_given(run: Run, folder: Path, tmp_path: Path) -> None:
+    result = run("map", folder, "--signal", "_img", "-o", tmp_path / "out", *GRID)
+    assert_refused(result, "damaged files or frames of the input: 1; all others are in")
+    said, error = result[1:]
+    assert "masks: 6 files: 3 label images, 3 single masks" in said
+    assert "signal: 5 images with the channels red, green, blue" in said
+    assert "6 files, 15 cells: 12 mapped, one to one; 2 refused; 1 unreadable" in said
+    study = cd.open_study(tmp_path / "out")
+    border = int(study.cells["touches_border"].fillna(False).sum())
+    assert f"on the image border: {border} ({border / 12:.2%}) of 12 mapped cells" in said
+    assert "all windows complete: 12 (100.00%) of 12 mapped cells, 12 (80.00%) of 15 all cells" in said
+    assert "2 refused: cell 13 of 003_masks.png: mask of shape (40, 50) is empty" in error
+    assert "(and 1 more like it)" in error
+    assert "1 unreadable: cell 8 of 001b_masks.png: " in error
+    assert study.windows["channel"].unique().tolist() == ["red", "green", "blue"]
+
+
+def test_a_folder_is_checked(run: Run, folder: Path) -> None:
+    code, said, error = run("check", folder)
+    assert code == 1
+    lines = said.splitlines()
+    assert "cell\tfile\tframe\tlabel\tusable\tremarks" in lines
+    assert any(line.startswith("4\t001_masks.png\t0\t1\t") for line in lines)
+    assert "6 files, 15 cells: 12 usable" in said
+    assert "3 not usable" in said
+    assert "2 not usable: cell 13 of 003_masks.png" in error
+
+
+def test_a_folder_that_cannot_be_used(run: Run, folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "none").mkdir()
+    assert_refused(run("map", tmp_path / "none", "-o", tmp_path / "out"), "holds no masks")
+    assert_refused(
+        run("map", folder, "--signal", folder / "000_img.png", "-o", tmp_path / "out"), "is one file"
+    )
+    assert_refused(run("check", folder, "--signal", "_gone"), "fits no mask file")
+    assert not (tmp_path / "out").exists()
+
+
+def test_maps_are_not_kept_when_so_wished(run: Run, folder: Path, tmp_path: Path) -> None:
+    (folder / "001b_masks.png").unlink()
+    assert run("map", folder, "-o", tmp_path / "out", *GRID, "--no-maps", "-q")[0] == 0
+    assert not list((tmp_path / "out" / "maps").iterdir())
+    assert cd.open_study(tmp_path / "out").cells["status"].tolist().count("ok") == 12
+
+
+@pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")
+def test_a_killed_run_over_a_folder_goes_on_to_the_same_tables(tmp_path: Path) -> None:
+    (tmp_path / "in").mkdir()
+    for number in range(4):
+        tifffile.imwrite(tmp_path / "in" / f"{number}_masks.tif", cd.simulate.label_image(20, number))
+
+    def command(out: Path, workers: int, *more: str) -> list[str]:
+        flags = ["--figures", "0", "-q", "--workers", str(workers), *more]
+        return [sys.executable, "-m", "cytodisk", "map", str(tmp_path / "in"), "-o", str(out), *flags]
+
+    out = tmp_path / "out"
+    killed = subprocess.Popen(command(out, 2), start_new_session=True)
+    try:
+        while len(list(out.glob(".parts/*.json"))) < 2 and killed.poll() is None:
+            time.sleep(0.002)
+    finally:
+        os.killpg(killed.pid, signal.SIGKILL)
+        killed.wait()
+    assert killed.returncode == -signal.SIGKILL
+    assert 2 <= len(list(out.glob(".parts/*.json"))) < 12  # of 8, 8 and 4 cells an image
+    subprocess.run(command(out, 2, "--resume"), check=True)
+    subprocess.run(command(tmp_path / "whole", 1), check=True)
+    resumed, whole = cd.open_study(out), cd.open_study(tmp_path / "whole")
+    assert len(whole.cells) == 80
+    pd.testing.assert_frame_equal(
+        resumed.cells.drop(columns="seconds"), whole.cells.drop(columns="seconds"), check_exact=True
+    )
+    assert (out / "windows.parquet").read_bytes() == (tmp_path / "whole" / "windows.parquet").read_bytes()
+    names = [
+        {str(path.relative_to(study.path)) for path in study.path.rglob("*")} for study in (resumed, whole)
+    ]
+    assert names[0] == names[1]
