@@ -44,6 +44,12 @@ if TYPE_CHECKING:
     from cytodisk.motion.velocity import edge_velocity as edge_velocity
     from cytodisk.report.flags import red_flags as red_flags
     from cytodisk.report.page import write_report as write_report
+    from cytodisk.study.compare_cells import compare_cells as compare_cells
+    from cytodisk.study.compare_movie import compare_movie as compare_movie
+    from cytodisk.study.compare_parameters import CompareMovieParameters as CompareMovieParameters
+    from cytodisk.study.compare_parameters import CompareParameters as CompareParameters
+    from cytodisk.study.comparison import Comparison as Comparison
+    from cytodisk.study.comparison import open_comparison as open_comparison
     from cytodisk.study.correlate import correlate_study as correlate_study
     from cytodisk.windows.cell_windows import CellWindows as CellWindows
     from cytodisk.windows.edge_windows import EdgeGrid as EdgeGrid
@@ -69,6 +75,11 @@ _HOME = {
     "certify": "disk.certificate",
     "clean_mask": "geometry.mask",
     "complexity_score": "analysis.shape.complexity",
+    "compare_cells": "study.compare_cells",
+    "compare_movie": "study.compare_movie",
+    "CompareMovieParameters": "study.compare_parameters",
+    "CompareParameters": "study.compare_parameters",
+    "Comparison": "study.comparison",
     "consecutive_correlation": "analysis.consistency",
     "correlate_pairs": "analysis.pairs",
     "correlate_study": "study.correlate",
@@ -91,6 +102,7 @@ _HOME = {
     "map_to_disk": "disk.mapping",
     "MaskReport": "geometry.mask",
     "measures_by_layer": "analysis.window_measures",
+    "open_comparison": "study.comparison",
     "open_study": "io.study",
     "peak_correlation": "analysis.peaks",
     "polar_windows": "windows.grid",

@@ -2,6 +2,7 @@
 
 import typer
 
+from cytodisk.cli.compare import COMPARE_HELP, compare_command
 from cytodisk.cli.console import fail
 from cytodisk.cli.correlate import CORRELATE_HELP, REPORT_HELP, correlate_command, report_command
 from cytodisk.cli.demo import demo_command, info_command
@@ -20,6 +21,7 @@ app.command("map", help=MAP_HELP)(map_command)
 app.command("movie", help=MOVIE_HELP)(movie_command)
 app.command("correlate", help=CORRELATE_HELP)(correlate_command)
 app.command("report", help=REPORT_HELP)(report_command)
+app.command("compare", help=COMPARE_HELP)(compare_command)
 app.command("check")(check_command)
 app.command("info")(info_command)
 app.command("demo")(demo_command)

@@ -14,7 +14,7 @@ Correlations: draw_correlation_curves with curve_key, draw_map_pair, draw_pairs;
 draw_peaks_on_cell and draw_peaks_on_disk with peak_key; draw_events, draw_event_average with band_key.
 
 Whole pages into the folder of a study: draw_cell_figures, draw_movie_figures, draw_correlation_figures,
-draw_overview.
+draw_overview; of a comparison of windows: draw_comparison, draw_compared_cells, draw_compared_movie.
 
 Looks: paper_style for the sizes of a printed page, colour_bar, scale_bar.
 """
@@ -33,6 +33,9 @@ _HOME = {
     "draw_by_layer": "consistency",
     "draw_cell": "cell",
     "draw_cell_figures": "study",
+    "draw_compared_cells": "compared_cells",
+    "draw_compared_movie": "compared_movie",
+    "draw_comparison": "comparison",
     "draw_correlation_curves": "correlation",
     "draw_correlation_figures": "correlation_figures",
     "draw_disk_image": "disk",

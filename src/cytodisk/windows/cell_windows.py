@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
+from cytodisk.windows.edge_parts import part_places
 from cytodisk.windows.grid import PolarWindows
-from cytodisk.windows.on_cell import WindowsOnCell
+from cytodisk.windows.on_cell import PARTS, WindowsOnCell
 from cytodisk.windows.outlines import window_polygons
 from cytodisk.windows.weights import window_weights
 
@@ -35,6 +36,13 @@ class CellWindows(WindowsOnCell):
     def weights(self) -> sparse.csr_array:
         """Share of each mask pixel (row-major order) in each window, (windows, pixels); columns sum to 1."""
         return window_weights(self.grid, self.disk)
+
+    @property
+    def part_windows(self) -> IntArray:
+        """Number of the window that each part of each mask pixel maps into, shape (pixels, 16)."""
+        places = part_places(np.argwhere(self.mask), PARTS)
+        found = self.grid.window_of(self.disk.to_disk(places.reshape(-1, 2), outside="nearest"))
+        return found.reshape(places.shape[:2])
 
     @property
     def mask(self) -> BoolArray:

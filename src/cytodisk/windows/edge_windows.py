@@ -17,9 +17,7 @@ from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.outline import trace_outline
 from cytodisk.windows.edge_parts import depths_and_angles, part_places
 from cytodisk.windows.grid import check_counts
-from cytodisk.windows.on_cell import WindowsOnCell
-
-_PER_SIDE = 4  # parts along a pixel's side, as polar windows have at first
+from cytodisk.windows.on_cell import PARTS, WindowsOnCell
 
 
 @dataclass(frozen=True)
@@ -112,7 +110,7 @@ class CellEdge:
     @cached_property
     def parts(self) -> tuple[FloatArray, FloatArray]:
         """Depth and angle of each part of the mask's pixels, each (pixels, parts): `depths_and_angles`."""
-        places = part_places(np.argwhere(self.mask), _PER_SIDE)
+        places = part_places(np.argwhere(self.mask), PARTS)
         return depths_and_angles(places, self.outline_yx, self.angles)
 
     @property
@@ -140,7 +138,12 @@ class EdgeWindows(WindowsOnCell):
 
         A column sums to less than 1 where a pixel, or a part of it, lies deeper than the last layer.
         """
-        return part_weights(self.grid.window_of(*self.edge.parts), self.layers * self.sectors)
+        return part_weights(self.part_windows, self.layers * self.sectors)
+
+    @property
+    def part_windows(self) -> IntArray:
+        """Number of the window that each part of each mask pixel lies in, shape (pixels, 16); -1 for none."""
+        return self.grid.window_of(*self.edge.parts)
 
     @property
     def mask(self) -> BoolArray:

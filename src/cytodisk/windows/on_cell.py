@@ -11,6 +11,8 @@ from scipy import sparse
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.windows.pieces import pieces_by_window
 
+PARTS = 4  # along a pixel's side
+
 
 class WindowsOnCell(ABC):
     """Windows in a cell, by layer from the edge (0) inwards and sector along the edge.
@@ -38,6 +40,20 @@ class WindowsOnCell(ABC):
     @abstractmethod
     def weights(self) -> sparse.csr_array:
         """Share of each mask pixel (row-major order) in each window, (windows, pixels); sums to ≤ 1."""
+
+    @property
+    @abstractmethod
+    def part_windows(self) -> IntArray:
+        """Number of the window that each part of each mask pixel lies in, shape (pixels, 16); -1 for none."""
+
+    @property
+    def part_labels(self) -> IntArray:
+        """As `labels`, with each pixel divided into 4×4 parts, shape (4 H, 4 W)."""
+        height, width = self.mask.shape
+        labels = np.full((height, PARTS, width, PARTS), -1, dtype=np.int64)
+        row, column = np.nonzero(self.mask)
+        labels[row, :, column, :] = self.part_windows.reshape(-1, PARTS, PARTS)
+        return labels.reshape(PARTS * height, PARTS * width)
 
     @cached_property
     def areas(self) -> FloatArray:

@@ -10,11 +10,12 @@ import numpy as np
 from scipy import sparse
 from skimage.graph import MCP_Geometric
 
-from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
+from cytodisk.windows.edge_parts import part_places
 from cytodisk.windows.edge_windows import CellEdge, part_weights
 from cytodisk.windows.grid import check_counts
-from cytodisk.windows.on_cell import WindowsOnCell
+from cytodisk.windows.on_cell import PARTS, WindowsOnCell
 
 
 @dataclass(frozen=True)
@@ -68,15 +69,22 @@ class RingWindows(WindowsOnCell):
     @cached_property
     def weights(self) -> sparse.csr_array:
         """Share of each mask pixel (row-major order) in each window, (windows, pixels); columns sum to 1."""
+        return part_weights(self.part_windows, self.layers * self.sectors)
+
+    @property
+    def part_windows(self) -> IntArray:
+        """Number of the window that each part of each mask pixel lies in, shape (pixels, 16)."""
         pixels = np.argwhere(self.mask)
         depth, _ = self.edge.parts
         centre = pixels[depth.max(axis=1).argmax()]
-        way = _way_from(centre, self.mask)[self.mask][:, None]
+        away = part_places(pixels, PARTS) - centre
+        beyond = np.linalg.norm(away, axis=-1) - np.linalg.norm(pixels - centre, axis=-1)[:, None]
+        way = np.maximum(_way_from(centre, self.mask)[self.mask][:, None] + beyond, 0.0)
         share = depth / np.maximum(depth + way, 1e-12)
         layer = np.minimum((share * self.layers).astype(np.int64), self.layers - 1)
-        turn = np.mod(np.arctan2(*(pixels - centre).T) / (2.0 * np.pi), 1.0)[:, None]
+        turn = np.mod(np.arctan2(away[..., 0], away[..., 1]) / (2.0 * np.pi), 1.0)
         sector = np.minimum((turn * self.sectors).astype(np.int64), self.sectors - 1)
-        return part_weights(layer * self.sectors + sector, self.layers * self.sectors)
+        return np.asarray(layer * self.sectors + sector)
 
     @property
     def mask(self) -> BoolArray:
