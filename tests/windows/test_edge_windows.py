@@ -166,13 +166,21 @@ def test_rings_of_a_disk_are_those_on_paper() -> None:
     assert windows.coverage == 1.0
 
 
-def test_rings_lie_around_the_deepest_point_and_wedges_may_miss_arms() -> None:
+def test_rings_lie_around_the_deepest_point() -> None:
     windows = cd.ring_windows(cd.simulate.star(body_radius=10, arm_length=30, arm_width=2), 5, 40)
     assert windows.coverage == 1.0
     assert_array_equal(windows.layer_pieces[-1:], [1])
     middle = np.argwhere(windows.mask).mean(axis=0)
     assert_allclose(np.nanmean(windows.centroids_yx[-1], axis=0), middle, atol=3.0)
-    assert windows.n_empty > 0
+
+
+def test_a_wedge_takes_in_whatever_lies_in_its_direction() -> None:
+    """A body with an arm that comes back beside it."""
+    mask = np.zeros((40, 60), dtype=bool)
+    mask[2:32, 2:32] = True
+    mask[26:32, 2:52] = True
+    mask[2:32, 46:52] = True
+    assert cd.ring_windows(mask, 2, 8).pieces[0].max() == 2
 
 
 def test_ways_go_through_the_cell() -> None:

@@ -55,7 +55,9 @@ class RingGrid:
 
 @dataclass(frozen=True, eq=False)
 class RingWindows(WindowsOnCell):
-    """Rings and wedges in a cell; they cover it, but where it is bent or branched some are empty.
+    """Rings and wedges in a cell; they cover it, but a wedge may take in several arms of it.
+
+    Near the deepest point windows of a fine grid are too small to hold any part of a pixel: they are empty.
 
     Attributes
     ----------
