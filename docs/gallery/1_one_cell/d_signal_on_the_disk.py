@@ -12,23 +12,32 @@ import numpy as np
 import cytodisk as cd
 
 # %%
-# Four simulated cells of different shape.
-cells = [cd.simulate.cell_with_signal(seed=seed) for seed in range(4)]
-disks = [cd.map_to_disk(cell.mask) for cell in cells]
+# Four simulated cells of different shape, bright at the edge and brighter on the
+# right.
+masks = [
+    cd.simulate.migrating(seed=1),
+    cd.simulate.random_smooth(seed=2),
+    cd.simulate.star(arms=5),
+    cd.simulate.dumbbell(neck_width=16),
+]
+signals = [
+    cd.simulate.ring_signal(mask, decay_px=8)
+    + cd.simulate.linear_signal(mask.shape, (0, 1 / mask.shape[1]))
+    for mask in masks
+]
+disks = [cd.map_to_disk(mask) for mask in masks]
 
 figure, axes = plt.subplots(2, 4, figsize=(6.2, 3.2))
-for column, (cell, disk) in enumerate(zip(cells, disks, strict=True)):
-    edge = cell.signal.sel(channel="edge")
-    cd.plot.draw_cell(axes[0, column], edge, disk, cmap="viridis", pixel_size_um=0.16)
-    cd.plot.draw_disk_image(axes[1, column], disk, edge)
+for column, (disk, signal) in enumerate(zip(disks, signals, strict=True)):
+    cd.plot.draw_cell(axes[0, column], signal, disk, cmap="viridis", pixel_size_um=0.16)
+    cd.plot.draw_disk_image(axes[1, column], disk, signal)
 plt.show()
 
 # %%
-# Their mean, pixel by pixel of the disk: the front is bright in all of them.
-# ``disk.image`` is an array, NaN outside of the disk.
+# Their mean, pixel by pixel of the disk. ``disk.image`` is an array, NaN outside of
+# the disk.
 images = [
-    disk.image(cell.signal.sel(channel="edge"), size=200)
-    for cell, disk in zip(cells, disks, strict=True)
+    disk.image(signal, size=200) for disk, signal in zip(disks, signals, strict=True)
 ]
 figure, ax = plt.subplots(figsize=(3.2, 2.6))
 shown = ax.imshow(np.mean(images, axis=0))

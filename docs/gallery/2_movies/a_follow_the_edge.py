@@ -59,7 +59,7 @@ found, known = velocity.to_numpy()[:-1].ravel(), true[:-1].ravel()
 print(f"correlation with the truth: {np.corrcoef(found, known)[0, 1]:.3f}")
 print(f"typical error: {1000 * np.sqrt(np.mean((found - known) ** 2)):.1f} nm/s")
 
-figure, ax = plt.subplots(figsize=(3, 2.8))
+figure, ax = plt.subplots(figsize=(3.6, 3.2))
 ax.plot(known, found, ".", markersize=1.5, color="0.3")
 ax.axline((0, 0), slope=1, color="#D55E00", linewidth=0.8)
 ax.set(xlabel="true velocity (µm/s)", ylabel="found (µm/s)", aspect="equal")

@@ -16,24 +16,25 @@ movie = cd.map_movie(
     pixel_size_um=truth.pixel_size_um,
     frame_interval_s=truth.frame_interval_s,
 )
-activity = cd.sample_movie(movie, cd.polar_windows(layers=6, sectors=60), truth.signal)
+activity = cd.sample_movie(movie, cd.polar_windows(layers=4, sectors=60), truth.signal)
 print(activity["mean"].sizes)
 
 # %%
-# Edge velocity above the signal in some layers. The simulated signal is bright where
+# Edge velocity above the signal in all layers. The simulated signal is bright where
 # the edge has just moved, and only near the edge.
 velocity = cd.edge_velocity(movie, sectors=60)
 mean = activity["mean"].sel(channel="edge")
-figure, axes = plt.subplots(4, 1, figsize=(5.6, 6.4), sharex=True)
+figure, axes = plt.subplots(5, 1, figsize=(5.6, 6.4), layout="none")
+figure.subplots_adjust(hspace=0.35, top=0.96, bottom=0.08, right=0.84)
 cd.plot.draw_layers(
-    axes, mean.to_numpy()[:, :3], velocity, frame_interval_s=movie.frame_interval_s
+    axes, mean.to_numpy(), velocity, frame_interval_s=movie.frame_interval_s
 )
 plt.show()
 
 # %%
 # One frame of it, in the cell.
 frame = 20
-windows = cd.polar_windows(layers=6, sectors=60).on(movie[frame])
+windows = cd.polar_windows(layers=4, sectors=60).on(movie[frame])
 figure, axes = plt.subplots(1, 2, figsize=(5.6, 2.8))
 cd.plot.draw_cell(
     axes[0],

@@ -45,7 +45,8 @@ for ax, values, label in (
     (axes[0], alike, "correlation with the\nnext frame"),
     (axes[1], moved.mean("sector"), f"mean displacement\n({moved.attrs['units']})"),
 ):
-    cd.plot.draw_by_layer(
+    lines = cd.plot.draw_by_layer(
         ax, values.to_numpy(), layers, label, frame_interval_s=movie.frame_interval_s
     )
+axes[1].legend(lines, [f"layer {layer}" for layer in layers], frameon=False)
 plt.show()

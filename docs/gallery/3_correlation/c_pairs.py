@@ -34,8 +34,9 @@ pairs = cd.correlate_pairs(
 print(pairs)
 
 # %%
-# Waves travel around the edge of this cell: the farther apart along the edge, the
-# later. The ridges in the picture are the waves.
+# Waves run around the edge of this cell, in both directions alike when all pairs are
+# taken together. Where two places are a wavelength apart along the edge, about 18 µm,
+# the signal rises and falls at the same time; 40 s later it is the other way round.
 figure, ax = plt.subplots(figsize=(5.4, 3))
 limit = float(abs(pairs["correlation"]).max())
 shown = ax.pcolormesh(

@@ -38,10 +38,9 @@ plt.show()
 # The mean signal around the onsets of protrusion. The simulated signal follows
 # velocity by four frames (20 s). The band comes from drawing patches anew, for
 # episodes of one patch are not independent.
-around = cd.average_around(
-    signal.sel(channel="edge", layer=[0, 1, 6]), events, before=10, after=15
-)
-figure, ax = plt.subplots(figsize=(5, 2.8))
-lines = cd.plot.draw_event_average(ax, around, label="mean signal (a.u.)")
-ax.legend(handles=[*lines, *cd.plot.band_key(around)], frameon=False)
+around = cd.average_around(signal.sel(channel="edge"), events, before=10, after=15)
+figure, ax = plt.subplots(figsize=(6, 2.8))
+lines = cd.plot.draw_event_average(ax, around, label="mean signal")
+handles = [*lines, *cd.plot.band_key(around)]
+ax.legend(handles=handles, loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
 plt.show()
