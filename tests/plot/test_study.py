@@ -114,6 +114,23 @@ def test_overview_of_few(tmp_path: Path, saved: list[Figure], status: list[str])
     assert ("no cell was mapped" in _words(saved[0])) == ("ok" not in status)
 
 
+@pytest.mark.parametrize(
+    ("largest", "expected"),
+    [(2.0e3, ["200", "500", "1000", "2000"]), (2.0e6, ["1000", "10000", "100000", "1e+06"])],
+)
+def test_labels_of_areas_do_not_lie_over_each_other(
+    tmp_path: Path, saved: list[Figure], largest: float, expected: list[str]
+) -> None:
+    cells = _cells(["ok"] * 50)
+    cells["area"] = np.geomspace(190.0, largest, 50)
+    draw_overview(tmp_path / "overview.png", cells)
+    ax = saved[0].axes[2]
+    low, high = ax.get_xlim()
+    inside = [tick for tick in ax.get_xticks() if low <= tick <= high]
+    assert [ax.xaxis.get_major_formatter()(tick) for tick in inside] == expected
+    assert ax.xaxis.get_minor_formatter()(300.0) == ""
+
+
 def test_overview_draws_cells_from_least_to_most(tmp_path: Path, disk: DiskMap, saved: list[Figure]) -> None:
     asked: list[int] = []
 

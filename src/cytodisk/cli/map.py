@@ -37,7 +37,8 @@ Examples:
 
   cytodisk map labels.tif -o out/ --parameters other_study/parameters.toml --resume
 
-Exit code: 0 when done (refused cells have a row with the reason), 2 if nothing could be mapped.
+Exit code: 0 when done (refused cells have a row with the reason), 2 if nothing could be mapped or an input is
+damaged (the rest is done all the same).
 """
 
 

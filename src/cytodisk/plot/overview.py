@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
@@ -18,6 +18,7 @@ from cytodisk.plot.style import DPI, STATUS_COLOURS, colour_bar, paper_style
 
 _NEEDED = ("status", "area", "area_distortion")
 _MOST_BINS = 30
+_FEW_DECADES = 50  # largest over least area up to which there is room for labels between powers of 10
 _THUMBNAILS = 6
 _THUMBNAIL_LIMIT = 1.0  # log2, so that one bad cell does not bleach the others
 _DISTORTION = "area distortion, mean |log λ|"
@@ -118,6 +119,10 @@ def _draw_against_area(ax: Axes, area: FloatArray, distortion: FloatArray, unit:
     positive = area[area > 0]
     if positive.size and positive.max() > 10 * positive.min():
         ax.set_xscale("log")
+        few = positive.max() < _FEW_DECADES * positive.min()
+        ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,)))
+        ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        ax.xaxis.set_minor_formatter(NullFormatter())  # its labels would lie over each other
     ax.set_ylim(0, 1.1 * distortion.max() if distortion.max() > 0 else 0.1)
     ax.set(xlabel=f"area ({unit})", ylabel=_DISTORTION)
 

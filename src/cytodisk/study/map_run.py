@@ -9,7 +9,6 @@ from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
-import numpy as np
 import xarray as xr
 
 from cytodisk.errors import CytodiskError, ReadError
@@ -147,8 +146,8 @@ def _task(
         return CellTask(found, None, fault, None, drawn)
     (y, x), (height, width) = found.corner, found.mask.shape
     # A copy, so that a waiting cell does not hold its whole image.
-    signal = image[:, y : y + height, x : x + width].astype(np.float64)
-    return CellTask(found, signal, fault, image.astype(np.float64) if drawn else None, drawn)
+    signal = image[:, y : y + height, x : x + width].copy()
+    return CellTask(found, signal, fault, image if drawn else None, drawn)
 
 
 def _signal_at(

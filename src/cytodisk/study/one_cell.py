@@ -139,7 +139,8 @@ def _measure_cell(task: CellTask, settings: CellSettings) -> Rows:
     seconds = _since(started)
     if task.drawn and settings.draw is not None:
         name = f"cell_{found.cell:05d}"
-        settings.draw(settings.folder.figures, name, placed, task.image, settings.pixel_size_um)
+        image = None if task.image is None else task.image.astype(np.float64)
+        settings.draw(settings.folder.figures, name, placed, image, settings.pixel_size_um)
     return row | {"status": "ok", "reason": "", "seconds": seconds}, {"windows": columns}
 
 
