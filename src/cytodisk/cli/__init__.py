@@ -8,6 +8,7 @@ from cytodisk.cli.correlate import CORRELATE_HELP, REPORT_HELP, correlate_comman
 from cytodisk.cli.demo import demo_command, info_command
 from cytodisk.cli.map import MAP_HELP, check_command, map_command
 from cytodisk.cli.movie import MOVIE_HELP, movie_command
+from cytodisk.cli.shapes import SHAPES_HELP, shapes_command
 from cytodisk.errors import CytodiskError
 
 app = typer.Typer(
@@ -20,6 +21,7 @@ app = typer.Typer(
 app.command("map", help=MAP_HELP)(map_command)
 app.command("movie", help=MOVIE_HELP)(movie_command)
 app.command("correlate", help=CORRELATE_HELP)(correlate_command)
+app.command("shapes", help=SHAPES_HELP)(shapes_command)
 app.command("report", help=REPORT_HELP)(report_command)
 app.command("compare", help=COMPARE_HELP)(compare_command)
 app.command("check")(check_command)

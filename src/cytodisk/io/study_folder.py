@@ -35,7 +35,21 @@ CONSISTENCY, ACTIVITY = "consistency.parquet", "activity.zarr"
 MAPS, FIGURES, _PARTS, _LOCK = "maps", "figures", ".parts", ".lock"
 _LATER = ("correlation", "report.html", "report_cell_*.html")  # what other commands wrote from these results
 _COMPARED = ("layers.parquet", "comparison*.csv")  # beside cells, by a comparison of windows
-_OWN = (PARAMETERS, CELLS, WINDOWS, EDGE, CONSISTENCY, ACTIVITY, MAPS, FIGURES, _PARTS, *_LATER, *_COMPARED)
+_SHAPES = ("shapes.parquet", "shapes.csv", "features.csv")  # beside cells, by a run over shapes
+_OWN = (
+    PARAMETERS,
+    CELLS,
+    WINDOWS,
+    EDGE,
+    CONSISTENCY,
+    ACTIVITY,
+    MAPS,
+    FIGURES,
+    _PARTS,
+    *_LATER,
+    *_COMPARED,
+    *_SHAPES,
+)
 _UNITS = ("length_unit", "velocity_unit")  # of the provenance
 
 

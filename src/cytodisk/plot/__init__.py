@@ -13,8 +13,11 @@ edge; draw_by_layer for lines of layers; write_animation.
 Correlations: draw_correlation_curves with curve_key, draw_map_pair, draw_pairs; PeakMap for
 draw_peaks_on_cell and draw_peaks_on_disk with peak_key; draw_events, draw_event_average with band_key.
 
+Shapes: shape_landscape, the plane of the complexity score; shape_examples, cells by their outlines.
+
 Whole pages into the folder of a study: draw_cell_figures, draw_movie_figures, draw_correlation_figures,
-draw_overview; of a comparison of windows: draw_comparison, draw_compared_cells, draw_compared_movie.
+draw_shape_figures, draw_overview; of a comparison of windows: draw_comparison, draw_compared_cells,
+draw_compared_movie.
 
 Looks: paper_style for the sizes of a printed page, colour_bar, scale_bar.
 """
@@ -56,6 +59,7 @@ _HOME = {
     "draw_peaks_on_cell": "correlation_cell",
     "draw_peaks_on_disk": "correlation_cell",
     "draw_sectors": "strip",
+    "draw_shape_figures": "shape_figures",
     "draw_strip": "strip",
     "draw_tracks": "edge",
     "draw_velocity_arrows": "edge",
@@ -67,6 +71,8 @@ _HOME = {
     "peak_key": "correlation_cell",
     "PeakMap": "correlation_cell",
     "scale_bar": "style",
+    "shape_examples": "shape_rows",
+    "shape_landscape": "shape_plane",
     "write_animation": "animation",
 }
 

@@ -150,14 +150,21 @@ def umap_plane(values: FloatArray, seed: int, n_neighbors: int, min_dist: float)
     """
     # The start is spectral, which needs more cells than dimensions by some; few cells start from components.
     start = "spectral" if len(values) > 2 * LEAST_CELLS else "pca"
-    reducer = _umap().UMAP(
+    reducer = load_umap().UMAP(
         n_neighbors=n_neighbors, min_dist=min_dist, init=start, random_state=seed, n_jobs=1
     )
     plane = np.asarray(reducer.fit_transform(values), dtype=np.float64)
     return np.asarray(plane - plane.mean(axis=0))
 
 
-def _umap() -> Any:
+def load_umap() -> Any:
+    """The package `umap`.
+
+    Raises
+    ------
+    MissingPartError
+        umap-learn is not installed.
+    """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ImportWarning)  # that TensorFlow, which is not used, is missing

@@ -53,10 +53,10 @@ def shape_features(masks: Any, *, pixel_size_um: float | None = None) -> pd.Data
     -------
     DataFrame
         A row a cell: "cell" (its running number), "frame" (its place in the stack or list), "label", "status"
-        ("ok" or "refused"), "reason" (why there are no numbers), "notes" (what cleaning changed),
-        "touches_border", then the features, NaN for a refused cell. `attrs["units"]` and
-        `attrs["description"]` are dicts by column, `attrs["scale_free"]` is the list of features that stay
-        the same when the same shape is drawn larger.
+        ("ok" or "refused"), "reason" (why there are no numbers), "notes" (what cleaning changed), "doubts"
+        (what speaks against one whole cell), "touches_border", then the features, NaN for a refused cell.
+        `attrs["units"]` and `attrs["description"]` are dicts by column, `attrs["scale_free"]` is the list of
+        features that stay the same when the same shape is drawn larger.
 
     Raises
     ------
@@ -94,10 +94,14 @@ def shape_row(mask: Any, pixel_size_um: float | None = None) -> dict[str, Any]:
     dict
         By column of `shape_features`; without features if the cell cannot be measured.
     """
-    row: dict[str, Any] = {"status": "ok", "reason": "", "notes": "", "touches_border": False}
+    row: dict[str, Any] = {"status": "ok", "reason": "", "notes": "", "doubts": "", "touches_border": False}
     try:
         solid, report = clean_mask(mask)
-        row |= {"notes": "; ".join(report.notes), "touches_border": report.touches_border}
+        row |= {
+            "notes": "; ".join(report.notes),
+            "doubts": "; ".join(report.doubts),
+            "touches_border": report.touches_border,
+        }
         shape = crop_shape(solid)
         values: dict[str, float] = {}
         for group in GROUPS:

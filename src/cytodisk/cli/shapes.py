@@ -1,0 +1,127 @@
+"""`cytodisk shapes`."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from cytodisk.cli.console import MaskFiles, Quiet, console_for, count, fail, progress_bar
+from cytodisk.cli.map_totals import say_reasons
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.console import Console
+
+    from cytodisk.study.map_inputs import MapInputs
+
+SHAPES_HELP = """Measure the shape of cells in a hundred features, and order them from plain to complex ones.
+
+MASKS is one mask, a stack of masks, or a label image (each label a cell), or a folder of such files.
+The score of complexity (features, UMAP, principal axis) is relative to the cells of the run: at least ten.
+
+Examples:
+
+  cytodisk shapes labels.tif -o out/ --pixel-size 0.3
+
+  cytodisk shapes cellpose_folder/ -o out/ --workers 4
+
+Exit code: 0 when done (refused cells have a row with the reason), 2 if nothing could be measured.
+"""
+
+_LEAST_SHARE = 0.65  # of the plane's variance along the axis, below which the axis says little
+_FAR_FROM_LINE = (
+    "look at figures/complexity.png: the shapes do not lie along one axis, so the score says little"
+)
+
+
+def shapes_command(
+    masks: MaskFiles,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)],
+    kind: Annotated[str | None, typer.Option(help="What MASKS is: auto, mask, stack or labels.")] = None,
+    pixel_size: Annotated[float | None, typer.Option(help="µm per pixel; overrules the file's own.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Of the layout by UMAP (default 0).")] = None,
+    neighbors: Annotated[
+        int | None, typer.Option(help="Of UMAP: how many cells count as alike (default 15).")
+    ] = None,
+    min_dist: Annotated[
+        float | None, typer.Option(help="Of UMAP: how close cells may come, 0 to 1 (default 0.1).")
+    ] = None,
+    parameters: Annotated[
+        Path | None, typer.Option(help="TOML file as in a study; flags overrule it.")
+    ] = None,
+    workers: Annotated[int, typer.Option(help="Processes.")] = 1,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the same run in this folder.")] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in this folder.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    from cytodisk.study.parameters import parameters_from
+    from cytodisk.study.shape_run import ShapeParameters, open_shape_inputs, run_shapes
+
+    given = {
+        "kind": kind,
+        "pixel_size_um": pixel_size,
+        "seed": seed,
+        "n_neighbors": neighbors,
+        "min_dist": min_dist,
+    }
+    settings = parameters_from(given, parameters, ShapeParameters)
+    console = console_for(quiet)
+    inputs = open_shape_inputs(masks, settings)
+    console.print(f"masks: {inputs.understood['masks']}")
+    size = inputs.pixel_size_um
+    console.print(f"pixel size: {size:g} µm" if size else "pixel size: unknown, lengths are in px")
+    with progress_bar(quiet, "cells") as progress:
+        table = run_shapes(
+            inputs, out, settings, workers=workers, resume=resume, overwrite=overwrite, progress=progress
+        )
+    _draw(inputs, table, out)
+    _say(console, table, out)
+
+
+def _draw(inputs: "MapInputs", table: "pd.DataFrame", out: Path) -> None:
+    from cytodisk.plot.shape_figures import cells_to_draw, draw_shape_figures
+    from cytodisk.study.shape_run import cleaned_masks
+
+    if table["complexity"].notna().any():
+        masks = cleaned_masks(inputs, cells_to_draw(table))
+        draw_shape_figures(out / "figures", table, masks, inputs.pixel_size_um)
+
+
+def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:
+    """Say what came out; exit code 2 if that is nothing, or an input is damaged."""
+    measured, lost = table[table["status"] == "ok"], table[table["status"] != "ok"]
+    status = table["status"].value_counts()
+    numbers = [f"{status[name]} {name}" for name in ("refused", "unreadable") if name in status]
+    files = count(table["source"].nunique(), "file")
+    console.print(f"{files}, {count(len(table))}: " + "; ".join([f"{len(measured)} measured", *numbers]))
+    border = int(measured["touches_border"].sum())
+    console.print(f"on the image border, so measured in part: {count(border)}")
+    doubtful = int((measured["doubts"] != "").sum())
+    if doubtful:
+        console.print(f"perhaps not one whole cell: {doubtful}, column 'doubts' of shapes.parquet")
+    say_reasons(zip(lost["cell"], lost["source"], lost["status"], lost["reason"], strict=True))
+    if measured["complexity"].notna().any():
+        _say_complexity(console, measured)
+    elif len(measured):
+        console.print("no complexity: it is relative to other cells and takes at least 10 of them")
+    console.print(f"results: {out}")
+    if measured.empty:
+        fail(f"no cell could be measured: {lost['reason'].iloc[0]}")
+    if "unreadable" in status:
+        fail(f"damaged files or frames of the input: {status['unreadable']}; all others are in {out}")
+
+
+def _say_complexity(console: "Console", measured: "pd.DataFrame") -> None:
+    from cytodisk.analysis.shape.complexity import principal_axis
+
+    _, share = principal_axis(measured[["umap_1", "umap_2"]].to_numpy())
+    ranked = measured.sort_values("complexity", kind="stable")
+    least, most = (
+        ", ".join(f"{cell} ({source})" for cell, source in zip(some["cell"], some["source"], strict=True))
+        for some in (ranked.head(3), ranked.tail(3)[::-1])
+    )
+    console.print(f"complexity: {share:.0%} of the plane's variance lies along its axis")
+    console.print(f"least complex cells: {least}")
+    console.print(f"most complex cells: {most}")
+    if share < _LEAST_SHARE:
+        console.print(_FAR_FROM_LINE)
