@@ -14,7 +14,8 @@ import xarray as xr
 
 from cytodisk.errors import ReadError
 from cytodisk.files import replacing
-from cytodisk.io.study_folder import CELLS, CONSISTENCY, MAPS, part_key, read_provenance
+from cytodisk.io.provenance_file import read_provenance
+from cytodisk.io.study_folder import CELLS, CONSISTENCY, MAPS, part_key
 from cytodisk.io.tables import read_table
 
 BY_LAYER_FILE, BY_METHOD_FILE = "comparison.csv", "comparison_methods.csv"
