@@ -74,6 +74,28 @@ def test_every_cell_of_every_file_has_its_row(whole: cd.Study) -> None:
     ]
 
 
+def test_files_of_the_same_image_are_named_and_left_out(place: Path) -> None:
+    labels = tifffile.imread(place / "masks" / "im9_cp_masks.tif")
+    np.save(place / "masks" / "im9_seg.npy", {"masks": labels[::-1]}, allow_pickle=True)
+    inputs = open_inputs(place / "masks", None, SMALL)
+    assert len(list(check_cells(inputs))) == sum(PER_IMAGE)
+    words = "3 files: 3 label images; 1 left out (as im9_seg.npy): another file has masks of the same image"
+    assert inputs.understood == {"masks": words}
+
+
+def test_cellposes_own_file_gives_what_the_label_image_gives(
+    whole: cd.Study, place: Path, tmp_path: Path
+) -> None:
+    labels = tifffile.imread(place / "masks" / "im9_cp_masks.tif")
+    np.save(tmp_path / "im9_seg.npy", {"masks": labels, "flows": [labels / 7]}, allow_pickle=True)
+    inputs = open_inputs(tmp_path / "im9_seg.npy", place / "images" / "im9.ome.tif", SMALL)
+    study = run_map(inputs, tmp_path / "out")
+    columns = ["source", "seconds"]
+    pd.testing.assert_frame_equal(
+        study.cells.drop(columns=columns), whole.cells.head(PER_IMAGE[0]).drop(columns=columns)
+    )
+
+
 def test_cells_at_the_border_are_flagged(whole: cd.Study, written: Path) -> None:
     expected = []
     for path in sorted((written / "masks").iterdir(), key=lambda path: int(path.name[2:].split("_")[0])):

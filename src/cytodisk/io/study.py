@@ -17,16 +17,15 @@ from cytodisk.disk.disk_map import DiskMap, load_map
 from cytodisk.errors import ReadError
 from cytodisk.io.activity_store import open_activity
 from cytodisk.io.correlation_store import Correlation, list_correlations, read_correlation
+from cytodisk.io.provenance_file import PROVENANCE, read_provenance
 from cytodisk.io.study_folder import (
     ACTIVITY,
     CELLS,
     CONSISTENCY,
     EDGE,
     MAPS,
-    PROVENANCE,
     WINDOWS,
     part_key,
-    read_provenance,
 )
 from cytodisk.io.tables import read_table
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import shutil
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
@@ -18,6 +17,8 @@ import pyarrow.parquet as pq
 from cytodisk.errors import StudyError
 from cytodisk.files import lock, replacing
 from cytodisk.io.merging import merge_tables, write_rows
+from cytodisk.io.provenance_file import PROVENANCE, read_provenance, write_json
+from cytodisk.io.study_room import LOCK, is_left_over, make_room, remove_left_overs
 from cytodisk.io.tables import (
     CELL_COLUMNS,
     CONSISTENCY_COLUMNS,
@@ -29,10 +30,10 @@ from cytodisk.io.tables import (
     schema,
 )
 
-PARAMETERS, PROVENANCE = "parameters.toml", "provenance.json"
+PARAMETERS = "parameters.toml"
 CELLS, WINDOWS, EDGE = "cells.parquet", "windows.parquet", "edge.parquet"
 CONSISTENCY, ACTIVITY = "consistency.parquet", "activity.zarr"
-MAPS, FIGURES, _PARTS, _LOCK = "maps", "figures", ".parts", ".lock"
+MAPS, FIGURES, _PARTS = "maps", "figures", ".parts"
 _LATER = ("correlation", "report.html", "report_cell_*.html")  # what other commands wrote from these results
 _COMPARED = ("layers.parquet", "comparison*.csv")  # beside cells, by a comparison of windows
 _SHAPES = ("shapes.parquet", "shapes.csv", "features.csv")  # beside cells, by a run over shapes
@@ -100,7 +101,7 @@ def alone_in(path: str | os.PathLike[str]) -> Iterator[None]:
         if folder.exists() and not folder.is_dir():
             raise StudyError(f"output {folder} is a file: pass a folder")
         folder.mkdir(parents=True, exist_ok=True)
-        held = lock(folder / _LOCK)
+        held = lock(folder / LOCK)
     except StudyError:
         raise
     except BlockingIOError as error:
@@ -110,7 +111,7 @@ def alone_in(path: str | os.PathLike[str]) -> Iterator[None]:
     try:
         yield
     finally:
-        (folder / _LOCK).unlink(missing_ok=True)
+        (folder / LOCK).unlink(missing_ok=True)
         held.close()
 
 
@@ -167,12 +168,12 @@ class StudyFolder:
             if folder.exists() and not folder.is_dir():
                 raise StudyError(f"output {folder} is a file: pass a folder")
             folder.mkdir(parents=True, exist_ok=True)
-            if any(not _is_left_over(file) for file in folder.iterdir()):
-                _make_room(folder, provenance, resume, overwrite)
+            if any(not is_left_over(file) for file in folder.iterdir()):
+                make_room(folder, provenance, _OWN, resume, overwrite)
             study.note("status", "running")  # first, so that a folder that stands is known as a study
             for name in (MAPS, FIGURES, _PARTS):
                 (folder / name).mkdir(exist_ok=True)
-            _remove_left_overs(folder)
+            remove_left_overs([folder, *(folder / name for name in (MAPS, FIGURES, _PARTS))])
         except StudyError:
             raise
         except OSError as error:
@@ -188,7 +189,7 @@ class StudyFolder:
     def note(self, name: str, value: Any) -> None:
         """Set an entry of the provenance and write it."""
         self.provenance[name] = value
-        _write_json(self.path / PROVENANCE, self.provenance)
+        write_json(self.path / PROVENANCE, self.provenance)
 
     def has(self, key: str) -> bool:
         """Whether a part is complete."""
@@ -243,7 +244,7 @@ class StudyFolder:
         """
         for table, columns in tables.items():
             self.add_table(key, table, columns)
-        _write_json(self._part(key, "json"), row)
+        write_json(self._part(key, "json"), row)
 
     def add_cells(self, key: str, cells: Sequence[tuple[dict[str, Any], dict[str, dict[str, Any]]]]) -> None:
         """Write several cells as one part.
@@ -259,7 +260,7 @@ class StudyFolder:
             columns = [tables[table] for _, tables in cells if table in tables]
             if columns:
                 self.add_table(key, table, *columns)
-        _write_json(self._part(key, "json"), [row for row, _ in cells])
+        write_json(self._part(key, "json"), [row for row, _ in cells])
 
     def read_rows(self, keys: Collection[str]) -> Iterator[dict[str, Any]]:
         """The rows of all parts, one after the other.
@@ -326,72 +327,3 @@ class StudyFolder:
 
     def _schema(self, columns: Columns) -> Any:
         return schema(columns, *(str(self.provenance.get(unit, "")) for unit in _UNITS))
-
-
-def _make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite: bool) -> None:
-    there = read_provenance(folder)
-    if there is None:
-        raise StudyError(f"output folder {folder} is not empty and holds no study: pass another folder")
-    if overwrite:
-        # The old provenance stays, marked, until the new one replaces it: a kill leaves a known study.
-        _write_json(folder / PROVENANCE, there | {"status": "being replaced", "fingerprint": {}})
-        for name in _OWN:
-            for file in folder.glob(name):
-                _remove(file)
-        return
-    if not resume:
-        raise StudyError(
-            f"output folder {folder} holds a study: pass --resume to go on, --overwrite to replace it"
-        )
-    if there.get("fingerprint") != provenance["fingerprint"]:
-        raise StudyError(
-            f"output folder {folder} holds another run ({_differences(there, provenance)}): "
-            "pass --overwrite to replace it, or another folder"
-        )
-
-
-def _remove_left_overs(folder: Path) -> None:
-    """Remove the temporary files of a run that was killed while writing; other files are not ours."""
-    for place in (folder, *(folder / name for name in (MAPS, FIGURES, _PARTS))):
-        for file in place.iterdir():
-            if file.name != _LOCK and _is_left_over(file):
-                _remove(file)
-
-
-def _remove(target: Path) -> None:
-    if target.is_dir():
-        shutil.rmtree(target)
-    else:
-        target.unlink(missing_ok=True)
-
-
-def _is_left_over(file: Path) -> bool:
-    return file.name == _LOCK or re.fullmatch(r"\..+\.\d+\.tmp\.\w+", file.name) is not None
-
-
-def _differences(there: dict[str, Any], here: dict[str, Any]) -> str:
-    old, new = there.get("fingerprint", {}), here["fingerprint"]
-    names = [name for name in new if old.get(name) != new[name]]
-    return (
-        "; ".join(f"{name}: {_short(old.get(name))} then, {_short(new[name])} now" for name in names)
-        or "unknown"
-    )
-
-
-def _short(value: Any) -> str:
-    text = str(value)
-    return text if len(text) <= 24 else f"{text[:8]}…"
-
-
-def read_provenance(folder: Path) -> dict[str, Any] | None:
-    """What a folder says of its run; None if it holds no study."""
-    try:
-        found = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError):
-        return None
-    return found if isinstance(found, dict) and "fingerprint" in found else None
-
-
-def _write_json(path: Path, content: Any) -> None:
-    with replacing(path) as temporary:
-        temporary.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
