@@ -95,13 +95,13 @@ def compare_command(
         found = _run_movie(masks, signal, out, given, parameters, again, quiet)
     else:
         found = _run_cells(masks, signal, out, given, parameters, again | {"workers": workers}, quiet)
+    if not found.cells["mapped"].sum():
+        fail(f"no cell could be used: {'; '.join(found.cells['reason'].head(1)) or 'there is none'}")
     console = console_for(quiet)
     say_comparison(console, found)
     for path, words in draw_figures(found):
         console.print(f"{path.relative_to(found.path)}: {words}")
     console.print(f"results: {found.path} (comparison.csv by layer, comparison_methods.csv by method)")
-    if not found.cells["mapped"].sum():
-        fail(f"no cell could be used: {'; '.join(found.cells['reason'].head(1)) or 'there is none'}")
 
 
 def _run_cells(

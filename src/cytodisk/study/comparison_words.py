@@ -41,7 +41,7 @@ def where_worse(comparison: Comparison) -> list[str]:
     list of str
         Empty if the default was not compared, or is nowhere worse by more than 1 %.
     """
-    if OURS not in comparison.methods:
+    if OURS not in comparison.methods or not len(comparison.by_layer):
         return []
     words = []
     for method in comparison.methods:
