@@ -55,7 +55,7 @@ numpydoc_xref_aliases = {
 
 mpl.use("agg")
 mpl.rcParams.update(PAPER)
-LOOK = PAPER | {"figure.dpi": 120, "figure.constrained_layout.use": True, "savefig.bbox": "standard"}
+LOOK = PAPER | {"figure.dpi": 120}
 plot_rcparams = LOOK
 plot_apply_rcparams = True
 plot_formats = [("png", 200)]

@@ -23,7 +23,9 @@ print(disk)
 # The mesh in the cell and on the disk: the same triangles, none turned over. Angle 0
 # points along +x of the image and angles grow towards +y, so the disk looks like the
 # cell.
-figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.6), width_ratios=(1.5, 1))
+figure, axes = plt.subplots(
+    1, 2, figsize=(6.2, 2.6), width_ratios=(1.5, 1), layout="constrained"
+)
 cd.plot.draw_mesh(axes[0], disk.vertices_yx, disk.triangles)
 cd.plot.frame_cell(axes[0], disk, pixel_size_um=0.16)
 cd.plot.draw_disk_mesh(axes[1], disk)
@@ -52,7 +54,7 @@ print(
 # ----------------------
 # λ is a triangle's share of the disk over its share of the cell. The area distortion
 # is the mean magnitude of its logarithm.
-figure, ax = plt.subplots(figsize=(6.2, 3.2))
+figure, ax = plt.subplots(figsize=(6.2, 3.2), layout="constrained")
 filled = cd.plot.draw_area_distortion(ax, disk, pixel_size_um=0.16)
 figure.colorbar(filled, ax=ax, label="log₂ λ", shrink=0.7)
 print(f"area distortion: {disk.distortion.area:.3f}")

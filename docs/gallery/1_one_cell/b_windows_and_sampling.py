@@ -25,7 +25,9 @@ print(data)
 
 # %%
 # The mean of each window, on the disk and in the cell.
-figure, axes = plt.subplots(1, 3, figsize=(6.2, 2.2), width_ratios=(1.5, 1, 1.5))
+figure, axes = plt.subplots(
+    1, 3, figsize=(6.2, 2.2), width_ratios=(1.5, 1, 1.5), layout="constrained"
+)
 cd.plot.draw_cell(axes[0], edge, disk, pixel_size_um=0.16, cmap="viridis")
 cd.plot.draw_windows(axes[0], windows)
 cd.plot.draw_disk_means(axes[1], grid, data["mean"].sel(channel="edge"))
@@ -58,7 +60,7 @@ print("empty windows:", int((windows.areas == 0).sum()))
 # With ``spacing="area"``, the default, all windows have nearly the same area.
 # ``"radius"`` makes rings of equal width, as the paper does: they are large outside
 # and small inside.
-figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.6))
+figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.6), layout="constrained")
 for ax, spacing in zip(axes, ("area", "radius"), strict=True):
     laid = cd.polar_windows(8, 48, spacing).on(disk)
     cd.plot.draw_windows(ax, laid, by_layer=True)
@@ -71,7 +73,7 @@ plt.show()
 # --------
 # The simulated signal is bright at the edge. Layers show how deep that goes.
 by_layer = data["mean"].sel(channel="edge").mean("sector")
-figure, ax = plt.subplots(figsize=(4, 2.4))
+figure, ax = plt.subplots(figsize=(4, 2.4), layout="constrained")
 ax.plot(np.arange(8), by_layer, "o-", color="0.15")
 ax.set(xlabel="layer (0 at the edge)", ylabel="mean signal (a.u.)")
 plt.show()

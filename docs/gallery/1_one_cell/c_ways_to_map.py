@@ -18,7 +18,7 @@ newton = cd.map_to_disk(mask)
 # Windows of equal area on the disk, carried into the cell by both maps: the harmonic
 # map leaves the arms to the outermost windows; the equiareal one divides them fairly.
 grid = cd.polar_windows(layers=8, sectors=40)
-figure, axes = plt.subplots(2, 2, figsize=(6.2, 6))
+figure, axes = plt.subplots(2, 2, figsize=(6.2, 6), layout="constrained")
 for column, (disk, name) in enumerate(((harmonic, "harmonic"), (newton, "newton"))):
     cd.plot.draw_area_distortion(axes[0, column], disk, limit=4)
     axes[0, column].set_title(f"{name}: area distortion {disk.distortion.area:.2f}")

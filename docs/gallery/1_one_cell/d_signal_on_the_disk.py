@@ -27,7 +27,7 @@ signals = [
 ]
 disks = [cd.map_to_disk(mask) for mask in masks]
 
-figure, axes = plt.subplots(2, 4, figsize=(6.2, 3.2))
+figure, axes = plt.subplots(2, 4, figsize=(6.2, 3.2), layout="constrained")
 for column, (disk, signal) in enumerate(zip(disks, signals, strict=True)):
     cd.plot.draw_cell(axes[0, column], signal, disk, cmap="viridis", pixel_size_um=0.16)
     cd.plot.draw_disk_image(axes[1, column], disk, signal)
@@ -39,7 +39,7 @@ plt.show()
 images = [
     disk.image(signal, size=200) for disk, signal in zip(disks, signals, strict=True)
 ]
-figure, ax = plt.subplots(figsize=(3.2, 2.6))
+figure, ax = plt.subplots(figsize=(3.2, 2.6), layout="constrained")
 shown = ax.imshow(np.mean(images, axis=0))
 ax.set_title("mean of four cells")
 ax.axis("off")

@@ -27,7 +27,7 @@ print("doubts:", *report.doubts, sep="\n  ")
 # %%
 # What came, and what is mapped.
 change = cleaned.astype(int) - mask
-figure, ax = plt.subplots(figsize=(5, 2.8))
+figure, ax = plt.subplots(figsize=(5, 2.8), layout="constrained")
 ax.imshow(mask, cmap="gray", alpha=0.4)
 ax.contour(cleaned, [0.5], colors="k", linewidths=1)
 ax.contourf(change, [-1.5, -0.5], colors=["#D55E00"])

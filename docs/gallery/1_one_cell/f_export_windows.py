@@ -33,7 +33,7 @@ with TemporaryDirectory() as folder:
     file.write_text(json.dumps(collection))
     features = json.loads(file.read_text())["features"]
 
-figure, ax = plt.subplots(figsize=(5, 3))
+figure, ax = plt.subplots(figsize=(5, 3), layout="constrained")
 polygons = PolyCollection(
     [feature["geometry"]["coordinates"][0] for feature in features],
     array=[feature["properties"]["edge"] for feature in features],

@@ -25,7 +25,7 @@ kinds = {
 # %%
 # The windows of each kind in colours at random. What is white lies in no window.
 order = np.random.default_rng(0).permutation(layers * sectors)
-figure, axes = plt.subplots(1, 3, figsize=(6.2, 2.6))
+figure, axes = plt.subplots(1, 3, figsize=(6.2, 2.6), layout="constrained")
 for ax, (name, windows) in zip(axes, kinds.items(), strict=True):
     inside = windows.labels >= 0
     shown = np.where(inside, order[windows.labels], np.nan)
@@ -39,7 +39,7 @@ plt.show()
 # %%
 # By layer, from the edge inwards: the share of windows that hold any pixel, and how
 # much the areas of those differ (standard deviation over mean).
-figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.4))
+figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.4), layout="constrained")
 styles = {"disk": "o-", "edge": "s--", "rings": "^:"}
 for name, windows in kinds.items():
     measures = cd.measures_by_layer(windows)

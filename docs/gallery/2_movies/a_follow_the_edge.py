@@ -23,7 +23,7 @@ print(movie)
 
 # %%
 # The outline through time, with the paths of some of its points.
-figure, ax = plt.subplots(figsize=(5, 4))
+figure, ax = plt.subplots(figsize=(5, 4), layout="constrained")
 cd.plot.draw_tracks(
     ax,
     movie.points_yx,
@@ -39,7 +39,7 @@ plt.show()
 # In each of 60 sectors, in µm/s: protrusion is positive. Velocity belongs to the step
 # from a frame to the next, so the last frame has none.
 velocity = cd.edge_velocity(movie, sectors=60)
-figure, ax = plt.subplots(figsize=(5, 2.8))
+figure, ax = plt.subplots(figsize=(5, 2.8), layout="constrained")
 cd.plot.draw_velocity_map(ax, velocity, frame_interval_s=movie.frame_interval_s)
 plt.show()
 
@@ -59,7 +59,7 @@ found, known = velocity.to_numpy()[:-1].ravel(), true[:-1].ravel()
 print(f"correlation with the truth: {np.corrcoef(found, known)[0, 1]:.3f}")
 print(f"typical error: {1000 * np.sqrt(np.mean((found - known) ** 2)):.1f} nm/s")
 
-figure, ax = plt.subplots(figsize=(3.6, 3.2))
+figure, ax = plt.subplots(figsize=(3.6, 3.2), layout="constrained")
 ax.plot(known, found, ".", markersize=1.5, color="0.3")
 ax.axline((0, 0), slope=1, color="#D55E00", linewidth=0.8)
 ax.set(xlabel="true velocity (µm/s)", ylabel="found (µm/s)", aspect="equal")
@@ -72,7 +72,7 @@ plt.show()
 # to the velocity of each sector, and how much area was won and lost.
 changes = cd.edge_changes(movie, sectors=60, jitter_px=0.5)
 sector = 10
-figure, ax = plt.subplots(figsize=(5, 2.4))
+figure, ax = plt.subplots(figsize=(5, 2.4), layout="constrained")
 ax.errorbar(
     changes["time_s"],
     changes["velocity"].sel(sector=sector),

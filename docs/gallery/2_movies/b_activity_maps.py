@@ -24,7 +24,7 @@ print(activity["mean"].sizes)
 # the edge has just moved, and only near the edge.
 velocity = cd.edge_velocity(movie, sectors=60)
 mean = activity["mean"].sel(channel="edge")
-figure, axes = plt.subplots(5, 1, figsize=(5.6, 6.4), layout="none")
+figure, axes = plt.subplots(5, 1, figsize=(5.6, 6.4))
 figure.subplots_adjust(hspace=0.35, top=0.96, bottom=0.08, right=0.84)
 cd.plot.draw_layers(
     axes, mean.to_numpy(), velocity, frame_interval_s=movie.frame_interval_s
@@ -35,7 +35,7 @@ plt.show()
 # One frame of it, in the cell.
 frame = 20
 windows = cd.polar_windows(layers=4, sectors=60).on(movie[frame])
-figure, axes = plt.subplots(1, 2, figsize=(5.6, 2.8))
+figure, axes = plt.subplots(1, 2, figsize=(5.6, 2.8), layout="constrained")
 cd.plot.draw_cell(
     axes[0],
     truth.signal.isel(time=frame).sel(channel="edge"),

@@ -23,7 +23,7 @@ grid = cd.polar_windows(layers=6, sectors=36)
 # A cell that changes its whole shape. Colours belong to sectors: the same colour is
 # the same part of the edge.
 frames = [0, 10, 20, 29]
-figure, axes = plt.subplots(1, 4, figsize=(6.2, 2.4))
+figure, axes = plt.subplots(1, 4, figsize=(6.2, 2.4), layout="constrained")
 cd.plot.draw_strip(
     axes,
     [grid.on(movie[frame]) for frame in frames],
@@ -40,7 +40,7 @@ activity = cd.sample_movie(movie, grid, truth.signal)
 alike = cd.consecutive_correlation(activity["mean"].sel(channel="material"))
 moved = cd.centroid_displacement(movie, activity)
 layers = [0, 2, 4]
-figure, axes = plt.subplots(2, 1, figsize=(5, 4), sharex=True)
+figure, axes = plt.subplots(2, 1, figsize=(5, 4), sharex=True, layout="constrained")
 for ax, values, label in (
     (axes[0], alike, "correlation with the\nnext frame"),
     (axes[1], moved.mean("sector"), f"mean displacement\n({moved.attrs['units']})"),

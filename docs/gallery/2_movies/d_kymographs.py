@@ -24,7 +24,9 @@ middle = signal.sizes["y"] // 2, signal.sizes["x"] // 2
 end = (middle[0], signal.sizes["x"] - 2)
 line = cd.line_kymograph(signal, [middle, end], width_px=3)
 
-figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.4), width_ratios=(1, 1.6))
+figure, axes = plt.subplots(
+    1, 2, figsize=(6.2, 2.4), width_ratios=(1, 1.6), layout="constrained"
+)
 axes[0].imshow(signal.isel(time=0), cmap="gray")
 axes[0].plot(*zip(middle[::-1], end[::-1], strict=True), color="#009E73")
 axes[0].axis("off")
@@ -35,6 +37,6 @@ plt.show()
 # Along the tracked edge, half a micrometre deep: the protrusions come and go, and the
 # ordinate stays with them.
 rim = cd.boundary_kymograph(movie, signal, depth=0.5)
-figure, ax = plt.subplots(figsize=(5.6, 2.8))
+figure, ax = plt.subplots(figsize=(5.6, 2.8), layout="constrained")
 cd.plot.draw_boundary_kymograph(ax, rim)
 plt.show()

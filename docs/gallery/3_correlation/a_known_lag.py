@@ -46,7 +46,7 @@ print(
 # The mean over each layer has all its windows to go by: significant where no single
 # window is.
 by_layer = cd.correlation_by_layer(lags)
-figure, ax = plt.subplots(figsize=(5, 2.8))
+figure, ax = plt.subplots(figsize=(5, 2.8), layout="constrained")
 for layer, colour in ((0, "#0072B2"), (2, "#D55E00"), (6, "0.5")):
     ax.plot(
         by_layer["lag_s"],
@@ -73,7 +73,7 @@ frame = 30
 table = peaks.to_dataframe().reset_index().assign(cell=0)
 shown = cd.plot.PeakMap.of(table, grid)
 windows = grid.on(movie[frame])
-figure, axes = plt.subplots(1, 3, figsize=(6.4, 2.6))
+figure, axes = plt.subplots(1, 3, figsize=(6.4, 2.6), layout="constrained")
 coupled = truth.boundary_yx[frame][truth.coupled > 0.5]
 cd.plot.draw_windows(axes[0], windows, color="0.7")
 axes[0].plot(coupled[:, 1], coupled[:, 0], ".", color="#b2182b", markersize=2)

@@ -26,7 +26,7 @@ peaks = cd.peak_correlation(lags, rule="largest")
 # The peaks of 240 windows. A test that takes all frames for independent observations,
 # and knows nothing of the search over lags, would call a correlation above 0.18
 # significant; here nearly all peaks are, by chance alone.
-figure, ax = plt.subplots(figsize=(5, 2.6))
+figure, ax = plt.subplots(figsize=(5, 2.6), layout="constrained")
 ax.hist(abs(peaks["correlation"].to_numpy().ravel()), 30, color="0.6")
 ax.axvline(0.18, color="#D55E00", label="5 % limit if frames were independent")
 ax.axvline(

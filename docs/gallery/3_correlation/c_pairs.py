@@ -37,7 +37,7 @@ print(pairs)
 # Waves run around the edge of this cell, in both directions alike when all pairs are
 # taken together. Where two places are a wavelength apart along the edge, about 18 µm,
 # the signal rises and falls at the same time; 40 s later it is the other way round.
-figure, ax = plt.subplots(figsize=(5.4, 3))
+figure, ax = plt.subplots(figsize=(5.4, 3), layout="constrained")
 limit = float(abs(pairs["correlation"]).max())
 shown = ax.pcolormesh(
     pairs["lag_s"],

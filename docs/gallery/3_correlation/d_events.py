@@ -30,7 +30,7 @@ print(
 )
 print(events.groupby("kind")["patch"].nunique())
 
-figure, ax = plt.subplots(figsize=(5.6, 2.8))
+figure, ax = plt.subplots(figsize=(5.6, 2.8), layout="constrained")
 cd.plot.draw_events(ax, velocity, events)
 plt.show()
 
@@ -39,7 +39,7 @@ plt.show()
 # velocity by four frames (20 s). The band comes from drawing patches anew, for
 # episodes of one patch are not independent.
 around = cd.average_around(signal.sel(channel="edge"), events, before=10, after=15)
-figure, ax = plt.subplots(figsize=(6, 2.8))
+figure, ax = plt.subplots(figsize=(6, 2.8), layout="constrained")
 lines = cd.plot.draw_event_average(ax, around, label="mean signal")
 handles = [*lines, *cd.plot.band_key(around)]
 ax.legend(handles=handles, loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)

@@ -62,7 +62,7 @@ print(study.edge.attrs["units"]["velocity"], "and", study.cells.attrs["units"]["
 # %%
 # One sector of the edge, with its error bars.
 one = study.edge.query("cell == 0 and sector == 10")
-figure, ax = plt.subplots(figsize=(5, 2.4))
+figure, ax = plt.subplots(figsize=(5, 2.4), layout="constrained")
 ax.errorbar(
     one["time_s"],
     one["velocity"],
@@ -83,7 +83,7 @@ plt.show()
 activity = study.activity(0)
 print(activity["mean"].sizes)
 disk = study.movie(0)[12]
-figure, ax = plt.subplots(figsize=(4, 3))
+figure, ax = plt.subplots(figsize=(4, 3), layout="constrained")
 cd.plot.draw_window_means(
     ax,
     cd.polar_windows(layers=10, sectors=40).on(disk),

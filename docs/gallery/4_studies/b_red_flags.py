@@ -46,7 +46,7 @@ for flag in cd.red_flags(study):
 # %%
 # The same in a picture: a leap of the velocity in and out of that frame.
 velocity = study.edge.pivot(index="time", columns="sector", values="velocity")
-figure, ax = plt.subplots(figsize=(5.6, 2.8))
+figure, ax = plt.subplots(figsize=(5.6, 2.8), layout="constrained")
 cd.plot.draw_velocity_map(ax, velocity.to_numpy(), frame_interval_s=5)
 plt.show()
 

@@ -31,7 +31,7 @@ print("unit of area:", features.attrs["units"]["area"])
 # the position along the plane's principal axis.
 score = cd.complexity_score(features, seed=0)
 markers = {"smooth": "o", "migrating": ">", "spiky": "*", "branching": "s"}
-figure, ax = plt.subplots(figsize=(5, 3.2))
+figure, ax = plt.subplots(figsize=(5, 3.2), layout="constrained")
 for kind, marker in markers.items():
     these = score[kinds == kind]
     points = ax.scatter(
@@ -54,7 +54,7 @@ plt.show()
 # Six cells along the axis. The score belongs to the cells that were scored together.
 ranked = score["complexity"].to_numpy().argsort()
 chosen = ranked[np.linspace(0, len(ranked) - 1, 6).astype(int)]
-figure, axes = plt.subplots(1, 6, figsize=(6.2, 1.5))
+figure, axes = plt.subplots(1, 6, figsize=(6.2, 1.5), layout="constrained")
 for ax, number in zip(axes, chosen, strict=True):
     ax.imshow(masks[number], cmap="Greys")
     ax.set_title(f"{score['complexity'].iloc[number]:.1f}")

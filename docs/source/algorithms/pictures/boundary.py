@@ -6,7 +6,7 @@ import cytodisk as cd
 disk = cd.map_to_disk(cd.simulate.migrating(seed=0))
 outline_uv = disk.vertices_uv[disk.boundary]
 turn = np.mod(np.arctan2(outline_uv[:, 1], outline_uv[:, 0]), 2 * np.pi)
-figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.7), width_ratios=(1.5, 1))
+figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.7), width_ratios=(1.5, 1), layout="constrained")
 axes[0].scatter(disk.outline_yx[:, 1], disk.outline_yx[:, 0], c=turn, cmap="twilight", s=4)
 shown = axes[1].scatter(*outline_uv.T, c=turn, cmap="twilight", s=4)
 even = np.arange(24) * np.pi / 12

@@ -9,7 +9,7 @@ broken = disk.vertices_uv.copy()
 inner = np.setdiff1d(np.arange(len(broken)), disk.boundary)
 vertex = inner[np.hypot(*broken[inner].T).argmin()]
 broken[vertex] += (0.3, 0.1)
-figure, axes = plt.subplots(1, 2, figsize=(5.6, 3))
+figure, axes = plt.subplots(1, 2, figsize=(5.6, 3), layout="constrained")
 for ax, uv in zip(axes, (disk.vertices_uv, broken), strict=True):
     certificate = cd.certify(disk.vertices_yx, uv, disk.triangles, disk.boundary)
     flipped = uv[disk.triangles[list(certificate.flipped_in_disk)]]

@@ -11,7 +11,9 @@ signal, velocity = cd.simulate.coupled_series(
 )
 found = cd.cross_correlate(signal, velocity, max_lag=20, surrogates=999)
 false = surrogates("phase", frames, count, seed=0).alone(velocity.to_numpy()[:, 0])
-figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.5), width_ratios=(1.7, 1), sharey=True)
+figure, axes = plt.subplots(
+    1, 2, figsize=(6.2, 2.5), width_ratios=(1.7, 1), sharey=True, layout="constrained"
+)
 for number in range(count):
     curve = cd.cross_correlate(signal.to_numpy()[:, 0, 0], false[:, number], max_lag=20)
     axes[0].plot(curve["lag"], curve["correlation"], color="0.8", linewidth=0.4)

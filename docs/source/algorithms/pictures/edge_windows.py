@@ -11,7 +11,7 @@ kinds = {
     "rings": cd.ring_windows(disk, layers, sectors),
 }
 order = np.random.default_rng(2).permutation(layers * sectors)
-figure, axes = plt.subplots(1, 3, figsize=(6.4, 2))
+figure, axes = plt.subplots(1, 3, figsize=(6.4, 2), layout="constrained")
 for ax, (name, windows) in zip(axes, kinds.items(), strict=True):
     shown = np.where(windows.labels >= 0, order[windows.labels], np.nan)
     ax.imshow(shown, cmap="Set3", interpolation="nearest")

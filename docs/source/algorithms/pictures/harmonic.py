@@ -4,7 +4,7 @@ import numpy as np
 import cytodisk as cd
 
 disk = cd.map_to_disk(cd.simulate.star(arms=5), method="harmonic")
-figure, axes = plt.subplots(1, 2, figsize=(5.6, 2.8))
+figure, axes = plt.subplots(1, 2, figsize=(5.6, 2.8), layout="constrained")
 angles = np.linspace(0, 2 * np.pi, 400)
 for radius in np.linspace(0.1, 0.9, 9):
     circle = radius * np.column_stack([np.cos(angles), np.sin(angles)])

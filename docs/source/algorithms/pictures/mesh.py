@@ -4,7 +4,7 @@ import cytodisk as cd
 
 mask = cd.simulate.migrating(seed=0, size=0.6)
 disk = cd.map_to_disk(mask)
-figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.6), width_ratios=(1.5, 1))
+figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.6), width_ratios=(1.5, 1), layout="constrained")
 for ax, linewidth in zip(axes, (0.1, 0.4), strict=True):
     ax.imshow(mask, cmap="Greys", alpha=0.25)
     cd.plot.draw_mesh(ax, disk.vertices_yx, disk.triangles, color="#0072B2", linewidth=linewidth)

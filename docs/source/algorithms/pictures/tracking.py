@@ -4,7 +4,7 @@ import numpy as np
 import cytodisk as cd
 
 truth = cd.simulate.movie("neutrophil", seed=0, frames=5)
-figure, axes = plt.subplots(1, 2, figsize=(6, 3))
+figure, axes = plt.subplots(1, 2, figsize=(6, 3), layout="constrained")
 for ax, tracker in zip(axes, ("matching", "demons"), strict=True):
     movie = cd.map_movie(truth.masks[[0, 4]], tracker=tracker)
     first, last = movie.points_yx

@@ -7,7 +7,7 @@ movie = cd.map_movie(truth.masks, pixel_size_um=truth.pixel_size_um, frame_inter
 points, following = movie.points_yx[3:5]
 normals = movie.normals_yx[3]
 along = ((following - points) * normals).sum(axis=1)
-figure, ax = plt.subplots(figsize=(4, 3.6))
+figure, ax = plt.subplots(figsize=(4, 3.6), layout="constrained")
 cd.plot.draw_velocity_arrows(
     ax,
     points,

@@ -6,7 +6,7 @@ import cytodisk as cd
 mask = cd.simulate.migrating(seed=0, size=0.4)
 disk = cd.map_to_disk(mask)
 windows = cd.polar_windows(layers=4, sectors=24).on(disk)
-figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.8), width_ratios=(1.4, 1))
+figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.8), width_ratios=(1.4, 1), layout="constrained")
 colours = np.random.default_rng(1).permutation(windows.areas.size).astype(float)
 labels = np.where(windows.labels < 0, np.nan, colours[windows.labels])
 for ax in axes:
