@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from cytodisk.study.comparison import Comparison as Comparison
     from cytodisk.study.comparison import open_comparison as open_comparison
     from cytodisk.study.correlate import correlate_study as correlate_study
+    from cytodisk.study.shape_tables import open_shapes as open_shapes
     from cytodisk.windows.cell_windows import CellWindows as CellWindows
     from cytodisk.windows.edge_windows import EdgeGrid as EdgeGrid
     from cytodisk.windows.edge_windows import EdgeWindows as EdgeWindows
@@ -103,6 +104,7 @@ _HOME = {
     "MaskReport": "geometry.mask",
     "measures_by_layer": "analysis.window_measures",
     "open_comparison": "study.comparison",
+    "open_shapes": "study.shape_tables",
     "open_study": "io.study",
     "peak_correlation": "analysis.peaks",
     "polar_windows": "windows.grid",

@@ -228,7 +228,8 @@ def open_study(path: str | os.PathLike[str]) -> Study:
     Raises
     ------
     ReadError
-        The folder does not exist, is not a study, is damaged, or its run is not complete.
+        The folder does not exist, is not a study of `cytodisk map` or `cytodisk movie`, is damaged, or its
+        run is not complete.
     """
     folder = Path(path)
     provenance = read_provenance(folder)
@@ -238,7 +239,11 @@ def open_study(path: str | os.PathLike[str]) -> Study:
         raise ReadError(f"{folder} is no study: it has no readable {PROVENANCE}")
     if provenance.get("status") != "complete":
         raise ReadError(f"study {folder} is not complete: run the same command again with --resume")
-    names = (CELLS, WINDOWS, EDGE, CONSISTENCY) if provenance.get("run") == "movie" else (CELLS, WINDOWS)
+    run = provenance.get("run", "map")
+    if run not in ("map", "movie"):
+        reader = "open_shapes" if run == "shapes" else "open_comparison"
+        raise ReadError(f"study {folder} holds {run}, not windows: read it with {reader}")
+    names = (CELLS, WINDOWS, EDGE, CONSISTENCY) if run == "movie" else (CELLS, WINDOWS)
     try:
         for name in names:
             pq.read_schema(folder / name)

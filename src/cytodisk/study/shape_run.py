@@ -7,7 +7,6 @@ from collections import deque
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from itertools import islice
-from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
 
 import pandas as pd
@@ -24,7 +23,7 @@ from cytodisk.study.map_inputs import MapInputs, open_inputs
 from cytodisk.study.parameters import MapParameters, write_parameters
 from cytodisk.study.provenance import describe_run, installed
 from cytodisk.study.run_steps import check_options, finish_run
-from cytodisk.study.shape_tables import SHAPE_TABLES, read_shapes, shape_table, write_shapes
+from cytodisk.study.shape_tables import SHAPE_TABLES, open_shapes, shape_table, write_shapes
 from cytodisk.study.workers import worker_pool
 
 _CELLS_PER_PART = 32  # which go to a worker and into a file together: about a second's work
@@ -121,7 +120,7 @@ def run_shapes(
     provenance = _describe(inputs, parameters)
     with alone_in(out):
         if resume and StudyFolder.is_complete(out, provenance):
-            return read_shapes(Path(out))
+            return open_shapes(out)
         folder = StudyFolder.start(out, provenance, SHAPE_TABLES, resume=resume, overwrite=overwrite)
         write_parameters(parameters, folder.path / PARAMETERS)
         keys = _measure_all(inputs, folder, workers, progress)

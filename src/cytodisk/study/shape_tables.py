@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -11,9 +12,10 @@ import pandas as pd
 import pyarrow as pa
 
 from cytodisk.analysis.shape.complexity import LEAST_CELLS, complexity_score
-from cytodisk.analysis.shape.features import GROUPS, SCALE_FREE, feature_table
+from cytodisk.analysis.shape.features import FEATURES, GROUPS, SCALE_FREE, feature_table
 from cytodisk.errors import ReadError
 from cytodisk.files import replacing
+from cytodisk.io.provenance_file import read_provenance
 from cytodisk.io.study_folder import Tables
 from cytodisk.io.tables import Columns, read_table, write_table
 
@@ -107,25 +109,31 @@ def describe_features(units: dict[str, str]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["name", "group", "unit", "scale_free", "description"])
 
 
-def read_shapes(folder: Path) -> pd.DataFrame:
-    """Read `shapes.parquet` of a study; units by column in `attrs["units"]`.
+def open_shapes(path: str | os.PathLike[str]) -> pd.DataFrame:
+    """Read what `cytodisk shapes` wrote.
 
     Parameters
     ----------
-    folder : Path
+    path : path-like
+        Its folder.
 
     Returns
     -------
     DataFrame
+        A row a cell with its complexity and features; units by column in `attrs["units"]`.
 
     Raises
     ------
     ReadError
-        The folder holds none.
+        The folder holds no complete run of `cytodisk shapes`.
     """
-    path = folder / SHAPES
-    if not path.exists():
+    folder = Path(path)
+    provenance = read_provenance(folder)
+    if provenance is None or provenance.get("run") != "shapes":
         raise ReadError(f"{folder} holds no shapes: pass a folder that cytodisk shapes wrote")
-    table = read_table(path)
+    if provenance.get("status") != "complete":
+        raise ReadError(f"shapes in {folder} are not complete: run the same command again with --resume")
+    table = read_table(folder / SHAPES)
     table.attrs["scale_free"] = list(SCALE_FREE)
+    table.attrs["description"] = {feature.name: feature.description for feature in FEATURES}
     return table
