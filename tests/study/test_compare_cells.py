@@ -131,7 +131,9 @@ def test_a_stopped_run_goes_on(
             here.drop(columns="seconds", errors="ignore"), there.drop(columns="seconds", errors="ignore")
         )
     monkeypatch.setattr(module, "compare_cell", None)  # a complete comparison is not run again
+    (tmp_path / "out" / "comparison.csv").unlink()
     assert cd.compare_cells(masks, tmp_path / "out", GRID, resume=True).methods == METHODS
+    assert (tmp_path / "out" / "comparison.csv").exists()
 
 
 def test_a_cell_that_one_method_cannot_map_has_a_row_with_the_reason(

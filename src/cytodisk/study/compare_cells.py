@@ -97,6 +97,7 @@ def compare_cells(
     provenance = describe_run(inputs.paths, parameters, inputs.understood, None) | {"run": "comparison"}
     with alone_in(out):
         if resume and StudyFolder.is_complete(out, provenance):
+            write_summaries(Path(out))  # in case it was stopped just before
             return open_comparison(out)
         folder = StudyFolder.start(out, provenance, COMPARED_CELLS, resume=resume, overwrite=overwrite)
         write_parameters(parameters, folder.path / PARAMETERS)

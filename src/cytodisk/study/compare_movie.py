@@ -89,6 +89,7 @@ def compare_movie(
     provenance = describe_run(paths, parameters, inputs.understood, *scale) | {"run": "movie comparison"}
     with alone_in(out):
         if resume and StudyFolder.is_complete(out, provenance):
+            write_summaries(Path(out))  # in case it was stopped just before
             return open_comparison(out)
         folder = StudyFolder.start(out, provenance, COMPARED_MOVIE, resume=resume, overwrite=overwrite)
         write_parameters(parameters, folder.path / PARAMETERS)
