@@ -1,0 +1,66 @@
+"""Measure what the paper measured, on the data at hand, and write the page "The paper, re-measured".
+
+Reads reference masks, osteosarcoma cells, and two movies from the folder in CYTODISK_DATA (default:
+shared/data beside the repository). Writes `docs/source/paper_remeasured.rst`, its pictures and its tables.
+What takes long is kept in `--work`, so a run that was stopped goes on where it was.
+"""
+
+import argparse
+import os
+import shutil
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+sys.path.insert(0, str(Path(__file__).parent))
+from remeasured import cells, claims, maps, movies, shapes
+from remeasured.page import write_page
+
+HERE = Path(__file__).parent
+PAGE, FILES = HERE / "source" / "paper_remeasured.rst", HERE / "source" / "paper_remeasured"
+
+
+def main() -> None:
+    """Run all measurements and write the page."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--data", type=Path, default=data_folder())
+    parser.add_argument("--work", type=Path, default=HERE / "_build" / "remeasured")
+    parser.add_argument("--workers", type=int, default=2)
+    chosen = parser.parse_args()
+    if not (chosen.data / "osteosarcoma" / "masks.tif").exists():
+        sys.exit(f"{chosen.data} has no osteosarcoma/masks.tif: set CYTODISK_DATA or pass --data")
+    found: dict[str, Any] = {
+        "maps": maps.measure(chosen.data / "reference_masks", chosen.work),
+        "shapes": shapes.measure(chosen.data / "osteosarcoma" / "masks.tif", chosen.work, chosen.workers),
+        "cells": cells.measure(chosen.data / "osteosarcoma" / "masks.tif", chosen.work, chosen.workers),
+        "movies": movies.measure(chosen.data, chosen.work),
+    }
+    shutil.rmtree(FILES, ignore_errors=True)
+    FILES.mkdir(parents=True)
+    numbers: dict[str, Any] = {}
+    writers: tuple[Callable[[dict[str, Any], Path], dict[str, Any]], ...] = (
+        maps.write,
+        shapes.write,
+        cells.write,
+        movies.write,
+        claims.write,
+    )
+    for write in writers:
+        numbers |= write(found, FILES)
+    write_page(PAGE, numbers)
+    print(pd.read_csv(FILES / "claims.csv").to_string())
+    print(f"written: {PAGE}")
+
+
+def data_folder() -> Path:
+    """Folder of the data: CYTODISK_DATA, or `shared/data` beside the repository."""
+    return Path(os.environ.get("CYTODISK_DATA", HERE.parents[1] / "shared" / "data"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Parts of `docs/remeasure.py`: each measures one thing of the paper and writes its tables and pictures."""

@@ -1,0 +1,105 @@
+"""Windows of each method on every osteosarcoma cell: Fig. 3 of the paper."""
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from cytodisk.plot.compared_cells import draw_compared_cells
+from cytodisk.plot.comparison import draw_comparison
+from cytodisk.study.compare_cells import compare_cells
+from cytodisk.study.compare_parameters import TITLES, CompareParameters, WindowMethod
+from cytodisk.study.comparison import Comparison
+from remeasured import shapes
+
+GRIDS: dict[str, tuple[int, int, tuple[WindowMethod, ...]]] = {
+    "12x60": (12, 60, ("newton", "harmonic", "advection", "edge")),
+    "30x60": (30, 60, ("newton", "edge")),
+    "50x100": (50, 100, ("newton", "edge")),
+}
+
+COLUMNS = {"completeness": "complete", "area_cv": "CV of area", "eccentricity_cv": "CV of eccentricity"}
+
+
+def measure(masks: Path, work: Path, workers: int) -> dict[str, Comparison]:
+    """One comparison a grid."""
+    found = {}
+    for name, (layers, sectors, methods) in GRIDS.items():
+        print(f"osteosarcoma, {name}: {', '.join(methods)}", flush=True)
+        out = work / f"cells_{name}"
+        parameters = CompareParameters(layers=layers, sectors=sectors, methods=methods)
+        found[name] = compare_cells(masks, out, parameters, workers=workers, **shapes.again(out))
+    return found
+
+
+def write(found: dict[str, Any], files: Path) -> dict[str, Any]:
+    """Fig. 3A and 3B, and the tables by layer and by grid."""
+    comparison = found["cells"]["12x60"]
+    chosen = shapes.representatives(found["shapes"]["table"])
+    draw_compared_cells(comparison, chosen)
+    draw_comparison(comparison)
+    for name in ("cells", "comparison"):
+        shutil.copy(comparison.path / "figures" / f"{name}.png", files / f"{name}.png")
+    by_layer(comparison).to_csv(files / "by_layer.csv", index=False)
+    by_method(comparison).to_csv(files / "by_method.csv", index=False)
+    grids(found["cells"]).to_csv(files / "grids.csv", index=False)
+    return {"representatives": ", ".join(map(str, chosen))}
+
+
+def by_layer(comparison: Comparison) -> pd.DataFrame:
+    """Completeness and spread by layer, ours and edge-based ones beside each other."""
+    table = comparison.by_layer.set_index(["method", "layer"])
+    rows = []
+    for layer in sorted(set(comparison.by_layer["layer"])):
+        row: dict[str, Any] = {"layer": layer}
+        for name, title in COLUMNS.items():
+            for method, whose in (("newton", "cytodisk"), ("edge", "edge-based")):
+                value = table.loc[(method, layer), name]
+                row[f"{title}, {whose}"] = percent(value) if name == "completeness" else f"{value:.3f}"
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def by_method(comparison: Comparison) -> pd.DataFrame:
+    """What each method made of all cells."""
+    rows = []
+    for row in comparison.by_method.itertuples():
+        on_map = pd.notna(row.area_error)
+        rows.append(
+            {
+                "windows": TITLES[row.method],
+                "cells": f"{row.mapped:.0f} of {row.tried:.0f}",
+                "maps that are not one to one": f"{row.invalid_maps:.0f}" if on_map else "no map",
+                "area error": f"{row.area_error:.3f}" if on_map else "no map",
+                "windows with signal": percent(row.completeness),
+                "area covered": percent(row.coverage),
+                "CV of area": f"{row.area_cv:.3f}",
+                "CV of eccentricity": f"{row.eccentricity_cv:.3f}",
+                "seconds a cell": f"{row.seconds:.2f}",
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def grids(found: dict[str, Comparison]) -> pd.DataFrame:
+    """Completeness at coarse and fine grids: in all, and in the emptiest layer."""
+    rows = []
+    for name, comparison in found.items():
+        for method in ("newton", "edge"):
+            own = comparison.by_layer[comparison.by_layer["method"] == method]
+            rows.append(
+                {
+                    "grid": name.replace("x", " × "),
+                    "windows": TITLES[method],
+                    "in all": percent(own["completeness"].mean()),
+                    "emptiest layer": percent(own["completeness"].min()),
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def percent(share: float) -> str:
+    """A share in words; 100 % only if it is all."""
+    text = f"{100 * share:.1f}"
+    return f"{'> 99.9' if text == '100.0' and share < 1 else text.removesuffix('.0')} %"

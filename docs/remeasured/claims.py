@@ -1,0 +1,191 @@
+"""The paper's claims beside what was measured here, each with a verdict that the numbers give."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from remeasured.cells import percent
+from remeasured.maps import PUBLISHED
+from remeasured.movies import PEAK, summaries
+
+
+class Claim(NamedTuple):
+    """One claim of the paper."""
+
+    paper: str
+    here: str
+    verdict: str
+
+
+def write(found: dict[str, Any], files: Path) -> dict[str, Any]:
+    """The table `claims.csv`, and the numbers that the page's sentences quote."""
+    claims = [*shape_claims(found), *movie_claims(found), *map_claims(found)]
+    header = ["The paper says", "Measured here", "Holds here?"]
+    pd.DataFrame(claims).set_axis(header, axis=1).to_csv(files / "claims.csv", index=False)
+    return numbers(found)
+
+
+def shape_claims(found: dict[str, Any]) -> Iterator[Claim]:
+    """Section 4.1 and Fig. 3."""
+    emptiest = {name: float(ours_by_layer(one)["completeness"].min()) for name, one in found["cells"].items()}
+    published = pd.read_csv(PUBLISHED)["windows_percent"]
+    yield Claim(
+        "u-Unwrap windows sample signal in every window (4.1)",
+        "emptiest layer of our windows: "
+        + ", ".join(f"{percent(share)} at {name.replace('x', ' × ')}" for name, share in emptiest.items())
+        + f"; 10 × 60 windows of the published program: {published.min():g} to {published.max():g} %",
+        "yes, with our windows" if min(emptiest.values()) == 1.0 else "no",
+    )
+    ours, edge = ours_by_layer(found["cells"]["12x60"]), edge_by_layer(found["cells"]["12x60"])
+    fall = edge["completeness"].to_numpy()
+    yield Claim(
+        "completeness of edge-based windows decreases rapidly with depth (4.1, Fig. 3B)",
+        f"{percent(fall[0])} in layer 0, {percent(fall[len(fall) // 2])} in layer {len(fall) // 2}, "
+        f"{percent(fall[-1])} in the last",
+        yes(bool((np.diff(fall) < 0).all()) and fall[-1] < 0.5),
+    )
+    for name, what, claim in (
+        ("eccentricity_cv", "eccentricity", "the eccentricity of windows varies less than that of edge-based "
+         "ones after the first layer (4.1, Fig. 3B)"),
+        ("area_cv", "area", "windows are relatively uniform within each layer (4.1)"),
+    ):  # fmt: skip
+        higher = layers_above(ours, edge, name)
+        yield Claim(
+            claim,
+            f"coefficient of variation of {what} by layer: ours {span(ours[name])}, "
+            f"edge-based {span(edge[name])}; "
+            f"ours is lower in {len(ours) - len(higher)} of {len(ours)} layers",
+            yes(not [layer for layer in higher if layer > 0]),
+        )
+
+
+def movie_claims(found: dict[str, Any]) -> Iterator[Claim]:
+    """Section 4.2 and Fig. 4."""
+    table = summaries(found["movies"])
+    ours, edge = (table[table["method"] == method].set_index("movie") for method in ("newton", "edge"))
+    pairs = [(name, ours.loc[name], edge.loc[name]) for name in ours.index]
+    yield Claim(
+        "edge-based windows severely undersample inner layers (4.2, Fig. 4B)",
+        "; ".join(
+            f"{n}: emptiest layer {percent(b.emptiest)}, ours {percent(a.emptiest)}" for n, a, b in pairs
+        ),
+        over([b.emptiest < 0.5 and a.emptiest == 1.0 for _, a, b in pairs]),
+    )
+    yield Claim(
+        "correlations of consecutive frames are higher, and more alike over layers (4.2, Fig. 4C)",
+        "; ".join(f"{n}: ours {correlations(a)}, edge-based {correlations(b)}" for n, a, b in pairs),
+        f"higher: {over([a.correlation > b.correlation for _, a, b in pairs])}; "
+        f"more alike: {over([spread(a) < spread(b) for _, a, b in pairs])}",
+    )
+    yield Claim(
+        "displacements of windows have similar magnitudes with both (4.2, Fig. 4D)",
+        "; ".join(
+            f"{n}: ours {a.displacement:.3g}, edge-based {b.displacement:.3g} {a.unit} a frame"
+            for n, a, b in pairs
+        ),
+        over([0.5 < a.displacement / b.displacement < 2.0 for _, a, b in pairs]),
+    )
+    yield Claim(
+        "edge-based windows have peaks of displacement, which ours have not (4.2, Fig. 4D)",
+        "; ".join(
+            f"{n}: ours {a.peaks}, edge-based {b.peaks} of {a.steps} steps above {PEAK:g} times the median"
+            for n, a, b in pairs
+        ),
+        over([bool(b.peaks > a.peaks) for _, a, b in pairs]),
+    )
+
+
+def map_claims(found: dict[str, Any]) -> Iterator[Claim]:
+    """Appendix A.2: the map."""
+    methods = found["cells"]["12x60"].by_method.set_index("method")
+    error = methods["area_error"]
+    yield Claim(
+        "relaxation turns the conformal map into an equiareal one (A.2.1 iii)",
+        f"median area error: harmonic {error['harmonic']:.3f}, "
+        f"the paper's relaxation {error['advection']:.3f}, ours {error['newton']:.3f}",
+        "it lowers the error" if error["advection"] < error["harmonic"] else "no",
+    )
+    invalid = methods["invalid_maps"]
+    yield Claim(
+        "Delaunay flips between steps ensure bijectivity (A.2.1 iii)",
+        f"maps with triangles turned over: the paper's relaxation {share_of(methods, 'advection')}, "
+        f"ours {share_of(methods, 'newton')}",
+        yes(invalid["advection"] == 0),
+    )
+
+
+def numbers(found: dict[str, Any]) -> dict[str, Any]:
+    """What the page's sentences quote."""
+    comparison = found["cells"]["12x60"]
+    methods = comparison.by_method.set_index("method")
+    ours, edge = ours_by_layer(comparison), edge_by_layer(comparison)
+    published = pd.read_csv(PUBLISHED)
+    return {
+        "n_tried": f"{methods.loc['newton', 'tried']:.0f}",
+        "n_mapped": f"{methods.loc['newton', 'mapped']:.0f}",
+        "higher_eccentricity": listed(layers_above(ours, edge, "eccentricity_cv")),
+        "higher_area": listed(layers_above(ours, edge, "area_cv")),
+        "widest_layer": int(ours["eccentricity_cv"].idxmax()),
+        "roundest_layer": int(ours["eccentricity"].idxmin()),
+        "newton_error": f"{methods.loc['newton', 'area_error']:.3f}",
+        "newton_seconds": f"{methods.loc['newton', 'seconds']:.2f}",
+        "advection_seconds": f"{methods.loc['advection', 'seconds']:.1f}",
+        "advection_invalid": share_of(methods, "advection"),
+        "newton_invalid": share_of(methods, "newton"),
+        "published_flipped": published[published["flips"] > 0]["mask"].nunique(),
+        "published_masks": published["mask"].nunique(),
+    }
+
+
+def ours_by_layer(comparison: Any) -> pd.DataFrame:
+    """Measures of the windows on our map, by layer."""
+    return comparison.by_layer[comparison.by_layer["method"] == "newton"].set_index("layer")
+
+
+def edge_by_layer(comparison: Any) -> pd.DataFrame:
+    """Measures of edge-based windows, by layer."""
+    return comparison.by_layer[comparison.by_layer["method"] == "edge"].set_index("layer")
+
+
+def layers_above(ours: pd.DataFrame, edge: pd.DataFrame, name: str) -> list[int]:
+    """Layers in which a measure of our windows is larger than that of edge-based ones."""
+    return [int(layer) for layer in ours.index[ours[name] > edge[name]]]
+
+
+def span(values: "pd.Series[float]") -> str:
+    """Smallest and largest value in words."""
+    return f"{values.min():.3f} to {values.max():.3f}"
+
+
+def correlations(row: Any) -> str:
+    """Mean and range over layers in words."""
+    return f"{row.correlation:.3f} ({row.correlation_least:.3f} to {row.correlation_most:.3f})"
+
+
+def spread(row: Any) -> float:
+    """How far apart the layers are in their correlation."""
+    return float(row.correlation_most - row.correlation_least)
+
+
+def share_of(methods: pd.DataFrame, method: str) -> str:
+    """How many maps of a method are not one to one."""
+    row = methods.loc[method]
+    return f"{row['invalid_maps']:.0f} of {row['mapped']:.0f}"
+
+
+def yes(holds: bool) -> str:
+    """A verdict in words."""
+    return "yes" if holds else "no"
+
+
+def over(holds: list[bool]) -> str:
+    """A verdict over the movies."""
+    return "yes" if all(holds) else f"in {sum(holds)} of {len(holds)} movies" if any(holds) else "no"
+
+
+def listed(layers: list[int]) -> str:
+    """Layers in words."""
+    return f"layer{'s' if len(layers) > 1 else ''} {', '.join(map(str, layers))}" if layers else "no layer"

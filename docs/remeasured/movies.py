@@ -1,0 +1,105 @@
+"""Windows of each method through the melanoma and Dictyostelium movies: Fig. 4 of the paper."""
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from cytodisk.plot.compared_movie import draw_compared_movie
+from cytodisk.study.compare_movie import compare_movie
+from cytodisk.study.compare_parameters import TITLES, CompareMovieParameters
+from cytodisk.study.comparison import Comparison
+from remeasured import shapes
+from remeasured.cells import percent
+
+MOVIES: dict[str, tuple[str, str, dict[str, Any]]] = {
+    "melanoma": (
+        "melanoma_vasp_lpd/mask.tif",
+        "melanoma_vasp_lpd/signal.ome.tif",
+        {"channels": ("VASP", "lamellipodin")},
+    ),
+    "dictyostelium": (
+        "dictyostelium_rac1/mask.tif",
+        "dictyostelium_rac1/rac1.tif",
+        {"channels": ("Rac1",), "frame_interval_s": 1.29},
+    ),
+}
+LAYERS, SECTORS = 10, 60
+DEPTH_PX = 10.0  # of a layer of edge-based windows, as in the paper
+PEAK = 3.0  # times the median displacement: a step at which windows are mistracked
+
+
+def measure(data: Path, work: Path) -> dict[str, Comparison]:
+    """One comparison a movie."""
+    found = {}
+    for name, (masks, signal, more) in MOVIES.items():
+        print(name, flush=True)
+        out = work / f"movie_{name}"
+        parameters = CompareMovieParameters(layers=LAYERS, sectors=SECTORS, depth_px=DEPTH_PX, **more)
+        found[name] = compare_movie(data / masks, out, parameters, signal=data / signal, **shapes.again(out))
+    return found
+
+
+def write(found: dict[str, Any], files: Path) -> dict[str, Any]:
+    """Fig. 4B to D of each movie, and a table."""
+    for name, comparison in found["movies"].items():
+        picture = draw_compared_movie(comparison, 0, channel_of(name))
+        shutil.copy(picture, files / f"{name}.png")
+    words(summaries(found["movies"])).to_csv(files / "movies.csv", index=False)
+    return {}
+
+
+def channel_of(name: str) -> str:
+    """The channel of a movie that is compared."""
+    return str(MOVIES[name][2]["channels"][0])
+
+
+def summaries(found: dict[str, Comparison]) -> pd.DataFrame:
+    """The measures of Fig. 4, one row a movie and method."""
+    return pd.DataFrame([summary(name, one, method) for name, one in found.items() for method in one.methods])
+
+
+def summary(name: str, comparison: Comparison, method: str) -> dict[str, Any]:
+    """The measures of Fig. 4 of one method on one movie."""
+    rows = comparison.consistency
+    rows = rows[(rows["method"] == method) & (rows["channel"] == channel_of(name))]
+    layers = comparison.by_layer[comparison.by_layer["method"] == method]
+    correlation = rows.groupby("layer")["correlation"].mean().reindex(range(LAYERS))
+    moved = rows.groupby("time")["centroid_displacement"].mean().dropna()
+    return {
+        "movie": name,
+        "method": method,
+        "complete": layers["completeness"].mean(),
+        "emptiest": layers["completeness"].min(),
+        "coverage": comparison.by_method.set_index("method").loc[method, "coverage"],
+        "correlation": correlation.mean(),
+        "correlation_least": correlation.min(),
+        "correlation_most": correlation.max(),
+        "layers_without": int(correlation.isna().sum()),
+        "displacement": moved.mean(),
+        "peaks": int((moved > PEAK * moved.median()).sum()),
+        "steps": len(moved),
+        "unit": comparison.provenance["length_unit"],
+    }
+
+
+def words(table: pd.DataFrame) -> pd.DataFrame:
+    """The table as the page shows it."""
+    rows = []
+    for row in table.itertuples():
+        correlation = f"{row.correlation:.3f} ({row.correlation_least:.3f} to {row.correlation_most:.3f})"
+        rows.append(
+            {
+                "movie": row.movie,
+                "windows": TITLES[str(row.method)],
+                "with signal": percent(row.complete),
+                "emptiest layer": percent(row.emptiest),
+                "area covered": percent(row.coverage),
+                "correlation of consecutive frames, mean (lowest to highest layer)": correlation,
+                "layers without one": row.layers_without,
+                "displacement of centroids a frame": f"{row.displacement:.3g} {row.unit}",
+                f"steps above {PEAK:g} times the median": f"{row.peaks} of {row.steps}",
+            }
+        )
+    return pd.DataFrame(rows)
