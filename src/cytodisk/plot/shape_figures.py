@@ -104,7 +104,7 @@ def _extremes_page(
     tall = min(_EXTREMES_WIDE * bottom / right, _EXTREMES_TALL)
     sheet = Sheet(tall + 18.0)
     sheet.text(6.0, 6.0, "Least, median and most complex cells, at one scale", fontsize=7.5)
-    ax = sheet.axes(14.0, 9.0, tall * right / bottom, tall)
+    ax = sheet.axes(18.0, 9.0, tall * right / bottom, tall)
     drawn = shape_examples(ax, score, masks, rows, pixel_size_um=pixel_size_um)
     for name, path in zip(_ROWS, drawn.get_paths()[:: len(rows[0])], strict=True):
         ax.annotate(
@@ -114,9 +114,8 @@ def _extremes_page(
             textcoords="offset points",
             ha="right",
             va="center",
-            rotation=90,
         )
-    colour_bar(drawn, sheet.axes(165.0, 9.0, 2.5, 40.0), "complexity")
+    colour_bar(drawn, sheet.axes(167.0, 9.0, 2.5, 40.0), "complexity")
     return sheet.figure
 
 
