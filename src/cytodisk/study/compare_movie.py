@@ -6,6 +6,7 @@ import os
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -94,28 +95,38 @@ def compare_movie(
         folder = StudyFolder.start(out, provenance, COMPARED_MOVIE, resume=resume, overwrite=overwrite)
         write_parameters(parameters, folder.path / PARAMETERS)
         parts = _parts(inputs, parameters.methods)
-        total, done = sum(len(part.track.times) for part in parts), 0
-        for part in parts:
-            at = done
-
-            def report(frames: int, _: int, at: int = at) -> None:
-                if progress is not None:
-                    progress(at + frames, total)
-
-            if not folder.has(part.key):
-                row, tables = _compare(part, inputs, parameters, folder.path, report)
-                folder.add(part.key, row, tables)
-            done += len(part.track.times)
-            report(len(part.track.times), 0)
+        _run(parts, inputs, parameters, folder, progress or _silent)
         keys = [part.key for part in parts]
         rows = list(folder.read_rows(keys))
-        finish_run(
-            folder,
-            keys,
-            [f"cell {row['cell']}, {row['method']}: {row['reason']}" for row in rows if row["reason"]],
-        )
+        reasons = [f"cell {row['cell']}, {row['method']}: {row['reason']}" for row in rows if row["reason"]]
+        finish_run(folder, keys, reasons)
         write_summaries(folder.path)
         return open_comparison(folder.path)
+
+
+def _silent(done: int, total: int) -> None:
+    """Report nothing."""
+
+
+def _run(
+    parts: list[_Part],
+    inputs: MovieInputs,
+    parameters: CompareMovieParameters,
+    folder: StudyFolder,
+    progress: Callable[[int, int], None],
+) -> None:
+    """Do the parts that are not there yet; progress is counted in frames of all parts."""
+    lengths = [len(part.track.times) for part in parts]
+    for number, part in enumerate(parts):
+        before, total = sum(lengths[:number]), sum(lengths)
+        if not folder.has(part.key):
+            report = partial(_report, progress, before, total)
+            folder.add(part.key, *_compare(part, inputs, parameters, folder.path, report))
+        progress(before + lengths[number], total)
+
+
+def _report(progress: Callable[[int, int], None], before: int, total: int, done: int, _: int) -> None:
+    progress(before + done, total)
 
 
 def _parts(inputs: MovieInputs, methods: tuple[str, ...]) -> list[_Part]:
