@@ -60,7 +60,7 @@ def test_given_values_overrule_the_file(tmp_path: Path) -> None:
         ({"layers": 2.5}, "layers: Input should be a valid integer.*got 2.5"),
         ({"shape_weight": 0.0}, "shape_weight: Input should be greater than 0, got 0.0"),
         ({"edge_length": 0.1}, "edge_length: Input should be greater than or equal to 0.25, got 0.1"),
-        ({"method": "advection"}, "method: Input should be 'newton' or 'harmonic', got 'advection'"),
+        ({"method": "demons"}, "method: Input should be 'newton', 'harmonic' or 'advection', got"),
         ({"kind": "cells"}, "kind: Input should be 'auto', 'mask', 'stack' or 'labels', got 'cells'"),
         ({"align": "left"}, "align: .*got 'left'"),
         ({"pixel_size_um": -1.0}, "pixel_size_um: Input should be greater than 0, got -1.0"),

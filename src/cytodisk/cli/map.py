@@ -54,7 +54,7 @@ def map_command(
         str | None, typer.Option(help="Layers of equal area or radius (default area).")
     ] = None,
     method: Annotated[
-        str | None, typer.Option(help="newton (equal area) or harmonic (default newton).")
+        str | None, typer.Option(help="newton (equal area, default), harmonic, or advection (the paper's).")
     ] = None,
     shape_weight: Annotated[
         float | None, typer.Option(help="Shape against area, above 0 (default 0.005).")

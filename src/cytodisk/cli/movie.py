@@ -83,7 +83,7 @@ def movie_command(
     ] = None,
     pixel_size: Annotated[float | None, typer.Option(help="µm per pixel; overrules the file's own.")] = None,
     method: Annotated[
-        str | None, typer.Option(help="newton (equal area) or harmonic (default newton).")
+        str | None, typer.Option(help="newton (equal area, default), harmonic, or advection (the paper's).")
     ] = None,
     align: Annotated[
         str | None,

@@ -1,4 +1,4 @@
-"""`DiskMap`: the bijection between one cell and the unit disk."""
+"""`DiskMap`: the map between one cell and the unit disk."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from cytodisk.files import replacing
 from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline
 from cytodisk.geometry.mask import MaskReport
 
-Method: TypeAlias = Literal["newton", "harmonic"]
+Method: TypeAlias = Literal["newton", "harmonic", "advection"]
 Start: TypeAlias = Literal["cotangent", "uniform", "previous"]
 
 _FORMAT = 2
@@ -35,7 +35,9 @@ class DiskMap:
     """One cell, its disk, and the one-to-one map between them.
 
     Linear on every triangle; then stretched along the radius, so that the polygon that the boundary
-    vertices span in the disk fills the round disk.
+    vertices span in the disk fills the round disk. Only the method "advection" can turn triangles over in the
+    disk, so that the map is not one to one there: the certificate says which. `to_disk` then still is a
+    function of the cell, and `to_cell` takes one of the triangles that hold a point.
 
     Attributes
     ----------
@@ -50,16 +52,16 @@ class DiskMap:
         The cleaned mask that was mapped.
     report : MaskReport
         What cleaning changed.
-    method : {"newton", "harmonic"}
+    method : {"newton", "harmonic", "advection"}
     start : {"cotangent", "uniform", "previous"}
         Where the relaxation started: weights of the harmonic map ("uniform" when cotangent weights turned a
         triangle over), or the previous frame of a movie.
     shape_weight, edge_length : float
         As passed to `map_to_disk`; edge_length in pixels.
     steps : int
-        Newton steps of the relaxation.
+        Steps of the relaxation, of Newton's method or of the advection.
     converged : bool
-        False when the relaxation stopped before its criterion; the map is valid all the same.
+        False when Newton's method stopped before its criterion; the map is valid all the same.
     """
 
     vertices_yx: FloatArray
@@ -92,7 +94,7 @@ class DiskMap:
 
     @cached_property
     def certificate(self) -> Certificate:
-        """The proof that the map is a bijection."""
+        """The proof that the map is a bijection, or what speaks against it."""
         return certify(self.vertices_yx, self.vertices_uv, self.triangles, self.boundary)
 
     @cached_property
@@ -119,7 +121,7 @@ class DiskMap:
         Returns
         -------
         ndarray of shape (..., 2) and dtype float
-            (u, v) in the unit disk.
+            (u, v) in the unit disk; what turned triangles carry beyond its rim is put on the rim.
 
         Raises
         ------
@@ -132,12 +134,14 @@ class DiskMap:
         uv = self._in_cell.carry(points, self.vertices_uv[self.triangles])
         lost = np.isnan(uv[:, 0]) & np.isfinite(points).all(axis=1)
         uv /= polygon_radius(uv, self.boundary_angles)[:, None]
+        if self.method == "advection":
+            uv /= np.maximum(np.hypot(uv[:, 0], uv[:, 1]), 1.0)[:, None]
         if outside == "nearest" and lost.any():
             uv[lost] = self._nearest_on_circle(points[lost])
         return uv.reshape(shape)
 
     def to_cell(self, points_uv: Any) -> FloatArray:
-        """Map points of the disk into the cell; the exact inverse of `to_disk`.
+        """Map points of the disk into the cell; the exact inverse of `to_disk` where the map is one to one.
 
         Parameters
         ----------

@@ -8,6 +8,7 @@ from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.geometry.mesh import hat_gradients, triangle_areas
 
 PERCENTILES = (1, 5, 25, 50, 75, 95, 99)
+_LEAST_AREA, _LARGEST_STRETCH = 1e-200, 1e12  # so that a triangle without area has finite distortion
 
 
 @dataclass(frozen=True)
@@ -17,9 +18,10 @@ class Distortion:
     Attributes
     ----------
     triangle_area_ratio : ndarray of shape (F,) and dtype float
-        λ, a triangle's share of the disk's area over its share of the cell's; 1 is perfect.
+        λ, a triangle's share of the disk's area over its share of the cell's; 1 is perfect. A triangle that
+        is turned over counts by its size: the certificate tells that it is turned.
     triangle_stretch : ndarray of shape (F,) and dtype float
-        K = σ₁ / σ₂, the ratio of the singular values of the map's Jacobian; 1 keeps angles.
+        K = σ₁ / σ₂, the ratio of the singular values of the map's Jacobian; 1 keeps angles. At most 1e12.
     area_share : ndarray of shape (F,) and dtype float
         Share of each triangle in the cell's area.
     """
@@ -72,4 +74,6 @@ def distortion_of(vertices_yx: FloatArray, vertices_uv: FloatArray, triangles: I
     share = cell / cell.sum()
     jacobian = np.einsum("tki,tkj->tij", vertices_uv[triangles], hat_gradients(vertices_yx, triangles))
     singular = np.linalg.svd(jacobian, compute_uv=False)
-    return Distortion(disk / disk.sum() / share, singular[:, 0] / singular[:, 1], share)
+    sizes = np.maximum(np.abs(disk), _LEAST_AREA)
+    narrow = np.maximum(singular[:, 1], np.maximum(singular[:, 0], _LEAST_AREA) / _LARGEST_STRETCH)
+    return Distortion(sizes / disk.sum() / share, np.maximum(singular[:, 0] / narrow, 1.0), share)

@@ -1,4 +1,4 @@
-"""`map_to_disk`: from a mask to a certified map."""
+"""`map_to_disk`: from a mask to a map with its certificate."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.disk.advection import advect
 from cytodisk.disk.circle import Align, boundary_angles, parse_align
 from cytodisk.disk.disk_map import DiskMap, Method, Start
 from cytodisk.disk.harmonic import harmonic_map
@@ -15,6 +16,9 @@ from cytodisk.errors import MapError, ParameterError
 from cytodisk.geometry.mask import MaskReport, clean_mask
 from cytodisk.geometry.mesh import Mesh, mesh_inside
 from cytodisk.geometry.outline import trace_outline
+
+# Triangles of nearly one area up to the edge: at this clearance they differ least on the reference masks.
+_ISOTROPIC = {"growth": 0.0, "clearance": 0.5}
 
 
 def map_to_disk(
@@ -34,14 +38,15 @@ def map_to_disk(
     ----------
     mask : array_like of shape (H, W)
         One cell: boolean, or numbers with one value beside 0.
-    method : {"newton", "harmonic"}
+    method : {"newton", "harmonic", "advection"}
         "newton": windows of equal area in the disk come from equal areas of the cell, as nearly as the
         boundary allows. "harmonic": the paper's map before relaxation; it keeps angles where it can and
-        shrinks protrusions.
+        shrinks protrusions. "advection": the paper's relaxation, for comparison; it can turn triangles over,
+        and then the map's certificate is not valid and says which.
     shape_weight : float
         For "newton", how much shape counts against area, > 0: towards 0 equiareal, larger towards conformal.
     edge_length : float
-        Spacing of mesh vertices at the edge of the cell, in pixels, 0.25 to 10.
+        Spacing of mesh vertices at the edge of the cell, in pixels, 0.25 to 10; for "advection" everywhere.
     align : {"upright"}, (float, float) or float
         Rotation of the disk: "upright" looks like the cell; a point (row, column) puts the nearest outline
         point at angle 0; a number turns the upright disk by that many degrees from +u towards +v.
@@ -49,7 +54,7 @@ def map_to_disk(
     Returns
     -------
     DiskMap
-        With a valid certificate.
+        With a valid certificate, except for "advection".
 
     Raises
     ------
@@ -58,7 +63,8 @@ def map_to_disk(
     ParameterError
         A parameter is out of its range.
     MapError
-        No valid map was found; never an invalid map instead.
+        No valid map was found; never an invalid map instead. "advection" raises it only if the harmonic map
+        it starts from is not valid.
 
     References
     ----------
@@ -66,7 +72,7 @@ def map_to_disk(
     """
     check_map_parameters(method, shape_weight, edge_length)
     align = parse_align(align)
-    cell = mesh_cell(mask, edge_length)
+    cell = mesh_cell(mask, edge_length, method)
     angles = boundary_angles(cell.outline, _relative(align, cell.corner))
     return map_mesh(cell, angles, method=method, shape_weight=shape_weight)
 
@@ -98,7 +104,7 @@ class CellMesh:
         return self.mesh.vertices_yx[: self.mesh.n_boundary]
 
 
-def mesh_cell(mask: Any, edge_length: float = 0.9) -> CellMesh:
+def mesh_cell(mask: Any, edge_length: float = 0.9, method: Method = "newton") -> CellMesh:
     """Clean a mask and triangulate its inside.
 
     Parameters
@@ -107,6 +113,8 @@ def mesh_cell(mask: Any, edge_length: float = 0.9) -> CellMesh:
         As for `map_to_disk`.
     edge_length : float
         Spacing of mesh vertices at the edge, in pixels.
+    method : {"newton", "harmonic", "advection"}
+        What the mesh is for: "advection" needs triangles of one size, the others take larger ones inside.
 
     Returns
     -------
@@ -121,7 +129,8 @@ def mesh_cell(mask: Any, edge_length: float = 0.9) -> CellMesh:
     """
     cleaned, report = clean_mask(mask)
     crop, corner = _crop(cleaned)
-    mesh = mesh_inside(trace_outline(crop), crop, edge_length=edge_length)
+    spacing = _ISOTROPIC if method == "advection" else {}
+    mesh = mesh_inside(trace_outline(crop), crop, edge_length=edge_length, **spacing)
     return CellMesh(cleaned, report, mesh, corner, float(edge_length))
 
 
@@ -146,14 +155,14 @@ def map_mesh(
     anchor_uv : ndarray of shape (V, 2) and dtype float, optional
         Where the vertices would rather be, such as where the last frame of a movie puts them. The
         relaxation starts there if its flipped triangles can be mended, else from the harmonic map; `start`
-        of the map says which it was.
+        of the map says which it was. "advection" always starts from the harmonic map.
     inertia : float
         How much the inside is to stay at the anchor, against equal areas; see `relax`.
 
     Returns
     -------
     DiskMap
-        With a valid certificate.
+        With a valid certificate, except for "advection".
 
     Raises
     ------
@@ -161,15 +170,18 @@ def map_mesh(
         No valid map was found.
     """
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
-    uv, start = _start(cell.mesh, circle, anchor_uv)
-    steps, converged = 0, True
+    uv, start = _start(cell.mesh, circle, None if method == "advection" else anchor_uv)
+    triangles, steps, converged = cell.mesh.triangles, 0, True
     if method == "newton":
         relaxed = relax(cell.mesh, uv, shape_weight, anchor_uv, inertia)
         uv, steps, converged = relaxed.vertices_uv, relaxed.steps, relaxed.converged
+    elif method == "advection":
+        advected = advect(cell.mesh, uv)
+        uv, triangles, steps = advected.vertices_uv, advected.triangles, advected.steps
     disk = DiskMap(
         vertices_yx=cell.mesh.vertices_yx + cell.corner,
         vertices_uv=uv,
-        triangles=cell.mesh.triangles,
+        triangles=triangles,
         boundary=cell.mesh.boundary,
         mask=cell.mask,
         report=cell.report,
@@ -180,7 +192,7 @@ def map_mesh(
         steps=steps,
         converged=converged,
     )
-    if not disk.certificate.valid:
+    if method != "advection" and not disk.certificate.valid:
         raise MapError(f"no valid map was found: {'; '.join(disk.certificate.faults)}")
     return disk
 
@@ -195,8 +207,8 @@ def _start(mesh: Mesh, circle: FloatArray, anchor_uv: FloatArray | None) -> tupl
 
 def check_map_parameters(method: Any, shape_weight: Any, edge_length: Any) -> None:
     """Raise ParameterError unless the parameters of a map are in their ranges; see `map_to_disk`."""
-    if method not in ("newton", "harmonic"):
-        raise ParameterError(f"method must be 'newton' or 'harmonic', got {method!r}")
+    if method not in ("newton", "harmonic", "advection"):
+        raise ParameterError(f"method must be 'newton', 'harmonic' or 'advection', got {method!r}")
     for name, value in (("shape_weight", shape_weight), ("edge_length", edge_length)):
         if isinstance(value, bool) or not isinstance(value, int | float | np.number):
             raise ParameterError(f"{name} must be a number, got {value!r}")

@@ -8,11 +8,10 @@ from scipy import ndimage
 
 from cytodisk.arrays import BoolArray, FloatArray
 
-_CLEARANCE = 0.75  # smallest depth of an interior point, in units of the spacing at the edge
 _COARSEST = 16  # √3¹⁶ = 6561 times the finest spacing: beyond any image
 
 
-def graded_lattice(mask: BoolArray, edge_length: float, growth: float) -> FloatArray:
+def graded_lattice(mask: BoolArray, edge_length: float, growth: float, clearance: float = 0.75) -> FloatArray:
     """Points inside a mask whose spacing grows with depth.
 
     Every third point of a triangular lattice lies on a coarser one, √3 times as wide and turned by 30°,
@@ -26,6 +25,8 @@ def graded_lattice(mask: BoolArray, edge_length: float, growth: float) -> FloatA
         Spacing at the edge, in pixels.
     growth : float
         How much the spacing grows for each pixel of depth.
+    clearance : float
+        Smallest depth of a point, in units of `edge_length`.
 
     Returns
     -------
@@ -35,7 +36,7 @@ def graded_lattice(mask: BoolArray, edge_length: float, growth: float) -> FloatA
     depth = ndimage.distance_transform_edt(np.pad(mask, 1)) - 0.5
     pixels = np.argwhere(mask)
     centre = pixels.mean(axis=0)
-    return _fill(depth, centre, _long_axis(pixels - centre), edge_length, growth)
+    return _fill(depth, centre, _long_axis(pixels - centre), edge_length, growth, clearance)
 
 
 def _long_axis(away: FloatArray) -> float:
@@ -55,7 +56,9 @@ def _level(i: int, j: int) -> int:
 
 
 @njit(cache=True)
-def _fill(depth: FloatArray, centre: FloatArray, angle: float, spacing: float, growth: float) -> FloatArray:
+def _fill(
+    depth: FloatArray, centre: FloatArray, angle: float, spacing: float, growth: float, clearance: float
+) -> FloatArray:
     """Kept points of the lattice through `centre`; `depth` is padded by one pixel on each side."""
     height, width = depth.shape
     reach = math.hypot(height, width) / spacing
@@ -77,7 +80,7 @@ def _fill(depth: FloatArray, centre: FloatArray, angle: float, spacing: float, g
             upper = depth[row, column] * (1.0 - s) + depth[row, column + 1] * s
             lower = depth[row + 1, column] * (1.0 - s) + depth[row + 1, column + 1] * s
             here = upper * (1.0 - t) + lower * t
-            if here < _CLEARANCE * spacing:
+            if here < clearance * spacing:
                 continue
             coarser = math.floor(math.log1p(growth * here / spacing) / (0.5 * math.log(3.0)))
             if _level(i, j) < coarser:

@@ -20,7 +20,8 @@ class TriangleLocator:
     points : ndarray of shape (V, 2) and dtype float
         Vertices in any frame.
     triangles : ndarray of shape (F, 3) and dtype int
-        Positive in the frame (second, first) as all meshes of this package, or all negative.
+        Of either orientation. Where turned triangles lie over others, the first that holds a point is taken;
+        triangles without area hold none.
     """
 
     def __init__(self, points: FloatArray, triangles: IntArray):
@@ -175,6 +176,8 @@ def _locate(
                 w[k] = bx * cy - by * cx
                 height[k] = math.hypot(points[c, 0] - points[b, 0], points[c, 1] - points[b, 1])
                 total += w[k]
+            if total == 0.0:
+                continue
             # Signed distance to the nearest side, positive inside.
             sign = 1.0 if total > 0.0 else -1.0
             inside = min(sign * w[0] / height[0], sign * w[1] / height[1], sign * w[2] / height[2])

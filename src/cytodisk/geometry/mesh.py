@@ -41,7 +41,12 @@ class Mesh:
 
 
 def mesh_inside(
-    outline_yx: FloatArray, mask: BoolArray, *, edge_length: float = 0.9, growth: float = 0.5
+    outline_yx: FloatArray,
+    mask: BoolArray,
+    *,
+    edge_length: float = 0.9,
+    growth: float = 0.5,
+    clearance: float = 0.75,
 ) -> Mesh:
     """Triangulate the inside of an outline, fine at the edge and coarse inside.
 
@@ -58,7 +63,9 @@ def mesh_inside(
     edge_length : float
         Spacing of interior vertices at the edge, in pixels.
     growth : float
-        How much the spacing grows for each pixel of depth.
+        How much the spacing grows for each pixel of depth; 0 for triangles of one size.
+    clearance : float
+        Smallest depth of a vertex of the lattice, in units of `edge_length`.
 
     Returns
     -------
@@ -70,7 +77,7 @@ def mesh_inside(
         An invariant does not hold: Euler characteristic 1, every vertex used, all areas positive, sum of
         areas equal to the outline's to 1e-9.
     """
-    points = np.concatenate([outline_yx, graded_lattice(mask, edge_length, growth)])
+    points = np.concatenate([outline_yx, graded_lattice(mask, edge_length, growth, clearance)])
     n_boundary = len(outline_yx)
     triangles = _constrained_delaunay(points, n_boundary)
     mesh = Mesh(*_split_chords(points, triangles, n_boundary), n_boundary)

@@ -99,7 +99,7 @@ def map_frame(time: int, mask: Any, last: MappedFrame | None, settings: MovieSet
     MapError
         No valid map was found.
     """
-    cell = mesh_cell(mask, settings.edge_length)
+    cell = mesh_cell(mask, settings.edge_length, settings.method)
     contour = Contour.of_outline(cell.outline + cell.corner)
     if last is None:
         angles = boundary_angles(contour.outline_yx, settings.align)

@@ -23,7 +23,7 @@ class MapParameters(BaseModel):
 
     kind: Literal["auto", "mask", "stack", "labels"] = "auto"
     channels: tuple[str, ...] | None = None
-    method: Literal["newton", "harmonic"] = "newton"
+    method: Literal["newton", "harmonic", "advection"] = "newton"
     shape_weight: Annotated[float, Field(gt=0)] = 0.005
     edge_length: Annotated[float, Field(ge=0.25, le=10)] = 0.9
     align: Literal["upright"] | tuple[float, float] | float = "upright"
