@@ -69,6 +69,7 @@ def test_a_movie_is_compared_through_time(run: Run, tmp_path: Path) -> None:
     ("options", "words"),
     [
         (("--signal", "signal.tif"), "signal is sampled in movies only: pass --movie too"),
+        (("--frame-interval", "5"), "frame_interval is that of a movie: pass --movie too"),
         (("--methods", "edge,voronoi"), "methods: Input should be 'newton'"),
         (("--layers", "0"), "layers"),
         (("--depth-px", "-1"), "depth_px"),

@@ -16,6 +16,7 @@ from cytodisk.cli.console import (
     parse_channels,
     progress_bar,
 )
+from cytodisk.errors import ParameterError
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -90,6 +91,8 @@ def compare_command(
         "pixel_size_um": pixel_size,
     }
     again: dict[str, bool] = {"resume": resume, "overwrite": overwrite}
+    if frame_interval is not None and not movie:
+        raise ParameterError("frame_interval is that of a movie: pass --movie too, or leave it out")
     if movie:
         given["frame_interval_s"] = frame_interval
         found = _run_movie(masks, signal, out, given, parameters, again, quiet)
@@ -113,7 +116,6 @@ def _run_cells(
     options: dict[str, Any],
     quiet: bool,
 ) -> "Comparison":
-    from cytodisk.errors import ParameterError
     from cytodisk.study.compare_cells import compare_cells
     from cytodisk.study.compare_parameters import CompareParameters
     from cytodisk.study.parameters import parameters_from
