@@ -16,7 +16,7 @@ import pyarrow.parquet as pq
 
 from cytodisk.errors import StudyError
 from cytodisk.files import lock, replacing
-from cytodisk.io.merging import merge_tables, write_rows
+from cytodisk.io.merging import merge_tables, repeating, write_rows
 from cytodisk.io.provenance_file import PROVENANCE, read_provenance, write_json
 from cytodisk.io.study_room import LOCK, is_left_over, make_room, remove_left_overs
 from cytodisk.io.tables import (
@@ -228,7 +228,7 @@ class StudyFolder:
         columns_schema = self._schema(self.tables.others[table])
         rows = pa.concat_tables([pa.table(some, schema=columns_schema) for some in columns])
         with replacing(self._part(key, f"{table}.parquet")) as temporary:
-            pq.write_table(rows, temporary)
+            pq.write_table(rows, temporary, use_dictionary=repeating(columns_schema))
 
     def add(self, key: str, row: dict[str, Any], tables: dict[str, dict[str, Any]]) -> None:
         """Write a part: its rows for the tables, then its own row, which marks it as complete.
