@@ -3,6 +3,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import imageio.v3 as imageio
@@ -13,6 +14,8 @@ import tifffile
 from command_line import Run, assert_refused
 
 import cytodisk as cd
+from cytodisk.cli.console import console_for
+from cytodisk.cli.map_totals import finish_map
 
 GRID = ("--layers", "3", "--sectors", "8", "--edge-length", "2", "--figures", "0")
 
@@ -78,6 +81,17 @@ def test_maps_are_not_kept_when_so_wished(run: Run, folder: Path, tmp_path: Path
     assert run("map", folder, "-o", tmp_path / "out", *GRID, "--no-maps", "-q")[0] == 0
     assert not list((tmp_path / "out" / "maps").iterdir())
     assert cd.open_study(tmp_path / "out").cells["status"].tolist().count("ok") == 12
+
+
+def test_maps_that_are_not_one_to_one_are_not_called_so(
+    run: Run, folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "001b_masks.png").unlink()
+    run("map", folder, "-o", tmp_path / "out", *GRID, "-q")
+    study = cd.open_study(tmp_path / "out")
+    flipped = study.cells.assign(certificate_valid=[False] * 2 + [True] * 10 + [None] * 2)
+    finish_map(console_for(False), replace(study, cells=flipped), 0, of_folder=True)
+    assert "12 mapped, 10 of them one to one; 2 refused" in capsys.readouterr().out
 
 
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")

@@ -29,7 +29,7 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
     if of_folder:
         _say_totals(console, cells, mapped)
     else:
-        console.print(f"{len(mapped)} of {count(len(cells))} mapped{', one to one' if len(mapped) else ''}")
+        console.print(f"{len(mapped)} of {count(len(cells))} mapped{_one_to_one(mapped)}")
     if len(mapped):
         console.print(
             f"median {mapped['seconds'].median():.2f} s a cell; median area distortion (mean |log λ|) "
@@ -57,13 +57,21 @@ def _say_totals(console: "Console", cells: "pd.DataFrame", mapped: "pd.DataFrame
     numbers = [f"{status.get(name, 0)} {name}" for name in ("refused", "unreadable") if status.get(name, 0)]
     console.print(
         f"{count(cells['source'].nunique(), 'file')}, {count(len(cells))}: "
-        + "; ".join([f"{len(mapped)} mapped{', one to one' if len(mapped) else ''}", *numbers])
+        + "; ".join([f"{len(mapped)} mapped{_one_to_one(mapped)}", *numbers])
     )
     border = int(mapped["touches_border"].astype(bool).sum())
     complete = int((mapped["empty_windows"] == 0).sum())
     console.print(f"on the image border: {_of(border, len(mapped))} mapped cells")
     of_all = _of(complete, len(cells))
     console.print(f"all windows complete: {_of(complete, len(mapped))} mapped cells, {of_all} all cells")
+
+
+def _one_to_one(mapped: "pd.DataFrame") -> str:
+    """What the certificates say."""
+    valid = int(mapped["certificate_valid"].astype(bool).sum())
+    if not len(mapped):
+        return ""
+    return ", one to one" if valid == len(mapped) else f", {valid} of them one to one"
 
 
 def _of(part: int, whole: int) -> str:
