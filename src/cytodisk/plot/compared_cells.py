@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,8 +33,8 @@ _DARKEST, _LIGHTEST = 0.05, 0.9  # share of the colours that is used
 _PALE = 0.35  # share of white in every other sector
 
 
-def draw_compared_cells(comparison: Comparison) -> Path | None:
-    """Write `figures/cells.png`: up to five cells from simple to complex, a row a method.
+def draw_compared_cells(comparison: Comparison, cells: Sequence[int] | None = None) -> Path | None:
+    """Write `figures/cells.png`: up to five cells, a row a method.
 
     Layers have colours from the edge (dark) to the centre (light), and every other sector is paler; what lies
     in no window is white.
@@ -42,6 +43,8 @@ def draw_compared_cells(comparison: Comparison) -> Path | None:
     ----------
     comparison : Comparison
         Not that of a movie.
+    cells : sequence of int, optional
+        Which cells, in this order; by default they go from simple to complex.
 
     Returns
     -------
@@ -52,7 +55,7 @@ def draw_compared_cells(comparison: Comparison) -> Path | None:
     ----------
     u-Unwrap, Fig. 3A.
     """
-    chosen = chosen_cells(comparison)
+    chosen = chosen_cells(comparison) if cells is None else list(cells)[:_MOST_CELLS]
     if not chosen:
         return None
     path = comparison.path / "figures" / "cells.png"
