@@ -13,7 +13,7 @@ import numpy as np
 import cytodisk as cd
 from cytodisk.analysis.accuracy import true_edge_velocity
 
-truth = cd.simulate.movie("migrating", seed=0, frames=30)
+truth = cd.simulate.movie("migrating", seed=0, frames=24)
 movie = cd.map_movie(
     truth.masks,
     pixel_size_um=truth.pixel_size_um,

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 
 import cytodisk as cd
 
-truth = cd.simulate.movie("fluctuating", seed=0, frames=40)
+truth = cd.simulate.movie("fluctuating", seed=0, frames=30)
 movie = cd.map_movie(
     truth.masks,
     pixel_size_um=truth.pixel_size_um,

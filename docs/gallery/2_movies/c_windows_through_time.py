@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 
 import cytodisk as cd
 
-truth = cd.simulate.movie("neutrophil", seed=0, frames=30)
+truth = cd.simulate.movie("neutrophil", seed=0, frames=24)
 movie = cd.map_movie(
     truth.masks,
     pixel_size_um=truth.pixel_size_um,
@@ -22,7 +22,7 @@ grid = cd.polar_windows(layers=6, sectors=36)
 # %%
 # A cell that changes its whole shape. Colours belong to sectors: the same colour is
 # the same part of the edge.
-frames = [0, 10, 20, 29]
+frames = [0, 8, 16, 23]
 figure, axes = plt.subplots(1, 4, figsize=(6.2, 2.4), layout="constrained")
 cd.plot.draw_strip(
     axes,

@@ -16,14 +16,14 @@ import cytodisk as cd
 # Independent series whose neighbouring frames correlate by 0.8: every correlation
 # between them is false.
 activity, velocity = cd.simulate.independent_series(
-    "ar1", seed=0, frames=120, layers=4, sectors=60
+    "ar1", seed=0, frames=120, layers=2, sectors=60
 )
 warnings.simplefilter("ignore", cd.errors.StationarityWarning)
-lags = cd.cross_correlate(activity, velocity, max_lag=20, surrogates=499)
+lags = cd.cross_correlate(activity, velocity, max_lag=20, surrogates=299)
 peaks = cd.peak_correlation(lags, rule="largest")
 
 # %%
-# The peaks of 240 windows. A test that takes all frames for independent observations,
+# The peaks of 120 windows. A test that takes all frames for independent observations,
 # and knows nothing of the search over lags, would call a correlation above 0.18
 # significant; here nearly all peaks are, by chance alone.
 figure, ax = plt.subplots(figsize=(5, 2.6), layout="constrained")

@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 import cytodisk as cd
 
 warnings.simplefilter("ignore", cd.errors.StationarityWarning)
-truth = cd.simulate.movie("ruffling", seed=0, frames=40)
+truth = cd.simulate.movie("ruffling", seed=0, frames=36)
 movie = cd.map_movie(
     truth.masks,
     pixel_size_um=truth.pixel_size_um,

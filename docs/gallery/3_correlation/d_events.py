@@ -10,16 +10,16 @@ import matplotlib.pyplot as plt
 
 import cytodisk as cd
 
-truth = cd.simulate.movie("fluctuating", seed=0, frames=80, speed_px=0.5, lag_frames=4)
+truth = cd.simulate.movie("fluctuating", seed=0, frames=60, speed_px=0.5, lag_frames=4)
 movie = cd.map_movie(
     truth.masks,
     pixel_size_um=truth.pixel_size_um,
     frame_interval_s=truth.frame_interval_s,
 )
-signal = cd.sample_movie(movie, cd.polar_windows(layers=8, sectors=40), truth.signal)[
+signal = cd.sample_movie(movie, cd.polar_windows(layers=5, sectors=30), truth.signal)[
     "mean"
 ]
-velocity = cd.edge_velocity(movie, sectors=40)
+velocity = cd.edge_velocity(movie, sectors=30)
 
 # %%
 # Episodes, one a row. Neighbouring sectors that move in the same step belong to one

@@ -18,7 +18,7 @@ import tifffile
 
 import cytodisk as cd
 
-truth = cd.simulate.movie("migrating", seed=1, frames=20)
+truth = cd.simulate.movie("migrating", seed=1, frames=16)
 folder = Path(mkdtemp())
 tifffile.imwrite(folder / "masks.tif", truth.masks.astype(np.uint8) * 255)
 tifffile.imwrite(

@@ -18,12 +18,12 @@ import tifffile
 import cytodisk as cd
 
 # %%
-# A movie in which frame 12 lost a part of the cell, as happens when a bright
+# A movie in which frame 8 lost a part of the cell, as happens when a bright
 # neighbour moves the threshold.
-truth = cd.simulate.movie("migrating", seed=1, frames=24)
+truth = cd.simulate.movie("migrating", seed=1, frames=18)
 masks = truth.masks.copy()
-columns = np.flatnonzero(masks[12].any(axis=0))
-masks[12, :, columns[-18] :] = False
+columns = np.flatnonzero(masks[8].any(axis=0))
+masks[8, :, columns[-18] :] = False
 
 folder = Path(mkdtemp())
 tifffile.imwrite(folder / "masks.tif", masks.astype(np.uint8) * 255)
@@ -52,4 +52,4 @@ plt.show()
 
 # %%
 # Leave such frames out of a correlation with ``cytodisk correlate out
-# --without-frames 11,12``, or mend the mask.
+# --without-frames 7,8``, or mend the mask.

@@ -14,7 +14,7 @@ import cytodisk as cd
 
 # %%
 # Cells of four kinds.
-seeds = range(12)
+seeds = range(8)
 masks = [cd.simulate.random_smooth(seed, radius=30) for seed in seeds]
 masks += [cd.simulate.migrating(seed, size=0.5) for seed in seeds]
 masks += [cd.simulate.random_spiky(seed, radius=22, spike_length=25) for seed in seeds]
