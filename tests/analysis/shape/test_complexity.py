@@ -112,3 +112,8 @@ def test_the_principal_axis_of_a_line_is_its_direction() -> None:
     axis, share = principal_axis(np.column_stack([3 * steps, 4 * steps]))
     np.testing.assert_allclose(np.abs(axis), [0.6, 0.8])
     assert share == pytest.approx(1)
+
+
+def test_the_seed_hardly_matters(features: pd.DataFrame) -> None:
+    scores = [cd.complexity_score(features, seed=seed)["complexity"].dropna() for seed in range(3)]
+    assert np.min(spearmanr(np.transpose(scores)).statistic) > 0.9

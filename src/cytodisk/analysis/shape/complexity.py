@@ -58,14 +58,18 @@ def complexity_score(
     -----
     The median of each feature is taken away, what is left is divided by the spread between quartiles and
     compressed by arsinh, which is a logarithm for large values, so that few extreme cells do not make the
-    axis. Eigenvectors have no sign: the axis points to where circularity falls (rank correlation).
+    axis. UMAP starts from the first two principal components: from its usual start, groups of cells that
+    hang together loosely come to lie anywhere, and the score depends on the seed. Eigenvectors have no sign:
+    the axis points to where circularity falls (rank correlation).
 
     The score has no unit and depends on the cells that are scored together: compare only scores that were
     computed in one call.
 
     References
     ----------
-    u-Unwrap, appendix B. McInnes, Healy and Melville, "UMAP", 2018, arXiv:1802.03426.
+    u-Unwrap, appendix B. McInnes, Healy and Melville, "UMAP", 2018, arXiv:1802.03426. Kobak and Linderman,
+    "Initialization is critical for preserving global data structure in both t-SNE and UMAP", 2021,
+    doi:10.1038/s41587-020-00809-z.
     """
     seed, n_neighbors = whole_number("seed", seed, 0), whole_number("n_neighbors", n_neighbors, 2)
     if isinstance(min_dist, bool) or not isinstance(min_dist, int | float) or not 0 <= min_dist <= 1:
@@ -148,10 +152,8 @@ def umap_plane(values: FloatArray, seed: int, n_neighbors: int, min_dist: float)
     MissingPartError
         umap-learn is not installed.
     """
-    # The start is spectral, which needs more cells than dimensions by some; few cells start from components.
-    start = "spectral" if len(values) > 2 * LEAST_CELLS else "pca"
     reducer = load_umap().UMAP(
-        n_neighbors=n_neighbors, min_dist=min_dist, init=start, random_state=seed, n_jobs=1
+        n_neighbors=n_neighbors, min_dist=min_dist, init="pca", random_state=seed, n_jobs=1
     )
     plane = np.asarray(reducer.fit_transform(values), dtype=np.float64)
     return np.asarray(plane - plane.mean(axis=0))
