@@ -18,7 +18,7 @@ from cytodisk.plot.style import DPI, colour_bar, paper_style
 
 _ALONG = 7  # example cells beside the landscape
 _WIDE, _FLATTEST = 108.0, 0.6  # of the landscape in mm; least height over width, for the examples beside it
-_EXTREMES_WIDE, _EXTREMES_TALL = 146.0, 160.0  # in mm, at most
+_EXTREMES_WIDE, _EXTREMES_TALL = 142.0, 160.0  # in mm, at most
 _ROWS = ("least", "median", "most")
 
 
@@ -90,7 +90,7 @@ def _landscape_page(score: pd.DataFrame, masks: Mapping[int, BoolArray]) -> Figu
             textcoords="offset points",
             va="center",
         )
-    colour_bar(dots, sheet.axes(160.0, 9.0, 2.5, min(45.0, tall)), "complexity")
+    colour_bar(dots, sheet.axes(159.0, 9.0, 2.5, min(45.0, tall)), "complexity")
     return sheet.figure
 
 
@@ -115,7 +115,7 @@ def _extremes_page(
             ha="right",
             va="center",
         )
-    colour_bar(drawn, sheet.axes(167.0, 9.0, 2.5, 40.0), "complexity")
+    colour_bar(drawn, sheet.axes(162.0, 9.0, 2.5, 40.0), "complexity")
     return sheet.figure
 
 
