@@ -86,14 +86,9 @@ class MapInputs:
 
     def _understood_folder(self) -> dict[str, str]:
         kinds = Counter("" if source.kind is None else source.kind for source in self.sources)
-        names = {
-            "labels": "label images",
-            "mask": "single masks",
-            "stack": "stacks",
-            "": "not to be used",
-        }
-        counts = ", ".join(f"{kinds[kind]} {name}" for kind, name in names.items() if kinds[kind])
-        words = {"masks": f"{len(self.sources)} files: {counts}"}
+        names = {"labels": "label image", "mask": "single mask", "stack": "stack", "": "unusable file"}
+        counts = ", ".join(_count(kinds[kind], name) for kind, name in names.items() if kinds[kind])
+        words = {"masks": f"{_count(len(self.sources), 'file')}: {counts}"}
         left_out = [name for source in self.sources for name in source.instead_of]
         if left_out:
             words["masks"] += (
@@ -101,8 +96,14 @@ class MapInputs:
             )
         signals = self.signal_files
         if signals:
-            words["signal"] = f"{len(signals)} images with the channels {', '.join(signals[0].channels)}"
+            words["signal"] = (
+                f"{_count(len(signals), 'image')} with the channels {', '.join(signals[0].channels)}"
+            )
         return words
+
+
+def _count(number: int, of: str) -> str:
+    return f"{number} {of}" if number == 1 else f"{number} {of}s"
 
 
 def open_inputs(
