@@ -17,7 +17,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
 def write_changelog(app: Sphinx) -> None:
     source = Path(app.srcdir)
     markdown = (source.parents[1] / "CHANGELOG.md").read_text(encoding="utf-8")
-    lines = [_as_rst(line) for line in markdown.splitlines()]
+    lines = [".. currentmodule:: cytodisk", "", *(_as_rst(line) for line in markdown.splitlines())]
     (source / "changelog.rst").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

@@ -4,7 +4,8 @@ A public name appears on the page of the folder of `src/cytodisk` that it comes 
 cannot miss one.
 """
 
-from importlib import import_module
+import inspect
+import re
 from pathlib import Path
 from typing import Any
 
@@ -52,14 +53,16 @@ def write_pages(app: Sphinx, _config: Any) -> None:
 
 
 def plot_page() -> list[str]:
-    """A table for each file that drawing functions come from, under the first line of its docstring."""
-    homes: dict[str, list[str]] = {}
-    for name in sorted(cytodisk.plot._HOME, key=str.lower):
-        homes.setdefault(cytodisk.plot._HOME[name], []).append(name)
+    """A table for each paragraph of the module's docstring, "Windows: draw_windows, …", with its names."""
+    left = set(cytodisk.plot.__all__)
     lines = [*heading("Pictures", "="), PLOT_WORDS, ""]
-    for home, names in homes.items():
-        about = import_module(f"cytodisk.plot.{home}").__doc__.splitlines()[0].rstrip(".")
-        lines += [*heading(about, "-"), *table("cytodisk.plot", names)]
+    for paragraph in inspect.cleandoc(cytodisk.plot.__doc__ or "").split("\n\n")[1:]:
+        title, _, words = paragraph.replace("\n", " ").partition(":")
+        names = sorted(left & set(re.findall(r"\w+", words)), key=str.lower)
+        left -= set(names)
+        lines += [*heading(title, "-"), *table("cytodisk.plot", names)]
+    if left:
+        raise ExtensionError(f"the docstring of cytodisk.plot does not name {', '.join(sorted(left))}")
     return lines
 
 

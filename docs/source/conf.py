@@ -117,6 +117,13 @@ html_sidebars = {"index": [], "changelog": []}
 def setup(app: Any) -> None:
     """Called by Sphinx."""
     app.connect("autodoc-process-docstring", _magnitudes, priority=900)
+    app.connect("source-read", _remeasured_if_there)
+
+
+def _remeasured_if_there(_app: Any, name: str, source: list[str]) -> None:
+    """List "The paper, re-measured" once `docs/remeasure.py` has written it."""
+    if name == "index" and not (HERE / "paper_remeasured.rst").exists():
+        source[0] = source[0].replace("   paper_remeasured\n", "")
 
 
 def _magnitudes(_app: Any, _what: str, _name: str, _it: Any, _options: Any, lines: list[str]) -> None:

@@ -18,7 +18,7 @@ import tifffile
 
 import cytodisk as cd
 
-truth = cd.simulate.movie("migrating", seed=1, frames=16)
+truth = cd.simulate.movie("fluctuating", seed=1, frames=16)
 folder = Path(mkdtemp())
 tifffile.imwrite(folder / "masks.tif", truth.masks.astype(np.uint8) * 255)
 tifffile.imwrite(
@@ -32,19 +32,19 @@ tifffile.imwrite(
 # %%
 # The command, as it is typed in a terminal.
 def cytodisk(command: str) -> None:
-    """Run a command of cytodisk and show what it prints."""
+    """Run a command of cytodisk and print what it says."""
     done = subprocess.run(
         [sys.executable, "-m", "cytodisk", *command.split()],
         cwd=folder,
         capture_output=True,
         text=True,
     )
-    print("$ cytodisk", command, "\n" + done.stdout + done.stderr)
+    print(done.stdout + done.stderr)
 
 
 cytodisk(
     "movie masks.tif --signal signal.tif -o out --channels matter,edge "
-    "--pixel-size 0.16 --frame-interval 5 --sectors 40 --figures 0 --quiet"
+    "--pixel-size 0.16 --frame-interval 5 --sectors 40 --figures 0 --workers 1"
 )
 print(*sorted(file.name for file in (folder / "out").iterdir()), sep="\n")
 
@@ -52,11 +52,8 @@ print(*sorted(file.name for file in (folder / "out").iterdir()), sep="\n")
 # Read it back. Tables are pandas; units stand beside them.
 study = cd.open_study(folder / "out")
 print("cells:", study.cells["cell"].nunique(), "frames:", study.cells["time"].nunique())
-print(
-    study.cells[
-        ["time", "area", "area_distortion", "certificate_valid", "status"]
-    ].head()
-)
+shown = ["time", "area", "area_distortion", "certificate_valid", "status"]
+print(study.cells[shown].head())
 print(study.edge.attrs["units"]["velocity"], "and", study.cells.attrs["units"]["area"])
 
 # %%
