@@ -31,7 +31,7 @@ command = (
     "movie masks.tif -o out --pixel-size 0.16 --frame-interval 5 "
     "--sectors 40 --figures 0 --quiet"
 )
-subprocess.run(
+done = subprocess.run(
     [sys.executable, "-m", "cytodisk", *command.split()], cwd=folder, check=True
 )
 
