@@ -8,6 +8,7 @@ the tables of a study; the report shows them first.
 
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 from tempfile import mkdtemp
 
@@ -39,7 +40,8 @@ done = subprocess.run(
 # The gravest first, each with what it means and the frames it is about.
 study = cd.open_study(folder / "out")
 for flag in cd.red_flags(study):
-    print(flag.what.capitalize() + ".", flag.meaning, flag.advice)
+    print(flag.what.upper())
+    print(*textwrap.wrap(f"{flag.meaning} {flag.advice}", 88), sep="\n")
     for place in flag.places:
         print("   frame", place.time, place.note)
 
