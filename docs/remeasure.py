@@ -35,7 +35,8 @@ def main() -> None:
     if not (chosen.data / "osteosarcoma" / "masks.tif").exists():
         sys.exit(f"{chosen.data} has no osteosarcoma/masks.tif: set CYTODISK_DATA or pass --data")
     found: dict[str, Any] = {
-        "maps": maps.measure(chosen.data / "reference_masks", chosen.work),
+        "maps": maps.measure(chosen.data / "reference_masks"),
+        "free_flips": maps.free_flips(chosen.data / "reference_masks"),
         "shapes": shapes.measure(chosen.data / "osteosarcoma" / "masks.tif", chosen.work, chosen.workers),
         "cells": cells.measure(chosen.data / "osteosarcoma" / "masks.tif", chosen.work, chosen.workers),
         "movies": movies.measure(chosen.data, chosen.work),

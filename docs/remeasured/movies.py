@@ -78,6 +78,7 @@ def summary(name: str, comparison: Comparison, method: str) -> dict[str, Any]:
         "layers_without": int(correlation.isna().sum()),
         "displacement": moved.mean(),
         "peaks": int((moved > PEAK * moved.median()).sum()),
+        "largest": moved.max(),
         "steps": len(moved),
         "unit": comparison.provenance["length_unit"],
     }

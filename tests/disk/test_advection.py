@@ -225,3 +225,13 @@ def test_small_triangles_grow() -> None:
     assert still.any()
     grown = kernels.signed_areas(after.vertices_uv, after.triangles)[smallest][still]
     assert (grown > before[smallest][still]).all()
+
+
+def test_flips_that_may_break_the_cell_mend_the_disk(star: DiskMap) -> None:
+    cell = mesh_cell(star.mask, 1.5, "advection")
+    start, _ = harmonic_map(cell.mesh, star.vertices_uv[star.boundary])
+    free = advect(cell.mesh, start, whole_cell=False)
+    turned_in_disk = (triangle_areas(free.vertices_uv[:, ::-1], free.triangles) <= 0).sum()
+    turned_in_cell = (triangle_areas(cell.mesh.vertices_yx, free.triangles) <= 0).sum()
+    assert turned_in_disk < len(star.certificate.flipped_in_disk)
+    assert turned_in_cell > 0

@@ -42,7 +42,7 @@ def flip_to_delaunay(
     n_boundary: int,
     least_area: float,
 ) -> int:
-    """Flip edges, in place, until they are Delaunay in the disk or may not be flipped.
+    """Flip edges, in place, until they are Delaunay in the disk or may not be flipped, in ten rounds at most.
 
     An edge is flipped if the two angles opposite to it sum to more than π in the disk; where one of its two
     triangles is turned over there, if the flip makes the smaller of the two signed areas larger, which can
@@ -60,7 +60,7 @@ def flip_to_delaunay(
     n_boundary : int
         Vertices below this number are on the boundary.
     least_area : float
-        In square pixels, above 0.
+        In square pixels; at most 0 lets triangles turn over in the cell.
 
     Returns
     -------
