@@ -102,7 +102,7 @@ def test_depth_and_place_have_a_plain_twin(kind: str) -> None:
     """By all edges of the outline at once."""
     windows = cd.edge_windows(random_mask(kind, 3))
     outline = windows.edge.outline_yx
-    depth, angle = windows.edge.parts
+    depth, angle = windows.edge.parts_of(np.argwhere(windows.mask))
     places = np.argwhere(windows.mask)[:, None, :] + np.array([[-0.375, -0.375], [0.125, 0.375]])
     for part, column in ((0, 0), (11, 1)):
         start, along = outline, np.roll(outline, -1, axis=0) - outline

@@ -7,16 +7,15 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy import sparse
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
-from cytodisk.windows.edge_parts import part_places
 from cytodisk.windows.grid import PolarWindows
-from cytodisk.windows.on_cell import PARTS, WindowsOnCell
+from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.outlines import window_polygons
-from cytodisk.windows.weights import window_weights
+from cytodisk.windows.shares import PARTS, WindowShares
+from cytodisk.windows.weights import window_shares, windows_of_parts
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,16 +32,19 @@ class CellWindows(WindowsOnCell):
     disk: DiskMap
 
     @cached_property
-    def weights(self) -> sparse.csr_array:
-        """Share of each mask pixel (row-major order) in each window, (windows, pixels); columns sum to 1."""
-        return window_weights(self.grid, self.disk)
+    def shares(self) -> WindowShares:
+        """Shares of pixels in windows, and the windows' moments; columns of the weights sum to 1."""
+        return window_shares(self.grid, self.disk)
 
-    @property
-    def part_windows(self) -> IntArray:
-        """Number of the window that each part of each mask pixel maps into, shape (pixels, 16)."""
-        places = part_places(np.argwhere(self.mask), PARTS)
-        found = self.grid.window_of(self.disk.to_disk(places.reshape(-1, 2), outside="nearest"))
-        return found.reshape(places.shape[:2])
+    def windows_of_parts(self, pixels_yx: IntArray) -> IntArray:
+        """Number of the window that each part of some pixels maps into, shape (P, 16).
+
+        Parameters
+        ----------
+        pixels_yx : ndarray of shape (P, 2) and dtype int
+            (row, column).
+        """
+        return windows_of_parts(self.grid, self.disk, pixels_yx, PARTS)
 
     @property
     def mask(self) -> BoolArray:

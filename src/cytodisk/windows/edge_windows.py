@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy import sparse
+from scipy.ndimage import distance_transform_edt
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.circle import boundary_angles
@@ -17,7 +17,8 @@ from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.outline import trace_outline
 from cytodisk.windows.edge_parts import depths_and_angles, part_places
 from cytodisk.windows.grid import check_counts
-from cytodisk.windows.on_cell import PARTS, WindowsOnCell
+from cytodisk.windows.on_cell import WindowsOnCell
+from cytodisk.windows.shares import PARTS, strips
 
 
 @dataclass(frozen=True)
@@ -107,16 +108,33 @@ class CellEdge:
         outline = trace_outline(mask)
         return cls(mask, outline, boundary_angles(outline))
 
+    def parts_of(self, pixels_yx: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Depth and angle of each part of some of the mask's pixels, each (P, 16): `depths_and_angles`.
+
+        Parameters
+        ----------
+        pixels_yx : ndarray of shape (P, 2) and dtype int
+            (row, column).
+        """
+        return depths_and_angles(part_places(pixels_yx, PARTS), self.outline_yx, self.angles)
+
     @cached_property
-    def parts(self) -> tuple[FloatArray, FloatArray]:
-        """Depth and angle of each part of the mask's pixels, each (pixels, parts): `depths_and_angles`."""
-        places = part_places(np.argwhere(self.mask), PARTS)
-        return depths_and_angles(places, self.outline_yx, self.angles)
+    def deepest(self) -> tuple[IntArray, float]:
+        """Pixel with the part that is deepest inside, (row, column), and that part's distance from the edge.
+
+        In pixels; the first such pixel in row-major order.
+        """
+        inside = distance_transform_edt(np.pad(self.mask, 1))[1:-1, 1:-1]
+        # To the next pixel's centre: within 1 px of the distance to the outline, and parts lie within 0.6 px.
+        pixels = np.argwhere(inside >= inside.max() - 4.0)
+        depths = np.concatenate([self.parts_of(block)[0].max(axis=1) for _, block in strips(pixels)])
+        found = int(depths.argmax())
+        return pixels[found], float(depths[found])
 
     @property
     def greatest_depth(self) -> float:
         """Distance from the edge of the part that is deepest inside, in pixels."""
-        return float(self.parts[0].max())
+        return self.deepest[1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,18 +150,15 @@ class EdgeWindows(WindowsOnCell):
     grid: EdgeGrid
     edge: CellEdge
 
-    @cached_property
-    def weights(self) -> sparse.csr_array:
-        """Share of each mask pixel (row-major order) in each window, (windows, pixels).
+    def windows_of_parts(self, pixels_yx: IntArray) -> IntArray:
+        """Number of the window that each part of some pixels lies in, shape (P, 16); -1 for none.
 
-        A column sums to less than 1 where a pixel, or a part of it, lies deeper than the last layer.
+        Parameters
+        ----------
+        pixels_yx : ndarray of shape (P, 2) and dtype int
+            (row, column).
         """
-        return part_weights(self.part_windows, self.layers * self.sectors)
-
-    @property
-    def part_windows(self) -> IntArray:
-        """Number of the window that each part of each mask pixel lies in, shape (pixels, 16); -1 for none."""
-        return self.grid.window_of(*self.edge.parts)
+        return self.grid.window_of(*self.edge.parts_of(pixels_yx))
 
     @property
     def mask(self) -> BoolArray:
@@ -211,22 +226,3 @@ def edge_windows(
     edge = CellEdge.of(cell)
     depth = edge.greatest_depth / layers if depth_px is None else depth_px
     return EdgeWindows(EdgeGrid(int(layers), int(sectors), depth), edge)
-
-
-def part_weights(window: IntArray, n_windows: int) -> sparse.csr_array:
-    """Share of each pixel in each window, from the window of each of its parts.
-
-    Parameters
-    ----------
-    window : ndarray of shape (P, parts) and dtype int
-        -1 for none.
-    n_windows : int
-
-    Returns
-    -------
-    csr_array of shape (n_windows, P)
-    """
-    pixel, part = np.nonzero(window >= 0)
-    share = np.full(len(pixel), 1.0 / window.shape[1])
-    shape = (n_windows, len(window))
-    return sparse.csr_array(sparse.coo_array((share, (window[pixel, part], pixel)), shape=shape))

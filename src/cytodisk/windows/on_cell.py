@@ -10,8 +10,8 @@ from scipy import sparse
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.windows.pieces import pieces_by_window
-
-PARTS = 4  # along a pixel's side
+from cytodisk.windows.shares import PARTS as PARTS
+from cytodisk.windows.shares import WindowShares, shares_by_strips, strips
 
 
 class WindowsOnCell(ABC):
@@ -36,15 +36,34 @@ class WindowsOnCell(ABC):
     def sectors(self) -> int:
         """Number of sectors."""
 
-    @property
     @abstractmethod
-    def weights(self) -> sparse.csr_array:
-        """Share of each mask pixel (row-major order) in each window, (windows, pixels); sums to ≤ 1."""
+    def windows_of_parts(self, pixels_yx: IntArray) -> IntArray:
+        """Number of the window that each part of some mask pixels lies in, shape (P, 16); -1 for none.
+
+        Parameters
+        ----------
+        pixels_yx : ndarray of shape (P, 2) and dtype int
+            (row, column).
+        """
+
+    @cached_property
+    def shares(self) -> WindowShares:
+        """Shares of pixels in windows, and the windows' moments, from the parts of pixels."""
+        pixels = np.argwhere(self.mask)
+        return shares_by_strips(pixels, self.layers * self.sectors, self.windows_of_parts)
 
     @property
-    @abstractmethod
+    def weights(self) -> sparse.csr_array:
+        """Share of each mask pixel (row-major order) in each window, (windows, pixels).
+
+        A column sums to 1, or to less where a pixel, or a part of it, lies in no window.
+        """
+        return self.shares.weights
+
+    @property
     def part_windows(self) -> IntArray:
         """Number of the window that each part of each mask pixel lies in, shape (pixels, 16); -1 for none."""
+        return np.concatenate([self.windows_of_parts(block) for _, block in strips(np.argwhere(self.mask))])
 
     @property
     def part_labels(self) -> IntArray:
@@ -95,20 +114,18 @@ class WindowsOnCell(ABC):
 
     @cached_property
     def centroids_yx(self) -> FloatArray:
-        """Centre of mass of each window, shape (layers, sectors, 2), (row, column) in pixels, or NaN."""
-        return self._means(np.argwhere(self.mask).astype(np.float64))
+        """Centre of each window's area, shape (layers, sectors, 2), (row, column) in pixels, or NaN."""
+        return self._mean_moments[..., :2] + self.shares.origin_yx
 
     @cached_property
     def eccentricities(self) -> FloatArray:
         """Eccentricity of the ellipse with each window's second moments, shape (layers, sectors), 0 to 1.
 
-        A pixel counts as a square of side 1, so no window has zero width. NaN if empty.
+        The moments are those of the parts that pixels are divided into, each a square of its own side, so a
+        window may be thinner than a pixel, but none has zero width. NaN if empty.
         """
-        points = np.argwhere(self.mask).astype(np.float64)
-        products = np.column_stack([points[:, 0] ** 2, points[:, 1] ** 2, points[:, 0] * points[:, 1]])
-        mean = self._means(products)
-        y, x = self.centroids_yx[..., 0], self.centroids_yx[..., 1]
-        yy, xx, xy = mean[..., 0] - y * y + 1 / 12, mean[..., 1] - x * x + 1 / 12, mean[..., 2] - x * y
+        y, x, yy, xx, xy = np.moveaxis(self._mean_moments, -1, 0)
+        yy, xx, xy = yy - y * y, xx - x * x, xy - x * y
         middle, root = 0.5 * (yy + xx), np.hypot(0.5 * (yy - xx), xy)
         return np.asarray(np.sqrt(np.clip(2.0 * root / (middle + root), 0.0, 1.0)))
 
@@ -131,11 +148,11 @@ class WindowsOnCell(ABC):
         into_layers = sparse.kron(sparse.eye_array(self.layers), np.ones((1, self.sectors)))
         return pieces_by_window(sparse.csr_array(into_layers @ self.weights), self.mask)
 
-    def _means(self, values: FloatArray) -> FloatArray:
-        """Mean of pixel values (P, K) in each window, shape (layers, sectors, K); NaN if empty."""
-        sums = np.asarray(self.weights @ values).reshape(self.layers, self.sectors, -1)
+    @property
+    def _mean_moments(self) -> FloatArray:
+        """Means of y, x, y², x², x y in each window, shape (layers, sectors, 5); NaN if empty."""
         areas = np.where(self.areas > 0, self.areas, np.nan)
-        return np.asarray(sums / areas[..., None])
+        return np.asarray(self.shares.moments.reshape(self.layers, self.sectors, 5) / areas[..., None])
 
     def _by_window(self, values: FloatArray) -> FloatArray:
         return values.reshape(self.layers, self.sectors)

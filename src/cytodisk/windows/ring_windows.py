@@ -7,15 +7,15 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy import sparse
 from skimage.graph import MCP_Geometric
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.windows.edge_parts import part_places
-from cytodisk.windows.edge_windows import CellEdge, part_weights
+from cytodisk.windows.edge_windows import CellEdge
 from cytodisk.windows.grid import check_counts
-from cytodisk.windows.on_cell import PARTS, WindowsOnCell
+from cytodisk.windows.on_cell import WindowsOnCell
+from cytodisk.windows.shares import PARTS
 
 
 @dataclass(frozen=True)
@@ -69,19 +69,23 @@ class RingWindows(WindowsOnCell):
     edge: CellEdge
 
     @cached_property
-    def weights(self) -> sparse.csr_array:
-        """Share of each mask pixel (row-major order) in each window, (windows, pixels); columns sum to 1."""
-        return part_weights(self.part_windows, self.layers * self.sectors)
+    def _ways(self) -> FloatArray:
+        """Length of the way from the deepest pixel to each pixel, shape (H, W)."""
+        return _way_from(self.edge.deepest[0], self.mask)
 
-    @property
-    def part_windows(self) -> IntArray:
-        """Number of the window that each part of each mask pixel lies in, shape (pixels, 16)."""
-        pixels = np.argwhere(self.mask)
-        depth, _ = self.edge.parts
-        centre = pixels[depth.max(axis=1).argmax()]
-        away = part_places(pixels, PARTS) - centre
-        beyond = np.linalg.norm(away, axis=-1) - np.linalg.norm(pixels - centre, axis=-1)[:, None]
-        way = np.maximum(_way_from(centre, self.mask)[self.mask][:, None] + beyond, 0.0)
+    def windows_of_parts(self, pixels_yx: IntArray) -> IntArray:
+        """Number of the window that each part of some pixels lies in, shape (P, 16).
+
+        Parameters
+        ----------
+        pixels_yx : ndarray of shape (P, 2) and dtype int
+            (row, column).
+        """
+        depth, _ = self.edge.parts_of(pixels_yx)
+        centre, _ = self.edge.deepest
+        away = part_places(pixels_yx, PARTS) - centre
+        beyond = np.linalg.norm(away, axis=-1) - np.linalg.norm(pixels_yx - centre, axis=-1)[:, None]
+        way = np.maximum(self._ways[tuple(pixels_yx.T)][:, None] + beyond, 0.0)
         share = depth / np.maximum(depth + way, 1e-12)
         layer = np.minimum((share * self.layers).astype(np.int64), self.layers - 1)
         turn = np.mod(np.arctan2(away[..., 0], away[..., 1]) / (2.0 * np.pi), 1.0)

@@ -1,23 +1,27 @@
-"""How much of each pixel belongs to each window: one sparse matrix."""
+"""Shares of pixels in the polar windows of a cell, none of which is left empty."""
+
+from collections.abc import Iterator
+from itertools import chain
 
 import numpy as np
-from scipy import sparse
 from scipy.spatial import cKDTree
 
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
+from cytodisk.windows.edge_parts import part_places
 from cytodisk.windows.grid import PolarWindows
+from cytodisk.windows.shares import PARTS, PIXELS_AT_ONCE, PixelParts, WindowShares, gather_shares
 
-_COARSE, _FINE = 4, 16  # parts along a pixel's side
-_PIXELS_AT_ONCE = 1024  # whose parts stay in the cache
+_FINE = 16  # parts along a pixel's side
 
 
-def window_weights(grid: PolarWindows, disk: DiskMap) -> sparse.csr_array:
-    """Weights of a cell's pixels in its windows.
+def window_shares(grid: PolarWindows, disk: DiskMap) -> WindowShares:
+    """Weights of a cell's pixels in its windows, and moments of the windows.
 
     Every pixel is divided into 4×4 parts, and each part goes whole to the window it maps into; a part
     outside the outline goes with the nearest outline point. Pixels at windows that got no part are divided
-    into 16×16. A window that is still empty gets one more part of the pixel at its centre.
+    into 16×16. A window that is still empty gets one more part of the pixel at its centre, which counts as a
+    square of the whole pixel's width in the moments.
 
     Parameters
     ----------
@@ -26,46 +30,65 @@ def window_weights(grid: PolarWindows, disk: DiskMap) -> sparse.csr_array:
 
     Returns
     -------
-    csr_array of shape (windows, pixels)
-        Pixels of `disk.mask` in row-major order. Columns sum to 1, rows to the window's area in square
-        pixels, and no row is empty.
+    WindowShares
+        Columns of the weights sum to 1, and no row is empty.
     """
     pixels = np.argwhere(disk.mask)
-    pixel, window = _parts(grid, disk, pixels, np.arange(len(pixels)), _COARSE)
-    empty = _empty(grid, window)
-    if empty.size:
-        near = np.unique(_pixels_at(disk, pixels, grid.centres_uv[empty]))
-        kept = ~np.isin(pixel, near)
-        fine_pixel, fine_window = _parts(grid, disk, pixels, near, _FINE)
-        pixel = np.concatenate([pixel[kept], fine_pixel])
-        window = np.concatenate([window[kept], fine_window])
-        empty = _empty(grid, window)
-        pixel = np.concatenate([pixel, _pixels_at(disk, pixels, grid.centres_uv[empty])])
-        window = np.concatenate([window, empty])
-    share = 1.0 / np.bincount(pixel, minlength=len(pixels))
-    return sparse.csr_array(
-        sparse.coo_array((share[pixel], (window, pixel)), shape=(grid.n_windows, len(pixels)))
-    )
+    coarse = windows_of_parts(grid, disk, pixels, PARTS)
+    empty = np.flatnonzero(_held(grid, coarse) == 0)
+    if not empty.size:
+        return gather_shares(pixels, grid.n_windows, _blocks(np.arange(len(pixels)), coarse))
+    near = np.unique(_pixels_at(disk, pixels, grid.centres_uv[empty]))
+    kept = np.delete(np.arange(len(pixels)), near)
+    coarse = coarse[kept]
+    fine = windows_of_parts(grid, disk, pixels[near], _FINE)
+    empty = np.flatnonzero(_held(grid, coarse) + _held(grid, fine) == 0)
+    extra = _pixels_at(disk, pixels, grid.centres_uv[empty])
+    counts = np.full(len(pixels), PARTS**2)
+    counts[near] = _FINE**2
+    counts += np.bincount(extra, minlength=len(pixels))
+    share = 1.0 / counts
+    sizes = (kept, coarse), (near, fine), (extra, empty[:, None])
+    parts = chain.from_iterable(_blocks(pixel, window, share) for pixel, window in sizes)
+    return gather_shares(pixels, grid.n_windows, parts)
 
 
-def _parts(
-    grid: PolarWindows, disk: DiskMap, pixels: IntArray, chosen: IntArray, per_side: int
-) -> tuple[IntArray, IntArray]:
-    """Pixel and window of each part of the chosen pixels."""
-    steps = (np.arange(per_side) + 0.5) / per_side - 0.5
-    offsets = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
-    window = np.empty(len(chosen) * per_side**2, dtype=np.int64)
-    for first in range(0, len(chosen), _PIXELS_AT_ONCE):
-        block = chosen[first : first + _PIXELS_AT_ONCE]
-        points = (pixels[block, None, :] + offsets).reshape(-1, 2)
-        start = first * per_side**2
-        uv = disk.to_disk(points, outside="nearest")
-        window[start : start + len(points)] = grid.window_of(uv)
-    return np.repeat(chosen, per_side**2), window
+def windows_of_parts(grid: PolarWindows, disk: DiskMap, pixels_yx: IntArray, per_side: int) -> IntArray:
+    """Window that each part of some pixels maps into.
+
+    Parameters
+    ----------
+    grid : PolarWindows
+    disk : DiskMap
+    pixels_yx : ndarray of shape (P, 2) and dtype int
+        (row, column).
+    per_side : int
+        Parts along a pixel's side.
+
+    Returns
+    -------
+    ndarray of shape (P, parts) and dtype int
+    """
+    window = np.empty((len(pixels_yx), per_side**2), dtype=np.int64)
+    for first in range(0, len(pixels_yx), PIXELS_AT_ONCE):
+        block = slice(first, first + PIXELS_AT_ONCE)
+        points = part_places(pixels_yx[block], per_side).reshape(-1, 2)
+        window[block] = grid.window_of(disk.to_disk(points, outside="nearest")).reshape(-1, per_side**2)
+    return window
 
 
-def _empty(grid: PolarWindows, window: IntArray) -> IntArray:
-    return np.flatnonzero(np.bincount(window, minlength=grid.n_windows) == 0)
+def _blocks(pixel: IntArray, window: IntArray, share: FloatArray | None = None) -> Iterator[PixelParts]:
+    """The same parts, a few pixels at a time."""
+    if share is None:
+        share = np.full(len(pixel), 1.0 / window.shape[1])
+    for first in range(0, len(pixel), PIXELS_AT_ONCE):
+        block = slice(first, first + PIXELS_AT_ONCE)
+        yield PixelParts(pixel[block], window[block], share[pixel[block]])
+
+
+def _held(grid: PolarWindows, window: IntArray) -> IntArray:
+    """Number of parts in each window."""
+    return np.bincount(window.ravel(), minlength=grid.n_windows)
 
 
 def _pixels_at(disk: DiskMap, pixels: IntArray, points_uv: FloatArray) -> IntArray:
