@@ -38,6 +38,8 @@ def test_shapes_of_a_label_image(run: Run, labels: Path, tmp_path: Path) -> None
     assert code == 0
     assert "1 file, 12 cells: 11 measured; 1 refused" in said
     assert "pixel size: 0.3 µm" in said
+    assert "equivalent diameter below 75 px: 11 of 11 cells" in said
+    assert "perhaps not one whole cell" not in said
     assert "of the plane's variance lies along its axis" in said
     assert "1 refused: cell 11 of labels.tif" in error
     assert {"complexity.png", "extremes.png"} == {path.name for path in (tmp_path / "out/figures").iterdir()}

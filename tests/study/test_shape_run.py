@@ -103,7 +103,8 @@ def test_the_files_of_a_study_say_what_their_columns_mean(folder: Path, tmp_path
 
 
 def test_results_do_not_depend_on_workers(folder: Path, tmp_path: Path) -> None:
-    one, two = run(folder, tmp_path / "one"), run(folder, tmp_path / "two", workers=2)
+    masks = folder / "b_masks.tif"  # two parts, so that there is work for two
+    one, two = run(masks, tmp_path / "one"), run(masks, tmp_path / "two", workers=2)
     pd.testing.assert_frame_equal(one, two, check_exact=True)
     assert (tmp_path / "one/shapes.csv").read_bytes() == (tmp_path / "two/shapes.csv").read_bytes()
 
@@ -158,7 +159,17 @@ def test_too_few_cells_have_features_and_no_complexity(folder: Path, tmp_path: P
     assert table[NAMES].notna().all(axis=None)
     assert table[["complexity", "umap_1", "umap_2"]].isna().all(axis=None)
     warnings = json.loads((tmp_path / "out/provenance.json").read_text())["warnings"]
+    assert "5 of 5 cells are too small for curvature" in warnings[-2]
     assert "at least 10" in warnings[-1]
+
+
+def test_cells_that_are_all_alike_have_features_and_no_complexity(tmp_path: Path) -> None:
+    stack = np.repeat(cd.simulate.random_smooth(0, radius=12)[None], 10, axis=0)
+    tifffile.imwrite(tmp_path / "same.tif", stack.astype(np.uint8), photometric="minisblack")
+    table = run(tmp_path / "same.tif", tmp_path / "out", ShapeParameters(kind="stack"))
+    assert table[NAMES].notna().all(axis=None)
+    assert table["complexity"].isna().all()
+    assert "all alike" in json.loads((tmp_path / "out/provenance.json").read_text())["warnings"][-1]
 
 
 def test_only_a_complete_run_of_shapes_is_read(folder: Path, tmp_path: Path) -> None:

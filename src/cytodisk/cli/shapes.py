@@ -89,6 +89,8 @@ def _draw(inputs: "MapInputs", table: "pd.DataFrame", out: Path) -> None:
 
 def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:
     """Say what came out; exit code 2 if that is nothing, or an input is damaged."""
+    from cytodisk.analysis.shape.complexity import why_unscored
+
     measured, lost = table[table["status"] == "ok"], table[table["status"] != "ok"]
     status = table["status"].value_counts()
     numbers = [f"{status[name]} {name}" for name in ("refused", "unreadable") if name in status]
@@ -96,19 +98,31 @@ def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:
     console.print(f"{files}, {count(len(table))}: " + "; ".join([f"{len(measured)} measured", *numbers]))
     border = int(measured["touches_border"].sum())
     console.print(f"on the image border, so measured in part: {count(border)}")
-    doubtful = int((measured["doubts"] != "").sum())
-    if doubtful:
-        console.print(f"perhaps not one whole cell: {doubtful}, column 'doubts' of shapes.parquet")
+    _say_doubts(console, measured)
     say_reasons(zip(lost["cell"], lost["source"], lost["status"], lost["reason"], strict=True))
     if measured["complexity"].notna().any():
         _say_complexity(console, measured)
     elif len(measured):
-        console.print("no complexity: it is relative to other cells and takes at least 10 of them")
+        console.print(f"no complexity: {why_unscored(table)}")
     console.print(f"results: {out}")
     if measured.empty:
         fail(f"no cell could be measured: {lost['reason'].iloc[0]}")
     if "unreadable" in status:
         fail(f"damaged files or frames of the input: {status['unreadable']}; all others are in {out}")
+
+
+def _say_doubts(console: "Console", measured: "pd.DataFrame") -> None:
+    from cytodisk.analysis.shape.curvature import RESOLVED_PX
+    from cytodisk.analysis.shape.features import split_doubts
+
+    small, others = split_doubts(measured["doubts"])
+    if doubtful := int((others != "").sum()):
+        console.print(f"perhaps not one whole cell: {doubtful}, column 'doubts' of shapes.parquet")
+    if small.any():
+        console.print(
+            f"equivalent diameter below {RESOLVED_PX:.0f} px: {small.sum()} of {count(len(measured))}; their "
+            "curvature and roughness depend on the resolution: compare them with cells of the same size only"
+        )
 
 
 def _say_complexity(console: "Console", measured: "pd.DataFrame") -> None:

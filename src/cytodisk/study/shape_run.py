@@ -12,8 +12,8 @@ from typing import Annotated, Any, Literal, TypeAlias
 import pandas as pd
 from pydantic import BaseModel, ConfigDict, Field
 
-from cytodisk.analysis.shape.complexity import LEAST_CELLS, load_umap
-from cytodisk.analysis.shape.features import shape_row
+from cytodisk.analysis.shape.complexity import load_umap, why_unscored
+from cytodisk.analysis.shape.features import TOO_SMALL, shape_row, split_doubts
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import ReadError
 from cytodisk.geometry.mask import clean_mask
@@ -220,14 +220,17 @@ def measure_shapes(cells: Sequence[SourceCell], pixel_size_um: float | None) -> 
 
 
 def _warnings(table: pd.DataFrame) -> list[str]:
-    words = table["reason"].where(table["reason"] != "", table["doubts"])
+    small, doubts = split_doubts(table["doubts"])
+    words = table["reason"].where(table["reason"] != "", doubts)
     warnings = [
         f"cell {cell} of {source}: {text}"
         for cell, source, text in zip(table["cell"], table["source"], words, strict=True)
         if text
     ]
-    if table["complexity"].isna().all():
-        warnings.append(f"no complexity: it takes at least {LEAST_CELLS} cells that can be measured")
+    if small.any():
+        warnings.append(f"{small.sum()} of {len(table)} cells are {TOO_SMALL}: see their doubts")
+    if reason := why_unscored(table):
+        warnings.append(f"no complexity: {reason}")
     return warnings
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 
-from cytodisk.analysis.shape.complexity import LEAST_CELLS, complexity_score
+from cytodisk.analysis.shape.complexity import complexity_score, why_unscored
 from cytodisk.analysis.shape.features import FEATURES, GROUPS, SCALE_FREE, feature_table
 from cytodisk.errors import ReadError
 from cytodisk.files import replacing
@@ -53,11 +53,11 @@ def shape_table(
     -------
     DataFrame
         As `shape_features` returns it, with "source", and "complexity", "umap_1" and "umap_2" before the
-        features: NaN where there are fewer than 10 cells with features.
+        features: NaN where cells cannot be scored, see `why_unscored`.
     """
     table = feature_table([_known_columns(row) for row in rows], pixel_size_um)
     attrs, first = table.attrs, table.columns.get_loc(GROUPS[0].features[0].name)
-    if (table["status"] == "ok").sum() >= LEAST_CELLS:
+    if not why_unscored(table):
         score = complexity_score(table, seed=seed, n_neighbors=n_neighbors, min_dist=min_dist)
         attrs |= {name: score.attrs[name] for name in ("axis_share", "first_component")}
     else:

@@ -1,5 +1,7 @@
 import sys
 import warnings
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -8,7 +10,9 @@ from drawn_shapes import ellipse, star
 from scipy.stats import spearmanr
 
 import cytodisk as cd
-from cytodisk.analysis.shape.complexity import principal_axis, standardised
+from cytodisk.analysis.shape import complexity
+from cytodisk.analysis.shape.complexity import principal_axis, standardised, umap_plane
+from cytodisk.analysis.shape.features import SCALE_FREE
 from cytodisk.errors import MissingPartError, ParameterError
 
 
@@ -20,10 +24,28 @@ def features() -> pd.DataFrame:
     return cd.shape_features([*round_ones, np.zeros((9, 9), dtype=bool), *stars])
 
 
-def test_spikier_cells_score_higher(features: pd.DataFrame) -> None:
-    score = cd.complexity_score(features)
+@pytest.fixture(autouse=True)
+def two_features(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two features instead of UMAP, which takes many seconds to be compiled: for all tests but one."""
+    monkeypatch.setattr(
+        complexity, "umap_plane", lambda values, *_: values[:, :2] - values[:, :2].mean(axis=0)
+    )
+
+
+def test_umap_orders_cells_from_plain_to_spiky_ones(
+    features: pd.DataFrame, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(complexity, "umap_plane", umap_plane)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        score, again, *others = (cd.complexity_score(features, seed=seed) for seed in (0, 0, 1, 2))
+    assert not caught
+    pd.testing.assert_frame_equal(score, again, check_exact=True)
+    assert not score.equals(others[0])
+    scores = np.array([table["complexity"].dropna() for table in (score, *others)])
+    assert np.min(spearmanr(scores.T).statistic) > 0.9  # the seed hardly matters
     ok = features["status"] == "ok"
-    assert spearmanr(score.loc[ok, "complexity"], features.loc[ok, "circularity"]).statistic < -0.6
+    assert spearmanr(scores[0], features.loc[ok, "circularity"]).statistic < -0.6
     assert score["complexity"].idxmin() < 8 < score["complexity"].idxmax()
     assert 0.5 <= score.attrs["axis_share"] <= 1
     assert score.attrs["first_component"] > 0.8
@@ -39,12 +61,11 @@ def test_the_score_is_the_place_along_the_axis_of_the_plane(features: pd.DataFra
     assert np.corrcoef(across, score["complexity"])[0, 1] == pytest.approx(0, abs=1e-6)
 
 
-def test_a_seed_gives_the_same_bits_and_a_refused_cell_has_none(features: pd.DataFrame) -> None:
-    first, second = cd.complexity_score(features, seed=3), cd.complexity_score(features, seed=3)
-    pd.testing.assert_frame_equal(first, second, check_exact=True)
-    assert first["status"].tolist() == features["status"].tolist()
-    assert first.loc[8, ["complexity", "umap_1", "umap_2"]].isna().all()
-    assert first["complexity"].isna().sum() == 1
+def test_a_refused_cell_has_no_score(features: pd.DataFrame) -> None:
+    score = cd.complexity_score(features)
+    assert score["status"].tolist() == features["status"].tolist()
+    assert score.loc[8, ["complexity", "umap_1", "umap_2"]].isna().all()
+    assert score["complexity"].isna().sum() == 1
 
 
 def test_the_index_of_the_features_is_kept(features: pd.DataFrame) -> None:
@@ -66,11 +87,60 @@ def test_ten_cells_are_enough_and_nine_are_not(features: pd.DataFrame) -> None:
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"seed": -1}, {"seed": 0.5}, {"n_neighbors": 1}, {"min_dist": 2.0}, {"min_dist": "a"}]
+    "wrong",
+    [
+        {"seed": -1},
+        {"seed": 0.5},
+        {"n_neighbors": 1},
+        {"min_dist": 2.0},
+        {"min_dist": "a"},
+        {"min_dist": np.float32("nan")},
+        {"min_dist": True},
+    ],
 )
 def test_a_parameter_out_of_its_range_is_an_error(features: pd.DataFrame, wrong: dict[str, object]) -> None:
     with pytest.raises(ParameterError, match=next(iter(wrong))):
         cd.complexity_score(features, **wrong)  # type: ignore[arg-type]
+
+
+def test_numpy_numbers_are_parameters(features: pd.DataFrame) -> None:
+    given = {"seed": np.int64(0), "n_neighbors": np.float32(15), "min_dist": np.float32(0.1)}
+    pd.testing.assert_frame_equal(cd.complexity_score(features, **given), cd.complexity_score(features))
+
+
+def test_a_table_of_nullable_numbers_is_scored(features: pd.DataFrame) -> None:
+    nullable = features.astype(dict.fromkeys(SCALE_FREE, "Float64"))
+    expected = cd.complexity_score(features)["complexity"]
+    np.testing.assert_array_equal(cd.complexity_score(nullable)["complexity"], expected)
+
+
+def test_cells_that_are_all_alike_are_an_error(features: pd.DataFrame) -> None:
+    same = features.iloc[[3] * 12]
+    with pytest.raises(ParameterError, match=r"12 cells that are all alike \(0 of their features"):
+        cd.complexity_score(same)
+    with pytest.raises(ParameterError, match="1 of their features vary"):
+        cd.complexity_score(same.assign(circularity=np.linspace(0.1, 0.9, 12)))
+
+
+def test_constant_circularity_gives_no_direction_and_is_an_error(features: pd.DataFrame) -> None:
+    with pytest.raises(ParameterError, match="same circularity in every cell"):
+        cd.complexity_score(features.assign(circularity=0.5))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (lambda table: table.assign(extent="0.5"), "in column 'extent', not numbers"),
+        (lambda table: table.assign(extent=True), "bool in column 'extent'"),
+        (lambda table: table.to_numpy(), "features must be a DataFrame, got ndarray"),
+        (lambda table: pd.concat([table, table["extent"]], axis=1), "2 columns 'extent'"),
+    ],
+)
+def test_what_is_no_table_of_numbers_is_an_error(
+    features: pd.DataFrame, wrong: Callable[[pd.DataFrame], Any], words: str
+) -> None:
+    with pytest.raises(ParameterError, match=words):
+        cd.complexity_score(wrong(features))
 
 
 def test_a_missing_feature_is_an_error(features: pd.DataFrame) -> None:
@@ -81,16 +151,10 @@ def test_a_missing_feature_is_an_error(features: pd.DataFrame) -> None:
 def test_without_umap_the_error_says_what_to_install(
     features: pd.DataFrame, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(complexity, "umap_plane", umap_plane)
     monkeypatch.setitem(sys.modules, "umap", None)
     with pytest.raises(MissingPartError, match=r"pip install 'cytodisk\[umap\]'"):
         cd.complexity_score(features)
-
-
-def test_no_warning_comes_out(features: pd.DataFrame) -> None:
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        cd.complexity_score(features)
-    assert not caught
 
 
 def test_standardised_features_are_comparable_and_constant_ones_are_dropped() -> None:
@@ -112,8 +176,3 @@ def test_the_principal_axis_of_a_line_is_its_direction() -> None:
     axis, share = principal_axis(np.column_stack([3 * steps, 4 * steps]))
     np.testing.assert_allclose(np.abs(axis), [0.6, 0.8])
     assert share == pytest.approx(1)
-
-
-def test_the_seed_hardly_matters(features: pd.DataFrame) -> None:
-    scores = [cd.complexity_score(features, seed=seed)["complexity"].dropna() for seed in range(3)]
-    assert np.min(spearmanr(np.transpose(scores)).statistic) > 0.9

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +15,7 @@ from cytodisk.geometry.outline import trace_outline
 from cytodisk.geometry.polygon import edge_lengths, signed_area, smooth_closed
 
 LEAST_AREA_PX = 16
+LEAST_SMOOTHING_PX = 3.0  # that takes the stair steps out of curvature
 _LIGHT_PX = 1.0  # takes the stair steps out of lengths, as everywhere in cytodisk
 _POINTS = 512  # of an outline with even steps; a power of 2, for the Fourier transform
 
@@ -27,9 +28,12 @@ class CellShape:
     ----------
     mask : ndarray of shape (H, W) and dtype bool
         One piece without holes, cropped, with a margin of at least one pixel on each side.
+    notes : list of str
+        What was measured in another way than usual; the groups of features add to it.
     """
 
     mask: BoolArray
+    notes: list[str] = field(default_factory=list)
 
     @cached_property
     def area(self) -> float:
@@ -76,13 +80,14 @@ class CellShape:
         """The lightly smoothed outline in 512 even steps, shape (512, 2), (row, column) in pixels."""
         return even_steps(self.outline, _POINTS)
 
-    def smoothed_curve(self, sigma_px: float) -> FloatArray:
+    def smoothed_curve(self, share: float) -> FloatArray:
         """The outline after stronger smoothing, at 512 points with even steps.
 
         Parameters
         ----------
-        sigma_px : float
-            Standard deviation of the kernel along the outline, in pixels.
+        share : float
+            Standard deviation of the kernel along the outline over the equivalent diameter. It is 3 px at
+            least, so a small cell is smoothed more than the same shape drawn larger.
 
         Returns
         -------
@@ -91,7 +96,7 @@ class CellShape:
         """
         # Finer than the result, so that no two of its points lie on one edge: it would be straight there.
         fine = even_steps(self.traced, max(2 * _POINTS, len(self.traced)))
-        return even_steps(smooth_closed(fine, sigma_px), _POINTS)
+        return even_steps(smooth_closed(fine, max(LEAST_SMOOTHING_PX, share * self.diameter)), _POINTS)
 
     @cached_property
     def pixels(self) -> FloatArray:

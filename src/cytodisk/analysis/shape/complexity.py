@@ -15,6 +15,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.errors import MissingPartError, ParameterError
 
 LEAST_CELLS = 10
+_LEAST_FEATURES = 2  # that vary: a plane has two axes
 _NORMAL_QUARTILES = 1.349  # between the quartiles of a normal distribution with standard deviation 1
 
 
@@ -24,7 +25,8 @@ def complexity_score(
     """Place cells on an axis from plain to complex shapes.
 
     The scale-free features, made comparable, are laid out in a plane by UMAP; the score is the position along
-    the plane's principal axis, higher for cells with more edge for their area.
+    the plane's principal axis, higher for cells with more edge for their area. The equivalent diameter of
+    cells should be at least 75 px, or about the same in all: see `shape_features`.
 
     Parameters
     ----------
@@ -32,7 +34,7 @@ def complexity_score(
         As `shape_features` returns it, or several of them put together. `attrs["scale_free"]` names the
         columns that count; without it they are all scale-free features of `shape_features`.
     seed : int
-        Of UMAP. The same seed gives the same result.
+        Of UMAP. The same seed gives the same result for the same rows in the same order.
     n_neighbors : int
         Of UMAP, at least 2: how many cells count as alike. At most one less than there are cells is used.
     min_dist : float
@@ -50,7 +52,8 @@ def complexity_score(
     Raises
     ------
     ParameterError
-        Fewer than 10 cells with features, a missing column, or a parameter out of its range.
+        `features` is not a table of numbers with the columns of `shape_features`, has fewer than 10 cells
+        with numbers, or cells that are all alike; or a parameter is out of its range.
     MissingPartError
         umap-learn is not installed.
 
@@ -60,10 +63,11 @@ def complexity_score(
     compressed by arsinh, which is a logarithm for large values, so that few extreme cells do not make the
     axis. UMAP starts from the first two principal components: from its usual start, groups of cells that
     hang together loosely come to lie anywhere, and the score depends on the seed. Eigenvectors have no sign:
-    the axis points to where circularity falls (rank correlation).
+    the axis points to where circularity falls (rank correlation), so circularity must not be constant.
 
     The score has no unit and depends on the cells that are scored together: compare only scores that were
-    computed in one call.
+    computed in one call. Where large and small cells are scored together, the place of the small ones also
+    depends on the resolution.
 
     References
     ----------
@@ -72,17 +76,15 @@ def complexity_score(
     doi:10.1038/s41587-020-00809-z.
     """
     seed, n_neighbors = whole_number("seed", seed, 0), whole_number("n_neighbors", n_neighbors, 2)
-    if isinstance(min_dist, bool) or not isinstance(min_dist, int | float) or not 0 <= min_dist <= 1:
+    number = isinstance(min_dist, int | float | np.integer | np.floating) and not isinstance(min_dist, bool)
+    if not number or not 0 <= min_dist <= 1:
         raise ParameterError(f"min_dist must be a number from 0 to 1, got {min_dist!r}")
+    if reason := why_unscored(features):
+        raise ParameterError(reason)
     names, values = _measured(features)
     known = np.isfinite(values).all(axis=1)
-    if known.sum() < LEAST_CELLS:
-        raise ParameterError(
-            f"features has {known.sum()} cells with numbers, and a complexity score is relative to other "
-            f"cells: pass at least {LEAST_CELLS}"
-        )
     comparable = standardised(values[known])
-    plane = umap_plane(comparable, seed, min(n_neighbors, int(known.sum()) - 1), min_dist)
+    plane = umap_plane(comparable, seed, min(n_neighbors, int(known.sum()) - 1), float(min_dist))
     axis, share = principal_axis(plane)
     circularity = values[known, names.index("circularity")]
     score = plane @ axis
@@ -101,8 +103,51 @@ def complexity_score(
     return table
 
 
+def why_unscored(features: pd.DataFrame) -> str:
+    """Why cells cannot be scored; empty if they can.
+
+    Parameters
+    ----------
+    features : DataFrame
+        As for `complexity_score`.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    ParameterError
+        `features` is not a table of numbers with the columns of `shape_features`.
+    """
+    names, values = _measured(features)
+    values = values[np.isfinite(values).all(axis=1)]
+    if len(values) < LEAST_CELLS:
+        return (
+            f"features has {len(values)} cells with numbers, and a complexity score is relative to other "
+            f"cells: pass at least {LEAST_CELLS}"
+        )
+    varying = standardised(values).shape[1]
+    if varying < _LEAST_FEATURES:
+        return (
+            f"features has {len(values)} cells that are all alike ({varying} of their features vary), and a "
+            "complexity score tells how they differ: pass cells of different shapes"
+        )
+    if not standardised(values[:, [names.index("circularity")]]).size:
+        return (
+            "features has the same circularity in every cell, which tells the plain end of the axis from the "
+            "complex one: pass cells of different shapes"
+        )
+    return ""
+
+
 def _measured(features: pd.DataFrame) -> tuple[list[str], FloatArray]:
     """Names and values of the features that count."""
+    if not isinstance(features, pd.DataFrame):
+        raise ParameterError(
+            f"features must be a DataFrame, got {type(features).__name__}: pass the table that "
+            "shape_features returns"
+        )
     names = list(features.attrs.get("scale_free", SCALE_FREE))
     missing = [name for name in dict.fromkeys([*names, "circularity"]) if name not in features]
     if missing:
@@ -111,7 +156,18 @@ def _measured(features: pd.DataFrame) -> tuple[list[str], FloatArray]:
         )
     if "circularity" not in names:
         names.append("circularity")
-    return names, features[names].to_numpy(np.float64)
+    for name in names:
+        _check_column(features[name], name)
+    return names, features[names].to_numpy(np.float64, na_value=np.nan)
+
+
+def _check_column(column: pd.Series[Any] | pd.DataFrame, name: str) -> None:
+    if isinstance(column, pd.DataFrame):
+        raise ParameterError(f"features has {column.shape[1]} columns {name!r}: leave one of them")
+    if not pd.api.types.is_any_real_numeric_dtype(column):
+        raise ParameterError(
+            f"features holds {column.dtype} in column {name!r}, not numbers: convert it by pd.to_numeric"
+        )
 
 
 def standardised(values: FloatArray) -> FloatArray:

@@ -2,12 +2,14 @@
 
 import numpy as np
 
-from cytodisk.analysis.shape.cell_shape import CellShape
-from cytodisk.analysis.shape.feature import FeatureGroup, plain
+from cytodisk.analysis.shape.cell_shape import LEAST_SMOOTHING_PX, CellShape
+from cytodisk.analysis.shape.feature import Feature, FeatureGroup, plain
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.geometry.polygon import edge_lengths
 
-_SHARE, _LEAST_PX = 0.04, 3.0  # smoothing, of the equivalent diameter; least, against stair steps
+_SHARE = 0.04  # of the equivalent diameter: smoothing of the outline
+RESOLVED_PX = LEAST_SMOOTHING_PX / _SHARE
+"""Least equivalent diameter of a cell whose curvature does not depend on the resolution, in pixels."""
 _STRONG, _CONCAVE = 1.5, -0.5  # curvature of a tip and of a bay, a disk of the same area having 1
 _TIP_TURN, _BAY_TURN = (
     np.deg2rad(100.0),
@@ -27,7 +29,7 @@ def measure_curvature(shape: CellShape) -> dict[str, float]:
     dict of str to float
         By name, see `CURVATURE`.
     """
-    curve = shape.smoothed_curve(max(_LEAST_PX, _SHARE * shape.diameter))
+    curve = shape.smoothed_curve(_SHARE)
     turn = turning(curve)
     bend = turn * (len(curve) / edge_lengths(curve).sum()) * shape.radius
     low, median, high = np.percentile(bend, (5, 50, 95)).tolist()
@@ -88,20 +90,29 @@ def turn_of_runs(turn: FloatArray, inside: BoolArray) -> FloatArray:
     return np.asarray(np.bincount(runs[inside], turn[inside], minlength=len(starts) + 1)[1:], np.float64)
 
 
+def _bend(name: str, description: str) -> Feature:
+    smoothing = (
+        f"outline smoothed over {_SHARE:.0%} of the equivalent diameter, {LEAST_SMOOTHING_PX:g} px at least"
+    )
+    return plain(
+        name, f"{description}; {smoothing}, so it depends on the resolution below {RESOLVED_PX:.0f} px"
+    )
+
+
 CURVATURE = FeatureGroup(
     "curvature",
     (
-        plain("curvature_size", "Mean |κ| of the outline × equivalent radius; 1 for a disk"),
-        plain("curvature_sd", "sd of κ × equivalent radius; 0 for a disk"),
-        plain("curvature_min", "Smallest κ × equivalent radius; negative where concave"),
-        plain("curvature_p05", "Percentile 5 of κ × equivalent radius"),
-        plain("curvature_p50", "Median of κ × equivalent radius"),
-        plain("curvature_p95", "Percentile 95 of κ × equivalent radius"),
-        plain("curvature_max", "Largest κ × equivalent radius"),
-        plain("concave_share", "Share of the outline that is concave (κ × equivalent radius below -0.5)"),
-        plain("concave_turn", "Turns that the outline makes in its concave parts"),
-        plain("tips", "Tips that stick out: strongly curved stretches that turn by more than 100°"),
-        plain("bays", "Bays: concave stretches that turn by more than 30°"),
+        _bend("curvature_size", "Mean |κ| of the outline × equivalent radius; 1 for a disk"),
+        _bend("curvature_sd", "sd of κ × equivalent radius; 0 for a disk"),
+        _bend("curvature_min", "Smallest κ × equivalent radius; negative where concave"),
+        _bend("curvature_p05", "Percentile 5 of κ × equivalent radius"),
+        _bend("curvature_p50", "Median of κ × equivalent radius"),
+        _bend("curvature_p95", "Percentile 95 of κ × equivalent radius"),
+        _bend("curvature_max", "Largest κ × equivalent radius"),
+        _bend("concave_share", "Share of the outline that is concave (κ × equivalent radius below -0.5)"),
+        _bend("concave_turn", "Turns that the outline makes in its concave parts"),
+        _bend("tips", "Tips that stick out: strongly curved stretches that turn by more than 100°"),
+        _bend("bays", "Bays: concave stretches that turn by more than 30°"),
     ),
     measure_curvature,
 )

@@ -13,6 +13,7 @@ from cytodisk.geometry.mesh import Mesh, mesh_inside
 
 _STEPS_ACROSS = 40  # edges of the mesh along the equivalent diameter; finer ones rank cells the same
 _FINEST_PX = 0.9  # as `map_to_disk` has it
+FINE_MESH = "harmonic features from a mesh as fine as the pixels: its outline crosses itself in larger steps"
 _PERCENTILES = (5, 25, 75, 95)
 
 
@@ -48,7 +49,10 @@ def measure_distortion(shape: CellShape) -> dict[str, float]:
 
 
 def coarse_mesh(shape: CellShape) -> Mesh:
-    """Triangulation of a cell whose edges are a fortieth of its equivalent diameter, if its outline allows.
+    """Triangulation of a cell whose edges are a fortieth of its equivalent diameter.
+
+    Where the cell is thinner than such an edge, opposite edges of the outline can cross. The mesh is then as
+    fine as the pixels, and the shape's notes say so.
 
     Parameters
     ----------
@@ -57,12 +61,18 @@ def coarse_mesh(shape: CellShape) -> Mesh:
     Returns
     -------
     Mesh
+
+    Raises
+    ------
+    MeshError
+        The pixel outline cannot be meshed either.
     """
     step = max(_FINEST_PX, shape.diameter / _STEPS_ACROSS)
     outline = even_steps(shape.outline, max(16, round(shape.perimeter / step)))
     try:
         return mesh_inside(outline, shape.mask, edge_length=step)
-    except MeshError:  # where the cell is thinner than a step, opposite edges can cross
+    except MeshError:
+        shape.notes.append(FINE_MESH)
         return mesh_inside(shape.traced, shape.mask, edge_length=_FINEST_PX)
 
 

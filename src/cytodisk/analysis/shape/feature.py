@@ -27,7 +27,7 @@ class Feature(NamedTuple):
 
     @property
     def scale_free(self) -> bool:
-        """Whether it stays the same when the same shape is drawn larger."""
+        """Whether it refers to the disk of the same area: see `shape_features` on small cells."""
         return "length" not in self.unit
 
 

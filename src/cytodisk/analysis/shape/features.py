@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 from scipy import ndimage
 
-from cytodisk.analysis.shape.cell_shape import crop_shape
-from cytodisk.analysis.shape.curvature import CURVATURE
+from cytodisk.analysis.shape.cell_shape import CellShape, crop_shape
+from cytodisk.analysis.shape.curvature import CURVATURE, RESOLVED_PX
 from cytodisk.analysis.shape.depth import DEPTH
 from cytodisk.analysis.shape.distortion import DISTORTION
 from cytodisk.analysis.shape.feature import Feature, FeatureGroup
@@ -34,6 +34,8 @@ GROUPS: tuple[FeatureGroup, ...] = (
 )
 FEATURES: tuple[Feature, ...] = tuple(feature for group in GROUPS for feature in group.features)
 SCALE_FREE: tuple[str, ...] = tuple(feature.name for feature in FEATURES if feature.scale_free)
+TOO_SMALL = "too small for curvature and roughness to be those of the shape"
+_MOST_CHANNELS = 4
 
 
 def shape_features(masks: Any, *, pixel_size_um: float | None = None) -> pd.DataFrame:
@@ -53,22 +55,30 @@ def shape_features(masks: Any, *, pixel_size_um: float | None = None) -> pd.Data
     -------
     DataFrame
         A row a cell: "cell" (its running number), "frame" (its place in the stack or list), "label", "status"
-        ("ok" or "refused"), "reason" (why there are no numbers), "notes" (what cleaning changed), "doubts"
-        (what speaks against one whole cell), "touches_border", then the features, NaN for a refused cell.
-        `attrs["units"]` and `attrs["description"]` are dicts by column, `attrs["scale_free"]` is the list of
-        features that stay the same when the same shape is drawn larger.
+        ("ok" or "refused"), "reason" (why there are no numbers), "notes" (what cleaning changed, what was
+        measured in another way), "doubts" (what speaks against one whole cell, or that it is too small),
+        "touches_border", then the features, NaN for a refused cell. `attrs["units"]` and
+        `attrs["description"]` are dicts by column, `attrs["scale_free"]` is the list of features that refer
+        to the disk of the same area.
 
     Raises
     ------
     MaskError
-        `masks` is none of these, or a label image that holds no cell.
+        `masks` is none of these, has its channels last, or is a label image that holds no cell.
     ParameterError
         The pixel size is not a positive number.
 
     Notes
     -----
-    Scale-free features refer to the disk of the same area. None depends on place, turn or mirror image, up
-    to the pixels. A cell that touches the image border is measured as far as it is seen.
+    Scale-free features stay nearly the same when the same shape is drawn larger, if its equivalent diameter
+    D = √(4 area / π) is 75 px or more. The outline is smoothed over 3 px at least, against the steps of the
+    pixels, so that below 75 px curvature, tips and bays, and below 60 px roughness, depend on the
+    resolution: a star of 10 px has few tips or none. A cell below 75 px has a word in "doubts". Shares of
+    thin parts, small percentiles of depth and high harmonics drift too, less and less up to about 120 px.
+    Compare small cells with those of their size.
+
+    No feature depends on place, turn or mirror image, up to the pixels. A cell that touches the image border
+    is measured as far as it is seen.
 
     References
     ----------
@@ -106,10 +116,35 @@ def shape_row(mask: Any, pixel_size_um: float | None = None) -> dict[str, Any]:
         values: dict[str, float] = {}
         for group in GROUPS:
             values |= group.measure(shape)
+        row["notes"] = "; ".join([*report.notes, *shape.notes])
+        row["doubts"] = "; ".join([*report.doubts, *_doubts_of_size(shape)])
     except CytodiskError as error:
         return row | {"status": "refused", "reason": str(error)}
     pixel = 1.0 if pixel_size_um is None else float(pixel_size_um)
     return row | {feature.name: values[feature.name] * _scale(feature, pixel) for feature in FEATURES}
+
+
+def _doubts_of_size(shape: CellShape) -> list[str]:
+    if shape.diameter >= RESOLVED_PX:
+        return []
+    return [f"{TOO_SMALL}: D = {shape.diameter:.3g} px, below {RESOLVED_PX:.0f} px"]
+
+
+def split_doubts(doubts: pd.Series[str]) -> tuple[pd.Series[bool], pd.Series[str]]:
+    """Which cells are too small for curvature and roughness, and the other doubts of each.
+
+    Parameters
+    ----------
+    doubts : Series of str
+        The column of `shape_features`.
+
+    Returns
+    -------
+    small : Series of bool
+    others : Series of str
+    """
+    small = doubts.str.contains(TOO_SMALL, regex=False)
+    return small, doubts.str.replace(f"(; )?{TOO_SMALL}.*", "", regex=True)  # it stands last
 
 
 def feature_table(rows: Sequence[dict[str, Any]], pixel_size_um: float | None) -> pd.DataFrame:
@@ -160,8 +195,9 @@ def _cells(masks: Any) -> Iterator[tuple[int, int, Any]]:
     if isinstance(masks, list | tuple) and masks and np.ndim(masks[0]) == 2:
         yield from ((frame, 1, _boxed(mask)) for frame, mask in enumerate(masks))
         return
-    array = np.asarray(masks)
+    array = _as_array(masks)
     if array.ndim == 3:
+        _refuse_channels(array)
         yield from ((frame, 1, _boxed(mask)) for frame, mask in enumerate(array))
     elif array.ndim == 2 and np.issubdtype(array.dtype, np.integer):
         yield from ((0, label, mask) for label, mask in _labelled(array))
@@ -171,6 +207,24 @@ def _cells(masks: Any) -> Iterator[tuple[int, int, Any]]:
         raise MaskError(
             "masks must be a label image (H, W), a stack (N, H, W) or a list of masks, "
             f"got shape {array.shape}: pass one channel"
+        )
+
+
+def _as_array(masks: Any) -> np.ndarray[Any, Any]:
+    try:
+        return np.asarray(masks)
+    except ValueError as error:  # such as images of different sizes with channels
+        raise MaskError(
+            f"masks must be a label image (H, W), a stack (N, H, W) or a list of masks (H, W): {error}"
+        ) from error
+
+
+def _refuse_channels(stack: np.ndarray[Any, Any]) -> None:
+    """Raise MaskError for what looks like one image with channels: masks no wider than four pixels."""
+    if stack.shape[2] <= _MOST_CHANNELS < stack.shape[0]:
+        raise MaskError(
+            f"masks must be a label image (H, W) or a stack (N, H, W), got shape {stack.shape}, which looks "
+            "like an image with channels last: pass one channel, such as masks[..., 0]"
         )
 
 

@@ -3,12 +3,13 @@
 import numpy as np
 from scipy.spatial.distance import pdist
 
-from cytodisk.analysis.shape.cell_shape import CellShape
+from cytodisk.analysis.shape.cell_shape import LEAST_SMOOTHING_PX, CellShape
 from cytodisk.analysis.shape.feature import FeatureGroup, plain
 from cytodisk.analysis.shape.size import ellipse_axes, rectangle_sides
 from cytodisk.geometry.polygon import edge_lengths
 
-_COARSE_SHARE, _COARSE_PX = 0.05, 3.0  # smoothing of the outline without its detail, of the diameter; least
+_COARSE_SHARE = 0.05  # of the equivalent diameter: smoothing of the outline without its detail
+_RESOLVED_PX = LEAST_SMOOTHING_PX / _COARSE_SHARE
 
 
 def measure_form(shape: CellShape) -> dict[str, float]:
@@ -43,8 +44,7 @@ def measure_form(shape: CellShape) -> dict[str, float]:
 
 
 def _coarse_perimeter(shape: CellShape) -> float:
-    coarse = shape.smoothed_curve(max(_COARSE_PX, _COARSE_SHARE * shape.diameter))
-    return float(edge_lengths(coarse).sum())
+    return float(edge_lengths(shape.smoothed_curve(_COARSE_SHARE)).sum())
 
 
 def _around_centroid(shape: CellShape) -> dict[str, float]:
@@ -79,7 +79,11 @@ FORM = FeatureGroup(
         plain("feret_aspect", "Longest / smallest Feret diameter"),
         plain("roundness", "Area / area of the disk as wide as the longest Feret diameter"),
         plain("hull_circularity", "4π area / perimeter² of the convex hull"),
-        plain("roughness", "Perimeter / perimeter after smoothing over 5 % of the equivalent diameter"),
+        plain(
+            "roughness",
+            f"Perimeter / perimeter after smoothing over {_COARSE_SHARE:.0%} of the equivalent diameter, "
+            f"{LEAST_SMOOTHING_PX:g} px at least; depends on the resolution below {_RESOLVED_PX:.0f} px",
+        ),
         plain("radius_variation", "sd / mean of the outline's distance from the centroid"),
         plain("radius_max", "Longest distance of the outline from the centroid / equivalent radius"),
         plain("radius_min", "Smallest distance of the outline from the centroid / equivalent radius"),
