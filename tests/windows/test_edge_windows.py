@@ -8,22 +8,37 @@ import cytodisk as cd
 from cytodisk.errors import WindowError
 from cytodisk.simulate import KINDS, random_mask
 
+RECTANGLE = np.pad(np.ones((12, 20), dtype=bool), 4)
 
-def rings_on_paper(radius: float, depth: float, layers: int) -> np.ndarray:
-    """Area of each ring of a disk; the last one is a disk."""
-    radii = np.maximum(radius - depth * np.arange(layers + 1), 0.0)
-    return -np.pi * np.diff(radii**2)
+
+def test_layers_of_a_rectangle_are_frames() -> None:
+    """Exactly: the outline runs along the pixels' sides, and layers of 2 px end between parts. The middle is
+    6 px deep, so the fourth layer and the fifth are empty."""
+    windows = cd.edge_windows(RECTANGLE, 5, 1, depth_px=2.0)
+    sizes = [(12 - 4 * layer) * (20 - 4 * layer) for layer in range(4)]
+    assert_array_equal(windows.areas[:, 0], [*-np.diff(sizes), 0, 0])
+    assert windows.n_empty == 2
+    assert windows.coverage == 1.0
+    assert windows.edge.greatest_depth == 6 - 1 / 8  # in the middle of a part
+
+
+def test_a_layer_between_parts_is_known_too() -> None:
+    windows = cd.edge_windows(RECTANGLE, 1, 1, depth_px=0.75)
+    assert windows.areas.item() == 12 * 20 - 10.5 * 18.5
+    assert windows.coverage == pytest.approx(1 - 10.5 * 18.5 / 240)
+    side = [[rows**k * columns ** (4 - k) for k in (1, 3)] for rows, columns in ((12, 20), (10.5, 18.5))]
+    small, large = sorted(side[0][k] - side[1][k] for k in (0, 1))  # second moments, times 12
+    assert windows.eccentricities.item() == pytest.approx(np.sqrt(1 - small / large), rel=1e-12)
 
 
 def test_layers_of_a_disk_are_rings_of_equal_depth() -> None:
-    """Parts are 1/4 px wide and the mask's edge is in steps: a ring's radii are off by less than 0.1 px."""
-    mask = cd.simulate.disk(60)
-    windows = cd.edge_windows(mask, 6, 8)
-    radius = np.sqrt(mask.sum() / np.pi)
-    assert windows.depth_px == pytest.approx(radius / 6, rel=0.02)
-    expected = rings_on_paper(radius, windows.depth_px, 6)
-    assert_allclose(windows.areas.sum(axis=1), expected, atol=2.0 * np.pi * radius * 0.3)
-    assert_allclose(windows.areas, np.repeat(expected[:, None] / 8, 8, axis=1), rtol=0.05, atol=8.0)
+    """The mask's edge goes in steps of a pixel, so what a layer surrounds has a radius that is off by less
+    than half a pixel, of 10 from layer to layer."""
+    windows = cd.edge_windows(cd.simulate.disk(60), 6, 8)
+    assert windows.depth_px == pytest.approx(10.0, rel=0.015)
+    within = np.cumsum(windows.areas.sum(axis=1)[::-1])[::-1]
+    assert_allclose(np.sqrt(within[1:] / np.pi), windows.depth_px * np.arange(5, 0, -1), atol=0.5)
+    assert_allclose(windows.areas / windows.areas.sum(axis=1, keepdims=True), 1 / 8, rtol=0.03)
     assert windows.n_empty == 0
 
 
@@ -50,7 +65,7 @@ def test_inner_layers_of_a_dumbbell_are_incomplete_and_apart() -> None:
     assert completeness[0] == 1.0
     assert (np.diff(completeness) <= 0).all()
     assert completeness[-1] < 0.85
-    assert windows.n_empty == (windows.areas == 0).sum() > 0
+    assert windows.n_empty == 200 - round(40 * completeness.sum()) > 0
     assert_array_equal(windows.layer_pieces, [1, 2, 2, 2, 2])
 
 
@@ -80,7 +95,10 @@ def test_windows_hold_their_share_of_the_cell(
     windows = cd.edge_windows(random_mask(kind, seed), layers, sectors, depth)
     columns = windows.weights.sum(axis=0)
     assert columns.max() <= 1.0
-    assert windows.areas.sum() == pytest.approx(windows.coverage * windows.mask.sum(), rel=1e-12)
+    parts = windows.part_windows
+    assert windows.coverage == pytest.approx((parts >= 0).mean(), rel=1e-12)
+    counts = np.bincount(parts[parts >= 0], minlength=layers * sectors)
+    assert_array_equal(windows.areas.ravel(), counts / 16)
     if depth is None or depth == 50.0:
         assert windows.coverage == 1.0
     signal = np.random.default_rng(seed).uniform(1.0, 9.0, windows.mask.shape)
@@ -116,6 +134,32 @@ def test_depth_and_place_have_a_plain_twin(kind: str) -> None:
             [np.interp(angle[:, part], windows.edge.angles, xs, period=2.0 * np.pi) for xs in outline.T]
         )
         assert_allclose(np.linalg.norm(places[:, column] - above, axis=-1), distance.min(axis=1), atol=1e-9)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_pixels_that_are_left_out_make_no_difference(kind: str) -> None:
+    """Depths are only found where they matter: near the deepest point, and within the layers."""
+    edge = cd.edge_windows(np.kron(random_mask(kind, 5), np.ones((4, 4), dtype=bool)), 1, 7).edge
+    depth, angle = edge.parts_of(np.argwhere(edge.mask))
+    place, deepest = edge.deepest
+    assert deepest == depth.max()
+    assert_array_equal(place, np.argwhere(edge.mask)[depth.max(axis=1).argmax()])
+    for depth_px in (0.3, 2.0):
+        windows = cd.EdgeWindows(cd.EdgeGrid(2, 7, depth_px), edge)
+        assert_array_equal(windows.part_windows, windows.grid.window_of(depth, angle))
+
+
+@pytest.mark.parametrize("depth", [5e-324, 1e-200, 1e-18])
+def test_a_tiny_depth_leaves_almost_all_out(depth: float) -> None:
+    """But three parts at each corner, which the outline cuts off: their depth is 0."""
+    windows = cd.edge_windows(RECTANGLE, 3, 1, depth)
+    assert_array_equal(windows.areas[:, 0], [12 / 16, 0, 0])
+
+
+@pytest.mark.parametrize("depth", [1e3, 1e300, np.float64(1.7e308)])
+def test_a_huge_depth_takes_all_into_the_first_layer(depth: float) -> None:
+    windows = cd.edge_windows(RECTANGLE, 3, 1, depth)
+    assert_array_equal(windows.areas[:, 0], [240, 0, 0])
 
 
 def test_sectors_are_those_of_the_map_they_are_given() -> None:

@@ -51,9 +51,10 @@ def measures_by_layer(windows: WindowsOnCell | xr.Dataset) -> xr.Dataset:
     -------
     Dataset with dims (layer,)
         completeness, the share of windows that hold signal; over those that do, area_cv and eccentricity_cv,
-        the coefficients of variation (standard deviation over mean; NaN for fewer than two windows), mean
-        area (square pixels), mean eccentricity, mean pieces, and one_piece, the share of windows in one
-        piece; layer_pieces, the pieces of the layer as a whole.
+        the coefficients of variation (standard deviation over mean; NaN for fewer than two windows, or where
+        the mean is 0, as that of the eccentricities of squares), mean area (square pixels), mean
+        eccentricity, mean pieces, and one_piece, the share of windows in one piece; layer_pieces, the pieces
+        of the layer as a whole.
 
     References
     ----------
@@ -77,7 +78,7 @@ def measures_by_layer(windows: WindowsOnCell | xr.Dataset) -> xr.Dataset:
 
 
 def _variation(values: xr.DataArray) -> xr.DataArray:
-    """Standard deviation over mean, over sectors; NaN where fewer than two have a value."""
+    """Standard deviation over mean, over sectors; NaN where fewer than two have a value, or the mean is 0."""
     mean = values.mean("sector")
     enough = (values.count("sector") > 1) & (mean > 0)
     return values.std("sector").where(enough) / mean

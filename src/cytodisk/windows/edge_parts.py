@@ -51,6 +51,8 @@ def depths_and_angles(
     angle : ndarray of shape (P, parts) and dtype float
         In radians.
     """
+    if not len(places_yx):
+        return np.empty(places_yx.shape[:2]), np.empty(places_yx.shape[:2])
     ends = np.append(angles[1:], angles[0] + 2.0 * np.pi)
     shape = places_yx.shape[:2]
     flat = np.ascontiguousarray(places_yx.reshape(-1, 2))
@@ -65,44 +67,47 @@ def depths_and_angles(
 def _nearest(
     places: FloatArray, n_parts: int, outline: FloatArray, angles: FloatArray, ends: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Outline points that can be near enough to a few pixels, of these to each pixel, then by part."""
+    """Edges that can be near enough to a few pixels, of these to each pixel, then by part."""
+    along = np.empty_like(outline)
+    along[:-1] = outline[1:] - outline[:-1]
+    along[-1] = outline[0] - outline[-1]
+    squared = along[:, 0] ** 2 + along[:, 1] ** 2
+    middles, half = outline + 0.5 * along, 0.5 * math.sqrt(squared.max())
     everything = np.arange(len(outline))
-    longest = 0.0
-    for i in everything:
-        there = outline[(i + 1) % len(outline)]
-        longest = max(longest, math.hypot(there[0] - outline[i, 0], there[1] - outline[i, 1]))
     depth, angle = np.empty(len(places)), np.empty(len(places))
     for first in range(0, len(places), _PIXELS_AT_ONCE * n_parts):
         last = min(first + _PIXELS_AT_ONCE * n_parts, len(places))
-        around = _within_reach(outline, everything, places[first:last], longest)
+        around = _within_reach(middles, everything, places[first:last], half)
         for pixel in range(first, last, n_parts):
-            near = _within_reach(outline, around, places[pixel : pixel + n_parts], longest)
+            near = _within_reach(middles, around, places[pixel : pixel + n_parts], half)
             for part in range(pixel, pixel + n_parts):
                 y, x = places[part]
-                best = np.inf
+                best = limit = np.inf
                 for i in near:
-                    j = i + 1 if i + 1 < len(outline) else 0
-                    ey, ex = outline[j, 0] - outline[i, 0], outline[j, 1] - outline[i, 1]
+                    if (y - middles[i, 0]) ** 2 + (x - middles[i, 1]) ** 2 > limit:
+                        continue  # no point of the edge is nearer than the best one
                     dy, dx = y - outline[i, 0], x - outline[i, 1]
-                    along = min(max((dy * ey + dx * ex) / (ey * ey + ex * ex), 0.0), 1.0)
-                    away = (dy - along * ey) ** 2 + (dx - along * ex) ** 2
+                    share = (dy * along[i, 0] + dx * along[i, 1]) / squared[i]
+                    share = min(max(share, 0.0), 1.0)
+                    away = (dy - share * along[i, 0]) ** 2 + (dx - share * along[i, 1]) ** 2
                     if away < best:
                         best = away
-                        angle[part] = angles[i] + along * (ends[i] - angles[i])
+                        limit = (math.sqrt(best) + half) ** 2 * (1.0 + 1e-12)
+                        angle[part] = angles[i] + share * (ends[i] - angles[i])
                 depth[part] = math.sqrt(best)
     return depth, angle
 
 
 @njit(cache=True)
-def _within_reach(outline: FloatArray, among: IntArray, places: FloatArray, longest: float) -> IntArray:
-    """Outline points at which an edge can begin that is nearest to any of some places."""
-    y, x = places[0]
-    reach = 0.0  # from the first place to all
+def _within_reach(middles: FloatArray, among: IntArray, places: FloatArray, half: float) -> IntArray:
+    """Edges that can be the nearest one to any of some places; none is longer than 2 half."""
+    y, x = 0.5 * (places[0] + places[-1])
+    reach = 0.0  # from there to all places
     for place in places:
         reach = max(reach, math.hypot(place[0] - y, place[1] - x))
     squared = np.empty(len(among))
     for entry, i in enumerate(among):
-        squared[entry] = (outline[i, 0] - y) ** 2 + (outline[i, 1] - x) ** 2
-    # The nearest edge of any place is at most √min + reach away from it, and as long as the longest.
-    limit = math.sqrt(squared.min()) + 2.0 * reach + longest
+        squared[entry] = (middles[i, 0] - y) ** 2 + (middles[i, 1] - x) ** 2
+    # A place is at most √min + reach from its nearest edge, whose middle is half its length further.
+    limit = (math.sqrt(squared.min()) + 2.0 * reach + half) * (1.0 + 1e-12)
     return among[squared <= limit**2]

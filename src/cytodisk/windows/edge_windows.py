@@ -20,10 +20,15 @@ from cytodisk.windows.grid import check_counts
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.shares import PARTS, strips
 
+_ROUGH = 2.0  # pixels by which depths from the distance transform are off, at most
+
 
 @dataclass(frozen=True)
 class EdgeGrid:
-    """Layers of equal depth from the edge (0) inwards, sectors of equal length along the edge.
+    """Layers of equal depth from the edge (0) inwards, sectors of the edge.
+
+    Sectors are of equal length along the edge of a mask or a single map; in later frames of a movie they are
+    those that the edge was tracked to, and may differ in length.
 
     Attributes
     ----------
@@ -76,7 +81,8 @@ class EdgeGrid:
         ndarray of shape (...) and dtype int
             -1 for what lies deeper than the last layer.
         """
-        layer = np.maximum(np.ceil(depth / self.depth_px - 1e-9).astype(np.int64) - 1, 0)
+        beyond = float(self.depth_px) * (self.layers + 1)  # a tiny depth_px would count past any integer
+        layer = np.maximum(np.ceil(np.minimum(depth, beyond) / self.depth_px - 1e-9).astype(np.int64) - 1, 0)
         turn = np.mod(angle / (2.0 * np.pi), 1.0)
         sector = np.minimum(np.floor(turn * self.sectors).astype(np.int64), self.sectors - 1)
         return np.where(layer < self.layers, layer * self.sectors + sector, -1)
@@ -119,14 +125,21 @@ class CellEdge:
         return depths_and_angles(part_places(pixels_yx, PARTS), self.outline_yx, self.angles)
 
     @cached_property
+    def rough_depths(self) -> FloatArray:
+        """Distance from each pixel's centre to that of the next pixel outside of the cell, shape (H, W).
+
+        In pixels, 0 outside; of all parts of the pixel within 2 px of the distance from the edge.
+        """
+        return np.asarray(distance_transform_edt(np.pad(self.mask, 1))[1:-1, 1:-1], dtype=np.float64)
+
+    @cached_property
     def deepest(self) -> tuple[IntArray, float]:
         """Pixel with the part that is deepest inside, (row, column), and that part's distance from the edge.
 
         In pixels; the first such pixel in row-major order.
         """
-        inside = distance_transform_edt(np.pad(self.mask, 1))[1:-1, 1:-1]
-        # To the next pixel's centre: within 1 px of the distance to the outline, and parts lie within 0.6 px.
-        pixels = np.argwhere(inside >= inside.max() - 4.0)
+        rough = self.rough_depths
+        pixels = np.argwhere(self.mask & (rough >= rough.max() - 2.0 * _ROUGH))
         depths = np.concatenate([self.parts_of(block)[0].max(axis=1) for _, block in strips(pixels)])
         found = int(depths.argmax())
         return pixels[found], float(depths[found])
@@ -158,7 +171,10 @@ class EdgeWindows(WindowsOnCell):
         pixels_yx : ndarray of shape (P, 2) and dtype int
             (row, column).
         """
-        return self.grid.window_of(*self.edge.parts_of(pixels_yx))
+        windows = np.full((len(pixels_yx), PARTS**2), -1)
+        near = self.edge.rough_depths[tuple(pixels_yx.T)] - _ROUGH <= self.layers * float(self.depth_px)
+        windows[near] = self.grid.window_of(*self.edge.parts_of(pixels_yx[near]))
+        return windows
 
     @property
     def mask(self) -> BoolArray:
@@ -186,9 +202,9 @@ def edge_windows(
 ) -> EdgeWindows:
     """Edge-based windows of one cell: the field's, to compare with `polar_windows`.
 
-    The edge is divided into sectors of equal length, and every place in the cell belongs to the sector of
-    the edge point it is nearest to, and to a layer by its distance from there. Every pixel is divided into
-    4×4 parts, each of which goes whole to its window.
+    The edge is divided into sectors, of equal length but for a later frame of a movie, and every place in the
+    cell belongs to the sector of the edge point it is nearest to, and to a layer by its distance from there.
+    Every pixel is divided into 4×4 parts, each of which goes whole to its window.
 
     Parameters
     ----------

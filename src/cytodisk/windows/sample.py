@@ -37,8 +37,9 @@ def sample(
     -------
     Dataset with dims (layer, sector), before them channel if the signal has it
         mean, sd (of the pixels, weighted), min, max (over pixels with any share in the window), n_pixels (sum
-        of pixel shares that were sampled, so Σ n_pixels · mean is the cell's whole intensity), n_nan (sum of
-        pixel shares that are NaN or infinite), area (square pixels); on request quantile with its own dim.
+        of pixel shares that were sampled, so Σ n_pixels · mean is the intensity of all that lies in windows:
+        the whole cell, but for edge windows of a given depth), n_nan (sum of pixel shares that are NaN or
+        infinite), area (square pixels); on request quantile with its own dim.
 
     Raises
     ------
