@@ -13,6 +13,10 @@ class MaskError(CytodiskError):
     """The mask cannot be used: wrong type or shape, empty, or against a policy."""
 
 
+class EmptyMaskError(MaskError):
+    """No pixel of the mask or label image belongs to a cell."""
+
+
 class SignalError(CytodiskError):
     """The signal does not fit the mask, or is not an image."""
 

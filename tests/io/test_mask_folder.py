@@ -13,7 +13,8 @@ from hypothesis.extra import numpy as arrays
 from numpy.testing import assert_array_equal
 
 from cytodisk.errors import MaskError, ReadError
-from cytodisk.io.mask_files import MaskSource, base_name, open_mask_files, read_source_cells
+from cytodisk.io.mask_files import MaskSource, open_mask_files, read_source_cells
+from cytodisk.io.mask_names import base_name
 from cytodisk.io.npy import read_npy
 
 LABELS = np.zeros((30, 40), dtype=np.uint16)
@@ -217,3 +218,145 @@ def test_a_seg_file_cut_short_is_unreadable(tmp_path: Path) -> None:
     (tmp_path / "a_seg.npy").write_bytes(content[: len(content) // 2])
     (source,) = open_mask_files(tmp_path)
     assert isinstance(source.fault, ReadError)
+
+
+@pytest.mark.parametrize(
+    ("array", "words"),
+    [
+        (np.zeros((4, 5), dtype=[("a", "i4"), ("b", "f8")]), "has dtype .*'a'"),
+        (np.ones((4, 5), dtype=complex), "has dtype complex128: save an array of numbers"),
+        (np.ones((4, 5), dtype="datetime64[s]"), "has dtype datetime64"),
+        (np.full((4, 5), "a"), "has dtype <U1"),
+    ],
+)
+def test_an_array_without_numbers_costs_its_own_file_alone(
+    tmp_path: Path, array: np.ndarray, words: str
+) -> None:
+    np.save(tmp_path / "a_seg.npy", array)
+    fill(tmp_path, "b_masks.tif")
+    bad, good = open_mask_files(tmp_path)
+    assert isinstance(bad.fault, ReadError)
+    assert re.search(words, str(bad.fault))
+    assert good.fault is None
+
+
+def test_labels_that_no_table_can_hold_are_refused(tmp_path: Path) -> None:
+    for name, factor in (("a", 2**63 + 5), ("b", 2**63 - 1), ("c", 2**64 - 1)):
+        np.save(tmp_path / f"{name}.npy", (LABELS == 4).astype(np.uint64) * np.uint64(factor))
+    for kind in ("auto", "labels"):
+        (cell,) = read_source_cells(open_mask_files(tmp_path / "a.npy", kind))
+        assert isinstance(cell.fault, MaskError)
+        assert "has labels up to 9223372036854775813: number the cells from 1" in str(cell.fault)
+    (cell,) = read_source_cells(open_mask_files(tmp_path / "b.npy"))
+    assert (cell.fault, cell.label) == (None, 2**63 - 1)
+    (cell,) = read_source_cells(open_mask_files(tmp_path / "c.npy"))  # as 0 and 255 in 8 bits
+    assert (cell.fault, cell.label) == (None, 1)
+    (cell,) = read_source_cells(open_mask_files(tmp_path / "c.npy", "labels"))
+    assert "number the cells from 1" in str(cell.fault)
+
+
+class Calls:
+    """Is pickled as a call of something harmless but large."""
+
+    def __init__(self, kind: type, *with_: object):
+        self.call = kind, with_
+
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        return self.call
+
+
+@pytest.mark.parametrize(
+    "large",
+    [
+        Calls(set, Calls(range, 2**60)),
+        Calls(frozenset, Calls(range, 2**60)),
+        Calls(bytearray, 2**60),
+        Calls(range, 2**60),
+    ],
+)
+def test_no_container_is_filled_because_a_file_says_so(tmp_path: Path, large: Calls) -> None:
+    np.save(tmp_path / "a_seg.npy", {"masks": LABELS, "more": large}, allow_pickle=True)
+    assert_array_equal(read_npy(tmp_path / "a_seg.npy"), LABELS)
+
+
+def test_a_number_in_the_place_of_bytes_is_a_fault(tmp_path: Path) -> None:
+    scalar = np.float64(1).__reduce__()[0]
+    large = Calls(scalar, np.dtype("u1"), 2**60)  # type: ignore[arg-type]
+    np.save(tmp_path / "a_seg.npy", {"masks": LABELS, "more": large}, allow_pickle=True)
+    (source,) = open_mask_files(tmp_path)
+    assert "has int where its bytes are due" in str(source.fault)
+
+
+def test_want_of_memory_is_a_fault_of_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_room(path: Path) -> np.ndarray:
+        raise MemoryError
+
+    fill(tmp_path, "a_seg.npy")
+    monkeypatch.setattr("cytodisk.io.frames.read_npy", no_room)
+    (source,) = open_mask_files(tmp_path)
+    assert "a_seg.npy: its header asks for more memory than there is" in str(source.fault)
+
+
+def test_reasons_stand_on_one_line(tmp_path: Path) -> None:
+    class Pickler(pickle.Pickler):
+        def persistent_id(self, obj: object) -> str | None:
+            return "x" if obj == "persistent" else None
+
+    save_seg(tmp_path / "a_seg.npy", LABELS)
+    head = (tmp_path / "a_seg.npy").read_bytes()[:128]
+    with (tmp_path / "a_seg.npy").open("wb") as file:
+        file.write(head)
+        Pickler(file).dump({"masks": "persistent"})
+    (source,) = open_mask_files(tmp_path)
+    assert "persistent" in str(source.fault)
+    assert "\n" not in str(source.fault)
+
+
+def test_masks_of_a_z_stack_are_refused(tmp_path: Path) -> None:
+    save_seg(tmp_path / "a_seg.npy", np.stack([LABELS] * 3))
+    (source,) = open_mask_files(tmp_path)
+    assert "holds the masks of a z-stack, shape (3, 30, 40): project it" in str(source.fault)
+
+
+def test_a_good_file_stands_in_for_a_damaged_one(tmp_path: Path) -> None:
+    fill(tmp_path, "a_masks.png", "a_seg.npy", "b_masks.tif", "b_seg.npy", "c_masks.tif", "c_seg.npy")
+    for name in ("a_masks.png", "c_masks.tif", "c_seg.npy"):
+        content = (tmp_path / name).read_bytes()
+        (tmp_path / name).write_bytes(content[: len(content) // 2])
+    for kind in ("auto", "labels"):
+        a, b, c = open_mask_files(tmp_path, kind)
+        assert (a.name, a.fault, a.instead_of, a.damaged) == (
+            "a_seg.npy",
+            None,
+            ("a_masks.png",),
+            ("a_masks.png",),
+        )
+        assert (b.name, b.fault, b.instead_of, b.damaged) == ("b_masks.tif", None, ("b_seg.npy",), ())
+        assert (c.name, c.instead_of, c.damaged) == ("c_masks.tif", ("c_seg.npy",), ())
+        assert isinstance(c.fault, ReadError)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need a right there")
+def test_a_link_that_leads_nowhere_is_a_fault(tmp_path: Path) -> None:
+    fill(tmp_path, "a_masks.tif")
+    (tmp_path / "b_masks.tif").symlink_to("gone.tif")
+    good, bad = open_mask_files(tmp_path)
+    assert good.fault is None
+    assert "b_masks.tif is a link to a file that is not there: gone.tif" in str(bad.fault)
+
+
+def test_images_beside_plain_masks_are_no_masks(tmp_path: Path) -> None:
+    fill(tmp_path, "a.tif", "a_img.tif", "b.tif", "b_img.png")
+    assert names(open_mask_files(tmp_path, images="_img")) == ["a.tif", "b.tif"]
+    assert names(open_mask_files(tmp_path, images="_img.png")) == ["a.tif", "a_img.tif", "b.tif"]
+    (tmp_path / "a.tif").unlink()
+    (tmp_path / "b.tif").unlink()
+    with pytest.raises(ReadError, match="holds no masks"):
+        open_mask_files(tmp_path, images="_img")
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, bool, np.float32])
+def test_an_image_without_a_cell_has_the_label_0(tmp_path: Path, dtype: type) -> None:
+    np.save(tmp_path / "a.npy", np.zeros((4, 5), dtype=dtype))
+    (cell,) = read_source_cells(open_mask_files(tmp_path / "a.npy"))
+    assert cell.label == 0

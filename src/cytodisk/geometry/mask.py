@@ -7,7 +7,7 @@ import numpy as np
 from scipy import ndimage
 
 from cytodisk.arrays import BoolArray
-from cytodisk.errors import MaskError, ParameterError
+from cytodisk.errors import EmptyMaskError, MaskError, ParameterError
 
 # Shares from which on a mask is doubtful: of the area in dropped pieces, of the area in holes, of the edge.
 _DOUBTFUL_DROPPED, _DOUBTFUL_FILLED, _DOUBTFUL_BORDER = 0.1, 0.02, 0.5
@@ -96,7 +96,9 @@ def parse_mask(mask: Any) -> BoolArray:
     Raises
     ------
     MaskError
-        Not 2D, several labels, floats other than 0 and 1, or empty.
+        Not 2D, several labels, or floats other than 0 and 1.
+    EmptyMaskError
+        No pixel belongs to the cell.
     """
     try:
         array = np.asarray(mask)
@@ -115,7 +117,7 @@ def parse_mask(mask: Any) -> BoolArray:
     else:
         raise MaskError(f"mask must be boolean or numeric, got dtype {array.dtype}: pass mask > 0")
     if not parsed.any():
-        raise MaskError(f"mask of shape {array.shape} is empty: no pixel belongs to the cell")
+        raise EmptyMaskError(f"mask of shape {array.shape} is empty: no pixel belongs to the cell")
     return parsed
 
 
@@ -176,7 +178,7 @@ def clean_mask(
     Raises
     ------
     MaskError
-        The mask is not one, is empty, or a policy is "error" and its case came.
+        The mask is not one, is empty (EmptyMaskError), or a policy is "error" and its case came.
     ParameterError
         An unknown policy.
 

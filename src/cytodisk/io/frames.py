@@ -139,6 +139,8 @@ def open_frames(path: str | os.PathLike[str], *, unnamed: str = "T") -> FrameFil
     try:
         file.stat()
     except FileNotFoundError as error:
+        if file.is_symlink():
+            raise ReadError(f"{file} is a link to a file that is not there: {file.readlink()}") from error
         raise ReadError(f"{file} does not exist: check the path") from error
     except OSError as error:
         raise ReadError(f"{file} cannot be read: {error.strerror}") from error
@@ -197,8 +199,13 @@ def _reading(path: Path, part: str) -> Iterator[None]:
         yield
     except ReadError:
         raise
+    except MemoryError as error:
+        raise ReadError(
+            f"{path}: {part} asks for more memory than there is: the file is too large, or damaged"
+        ) from error
     except Exception as error:
-        raise ReadError(f"{path}: {part} cannot be read as an image ({error})") from error
+        words = " ".join(str(error).split())  # on one line, as tables of reasons need it
+        raise ReadError(f"{path}: {part} cannot be read as an image ({words})") from error
 
 
 @contextmanager
@@ -252,6 +259,13 @@ def _open_array(file: Path, unnamed: str) -> FrameFile:
     array = read_npy(file)
     if array.ndim not in (2, 3) or not array.size:
         raise ReadError(f"{file} has shape {array.shape}: save an array of shape (H, W) or (frames, H, W)")
+    if array.dtype.kind not in "biuf":
+        raise ReadError(f"{file} has dtype {array.dtype}: save an array of numbers, labels as uint16")
+    if array.ndim == 3 and file.name.lower().endswith("_seg.npy"):
+        raise ReadError(
+            f"{file} holds the masks of a z-stack, shape {array.shape}: project it; or if these are frames, "
+            "save the masks alone, as TIFF with axes TYX"
+        )
     axes = "YX" if array.ndim == 2 else f"{unnamed}YX"
     return _with_channel_names(FrameFile(file, axes, array.shape, array.dtype, (), None, None))
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,21 +11,11 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
-from cytodisk.errors import CytodiskError, MaskError, ReadError
+from cytodisk.errors import CytodiskError, EmptyMaskError, MaskError, ReadError
 from cytodisk.io.frames import FrameFile, open_frames
+from cytodisk.io.mask_names import mask_names
 from cytodisk.io.masks import Kind, understood_as
 
-# Endings of mask files; where one image has several, the one that stands first here is taken.
-ENDINGS = (
-    "_masks.tif",
-    "_masks.tiff",
-    "_masks.png",
-    "_cp_masks.tif",
-    "_cp_masks.tiff",
-    "_cp_masks.png",
-    "_seg.npy",
-)
-_IMAGES = (".tif", ".tiff", ".png")
 _MOST_SLOTS = 1_000_000  # labels up to here index a list of boxes; larger ones are renumbered first
 
 
@@ -45,6 +34,8 @@ class MaskSource:
     fault : CytodiskError or None
     instead_of : tuple of str
         Names of files with masks of the same image, which are left out so that no cell counts twice.
+    damaged : tuple of str
+        Those of them that should have come first, but cannot be used.
     """
 
     name: str
@@ -53,6 +44,7 @@ class MaskSource:
     kind: Kind | None
     fault: CytodiskError | None = None
     instead_of: tuple[str, ...] = ()
+    damaged: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,7 +59,7 @@ class SourceCell:
         Name of the file.
     frame : int
     label : int
-        Its label in a label image or of its mask, otherwise 1.
+        Its label in a label image or of its mask, otherwise 1; 0 where a file or an image holds no cell.
     mask : ndarray of shape (h, w), or None
         Pixels of the cell's box and one more on every side where the image goes on: as they stand in the
         file for a mask, boolean for a label.
@@ -87,7 +79,9 @@ class SourceCell:
     fault: CytodiskError | None = None
 
 
-def open_mask_files(path: str | os.PathLike[str], kind: Kind = "auto") -> tuple[MaskSource, ...]:
+def open_mask_files(
+    path: str | os.PathLike[str], kind: Kind = "auto", images: str = ""
+) -> tuple[MaskSource, ...]:
     """Find the mask files of a folder, or open a single one.
 
     Parameters
@@ -95,9 +89,11 @@ def open_mask_files(path: str | os.PathLike[str], kind: Kind = "auto") -> tuple[
     path : path-like
         A file, or a folder with `*_masks.tif`, `*_masks.png`, `*_cp_masks.tif`, `*_cp_masks.png` or
         `*_seg.npy`; if it holds none of these, every TIFF and PNG of it. Folders in it are not looked into.
-        Of several files for one image only the first in this order is taken.
+        Of several files for one image only the first in this order that can be used is taken.
     kind : {"auto", "mask", "stack", "labels"}
         What each file is; "auto" decides for each by itself.
+    images : str
+        How names of images go on that are no masks, as "_img"; in a folder whose masks have other endings.
 
     Returns
     -------
@@ -117,71 +113,31 @@ def open_mask_files(path: str | os.PathLike[str], kind: Kind = "auto") -> tuple[
     if not place.is_dir():
         file = open_frames(place, unnamed="T")
         return (MaskSource(place.name, place, file, understood_as(file, kind)),)
-    return tuple(_source(chosen, others, kind) for chosen, others in _mask_names(place))
-
-
-def base_name(name: str) -> str:
-    """The name of the image that a mask file belongs to, without its ending: "a" of "a_cp_masks.png"."""
-    lower = name.lower()
-    fitting = [ending for ending in ENDINGS if lower.endswith(ending)]
-    return name[: -max(map(len, fitting))] if fitting else image_stem(name)
-
-
-def image_stem(name: str) -> str:
-    """A file's name without the ending that says how it is stored: "a" of "a.ome.tif"."""
-    return re.sub(r"(\.ome)?\.(tiff?|png|npy)$", "", name, flags=re.IGNORECASE)
-
-
-def natural_order(name: str) -> list[tuple[int, str]]:
-    """A key that sorts names with numbers as a person would: a2 before a10."""
-    return [(int(part), "") if part.isdecimal() else (0, part) for part in re.split(r"(\d+)", name.lower())]
-
-
-def visible_files(folder: Path) -> list[Path]:
-    """Files of a folder in natural order, but for hidden ones.
-
-    Raises
-    ------
-    ReadError
-        The folder cannot be read.
-    """
-    try:
-        found = [file for file in folder.iterdir() if file.is_file() and not file.name.startswith(".")]
-    except OSError as error:
-        raise ReadError(f"folder {folder} cannot be read: {error.strerror}") from error
-    return sorted(found, key=lambda file: natural_order(file.name))
-
-
-def _mask_names(folder: Path) -> list[tuple[Path, list[Path]]]:
-    """The mask file of each image, and others for the same image."""
-    files = visible_files(folder)
-    named = [file for file in files if file.name.lower().endswith(ENDINGS)]
-    if not named:
-        images = [file for file in files if file.suffix.lower() in _IMAGES]
-        if not images:
-            raise ReadError(
-                f"folder {folder} holds no masks: neither files that end in {', '.join(ENDINGS)}, "
-                f"nor other images ({', '.join(_IMAGES)})"
-            )
-        return [(file, []) for file in images]
-    by_image: dict[str, list[Path]] = {}
-    for file in named:
-        by_image.setdefault(base_name(file.name), []).append(file)
-    ranked = [sorted(group, key=lambda file: _rank(file.name)) for group in by_image.values()]
-    return [(first, others) for first, *others in ranked]
-
-
-def _rank(name: str) -> int:
-    """Place of the longest ending that fits: `_cp_masks.tif` ends in `_masks.tif` too."""
-    fitting = [ending for ending in ENDINGS if name.lower().endswith(ending)]
-    return ENDINGS.index(max(fitting, key=len))
+    return tuple(_source(chosen, others, kind) for chosen, others in mask_names(place, images))
 
 
 def _source(path: Path, others: list[Path], kind: Kind) -> MaskSource:
-    source = MaskSource(path.name, path, None, None, instead_of=tuple(file.name for file in others))
+    """The first of an image's mask files that can be used, or the very first with its fault."""
+    paths = [path, *others]
+    first = None
+    for place, taken in enumerate(paths):
+        found = _opened(taken, kind)
+        first = found if first is None else first
+        if found.fault is None:
+            left = tuple(file.name for file in paths if file != taken)
+            return replace(found, instead_of=left, damaged=tuple(file.name for file in paths[:place]))
+    assert first is not None  # there is one path at least
+    return replace(first, instead_of=tuple(file.name for file in others))
+
+
+def _opened(path: Path, kind: Kind) -> MaskSource:
+    source = MaskSource(path.name, path, None, None)
     try:
         file = open_frames(path, unnamed="T")
-        return replace(source, file=file, kind=understood_as(file, kind))
+        understood = understood_as(file, kind)
+        if kind != "auto" and file.n_frames == 1:
+            file.frame(0)  # raises where the picture itself is damaged; "auto" has read it
+        return replace(source, file=file, kind=understood)
     except (ReadError, MaskError) as fault:
         return replace(source, fault=fault)
 
@@ -213,6 +169,7 @@ def _cells_of(source: MaskSource) -> Iterator[SourceCell]:
         nothing = SourceCell(0, source.name, number, 0, None, image_shape=shape)
         try:
             frame = source.file.frame(number)[0]
+            _check_size(frame, number, source.kind)
             if source.kind == "labels":
                 _check_labels(frame, number)
         except (ReadError, MaskError) as fault:
@@ -238,7 +195,15 @@ def _check_labels(frame: np.ndarray[Any, Any], number: int) -> None:
             f"frame {number} has negative labels (down to {frame.min()}): set what is no cell to 0"
         )
     if not frame.any():
-        raise MaskError(f"frame {number} is empty: it holds no label")
+        raise EmptyMaskError(f"frame {number} is empty: it holds no label")
+
+
+def _check_size(frame: np.ndarray[Any, Any], number: int, kind: Kind) -> None:
+    """Tables hold labels as 64-bit integers with a sign; the greatest of all may be a plain mask."""
+    largest = int(frame.max(initial=0)) if frame.dtype == np.uint64 else 0
+    plain = kind != "labels" and largest == np.iinfo(np.uint64).max
+    if largest > np.iinfo(np.int64).max and not plain:
+        raise MaskError(f"frame {number} has labels up to {largest}: number the cells from 1")
 
 
 def _labelled(frame: np.ndarray[Any, Any], nothing: SourceCell) -> Iterator[SourceCell]:
@@ -264,8 +229,8 @@ def with_margin(box: tuple[slice, ...], shape: tuple[int, ...]) -> tuple[slice, 
 
 
 def _single_label(frame: np.ndarray[Any, Any]) -> int:
-    """The label of a frame that holds just one; 1 for plain masks such as 0/1 and 0/255."""
+    """The label of a frame that holds just one; 1 for plain masks such as 0/1 and 0/255, 0 without a cell."""
     if not np.issubdtype(frame.dtype, np.integer):
-        return 1
+        return int(frame.any())
     label = int(frame.max(initial=0))
-    return 1 if label in (0, np.iinfo(frame.dtype).max) else label
+    return 1 if label == np.iinfo(frame.dtype).max else max(label, 0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from skimage import measure
@@ -33,6 +33,8 @@ def understood_as(file: FrameFile, kind: Kind = "auto") -> Kind:
     ------
     MaskError
         The file has channels, or is not what `kind` says.
+    ReadError
+        For "auto", no frame can be read.
     ParameterError
         An unknown kind.
     """
@@ -50,7 +52,7 @@ def understood_as(file: FrameFile, kind: Kind = "auto") -> Kind:
         )
     if kind != "auto":
         return kind
-    labelled = [number for number in range(file.n_frames) if _has_labels(file, number)]
+    labelled = _frames_with_labels(file)
     if labelled:
         _refuse_intensities(file, labelled[0])
         return "labels"
@@ -74,11 +76,22 @@ def _refuse_intensities(file: FrameFile, number: int) -> None:
         )
 
 
-def _has_labels(file: FrameFile, number: int) -> bool:
-    try:
-        frame = file.frame(number)
-    except ReadError:
-        return False  # reported as a cell with its fault when the cells are read
+def _frames_with_labels(file: FrameFile) -> list[int]:
+    """Frames that hold more than one value; a damaged one is reported when the cells are read."""
+    found, fault = [], None
+    damaged = 0
+    for number in range(file.n_frames):
+        try:
+            if _has_labels(file.frame(number)):
+                found.append(number)
+        except ReadError as error:
+            fault, damaged = error, damaged + 1
+    if fault is not None and damaged == file.n_frames:
+        raise fault
+    return found
+
+
+def _has_labels(frame: np.ndarray[Any, Any]) -> bool:
     if not np.issubdtype(frame.dtype, np.integer):
         return False
     values = frame[frame != 0]

@@ -16,7 +16,7 @@ _MASKS = "masks"  # the entry of a `_seg.npy` that holds the label image
 _NUMBERS_AND_TEXT = re.compile("[biufcSUO][0-9]*")
 _RECONSTRUCT = {(f"numpy.{core}.multiarray", "_reconstruct") for core in ("core", "_core")}
 _SCALAR = {(f"numpy.{core}.multiarray", "scalar") for core in ("core", "_core")}
-_PLAIN = {("builtins", kind.__name__): kind for kind in (set, frozenset, complex, bytearray, slice, range)}
+_LEFT_OUT = {("builtins", name) for name in ("set", "frozenset", "complex", "bytearray", "slice", "range")}
 
 
 def read_npy(path: Path) -> np.ndarray[Any, Any]:
@@ -74,8 +74,8 @@ class _Unpickler(pickle.Unpickler):
             return _Array
         if place in _SCALAR:
             return _number
-        if place in _PLAIN:
-            return _PLAIN[place]
+        if place in _LEFT_OUT:
+            return _LeftOut
         if place == ("numpy", "dtype"):
             return _Type
         if place == ("numpy", "ndarray"):
@@ -86,6 +86,13 @@ class _Unpickler(pickle.Unpickler):
             f"{self._path} asks for {module}.{name} when it is read: a file must not run code, so nothing "
             "but arrays, numbers, text and plain containers is read; save the label image alone, as TIFF"
         )
+
+
+class _LeftOut:
+    """Stands for a plain object that is no part of the masks: `set(range(10**10))` would fill the memory."""
+
+    def __init__(self, *_: Any):
+        """Make nothing of what it is called with."""
 
 
 class _Ndarray:
@@ -119,12 +126,18 @@ class _Array:
         if kind.dtype.hasobject:
             self.values = list(content)
             return
-        values = np.frombuffer(bytes(content), kind.dtype)
+        values = np.frombuffer(_as_bytes(content), kind.dtype)
         self.array = values.reshape(shape, order="F" if fortran else "C")
 
 
 def _number(kind: _Type, content: bytes = b"") -> Any:
-    return None if kind.dtype.hasobject else np.frombuffer(bytes(content), kind.dtype)[0]
+    return None if kind.dtype.hasobject else np.frombuffer(_as_bytes(content), kind.dtype)[0]
+
+
+def _as_bytes(content: Any) -> bytes:
+    if not isinstance(content, bytes | bytearray):  # of a number, `bytes` would make so many zeros
+        raise ValueError(f"a pickled array has {type(content).__name__} where its bytes are due")
+    return bytes(content)
 
 
 def _latin1(text: str, encoding: str) -> bytes:

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cytodisk.errors import ReadError, SignalError
-from cytodisk.io.mask_files import MaskSource, base_name, image_stem, visible_files
+from cytodisk.io.mask_files import MaskSource
+from cytodisk.io.mask_names import base_name, image_stem, visible_files
 
 _USUAL_ENDINGS = ("", "_img")
 _STARTS_OF_ENDINGS = ("_", "-", ".")

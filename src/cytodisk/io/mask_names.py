@@ -1,0 +1,100 @@
+"""Names of mask files, and of the images that they belong to."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from cytodisk.errors import ReadError
+
+# Endings of mask files; where one image has several, the one that stands first here is taken.
+ENDINGS = (
+    "_masks.tif",
+    "_masks.tiff",
+    "_masks.png",
+    "_cp_masks.tif",
+    "_cp_masks.tiff",
+    "_cp_masks.png",
+    "_seg.npy",
+)
+_IMAGES = (".tif", ".tiff", ".png")
+
+
+def base_name(name: str) -> str:
+    """The name of the image that a mask file belongs to, without its ending: "a" of "a_cp_masks.png"."""
+    lower = name.lower()
+    fitting = [ending for ending in ENDINGS if lower.endswith(ending)]
+    return name[: -max(map(len, fitting))] if fitting else image_stem(name)
+
+
+def image_stem(name: str) -> str:
+    """A file's name without the ending that says how it is stored: "a" of "a.ome.tif"."""
+    return re.sub(r"(\.ome)?\.(tiff?|png|npy)$", "", name, flags=re.IGNORECASE)
+
+
+def natural_order(name: str) -> list[tuple[int, str]]:
+    """A key that sorts names with numbers as a person would: a2 before a10."""
+    return [(int(part), "") if part.isdecimal() else (0, part) for part in re.split(r"(\d+)", name.lower())]
+
+
+def visible_files(folder: Path) -> list[Path]:
+    """Files of a folder in natural order, but for hidden ones; a link that leads nowhere is one too.
+
+    Raises
+    ------
+    ReadError
+        The folder cannot be read.
+    """
+    try:
+        found = [file for file in folder.iterdir() if not file.is_dir() and not file.name.startswith(".")]
+    except OSError as error:
+        raise ReadError(f"folder {folder} cannot be read: {error.strerror}") from error
+    return sorted(found, key=lambda file: natural_order(file.name))
+
+
+def mask_names(folder: Path, images_end: str = "") -> list[tuple[Path, list[Path]]]:
+    """Find the mask files of a folder.
+
+    Parameters
+    ----------
+    folder : Path
+    images_end : str
+        As `open_mask_files` takes it.
+
+    Returns
+    -------
+    list of (Path, list of Path)
+        The first mask file of each image, and others for the same image.
+
+    Raises
+    ------
+    ReadError
+        The folder cannot be read, or holds no masks.
+    """
+    files = visible_files(folder)
+    named = [file for file in files if file.name.lower().endswith(ENDINGS)]
+    if not named:
+        images = [file for file in files if file.suffix.lower() in _IMAGES]
+        if images_end:
+            images = [file for file in images if not _ends(file.name, images_end)]
+        if not images:
+            raise ReadError(
+                f"folder {folder} holds no masks: neither files that end in {', '.join(ENDINGS)}, "
+                f"nor other images ({', '.join(_IMAGES)})"
+            )
+        return [(file, []) for file in images]
+    by_image: dict[str, list[Path]] = {}
+    for file in named:
+        by_image.setdefault(base_name(file.name), []).append(file)
+    ranked = [sorted(group, key=lambda file: _rank(file.name)) for group in by_image.values()]
+    return [(first, others) for first, *others in ranked]
+
+
+def _ends(name: str, ending: str) -> bool:
+    return name.endswith(ending) or image_stem(name).endswith(ending)
+
+
+def _rank(name: str) -> int:
+    """Place of the longest ending that fits: `_cp_masks.tif` ends in `_masks.tif` too."""
+    fitting = [ending for ending in ENDINGS if name.lower().endswith(ending)]
+    return ENDINGS.index(max(fitting, key=len))
