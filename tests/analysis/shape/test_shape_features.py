@@ -136,8 +136,12 @@ def test_doubts_of_size_stand_beside_others() -> None:
 
 
 def test_a_finer_mesh_where_the_outline_crosses_itself_is_noted() -> None:
-    thin = np.eye(2000, dtype=bool)  # a step of the coarse outline is longer than the cell is wide
-    row = cd.shape_features(thin).iloc[0]
+    random, mask = np.random.default_rng(0), np.zeros((220, 400), dtype=bool)
+    mask[10:211, 2:203] = ellipse(100, 100)[3:-3, 3:-3]
+    for angle in range(5):  # filopodia as thin as a pixel, in much smaller steps than those of the outline
+        rows = 110 + 70 * np.cos(angle) + np.cumsum(random.integers(-1, 2, 200))
+        mask[rows.astype(int).clip(0, 219), 100 + np.arange(200)] = True
+    row = cd.shape_features(mask).iloc[0]
     assert np.isfinite(row[NAMES].astype(float)).all()
     assert FINE_MESH in row["notes"]
     assert FINE_MESH not in cd.shape_features(lopsided(45))["notes"][0]

@@ -13,7 +13,9 @@ from cytodisk.geometry.mesh import Mesh, mesh_inside
 
 _STEPS_ACROSS = 40  # edges of the mesh along the equivalent diameter; finer ones rank cells the same
 _FINEST_PX = 0.9  # as `map_to_disk` has it
-FINE_MESH = "harmonic features from a mesh as fine as the pixels: its outline crosses itself in larger steps"
+FINE_MESH = (
+    "harmonic features from a mesh as fine as the pixels: its outline cannot be meshed in larger steps"
+)
 _PERCENTILES = (5, 25, 75, 95)
 
 
@@ -51,8 +53,8 @@ def measure_distortion(shape: CellShape) -> dict[str, float]:
 def coarse_mesh(shape: CellShape) -> Mesh:
     """Triangulation of a cell whose edges are a fortieth of its equivalent diameter.
 
-    Where the cell is thinner than such an edge, opposite edges of the outline can cross. The mesh is then as
-    fine as the pixels, and the shape's notes say so.
+    Where the cell is thinner than such an edge, opposite edges of the outline can cross. The outline is then
+    that of the pixels, the mesh as fine as they are, and the shape's notes say so.
 
     Parameters
     ----------
