@@ -16,7 +16,7 @@ from typing import Any
 import pandas as pd
 
 sys.path.insert(0, str(Path(__file__).parent))
-from remeasured import cells, claims, maps, movies, shapes
+from remeasured import cells, claims, frames, maps, movies, shapes
 from remeasured.page import write_page
 
 HERE = Path(__file__).parent
@@ -40,6 +40,7 @@ def main() -> None:
         "shapes": shapes.measure(chosen.data / "osteosarcoma" / "masks.tif", chosen.work, chosen.workers),
         "cells": cells.measure(chosen.data / "osteosarcoma" / "masks.tif", chosen.work, chosen.workers),
         "movies": movies.measure(chosen.data, chosen.work),
+        "frames": frames.measure(chosen.data),
     }
     shutil.rmtree(FILES, ignore_errors=True)
     FILES.mkdir(parents=True)
@@ -49,6 +50,7 @@ def main() -> None:
         shapes.write,
         cells.write,
         movies.write,
+        frames.write,
         claims.write,
     )
     for write in writers:
