@@ -138,6 +138,14 @@ def test_another_file_is_refused(tmp_path: Path, content: bytes) -> None:
         load_map(path)
 
 
+def test_a_file_that_is_no_archive_is_refused_in_our_own_words(tmp_path: Path) -> None:
+    (tmp_path / "a.tif").write_bytes(b"II*" + bytes(100))
+    np.save(tmp_path / "a.npy", np.zeros(3))
+    for name in ("a.tif", "a.npy"):
+        with pytest.raises(ReadError, match=rf"{name} is not a map that DiskMap.save wrote, or it is"):
+            load_map(tmp_path / name)
+
+
 def test_another_array_file_and_another_format_are_refused(disk: DiskMap, tmp_path: Path) -> None:
     other = tmp_path / "other.npz"
     np.savez(other, a=np.zeros(3))
@@ -147,7 +155,9 @@ def test_another_array_file_and_another_format_are_refused(disk: DiskMap, tmp_pa
     with pytest.raises(ReadError):
         load_map(tmp_path / "plain.npy")
     np.savez(other, header=np.array(json.dumps({"format": 99})))
-    with pytest.raises(ReadError, match="format 99: this version reads 2"):
+    with pytest.raises(
+        ReadError, match="of format 99, this version reads format 2: make it again, with cytodisk map"
+    ):
         load_map(other)
     np.savez(other, header=np.array(json.dumps([1])))
     with pytest.raises(ReadError):

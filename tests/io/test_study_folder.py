@@ -7,6 +7,7 @@ import pytest
 
 import cytodisk as cd
 from cytodisk.errors import ReadError, StudyError
+from cytodisk.io.provenance_file import differences
 from cytodisk.io.study_folder import StudyFolder, part_key
 from cytodisk.io.tables import SOURCE_COLUMNS, WINDOW_COLUMNS
 
@@ -100,6 +101,18 @@ def test_resume_names_what_differs_from_another_run(tmp_path: Path) -> None:
     with pytest.raises(StudyError, match=r"holds another run \(layers: 10 then, 5 now\): pass --overwrite"):
         StudyFolder.start(tmp_path / "out", run(layers=5), resume=True)
     assert len(cd.open_study(tmp_path / "out").cells) == 2
+
+
+def test_resume_says_first_which_command_another_run_is_of() -> None:
+    there = {"run": "shapes", "fingerprint": {"seed": 0, "packages": {"numpy": "1"}}}
+    here = {"fingerprint": {"layers": 10, "packages": {"numpy": "2"}}}
+    assert differences(there, here) == "that of cytodisk shapes, not of cytodisk map"
+
+
+def test_resume_names_the_packages_that_differ_alone() -> None:
+    there = {"fingerprint": {"packages": {"numpy": "1.26.4", "scipy": "1.11"}, "gone": 1}}
+    here = {"fingerprint": {"packages": {"numpy": "2.1.0", "scipy": "1.11"}}}
+    assert differences(there, here) == "numpy: 1.26.4 then, 2.1.0 now; gone: 1 then, None now"
 
 
 def test_resume_keeps_complete_parts(tmp_path: Path) -> None:

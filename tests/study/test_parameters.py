@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cytodisk.errors import ParameterError
-from cytodisk.study.parameters import MapParameters, parameters_from, write_parameters
+from cytodisk.study.parameters import MapParameters, MovieParameters, parameters_from, write_parameters
+from cytodisk.study.shape_run import ShapeParameters
 
 POSITIVE = st.floats(1e-6, 1e6)
 NAMES = st.text(min_size=1, max_size=9).filter(lambda name: name.isprintable() and name.strip())
@@ -105,3 +106,20 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path: Path, content: bytes | No
         (tmp_path / "a.toml").write_bytes(content)
     with pytest.raises(ParameterError, match=r"parameters file .*a\.toml cannot be read"):
         parameters_from({}, tmp_path / "a.toml")
+
+
+def test_a_file_of_another_command_is_called_so(tmp_path: Path) -> None:
+    write_parameters(MovieParameters(), tmp_path / "parameters.toml")
+    words = (
+        r"no parameters of this command \(frame_interval_s, tension\): perhaps it is that of another command"
+    )
+    (tmp_path / "mine.toml").write_text("layers = 3\ntension = 0.1\nframe_interval_s = 2.0\n")
+    with pytest.raises(ParameterError, match=words):
+        parameters_from({}, tmp_path / "mine.toml")
+    (tmp_path / "provenance.json").write_text('{"fingerprint": {}, "run": "movie"}')
+    with pytest.raises(ParameterError, match=r"tension, tracker.*: it is that of cytodisk movie; use that"):
+        parameters_from({}, tmp_path / "parameters.toml")
+    write_parameters(MapParameters(), tmp_path / "parameters.toml")
+    (tmp_path / "provenance.json").write_text('{"fingerprint": {}}')
+    with pytest.raises(ParameterError, match=r"layers, .*: it is that of cytodisk map; use that"):
+        parameters_from({}, tmp_path / "parameters.toml", ShapeParameters)

@@ -289,10 +289,15 @@ def load_map(path: str | os.PathLike[str]) -> DiskMap:
         The file is missing, damaged, or not a map.
     """
     try:
+        if not zipfile.is_zipfile(path) and Path(path).is_file():
+            raise ReadError(f"{path} is not a map that DiskMap.save wrote, or it is damaged")
         with Path(path).open("rb") as stream, np.load(stream) as file:
             header = json.loads(str(file["header"]))
             if header["format"] != _FORMAT:
-                raise ReadError(f"{path} is a map of format {header['format']}: this version reads {_FORMAT}")
+                raise ReadError(
+                    f"{path} is a map of format {header['format']}, this version reads format {_FORMAT}: "
+                    "make it again, with cytodisk map or map_to_disk"
+                )
             return DiskMap(
                 mask=_placed(file["mask"], header["corner"], header["image_shape"]),
                 report=MaskReport(**header["report"]),

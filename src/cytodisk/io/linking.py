@@ -108,7 +108,8 @@ def _tracker(furthest: int) -> Callable[[list[AnyArray], Overlaps], Links]:
         from laptrack import LapTrack
     except ImportError as error:
         raise MissingPartError(
-            f"link_labels needs laptrack, which cannot be imported ({error}): pip install 'cytodisk[link]'"
+            f"link_labels needs laptrack, which cannot be imported ({error}): in the clone of cytodisk type "
+            ".venv/bin/pip install -c constraints.txt -e '.[link]'"
         ) from error
 
     def predict(labels: list[AnyArray], overlaps: Overlaps) -> Links:

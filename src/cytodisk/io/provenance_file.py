@@ -26,14 +26,38 @@ def write_json(path: Path, content: Any) -> None:
         temporary.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
+_COMMANDS = {
+    None: "cytodisk map",
+    "movie": "cytodisk movie",
+    "shapes": "cytodisk shapes",
+    "comparison": "cytodisk compare",
+    "movie comparison": "cytodisk compare --movie",
+}
+
+
+def command_of(provenance: dict[str, Any]) -> str:
+    """The command that makes such a run."""
+    run = provenance.get("run")
+    return _COMMANDS.get(run, f"cytodisk {run}")
+
+
 def differences(there: dict[str, Any], here: dict[str, Any]) -> str:
-    """What two runs' fingerprints differ in, in words."""
-    old, new = there.get("fingerprint", {}), here["fingerprint"]
-    names = [name for name in new if old.get(name) != new[name]]
-    return (
-        "; ".join(f"{name}: {_short(old.get(name))} then, {_short(new[name])} now" for name in names)
-        or "unknown"
-    )
+    """What two runs differ in, in words: the command, or else what their results depend on."""
+    if command_of(there) != command_of(here):
+        return f"that of {command_of(there)}, not of {command_of(here)}"
+    changes = _changes(there.get("fingerprint", {}), here["fingerprint"])
+    return "; ".join(changes) or "unknown"
+
+
+def _changes(old: dict[str, Any], new: dict[str, Any]) -> list[str]:
+    changes = []
+    for name in [*new, *(name for name in old if name not in new)]:
+        then, now = old.get(name), new.get(name)
+        if isinstance(then, dict) and isinstance(now, dict):
+            changes += _changes(then, now)
+        elif then != now:
+            changes.append(f"{name}: {_short(then)} then, {_short(now)} now")
+    return changes
 
 
 def _short(value: Any) -> str:

@@ -29,7 +29,8 @@ def bokeh() -> Any:
         import bokeh.resources
     except ImportError as error:
         raise MissingPartError(
-            "the report page needs Bokeh, which is not installed: pip install 'cytodisk[report]'"
+            "the report page needs Bokeh, which is not installed: in the clone of cytodisk type "
+            ".venv/bin/pip install -c constraints.txt -e '.[report]'"
         ) from error
     return bokeh
 

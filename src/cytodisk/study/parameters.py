@@ -9,6 +9,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from cytodisk.errors import ParameterError
 from cytodisk.files import replacing
+from cytodisk.io.provenance_file import command_of, read_provenance
+from cytodisk.io.study_folder import PARAMETERS
 from cytodisk.study.correlation_settings import VELOCITIES
 
 
@@ -104,12 +106,7 @@ def parameters_from(
             merged = tomllib.loads(path.read_text(encoding="utf-8"))
         except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
             raise ParameterError(f"parameters file {path} cannot be read: {error}") from error
-    foreign = sorted(set(merged) & set(MovieParameters.model_fields) - set(of.model_fields))
-    if foreign:
-        raise ParameterError(
-            f"parameters file {path} is that of a movie ({', '.join(foreign)}): use cytodisk movie, or take "
-            "these out"
-        )
+        _check_names(merged, of, path)
     if values.get("layers") is not None:
         merged.pop("depth_um", None)  # the two exclude each other, and what is given now counts
     merged |= {name: value for name, value in values.items() if value is not None}
@@ -118,6 +115,21 @@ def parameters_from(
     except ValidationError as error:
         faults = [_fault_words(fault) for fault in error.errors()]
         raise ParameterError("parameters: " + "; ".join(dict.fromkeys(faults))) from error
+
+
+def _check_names(found: dict[str, Any], of: type[BaseModel], path: Path) -> None:
+    """Raise ParameterError for names that a command does not know, such as those of another command."""
+    unknown = sorted(set(found) - set(of.model_fields))
+    if not unknown:
+        return
+    study = read_provenance(path.parent) if path.name == PARAMETERS else None
+    origin = (
+        "perhaps it is that of another command" if study is None else f"it is that of {command_of(study)}"
+    )
+    raise ParameterError(
+        f"parameters file {path} has names that are no parameters of this command ({', '.join(unknown)}): "
+        f"{origin}; use that command, or take these out"
+    )
 
 
 def _fault_words(fault: Any) -> str:

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
+from typing import TypeAlias
 
 from cytodisk.errors import ParameterError, SignalError
 from cytodisk.io.frames import FrameFile
 from cytodisk.io.study_folder import StudyFolder
 from cytodisk.study.correlation_settings import VELOCITIES
+
+Progress: TypeAlias = Callable[[int, int], None]
+"""Called with (done, in all)."""
+
+
+def silent(done: int, total: int) -> None:
+    """Report nothing."""
 
 
 def check_options(workers: int, resume: bool, overwrite: bool) -> None:

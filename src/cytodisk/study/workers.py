@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing import get_context, parent_process
 from multiprocessing.connection import wait
 from threading import Thread
-from typing import Any
+from typing import Any, TypeVar
 
 from cytodisk.errors import StudyError
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
 
 
 @contextmanager
@@ -43,6 +47,38 @@ def worker_pool(workers: int) -> Iterator[Executor]:
             "a worker process died, perhaps for want of memory: what was done is kept; "
             "run the same command with --resume, and with fewer --workers"
         ) from error
+
+
+def in_order(work: Callable[[Task], Result], tasks: Iterable[Task], workers: int) -> Iterator[Result]:
+    """Work on tasks; at most two tasks a worker wait at a time, so memory is bounded.
+
+    Parameters
+    ----------
+    work : callable
+        Can be pickled.
+    tasks : iterable
+        Gone through as results are taken.
+    workers : int
+        Processes; with 1 everything runs in this one.
+
+    Yields
+    ------
+    Result
+        In the order of tasks.
+
+    Raises
+    ------
+    StudyError
+        A worker died.
+    """
+    waiting: deque[Future[Result]] = deque()
+    with worker_pool(workers) as pool:
+        for task in tasks:
+            waiting.append(pool.submit(work, task))
+            if workers == 1 or len(waiting) >= 2 * workers:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
 
 
 class _Here(Executor):
