@@ -26,11 +26,15 @@ def test_masks_become_tables_figures_and_words(run: Run, masks: Path, tmp_path: 
     command = ("compare", masks, "-o", out, "--methods", "newton,edge", *GRID)
     code, said, error = run(*command)
     assert code == 0
-    assert "cytodisk (default)" in said
-    assert "2/2" in said
-    assert "100.0%" in said
+    table = [line.split() for line in said.splitlines()]
+    assert said.startswith("masks: a stack of masks, TYX (3, 45, 93) uint8\npixel size: unknown")
+    assert ["method", "newton", "edge"] in [line[:3] for line in table]
+    assert ["mapped", "2/2", "2/2"] in [line[:3] for line in table]
+    assert ["completeness", "100.0%"] in [line[:2] for line in table]
+    assert ["flipped", "0", "triangles"] in [line[:3] for line in table]  # none where there is no map
     assert "worse than edge-based" in said
-    assert "figures/comparison.png: share of windows that hold signal" in said
+    assert "figures/comparison.png: filled windows" in said
+    assert "comparison_columns.csv says what their columns are" in said
     assert "cell 2, newton (refused): mask of shape" in error
     for name in ("comparison.png", "cells.png"):
         assert (out / "figures" / name).exists()
@@ -44,8 +48,14 @@ def test_masks_become_tables_figures_and_words(run: Run, masks: Path, tmp_path: 
     assert code == 0
     assert "complete already" in error
     assert again == said
-    code, _, _ = run(*command, "--overwrite", "--quiet")
-    assert code == 0
+    code, said, _ = run(
+        *command, "--overwrite", "--quiet", "--cells", "1", "--depth-um", "1.5", "--pixel-size", "0.5"
+    )
+    assert (code, said) == (0, "")
+    assert cd.open_comparison(out).provenance["parameters"]["depth_px"] == 3.0
+    assert_refused(
+        run("report", out), "holds comparison, not windows: look at its comparison.csv and figures"
+    )
 
 
 def test_a_movie_is_compared_through_time(run: Run, tmp_path: Path) -> None:
@@ -58,8 +68,17 @@ def test_a_movie_is_compared_through_time(run: Run, tmp_path: Path) -> None:
     code, said, _ = run(*command, "--methods", "newton,edge", *GRID, "--frame-interval", "5")
     assert code == 0
     assert "edge-based" in said
-    assert "movie_cell_00000_1.png: activity maps" in said
+    assert said.startswith("masks: masks of one cell, 3 frames of 47 × 50 pixels")
+    assert "frame interval: 5 s" in said
+    assert "movie_cell_00000_edge.png: activity maps of edge" in said
+    assert "comparison_movie.csv through time" in said
     found = cd.open_comparison(tmp_path / "out")
+    in_all = found.through_time[found.through_time["layer"].isna()].set_index(["channel", "method"])
+    rows = {" ".join(line[:26].split()): line[26:].split()[:2] for line in said.splitlines()}
+    for name in ("correlation", "centroid_displacement"):
+        shown = f"{name}, material" if name == "correlation" else name
+        expected = [in_all.loc[("material", method), name] for method in ("newton", "edge")]
+        assert [float(value) for value in rows[shown]] == pytest.approx(expected, rel=0.01)
     assert set(found.consistency["channel"]) == {"material", "edge"}
     assert found.cells["depth_px"].tolist()[1] == 3.0
     assert found.provenance["frame_interval_s"] == 5.0
@@ -73,6 +92,12 @@ def test_a_movie_is_compared_through_time(run: Run, tmp_path: Path) -> None:
         (("--methods", "edge,voronoi"), "methods: Input should be 'newton'"),
         (("--layers", "0"), "layers"),
         (("--depth-px", "-1"), "depth_px"),
+        (("--depth-um", "1"), "depth_um needs a pixel size: pass it as --pixel-size, or --depth-px instead"),
+        (("--depth-um", "0", "--pixel-size", "1"), "depth_um must be a positive number, got 0"),
+        (("--depth-um", "1", "--depth-px", "2"), "depth_px and depth_um exclude each other"),
+        (("--cells", "1,two"), "cells must be numbers of cells as 3,17,20, got '1,two'"),
+        (("--cells", "1,2,3,4,5,6"), "cells: got 6: name one to 5"),
+        (("--cells", "1", "--movie"), "cells chooses what cells.png shows"),
     ],
 )
 def test_what_makes_no_sense_is_refused(

@@ -8,6 +8,7 @@ import tifffile
 from matplotlib.figure import Figure
 
 import cytodisk as cd
+from cytodisk.errors import ParameterError
 from cytodisk.plot.compared_cells import chosen_cells, draw_labels, window_colours
 from cytodisk.plot.compared_movie import consistency_by_layer, draw_displacement
 from cytodisk.plot.comparison import METHOD_STYLES, draw_measure_by_layer, spread_over
@@ -60,6 +61,14 @@ def test_negative_values_are_not_cut_off() -> None:
     assert ax.get_ylim()[0] < -0.7
 
 
+def test_lines_on_each_other_are_all_seen() -> None:
+    """The default is solid and the widest, behind the others."""
+    others = [style for name, style in METHOD_STYLES.items() if name != "newton"]
+    for key in ("linewidth", "markersize"):
+        assert METHOD_STYLES["newton"][key] > max(style[key] for style in others)
+    assert METHOD_STYLES["newton"]["zorder"] < min(style["zorder"] for style in others)
+
+
 def test_values_are_spread_by_rank() -> None:
     assert spread_over([3.0, 1.0, np.nan, 2.0], 5) == [1, 3, 0]
     assert spread_over(np.arange(9.0)[::-1], 3) == [8, 4, 0]
@@ -68,6 +77,13 @@ def test_values_are_spread_by_rank() -> None:
 
 def test_cells_are_chosen_from_simple_to_complex(comparison: cd.Comparison) -> None:
     assert chosen_cells(comparison) == [0, 1]
+
+
+def test_cells_that_cannot_be_drawn_are_refused(comparison: cd.Comparison) -> None:
+    with pytest.raises(ParameterError, match=r"cells: 7 has no windows in comparison .* numbered 0 to 1"):
+        cd.plot.draw_compared_cells(comparison, [0, 7])
+    with pytest.raises(ParameterError, match="cells: got 6: name one to 5"):
+        cd.plot.draw_compared_cells(comparison, range(6))
 
 
 def test_layers_have_colours_and_every_other_sector_is_paler() -> None:
@@ -121,6 +137,8 @@ def test_pages_stand_in_the_folder(comparison: cd.Comparison, tmp_path: Path) ->
     movie = cd.compare_movie(tmp_path / "m.tif", tmp_path / "out", grid, signal=tmp_path / "s.ome.tif")
     first = cd.plot.draw_compared_movie(movie, 0, "material")
     second = cd.plot.draw_compared_movie(movie, 0, "edge")
-    assert first != second
+    assert (first.name, second.name) == ("movie_cell_00000_material.png", "movie_cell_00000_edge.png")
+    silent = cd.compare_movie(tmp_path / "m.tif", tmp_path / "silent", grid)
+    assert cd.plot.draw_compared_movie(silent, 0).name == "movie_cell_00000.png"
     for path in (first, second, comparison.path / "figures" / "cells.png"):
         assert path.read_bytes().startswith(b"\x89PNG")

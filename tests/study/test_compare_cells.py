@@ -11,7 +11,7 @@ import tifffile
 import cytodisk as cd
 from cytodisk.errors import MapError, ParameterError, ReadError, StudyError
 from cytodisk.study import compare_cells as module
-from cytodisk.study.comparison import layer_summary, method_summary
+from cytodisk.study.compare_summaries import layer_summary, method_summary
 from cytodisk.study.comparison_words import where_worse
 from cytodisk.study.parameters import parameters_from
 
@@ -100,6 +100,13 @@ def test_summaries_stand_in_files(comparison: cd.Comparison) -> None:
     for name, table in tables.items():
         found = pd.read_csv(comparison.path / name)
         pd.testing.assert_frame_equal(found, table, check_dtype=False, rtol=1e-4)
+    told = pd.read_csv(comparison.path / "comparison_columns.csv").set_index(["table", "name"])
+    for name, table in tables.items():
+        assert list(told.loc[name].index) == list(table.columns)
+        assert list(table.attrs["units"]) == list(table.columns)
+    assert told["description"].str.len().min() > 3
+    assert comparison.by_method.attrs["units"]["lost_px"] == "px²"
+    assert comparison.by_layer.attrs["units"]["area_cv_q25"] == "1"
     assert comparison.provenance["parameters"]["methods"] == list(METHODS)
     assert "method" not in comparison.provenance["parameters"]
 
@@ -238,9 +245,18 @@ def test_what_is_worse_is_said_by_layer() -> None:
     provenance = {"run": "comparison", "parameters": {"methods": ["newton", "edge"]}}
     found = cd.Comparison(Path(), tables("cells"), tables("layers"), provenance)
     assert where_worse(found) == [
-        "worse than edge-based: the spread of area (CV) is larger in layers 1–2, 4 "
-        "(0.6 against 0.3 in layer 2)"
+        "worse than edge-based: area_cv is larger in layers 1–2, 4 (most in layer 2: 0.6 against 0.3)"
     ]
+
+
+def test_less_than_a_twentieth_is_not_worse_and_many_layers_are_counted() -> None:
+    provenance = {"run": "comparison", "parameters": {"methods": ["newton", "edge"]}}
+    tables = made_up(newton=[0.104, 0.104], edge=[0.1, 0.1])
+    assert not where_worse(cd.Comparison(Path(), tables("cells"), tables("layers"), provenance))
+    tables = made_up(newton=[0.2, 0.1] * 15, edge=[0.1, 0.1] * 15)
+    (line,) = where_worse(cd.Comparison(Path(), tables("cells"), tables("layers"), provenance))
+    assert "larger in 15 of 30 layers" in line
+    assert len(line) < 160
 
 
 def test_summaries_are_medians_and_quartiles_over_cells() -> None:
@@ -252,3 +268,7 @@ def test_summaries_are_medians_and_quartiles_over_cells() -> None:
     assert (row["area_cv"], row["area_cv_q25"], row["area_cv_q75"]) == (3.0, 2.0, 4.0)
     (row,) = method_summary(cells, layers, ("edge",)).to_dict("records")
     assert (row["area_cv"], row["completeness"], row["tried"]) == (3.0, 1.0, 5)
+    assert (row["area_error"], row["area_error_q25"], row["area_error_q75"]) == (0.1, 0.1, 0.1)
+    (row,) = method_summary(cells.iloc[:1], layers.iloc[:1], ("edge",)).to_dict("records")
+    assert row["area_error"] == 0.1
+    assert np.isnan([row["area_error_q25"], row["area_error_q75"]]).all()  # one cell has no quartiles

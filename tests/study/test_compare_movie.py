@@ -55,6 +55,27 @@ def test_measures_are_those_of_the_movie(comparison: cd.Comparison, files: tuple
         np.testing.assert_allclose(complete, held)
 
 
+def test_medians_over_frames_stand_by_method_channel_and_layer(comparison: cd.Comparison) -> None:
+    table = pd.read_csv(comparison.path / "comparison_movie.csv")
+    here = comparison.through_time.astype({"layer": float})
+    pd.testing.assert_frame_equal(table, here, check_dtype=False, rtol=1e-4)
+    assert len(table) == 3 * 2 * (4 + 1)
+    rows = comparison.consistency
+    rows = rows[(rows["method"] == "edge") & (rows["channel"] == "material")]
+    found = table[(table["method"] == "edge") & (table["channel"] == "material")].set_index("layer")
+    assert (found["frames"] == 2).all()  # 0 to 1 and 3 to 4
+    for name in ("correlation", "centroid_displacement"):
+        first = rows.loc[rows["layer"] == 0, name]
+        assert found.loc[0.0, name] == pytest.approx(first.median(), rel=1e-4)
+        assert found.loc[0.0, f"{name}_q75"] == pytest.approx(first.quantile(0.75), rel=1e-4)
+        in_all = found.loc[found.index.isna(), name].item()
+        assert in_all == pytest.approx(rows.groupby("time")[name].mean().median(), rel=1e-4)
+    assert comparison.through_time.attrs["units"]["centroid_displacement"] == "px"
+    told = pd.read_csv(comparison.path / "comparison_columns.csv")
+    assert list(told.loc[told["table"] == "comparison_movie.csv", "name"]) == list(table.columns)
+    assert comparison.by_method["area_error_q25"].isna().all()
+
+
 def test_a_row_sums_up_the_frames(comparison: cd.Comparison) -> None:
     assert list(comparison.cells["method"]) == list(METHODS)
     assert (comparison.cells["status"] == "partly").all()
@@ -141,3 +162,5 @@ def test_inputs_that_do_not_fit_are_refused(files: tuple[Path, Path], tmp_path: 
         cd.compare_movie(files[0], tmp_path / "out", GRID, signal=short)
     with pytest.raises(ParameterError, match="pass methods"):
         parameters_from({"method": "harmonic"}, None, cd.CompareMovieParameters)
+    with pytest.raises(ParameterError, match="depth_um: a comparison has the same number of layers for all"):
+        parameters_from({"depth_um": 1.0}, None, cd.CompareMovieParameters)

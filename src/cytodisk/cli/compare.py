@@ -1,11 +1,11 @@
 """`cytodisk compare`."""
 
-import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
+from cytodisk.cli.comparison_lines import say_comparison, say_tables
 from cytodisk.cli.console import (
     Channels,
     Quiet,
@@ -16,12 +16,18 @@ from cytodisk.cli.console import (
     parse_channels,
     progress_bar,
 )
+from cytodisk.cli.map import say_inputs
+from cytodisk.cli.movie import say_movie
 from cytodisk.errors import ParameterError
+from cytodisk.study.channel_names import shown_name
 
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from cytodisk.study.compare_parameters import CompareMovieParameters, CompareParameters
     from cytodisk.study.comparison import Comparison
+
+AnyCompared = TypeVar("AnyCompared", "CompareParameters", "CompareMovieParameters")
 
 COMPARE_HELP = """Compare windows of several methods on your own masks: how many are empty, how regular.
 
@@ -39,13 +45,6 @@ Examples:
 
 Exit code: 0 when done (cells without a map have a row with the reason), 2 if no cell could be used.
 """
-
-_LINE = "{:<21}{:>9}{:>7}{:>7}{:>10}{:>9}{:>8}{:>9}{:>8}{:>9}"
-_HEADS = ("mapped", "valid", "flips", "area err", "windows", "area", "CV area", "CV ecc", "seconds")
-_KEY = (
-    "valid: maps that are one to one; area err: mean |log λ|, median; windows: share that holds signal; "
-    "area: share of cells in windows; CV: spread of area and of eccentricity within a layer, median"
-)
 
 
 def compare_command(
@@ -70,16 +69,26 @@ def compare_command(
         float | None,
         typer.Option(help="Thickness of an edge-based layer, px (default: the cell's depth / layers)."),
     ] = None,
+    depth_um: Annotated[
+        float | None, typer.Option(help="The same in µm, instead of --depth-px; needs the pixel size.")
+    ] = None,
     pixel_size: Annotated[float | None, typer.Option(help="µm per pixel; overrules the file's own.")] = None,
     frame_interval: Annotated[float | None, typer.Option(help="Seconds between frames of a movie.")] = None,
     parameters: Annotated[
         Path | None, typer.Option(help="TOML file as in a comparison; flags overrule it.")
+    ] = None,
+    cells: Annotated[
+        str | None,
+        typer.Option(help="Cells to draw, at most five, as 3,17,20 (default: from simple to complex)."),
     ] = None,
     workers: Annotated[int, typer.Option(help="Processes; a movie runs in one.")] = 1,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the same run in this folder.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in this folder.")] = False,
     quiet: Quiet = False,
 ) -> None:
+    from cytodisk.study.compare_parameters import CompareMovieParameters, CompareParameters
+    from cytodisk.study.parameters import parameters_from
+
     given: dict[str, Any] = {
         "methods": None if methods is None else tuple(part.strip() for part in methods.split(",")),
         "kind": kind,
@@ -91,61 +100,93 @@ def compare_command(
         "pixel_size_um": pixel_size,
     }
     again: dict[str, bool] = {"resume": resume, "overwrite": overwrite}
+    if depth_px is not None and depth_um is not None:
+        raise ParameterError("depth_px and depth_um exclude each other: pass --depth-px or --depth-um")
+    drawn = _parse_cells(cells, movie)
+    console = console_for(quiet)
     if frame_interval is not None and not movie:
         raise ParameterError("frame_interval is that of a movie: pass --movie too, or leave it out")
     if movie:
         given["frame_interval_s"] = frame_interval
-        found = _run_movie(masks, signal, out, given, parameters, again, quiet)
+        of_movie = parameters_from(given, parameters, CompareMovieParameters)
+        found = _run_movie(console, masks, signal, out, of_movie, depth_um, again)
     else:
-        found = _run_cells(masks, signal, out, given, parameters, again | {"workers": workers}, quiet)
+        if signal is not None:
+            raise ParameterError("signal is sampled in movies only: pass --movie too, or leave --signal out")
+        settings = parameters_from(given, parameters, CompareParameters)
+        found = _run_cells(console, masks, out, settings, depth_um, again | {"workers": workers})
     if not found.cells["mapped"].sum():
         fail(f"no cell could be used: {'; '.join(found.cells['reason'].head(1)) or 'there is none'}")
-    console = console_for(quiet)
     say_comparison(console, found)
-    for path, words in draw_figures(found):
+    for path, words in draw_figures(found, drawn):
         console.print(f"{path.relative_to(found.path)}: {words}")
-    console.print(f"results: {found.path} (comparison.csv by layer, comparison_methods.csv by method)")
+    say_tables(console, found)
 
 
 def _run_cells(
+    console: "Console",
     masks: Path,
-    signal: Path | None,
     out: Path,
-    given: dict[str, Any],
-    parameters: Path | None,
+    settings: "CompareParameters",
+    depth_um: float | None,
     options: dict[str, Any],
-    quiet: bool,
 ) -> "Comparison":
-    from cytodisk.study.compare_cells import compare_cells
-    from cytodisk.study.compare_parameters import CompareParameters
-    from cytodisk.study.parameters import parameters_from
+    from cytodisk.study.compare_cells import compare_opened_cells
+    from cytodisk.study.map_inputs import open_inputs
 
-    if signal is not None:
-        raise ParameterError("signal is sampled in movies only: pass --movie too, or leave --signal out")
-    settings = parameters_from(given, parameters, CompareParameters)
-    with progress_bar(quiet, "cells") as progress:
-        return compare_cells(masks, out, settings, progress=progress, **options)
+    inputs = open_inputs(masks, None, settings)
+    say_inputs(console, inputs)
+    settings = _with_depth(settings, depth_um, inputs.pixel_size_um)
+    with progress_bar(console.quiet, "cells") as progress:
+        return compare_opened_cells(inputs, out, settings, progress=progress, **options)
 
 
 def _run_movie(
+    console: "Console",
     masks: Path,
     signal: Path | None,
     out: Path,
-    given: dict[str, Any],
-    parameters: Path | None,
+    settings: "CompareMovieParameters",
+    depth_um: float | None,
     options: dict[str, Any],
-    quiet: bool,
 ) -> "Comparison":
-    from cytodisk.study.compare_movie import compare_movie
-    from cytodisk.study.compare_parameters import CompareMovieParameters
-    from cytodisk.study.parameters import parameters_from
+    from cytodisk.study.compare_movie import compare_opened_movie
+    from cytodisk.study.movie_inputs import open_movie
 
-    settings = parameters_from(given, parameters, CompareMovieParameters)
-    with progress_bar(quiet, "frames") as progress:
-        return compare_movie(masks, out, settings, signal=signal, progress=progress, **options)
+    inputs = open_movie(masks, signal, settings)
+    say_movie(console, inputs)
+    settings = _with_depth(settings, depth_um, inputs.scale.pixel_size_um)
+    with progress_bar(console.quiet, f"frames of {count(len(settings.methods), 'method')}") as progress:
+        return compare_opened_movie(inputs, out, settings, progress=progress, **options)
 
 
-def draw_figures(found: "Comparison") -> list[tuple[Path, str]]:
+def _with_depth(settings: AnyCompared, depth_um: float | None, pixel_size_um: float | None) -> AnyCompared:
+    """Settings with a depth that was given in micrometres."""
+    if depth_um is None:
+        return settings
+    if not 0 < depth_um < float("inf"):
+        raise ParameterError(f"depth_um must be a positive number, got {depth_um}")
+    if pixel_size_um is None:
+        raise ParameterError("depth_um needs a pixel size: pass it as --pixel-size, or --depth-px instead")
+    return settings.model_copy(update={"depth_px": depth_um / pixel_size_um})
+
+
+def _parse_cells(text: str | None, movie: bool) -> list[int] | None:
+    from cytodisk.plot.compared_cells import check_cells
+
+    if text is None:
+        return None
+    if movie:
+        raise ParameterError("cells chooses what cells.png shows, and of a movie all are drawn: leave it out")
+    try:
+        cells = [int(part) for part in text.split(",")]
+    except ValueError:
+        raise ParameterError(f"cells must be numbers of cells as 3,17,20, got {text!r}") from None
+    check_cells(cells)
+    return cells
+
+
+def draw_figures(found: "Comparison", cells: list[int] | None = None) -> list[tuple[Path, str]]:
     """Draw what can be drawn of a comparison; each file with a line on what it shows."""
     from cytodisk.plot.compared_cells import draw_compared_cells
     from cytodisk.plot.compared_movie import draw_compared_movie
@@ -154,47 +195,19 @@ def draw_figures(found: "Comparison") -> list[tuple[Path, str]]:
     mapped = found.cells[found.cells["mapped"] > 0]
     if not len(mapped):
         return []
-    drawn = [
-        (draw_comparison(found), "share of windows that hold signal, spread of their area and form, by layer")
-    ]
+    by_layer = "filled windows, spread of their area and eccentricity, mean eccentricity, by layer"
+    drawn = [(draw_comparison(found), by_layer)]
     if not found.is_movie:
-        cells = draw_compared_cells(found)
-        return drawn if cells is None else [*drawn, (cells, "windows of each method in up to five cells")]
+        path = draw_compared_cells(found, cells)
+        return drawn if path is None else [*drawn, (path, "windows of each method in up to five cells")]
     channels = [str(name) for name in found.consistency["channel"].dropna().unique()]
     for cell in sorted(mapped["cell"].unique()):
         for channel in channels or (None,):
-            path = draw_compared_movie(found, int(cell), channel)
-            drawn.append((path, "activity maps, how alike consecutive frames are, how far windows move"))
+            words = "how far windows move, by layer and through time, and how many are filled"
+            if channel is not None:
+                words = (
+                    f"activity maps of {shown_name(channel)}, how alike consecutive frames are, how far "
+                    "windows move, how many are filled"
+                )
+            drawn.append((draw_compared_movie(found, int(cell), channel), words))
     return drawn
-
-
-def say_comparison(console: "Console", found: "Comparison") -> None:
-    """Print a line a method, what was lost, and where the default is worse."""
-    from cytodisk.study.compare_parameters import TITLES
-    from cytodisk.study.comparison_words import where_worse
-
-    console.print(_LINE.format("method", *_HEADS))
-    for row in found.by_method.to_dict("records"):
-        on_map = row["invalid_maps"] == row["invalid_maps"]  # NaN where windows are not on a map
-        console.print(
-            _LINE.format(
-                TITLES[row["method"]],
-                f"{row['mapped']}/{row['tried']}",
-                f"{row['mapped'] - row['invalid_maps']:.0f}" if on_map else "",
-                f"{row['flipped']:.0f}" if on_map else "",
-                f"{row['area_error']:.3f}" if on_map else "",
-                f"{row['completeness']:.1%}",
-                f"{row['coverage']:.1%}",
-                f"{row['area_cv']:.2f}",
-                f"{row['eccentricity_cv']:.2f}",
-                f"{row['seconds']:.2g}",
-            )
-        )
-    console.print(_KEY)
-    for words in where_worse(found):
-        console.print(words)
-    lost = found.cells[found.cells["reason"] != ""].to_dict("records")
-    for row in lost[:10]:
-        print(f"cell {row['cell']}, {row['method']} ({row['status']}): {row['reason']}", file=sys.stderr)
-    if len(lost) > 10:
-        print(f"… and {count(len(lost) - 10, 'more row')}: column 'reason' of cells.parquet", file=sys.stderr)

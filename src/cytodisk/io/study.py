@@ -241,8 +241,13 @@ def open_study(path: str | os.PathLike[str]) -> Study:
         raise ReadError(f"study {folder} is not complete: run the same command again with --resume")
     run = provenance.get("run", "map")
     if run not in ("map", "movie"):
-        reader = "open_shapes" if run == "shapes" else "open_comparison"
-        raise ReadError(f"study {folder} holds {run}, not windows: read it with {reader}")
+        table, reader = "comparison.csv", "open_comparison"
+        if run == "shapes":
+            table, reader = "shapes.csv", "open_shapes"
+        raise ReadError(
+            f"study {folder} holds {run}, not windows: look at its {table} and figures; from Python, read it "
+            f"with {reader}"
+        )
     names = (CELLS, WINDOWS, EDGE, CONSISTENCY) if run == "movie" else (CELLS, WINDOWS)
     try:
         for name in names:

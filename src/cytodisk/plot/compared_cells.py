@@ -14,6 +14,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.image import AxesImage
 
 from cytodisk.arrays import FloatArray
+from cytodisk.errors import ParameterError
 from cytodisk.files import replacing
 from cytodisk.plot.comparison import spread_over
 from cytodisk.plot.outlines import outline_sides
@@ -23,11 +24,13 @@ from cytodisk.study.compare_parameters import ON_A_MAP, TITLES
 from cytodisk.study.comparison import Comparison
 
 _MOST_CELLS = 5
-_LEFT, _TOP, _GAP, _WORDS = 6.0, 8.0, 2.0, 4.0  # mm
-_BELOW = 5.0
+_LEFT, _TOP, _GAP, _WORDS = 6.0, 13.0, 2.0, 4.0  # mm
+_BELOW = 8.0
 _DPI = 300
 _KEY = (
-    "dark: layer at the edge, yellow: at the centre; every other sector paler. Percent: windows with signal."
+    "Dark: layer at the edge, yellow: at the centre; every other sector is paler; white: in no window.",
+    "Percent: filled windows, that is with a part of the cell (completeness). Turned over: triangles of a "
+    "map that is not one to one.",
 )
 _DARKEST, _LIGHTEST = 0.05, 0.9  # share of the colours that is used
 _PALE = 0.35  # share of white in every other sector
@@ -44,18 +47,24 @@ def draw_compared_cells(comparison: Comparison, cells: Sequence[int] | None = No
     comparison : Comparison
         Not that of a movie.
     cells : sequence of int, optional
-        Which cells, in this order; by default they go from simple to complex.
+        Which cells, at most five, in this order; by default they go from the smallest area error of the map
+        to the largest.
 
     Returns
     -------
     Path or None
         None if no cell has windows.
 
+    Raises
+    ------
+    ParameterError
+        There are more than five, or no such cell with windows.
+
     References
     ----------
     u-Unwrap, Fig. 3A.
     """
-    chosen = chosen_cells(comparison) if cells is None else list(cells)[:_MOST_CELLS]
+    chosen = chosen_cells(comparison) if cells is None else _asked_for(comparison, cells)
     if not chosen:
         return None
     path = comparison.path / "figures" / "cells.png"
@@ -65,7 +74,7 @@ def draw_compared_cells(comparison: Comparison, cells: Sequence[int] | None = No
         for column, cell in enumerate(chosen):
             labels = comparison.labels(cell)
             left = _LEFT + column * (size + _GAP)
-            sheet.text(left, _TOP - 2.0, _cell_name(comparison.cells, cell))
+            sheet.text(left, _TOP - 1.5, _cell_name(comparison.cells, cell))
             for row, method in enumerate(comparison.methods):
                 top = _TOP + row * (size + _WORDS + _GAP)
                 ax = sheet.axes(left, top, size, size)
@@ -74,7 +83,9 @@ def draw_compared_cells(comparison: Comparison, cells: Sequence[int] | None = No
         for row, method in enumerate(comparison.methods):
             middle = _TOP + row * (size + _WORDS + _GAP) + size / 2
             sheet.text(2.0, middle, TITLES[method], rotation=90, va="center", ha="left")
-        sheet.text(_LEFT, sheet.height_mm - 1.5, _KEY, color="0.35")
+        sheet.text(_LEFT, 4.0, _title(comparison, chosen, cells is None), size=7.5)
+        for line, words in enumerate(_KEY):
+            sheet.text(_LEFT, sheet.height_mm - 5.0 + 3.5 * line, words, color="0.35")
         with replacing(path) as temporary:
             sheet.figure.savefig(temporary, dpi=_DPI)
     return path
@@ -92,13 +103,52 @@ def chosen_cells(comparison: Comparison) -> list[int]:
     list of int
         From the simplest on.
     """
-    mapped = comparison.cells[comparison.cells["mapped"] > 0]
-    for method in (*(name for name in comparison.methods if name in ON_A_MAP), *comparison.methods):
-        rows = mapped[mapped["method"] == method]
-        if len(rows):
-            measure = rows["area_distortion" if method in ON_A_MAP else "empty_windows"]
-            return [int(rows["cell"].iloc[place]) for place in spread_over(measure, _MOST_CELLS)]
-    return []
+    method = _ordered_by(comparison)
+    if method is None:
+        return []
+    rows = comparison.cells[(comparison.cells["mapped"] > 0) & (comparison.cells["method"] == method)]
+    measure = rows["area_distortion" if method in ON_A_MAP else "empty_windows"]
+    return [int(rows["cell"].iloc[place]) for place in spread_over(measure, _MOST_CELLS)]
+
+
+def check_cells(cells: Sequence[int]) -> None:
+    """Raise ParameterError unless there is room for so many cells.
+
+    Parameters
+    ----------
+    cells : sequence of int
+    """
+    if not 0 < len(cells) <= _MOST_CELLS:
+        raise ParameterError(f"cells: got {len(cells)}: name one to {_MOST_CELLS}, as many as fit the page")
+
+
+def _asked_for(comparison: Comparison, cells: Sequence[int]) -> list[int]:
+    check_cells(cells)
+    known = comparison.cells.loc[comparison.cells["mapped"] > 0, "cell"].unique()
+    missing = [cell for cell in cells if cell not in known]
+    if missing:
+        raise ParameterError(
+            f"cells: {missing[0]} has no windows in comparison {comparison.path}, whose cells are numbered "
+            f"{known.min()} to {known.max()}: name others"
+        )
+    return list(cells)
+
+
+def _ordered_by(comparison: Comparison) -> str | None:
+    """The first method with a map, or else the first, of those that have windows."""
+    with_windows = set(comparison.cells.loc[comparison.cells["mapped"] > 0, "method"])
+    by_map = [method for method in comparison.methods if method in ON_A_MAP]
+    return next((method for method in (*by_map, *comparison.methods) if method in with_windows), None)
+
+
+def _title(comparison: Comparison, chosen: Sequence[int], by_order: bool) -> str:
+    if not by_order:
+        return f"{len(chosen)} chosen cell{'s' if len(chosen) > 1 else ''}"
+    method, number = _ordered_by(comparison), comparison.cells["cell"].nunique()
+    measure = f"area error of {TITLES[method]}" if method in ON_A_MAP else "number of empty windows"
+    if len(chosen) == 1:
+        return f"1 of {number} cells" if number > 1 else "the cell"
+    return f"{len(chosen)} of {number} cells, from the smallest to the largest {measure}"
 
 
 def draw_labels(ax: Axes, labels: Any, mask: Any, grid: tuple[int, int]) -> AxesImage | None:
@@ -172,5 +222,5 @@ def _outcome(comparison: Comparison, cell: int, method: str) -> str:
     if row["coverage"] < 0.995:
         words += f" ({row['coverage']:.0%} of the area)"
     if row["certificate_valid"] is False:
-        words += f", {row['flipped']:.0f} flips"
+        words += f", {row['flipped']:.0f} turned over"
     return words

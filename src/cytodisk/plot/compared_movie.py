@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -26,16 +27,21 @@ from cytodisk.plot.style import (
     paper_style,
     signal_limits,
 )
-from cytodisk.plot.time_axis import time_axis
+from cytodisk.plot.time_axis import TICK_STEPS, time_axis
+from cytodisk.study.channel_names import file_names, shown_name
 from cytodisk.study.compare_parameters import TITLES
 from cytodisk.study.comparison import Comparison
 
 _LEFT, _TOP, _GAP, _BAR = 14.0, 11.0, 3.0, 16.0  # mm
+_KEY = "By layer: medians over frames, bands are their quartiles. Through time: mean over layers, no bands."
+_LONGEST_LABEL = 28  # letters along a panel's height
 _MAP, _MAP_GAP, _PANEL, _PANEL_GAP = 18.0, 2.0, 36.0, 15.0
 
 
 def draw_compared_movie(comparison: Comparison, cell: int, channel: str | None = None) -> Path:
     """Write a page of a cell: activity maps by method, then their consistency by layer and through time.
+
+    Without a signal there are no activity maps, and motion by layer is in the place of the correlation.
 
     Parameters
     ----------
@@ -43,12 +49,12 @@ def draw_compared_movie(comparison: Comparison, cell: int, channel: str | None =
         That of a movie.
     cell : int
     channel : str, optional
-        Channel of the signal; without a signal there are no activity maps.
+        Channel of the signal, if there is one.
 
     Returns
     -------
     Path
-        `figures/movie_cell_00000_<channel>.png`.
+        `figures/movie_cell_00000_<channel>.png`, or `movie_cell_00000.png` without a channel.
 
     References
     ----------
@@ -56,17 +62,22 @@ def draw_compared_movie(comparison: Comparison, cell: int, channel: str | None =
     """
     rows = comparison.cells[(comparison.cells["cell"] == cell) & (comparison.cells["mapped"] > 0)]
     methods = [method for method in comparison.methods if method in set(rows["method"])]
-    number = 0 if channel is None else _channel_number(comparison, cell, methods, channel)
-    path = comparison.path / "figures" / f"movie_cell_{cell:05d}_{number}.png"
+    name, number = f"movie_cell_{cell:05d}", 0
+    if channel is not None:
+        names = _channels(comparison, cell, methods)
+        number = names.index(channel)
+        name += f"_{file_names(names)[number]}"
+    path = comparison.path / "figures" / f"{name}.png"
     layers = shown_layers(comparison.provenance["parameters"]["layers"]) if channel is not None else []
-    maps = _TOP + len(layers) * (_MAP + _MAP_GAP) + (8.0 if layers else -3.0)
+    maps = _TOP + len(layers) * (_MAP + _MAP_GAP) + 8.0 if layers else 0.0
     with paper_style():
-        sheet = Sheet(maps + 12.0 + _PANEL + 11.0)
+        sheet = Sheet(maps + 12.0 + _PANEL + 15.0)
         if channel is not None:
             signals = {method: comparison.activity(cell, method).isel(channel=number) for method in methods}
-            _draw_maps(sheet, signals, layers, comparison.provenance["frame_interval_s"], channel)
+            _draw_maps(sheet, signals, layers, comparison.provenance["frame_interval_s"], shown_name(channel))
         write_method_key(sheet, methods, _LEFT, maps + 2.0)
         _draw_measures(sheet, comparison, cell, channel, methods, maps + 12.0)
+        sheet.text(_LEFT, sheet.height_mm - 1.5, _KEY, color="0.35")
         with replacing(path) as temporary:
             sheet.figure.savefig(temporary, dpi=DPI)
     return path
@@ -119,10 +130,10 @@ def draw_displacement(
         rows = consistency[consistency["method"] == method]
         moved = rows.groupby("time")["centroid_displacement"].mean().reindex(range(first, last + 1))
         style = METHOD_STYLES[method] | {"marker": ""}
-        lines += ax.plot(time, moved.to_numpy(), linewidth=1.0, label=TITLES[method], **style)
-    ax.set(ylabel=f"displacement ({unit})")
+        lines += ax.plot(time, moved.to_numpy(), label=TITLES[method], **style)
+    ax.set(ylabel=f"centroid_displacement ({unit})")
     ax.set_ylim(bottom=0.0)
-    ax.yaxis.set_major_locator(MaxNLocator(5))
+    ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
     return lines
 
 
@@ -174,22 +185,21 @@ def _draw_measures(
     rows = table[table["cell"] == cell]
     rows = rows[rows["channel"] == channel] if channel is not None else rows
     width = (DOUBLE_COLUMN_MM - _LEFT - 4.0 - 2 * _PANEL_GAP) / 3
-    left = _LEFT
+    axes = [sheet.axes(_LEFT + number * (width + _PANEL_GAP), top, width, _PANEL) for number in range(3)]
+    motion = "centroid_displacement"
+    name, label, title = motion, f"{motion} ({unit})", "motion of windows a frame"
     if channel is not None:
-        ax = sheet.axes(left, top, width, _PANEL)
-        found = consistency_by_layer(rows, "correlation")
-        draw_measure_by_layer(ax, found, "correlation", "correlation with next frame", methods)
-        ax.set_title(f"{channel}, median over frames", loc="left", parse_math=False)
-        left += width + _PANEL_GAP
-    ax = sheet.axes(left, top, width, _PANEL)
-    draw_displacement(ax, rows, methods, unit, comparison.provenance["frame_interval_s"])
-    ax.set_title("motion of window centroids", loc="left")
-    ax = sheet.axes(left + width + _PANEL_GAP, top, width, _PANEL)
+        name, title = "correlation", "likeness to the next frame"
+        label = textwrap.shorten(f"correlation, {shown_name(channel)}", _LONGEST_LABEL, placeholder="…")
+    draw_measure_by_layer(axes[0], consistency_by_layer(rows, name), name, label, methods)
+    axes[0].set_title(title, loc="left")
+    axes[0].yaxis.label.set_parse_math(False)
+    draw_displacement(axes[1], rows, methods, unit, comparison.provenance["frame_interval_s"])
+    axes[1].set_title("motion of windows a frame", loc="left")
     found = consistency_by_layer(rows, "completeness")
-    draw_measure_by_layer(ax, found, "completeness", "windows that hold signal", methods)
-    ax.set_title("completeness", loc="left")
+    draw_measure_by_layer(axes[2], found, "completeness", "completeness", methods)
+    axes[2].set_title("filled windows", loc="left")
 
 
-def _channel_number(comparison: Comparison, cell: int, methods: Sequence[str], channel: str) -> int:
-    names = [str(name) for name in comparison.activity(cell, methods[0])["channel"].to_numpy()]
-    return names.index(channel)
+def _channels(comparison: Comparison, cell: int, methods: Sequence[str]) -> list[str]:
+    return [str(name) for name in comparison.activity(cell, methods[0])["channel"].to_numpy()]

@@ -15,28 +15,35 @@ from matplotlib.ticker import MaxNLocator
 from cytodisk.files import replacing
 from cytodisk.plot.sheet import Sheet
 from cytodisk.plot.style import DPI, paper_style
+from cytodisk.plot.time_axis import TICK_STEPS
 from cytodisk.study.compare_parameters import TITLES
 from cytodisk.study.comparison import Comparison
 
-# Colours that the colour-blind can tell apart (Okabe and Ito), and a mark beside.
+# Colours that the colour-blind can tell apart (Okabe and Ito), and a mark beside. Where lines lie on each
+# other the thinner ones, and those with gaps, are in front, so that each is seen.
 METHOD_STYLES: dict[str, dict[str, Any]] = {
-    "newton": {"color": "#0072B2", "marker": "o"},
-    "harmonic": {"color": "#56B4E9", "marker": "s", "linestyle": (0, (4, 1.5))},
-    "advection": {"color": "#009E73", "marker": "^", "linestyle": (0, (1.5, 1))},
-    "edge": {"color": "#D55E00", "marker": "D"},
-    "rings": {"color": "#CC79A7", "marker": "v", "linestyle": (0, (4, 1, 1, 1))},
+    "newton": {"color": "#0072B2", "marker": "o", "linewidth": 2.2, "markersize": 4.6, "zorder": 2.1},
+    "harmonic": {"color": "#56B4E9", "marker": "s", "linestyle": (0, (3, 2)), "zorder": 2.2}
+    | {"linewidth": 1.2, "markersize": 3.2},
+    "advection": {"color": "#009E73", "marker": "^", "linestyle": (0, (1.2, 2)), "zorder": 2.3}
+    | {"linewidth": 1.0, "markersize": 2.0},
+    "edge": {"color": "#D55E00", "marker": "D", "linewidth": 1.0, "markersize": 2.5, "zorder": 2.4},
+    "rings": {"color": "#CC79A7", "marker": "v", "linestyle": (0, (4, 1, 1, 1)), "zorder": 2.5}
+    | {"linewidth": 1.0, "markersize": 2.5},
 }
 
+# Column of the table by layer, and its name in words.
 PANELS = (
-    ("completeness", "windows that hold signal", "completeness"),
-    ("area_cv", "spread of area (CV)", "area of windows"),
-    ("eccentricity_cv", "spread of eccentricity (CV)", "eccentricity of windows"),
+    ("completeness", "filled windows"),
+    ("area_cv", "CV of area"),
+    ("eccentricity_cv", "CV of eccentricity"),
+    ("eccentricity", "mean eccentricity"),
 )
-_PANEL, _HEIGHT, _TOP, _LEFT, _GAP = 45.0, 38.0, 14.0, 12.0, 14.0  # mm
+_PANEL, _HEIGHT, _TOP, _LEFT, _GAP = 31.5, 34.0, 14.0, 11.0, 13.5  # mm
 
 
 def draw_comparison(comparison: Comparison) -> Path:
-    """Write `figures/comparison.png`: completeness, and spread of area and eccentricity, by layer.
+    """Write `figures/comparison.png`: completeness, spread of area and eccentricity, and length, by layer.
 
     Parameters
     ----------
@@ -53,14 +60,17 @@ def draw_comparison(comparison: Comparison) -> Path:
     path = comparison.path / "figures" / "comparison.png"
     with paper_style():
         sheet = Sheet(_TOP + _HEIGHT + 15.0)
-        for number, (name, label, title) in enumerate(PANELS):
+        for number, (name, title) in enumerate(PANELS):
             ax = sheet.axes(_LEFT + number * (_PANEL + _GAP), _TOP, _PANEL, _HEIGHT)
-            draw_measure_by_layer(ax, comparison.by_layer, name, label, comparison.methods)
+            draw_measure_by_layer(ax, comparison.by_layer, name, name, comparison.methods)
             ax.set_title(title, loc="left")
         write_method_key(sheet, comparison.methods, _LEFT)
         tried = int(comparison.by_method["tried"].max())
         what = "frames" if comparison.is_movie else "cells"
-        words = f"{tried} {what}; lines: all {what} together, or their median; bands: quartiles over {what}"
+        words = (
+            f"{tried} {what}. Completeness: share of windows with a part of the cell, all {what} together; "
+            f"other lines: median over {what}; bands: their quartiles"
+        )
         sheet.text(_LEFT, sheet.height_mm - 1.5, words, color="0.35")
         with replacing(path) as temporary:
             sheet.figure.savefig(temporary, dpi=DPI)
@@ -94,9 +104,7 @@ def draw_measure_by_layer(
         layer = rows["layer"]
         band = {"color": style["color"], "alpha": 0.18, "linewidth": 0.0}
         ax.fill_between(layer, rows[f"{name}_q25"], rows[f"{name}_q75"], **band)
-        lines += ax.plot(
-            layer, rows[name], markersize=2.5, linewidth=1.0, label=TITLES[method], clip_on=False, **style
-        )
+        lines += ax.plot(layer, rows[name], label=TITLES[method], clip_on=False, **style)
     ax.set(xlabel="layer (0 at the edge)", ylabel=label)
     if not (by_layer[f"{name}_q25"] < 0).any():  # correlations may be negative
         ax.set_ylim(bottom=0.0)
@@ -104,8 +112,8 @@ def draw_measure_by_layer(
         ax.set_ylim(0.0, 1.0)
     if len(by_layer):
         ax.set_xlim(-0.5, float(by_layer["layer"].max()) + 0.5)
-    ax.xaxis.set_major_locator(MaxNLocator(7, integer=True))
-    ax.yaxis.set_major_locator(MaxNLocator(5))
+    ax.xaxis.set_major_locator(MaxNLocator(6, integer=True))
+    ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
     return lines
 
 
@@ -119,10 +127,7 @@ def write_method_key(sheet: Sheet, methods: Sequence[str], left: float, top: flo
     left, top : float
         In millimetres from the sheet's upper left corner.
     """
-    handles = [
-        Line2D([], [], markersize=3.0, linewidth=1.2, label=TITLES[method], **METHOD_STYLES[method])
-        for method in methods
-    ]
+    handles = [Line2D([], [], label=TITLES[method], **METHOD_STYLES[method]) for method in methods]
     place = left / sheet.width_mm, 1.0 - top / sheet.height_mm
     options: dict[str, Any] = {"loc": "upper left", "borderpad": 0.0, "frameon": False}
     options |= {"ncols": len(handles), "handlelength": 2.6}

@@ -1,6 +1,5 @@
 """The pictures of one cell of a movie's study."""
 
-import re
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
@@ -18,13 +17,13 @@ from cytodisk.plot.movie_edge import edge_sheet
 from cytodisk.plot.sheet import Sheet
 from cytodisk.plot.strip import draw_strip, field_of_view, time_stamp
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, colour_bar, paper_style, signal_limits
+from cytodisk.study.channel_names import file_names
 
 SignalAt = Callable[[int], FloatArray | None]
 Progress = Callable[[int, int], None]
 
 _MOST_ANIMATED = 60  # frames; drawing one takes about 0.2 s
 _STRIP_FRAMES, _STRIP_COLUMNS = 6, 3
-_LONGEST_CHANNEL = 24
 _MAP_LEFT, _MAP_WIDTH, _VELOCITY, _MAP, _MAP_GAP = 15.0, 145.0, 34.0, 25.0, 5.5  # mm
 _TALLEST = 1.3  # height of a panel of the strip over its width
 
@@ -97,22 +96,12 @@ def _pages(movie: CellMovie, signal: SignalAt | None) -> list[tuple[str, Callabl
     pages: list[tuple[str, Callable[[], Sheet | None]]] = []
     if not movie.channels:
         pages.append(("velocity", partial(_velocity_sheet, movie)))
-    for number, name in enumerate(_file_names(movie.channels)):
+    for number, name in enumerate(file_names(movie.channels)):
         pages.append((f"activity_{name}", partial(_activity_sheet, movie, number)))
     pages.append(("edge", partial(edge_sheet, movie)))
     pages.append(("strip", partial(_strip_sheet, movie, signal)))
     pages.append(("consistency", partial(consistency_sheet, movie)))
     return pages
-
-
-def _file_names(channels: list[str]) -> list[str]:
-    """Names of channels that can be part of a file's name, all different."""
-    names: list[str] = []
-    for number, channel in enumerate(channels):
-        name = re.sub(r"[^\w-]+", "_", channel)[:_LONGEST_CHANNEL].strip("_") or str(number)
-        taken = name.casefold() in (other.casefold() for other in names)
-        names.append(f"{name}_{number}" if taken else name)
-    return names
 
 
 def _velocity_sheet(movie: CellMovie) -> Sheet:

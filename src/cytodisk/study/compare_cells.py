@@ -24,7 +24,7 @@ from cytodisk.io.study_folder import PARAMETERS, StudyFolder, alone_in, part_key
 from cytodisk.study.compare_parameters import CompareParameters
 from cytodisk.study.compare_tables import COMPARED_CELLS, layer_columns, status_of, windows_row
 from cytodisk.study.comparison import Comparison, open_comparison, write_summaries
-from cytodisk.study.map_inputs import open_inputs
+from cytodisk.study.map_inputs import MapInputs, open_inputs
 from cytodisk.study.parameters import write_parameters
 from cytodisk.study.provenance import describe_run
 from cytodisk.study.run_steps import check_options, finish_run
@@ -91,9 +91,36 @@ def compare_cells(
     ----------
     u-Unwrap, section 4.1 and Fig. 3.
     """
-    check_options(workers, resume, overwrite)
     parameters = CompareParameters() if parameters is None else parameters
     inputs = open_inputs(masks, None, parameters)
+    options: dict[str, Any] = {"workers": workers, "resume": resume, "overwrite": overwrite}
+    return compare_opened_cells(inputs, out, parameters, progress=progress, **options)
+
+
+def compare_opened_cells(
+    inputs: MapInputs,
+    out: str | os.PathLike[str],
+    parameters: CompareParameters,
+    *,
+    workers: int = 1,
+    resume: bool = False,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> Comparison:
+    """As `compare_cells`, with masks that are open already.
+
+    Parameters
+    ----------
+    inputs : MapInputs
+        Opened with these parameters.
+    out, parameters, workers, resume, overwrite, progress
+        See `compare_cells`.
+
+    Returns
+    -------
+    Comparison
+    """
+    check_options(workers, resume, overwrite)
     provenance = describe_run(inputs.paths, parameters, inputs.understood, None) | {"run": "comparison"}
     with alone_in(out):
         if resume and StudyFolder.is_complete(out, provenance):

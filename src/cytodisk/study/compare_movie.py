@@ -82,9 +82,35 @@ def compare_movie(
     ----------
     u-Unwrap, section 4.2 and Fig. 4.
     """
-    check_options(1, resume, overwrite)
     parameters = CompareMovieParameters() if parameters is None else parameters
     inputs = open_movie(masks, signal, parameters)
+    options = {"resume": resume, "overwrite": overwrite}
+    return compare_opened_movie(inputs, out, parameters, progress=progress, **options)
+
+
+def compare_opened_movie(
+    inputs: MovieInputs,
+    out: str | os.PathLike[str],
+    parameters: CompareMovieParameters,
+    *,
+    resume: bool = False,
+    overwrite: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> Comparison:
+    """As `compare_movie`, with files that are open already.
+
+    Parameters
+    ----------
+    inputs : MovieInputs
+        Opened with these parameters.
+    out, parameters, resume, overwrite, progress
+        See `compare_movie`.
+
+    Returns
+    -------
+    Comparison
+    """
+    check_options(1, resume, overwrite)
     scale = inputs.scale.pixel_size_um, inputs.scale.frame_interval_s
     paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
     provenance = describe_run(paths, parameters, inputs.understood, *scale) | {"run": "movie comparison"}

@@ -60,3 +60,9 @@ class CompareMovieParameters(_Compared, MovieParameters):
     """
 
     methods: tuple[WindowMethod, ...] = ("newton", "harmonic", "edge")
+    depth_um: Any = Field(default=None, exclude=True)
+
+    @field_validator("depth_um")
+    @classmethod
+    def _of_a_movie(cls, depth_um: Any) -> Any:
+        raise ValueError("a comparison has the same number of layers for all: pass layers, and depth_px")

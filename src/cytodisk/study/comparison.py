@@ -17,10 +17,10 @@ from cytodisk.files import replacing
 from cytodisk.io.provenance_file import read_provenance
 from cytodisk.io.study_folder import CELLS, CONSISTENCY, MAPS, part_key
 from cytodisk.io.tables import read_table
+from cytodisk.study.compare_columns import BY_LAYER, BY_METHOD, THROUGH_TIME, describe_columns, units_of
+from cytodisk.study.compare_summaries import layer_summary, method_summary, movie_summary
 
-BY_LAYER_FILE, BY_METHOD_FILE = "comparison.csv", "comparison_methods.csv"
-_TRIED = ("ok", "no map", "partly")  # what the others are is no cell
-_SPREAD = ("area_cv", "eccentricity_cv")
+COLUMNS_FILE = "comparison_columns.csv"
 
 
 @dataclass(frozen=True)
@@ -65,12 +65,30 @@ class Comparison:
     @cached_property
     def by_layer(self) -> pd.DataFrame:
         """One row a method and layer, over all cells; see `layer_summary`."""
-        return layer_summary(self.cells, self.layers, self.methods)
+        return self._with_units(layer_summary(self.cells, self.layers, self.methods), BY_LAYER)
 
     @cached_property
     def by_method(self) -> pd.DataFrame:
         """One row a method, over all cells; see `method_summary`."""
-        return method_summary(self.cells, self.layers, self.methods)
+        return self._with_units(method_summary(self.cells, self.layers, self.methods), BY_METHOD)
+
+    @cached_property
+    def through_time(self) -> pd.DataFrame:
+        """For a movie, one row a method, channel and layer, and one for all layers; see `movie_summary`."""
+        return self._with_units(movie_summary(self.consistency, self.methods), THROUGH_TIME)
+
+    @property
+    def summaries(self) -> dict[str, pd.DataFrame]:
+        """What stands in CSV files, by their names."""
+        tables = {BY_LAYER: self.by_layer, BY_METHOD: self.by_method}
+        if self.is_movie:
+            tables[THROUGH_TIME] = self.through_time
+        tables[COLUMNS_FILE] = describe_columns(tables, self.provenance.get("length_unit", "px"))
+        return tables
+
+    def _with_units(self, table: pd.DataFrame, name: str) -> pd.DataFrame:
+        table.attrs["units"] = units_of(table, name, self.provenance.get("length_unit", "px"))
+        return table
 
     def labels(self, cell: int) -> dict[str, Any]:
         """Which part of a cell is in which window: "mask", and by method an int array, -1 for none.
@@ -123,96 +141,13 @@ def open_comparison(path: str | os.PathLike[str]) -> Comparison:
 
 
 def write_summaries(path: Path) -> None:
-    """Write the two summaries of a complete comparison as CSV files.
+    """Write the summaries of a complete comparison, and what their columns are, as CSV files.
 
     Parameters
     ----------
     path : Path
         Its folder.
     """
-    found = open_comparison(path)
-    for name, table in ((BY_LAYER_FILE, found.by_layer), (BY_METHOD_FILE, found.by_method)):
+    for name, table in open_comparison(path).summaries.items():
         with replacing(path / name) as temporary:
             table.to_csv(temporary, index=False, float_format="%.6g")
-
-
-def layer_summary(cells: pd.DataFrame, layers: pd.DataFrame, methods: tuple[str, ...]) -> pd.DataFrame:
-    """Measures of each method and layer over all cells, or all frames of a movie.
-
-    Parameters
-    ----------
-    cells, layers : DataFrame
-        Of a comparison.
-    methods : tuple of str
-
-    Returns
-    -------
-    DataFrame
-        completeness is the share of windows with signal of all cells that were tried, so that a cell that
-        could not be mapped counts as empty; completeness_mapped that of the mapped ones alone, with its
-        quartiles over cells. Of area_cv and eccentricity_cv the median and quartiles over cells; of
-        eccentricity and layer_pieces the median; of pieces and one_piece the mean.
-    """
-    rows = []
-    for method in methods:
-        tried, mapped = _counts(cells, method)
-        own = layers[layers["method"] == method]
-        for layer, group in own.groupby("layer"):
-            row: dict[str, Any] = {"method": method, "layer": layer, "tried": tried, "mapped": mapped}
-            row["completeness"] = group["completeness"].sum() / tried
-            row["completeness_mapped"] = group["completeness"].mean()
-            row |= _quartiles(group["completeness"], "completeness")
-            for name in _SPREAD:
-                row[name] = group[name].median()
-                row |= _quartiles(group[name], name)
-            row |= {name: group[name].median() for name in ("eccentricity", "layer_pieces")}
-            row |= {name: group[name].mean() for name in ("pieces", "one_piece")}
-            rows.append(row)
-    return pd.DataFrame(rows)
-
-
-def method_summary(cells: pd.DataFrame, layers: pd.DataFrame, methods: tuple[str, ...]) -> pd.DataFrame:
-    """What each method made of all cells, or all frames of a movie.
-
-    Parameters
-    ----------
-    cells, layers : DataFrame
-        Of a comparison.
-    methods : tuple of str
-
-    Returns
-    -------
-    DataFrame
-        tried, mapped, invalid_maps (null where there is no map), flipped triangles, area error (mean |log λ|,
-        median over cells with quartiles), coverage (of all mapped cells' area), lost_px, empty_windows,
-        completeness over all windows of all cells tried and of those mapped, medians of area_cv and
-        eccentricity_cv over cells and layers, median seconds.
-    """
-    rows = []
-    for method in methods:
-        tried, mapped = _counts(cells, method)
-        own = layers[layers["method"] == method]
-        done = cells[(cells["method"] == method) & (cells["mapped"] > 0)]
-        row: dict[str, Any] = {"method": method, "tried": tried, "mapped": mapped}
-        row |= {name: done[name].sum(min_count=1) for name in ("invalid_maps", "flipped")}
-        row["area_error"] = done["area_distortion"].median()
-        row |= _quartiles(done["area_distortion"], "area_error")
-        row["coverage"] = np.average(done["coverage"], weights=done["area_px"]) if len(done) else np.nan
-        row |= {name: done[name].sum() for name in ("lost_px", "empty_windows")}
-        n_layers = own["layer"].nunique()
-        row["completeness"] = own["completeness"].sum() / (tried * n_layers) if n_layers else 0.0
-        row["completeness_mapped"] = own["completeness"].mean()
-        row |= {name: own[name].median() for name in _SPREAD}
-        row["seconds"] = done["seconds"].median()
-        rows.append(row)
-    return pd.DataFrame(rows)
-
-
-def _counts(cells: pd.DataFrame, method: str) -> tuple[int, int]:
-    """Cells, or frames, that were tried, and those mapped."""
-    own = cells[(cells["method"] == method) & cells["status"].isin(_TRIED)]
-    return int(own["frames"].sum()), int(own["mapped"].sum())
-
-
-def _quartiles(values: pd.Series[float], name: str) -> dict[str, float]:
-    return {f"{name}_q25": float(values.quantile(0.25)), f"{name}_q75": float(values.quantile(0.75))}

@@ -1,0 +1,100 @@
+"""What `cytodisk compare` prints: measures by method, what was lost, and which files say more."""
+
+import sys
+import textwrap
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from cytodisk.cli.console import count
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from cytodisk.study.comparison import Comparison
+
+_NAME, _VALUE = 26, 12  # characters of a column
+
+
+def _share(value: float) -> str:
+    return f"{value:.1%}"
+
+
+# Columns of comparison_methods.csv, how they are printed, and what they are.
+_MEASURES: tuple[tuple[str, Callable[[Any], str], str], ...] = (
+    ("invalid_maps", "{:.0f}".format, "maps that are not one to one"),
+    ("flipped", "{:.0f}".format, "triangles that maps turned over"),
+    ("area_error", "{:.3f}".format, "mean |log area ratio| of a map"),
+    ("completeness", _share, "filled windows: with a part of the cell"),
+    ("coverage", _share, "of the cells' area lies in windows"),
+    ("area_cv", "{:.3f}".format, "spread of window area within a layer"),
+    ("eccentricity_cv", "{:.3f}".format, "spread of eccentricity within a layer"),
+)
+
+
+def say_comparison(console: "Console", found: "Comparison") -> None:
+    """Print a line a measure, where the default is worse, and what was lost."""
+    from cytodisk.study.comparison_words import where_worse
+
+    for line in table_lines(found):
+        console.print(line)
+    for words in where_worse(found):
+        console.print(words)
+    lost = found.cells[found.cells["reason"] != ""].to_dict("records")
+    for row in lost[:10]:
+        print(f"cell {row['cell']}, {row['method']} ({row['status']}): {row['reason']}", file=sys.stderr)
+    if len(lost) > 10:
+        print(f"… and {count(len(lost) - 10, 'more row')}: column 'reason' of cells.parquet", file=sys.stderr)
+
+
+def say_tables(console: "Console", found: "Comparison") -> None:
+    """Print where the results are, and what is in which table."""
+    through_time = ", comparison_movie.csv through time" if found.is_movie else ""
+    console.print(
+        f"results: {found.path} (comparison.csv by layer, comparison_methods.csv by method{through_time}; "
+        "comparison_columns.csv says what their columns are)"
+    )
+
+
+def table_lines(found: "Comparison") -> Iterator[str]:
+    """Lines of a table with a column a method, and rows named as the columns of the CSV files."""
+    from cytodisk.study.compare_parameters import TITLES
+
+    titles = [textwrap.wrap(TITLES[method], _VALUE - 1) for method in found.methods]
+    for line in range(max(len(title) for title in titles)):
+        yield _line("", [title[line] if line < len(title) else "" for title in titles], "")
+    yield _line("method", found.methods, "its name in the tables")
+    rows, each = found.by_method.to_dict("records"), "frame" if found.is_movie else "cell"
+    mapped = [f"{row['mapped']}/{row['tried']}" for row in rows]
+    yield _line("mapped", mapped, f"{each}s that got windows, of those tried")
+    for name, form, words in _MEASURES:
+        yield _line(name, [_value(row[name], form) for row in rows], words)
+    if found.is_movie:
+        yield from _through_time(found)
+    yield _line("seconds", [_value(row["seconds"], "{:.2g}".format) for row in rows], f"for a {each}")
+
+
+def _through_time(found: "Comparison") -> Iterator[str]:
+    """Medians over frames of the mean over layers."""
+    from cytodisk.study.channel_names import shown_name
+
+    table, name = found.through_time, "centroid_displacement"
+    if not len(table):
+        return
+    in_all = table[table["layer"].isna()]
+    for channel in in_all["channel"].dropna().unique():
+        values = in_all[in_all["channel"] == channel].set_index("method")["correlation"]
+        shown = textwrap.shorten(f"correlation, {shown_name(channel)}", _NAME, placeholder="…")
+        cells = [_value(values.get(method), "{:.3f}".format) for method in found.methods]
+        yield _line(shown, cells, "of a layer's windows with the next frame's")
+    moved = in_all.drop_duplicates("method").set_index("method")[name]
+    unit = table.attrs["units"][name]
+    cells = [_value(moved.get(method), "{:.3g}".format) for method in found.methods]
+    yield _line(name, cells, f"{unit} that window centroids move a frame")
+
+
+def _value(value: Any, form: Callable[[Any], str]) -> str:
+    return "" if value is None or value != value else form(value)
+
+
+def _line(name: str, values: Sequence[str], words: str) -> str:
+    return (name.ljust(_NAME) + "".join(value.rjust(_VALUE) for value in values) + f"  {words}").rstrip()

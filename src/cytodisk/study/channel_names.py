@@ -1,0 +1,43 @@
+"""Names of channels as they are shown, and as parts of file names."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+_LONGEST = 24
+
+
+def shown_name(name: str) -> str:
+    """Name of a channel in words: files without names number them.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    str
+        As "VASP", or "channel 0".
+    """
+    return f"channel {name}" if name.isdigit() else name
+
+
+def file_names(channels: Sequence[str]) -> list[str]:
+    """Names of channels that can be part of a file's name.
+
+    Parameters
+    ----------
+    channels : sequence of str
+
+    Returns
+    -------
+    list of str
+        All different, in upper and lower case too.
+    """
+    names: list[str] = []
+    for number, channel in enumerate(channels):
+        name = re.sub(r"[^\w-]+", "_", channel)[:_LONGEST].strip("_") or str(number)
+        taken = name.casefold() in (other.casefold() for other in names)
+        names.append(f"{name}_{number}" if taken else name)
+    return names

@@ -1,0 +1,30 @@
+"""Progress where stderr is no terminal."""
+
+import pytest
+
+from cytodisk.cli import console
+
+
+def test_a_log_gets_a_line_every_half_minute(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    reads = iter([100.0, 100.0, 129.0, 130.0, 159.0, 160.0])
+    monkeypatch.setattr(console.clock, "monotonic", lambda: next(reads))
+    lines = console._ProgressLines("frames of 3 methods")
+    for done in (6, 20, 24, 30, 36):
+        lines.report(done, 36)
+    assert capsys.readouterr().err.splitlines() == [
+        "frames of 3 methods 24/36, 0.6 frames/s",
+        "frames of 3 methods 36/36, 0.5 frames/s",
+    ]
+
+
+@pytest.mark.parametrize("quiet", [False, True])
+def test_quiet_means_no_lines(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], quiet: bool
+) -> None:
+    monkeypatch.setattr(console, "_SECONDS_A_LINE", 0.0)
+    with console.progress_bar(quiet, "cells") as report:
+        report(1, 2)
+    lines = capsys.readouterr().err.splitlines()
+    assert [line.split(",")[0] for line in lines] == ([] if quiet else ["cells 1/2"])
