@@ -63,12 +63,12 @@ def _worse_through_time(table: pd.DataFrame, method: str) -> Iterator[str]:
     if not len(table):
         return
     layers = table[table["layer"].notna()]
-    for number, (channel, rows) in enumerate(layers.groupby("channel", dropna=False, sort=False)):
+    for channel, rows in layers.groupby("channel", dropna=False, sort=False):
         shown = f"correlation of {shown_name(str(channel))}"
         yield from _worse_by_layer(rows, method, "correlation", shown, "")
-        if not number:  # windows are the same in all channels
-            name = "centroid_displacement"
-            yield from _worse_by_layer(rows, method, name, name, f" {table.attrs['units'][name]} a frame")
+    name = "centroid_displacement"  # windows are the same in all channels
+    rows = layers.drop_duplicates(["method", "layer"])
+    yield from _worse_by_layer(rows, method, name, name, f" {table.attrs['units'][name]} a frame")
 
 
 def _worse_by_layer(table: pd.DataFrame, method: str, name: str, shown: str, unit: str) -> Iterator[str]:
@@ -79,9 +79,10 @@ def _worse_by_layer(table: pd.DataFrame, method: str, name: str, shown: str, uni
     worse = _is_worse(ours, theirs, name)
     if worse.any():
         largest: Any = (ours - theirs).abs()[worse].idxmax()
+        most = f"most in layer {largest}: " if worse.sum() > 1 else ""
         yield (
             f"{shown} is {_than(name)} in {_layer_words(wide.index[worse].tolist(), len(wide))} "
-            f"(most in layer {largest}: {ours[largest]:.3g} against {theirs[largest]:.3g}{unit})"
+            f"({most}{ours[largest]:.3g} against {theirs[largest]:.3g}{unit})"
         )
 
 
