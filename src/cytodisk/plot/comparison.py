@@ -68,7 +68,7 @@ def draw_comparison(comparison: Comparison) -> Path:
         tried = int(comparison.by_method["tried"].max())
         what = "frames" if comparison.is_movie else "cells"
         words = (
-            f"{tried} {what}. Completeness: share of windows with a part of the cell, all {what} together; "
+            f"{tried} {what}. Completeness: share of filled windows, all {what} together; "
             f"other lines: median over {what}; bands: their quartiles"
         )
         sheet.text(_LEFT, sheet.height_mm - 1.5, words, color="0.35")
