@@ -98,7 +98,7 @@ def test_an_empty_mask(run: Run, tmp_path: Path) -> None:
     path = write(tmp_path / "mask.tif", np.zeros((30, 30), dtype=np.uint8))
     result = run("map", path, "-o", tmp_path / "out", *GRID)
     assert_refused(result, "no cell could be mapped: mask of shape (30, 30) is empty: no pixel belongs to")
-    assert cd.open_study(tmp_path / "out").cells["status"].tolist() == ["refused"]
+    assert cd.open_study(tmp_path / "out").cells["status"].tolist() == ["no cell"]
 
 
 def test_a_stack_where_one_image_is_needed(run: Run, tmp_path: Path) -> None:
@@ -256,7 +256,7 @@ def test_parameters_of_a_study_reproduce_it(run: Run, mask: Path, tmp_path: Path
 def test_a_parameters_file_that_cannot_be_used(run: Run, mask: Path, tmp_path: Path) -> None:
     (tmp_path / "p.toml").write_text("layer = 3\n")
     common = ("map", mask, "-o", tmp_path / "out", "--parameters")
-    assert_refused(run(*common, tmp_path / "p.toml"), "layer: Extra inputs are not permitted, got 3")
+    assert_refused(run(*common, tmp_path / "p.toml"), "no parameters of this command (layer)")
     assert_refused(run(*common, tmp_path / "gone.toml"), "gone.toml cannot be read")
 
 
@@ -274,8 +274,9 @@ def test_check_names_what_is_wrong(run: Run, tmp_path: Path) -> None:
     code, said, _ = run("check", write(tmp_path / "masks.tif", masks))
     assert code == 1
     assert "1\t1\t1\tyes\t1 fragment" in said
-    assert "2\t2\t1\tno\tmask of shape (30, 30) is empty" in said
-    assert "3 frames: 2 usable (0 of them doubtful), 1 not usable" in said
+    assert "2\t2\t0\tno\tmask of shape (30, 30) is empty" in said
+    assert "frames without a cell: 1 empty" in said
+    assert "2 frames: 2 usable (0 of them doubtful), 0 not usable" in said
 
 
 def test_check_counts_cells_of_labels(run: Run, tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from command_line import Run, assert_refused
 
 import cytodisk as cd
 from cytodisk.cli.console import console_for
-from cytodisk.cli.map_totals import finish_map
+from cytodisk.cli.map_totals import finish_map, percent
 
 GRID = ("--layers", "3", "--sectors", "8", "--edge-length", "2", "--figures", "0")
 
@@ -42,16 +42,18 @@ def test_a_folder_is_mapped_and_its_totals_are_given(run: Run, folder: Path, tmp
     result = run("map", folder, "--signal", "_img", "-o", tmp_path / "out", *GRID)
     assert_refused(result, "damaged files or frames of the input: 1; all others are in")
     said, error = result[1:]
-    assert "masks: 6 files: 3 label images, 3 single masks" in said
+    assert "masks: 6 files: 3 label images, 2 single masks, 1 unusable file" in said
     assert "signal: 5 images with the channels red, green, blue" in said
-    assert "6 files, 15 cells: 12 mapped, one to one; 2 refused; 1 unreadable" in said
+    assert "6 files, 12 cells: 12 mapped, one to one\n" in said
+    assert "files or images without a cell: 2 empty, 1 damaged\n" in said
+    assert "figures" not in said  # none were asked for
     study = cd.open_study(tmp_path / "out")
     border = int(study.cells["touches_border"].fillna(False).sum())
-    assert f"on the image border: {border} ({border / 12:.2%}) of 12 mapped cells" in said
-    assert "all windows complete: 12 (100.00%) of 12 mapped cells, 12 (80.00%) of 15 all cells" in said
-    assert "2 refused: cell 13 of 003_masks.png: mask of shape (40, 50) is empty" in error
+    assert f"on the image border: {border} ({100 * border / 12:.0f} %) of 12 mapped cells" in said
+    assert "all windows complete: 12 (100 %) of 12 mapped cells, 12 (100 %) of 12 all cells" in said
+    assert "2 no cell: 003_masks.png: mask of shape (40, 50) is empty" in error
     assert "(and 1 more like it)" in error
-    assert "1 unreadable: cell 8 of 001b_masks.png: " in error
+    assert "1 unreadable: 001b_masks.png: frame 0 cannot be read" in error
     assert study.windows["channel"].unique().tolist() == ["red", "green", "blue"]
 
 
@@ -61,9 +63,11 @@ def test_a_folder_is_checked(run: Run, folder: Path) -> None:
     lines = said.splitlines()
     assert "cell\tfile\tframe\tlabel\tusable\tremarks" in lines
     assert any(line.startswith("4\t001_masks.png\t0\t1\t") for line in lines)
-    assert "6 files, 15 cells: 12 usable" in said
-    assert "3 not usable" in said
-    assert "2 not usable: cell 13 of 003_masks.png" in error
+    assert "6 files, 12 cells: 12 usable (0 of them doubtful), 0 not usable" in said
+    assert "files or images without a cell: 2 empty, 1 damaged" in said
+    assert "2 without a cell: 003_masks.png: mask of shape" in error
+    (folder / "001b_masks.png").unlink()
+    assert run("check", folder)[0] == 0  # an image without any cell is usual
 
 
 def test_a_folder_that_cannot_be_used(run: Run, folder: Path, tmp_path: Path) -> None:
@@ -91,7 +95,7 @@ def test_maps_that_are_not_one_to_one_are_not_called_so(
     study = cd.open_study(tmp_path / "out")
     flipped = study.cells.assign(certificate_valid=[False] * 2 + [True] * 10 + [None] * 2)
     finish_map(console_for(False), replace(study, cells=flipped), 0, of_folder=True)
-    assert "12 mapped, 10 of them one to one; 2 refused" in capsys.readouterr().out
+    assert "12 mapped, 10 of them one to one\n" in capsys.readouterr().out
 
 
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")
@@ -126,3 +130,18 @@ def test_a_killed_run_over_a_folder_goes_on_to_the_same_tables(tmp_path: Path) -
         {str(path.relative_to(study.path)) for path in study.path.rglob("*")} for study in (resumed, whole)
     ]
     assert names[0] == names[1]
+
+
+def test_masks_without_an_image_are_not_called_bad(run: Run, folder: Path, tmp_path: Path) -> None:
+    (folder / "001b_masks.png").unlink()
+    (folder / "001_img.png").unlink()
+    code, said, error = run("map", folder, "--signal", "_img", "-o", tmp_path / "out", *GRID)
+    assert code == 0
+    assert "5 files, 12 cells: 8 mapped, one to one; 4 without an image\n" in said
+    assert "all windows complete: 8 (100 %) of 8 mapped cells, 8 (67 %) of 12 all cells" in said
+    assert "4 no image: cell 4 of 001_masks.png: has no image in" in error
+
+
+@pytest.mark.parametrize(("part", "words"), [(0, "0 %"), (1, "< 1 %"), (999, "> 99 %"), (1000, "100 %")])
+def test_a_share_is_not_rounded_to_none_or_all(part: int, words: str) -> None:
+    assert percent(part, 1000) == words

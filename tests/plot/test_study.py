@@ -108,6 +108,15 @@ def test_overview_of_many(tmp_path: Path, saved: list[Figure]) -> None:
     assert len(scatter.collections[0].get_offsets()) == 30
 
 
+def test_files_without_a_cell_are_no_cells_in_the_overview(tmp_path: Path, saved: list[Figure]) -> None:
+    cells = _cells(["ok"] * 30 + ["refused"] * 3 + ["unreadable", "no cell"])
+    cells["label"] = [1] * 33 + [0] * 2
+    draw_overview(tmp_path / "overview.png", cells)
+    status = saved[0].axes[0]
+    assert [patch.get_width() for patch in status.patches] == [30, 3, 0]
+    assert (status.get_xlabel(), status.get_title()) == ("cells", "status (and 2 without a cell)")
+
+
 @pytest.mark.parametrize("status", [["ok"], ["refused"], ["unreadable", "refused"]])
 def test_overview_of_few(tmp_path: Path, saved: list[Figure], status: list[str]) -> None:
     draw_overview(tmp_path / "overview.png", _cells(status))

@@ -181,7 +181,7 @@ def test_a_damaged_file_costs_one_row(place: Path, whole: cd.Study, tmp_path: Pa
     study = run_map(open_inputs(place / "masks", place / "images", SMALL), tmp_path / "out")
     assert study.cells["status"].tolist() == ["ok"] * 11 + ["unreadable"] + ["ok"] * 5
     assert study.cells["source"][11] == "im10_cp_masks.tif"
-    assert study.provenance["warnings"][0].startswith("cell 11 of im10_cp_masks.tif: ")
+    assert study.provenance["warnings"][0].startswith("im10_cp_masks.tif: frame 0 cannot be read")
     last = whole.windows[whole.windows["cell"] >= 14]["mean"].to_numpy()
     assert_array_equal(study.windows[study.windows["cell"] >= 12]["mean"], last)
 
@@ -191,7 +191,9 @@ def test_masks_without_an_image_have_that_as_their_reason(place: Path, tmp_path:
     inputs = open_inputs(place / "masks", place / "images", SMALL)
     study = run_map(inputs, tmp_path / "out")
     lost = study.cells[study.cells["source"] == "im10_cp_masks.tif"]
-    assert set(lost["status"]) == {"refused"}
+    assert set(lost["status"]) == {"no image"}
+    warning = f"cell {lost['cell'].iloc[0]} of im10_cp_masks.tif: has no image in"
+    assert study.provenance["warnings"][0].startswith(warning)
     assert "im10_cp_masks.tif has no image in" in lost["reason"].iloc[0]
     assert set(study.cells.drop(lost.index)["status"]) == {"ok"}
     assert sum(bool(checked.reason) for checked in check_cells(inputs)) == len(lost) == PER_IMAGE[1]
@@ -201,7 +203,9 @@ def test_an_image_with_other_channels_is_refused(place: Path, tmp_path: Path) ->
     image = tifffile.imread(place / "images" / "im11.ome.tif")
     tifffile.imwrite(place / "images" / "im11.ome.tif", image[0])
     inputs = open_inputs(place / "masks", place / "images", SMALL)
-    assert "has the channels 0, im9.ome.tif has Rac1, RhoA" in str(inputs.signals["im11_cp_masks.tif"].fault)
+    fault = str(inputs.signals["im11_cp_masks.tif"].fault)
+    assert "has the channels 0, im9.ome.tif and most others have Rac1, RhoA" in fault
+    assert inputs.remarks == ("1 of 3 images have other channels than Rac1, RhoA: they are left out",)
     assert inputs.signals["im10_cp_masks.tif"].fault is None
 
 
@@ -231,15 +235,72 @@ def test_no_image_that_can_be_used_is_an_error(place: Path) -> None:
         open_inputs(place / "masks", place / "images", SMALL)
 
 
-def test_pixel_sizes_of_a_folder_must_agree(place: Path) -> None:
-    for number, size in ((9, 0.1), (11, 0.2)):
+def test_the_channels_that_most_images_have_decide(place: Path) -> None:
+    image = tifffile.imread(place / "images" / "im9.ome.tif")
+    tifffile.imwrite(place / "images" / "im9.ome.tif", image[0])  # the first one
+    inputs = open_inputs(place / "masks", place / "images", SMALL)
+    assert inputs.signals["im9_cp_masks.tif"].file is None
+    assert [file.channels for file in inputs.signal_files] == [("Rac1", "RhoA")] * 2
+
+
+def write_with_scale(path: Path, labels: np.ndarray, size: float) -> None:
+    scale = {"axes": "YX", "PhysicalSizeX": size, "PhysicalSizeY": size}
+    tifffile.imwrite(path.with_suffix(".ome.tif"), labels, metadata=scale)
+    path.with_suffix(".ome.tif").rename(path)
+
+
+def test_a_file_of_another_scale_costs_its_rows_alone(place: Path, tmp_path: Path) -> None:
+    for number, size in ((9, 0.2), (10, 0.1), (11, 0.1005)):
+        path = place / "masks" / f"im{number}_cp_masks.tif"
+        write_with_scale(path, tifffile.imread(path), size)
+    inputs = open_inputs(place / "masks", None, SMALL)
+    assert inputs.pixel_size_um == 0.1
+    assert inputs.remarks == ("1 of 3 files have another pixel size than 0.1 µm: left out",)
+    study = run_map(inputs, tmp_path / "out")
+    assert study.cells["status"].tolist() == ["refused"] + ["ok"] * 8
+    assert "has pixels of 0.2 µm, most files of the folder 0.1 µm: map it alone" in study.cells["reason"][0]
+    assert study.provenance["warnings"][0] == inputs.remarks[0]
+    given = open_inputs(place / "masks", None, SMALL.model_copy(update={"pixel_size_um": 0.3}))
+    assert (given.pixel_size_um, given.remarks, given.sources[0].fault) == (0.3, (), None)
+
+
+def test_an_image_of_another_scale_costs_its_rows_alone(place: Path) -> None:
+    for number, size in ((9, 0.1), (10, 0.1), (11, 0.2)):
         labels = tifffile.imread(place / "masks" / f"im{number}_cp_masks.tif")
-        scale = {"axes": "YX", "PhysicalSizeX": size, "PhysicalSizeY": size}
-        tifffile.imwrite(place / "images" / f"im{number}.ome.tif", labels, metadata=scale)
-        shutil.copy(place / "images" / f"im{number}.ome.tif", place / f"im{number}_masks.tif")
-    with pytest.raises(SignalError, match=r"sizes differ: .*im9_masks.tif says 0.1 µm, .*im11.* 0.2 µm"):
-        open_inputs(place, None, SMALL)
-    assert open_inputs(place, None, SMALL.model_copy(update={"pixel_size_um": 0.3})).pixel_size_um == 0.3
+        write_with_scale(place / "images" / f"im{number}.ome.tif", labels, size)
+    inputs = open_inputs(place / "masks", place / "images", SMALL)
+    assert inputs.pixel_size_um == 0.1
+    assert "has pixels of 0.2 µm" in str(inputs.signals["im11_cp_masks.tif"].fault)
+    assert inputs.sources[2].fault is None
+
+
+def test_files_without_a_scale_are_counted(place: Path) -> None:
+    path = place / "masks" / "im10_cp_masks.tif"
+    write_with_scale(path, tifffile.imread(path), 0.1)
+    inputs = open_inputs(place / "masks", None, SMALL)
+    assert inputs.pixel_size_um == 0.1
+    words = "2 of 3 files do not say their pixel size: 0.1 µm is taken for them"
+    assert inputs.remarks == (words,)
+
+
+def test_images_beside_plain_masks_are_not_mapped(place: Path) -> None:
+    for number in (9, 10, 11):
+        labels = tifffile.imread(place / "masks" / f"im{number}_cp_masks.tif")
+        tifffile.imwrite(place / f"{number}.tif", labels)
+        tifffile.imwrite(place / f"{number}_img.tif", labels * 3)
+    for signal in ("_img", place / "_img"):
+        inputs = open_inputs(place, signal, SMALL)
+        assert [source.name for source in inputs.sources] == ["9.tif", "10.tif", "11.tif"]
+        assert [file.path.name for file in inputs.signal_files] == ["9_img.tif", "10_img.tif", "11_img.tif"]
+
+
+def test_a_file_that_stands_in_for_a_damaged_one_is_named(place: Path) -> None:
+    path = place / "masks" / "im9_cp_masks.tif"
+    np.save(place / "masks" / "im9_seg.npy", {"masks": tifffile.imread(path)}, allow_pickle=True)
+    path.write_bytes(path.read_bytes()[:100])
+    inputs = open_inputs(place / "masks", None, SMALL)
+    assert inputs.remarks == ("im9_seg.npy is used: im9_cp_masks.tif cannot be",)
+    assert len(list(check_cells(inputs))) == sum(PER_IMAGE)
 
 
 def test_maps_can_be_left_out(whole: cd.Study, written: Path, tmp_path: Path) -> None:

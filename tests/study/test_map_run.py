@@ -155,7 +155,7 @@ def test_cells_that_cannot_be_mapped_have_a_reason(tmp_path: Path) -> None:
         (2, False),
     ]
     study = run_map(inputs, tmp_path / "out")
-    assert study.cells["status"].tolist() == ["ok", "refused", "ok"]
+    assert study.cells["status"].tolist() == ["ok", "no cell", "ok"]
     assert "is empty: no pixel belongs to the cell" in study.cells["reason"][1]
     assert study.windows["cell"].unique().tolist() == [0, 2]
 
@@ -169,7 +169,8 @@ def test_a_label_image_gives_a_cell_a_label_with_one_signal(tmp_path: Path) -> N
     study = run_map(open_inputs(tmp_path / "labels.tif", tmp_path / "signal.tif", SMALL), tmp_path / "out")
     assert study.cells[["time", "label", "area_px"]].to_numpy().tolist() == [[0, 4, 169], [0, 9, 324]]
     expected = study.windows["centroid_y"] + 2.0 * study.windows["centroid_x"]
-    np.testing.assert_allclose(study.windows["mean"], expected, rtol=1e-6)
+    # Whole pixels have the signal, parts of pixels the centre: they differ by less than a tenth of a pixel.
+    np.testing.assert_allclose(study.windows["mean"], expected, rtol=0, atol=0.3)
 
 
 def test_nan_in_the_signal_is_counted(tmp_path: Path) -> None:

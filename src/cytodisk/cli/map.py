@@ -130,7 +130,8 @@ def check_command(
 ) -> None:
     """Say what is wrong with masks before a run: a line a cell, or a frame of a stack.
 
-    Exit code: 0 when all can be used, 1 if any cannot, 2 if the file cannot be read at all.
+    Exit code: 0 when all can be used (an image of a folder may be empty), 1 if any cannot, 2 if the file
+    cannot be read at all.
 
     Example: cytodisk check labels.tif
     """
@@ -152,3 +153,5 @@ def say_inputs(console: "Console", inputs: "MapInputs") -> None:
         console.print(f"{role}: {words}")
     size = inputs.pixel_size_um
     console.print(f"pixel size: {size:g} µm" if size else "pixel size: unknown, results are in px")
+    for remark in inputs.remarks:
+        console.print(f"note: {remark}")

@@ -2,10 +2,12 @@
 
 import re
 import sys
+from collections import Counter
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from cytodisk.cli.console import count, fail
+from cytodisk.io.mask_names import without_name
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -16,20 +18,24 @@ if TYPE_CHECKING:
     from cytodisk.study.map_run import CheckedCell
 
 _MOST_LINES = 20
+_LOST = {"refused": "refused", "no image": "without an image", "unreadable": "with a damaged image"}
+_EMPTY = {"no cell": "empty", "no image": "without an image", "unreadable": "damaged", "refused": "no masks"}
 
 
 def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool) -> None:
     """Draw the overview and say what came out; exit code 2 if that is nothing, or an input is damaged."""
     from cytodisk.plot.study import draw_overview
 
-    cells = study.cells
-    if len(cells) > 1:
-        draw_overview(study.path / "figures" / "overview.png", cells)
-    mapped, lost = cells[cells["status"] == "ok"], cells[cells["status"] != "ok"]
+    rows = study.cells
+    if len(rows) > 1:
+        draw_overview(study.path / "figures" / "overview.png", rows)
+    cells, without = rows[rows["label"] != 0], rows[rows["label"] == 0]
+    mapped, lost = rows[rows["status"] == "ok"], rows[rows["status"] != "ok"]
     if of_folder:
-        _say_totals(console, cells, mapped)
+        _say_totals(console, rows["source"].nunique(), cells, mapped)
     else:
         console.print(f"{len(mapped)} of {count(len(cells))} mapped{_one_to_one(mapped)}")
+    _say_without_cell(console, Counter(without["status"]), of_folder)
     if len(mapped):
         console.print(
             f"median {mapped['seconds'].median():.2f} s a cell; median area distortion (mean |log λ|) "
@@ -37,13 +43,14 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
         )
     _say_remarks(console, mapped, of_folder)
     if of_folder:
-        say_reasons(zip(lost["cell"], lost["source"], lost["status"], lost["reason"], strict=True))
+        numbers = [cell if label else None for cell, label in zip(lost["cell"], lost["label"], strict=True)]
+        say_reasons(zip(numbers, lost["source"], lost["status"], lost["reason"], strict=True))
     else:
         _say_lost(lost)
-    if 0 <= figures < len(mapped):
+    if 0 < figures < len(mapped):
         console.print(f"figures drawn for the first {count(figures)}: --figures -1 draws all")
     console.print(f"results: {study.path}")
-    unreadable = int((cells["status"] == "unreadable").sum())
+    unreadable = int((rows["status"] == "unreadable").sum())
     if not len(mapped):
         fail(f"no cell could be mapped: {lost['reason'].iloc[0] if len(lost) else 'the file holds no cell'}")
     if unreadable:
@@ -51,14 +58,22 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
         fail(f"damaged {what} of the input: {unreadable}; all others are in {study.path}")
 
 
-def _say_totals(console: "Console", cells: "pd.DataFrame", mapped: "pd.DataFrame") -> None:
+def _say_without_cell(console: "Console", statuses: Counter[str], of_folder: bool) -> None:
+    """Say how many files, or images in them, hold no cell: they count as no cell in the totals."""
+    if statuses:
+        what = "files or images" if of_folder else "frames"
+        console.print(f"{what} without a cell: {_counts(statuses, _EMPTY)}")
+
+
+def _counts(statuses: Counter[str], words: dict[str, str]) -> str:
+    return ", ".join(f"{statuses[name]} {said}" for name, said in words.items() if statuses[name])
+
+
+def _say_totals(console: "Console", files: int, cells: "pd.DataFrame", mapped: "pd.DataFrame") -> None:
     """Totals with both denominators, so that cells that were lost cannot hide."""
-    status = cells["status"].value_counts()
-    numbers = [f"{status.get(name, 0)} {name}" for name in ("refused", "unreadable") if status.get(name, 0)]
-    console.print(
-        f"{count(cells['source'].nunique(), 'file')}, {count(len(cells))}: "
-        + "; ".join([f"{len(mapped)} mapped{_one_to_one(mapped)}", *numbers])
-    )
+    lost = _counts(Counter(cells["status"]), _LOST)
+    words = f"{len(mapped)} mapped{_one_to_one(mapped)}" + (f"; {lost}" if lost else "")
+    console.print(f"{count(files, 'file')}, {count(len(cells))}: {words}")
     border = int(mapped["touches_border"].astype(bool).sum())
     complete = int((mapped["empty_windows"] == 0).sum())
     console.print(f"on the image border: {_of(border, len(mapped))} mapped cells")
@@ -75,7 +90,15 @@ def _one_to_one(mapped: "pd.DataFrame") -> str:
 
 
 def _of(part: int, whole: int) -> str:
-    return f"{part} ({part / whole:.2%}) of {whole}" if whole else "0 of 0"
+    return f"{part} ({percent(part, whole)}) of {whole}" if whole else "0 of 0"
+
+
+def percent(part: int, whole: int) -> str:
+    """Without decimals; what is not none or not all is not rounded to it."""
+    if 0 < part < whole:
+        rounded = round(100 * part / whole)
+        return "< 1 %" if rounded == 0 else "> 99 %" if rounded == 100 else f"{rounded} %"
+    return f"{100 * part // whole} %"
 
 
 def _say_remarks(console: "Console", mapped: "pd.DataFrame", of_folder: bool) -> None:
@@ -97,19 +120,20 @@ def _say_lost(lost: "pd.DataFrame") -> None:
         print(f"… and {len(lost) - _MOST_LINES} more: column 'reason' of cells.parquet", file=sys.stderr)
 
 
-def say_reasons(lost: Iterable[tuple[int, str, str, str]]) -> None:
+def say_reasons(lost: Iterable[tuple[int | None, str, str, str]]) -> None:
     """Print why cells were lost, one line for reasons that differ in numbers and names of files alone.
 
     Parameters
     ----------
-    lost : iterable of (int, str, str, str)
-        Cell, file, status and reason.
+    lost : iterable of (int or None, str, str, str)
+        Cell (None for a file or an image without one), file, status and reason.
     """
     groups: dict[tuple[str, str], list[str]] = {}
     for cell, source, status, reason in lost:
         alike = re.sub(r"\S*" + re.escape(source), "FILE", reason) if source else reason
         key = status, re.sub(r"\d+", "N", alike)
-        groups.setdefault(key, []).append(f"cell {cell} of {source}: {reason}")
+        place = source if cell is None else f"cell {cell} of {source}"
+        groups.setdefault(key, []).append(f"{place}: {without_name(reason, source)}")
     ordered = sorted(groups.items(), key=lambda item: -len(item[1]))
     for (status, _), found in ordered[:_MOST_LINES]:
         more = f" (and {len(found) - 1} more like it)" if len(found) > 1 else ""
@@ -120,28 +144,38 @@ def say_reasons(lost: Iterable[tuple[int, str, str, str]]) -> None:
 
 
 def say_checked(console: "Console", inputs: "MapInputs", cells: Iterable["CheckedCell"]) -> int:
-    """Print a line a cell and the totals; give the number of cells that cannot be used."""
+    """Print a line a cell and the totals; give the number of cells, files and images that are at fault.
+
+    An image without any cell is no fault in a folder, where such images are usual.
+    """
     unusable = doubtful = looked_at = on_border = 0
-    lost: list[tuple[int, str, str, str]] = []
+    without: Counter[str] = Counter()
+    lost: list[tuple[int | None, str, str, str]] = []
     print("cell\tfile\t" if inputs.is_folder else "cell\t", end="")
     print("frame\tlabel\tusable\tremarks")
     for checked in cells:
         found, report = checked.found, checked.report
         doubts, notes = (report.doubts, report.notes) if report is not None else ((), ())
-        looked_at += 1
-        unusable += bool(checked.reason)
+        is_cell = found.label != 0
+        looked_at += is_cell
+        unusable += is_cell and bool(checked.reason)
+        if not is_cell:
+            without[checked.status] += 1
         doubtful += bool(doubts)
         on_border += report is not None and report.touches_border
-        remarks = checked.reason or "; ".join([*doubts, *notes])
+        reason = without_name(checked.reason, found.source) if inputs.is_folder else checked.reason
+        remarks = reason or "; ".join([*doubts, *notes])
         usable = "no" if checked.reason else "doubtful" if doubts else "yes"
         place = f"{found.cell}\t{found.source}" if inputs.is_folder else f"{found.cell}"
         print(f"{place}\t{found.frame}\t{found.label}\t{usable}\t{remarks}")
         if checked.reason:
-            lost.append((found.cell, found.source, "not usable", checked.reason))
+            number, what = (found.cell, "not usable") if is_cell else (None, "without a cell")
+            lost.append((number, found.source, what, checked.reason))
     what = count(looked_at, "cell" if inputs.sources[0].kind != "stack" or inputs.is_folder else "frame")
     words = f"{what}: {looked_at - unusable} usable ({doubtful} of them doubtful), {unusable} not usable"
     if inputs.is_folder:
         words = f"{count(len(inputs.sources), 'file')}, {words}, {on_border} on the image border"
         say_reasons(lost)
     console.print(words)
-    return unusable
+    _say_without_cell(console, without, inputs.is_folder)
+    return unusable + without.total() - (without["no cell"] if inputs.is_folder else 0)

@@ -52,6 +52,23 @@ def visible_files(folder: Path) -> list[Path]:
     return sorted(found, key=lambda file: natural_order(file.name))
 
 
+def without_name(reason: str, name: str) -> str:
+    """A reason that names its own file first, without that name, for where it stands already.
+
+    Parameters
+    ----------
+    reason : str
+    name : str
+        Of the file, without its folder.
+
+    Returns
+    -------
+    str
+    """
+    before, found, after = reason.partition(name)
+    return after.lstrip(": ") if found and ": " not in before and after.startswith((":", " ")) else reason
+
+
 def mask_names(folder: Path, images_end: str = "") -> list[tuple[Path, list[Path]]]:
     """Find the mask files of a folder.
 

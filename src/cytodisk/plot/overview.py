@@ -32,9 +32,10 @@ def draw_overview(path: Path, cells: pd.DataFrame, masks: Callable[[int], DiskMa
     path : Path
         Ends in `.png`; 180 mm wide at 200 dots per inch.
     cells : DataFrame
-        One row a mask, columns status ("ok", "refused", "unreadable"), area and area_distortion (NaN where
-        there is no map). `attrs["units"]["area"]` is the area's unit, px² without; `attrs["pixel_size_um"]`
-        gives scale bars in µm.
+        One row a cell, columns status ("ok", "refused", …), area and area_distortion (NaN where there is no
+        map). With a column label, rows where it is 0 are files or images without a cell: they are counted in
+        words. `attrs["units"]["area"]` is the area's unit, px² without; `attrs["pixel_size_um"]` gives scale
+        bars in µm.
     masks : callable, optional
         Gives the map at a row's position. With it, six cells are drawn, from the least to the most distorted.
 
@@ -63,7 +64,8 @@ def draw_overview(path: Path, cells: pd.DataFrame, masks: Callable[[int], DiskMa
     chosen = _spread_out(distortion, mapped) if masks is not None else np.empty(0, dtype=np.int64)
     with paper_style():
         sheet = Sheet(58.0 + (40.0 if len(chosen) else 0.0))
-        _draw_status(sheet.axes(19.0, 8.0, 29.0, 38.0), cells["status"].astype(str))
+        without = (cells["label"] == 0).to_numpy() if "label" in cells.columns else np.zeros(len(cells), bool)
+        _draw_status(sheet.axes(19.0, 8.0, 29.0, 38.0), cells["status"][~without].astype(str), without.sum())
         _draw_histogram(sheet.axes(64.0, 8.0, 46.0, 38.0), distortion[mapped])
         unit = cells.attrs.get("units", {}).get("area", "px²")
         _draw_against_area(sheet.axes(127.0, 8.0, 48.0, 38.0), area[mapped], distortion[mapped], unit)
@@ -75,7 +77,7 @@ def draw_overview(path: Path, cells: pd.DataFrame, masks: Callable[[int], DiskMa
     return Path(path)
 
 
-def _draw_status(ax: Axes, status: pd.Series) -> None:
+def _draw_status(ax: Axes, status: pd.Series, without: int) -> None:
     counts = status.value_counts()
     names = [*STATUS_COLOURS, *(name for name in counts.index if name not in STATUS_COLOURS)]
     numbers = [int(counts.get(name, 0)) for name in names]
@@ -84,9 +86,9 @@ def _draw_status(ax: Axes, status: pd.Series) -> None:
     ax.invert_yaxis()
     ax.spines["left"].set_visible(False)
     ax.tick_params(axis="y", length=0)
-    ax.set_xlim(0, 1.25 * max(numbers))
+    ax.set_xlim(0, 1.25 * max(1, *numbers))
     ax.xaxis.set_major_locator(MaxNLocator(3, integer=True))
-    ax.set(xlabel="masks", title="status")
+    ax.set(xlabel="cells", title=f"status (and {without} without a cell)" if without else "status")
 
 
 def _draw_histogram(ax: Axes, distortion: FloatArray) -> None:
@@ -106,7 +108,7 @@ def _draw_histogram(ax: Axes, distortion: FloatArray) -> None:
     ax.axvline(float(np.median(distortion)), color="0.15", linewidth=0.8, linestyle=(0, (3, 2)))
     ax.set_title(f"area distortion, median {np.median(distortion):.3f} (dashed)")
     ax.yaxis.set_major_locator(MaxNLocator(5, integer=True))
-    ax.set(xlabel=_DISTORTION, ylabel="masks")
+    ax.set(xlabel=_DISTORTION, ylabel="cells")
 
 
 def _draw_against_area(ax: Axes, area: FloatArray, distortion: FloatArray, unit: str) -> None:

@@ -8,24 +8,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from cytodisk.errors import CytodiskError, ReadError, SignalError
+from cytodisk.errors import ReadError, SignalError
 from cytodisk.io.frames import FrameFile, open_frames
 from cytodisk.io.mask_files import MaskSource, open_mask_files
 from cytodisk.io.signal_files import pair_images
+from cytodisk.study.folder_inputs import SignalFile, with_common_channels, with_common_scale
 from cytodisk.study.parameters import MapParameters
+from cytodisk.study.pixel_sizes import common_pixel_size
 from cytodisk.study.run_steps import name_channels
 from cytodisk.windows.grid import polar_windows
 
 _MOST_UNNAMED = 10  # more planes than that are hardly channels
 _KINDS = {"mask": "one mask", "stack": "a stack of masks", "labels": "a label image, one cell a label"}
-
-
-@dataclass(frozen=True)
-class SignalFile:
-    """The image of a mask file, or the reason why there is none; neither without a signal."""
-
-    file: FrameFile | None = None
-    fault: CytodiskError | None = None
 
 
 @dataclass(frozen=True)
@@ -42,7 +36,9 @@ class MapInputs:
     parameters : MapParameters
         As given.
     pixel_size_um : float or None
-        The given one, or else the files' own; None when nobody knows.
+        The given one, or else the files' own, in a folder that of most; None when nobody knows.
+    remarks : tuple of str
+        What a user should know of the files of a folder before the run.
     """
 
     masks: Path
@@ -50,6 +46,7 @@ class MapInputs:
     signals: dict[str, SignalFile]
     parameters: MapParameters
     pixel_size_um: float | None
+    remarks: tuple[str, ...] = ()
 
     @property
     def is_folder(self) -> bool:
@@ -131,16 +128,38 @@ def open_inputs(
     ReadError, MaskError, SignalError, ParameterError
         A file is missing, damaged, or does not fit.
     """
-    sources = open_mask_files(masks, parameters.kind)
-    if Path(masks).is_dir():
-        signals = _open_signals(sources, signal, parameters)
-    else:
-        signals = {sources[0].name: _open_signal(sources[0], signal, parameters)}
     polar_windows(parameters.layers, parameters.sectors, parameters.spacing)  # raises if it makes no sense
-    opened = [*(found.file for found in signals.values()), *(source.file for source in sources)]
-    files = [file for file in opened if file is not None]
+    if Path(masks).is_dir():
+        return _open_folder(Path(masks), signal, parameters)
+    sources = open_mask_files(masks, parameters.kind)
+    found = _open_signal(sources[0], signal, parameters)
+    files = [file for file in (found.file, sources[0].file) if file is not None]
     pixel_size_um = parameters.pixel_size_um or common_pixel_size(files)
-    return MapInputs(Path(masks), sources, signals, parameters, pixel_size_um)
+    return MapInputs(Path(masks), sources, {sources[0].name: found}, parameters, pixel_size_um)
+
+
+def _open_folder(masks: Path, signal: str | os.PathLike[str] | None, parameters: MapParameters) -> MapInputs:
+    sources = open_mask_files(masks, parameters.kind, images=_ending_beside(masks, signal))
+    signals, remarks = _open_signals(sources, signal, parameters)
+    pixel_size_um = parameters.pixel_size_um
+    if pixel_size_um is None:
+        scaled = with_common_scale(sources, signals)
+        sources, signals, pixel_size_um = scaled.sources, scaled.signals, scaled.pixel_size_um
+        remarks = [*remarks, *scaled.remarks]
+    replaced = [
+        f"{source.name} is used: {', '.join(source.damaged)} cannot be"
+        for source in sources
+        if source.damaged
+    ]
+    return MapInputs(masks, sources, signals, parameters, pixel_size_um, (*replaced, *remarks))
+
+
+def _ending_beside(masks: Path, signal: str | os.PathLike[str] | None) -> str:
+    """How the names of images go on that lie in the folder of the masks."""
+    if signal is None or Path(signal).exists():
+        return ""
+    folder = Path(signal).parent
+    return Path(signal).name if folder in (Path(), masks) else ""
 
 
 def _open_signal(
@@ -160,19 +179,18 @@ def _fitting_image(source: MaskSource, path: Path) -> FrameFile | None:
 
 def _open_signals(
     sources: Sequence[MaskSource], signal: str | os.PathLike[str] | None, parameters: MapParameters
-) -> dict[str, SignalFile]:
+) -> tuple[dict[str, SignalFile], list[str]]:
+    """The image of each mask file by its name, and remarks."""
     if signal is None:
         name_channels(None, parameters.channels)  # raises if there are names and nothing to name
-        return {source.name: SignalFile() for source in sources}
+        return {source.name: SignalFile() for source in sources}, []
     images = pair_images(sources, signal)
     opened = [_open_paired(source, image) for source, image in zip(sources, images, strict=True)]
-    readable = [found.file for found in opened if found.file is not None]
-    if not readable:
+    if all(found.file is None for found in opened):
         faults = [found.fault for found in opened if found.fault is not None]
         raise SignalError(f"signal {signal}: no image can be used: {faults[0] if faults else 'no mask can'}")
-    named = name_channels(readable[0], parameters.channels)
-    alike = [_with_channels_of(readable[0], named, found) for found in opened]
-    return {source.name: found for source, found in zip(sources, alike, strict=True)}
+    alike, remarks = with_common_channels(opened, parameters.channels)
+    return {source.name: found for source, found in zip(sources, alike, strict=True)}, remarks
 
 
 def _open_paired(source: MaskSource, image: Path | SignalError) -> SignalFile:
@@ -182,42 +200,6 @@ def _open_paired(source: MaskSource, image: Path | SignalError) -> SignalFile:
         return SignalFile(_fitting_image(source, image))
     except (ReadError, SignalError) as fault:
         return SignalFile(fault=fault)
-
-
-def _with_channels_of(first: FrameFile, named: FrameFile | None, found: SignalFile) -> SignalFile:
-    """The image with the names that were given, or a fault if it has other channels than the first."""
-    if found.file is None or named is None:
-        return found
-    if found.file.channels != first.channels:
-        here, there = ", ".join(found.file.channels), ", ".join(first.channels)
-        return SignalFile(
-            fault=SignalError(
-                f"signal {found.file.path} has the channels {here}, {first.path.name} has {there}: "
-                "all images of a run must have the same"
-            )
-        )
-    return SignalFile(name_channels(found.file, named.channels))
-
-
-def common_pixel_size(files: Sequence[FrameFile]) -> float | None:
-    """The pixel size that files agree on, in µm; None when none of them knows.
-
-    Raises
-    ------
-    SignalError
-        They differ by more than 1 %.
-    """
-    known = {file.path: file.pixel_size_um for file in files if file.pixel_size_um is not None}
-    if not known:
-        return None
-    first, size = next(iter(known.items()))
-    for path, other in known.items():
-        if max(size, other) > 1.01 * min(size, other):
-            raise SignalError(
-                f"pixel sizes differ: {first} says {size:g} µm, {path} {other:g} µm: "
-                "pass the right one, as --pixel-size"
-            )
-    return size
 
 
 def check_signal(masks: FrameFile, signal: FrameFile) -> None:

@@ -3,29 +3,27 @@
 from __future__ import annotations
 
 import os
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Future
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
+from functools import partial
+from typing import Any
 
 import xarray as xr
 
 from cytodisk.errors import CytodiskError, ReadError
 from cytodisk.geometry.mask import MaskReport, clean_mask
 from cytodisk.io.mask_files import SourceCell, read_source_cells
+from cytodisk.io.mask_names import without_name
 from cytodisk.io.study import Study, open_study
 from cytodisk.io.study_folder import MAP_TABLES, PARAMETERS, StudyFolder, alone_in, part_key
 from cytodisk.study.map_inputs import MapInputs
-from cytodisk.study.one_cell import CellSettings, CellTask, DrawCell, measure_part
+from cytodisk.study.one_cell import CellSettings, CellTask, DrawCell, measure_part, status_of
 from cytodisk.study.parameters import write_parameters
 from cytodisk.study.provenance import describe_run
-from cytodisk.study.run_steps import check_options, finish_run
-from cytodisk.study.workers import worker_pool
+from cytodisk.study.run_steps import Progress, check_options, finish_run, silent
+from cytodisk.study.workers import in_order
 
 _CELLS_PER_PART = 8  # of one image, which go to a worker and into a file together
-
-Progress: TypeAlias = Callable[[int, int], None]
 
 
 def run_map(
@@ -89,26 +87,28 @@ def run_map(
         settings = CellSettings(
             inputs.parameters, inputs.pixel_size_um, folder.for_workers(), draw, maps, geojson
         )
-        report = progress or _silent
+        report = progress or silent
         done = sum(size for key, size in parts.items() if key not in pending)
         report(done, sum(parts.values()))
         tasks = _tasks(inputs, pending, at_most)
-        for size in _results(tasks, settings, min(workers, max(1, len(pending)))):
+        measure = partial(measure_part, settings=settings)
+        for size in in_order(measure, tasks, min(workers, max(1, len(pending)))):
             done += size
             report(done, sum(parts.values()))
-        warnings = [words for row in folder.read_rows(parts) if (words := _warning(row, inputs.is_folder))]
+        warnings = [*inputs.remarks]
+        warnings += [words for row in folder.read_rows(parts) if (words := _warning(row, inputs.is_folder))]
         finish_run(folder, list(parts), warnings)
         return open_study(folder.path)
 
 
-def _silent(done: int, total: int) -> None:
-    """Report nothing."""
-
-
 def _warning(row: dict[str, Any], of_many: bool) -> str:
     words = row["reason"] or row.get("doubts")
-    name = f"cell {row['cell']}" + (f" of {row['source']}" if of_many else "")
-    return f"{name}: {words}" if words else ""
+    if not words:
+        return ""
+    if not of_many:
+        return f"cell {row['cell']}: {words}"
+    place = f"cell {row['cell']} of {row['source']}" if row["label"] else row["source"]
+    return f"{place}: {without_name(words, row['source'])}"
 
 
 def _parts(cells: Iterable[SourceCell]) -> Iterator[list[SourceCell]]:
@@ -164,18 +164,6 @@ def _signal_at(
     return xr.DataArray(values, dims=("channel", "y", "x"), coords=coords), None
 
 
-def _results(tasks: Iterator[list[CellTask]], settings: CellSettings, workers: int) -> Iterator[int]:
-    """Cells done, in the order of tasks; at most two tasks a worker wait at a time: memory is bounded."""
-    waiting: deque[Future[int]] = deque()
-    with worker_pool(workers) as pool:
-        for task in tasks:
-            waiting.append(pool.submit(measure_part, task, settings))
-            if workers == 1 or len(waiting) >= 2 * workers:
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
-
-
 @dataclass(frozen=True)
 class CheckedCell:
     """What a look at a mask says.
@@ -183,6 +171,8 @@ class CheckedCell:
     Attributes
     ----------
     found : SourceCell
+    status : str
+        "ok", or as `status_of` calls the fault.
     reason : str
         Why it cannot be used; empty if it can.
     report : MaskReport or None
@@ -190,6 +180,7 @@ class CheckedCell:
     """
 
     found: SourceCell
+    status: str
     reason: str
     report: MaskReport | None
 
@@ -210,8 +201,8 @@ def check_cells(inputs: MapInputs) -> Iterator[CheckedCell]:
         if fault is None:
             try:
                 _, report = clean_mask(found.mask)
-                yield CheckedCell(replace(found, mask=None), "", report)
+                yield CheckedCell(replace(found, mask=None), "ok", "", report)
                 continue
             except CytodiskError as error:
                 fault = error
-        yield CheckedCell(replace(found, mask=None), str(fault), None)
+        yield CheckedCell(replace(found, mask=None), status_of(fault), str(fault), None)

@@ -14,9 +14,10 @@ from cytodisk.io.frames import FrameFile, open_frames
 from cytodisk.io.masks import Kind, understood_as
 from cytodisk.io.study_folder import part_key
 from cytodisk.io.tracks import CellTrack, list_tracks, read_frame
-from cytodisk.study.map_inputs import check_signal, common_pixel_size
+from cytodisk.study.map_inputs import check_signal
 from cytodisk.study.one_frame import Scale
 from cytodisk.study.parameters import MovieParameters
+from cytodisk.study.pixel_sizes import common_pixel_size
 from cytodisk.study.run_steps import name_channels
 from cytodisk.windows.grid import PolarWindows, first_depth, layers_for_depth, polar_windows
 

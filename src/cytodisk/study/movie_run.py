@@ -21,13 +21,12 @@ from cytodisk.motion.frame_file import load_frame
 from cytodisk.motion.map_movie import FrameResult, map_one
 from cytodisk.motion.mapped_frame import MappedFrame, MovieSettings
 from cytodisk.motion.tracking import TrackingSettings
-from cytodisk.study.map_run import Progress
 from cytodisk.study.movie_inputs import MovieInputs
 from cytodisk.study.movie_tables import finish_tables
 from cytodisk.study.one_frame import FrameRows, FrameTask, measure_frame, unmapped_row
 from cytodisk.study.parameters import MovieParameters, write_parameters
 from cytodisk.study.provenance import describe_run
-from cytodisk.study.run_steps import check_options, finish_run
+from cytodisk.study.run_steps import Progress, check_options, finish_run
 from cytodisk.study.workers import worker_pool
 
 

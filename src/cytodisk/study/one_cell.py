@@ -14,7 +14,7 @@ from cytodisk.analysis.activity import STATISTICS
 from cytodisk.disk.circle import Align
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_to_disk
-from cytodisk.errors import CytodiskError, ReadError
+from cytodisk.errors import CytodiskError, EmptyMaskError, ReadError, SignalError
 from cytodisk.files import replacing
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
 from cytodisk.io.mask_files import SourceCell
@@ -122,8 +122,7 @@ def _measure_cell(task: CellTask, settings: CellSettings) -> Rows:
         except CytodiskError as error:
             fault = error
     if fault is not None:
-        status = "unreadable" if isinstance(fault, ReadError) else "refused"
-        return row | {"status": status, "reason": str(fault), "seconds": _since(started)}, {}
+        return row | {"status": status_of(fault), "reason": str(fault), "seconds": _since(started)}, {}
 
     windows = polar_windows(parameters.layers, parameters.sectors, parameters.spacing).on(disk)
     place = found.cell, found.frame, None
@@ -142,6 +141,25 @@ def _measure_cell(task: CellTask, settings: CellSettings) -> Rows:
         image = None if task.image is None else task.image.astype(np.float64)
         settings.draw(settings.folder.figures, name, placed, image, settings.pixel_size_um)
     return row | {"status": "ok", "reason": "", "seconds": seconds}, {"windows": columns}
+
+
+def status_of(fault: CytodiskError) -> str:
+    """What the table of cells says of a row without results.
+
+    Parameters
+    ----------
+    fault : CytodiskError
+
+    Returns
+    -------
+    {"unreadable", "no cell", "no image", "refused"}
+        A file is damaged, an image holds no cell, its signal cannot be used, or the mask cannot.
+    """
+    if isinstance(fault, ReadError):
+        return "unreadable"
+    if isinstance(fault, EmptyMaskError):
+        return "no cell"
+    return "no image" if isinstance(fault, SignalError) else "refused"
 
 
 def _write_map(windows: CellWindows, path: Path, settings: CellSettings) -> None:
