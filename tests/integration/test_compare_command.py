@@ -35,7 +35,7 @@ def test_masks_become_tables_figures_and_words(run: Run, masks: Path, tmp_path: 
     assert "worse than edge-based" in said
     assert "figures/comparison.png: filled windows" in said
     assert "comparison_columns.csv says what their columns are" in said
-    assert "cell 2, newton (refused): mask of shape" in error
+    assert error.count("1 refused: cell 2 of masks.tif: mask of shape") == 1  # once for both methods
     for name in ("comparison.png", "cells.png"):
         assert (out / "figures" / name).exists()
     by_layer = pd.read_csv(out / "comparison.csv").set_index(["method", "layer"])["completeness"]
@@ -110,3 +110,15 @@ def test_masks_without_any_cell_end_in_an_error(run: Run, tmp_path: Path) -> Non
     masks = write(tmp_path / "masks.tif", np.zeros((2, 20, 20), dtype=np.uint8), metadata={"axes": "TYX"})
     result = run("compare", masks, "-o", tmp_path / "out", "--methods", "edge,newton")
     assert_refused(result, "no cell could be used: mask of shape (20, 20) is empty")
+
+
+def test_a_damaged_file_of_a_folder_is_told_once_and_ends_in_2(run: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "masks"
+    folder.mkdir()
+    write(folder / "a_masks.tif", cd.simulate.disk(12).astype(np.uint8))
+    (folder / "b_masks.tif").write_bytes(b"no image")
+    code, said, error = run("compare", folder, "-o", tmp_path / "out", "--methods", "newton,edge", *GRID)
+    assert code == 2
+    assert ["mapped", "1/1", "1/1"] in [line.split()[:3] for line in said.splitlines()]
+    assert error.count("b_masks.tif") == 1
+    assert "damaged files or frames of the input: 1" in error

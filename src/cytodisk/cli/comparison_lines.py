@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from cytodisk.cli.console import count
+from cytodisk.cli.map_totals import say_reasons
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from cytodisk.study.comparison import Comparison
 
 _NAME, _VALUE = 26, 12  # characters of a column
+_MOST_ROWS = 10
 
 
 def _share(value: float) -> str:
@@ -39,11 +41,21 @@ def say_comparison(console: "Console", found: "Comparison") -> None:
         console.print(line)
     for words in where_worse(found):
         console.print(words)
-    lost = found.cells[found.cells["reason"] != ""].to_dict("records")
-    for row in lost[:10]:
+    _say_lost(found)
+
+
+def _say_lost(found: "Comparison") -> None:
+    """Print what is wrong with masks once for all methods, and what a method could not do."""
+    lost = found.cells[found.cells["reason"] != ""]
+    at_fault = lost["status"].isin(("refused", "unreadable"))
+    masks = lost[at_fault].drop_duplicates(["cell", "reason"])
+    say_reasons(zip(masks["cell"], masks["source"], masks["status"], masks["reason"], strict=True))
+    rows = lost[~at_fault].to_dict("records")
+    for row in rows[:_MOST_ROWS]:
         print(f"cell {row['cell']}, {row['method']} ({row['status']}): {row['reason']}", file=sys.stderr)
-    if len(lost) > 10:
-        print(f"… and {count(len(lost) - 10, 'more row')}: column 'reason' of cells.parquet", file=sys.stderr)
+    if len(rows) > _MOST_ROWS:
+        more = count(len(rows) - _MOST_ROWS, "more row")
+        print(f"… and {more}: column 'reason' of cells.parquet", file=sys.stderr)
 
 
 def say_tables(console: "Console", found: "Comparison") -> None:
