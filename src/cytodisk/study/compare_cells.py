@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import os
 import time as clock
-from collections import deque
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -27,8 +24,8 @@ from cytodisk.study.comparison import Comparison, open_comparison, write_summari
 from cytodisk.study.map_inputs import MapInputs, open_inputs
 from cytodisk.study.parameters import write_parameters
 from cytodisk.study.provenance import describe_run
-from cytodisk.study.run_steps import check_options, finish_run
-from cytodisk.study.workers import worker_pool
+from cytodisk.study.run_steps import Progress, check_options, finish_run, silent
+from cytodisk.study.workers import in_order
 from cytodisk.windows.edge_windows import edge_windows
 from cytodisk.windows.grid import polar_windows
 from cytodisk.windows.on_cell import PARTS, WindowsOnCell
@@ -36,7 +33,6 @@ from cytodisk.windows.ring_windows import ring_windows
 
 _SMALL_PX = 4000  # cells up to here are drawn by parts of pixels
 
-Progress: TypeAlias = Callable[[int, int], None]
 Rows: TypeAlias = list[tuple[dict[str, Any], dict[str, dict[str, Any]]]]
 
 
@@ -131,14 +127,14 @@ def compare_opened_cells(
         cells = [found.cell for found in read_source_cells(inputs.sources)]
         pending = {cell for cell in cells if not folder.has(part_key(cell))}
         done = len(cells) - len(pending)
-        report = progress or _silent
+        report = progress or silent
         report(done, len(cells))
         tasks = (
             CompareTask(found, parameters, folder.path)
             for found in read_source_cells(inputs.sources)
             if found.cell in pending
         )
-        for rows in _results(tasks, min(workers, max(1, len(pending)))):
+        for rows in in_order(compare_cell, tasks, min(workers, max(1, len(pending)))):
             folder.add_cells(part_key(rows[0][0]["cell"]), rows)
             done += 1
             report(done, len(cells))
@@ -221,19 +217,3 @@ def _lay(method: str, task: CompareTask) -> tuple[WindowsOnCell, DiskMap | None]
         windows = polar_windows(parameters.layers, parameters.sectors, parameters.spacing).on(disk)
     _ = windows.weights  # belongs to the time it takes
     return windows, disk
-
-
-def _results(tasks: Iterator[CompareTask], workers: int) -> Iterator[Rows]:
-    """Results in the order of tasks; at most two tasks a worker wait at a time, so memory is bounded."""
-    waiting: deque[Future[Rows]] = deque()
-    with worker_pool(workers) as pool:
-        for task in tasks:
-            waiting.append(pool.submit(compare_cell, task))
-            if workers == 1 or len(waiting) >= 2 * workers:
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
-
-
-def _silent(done: int, total: int) -> None:
-    """Report nothing."""

@@ -26,7 +26,7 @@ from cytodisk.study.comparison import Comparison, open_comparison, write_summari
 from cytodisk.study.movie_inputs import MovieInputs, open_movie
 from cytodisk.study.parameters import write_parameters
 from cytodisk.study.provenance import describe_run
-from cytodisk.study.run_steps import check_options, finish_run
+from cytodisk.study.run_steps import check_options, finish_run, silent
 
 
 @dataclass(frozen=True)
@@ -121,17 +121,13 @@ def compare_opened_movie(
         folder = StudyFolder.start(out, provenance, COMPARED_MOVIE, resume=resume, overwrite=overwrite)
         write_parameters(parameters, folder.path / PARAMETERS)
         parts = _parts(inputs, parameters.methods)
-        _run(parts, inputs, parameters, folder, progress or _silent)
+        _run(parts, inputs, parameters, folder, progress or silent)
         keys = [part.key for part in parts]
         rows = list(folder.read_rows(keys))
         reasons = [f"cell {row['cell']}, {row['method']}: {row['reason']}" for row in rows if row["reason"]]
         finish_run(folder, keys, reasons)
         write_summaries(folder.path)
         return open_comparison(folder.path)
-
-
-def _silent(done: int, total: int) -> None:
-    """Report nothing."""
 
 
 def _run(

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections import deque
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from concurrent.futures import Future
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from functools import partial
 from itertools import islice
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, Literal
 
 import pandas as pd
 from pydantic import BaseModel, ConfigDict, Field
@@ -22,9 +21,9 @@ from cytodisk.io.study_folder import MAPS, PARAMETERS, StudyFolder, alone_in, pa
 from cytodisk.study.map_inputs import MapInputs, open_inputs
 from cytodisk.study.parameters import MapParameters, write_parameters
 from cytodisk.study.provenance import describe_run, installed
-from cytodisk.study.run_steps import check_options, finish_run
+from cytodisk.study.run_steps import Progress, check_options, finish_run, silent
 from cytodisk.study.shape_tables import SHAPE_TABLES, open_shapes, shape_table, write_shapes
-from cytodisk.study.workers import worker_pool
+from cytodisk.study.workers import in_order
 
 _CELLS_PER_PART = 32  # which go to a worker and into a file together: about a second's work
 _LAYOUT = (
@@ -32,8 +31,6 @@ _LAYOUT = (
     "scikit-learn",
     "pynndescent",
 )  # packages that the score depends on beside the others
-
-Progress: TypeAlias = Callable[[int, int], None]
 
 
 class ShapeParameters(BaseModel):
@@ -154,18 +151,15 @@ def _measure_all(
     sizes = {_key(part): len(part) for part in _parts(read_source_cells(inputs.sources))}
     pending = {key for key in sizes if not folder.has(key)}
     done, total = sum(size for key, size in sizes.items() if key not in pending), sum(sizes.values())
-    report = progress or _silent
+    report = progress or silent
     report(done, total)
     parts = (part for part in _parts(read_source_cells(inputs.sources)) if _key(part) in pending)
-    for rows in _results(parts, inputs.pixel_size_um, min(workers, max(1, len(pending)))):
+    measure = partial(measure_shapes, pixel_size_um=inputs.pixel_size_um)
+    for rows in in_order(measure, parts, min(workers, max(1, len(pending)))):
         folder.add_cells(part_key(rows[0]["cell"]), [(row, {}) for row in rows])
         done += len(rows)
         report(done, total)
     return list(sizes)
-
-
-def _silent(done: int, total: int) -> None:
-    """Report nothing."""
 
 
 def _parts(cells: Iterable[SourceCell]) -> Iterator[list[SourceCell]]:
@@ -177,20 +171,6 @@ def _parts(cells: Iterable[SourceCell]) -> Iterator[list[SourceCell]]:
 
 def _key(part: Sequence[SourceCell]) -> str:
     return part_key(part[0].cell)
-
-
-def _results(
-    parts: Iterator[list[SourceCell]], pixel_size_um: float | None, workers: int
-) -> Iterator[list[dict[str, Any]]]:
-    """Rows of each part in order; at most two parts a worker wait at a time: memory is bounded."""
-    waiting: deque[Future[list[dict[str, Any]]]] = deque()
-    with worker_pool(workers) as pool:
-        for part in parts:
-            waiting.append(pool.submit(measure_shapes, part, pixel_size_um))
-            if workers == 1 or len(waiting) >= 2 * workers:
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
 
 
 def measure_shapes(cells: Sequence[SourceCell], pixel_size_um: float | None) -> list[dict[str, Any]]:

@@ -229,7 +229,8 @@ def load_umap() -> Any:
             import umap
     except ImportError as error:
         raise MissingPartError(
-            "the complexity score needs umap-learn, which is not installed: pip install 'cytodisk[umap]'"
+            "the complexity score needs umap-learn, which is not installed: in the clone of cytodisk type "
+            ".venv/bin/pip install -c constraints.txt -e '.[umap]'"
         ) from error
     return umap
 
