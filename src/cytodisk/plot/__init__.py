@@ -3,8 +3,8 @@
 A mask and its disk: draw_cell, draw_outline, draw_mesh, draw_area_distortion; draw_disk_image,
 draw_disk_mesh.
 
-Windows: draw_windows, draw_window_means, draw_sectors, draw_strip on the cell; draw_disk_windows,
-draw_disk_means on the disk; frame_cell fits axes to a cell.
+Windows: draw_windows, draw_window_means, draw_window_labels, draw_sectors, draw_strip on the cell;
+draw_disk_windows, draw_disk_means on the disk; frame_cell fits axes to a cell.
 
 Movies: draw_activity_map, draw_velocity_map, draw_layers by frame and sector; draw_line_kymograph and
 draw_boundary_kymograph; draw_velocity_arrows, draw_tracks, draw_area_change and draw_mean_velocity of the
@@ -64,6 +64,7 @@ _HOME = {
     "draw_tracks": "edge",
     "draw_velocity_arrows": "edge",
     "draw_velocity_map": "kymograph",
+    "draw_window_labels": "window_labels",
     "draw_window_means": "cell",
     "draw_windows": "cell",
     "frame_cell": "cell",

@@ -154,9 +154,14 @@ def draw_windows(
     -------
     PolyCollection
         One polygon a window, by window number.
+
+    Raises
+    ------
+    WindowError
+        `windows` have no outlines: only polar windows have.
     """
     style = {"edgecolors": color, "linewidths": linewidth, "alpha": alpha}
-    polygons = [polygon[:, ::-1] for polygon in windows.polygons()]
+    polygons = [polygon[:, ::-1] for polygon in _with_outlines(windows).polygons()]
     return add_windows(ax, polygons, *windows.areas.shape, by_layer=by_layer, style=style)
 
 
@@ -191,16 +196,25 @@ def draw_window_means(
     Raises
     ------
     WindowError
-        `values` has another shape than the windows.
+        `values` has another shape than the windows, or `windows` have no outlines: only polar ones have.
     ParameterError
         The pixel size is not a positive number, or there is no such colour map.
     """
     table = window_values(values, windows.areas.shape)
-    polygons = [polygon[:, ::-1] for polygon in windows.polygons()]
+    polygons = [polygon[:, ::-1] for polygon in _with_outlines(windows).polygons()]
     drawn = add_filled_windows(ax, polygons, table, cmap, limits)
     draw_outline(ax, windows.disk, linewidth=0.25)
     frame_cell(ax, windows.disk, pixel_size_um=pixel_size_um)
     return drawn
+
+
+def _with_outlines(windows: CellWindows) -> CellWindows:
+    if not isinstance(windows, CellWindows):
+        raise WindowError(
+            f"windows must be polar windows on a cell, got {type(windows).__name__}, which has no outlines: "
+            "use draw_window_labels"
+        )
+    return windows
 
 
 def draw_mesh(

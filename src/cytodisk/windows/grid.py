@@ -89,9 +89,17 @@ class PolarWindows:
         -------
         CellWindows
             No window is empty, whatever the grid.
+
+        Raises
+        ------
+        WindowError
+            `disk` is not a map.
         """
+        from cytodisk.disk.disk_map import DiskMap
         from cytodisk.windows.cell_windows import CellWindows
 
+        if not isinstance(disk, DiskMap):
+            raise WindowError(f"disk must be a DiskMap, got {type(disk).__name__}: pass map_to_disk(mask)")
         return CellWindows(self, disk)
 
 

@@ -1,0 +1,52 @@
+"""Windows of any kind in a cell, drawn pixel by pixel: those that have no outlines, too."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.image import AxesImage
+
+from cytodisk.errors import WindowError
+from cytodisk.plot.compared_cells import window_colours
+from cytodisk.plot.outlines import outline_sides
+from cytodisk.plot.style import LINE_COLOUR
+from cytodisk.windows.on_cell import WindowsOnCell
+
+
+def draw_window_labels(ax: Axes, windows: WindowsOnCell) -> AxesImage:
+    """Draw which pixel is in which window: dark at the edge, light inside, every other sector paler.
+
+    Works for edge-based windows and rings as for polar ones. White pixels of the cell are in no window.
+
+    Parameters
+    ----------
+    ax : Axes
+    windows : WindowsOnCell
+        Such as from `polar_windows`, `edge_windows` or `ring_windows`, on a cell.
+
+    Returns
+    -------
+    AxesImage
+
+    Raises
+    ------
+    WindowError
+        `windows` are not windows on a cell.
+    """
+    if not isinstance(windows, WindowsOnCell):
+        raise WindowError(f"windows must be those on a cell, got {type(windows).__name__}: use grid.on(disk)")
+    mask = np.asarray(windows.mask)
+    height, width = mask.shape
+    colours = window_colours(windows.labels, (windows.layers, windows.sectors))
+    extent = (-0.5, width - 0.5, height - 0.5, -0.5)
+    drawn = ax.imshow(colours, extent=extent, interpolation="nearest")
+    sides: Any = list(outline_sides(mask) - 0.5)
+    ax.add_collection(LineCollection(sides, colors=LINE_COLOUR, linewidths=0.25))
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    ax.set(xlim=(columns[0] - 1.5, columns[-1] + 1.5), ylim=(rows[-1] + 1.5, rows[0] - 1.5))
+    ax.set_aspect("equal")
+    ax.set_axis_off()
+    return drawn
