@@ -70,6 +70,8 @@ def shapes_command(
     console.print(f"masks: {inputs.understood['masks']}")
     size = inputs.pixel_size_um
     console.print(f"pixel size: {size:g} µm" if size else "pixel size: unknown, lengths are in px")
+    for remark in inputs.remarks:
+        console.print(f"note: {remark}")
     with progress_bar(quiet, "cells") as progress:
         table = run_shapes(
             inputs, out, settings, workers=workers, resume=resume, overwrite=overwrite, progress=progress

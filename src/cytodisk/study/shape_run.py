@@ -129,7 +129,7 @@ def run_shapes(
             parameters.min_dist,
         )
         write_shapes(table, folder.path)
-        finish_run(folder, keys, _warnings(table))
+        finish_run(folder, keys, [*inputs.remarks, *_warnings(table)])
         if not any((folder.path / MAPS).iterdir()):
             (folder.path / MAPS).rmdir()  # no cell has a map
     return table
