@@ -96,8 +96,10 @@ def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:
     measured, lost = table[table["status"] == "ok"], table[table["status"] != "ok"]
     status = table["status"].value_counts()
     numbers = [f"{status[name]} {name}" for name in ("refused", "unreadable") if name in status]
-    files = count(table["source"].nunique(), "file")
-    console.print(f"{files}, {count(len(table))}: " + "; ".join([f"{len(measured)} measured", *numbers]))
+    files, cells = count(table["source"].nunique(), "file"), int((table["label"] != 0).sum())
+    console.print(f"{files}, {count(cells)}: " + "; ".join([f"{len(measured)} measured", *numbers]))
+    if cells < len(table):
+        console.print(f"files or images without a cell: {len(table) - cells}")
     border = int(measured["touches_border"].sum())
     console.print(f"on the image border, so measured in part: {count(border)}")
     _say_doubts(console, measured)
