@@ -83,7 +83,7 @@ def test_a_damaged_file_of_a_folder_is_told_and_costs_one_row(run: Run, labels: 
     labels.rename(tmp_path / "in/a_masks.tif")
     (tmp_path / "in/b_masks.tif").write_bytes(b"")
     result = run("shapes", tmp_path / "in", "-o", tmp_path / "out")
-    assert "2 files, 13 cells: 11 measured; 1 refused; 1 unreadable" in result[1]
+    assert "2 files, 12 cells: 11 measured; 1 refused\nfiles or images without a cell: 1\n" in result[1]
     assert_refused(result, "damaged files or frames", "b_masks.tif")
 
 

@@ -95,9 +95,9 @@ def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:
 
     measured, lost = table[table["status"] == "ok"], table[table["status"] != "ok"]
     status = table["status"].value_counts()
-    numbers = [f"{status[name]} {name}" for name in ("refused", "unreadable") if name in status]
+    refused = [f"{status['refused']} refused"] if "refused" in status else []
     files, cells = count(table["source"].nunique(), "file"), int((table["label"] != 0).sum())
-    console.print(f"{files}, {count(cells)}: " + "; ".join([f"{len(measured)} measured", *numbers]))
+    console.print(f"{files}, {count(cells)}: " + "; ".join([f"{len(measured)} measured", *refused]))
     if cells < len(table):
         console.print(f"files or images without a cell: {len(table) - cells}")
     border = int(measured["touches_border"].sum())
