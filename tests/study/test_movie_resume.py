@@ -75,8 +75,8 @@ def _stop(*_: object, **__: object) -> None:
         "cytodisk.study.movie_tables._finish_track",
         "cytodisk.study.movie_tables._add_consistency",
         "cytodisk.io.activity_store.CellActivity.close",
-        "cytodisk.io.study_folder.StudyFolder._merge",
-        "cytodisk.io.study_folder.pq.ParquetWriter",
+        "cytodisk.io.study_folder.merge_tables",
+        "cytodisk.io.merging.pq.ParquetWriter",
     ],
 )
 def test_a_run_stopped_while_it_writes_its_tables_goes_on(
