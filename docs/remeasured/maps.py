@@ -17,6 +17,7 @@ from cytodisk.geometry.mesh import triangle_areas
 
 MASKS = ("example", "disk60", "ellipse5to1", "star5", "dumbbell3px", "neuron")
 METHODS = ("harmonic", "advection", "newton")
+FREE = ("ellipse5to1", "star5")  # on others, flips that may turn triangles over in the cell tear the mesh
 PUBLISHED = Path(__file__).parent / "published_code.csv"
 
 
@@ -28,9 +29,9 @@ def measure(folder: Path) -> pd.DataFrame:
 
 
 def free_flips(folder: Path) -> dict[str, int]:
-    """Triangles that the paper's relaxation turns over on all masks, if flips may do so in the cell."""
+    """Triangles that the paper's relaxation turns over on two masks, if flips may do so in the cell."""
     turned = {"disk": 0, "cell": 0}
-    for name in MASKS:
+    for name in FREE:
         cell = mesh_cell(tifffile.imread(folder / f"{name}.tif"), method="advection")
         angles = boundary_angles(cell.outline)
         start, _ = harmonic_map(cell.mesh, np.column_stack([np.cos(angles), np.sin(angles)]))
@@ -72,7 +73,8 @@ def write(found: dict[str, Any], files: Path) -> dict[str, Any]:
     order = {name: place for place, name in enumerate(MASKS)}
     table = pd.DataFrame(rows).sort_values("mask", key=lambda masks: masks.map(order), kind="stable")
     table.to_csv(files / "reference_masks.csv", index=False)
-    advection = found["maps"][found["maps"]["method"] == "advection"]
+    ours = found["maps"]
+    advection = ours[(ours["method"] == "advection") & ours["mask"].isin(FREE)]
     return {
         "kept_flips": int(advection["flips"].sum()),
         "free_in_disk": found["free_flips"]["disk"],
