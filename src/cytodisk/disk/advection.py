@@ -68,7 +68,8 @@ def advect(mesh: Mesh, start_uv: FloatArray, steps: int = STEPS, *, whole_cell: 
     steps : int
     whole_cell : bool
         Flip no edge whose new triangles would turn over in the cell. Without it, as the text has it, fewer
-        or no triangles stay turned over in the disk, but some are in the cell.
+        or no triangles stay turned over in the disk, but some are in the cell; on shapes with thin parts the
+        mesh can then tear, and the next step fails.
 
     Returns
     -------
