@@ -150,6 +150,7 @@ def numbers(found: dict[str, Any]) -> dict[str, Any]:
         "published_flipped": published[published["flips"] > 0]["mask"].nunique(),
         "published_masks": published["mask"].nunique(),
         "published_seconds": f"{published['seconds'].min()} to {published['seconds'].max()}",
+        "published_closer": published_closer(found["maps"], published),
         "steadier": steadier(found["movies"]),
         "ours_peaks": peaks(found["movies"]),
     }
@@ -168,6 +169,13 @@ def edge_by_layer(comparison: Any) -> pd.DataFrame:
 def layers_not_below(ours: pd.DataFrame, edge: pd.DataFrame, name: str) -> list[int]:
     """Layers in which a measure of our windows is not smaller than that of edge-based ones, or not known."""
     return [int(layer) for layer in ours.index[~(ours[name] < edge[name])]]
+
+
+def published_closer(maps: pd.DataFrame, published: pd.DataFrame) -> int:
+    """Masks on which the published program's "area" variant ends with less area error than our advection."""
+    ours = maps[maps["method"] == "advection"].set_index("mask")["error"]
+    theirs = published[published["flow"].str.startswith("area")].set_index("mask")["final"]
+    return int((theirs < ours[theirs.index].round(2)).sum())
 
 
 def steadier(movies: dict[str, Any]) -> str:

@@ -27,7 +27,7 @@ from cytodisk.plot.style import (
     paper_style,
     signal_limits,
 )
-from cytodisk.plot.time_axis import TICK_STEPS, time_axis
+from cytodisk.plot.time_axis import TICK_STEPS, stands_alone, time_axis
 from cytodisk.study.channel_names import file_names, shown_name
 from cytodisk.study.compare_parameters import TITLES
 from cytodisk.study.comparison import Comparison
@@ -129,8 +129,10 @@ def draw_displacement(
     for method in methods:
         rows = consistency[consistency["method"] == method]
         moved = rows.groupby("time")["centroid_displacement"].mean().reindex(range(first, last + 1))
-        style = METHOD_STYLES[method] | {"marker": ""}
-        lines += ax.plot(time, moved.to_numpy(), label=TITLES[method], **style)
+        values = moved.to_numpy()
+        # Only values that a line does not show get a mark: between gaps, or of a movie of two frames.
+        style = METHOD_STYLES[method] | {"markevery": stands_alone(values)}
+        lines += ax.plot(time, values, label=TITLES[method], **style)
     ax.set(ylabel=f"centroid_displacement ({unit})")
     ax.set_ylim(bottom=0.0)
     ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
@@ -169,6 +171,8 @@ def _draw_maps(
 def _draw_map(ax: Axes, values: xr.DataArray, limits: tuple[float, float], interval_s: float | None) -> Any:
     frames, sectors = values.shape
     time_axis(ax, frames, interval_s, int(values["time"][0]))
+    ticks = MaxNLocator(5, steps=TICK_STEPS, integer=interval_s is None, prune="upper")
+    ax.xaxis.set_major_locator(ticks)  # the last number would run into the next map's first
     extent = (*ax.get_xlim(), -0.5, sectors - 0.5)
     options: dict[str, Any] = {"aspect": "auto", "origin": "lower", "interpolation": "nearest"}
     drawn = ax.imshow(values.to_numpy().T, colour_map(SIGNAL_COLOURS), extent=extent, **options)
