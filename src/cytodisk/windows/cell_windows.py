@@ -51,16 +51,6 @@ class CellWindows(WindowsOnCell):
         """The cell's mask, shape (H, W) and dtype bool."""
         return self.disk.mask
 
-    @property
-    def layers(self) -> int:
-        """Number of layers."""
-        return self.grid.layers
-
-    @property
-    def sectors(self) -> int:
-        """Number of sectors."""
-        return self.grid.sectors
-
     def polygons(self) -> list[FloatArray]:
         """Outline of each window in the cell, by window number.
 

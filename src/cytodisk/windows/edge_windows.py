@@ -182,16 +182,6 @@ class EdgeWindows(WindowsOnCell):
         return self.edge.mask
 
     @property
-    def layers(self) -> int:
-        """Number of layers."""
-        return self.grid.layers
-
-    @property
-    def sectors(self) -> int:
-        """Number of sectors."""
-        return self.grid.sectors
-
-    @property
     def depth_px(self) -> float:
         """Thickness of a layer in pixels."""
         return self.grid.depth_px

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from scipy import sparse
@@ -14,6 +15,15 @@ from cytodisk.windows.shares import PARTS as PARTS
 from cytodisk.windows.shares import WindowShares, shares_by_strips, strips
 
 
+class Grid(Protocol):
+    """What all grids have."""
+
+    @property
+    def layers(self) -> int: ...
+    @property
+    def sectors(self) -> int: ...
+
+
 class WindowsOnCell(ABC):
     """Windows in a cell, by layer from the edge (0) inwards and sector along the edge.
 
@@ -21,20 +31,22 @@ class WindowsOnCell(ABC):
     empty: its area is 0, and what cannot be measured of it is NaN.
     """
 
+    grid: Grid
+
     @property
     @abstractmethod
     def mask(self) -> BoolArray:
         """The cell's mask, shape (H, W) and dtype bool."""
 
     @property
-    @abstractmethod
     def layers(self) -> int:
         """Number of layers."""
+        return self.grid.layers
 
     @property
-    @abstractmethod
     def sectors(self) -> int:
         """Number of sectors."""
+        return self.grid.sectors
 
     @abstractmethod
     def windows_of_parts(self, pixels_yx: IntArray) -> IntArray:

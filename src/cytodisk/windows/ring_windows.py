@@ -97,16 +97,6 @@ class RingWindows(WindowsOnCell):
         """The cell's mask, shape (H, W) and dtype bool."""
         return self.edge.mask
 
-    @property
-    def layers(self) -> int:
-        """Number of layers."""
-        return self.grid.layers
-
-    @property
-    def sectors(self) -> int:
-        """Number of sectors."""
-        return self.grid.sectors
-
 
 def ring_windows(cell: Any, layers: int = 10, sectors: int = 8) -> RingWindows:
     """Rings and wedges around the deepest point of one cell, to compare with `polar_windows`.
