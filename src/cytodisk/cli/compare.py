@@ -8,7 +8,14 @@ import typer
 from cytodisk.cli.comparison_lines import say_comparison, say_tables
 from cytodisk.cli.console import (
     Channels,
+    Kind,
+    Layers,
+    OutFolder,
+    Overwrite,
+    PixelSize,
     Quiet,
+    Resume,
+    Sectors,
     Signal,
     console_for,
     count,
@@ -54,7 +61,7 @@ def compare_command(
     masks: Annotated[
         Path, typer.Argument(help="Masks or label image, or a folder of them.", show_default=False)
     ],
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)],
+    out: OutFolder,
     methods: Annotated[
         str | None,
         typer.Option(help="As newton,edge (default newton,harmonic,advection,edge; movie: no advection)."),
@@ -62,9 +69,9 @@ def compare_command(
     movie: Annotated[bool, typer.Option("--movie", help="MASKS are frames of a movie.")] = False,
     signal: Signal = None,
     channels: Channels = None,
-    kind: Annotated[str | None, typer.Option(help="What MASKS is: auto, mask, stack or labels.")] = None,
-    layers: Annotated[int | None, typer.Option(help="Windows from edge to centre (default 10).")] = None,
-    sectors: Annotated[int | None, typer.Option(help="Windows around the edge (default 60).")] = None,
+    kind: Kind = None,
+    layers: Layers = None,
+    sectors: Sectors = None,
     spacing: Annotated[
         str | None, typer.Option(help="Layers on the disk of equal area or radius (default area).")
     ] = None,
@@ -75,7 +82,7 @@ def compare_command(
     depth_um: Annotated[
         float | None, typer.Option(help="The same in µm, instead of --depth-px; needs the pixel size.")
     ] = None,
-    pixel_size: Annotated[float | None, typer.Option(help="µm per pixel; overrules the file's own.")] = None,
+    pixel_size: PixelSize = None,
     frame_interval: Annotated[float | None, typer.Option(help="Seconds between frames of a movie.")] = None,
     parameters: Annotated[
         Path | None, typer.Option(help="TOML file as in a comparison; flags overrule it.")
@@ -85,8 +92,8 @@ def compare_command(
         typer.Option(help="Cells to draw, at most five, as 3,17,20 (default: from simple to complex)."),
     ] = None,
     workers: Annotated[int, typer.Option(help="Processes; a movie runs in one.")] = 1,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the same run in this folder.")] = False,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in this folder.")] = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.study.compare_parameters import CompareMovieParameters, CompareParameters

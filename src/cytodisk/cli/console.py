@@ -36,6 +36,15 @@ Channels = Annotated[
     str | None,
     typer.Option(help="Names of the signal's channels, as Rac1,RhoA; overrule the file's own."),
 ]
+OutFolder = Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)]
+Kind = Annotated[str | None, typer.Option(help="What MASKS is: auto, mask, stack or labels.")]
+Layers = Annotated[int | None, typer.Option(help="Windows from edge to centre (default 10).")]
+Sectors = Annotated[int | None, typer.Option(help="Windows around the edge (default 60).")]
+PixelSize = Annotated[float | None, typer.Option(help="µm per pixel; overrules the file's own.")]
+ParametersFile = Annotated[Path | None, typer.Option(help="TOML file as in a study; flags overrule it.")]
+Workers = Annotated[int, typer.Option(help="Processes.")]
+Resume = Annotated[bool, typer.Option("--resume", help="Go on with the same run in this folder.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace the study in this folder.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 _SECONDS_A_LINE = 30.0

@@ -1,15 +1,23 @@
 """`cytodisk map` and `cytodisk check`."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from cytodisk.cli.console import (
     Channels,
+    Kind,
+    Layers,
     MaskFiles,
+    OutFolder,
+    Overwrite,
+    ParametersFile,
+    PixelSize,
     Quiet,
+    Resume,
+    Sectors,
     SignalFiles,
+    Workers,
     console_for,
     parse_align,
     parse_channels,
@@ -44,12 +52,12 @@ damaged (the rest is done all the same).
 
 def map_command(
     masks: MaskFiles,
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)],
+    out: OutFolder,
     signal: SignalFiles = None,
     channels: Channels = None,
-    kind: Annotated[str | None, typer.Option(help="What MASKS is: auto, mask, stack or labels.")] = None,
-    layers: Annotated[int | None, typer.Option(help="Windows from edge to centre (default 10).")] = None,
-    sectors: Annotated[int | None, typer.Option(help="Windows around the edge (default 60).")] = None,
+    kind: Kind = None,
+    layers: Layers = None,
+    sectors: Sectors = None,
     spacing: Annotated[
         str | None, typer.Option(help="Layers of equal area or radius (default area).")
     ] = None,
@@ -69,11 +77,9 @@ def map_command(
     nan: Annotated[
         str | None, typer.Option(help="Windows with NaN pixels: propagate or omit (default propagate).")
     ] = None,
-    pixel_size: Annotated[float | None, typer.Option(help="µm per pixel; overrules the file's own.")] = None,
-    parameters: Annotated[
-        Path | None, typer.Option(help="TOML file as in a study; flags overrule it.")
-    ] = None,
-    workers: Annotated[int, typer.Option(help="Processes.")] = 1,
+    pixel_size: PixelSize = None,
+    parameters: ParametersFile = None,
+    workers: Workers = 1,
     figures: Annotated[int, typer.Option(help="Draw this many cells, from the first; -1 for all.")] = 8,
     no_maps: Annotated[
         bool, typer.Option("--no-maps", help="Do not keep the map of each cell: it saves disk space.")
@@ -81,8 +87,8 @@ def map_command(
     geojson: Annotated[
         bool, typer.Option("--geojson", help="Write window outlines beside the maps.")
     ] = False,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the same run in this folder.")] = False,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in this folder.")] = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.plot.study import draw_cell_figures

@@ -9,8 +9,16 @@ import typer
 from cytodisk.cli.console import (
     RESUME,
     Channels,
+    Layers,
+    OutFolder,
+    Overwrite,
+    ParametersFile,
+    PixelSize,
     Quiet,
+    Resume,
+    Sectors,
     Signal,
+    Workers,
     console_for,
     count,
     fail,
@@ -45,7 +53,7 @@ Movie = Annotated[Path, typer.Argument(help="Masks or label images by frame: TIF
 
 def movie_command(
     masks: Movie,
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)],
+    out: OutFolder,
     signal: Signal = None,
     channels: Channels = None,
     kind: Annotated[
@@ -57,11 +65,11 @@ def movie_command(
             "--link", help="Labels differ from frame to frame: link them by overlap.", show_default=False
         ),
     ] = None,
-    layers: Annotated[int | None, typer.Option(help="Windows from edge to centre (default 10).")] = None,
+    layers: Layers = None,
     depth_um: Annotated[
         float | None, typer.Option(help="Instead of --layers: thickness of the first layer, µm.")
     ] = None,
-    sectors: Annotated[int | None, typer.Option(help="Windows around the edge (default 60).")] = None,
+    sectors: Sectors = None,
     spacing: Annotated[
         str | None, typer.Option(help="Layers of equal area or radius (default area).")
     ] = None,
@@ -81,7 +89,7 @@ def movie_command(
     frame_interval: Annotated[
         float | None, typer.Option(help="Seconds between frames; overrules the file's own.")
     ] = None,
-    pixel_size: Annotated[float | None, typer.Option(help="µm per pixel; overrules the file's own.")] = None,
+    pixel_size: PixelSize = None,
     method: Annotated[
         str | None, typer.Option(help="newton (equal area, default), harmonic, or advection (the paper's).")
     ] = None,
@@ -98,13 +106,11 @@ def movie_command(
         float | None,
         typer.Option(help="How uncertain the masks' edges are, px, for the velocity's error (default 0.5)."),
     ] = None,
-    parameters: Annotated[
-        Path | None, typer.Option(help="TOML file as in a study; flags overrule it.")
-    ] = None,
-    workers: Annotated[int, typer.Option(help="Processes.")] = 1,
+    parameters: ParametersFile = None,
+    workers: Workers = 1,
     figures: Annotated[int, typer.Option(help="Draw this many cells, from the first; -1 for all.")] = 4,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the same run in this folder.")] = False,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in this folder.")] = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.errors import ParameterError

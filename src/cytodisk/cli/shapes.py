@@ -5,7 +5,21 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cytodisk.cli.console import MaskFiles, Quiet, console_for, count, fail, progress_bar
+from cytodisk.cli.console import (
+    Kind,
+    MaskFiles,
+    OutFolder,
+    Overwrite,
+    ParametersFile,
+    PixelSize,
+    Quiet,
+    Resume,
+    Workers,
+    console_for,
+    count,
+    fail,
+    progress_bar,
+)
 from cytodisk.cli.map_totals import say_reasons
 
 if TYPE_CHECKING:
@@ -36,9 +50,9 @@ _FAR_FROM_LINE = (
 
 def shapes_command(
     masks: MaskFiles,
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)],
-    kind: Annotated[str | None, typer.Option(help="What MASKS is: auto, mask, stack or labels.")] = None,
-    pixel_size: Annotated[float | None, typer.Option(help="µm per pixel; overrules the file's own.")] = None,
+    out: OutFolder,
+    kind: Kind = None,
+    pixel_size: PixelSize = None,
     seed: Annotated[int | None, typer.Option(help="Of the layout by UMAP (default 0).")] = None,
     neighbors: Annotated[
         int | None, typer.Option(help="Of UMAP: how many cells count as alike (default 15).")
@@ -46,12 +60,10 @@ def shapes_command(
     min_dist: Annotated[
         float | None, typer.Option(help="Of UMAP: how close cells may come, 0 to 1 (default 0.1).")
     ] = None,
-    parameters: Annotated[
-        Path | None, typer.Option(help="TOML file as in a study; flags overrule it.")
-    ] = None,
-    workers: Annotated[int, typer.Option(help="Processes.")] = 1,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the same run in this folder.")] = False,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in this folder.")] = False,
+    parameters: ParametersFile = None,
+    workers: Workers = 1,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.study.parameters import parameters_from
