@@ -27,6 +27,14 @@ _LABEL_RADIUS = 1.1
 _LEAST_POINTS = 6.0  # that can be read in print
 
 
+def fit_disk(ax: Axes) -> None:
+    """Fit the axes to the unit disk with room for the angles, and hide them."""
+    ax.set_aspect("equal")
+    ax.set_xlim(-_REACH, _REACH)
+    ax.set_ylim(_REACH, -_REACH)
+    ax.set_axis_off()
+
+
 def frame_disk(ax: Axes, sectors: int | None = None) -> None:
     """Fit the axes to the unit disk, hide them, and draw the circle with ticks every 30°, labels every 90°.
 
@@ -36,10 +44,7 @@ def frame_disk(ax: Axes, sectors: int | None = None) -> None:
     sectors : int, optional
         Of the windows: labels then give the sector that begins there, or holds the angle, too.
     """
-    ax.set_aspect("equal")
-    ax.set_xlim(-_REACH, _REACH)
-    ax.set_ylim(_REACH, -_REACH)
-    ax.set_axis_off()
+    fit_disk(ax)
     ax.add_patch(Circle((0.0, 0.0), 1.0, fill=False, edgecolor=LINE_COLOUR, linewidth=0.6, zorder=3))
     turn = np.radians(np.arange(0, 360, 30))
     rays = np.stack([np.cos(turn), np.sin(turn)], axis=-1)

@@ -22,7 +22,7 @@ from cytodisk.study.channel_names import file_names
 SignalAt = Callable[[int], FloatArray | None]
 Progress = Callable[[int, int], None]
 
-_MOST_ANIMATED = 60  # frames; drawing one takes about 0.2 s
+_MOST_ANIMATED = 60  # frames; more make long files
 _STRIP_FRAMES, _STRIP_COLUMNS = 6, 3
 _MAP_LEFT, _MAP_WIDTH, _VELOCITY, _MAP, _MAP_GAP = 15.0, 145.0, 34.0, 25.0, 5.5  # mm
 _TALLEST = 1.3  # height of a panel of the strip over its width

@@ -116,22 +116,36 @@ def draw_sectors(ax: Axes, windows: CellWindows, *, over_signal: bool = False) -
     """
     sectors = windows.grid.sectors
     faces = np.zeros((windows.grid.n_windows, 4))
-    if over_signal:
-        # White on both sides sets dark colours off a dark image.
-        draw_outline(ax, windows.disk, color="white", linewidth=EDGE_WIDTH + 1.0)
-        arcs = [arc[:, ::-1] for arc in sector_arcs(windows)]
-        edge = LineCollection(arcs, colors=sector_colours(sectors), linewidths=EDGE_WIDTH, zorder=4)
-        ax.add_collection(edge, autolim=False)
-    else:
+    if not over_signal:
         faces[:sectors] = sector_colours(sectors)
-        draw_outline(ax, windows.disk)
     polygons = [polygon[:, ::-1] for polygon in windows.polygons()]
     lines = OVER_SIGNAL if over_signal else ON_WHITE
     drawn = PolyCollection(polygons, facecolors=faces, **lines)
     ax.add_collection(drawn, autolim=False)
+    draw_edge(ax, windows, over_signal=over_signal)
+    return drawn
+
+
+def draw_edge(ax: Axes, windows: CellWindows, *, over_signal: bool) -> None:
+    """Draw the cell's outline, over a signal in the colours of its sectors, and the ring of sector 0.
+
+    Parameters
+    ----------
+    ax : Axes
+    windows : CellWindows
+    over_signal : bool
+    """
+    if over_signal:
+        # White on both sides sets dark colours off a dark image.
+        draw_outline(ax, windows.disk, color="white", linewidth=EDGE_WIDTH + 1.0)
+        arcs = [arc[:, ::-1] for arc in sector_arcs(windows)]
+        colours = sector_colours(windows.grid.sectors)
+        edge = LineCollection(arcs, colors=colours, linewidths=EDGE_WIDTH, zorder=4)
+        ax.add_collection(edge, autolim=False)
+    else:
+        draw_outline(ax, windows.disk)
     ((y, x),) = _on_outline(windows.disk, windows.grid.angles[:2].mean(keepdims=True))
     mark_point(ax, y, x)
-    return drawn
 
 
 def mark_point(ax: Axes, y: float, x: float) -> Line2D:

@@ -130,6 +130,7 @@ def _back_to_start(scene: Scene, grid_yx: FloatArray) -> Iterator[FloatArray]:
 
 def _edge(pixels_yx: FloatArray, boundary_yx: FloatArray, followed_px: FloatArray) -> FloatArray:
     """Counts that decay with depth from the nearest boundary point, brighter the faster it moves out."""
-    depth, nearest = cKDTree(boundary_yx).query(pixels_yx)
+    tree = cKDTree(boundary_yx, leafsize=32, balanced_tree=False)  # of a curve: three times as fast
+    depth, nearest = tree.query(pixels_yx)
     at_edge = np.maximum(_EDGE_BASE + _EDGE_GAIN * followed_px[nearest], _DIMMEST)
     return np.asarray(at_edge * np.exp(-depth / _EDGE_DECAY))
