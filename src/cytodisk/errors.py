@@ -45,6 +45,10 @@ class StudyError(CytodiskError, OSError):
     """A study folder cannot be written, read or resumed."""
 
 
+class OtherRunError(StudyError):
+    """A study folder holds the results of another run."""
+
+
 class MissingPartError(CytodiskError, ImportError):
     """An optional part is not installed; the message names the `pip install` to type."""
 

@@ -17,7 +17,7 @@ _AGAIN = "run the same command again"
 
 def info_command() -> None:
     """Print versions, and which optional parts are there."""
-    from cytodisk.study.provenance import PACKAGES, installed
+    from cytodisk.study.versions import PACKAGES, installed
 
     print(f"python\t{platform.python_version()} on {platform.platform()}")
     for name, found in installed(PACKAGES).items():

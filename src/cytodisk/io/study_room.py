@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from cytodisk.errors import StudyError
+from cytodisk.errors import OtherRunError, StudyError
 from cytodisk.io.provenance_file import PROVENANCE, differences, read_provenance, write_json
 
 LOCK = ".lock"
@@ -32,7 +32,7 @@ def make_room(
     Raises
     ------
     StudyError
-        The folder holds something else, or another run.
+        The folder holds something else, or another run (`OtherRunError`).
     """
     there = read_provenance(folder)
     if there is None:
@@ -49,7 +49,7 @@ def make_room(
             f"output folder {folder} holds a study: pass --resume to go on, --overwrite to replace it"
         )
     if there.get("fingerprint") != provenance["fingerprint"]:
-        raise StudyError(
+        raise OtherRunError(
             f"output folder {folder} holds another run ({differences(there, provenance)}): "
             "pass --overwrite to replace it, or another folder"
         )

@@ -23,7 +23,7 @@ from cytodisk.study.chosen_series import chosen_sectors, chosen_series
 from cytodisk.study.correlation_settings import VELOCITIES, CorrelationSettings
 from cytodisk.study.correlation_tables import as_table, merged, of_cell, tables_of
 from cytodisk.study.edge_episodes import episode_tables
-from cytodisk.study.provenance import installed
+from cytodisk.study.versions import installed
 from cytodisk.windows.grid import polar_windows
 
 _LONGEST_LAG = 20  # frames, unless the user asks for more

@@ -4,7 +4,6 @@ import hashlib
 import platform
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -12,36 +11,7 @@ from pydantic import BaseModel
 
 from cytodisk.errors import ReadError
 from cytodisk.motion.velocity import velocity_unit
-
-PACKAGES = (
-    "cytodisk",
-    "numpy",
-    "scipy",
-    "numba",
-    "pythoncdt",
-    "qdldl",
-    "shapely",
-    "scikit-image",
-    "tifffile",
-    "xarray",
-    "zarr",
-    "SimpleITK",
-    "laptrack",
-)
-
-
-_NUMERIC = ("numpy", "scipy", "numba", "pythoncdt", "qdldl", "shapely", "scikit-image", "SimpleITK")
-
-
-def installed(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
-    """Version of each package, "not installed" where it is missing."""
-    found = {}
-    for name in packages:
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = "not installed"
-    return found
+from cytodisk.study.versions import NUMERIC, installed
 
 
 def describe_run(
@@ -78,7 +48,7 @@ def describe_run(
     settings = parameters.model_dump(mode="json")
     fingerprint: dict[str, Any] = {f"{role} sha256": found["sha256"] for role, found in described.items()}
     fingerprint |= {"cytodisk": installed(("cytodisk",))["cytodisk"]} | settings
-    fingerprint["packages"] = installed(_NUMERIC)
+    fingerprint["packages"] = installed(NUMERIC)
     fingerprint |= {"pixel_size_um": pixel_size_um, "frame_interval_s": frame_interval_s}
     return {
         "status": "running",

@@ -20,9 +20,10 @@ from cytodisk.io.mask_files import SourceCell, read_source_cells
 from cytodisk.io.study_folder import MAPS, PARAMETERS, StudyFolder, alone_in, part_key
 from cytodisk.study.map_inputs import MapInputs, open_inputs
 from cytodisk.study.parameters import MapParameters, write_parameters
-from cytodisk.study.provenance import describe_run, installed
+from cytodisk.study.provenance import describe_run
 from cytodisk.study.run_steps import Progress, check_options, finish_run, silent
 from cytodisk.study.shape_tables import SHAPE_TABLES, open_shapes, shape_table, write_shapes
+from cytodisk.study.versions import installed
 from cytodisk.study.workers import in_order
 
 _CELLS_PER_PART = 32  # which go to a worker and into a file together: about a second's work

@@ -1,0 +1,1 @@
+"""Many inputs in one go: each isolated, all merged."""
