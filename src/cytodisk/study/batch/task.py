@@ -14,6 +14,7 @@ from pathlib import Path
 
 from cytodisk.errors import StudyError
 from cytodisk.io.store import FolderStore, Store
+from cytodisk.io.url_store import UrlStore, is_url
 from cytodisk.study.batch.child_pool import ChildPool
 from cytodisk.study.batch.inputs import BatchInput
 from cytodisk.study.batch.rows import InputRow, files_mark, study_key, write_row
@@ -31,7 +32,7 @@ class BatchTask:
         Of the cytodisk that made the task; a worker of another version refuses it.
     inputs : tuple of BatchInput
     target : str
-        Folder of the batch's results.
+        Folder of the batch's results, or the URL of an object store.
     time_limit : float or None
         Seconds for one input.
     scratch : str or None
@@ -98,13 +99,18 @@ def open_store(target: str) -> Store:
     Parameters
     ----------
     target : str
-        A folder.
+        A folder, or the URL of an object store.
 
     Returns
     -------
     Store
+
+    Raises
+    ------
+    MissingPartError, StudyError
+        As for `UrlStore`.
     """
-    return FolderStore(target)
+    return UrlStore(target) if is_url(target) else FolderStore(target)
 
 
 def _run_input(item: BatchInput, task: BatchTask, store: Store, children: ChildPool) -> InputRow:

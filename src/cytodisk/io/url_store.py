@@ -1,0 +1,113 @@
+"""Results in an object store, or wherever else fsspec reaches."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from io import BytesIO
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from cytodisk.errors import MissingPartError, StudyError
+
+
+def is_url(target: str) -> bool:
+    """Whether results go to a URL, as "s3://bucket/batch", not to a folder."""
+    return "://" in target
+
+
+class UrlStore:
+    """A place named by a URL; see `cytodisk.io.store.Store`.
+
+    An object store has no folders and no renaming, but a file appears in it whole. So a folder is there when
+    whatever is written after it is, such as the row of an input.
+
+    Parameters
+    ----------
+    url : str
+
+    Raises
+    ------
+    MissingPartError
+        fsspec, or what it needs for such a URL, is not installed.
+    StudyError
+        fsspec does not know such a URL.
+    """
+
+    def __init__(self, url: str):
+        self.url = url.rstrip("/")
+        self._files, root = _file_system(self.url)
+        self._root = root.rstrip("/")
+
+    def read_text(self, key: str) -> str | None:
+        with self._faults(key, "read"):
+            try:
+                return str(self._files.cat_file(self._at(key)), encoding="utf-8")
+            except FileNotFoundError:
+                return None
+
+    def write_text(self, key: str, text: str) -> None:
+        with self._faults(key, "written"):
+            self._files.makedirs(self._files._parent(self._at(key)), exist_ok=True)
+            self._files.pipe_file(self._at(key), text.encode())
+
+    def open(self, key: str) -> AbstractContextManager[BinaryIO]:
+        with self._faults(key, "read"):
+            return BytesIO(self._files.cat_file(self._at(key)))
+
+    def names(self, key: str) -> Iterator[str]:
+        with self._faults(key, "read"):
+            self._files.invalidate_cache()
+            try:
+                found = self._files.ls(self._at(key), detail=False)
+            except FileNotFoundError:
+                return
+        yield from (path.rstrip("/").rsplit("/", 1)[-1] for path in found)
+
+    def put_file(self, file: Path, key: str) -> None:
+        with self._faults(key, "written"):
+            self._files.makedirs(self._files._parent(self._at(key)), exist_ok=True)
+            self._files.put_file(str(file), self._at(key))
+        file.unlink()
+
+    def put_folder(self, folder: Path, key: str) -> None:
+        for file in sorted(path for path in folder.rglob("*") if path.is_file()):
+            self.put_file(file, f"{key}/{file.relative_to(folder).as_posix()}")
+
+    def remove(self, key: str) -> None:
+        with self._faults(key, "removed"):
+            try:
+                self._files.rm(self._at(key), recursive=True)
+            except FileNotFoundError:
+                return
+
+    def alone(self) -> AbstractContextManager[None]:
+        """Nothing: an object store has no locks. The run that began last is the one whose results count."""
+        return nullcontext()
+
+    def _at(self, key: str) -> str:
+        return f"{self._root}/{key}"
+
+    @contextmanager
+    def _faults(self, key: str, done: str) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise StudyError(f"{self.url}/{key} cannot be {done}: {error.strerror or error}") from error
+
+
+def _file_system(url: str) -> tuple[Any, str]:
+    try:
+        import fsspec
+    except ImportError as error:
+        raise MissingPartError(
+            f"results at {url} need fsspec, which is not installed: in the clone of cytodisk type "
+            ".venv/bin/pip install -c constraints.txt -e '.[cluster]'"
+        ) from error
+    try:
+        files, root = fsspec.core.url_to_fs(url)
+    except ImportError as error:
+        raise MissingPartError(f"results cannot go to {url}: {error}") from error
+    except ValueError as error:
+        raise StudyError(f"results cannot go to {url}: {error}") from error
+    return files, str(root)

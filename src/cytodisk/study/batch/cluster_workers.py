@@ -1,0 +1,112 @@
+"""Workers of a cluster: how many there are, and whether each one fits."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any, TypeAlias
+
+from cytodisk.errors import StudyError
+from cytodisk.study.batch.on_worker import what_is_hidden
+
+Tell: TypeAlias = Callable[[str], None]
+"""Called with a message for the user."""
+
+_LOOK_EVERY_S = 2.0
+_ROUNDING = ("numpy", "scipy", "numba", "qdldl")  # another version may round the last bit otherwise
+
+
+class Workers:
+    """Those that a scheduler has, looked at again and again, for they come and go.
+
+    Parameters
+    ----------
+    client : distributed.Client
+    address : str
+        Of the scheduler.
+    tell : callable
+    wait_s : float
+        How long to wait while there is none.
+    shared : sequence of str
+        What each one must see; see `what_is_hidden`.
+    """
+
+    def __init__(self, client: Any, address: str, tell: Tell, wait_s: float, shared: Sequence[str]):
+        self.address = address
+        self._client = client
+        self._tell = tell
+        self._wait_s = wait_s
+        self._shared = shared
+        self._fitting: dict[str, int] = {}
+        self._looked = -_LOOK_EVERY_S
+
+    def threads(self) -> int:
+        """Threads of all workers; waits until there is one.
+
+        Raises
+        ------
+        StudyError
+            None comes, or one does not fit.
+        """
+        if time.monotonic() - self._looked >= _LOOK_EVERY_S or not self._fitting:
+            self._look()
+        return sum(self._fitting.values())
+
+    def check_all(self) -> None:
+        """Look at every worker anew.
+
+        Raises
+        ------
+        StudyError
+            One does not fit.
+        """
+        self._fitting = {}
+        self._look()
+
+    def _look(self) -> None:
+        started, told = time.monotonic(), False
+        while not (found := self._client.nthreads()):
+            if time.monotonic() - started > self._wait_s:
+                raise StudyError(
+                    f"scheduler {self.address} has had no worker for {self._wait_s:.0f} s: start workers "
+                    f"with `dask worker {self.address}`, and run the same command with --resume"
+                )
+            if not told:
+                self._tell(f"waiting for a worker: `dask worker {self.address}` starts one")
+            told = True
+            time.sleep(_LOOK_EVERY_S / 4)
+        if new := [worker for worker in found if worker not in self._fitting]:
+            self._check(new)
+        self._fitting = dict(found)
+        self._looked = time.monotonic()
+
+    def _check(self, workers: list[str]) -> None:
+        here = version("cytodisk")
+        for worker, there in self._ask(workers, version, "cytodisk").items():
+            if isinstance(there, PackageNotFoundError):
+                raise StudyError(f"worker {worker} has no cytodisk: install version {here} there, as here")
+            if there != here:
+                raise StudyError(
+                    f"worker {worker} has cytodisk {there}, and here is {here}: "
+                    "install the same version on both"
+                )
+        for worker, fault in self._ask(workers, what_is_hidden, *self._shared).items():
+            if fault:
+                raise StudyError(f"worker {worker} {fault}")
+        for package in _ROUNDING:
+            self._compare(package, self._ask(workers, version, package))
+
+    def _compare(self, package: str, found: dict[str, Any]) -> None:
+        here = version(package)
+        others = {str(there): worker for worker, there in found.items() if there != here}
+        for there, worker in others.items():
+            self._tell(
+                f"some workers, such as {worker}, have {package} {there}, and here is {here}: results may "
+                "differ in the last bits"
+            )
+
+    def _ask(self, workers: list[str], question: Any, *about: str) -> dict[str, Any]:
+        """What workers answer, an exception included; those that have gone meanwhile do not answer."""
+        found = self._client.run(question, *about, workers=workers, on_error="return")
+        return {worker: answer for worker, answer in found.items() if not isinstance(answer, OSError)}
