@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from cytodisk.report.encode import json_for_script, pack_floats, pack_labels, pack_picture
+from cytodisk.report.encode import grey_levels, json_for_script, pack_floats, pack_labels, pack_picture
 
 
 def test_floats_come_back() -> None:
@@ -27,7 +27,7 @@ def test_labels_come_back() -> None:
 
 def test_picture_runs_from_black_to_white() -> None:
     image = np.repeat(np.array([[-5.0, 10.0, 20.0, 30.0, 99.0, np.nan]]), 16, axis=1).repeat(16, axis=0)
-    with Image.open(io.BytesIO(base64.b64decode(pack_picture(image, 10.0, 30.0)))) as picture:
+    with Image.open(io.BytesIO(base64.b64decode(pack_picture(grey_levels(image, 10.0, 30.0))))) as picture:
         grey = np.asarray(picture)
     assert grey.shape == image.shape
     np.testing.assert_allclose(grey[8, 8::16], [0, 0, 128, 255, 255, 0], atol=3)

@@ -38,11 +38,11 @@ def pack_labels(labels: Any) -> str:
 
 def pack_bytes(data: bytes) -> str:
     """Compress with zlib and write as base64."""
-    return base64.b64encode(zlib.compress(data, 9)).decode("ascii")
+    return base64.b64encode(zlib.compress(data, 8)).decode("ascii")
 
 
-def pack_picture(image: Any, low: float, high: float) -> str:
-    """A grey picture from black at `low` to white at `high`, JPEG, base64.
+def grey_levels(image: Any, low: float, high: float) -> Any:
+    """Grey levels from black at `low` to white at `high`.
 
     Parameters
     ----------
@@ -53,10 +53,14 @@ def pack_picture(image: Any, low: float, high: float) -> str:
 
     Returns
     -------
-    str
+    ndarray of shape (H, W) and dtype uint8
     """
     share = np.nan_to_num((np.asarray(image, dtype=np.float64) - low) / (high - low))
-    grey = np.rint(255 * np.clip(share, 0.0, 1.0)).astype(np.uint8)
+    return np.rint(255 * np.clip(share, 0.0, 1.0)).astype(np.uint8)
+
+
+def pack_picture(grey: Any) -> str:
+    """A grey picture, shape (H, W) and dtype uint8, as JPEG in base64."""
     with io.BytesIO() as file:
         Image.fromarray(grey).save(file, "JPEG", quality=_JPEG_QUALITY)
         return base64.b64encode(file.getvalue()).decode("ascii")

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import map_coordinates
+from scipy.ndimage import binary_dilation
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError
 from cytodisk.report.cell_data import CellData
-from cytodisk.report.encode import pack_labels, pack_picture
+from cytodisk.report.encode import grey_levels, pack_labels, pack_picture
 from cytodisk.report.signal_file import FrameSource
 
 MOST_BYTES = 10_000_000
@@ -52,12 +52,26 @@ class Box:
         return max(1, round(self.height * self.scale)), max(1, round(self.width * self.scale))
 
     @property
-    def points_yx(self) -> FloatArray:
-        """Where the picture's pixels lie in the image, shape (H, W, 2)."""
+    def repeats_pixels(self) -> bool:
+        """Whether each pixel of the image stays a square of one colour."""
+        return self.scale >= 1
+
+    @property
+    def axes_yx(self) -> tuple[FloatArray, FloatArray]:
+        """Where the picture's rows and columns lie in the image, shapes (H,) and (W,)."""
         rows, columns = self.shape
         y = self.top - 0.5 + (np.arange(rows) + 0.5) * self.height / rows
         x = self.left - 0.5 + (np.arange(columns) + 0.5) * self.width / columns
-        return np.stack(np.meshgrid(y, x, indexing="ij"), axis=-1)
+        return y, x
+
+    def nearest(self, image: Any) -> Any:
+        """Value of an image, shape (H, W), at the pixel nearest to each pixel of the picture."""
+        image = np.asarray(image)
+        rows, columns = (
+            np.clip(np.floor(along + 0.5).astype(int), 0, size - 1)
+            for along, size in zip(self.axes_yx, image.shape, strict=True)
+        )
+        return image[np.ix_(rows, columns)]
 
 
 def box_around(cell: CellData) -> Box:
@@ -99,10 +113,13 @@ def window_labels(cell: CellData, box: Box, time: int) -> Any:
     ndarray of shape (H, W) and dtype uint16
         `OUTSIDE` outside the cell.
     """
-    uv = cell.maps[time].to_disk(box.points_yx)
-    inside = np.isfinite(uv[..., 0])
+    disk, (y, x) = cell.maps[time], box.axes_yx
+    # The outline is nowhere further from the mask than its neighbouring pixels.
+    row, column = np.nonzero(box.nearest(binary_dilation(disk.mask, np.ones((3, 3), dtype=bool))))
+    uv = disk.to_disk(np.column_stack([y[row], x[column]]))
+    inside = np.isfinite(uv[:, 0])
     labels = np.full(box.shape, OUTSIDE, dtype=np.uint16)
-    labels[inside] = np.minimum(cell.grid.window_of(uv[inside]), OUTSIDE - 1)
+    labels[row[inside], column[inside]] = np.minimum(cell.grid.window_of(uv[inside]), OUTSIDE - 1)
     return labels
 
 
@@ -118,11 +135,10 @@ def resampled(image: Any, box: Box) -> FloatArray:
     -------
     ndarray of the box's shape and dtype float
     """
-    part = np.asarray(image, dtype=np.float64)
-    part = part[box.top : box.top + box.height, box.left : box.left + box.width]
-    if box.scale >= 1:  # each pixel of the image stays a square of one colour
-        points = np.moveaxis(box.points_yx, -1, 0) - np.array([box.top, box.left])[:, None, None]
-        return np.asarray(map_coordinates(part, points, order=0, mode="nearest"))
+    values = np.asarray(image, dtype=np.float64)
+    if box.repeats_pixels:
+        return np.asarray(box.nearest(values))
+    part = values[box.top : box.top + box.height, box.left : box.left + box.width]
     return _shares(part.shape[0], box.shape[0]) @ part @ _shares(part.shape[1], box.shape[1]).T
 
 
@@ -160,8 +176,13 @@ class Pictures:
         if pixels is None:
             return {"labels": labels, "channels": None}
         pairs = zip(pixels, limits, strict=True)
-        channels = [pack_picture(resampled(image, self.box), *pair) for image, pair in pairs]
+        channels = [pack_picture(self._grey(image, *pair)) for image, pair in pairs]
         return {"labels": labels, "channels": channels}
+
+    def _grey(self, image: Any, low: float, high: float) -> Any:
+        if self.box.repeats_pixels:  # first the few pixels, then their copies
+            return self.box.nearest(grey_levels(image, low, high))
+        return grey_levels(resampled(image, self.box), low, high)
 
     def _pixels(self, time: int) -> Any:
         try:
