@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 
 from cytodisk import simulate
+from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.energy import derivatives, energy, jacobian, largest_step
 from cytodisk.disk.harmonic import harmonic_map
-from cytodisk.disk.newton import _HessianPattern
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.mesh import Mesh, hat_gradients, mesh_inside, triangle_areas
 from cytodisk.geometry.outline import trace_outline
@@ -58,14 +58,16 @@ def random_triangles(count: int) -> list[tuple[np.ndarray, np.ndarray]]:
 
 
 def free_triangle_hessian(uv: np.ndarray, hats: np.ndarray, weight: float) -> tuple[np.ndarray, np.ndarray]:
-    pattern = _HessianPattern(Mesh(np.zeros((3, 2)), ONE, 0))
-    gradient = np.empty(6)
-    derivatives(
-        uv, ONE, hats, np.ones(1), weight, gradient, pattern.unknown, pattern.first, pattern.second,
-        pattern.upper.data,
-    )  # fmt: skip
-    upper = pattern.upper.toarray()
-    return gradient, upper + np.triu(upper, 1).T
+    gradient, blocks = np.empty((3, 2)), np.empty((6, 2, 2))
+    place = np.array([[[0, 1, 3], [-1, 2, 4], [-1, -1, 5]]])
+    derivatives(uv, ONE, hats, np.ones(1), weight, np.arange(3), place, False, gradient, blocks)
+    full = np.zeros((3, 2, 3, 2))
+    for k, l in zip(*np.nonzero(place[0] >= 0), strict=True):
+        full[k, :, l] = blocks[place[0, k, l]]
+        full[l, :, k] = blocks[place[0, k, l]].T
+    for own in (0, 2, 5):
+        np.testing.assert_allclose(blocks[own], blocks[own].T, atol=1e-12 * np.abs(blocks).max())
+    return gradient.ravel(), full.reshape(6, 6)
 
 
 def flattened(hats: np.ndarray) -> np.ndarray:
@@ -135,15 +137,14 @@ def test_energy_of_a_flipped_triangle_is_infinite(problem: dict) -> None:
 
 def test_the_gradient_agrees_with_finite_differences(problem: dict) -> None:
     mesh, uv, hats, share = (problem[key] for key in ("mesh", "uv", "hats", "share"))
-    pattern = _HessianPattern(mesh)
-    gradient = np.empty(2 * (len(uv) - mesh.n_boundary))
+    system = BlockSystem(mesh)
+    gradient = np.empty((len(system.vertex), 2))
     derivatives(
-        uv, mesh.triangles, hats, share, 0.005, gradient, pattern.unknown, pattern.first, pattern.second,
-        pattern.upper.data,
-    )  # fmt: skip
+        uv, mesh.triangles, hats, share, 0.005, system.unknown, system.place, False, gradient, system.blocks
+    )
     random = np.random.default_rng(0)
-    for unknown in random.choice(len(gradient), 25, replace=False):
-        vertex, axis = mesh.n_boundary + unknown // 2, unknown % 2
+    for unknown, axis in zip(random.integers(0, len(gradient), 25), random.integers(0, 2, 25), strict=True):
+        vertex = system.vertex[unknown]
         around = np.abs(uv[mesh.triangles[(mesh.triangles == vertex).any(axis=1)]] - uv[vertex]).max()
         h = 1e-5 * around
         values = []
@@ -151,29 +152,24 @@ def test_the_gradient_agrees_with_finite_differences(problem: dict) -> None:
             moved = uv.copy()
             moved[vertex, axis] += sign * h
             values.append(energy(moved, mesh.triangles, hats, share, 0.005))
-        assert gradient[unknown] == pytest.approx((values[0] - values[1]) / (2 * h), rel=1e-3, abs=1e-6)
+        assert gradient[unknown, axis] == pytest.approx((values[0] - values[1]) / (2 * h), rel=1e-3, abs=1e-6)
 
 
 def test_the_assembled_hessian_is_the_sum_of_the_triangles_blocks(problem: dict) -> None:
     mesh, uv, hats, share = (problem[key] for key in ("mesh", "uv", "hats", "share"))
-    pattern = _HessianPattern(mesh)
-    n = len(uv) - mesh.n_boundary
+    system = BlockSystem(mesh)
     derivatives(
-        uv, mesh.triangles, hats, share, 0.005, np.empty(2 * n), pattern.unknown, pattern.first,
-        pattern.second, pattern.upper.data,
+        uv, mesh.triangles, hats, share, 0.005, system.unknown, system.place, False,
+        np.empty((len(system.vertex), 2)), system.blocks,
     )  # fmt: skip
-    upper = pattern.upper.toarray()
-    np.testing.assert_array_equal(upper, np.triu(upper))
-    expected = np.zeros((2 * n, 2 * n))
+    expected = np.zeros_like(system.blocks)
     for t, triangle in enumerate(mesh.triangles):
         _, block = free_triangle_hessian(uv[triangle], hats[t : t + 1], 0.005)
-        for k, one in enumerate(triangle - mesh.n_boundary):
-            for l, two in enumerate(triangle - mesh.n_boundary):
-                if one >= 0 and two >= 0:
-                    expected[2 * one : 2 * one + 2, 2 * two : 2 * two + 2] += (
-                        share[t] * block[2 * k : 2 * k + 2, 2 * l : 2 * l + 2]
-                    )
-    np.testing.assert_allclose(upper, np.triu(expected), atol=1e-9 * np.abs(expected).max())
+        for k in range(3):
+            for l in range(3):
+                if system.place[t, k, l] >= 0:
+                    expected[system.place[t, k, l]] += share[t] * block[2 * k : 2 * k + 2, 2 * l : 2 * l + 2]
+    np.testing.assert_allclose(system.blocks, expected, atol=1e-9 * np.abs(expected).max())
 
 
 def test_the_largest_step_is_where_the_first_triangle_loses_its_area() -> None:

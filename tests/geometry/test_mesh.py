@@ -3,10 +3,10 @@ import pytest
 
 from cytodisk import simulate
 from cytodisk.errors import MeshError
+from cytodisk.geometry.half_edges import half_edges
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.mesh import (
     Mesh,
-    euler_characteristic,
     hat_gradients,
     mesh_inside,
     triangle_areas,
@@ -35,7 +35,7 @@ def test_every_mesh_is_a_disk_without_chords(kind: str, edge_length: float) -> N
     for seed in range(3):
         mesh, outline = mesh_of(clean_mask(simulate.random_mask(kind, seed))[0], edge_length)
         areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
-        assert euler_characteristic(mesh.triangles, len(mesh.vertices_yx)) == 1
+        assert half_edges(mesh.triangles, len(mesh.vertices_yx)).euler_characteristic == 1
         np.testing.assert_array_equal(np.unique(mesh.triangles), np.arange(len(mesh.vertices_yx)))
         assert areas.min() > 0.0
         assert areas.sum() == pytest.approx(signed_area(outline), rel=1e-9)
@@ -59,16 +59,6 @@ def test_hat_gradients_differentiate_a_linear_function() -> None:
     linear = 3.0 * mesh.vertices_yx[:, 1] - 2.0 * mesh.vertices_yx[:, 0] + 5.0
     slope = np.einsum("tk,tka->ta", linear[mesh.triangles], hats)
     np.testing.assert_allclose(slope, np.broadcast_to([3.0, -2.0], slope.shape), atol=1e-9)
-
-
-def test_euler_characteristic_of_an_annulus_is_zero() -> None:
-    around = np.arange(3)
-    onwards = (around + 1) % 3
-    annulus = np.concatenate(
-        [np.column_stack([around, onwards, onwards + 3]), np.column_stack([around, onwards + 3, around + 3])]
-    )
-    assert euler_characteristic(annulus, 6) == 0
-    assert euler_characteristic(np.concatenate([annulus, [[3, 4, 5]]]), 6) == 1
 
 
 def test_an_outline_that_crosses_itself_is_refused() -> None:

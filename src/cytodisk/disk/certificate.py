@@ -7,7 +7,7 @@ from shapely.geometry import LinearRing
 
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.geometry.exact import orientations
-from cytodisk.geometry.mesh import euler_characteristic, triangle_edges
+from cytodisk.geometry.half_edges import HalfEdges, half_edges
 
 _ON_CIRCLE = 1e-12
 
@@ -71,24 +71,24 @@ def certify(
         return Certificate(malformed, (), (), len(triangles), 0, 0)
     in_cell, exact_cell = orientations(vertices_yx, triangles)
     in_disk, exact_disk = orientations(vertices_uv[:, ::-1], triangles)
-    characteristic = euler_characteristic(triangles, len(vertices_yx))
+    edges = half_edges(triangles, len(vertices_yx))
     faults = [
         f"{(sign <= 0).sum()} triangles are not positive in the {frame}"
         for sign, frame in ((in_cell, "cell"), (in_disk, "disk"))
         if (sign <= 0).any()
     ]
-    if characteristic != 1:
-        faults.append(f"the Euler characteristic is {characteristic}, not 1")
-    if len(np.unique(triangles)) != len(vertices_yx):
+    if edges.euler_characteristic != 1:
+        faults.append(f"the Euler characteristic is {edges.euler_characteristic}, not 1")
+    if not edges.all_used:
         faults.append("a vertex belongs to no triangle")
-    faults += _boundary_faults(vertices_yx, vertices_uv, triangles, boundary)
+    faults += _boundary_faults(vertices_yx, vertices_uv, edges, boundary)
     return Certificate(
         faults=tuple(faults),
         flipped_in_cell=tuple(np.flatnonzero(in_cell <= 0).tolist()),
         flipped_in_disk=tuple(np.flatnonzero(in_disk <= 0).tolist()),
         n_triangles=len(triangles),
         n_exact=exact_cell + exact_disk,
-        euler_characteristic=characteristic,
+        euler_characteristic=edges.euler_characteristic,
     )
 
 
@@ -111,10 +111,10 @@ def _malformed(
 
 
 def _boundary_faults(
-    vertices_yx: FloatArray, vertices_uv: FloatArray, triangles: IntArray, boundary: IntArray
+    vertices_yx: FloatArray, vertices_uv: FloatArray, edges: HalfEdges, boundary: IntArray
 ) -> list[str]:
     faults = []
-    if not _is_the_loop(triangles, boundary, len(vertices_yx)):
+    if not _is_the_loop(edges, boundary):
         faults.append("the boundary is not the one loop of edges that belong to one triangle")
     if not LinearRing(vertices_yx[boundary]).is_simple:
         faults.append("the boundary crosses itself in the cell")
@@ -126,10 +126,9 @@ def _boundary_faults(
     return faults
 
 
-def _is_the_loop(triangles: IntArray, boundary: IntArray, n_vertices: int) -> bool:
-    start, stop = triangle_edges(triangles).T
-    keys = start * n_vertices + stop
-    outer = np.sort(keys[~np.isin(keys, stop * n_vertices + start)])
+def _is_the_loop(edges: HalfEdges, boundary: IntArray) -> bool:
+    n_vertices = len(edges.first) - 1
+    outer = (edges.start * n_vertices + edges.end)[edges.outer]
     loop = np.sort(boundary * n_vertices + np.roll(boundary, -1))
     return len(np.unique(boundary)) == len(boundary) and np.array_equal(outer, loop)
 

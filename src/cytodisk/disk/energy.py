@@ -44,111 +44,113 @@ def energy(uv: FloatArray, triangles: IntArray, hats: FloatArray, share: FloatAr
     return total
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
+def _half_angle(x: float, y: float, length: float) -> tuple[float, float]:
+    """(cos, sin) of half the angle of (x, y); the half angle lies within ±90°."""
+    if length == 0.0:
+        return 1.0, 0.0
+    if x >= 0.0:
+        cos = math.sqrt(0.5 * (1.0 + x / length))
+        return cos, 0.5 * y / (length * cos)
+    sin = math.copysign(math.sqrt(0.5 * (1.0 - x / length)), y)
+    return 0.5 * y / (length * sin), sin
+
+
+@njit(cache=True, error_model="numpy")
 def _singular_frame(
     a: float, b: float, c: float, d: float
 ) -> tuple[float, float, float, float, float, float]:
     """σ₁, σ₂ and the rotations U and V of J = U diag(σ₁, σ₂) Vᵀ as (cos, sin) each; det J > 0."""
     e, f, g, h = 0.5 * (a + d), 0.5 * (a - d), 0.5 * (c + b), 0.5 * (c - b)
-    s1 = math.hypot(e, h) + math.hypot(f, g)
+    turned, mirrored = math.sqrt(e * e + h * h), math.sqrt(f * f + g * g)
+    s1 = turned + mirrored
     s2 = (a * d - b * c) / s1
-    alpha, beta = 0.5 * math.atan2(g, f), 0.5 * math.atan2(h, e)
-    return (
-        s1,
-        s2,
-        math.cos(beta + alpha),
-        math.sin(beta + alpha),
-        math.cos(beta - alpha),
-        math.sin(beta - alpha),
-    )
+    cb, sb = _half_angle(e, h, turned)
+    ca, sa = _half_angle(f, g, mirrored)
+    return s1, s2, cb * ca - sb * sa, sb * ca + cb * sa, cb * ca + sb * sa, sb * ca - cb * sa
 
 
-@njit(cache=True)
-def _curvatures(
-    s1: float, s2: float, weight: float, gauss: bool, curvature: FloatArray
-) -> tuple[float, float]:
-    """Fill the eigenvalues for (stretch, stretch, twist, flip); (cos, sin) of the first stretch mode."""
+@njit(cache=True, error_model="numpy")
+def _projected(
+    s1: float, s2: float, log_det: float, weight: float
+) -> tuple[float, float, float, float, float]:
+    """Projected Hessian in the frame of the singular vectors.
+
+    Returns
+    -------
+    p, q, r : float
+        That of the two stretches: [[p, q], [q, r]].
+    even, odd : float
+        Half the sum, and half the difference, of the eigenvalues of flip and twist.
+    """
     det = s1 * s2
-    log_det = 0.0 if gauss else math.log(det)  # Gauss-Newton: without the residual's own curvature
-    psi_11 = (2.0 - 2.0 * log_det) / (s1 * s1) + 2.0 * weight * s2 / (s1 * s1 * s1)
-    psi_22 = (2.0 - 2.0 * log_det) / (s2 * s2) + 2.0 * weight * s1 / (s2 * s2 * s2)
-    psi_12 = 2.0 / det - weight * (1.0 / (s1 * s1) + 1.0 / (s2 * s2))
-    half = 0.5 * (psi_11 - psi_22)
-    root = math.hypot(half, psi_12)
-    angle = 0.5 * math.atan2(psi_12, half)
-    curvature[0] = 0.5 * (psi_11 + psi_22) + root
-    curvature[1] = 0.5 * (psi_11 + psi_22) - root
+    p = (2.0 - 2.0 * log_det) / (s1 * s1) + 2.0 * weight * s2 / (s1 * s1 * s1)
+    r = (2.0 - 2.0 * log_det) / (s2 * s2) + 2.0 * weight * s1 / (s2 * s2 * s2)
+    q = 2.0 / det - weight * (1.0 / (s1 * s1) + 1.0 / (s2 * s2))
+    half, mean = 0.5 * (p - r), 0.5 * (p + r)
+    root = math.sqrt(half * half + q * q)
+    if mean < root:
+        high, low = max(mean + root, 0.0), max(mean - root, 0.0)
+        along = half / root
+        p = 0.5 * (high + low) + 0.5 * (high - low) * along
+        r = 0.5 * (high + low) - 0.5 * (high - low) * along
+        q = 0.5 * (high - low) * q / root
     # (ψ₁ + ψ₂) / (σ₁ + σ₂) and (ψ₁ - ψ₂) / (σ₁ - σ₂) with the division carried out
-    curvature[2] = 2.0 * log_det / det - weight * ((s1 - s2) / det) ** 2
-    curvature[3] = -2.0 * log_det / det + weight * ((s1 + s2) / det) ** 2
-    return math.cos(angle), math.sin(angle)
+    twist = max(2.0 * log_det / det - weight * ((s1 - s2) / det) ** 2, 0.0)
+    flip = max(-2.0 * log_det / det + weight * ((s1 + s2) / det) ** 2, 0.0)
+    return p, q, r, 0.5 * (flip + twist), 0.5 * (flip - twist)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def derivatives(
     uv: FloatArray,
     triangles: IntArray,
     hats: FloatArray,
     share: FloatArray,
     weight: float,
-    gradient: FloatArray,
     unknown: IntArray,
-    first: IntArray,
-    second: IntArray,
-    values: FloatArray,
-    gauss: bool = False,
+    place: IntArray,
+    gauss: bool,
+    gradient: FloatArray,
+    blocks: FloatArray,
 ) -> None:
-    """Fill the gradient (2 n,) and the values of the upper triangle of the projected Hessian.
+    """Fill the gradient (N, 2) and the 2×2 blocks of the projected Hessian.
 
     With `gauss` the area term counts with its Gauss-Newton Hessian, 2 ∇L ∇Lᵀ, which leaves out L ∇²L.
-    `unknown`, `first` and `second` say where a vertex pair's 2×2 block lies, as in `newton._HessianPattern`.
+    `unknown` and `place` say where a vertex and a pair of corners belong, as in `blocks.BlockSystem`.
     """
     gradient[:] = 0.0
-    values[:] = 0.0
-    curvature = np.empty(4)
-    modes = np.empty((4, 3, 2))  # (mode, corner): the mode's matrix applied to the corner's hat gradient
-    root_half = math.sqrt(0.5)
+    blocks[:] = 0.0
+    x, y = np.empty(3), np.empty(3)  # hat gradients in the frame of the singular vectors
     for t in range(triangles.shape[0]):
         a, b, c, d = jacobian(uv, triangles[t], hats[t])
         s1, s2, cu, su, cv, sv = _singular_frame(a, b, c, d)
-        ce, se = _curvatures(s1, s2, weight, gauss, curvature)
         log_det = math.log(s1 * s2)
+        p, q, r, even, odd = _projected(s1, s2, 0.0 if gauss else log_det, weight)
         slope1 = 2.0 * log_det / s1 + weight * (1.0 / s2 - s2 / (s1 * s1))
         slope2 = 2.0 * log_det / s2 + weight * (1.0 / s1 - s1 / (s2 * s2))
         for k in range(3):
-            x = cv * hats[t, k, 0] - sv * hats[t, k, 1]
-            y = sv * hats[t, k, 0] + cv * hats[t, k, 1]
-            framed = (
-                (ce * x, se * y),
-                (-se * x, ce * y),
-                (-root_half * y, root_half * x),
-                (root_half * y, root_half * x),
-            )
-            for m in range(4):
-                modes[m, k, 0] = cu * framed[m][0] - su * framed[m][1]
-                modes[m, k, 1] = su * framed[m][0] + cu * framed[m][1]
+            x[k] = cv * hats[t, k, 0] - sv * hats[t, k, 1]
+            y[k] = sv * hats[t, k, 0] + cv * hats[t, k, 1]
             n = unknown[triangles[t, k]]
             if n >= 0:
-                gradient[2 * n] += share[t] * (cu * slope1 * x - su * slope2 * y)
-                gradient[2 * n + 1] += share[t] * (su * slope1 * x + cu * slope2 * y)
+                gradient[n, 0] += share[t] * (cu * slope1 * x[k] - su * slope2 * y[k])
+                gradient[n, 1] += share[t] * (su * slope1 * x[k] + cu * slope2 * y[k])
         for k in range(3):
             for l in range(3):
-                one, two = first[t, k, l], second[t, k, l]
-                if one < 0:
+                block = place[t, k, l]
+                if block < 0:
                     continue
-                uu = cross = vu = vv = 0.0
-                for m in range(4):
-                    if curvature[m] > 0.0:
-                        scaled_u, scaled_v = curvature[m] * modes[m, k, 0], curvature[m] * modes[m, k, 1]
-                        uu += scaled_u * modes[m, l, 0]
-                        cross += scaled_u * modes[m, l, 1]
-                        vu += scaled_v * modes[m, l, 0]
-                        vv += scaled_v * modes[m, l, 1]
-                values[one] += share[t] * uu
-                values[two] += share[t] * cross
-                values[two + 1] += share[t] * vv
-                if k != l:
-                    values[one + 1] += share[t] * vu
+                xx, xy, yx, yy = x[k] * x[l], x[k] * y[l], y[k] * x[l], y[k] * y[l]
+                uu, vv = share[t] * (p * xx + even * yy), share[t] * (r * yy + even * xx)
+                uv_, vu = share[t] * (q * xy + odd * yx), share[t] * (q * yx + odd * xy)
+                # U times this block times Uᵀ
+                top, bottom = cu * uu - su * vu, su * uu + cu * vu
+                top_right, bottom_right = cu * uv_ - su * vv, su * uv_ + cu * vv
+                blocks[block, 0, 0] += cu * top - su * top_right
+                blocks[block, 0, 1] += su * top + cu * top_right
+                blocks[block, 1, 0] += cu * bottom - su * bottom_right
+                blocks[block, 1, 1] += su * bottom + cu * bottom_right
 
 
 @njit(cache=True)

@@ -3,17 +3,19 @@
 from typing import Literal
 
 import numpy as np
-from scipy import sparse
+from numba import njit
 
-from cytodisk.arrays import FloatArray
-from cytodisk.disk.ldl import Factorisation
+from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.disk.blocks import BlockSystem
 from cytodisk.errors import MapError
-from cytodisk.geometry.mesh import Mesh, hat_gradients, triangle_areas, triangle_edges
+from cytodisk.geometry.mesh import Mesh, hat_gradients, triangle_areas
 
 Weights = Literal["cotangent", "uniform"]
 
 
-def harmonic_map(mesh: Mesh, boundary_uv: FloatArray) -> tuple[FloatArray, Weights]:
+def harmonic_map(
+    mesh: Mesh, boundary_uv: FloatArray, system: BlockSystem | None = None
+) -> tuple[FloatArray, Weights]:
     """Positions in the disk with every interior vertex at the weighted mean of its neighbours.
 
     Cotangent weights give the conformal-like map of the paper, but can be negative, so that a triangle
@@ -26,6 +28,8 @@ def harmonic_map(mesh: Mesh, boundary_uv: FloatArray) -> tuple[FloatArray, Weigh
         No interior edge may join two boundary vertices.
     boundary_uv : ndarray of shape (B, 2) and dtype float
         Boundary vertices on the circle, (u, v).
+    system : BlockSystem, optional
+        Of this mesh, if there is one already.
 
     Returns
     -------
@@ -42,11 +46,12 @@ def harmonic_map(mesh: Mesh, boundary_uv: FloatArray) -> tuple[FloatArray, Weigh
     ----------
     u-Unwrap, appendix A.2.1 (ii). Tutte, "How to draw a graph", 1963, doi:10.1112/plms/s3-13.1.743
     """
+    system = system or BlockSystem(mesh)
     choices: tuple[Weights, ...] = ("cotangent", "uniform")
     flipped = 0
     for weights in choices:
         edge_weights = _cotangents(mesh) if weights == "cotangent" else np.full(3 * len(mesh.triangles), 0.5)
-        uv = _weighted_means(mesh, edge_weights, boundary_uv)
+        uv = _weighted_means(mesh, edge_weights, boundary_uv, system)
         flipped = int((~(triangle_areas(uv[:, ::-1], mesh.triangles) > 0)).sum())
         if not flipped:
             return uv, weights
@@ -69,24 +74,52 @@ def harmonic_extension(mesh: Mesh, boundary_values: FloatArray) -> FloatArray:
     -------
     ndarray of shape (V, 2) and dtype float
     """
-    return _weighted_means(mesh, _cotangents(mesh), boundary_values)
+    return _weighted_means(mesh, _cotangents(mesh), boundary_values, BlockSystem(mesh))
 
 
 def _cotangents(mesh: Mesh) -> FloatArray:
-    """Half the cotangent opposite each edge of each triangle, in the order of `triangle_edges`."""
+    """Half the cotangent opposite each edge of each triangle, edge k → k + 1 of triangle t in row k F + t."""
     hats = hat_gradients(mesh.vertices_yx, mesh.triangles)
     areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
     return np.concatenate([-areas * (hats[:, k] * hats[:, (k + 1) % 3]).sum(axis=1) for k in range(3)])
 
 
-def _weighted_means(mesh: Mesh, edge_weights: FloatArray, boundary_uv: FloatArray) -> FloatArray:
-    n_vertices, n_boundary = len(mesh.vertices_yx), mesh.n_boundary
-    start, stop = triangle_edges(mesh.triangles).T
-    half = sparse.csr_matrix((edge_weights, (start, stop)), shape=(n_vertices, n_vertices))
-    adjacency = half + half.T
-    inner = adjacency[n_boundary:]
-    laplacian = sparse.diags_array(np.asarray(inner.sum(axis=1)).ravel()) - inner[:, n_boundary:]
-    factors = Factorisation(sparse.csc_matrix(sparse.triu(laplacian)))
-    right = inner[:, :n_boundary] @ boundary_uv
-    interior = [factors.solve(np.ascontiguousarray(right[:, axis])) for axis in (0, 1)]
-    return np.concatenate([boundary_uv, np.column_stack(interior)])
+def _weighted_means(
+    mesh: Mesh, edge_weights: FloatArray, boundary_uv: FloatArray, system: BlockSystem
+) -> FloatArray:
+    """Interior vertices at the means of their neighbours; u and v are two copies of one system."""
+    out = np.zeros((len(mesh.vertices_yx), 2))
+    out[: mesh.n_boundary] = boundary_uv
+    weights = edge_weights.reshape(3, -1)
+    right = np.zeros((len(system.vertex), 2))
+    _fill_laplacian(mesh.triangles, weights, out, system.unknown, system.place, system.blocks, right)
+    system.factorise()
+    out[system.vertex] = system.solve(right)
+    return out
+
+
+@njit(cache=True)
+def _fill_laplacian(
+    triangles: IntArray,
+    weights: FloatArray,
+    boundary_uv: FloatArray,
+    unknown: IntArray,
+    place: IntArray,
+    blocks: FloatArray,
+    right: FloatArray,
+) -> None:
+    blocks[:] = 0.0
+    for t in range(triangles.shape[0]):
+        for k in range(3):
+            l = (k + 1) % 3
+            weight = weights[k, t]
+            for own, other in ((k, l), (l, k)):
+                n = unknown[triangles[t, own]]
+                if n < 0:
+                    continue
+                for axis in range(2):
+                    blocks[place[t, own, own], axis, axis] += weight
+                    if place[t, own, other] >= 0:
+                        blocks[place[t, own, other], axis, axis] -= weight
+                    elif unknown[triangles[t, other]] < 0:
+                        right[n, axis] += weight * boundary_uv[triangles[t, other], axis]

@@ -4,7 +4,7 @@ import numpy as np
 import qdldl
 from scipy import sparse
 
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import FloatArray, IntArray
 
 
 class Factorisation:
@@ -26,3 +26,8 @@ class Factorisation:
     def solve(self, right: FloatArray) -> FloatArray:
         """Solution for one right-hand side of shape (N,)."""
         return np.asarray(self._solver.solve(right))
+
+    @property
+    def order(self) -> IntArray:
+        """Unknowns in the order in which they were eliminated, shape (N,): approximate minimum degree."""
+        return np.asarray(self._solver.factors()[2], dtype=np.int64)

@@ -7,6 +7,7 @@ import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.disk.advection import advect
+from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.circle import Align, boundary_angles, parse_align
 from cytodisk.disk.disk_map import DiskMap, Method, Start
 from cytodisk.disk.harmonic import harmonic_map
@@ -170,10 +171,11 @@ def map_mesh(
         No valid map was found.
     """
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
-    uv, start = _start(cell.mesh, circle, None if method == "advection" else anchor_uv)
+    system = BlockSystem(cell.mesh)
+    uv, start = _start(cell.mesh, circle, None if method == "advection" else anchor_uv, system)
     triangles, steps, converged = cell.mesh.triangles, 0, True
     if method == "newton":
-        relaxed = relax(cell.mesh, uv, shape_weight, anchor_uv, inertia)
+        relaxed = relax(cell.mesh, uv, shape_weight, anchor_uv, inertia, system)
         uv, steps, converged = relaxed.vertices_uv, relaxed.steps, relaxed.converged
     elif method == "advection":
         advected = advect(cell.mesh, uv)
@@ -197,12 +199,14 @@ def map_mesh(
     return disk
 
 
-def _start(mesh: Mesh, circle: FloatArray, anchor_uv: FloatArray | None) -> tuple[FloatArray, Start]:
+def _start(
+    mesh: Mesh, circle: FloatArray, anchor_uv: FloatArray | None, system: BlockSystem
+) -> tuple[FloatArray, Start]:
     if anchor_uv is not None:
         uv = untangled(mesh, np.concatenate([circle, anchor_uv[mesh.n_boundary :]]))
         if uv is not None:
             return uv, "previous"
-    return harmonic_map(mesh, circle)
+    return harmonic_map(mesh, circle, system)
 
 
 def check_map_parameters(method: Any, shape_weight: Any, edge_length: Any) -> None:

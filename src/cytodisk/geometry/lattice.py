@@ -82,8 +82,7 @@ def _fill(
             here = upper * (1.0 - t) + lower * t
             if here < clearance * spacing:
                 continue
-            coarser = math.floor(math.log1p(growth * here / spacing) / (0.5 * math.log(3.0)))
-            if _level(i, j) < coarser:
+            if (1.0 + growth * here / spacing) >= 3.0 ** (0.5 * (_level(i, j) + 1)):
                 continue
             if count == len(points):
                 points = np.concatenate((points, np.empty_like(points)))

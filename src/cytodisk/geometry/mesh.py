@@ -5,9 +5,11 @@ from typing import Any
 
 import numpy as np
 import pythoncdt
+from numba import njit
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.errors import MeshError
+from cytodisk.geometry.half_edges import half_edges
 from cytodisk.geometry.lattice import graded_lattice
 from cytodisk.geometry.polygon import signed_area
 
@@ -118,10 +120,22 @@ def hat_gradients(vertices_yx: FloatArray, triangles: IntArray) -> FloatArray:
     ndarray of shape (F, 3, 2) and dtype float
         In 1 / pixel.
     """
-    corner = vertices_yx[triangles]
-    opposite = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)
-    twice = 2.0 * triangle_areas(vertices_yx, triangles)
-    return np.stack([-opposite[..., 0], opposite[..., 1]], axis=-1) / twice[:, None, None]
+    return np.asarray(_hats(vertices_yx, triangles))
+
+
+@njit(cache=True, error_model="numpy")
+def _hats(vertices_yx: FloatArray, triangles: IntArray) -> FloatArray:
+    hats = np.empty((triangles.shape[0], 3, 2))
+    for t in range(triangles.shape[0]):
+        for k in range(3):  # across the side opposite to the corner
+            b, c = triangles[t, (k + 1) % 3], triangles[t, (k + 2) % 3]
+            hats[t, k, 0] = vertices_yx[b, 0] - vertices_yx[c, 0]
+            hats[t, k, 1] = vertices_yx[c, 1] - vertices_yx[b, 1]
+        twice = hats[t, 1, 0] * hats[t, 2, 1] - hats[t, 1, 1] * hats[t, 2, 0]
+        for k in range(3):
+            hats[t, k, 0] /= twice
+            hats[t, k, 1] /= twice
+    return hats
 
 
 def triangle_edges(triangles: IntArray) -> IntArray:
@@ -187,19 +201,13 @@ def _subdivide(triangles: IntArray, middle: IntArray) -> IntArray:
     return np.concatenate(parts)
 
 
-def euler_characteristic(triangles: IntArray, n_vertices: int) -> int:
-    """Vertices - edges + triangles; 1 for a topological disk."""
-    edges = np.sort(triangle_edges(triangles), axis=1)
-    return n_vertices - len(np.unique(edges[:, 0] * n_vertices + edges[:, 1])) + len(triangles)
-
-
 def _check(mesh: Mesh, outline_yx: FloatArray) -> None:
     areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
-    n_vertices = len(mesh.vertices_yx)
+    edges = half_edges(mesh.triangles, len(mesh.vertices_yx))
     faults = []
-    if euler_characteristic(mesh.triangles, n_vertices) != 1:
+    if edges.euler_characteristic != 1:
         faults.append("its Euler characteristic is not 1")
-    if len(np.unique(mesh.triangles)) != n_vertices:
+    if not edges.all_used:
         faults.append("a vertex belongs to no triangle")
     if areas.min() <= 0:
         faults.append(f"{(areas <= 0).sum()} triangles have no area")

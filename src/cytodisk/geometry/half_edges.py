@@ -1,0 +1,101 @@
+"""The edges of a triangulation, each in the directions in which triangles run along it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from cytodisk.arrays import BoolArray, IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class HalfEdges:
+    """Directed edges of triangles, sorted by the vertex they leave and then by the one they reach.
+
+    Attributes
+    ----------
+    first : ndarray of shape (V + 1,) and dtype int
+        Edges first[a] to first[a + 1] leave vertex a.
+    end : ndarray of shape (3 F,) and dtype int
+        Vertex that each edge reaches.
+    outer : ndarray of shape (3 F,) and dtype bool
+        Whether no triangle runs along the edge the other way round.
+    n_edges : int
+        Edges without regard to direction.
+    """
+
+    first: IntArray
+    end: IntArray
+    outer: BoolArray
+    n_edges: int
+
+    @property
+    def start(self) -> IntArray:
+        """Vertex that each edge leaves, shape (3 F,)."""
+        return np.repeat(np.arange(len(self.first) - 1), np.diff(self.first))
+
+    @property
+    def all_used(self) -> bool:
+        """Whether every vertex belongs to a triangle."""
+        return bool((np.diff(self.first) > 0).all())
+
+    @property
+    def euler_characteristic(self) -> int:
+        """Vertices - edges + triangles; 1 for a topological disk."""
+        return len(self.first) - 1 - self.n_edges + len(self.end) // 3
+
+
+def half_edges(triangles: IntArray, n_vertices: int) -> HalfEdges:
+    """Directed edges of a triangulation.
+
+    Parameters
+    ----------
+    triangles : ndarray of shape (F, 3) and dtype int
+        All below `n_vertices`.
+    n_vertices : int
+
+    Returns
+    -------
+    HalfEdges
+    """
+    first, end = _sorted_ends(triangles, n_vertices)
+    return HalfEdges(first, end, *_without_opposite(first, end))
+
+
+@njit(cache=True)
+def _sorted_ends(triangles: IntArray, n_vertices: int) -> tuple[IntArray, IntArray]:
+    first = np.zeros(n_vertices + 1, dtype=np.int64)
+    for t in range(triangles.shape[0]):
+        for k in range(3):
+            first[triangles[t, k] + 1] += 1
+    first = np.cumsum(first)
+    filled = first[:-1].copy()
+    end = np.empty(first[-1], dtype=np.int64)
+    for t in range(triangles.shape[0]):
+        for k in range(3):
+            a, b = triangles[t, k], triangles[t, (k + 1) % 3]
+            place = filled[a]
+            while place > first[a] and end[place - 1] > b:
+                end[place] = end[place - 1]
+                place -= 1
+            end[place] = b
+            filled[a] += 1
+    return first, end
+
+
+@njit(cache=True)
+def _without_opposite(first: IntArray, end: IntArray) -> tuple[BoolArray, int]:
+    outer = np.empty(len(end), dtype=np.bool_)
+    n_edges = 0
+    for a in range(len(first) - 1):
+        for place in range(first[a], first[a + 1]):
+            b = end[place]
+            ends = end[first[b] : first[b + 1]]
+            found = np.searchsorted(ends, a)
+            outer[place] = found == len(ends) or ends[found] != a
+            repeated = place > first[a] and end[place - 1] == b
+            if not repeated and (a <= b or outer[place]):
+                n_edges += 1
+    return outer, n_edges
