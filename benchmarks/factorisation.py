@@ -15,7 +15,7 @@ from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.ldl import Factorisation
 from cytodisk.disk.mapping import mesh_cell
 from cytodisk.geometry.mesh import Mesh
-from speed import DEFAULT_DATA, median_seconds, restart_with_one_thread
+from speed import _DEFAULT_DATA, median_seconds, restart_with_one_thread
 
 
 def fill(system: BlockSystem, mesh: Mesh) -> sparse.csc_matrix:
@@ -69,7 +69,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeats", type=int, default=25, help="timed calls of each kind (default 25)")
     parser.add_argument(
-        "--data", type=Path, default=Path(os.environ.get("CYTODISK_DATA", DEFAULT_DATA)),
+        "--data", type=Path, default=Path(os.environ.get("CYTODISK_DATA", _DEFAULT_DATA)),
         help="folder that holds reference_masks/",
     )  # fmt: skip
     arguments = parser.parse_args()

@@ -18,7 +18,7 @@ from cytodisk import simulate
 from cytodisk.arrays import BoolArray
 from cytodisk.disk.mapping import map_to_disk
 
-DEFAULT_DATA = Path(__file__).parents[2] / "shared" / "data"
+_DEFAULT_DATA = Path(__file__).parents[2] / "shared" / "data"
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _FIRST_CALL = """
 import time
@@ -109,7 +109,7 @@ def main() -> int:
     parser.add_argument(
         "--data",
         type=Path,
-        default=Path(os.environ.get("CYTODISK_DATA", DEFAULT_DATA)),
+        default=Path(os.environ.get("CYTODISK_DATA", _DEFAULT_DATA)),
         help="folder that holds reference_masks/",
     )
     arguments = parser.parse_args()
