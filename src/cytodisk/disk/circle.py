@@ -83,6 +83,17 @@ def parse_align(align: Any) -> Align:
 
 
 @njit(cache=True)
+def polygon_radius_at(u: float, v: float, angles: FloatArray) -> float:
+    """`polygon_radius` of one point."""
+    turn, last = 2.0 * math.pi, len(angles) - 1
+    angle = angles[0] + (math.atan2(v, u) - angles[0]) % turn
+    edge = min(max(np.searchsorted(angles, angle, side="right") - 1, 0), last)
+    end = angles[edge + 1] if edge < last else angles[0] + turn
+    half, middle = 0.5 * (end - angles[edge]), 0.5 * (end + angles[edge])
+    return math.cos(half) / math.cos(angle - middle)
+
+
+@njit(cache=True)
 def polygon_radius(points_uv: FloatArray, angles: FloatArray) -> FloatArray:
     """Distance from the centre to the polygon of points on the circle, in the direction of each point.
 
@@ -99,13 +110,8 @@ def polygon_radius(points_uv: FloatArray, angles: FloatArray) -> FloatArray:
         cos π/B to 1 where the corners are even; NaN where the point is.
     """
     out = np.empty(len(points_uv))
-    turn, last = 2.0 * math.pi, len(angles) - 1
     for n in range(len(points_uv)):
-        angle = angles[0] + (math.atan2(points_uv[n, 1], points_uv[n, 0]) - angles[0]) % turn
-        edge = min(max(np.searchsorted(angles, angle, side="right") - 1, 0), last)
-        end = angles[edge + 1] if edge < last else angles[0] + turn
-        half, middle = 0.5 * (end - angles[edge]), 0.5 * (end + angles[edge])
-        out[n] = math.cos(half) / math.cos(angle - middle)
+        out[n] = polygon_radius_at(points_uv[n, 0], points_uv[n, 1], angles)
     return out
 
 

@@ -6,10 +6,11 @@ from itertools import chain
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.arrays import FloatArray, Int32Array, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.windows.edge_parts import part_places
 from cytodisk.windows.grid import PolarWindows
+from cytodisk.windows.raster import windows_of_all_parts
 from cytodisk.windows.shares import PARTS, PIXELS_AT_ONCE, PixelParts, WindowShares, gather_shares
 
 _FINE = 16  # parts along a pixel's side
@@ -34,10 +35,14 @@ def window_shares(grid: PolarWindows, disk: DiskMap) -> WindowShares:
         Columns of the weights sum to 1, and no row is empty.
     """
     pixels = np.argwhere(disk.mask)
-    coarse = windows_of_parts(grid, disk, pixels, PARTS)
-    empty = np.flatnonzero(_held(grid, coarse) == 0)
+    if disk.method == "advection":
+        coarse: IntArray | Int32Array = windows_of_parts(grid, disk, pixels, PARTS)
+    else:
+        coarse = windows_of_all_parts(grid, disk, PARTS)
+    shares = gather_shares(pixels, grid.n_windows, _blocks(np.arange(len(pixels)), coarse))
+    empty = np.flatnonzero(np.diff(shares.weights.indptr) == 0)
     if not empty.size:
-        return gather_shares(pixels, grid.n_windows, _blocks(np.arange(len(pixels)), coarse))
+        return shares
     near = np.unique(_pixels_at(disk, pixels, grid.centres_uv[empty]))
     kept = np.delete(np.arange(len(pixels)), near)
     coarse = coarse[kept]
@@ -77,7 +82,9 @@ def windows_of_parts(grid: PolarWindows, disk: DiskMap, pixels_yx: IntArray, per
     return window
 
 
-def _blocks(pixel: IntArray, window: IntArray, share: FloatArray | None = None) -> Iterator[PixelParts]:
+def _blocks(
+    pixel: IntArray, window: IntArray | Int32Array, share: FloatArray | None = None
+) -> Iterator[PixelParts]:
     """The same parts, a few pixels at a time."""
     if share is None:
         share = np.full(len(pixel), 1.0 / window.shape[1])
@@ -86,7 +93,7 @@ def _blocks(pixel: IntArray, window: IntArray, share: FloatArray | None = None) 
         yield PixelParts(pixel[block], window[block], share[pixel[block]])
 
 
-def _held(grid: PolarWindows, window: IntArray) -> IntArray:
+def _held(grid: PolarWindows, window: IntArray | Int32Array) -> IntArray:
     """Number of parts in each window."""
     return np.bincount(window.ravel(), minlength=grid.n_windows)
 

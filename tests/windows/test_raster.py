@@ -1,0 +1,34 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cytodisk import map_to_disk, polar_windows, simulate
+from cytodisk.windows.raster import windows_of_all_parts
+from cytodisk.windows.weights import windows_of_parts
+
+
+@given(
+    kind=st.sampled_from(simulate.KINDS),
+    seed=st.integers(0, 1000),
+    layers=st.integers(1, 30),
+    sectors=st.integers(1, 90),
+    spacing=st.sampled_from(["area", "radius"]),
+    per_side=st.sampled_from([1, 4, 5]),
+)
+@settings(max_examples=25, deadline=None)
+def test_every_part_is_in_the_window_that_its_place_maps_into(
+    kind: str, seed: int, layers: int, sectors: int, spacing: str, per_side: int
+) -> None:
+    disk = map_to_disk(simulate.random_mask(kind, seed))
+    grid = polar_windows(layers, sectors, spacing)
+    one_by_one = windows_of_parts(grid, disk, np.argwhere(disk.mask), per_side)
+    np.testing.assert_array_equal(windows_of_all_parts(grid, disk, per_side), one_by_one)
+
+
+@pytest.mark.parametrize("mask", [np.ones((1, 1)), np.ones((2, 9)), np.eye(6)])
+def test_cells_of_a_few_pixels_anywhere_in_an_image(mask: np.ndarray) -> None:
+    disk = map_to_disk(np.pad(mask > 0, ((3, 0), (0, 5))))
+    grid = polar_windows(3, 5)
+    one_by_one = windows_of_parts(grid, disk, np.argwhere(disk.mask), 4)
+    np.testing.assert_array_equal(windows_of_all_parts(grid, disk, 4), one_by_one)
