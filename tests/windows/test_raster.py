@@ -4,6 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cytodisk import map_to_disk, polar_windows, simulate
+from cytodisk.windows.edge_parts import part_places
 from cytodisk.windows.raster import windows_of_all_parts
 from cytodisk.windows.weights import windows_of_parts
 
@@ -22,8 +23,15 @@ def test_every_part_is_in_the_window_that_its_place_maps_into(
 ) -> None:
     disk = map_to_disk(simulate.random_mask(kind, seed))
     grid = polar_windows(layers, sectors, spacing)
-    one_by_one = windows_of_parts(grid, disk, np.argwhere(disk.mask), per_side)
-    np.testing.assert_array_equal(windows_of_all_parts(grid, disk, per_side), one_by_one)
+    pixels = np.argwhere(disk.mask)
+    one_by_one = windows_of_parts(grid, disk, pixels, per_side)
+    found = windows_of_all_parts(grid, disk, per_side)
+    apart = found != one_by_one
+    # Rounding may decide for a part that lies on the border between two windows.
+    uv = disk.to_disk(part_places(pixels, per_side)[apart], outside="nearest")
+    turned = [(1.0 + a) * uv @ np.array([[1.0, b], [-b, 1.0]]) for a in (-1e-9, 1e-9) for b in (-1e-9, 1e-9)]
+    assert (np.array([grid.window_of(near) for near in turned]) == found[apart]).any(axis=0).all()
+    assert apart.sum() <= 2 + 1e-3 * apart.size
 
 
 @pytest.mark.parametrize("mask", [np.ones((1, 1)), np.ones((2, 9)), np.eye(6)])

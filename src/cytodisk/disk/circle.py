@@ -111,7 +111,8 @@ def polygon_radius(points_uv: FloatArray, angles: FloatArray) -> FloatArray:
     """
     out = np.empty(len(points_uv))
     for n in range(len(points_uv)):
-        out[n] = polygon_radius_at(points_uv[n, 0], points_uv[n, 1], angles)
+        u, v = points_uv[n, 0], points_uv[n, 1]
+        out[n] = math.nan if math.isnan(u) else polygon_radius_at(u, v, angles)
     return out
 
 

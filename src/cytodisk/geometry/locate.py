@@ -238,7 +238,8 @@ def nearest_on_outline(points: FloatArray, outline: FloatArray) -> tuple[IntArra
         0 at the start of the edge, 1 at its end.
     """
     n_edges = len(outline)
-    _, near = cKDTree(outline).query(points, k=min(4, n_edges))
+    tree = cKDTree(outline, leafsize=64, compact_nodes=False, balanced_tree=False)  # built in no time
+    _, near = tree.query(points, k=min(4, n_edges))
     edges = np.concatenate([near, near - 1], axis=1) % n_edges
     start = outline[edges]
     along = outline[(edges + 1) % n_edges] - start
