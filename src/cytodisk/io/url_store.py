@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from io import BytesIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, BinaryIO
 
 from cytodisk.errors import MissingPartError, StudyError
@@ -84,6 +85,11 @@ class UrlStore:
     def alone(self) -> AbstractContextManager[None]:
         """Nothing: an object store has no locks. The run that began last is the one whose results count."""
         return nullcontext()
+
+    @contextmanager
+    def work_folder(self) -> Iterator[Path]:
+        with TemporaryDirectory(prefix="cytodisk-") as work:
+            yield Path(work)
 
     def _at(self, key: str) -> str:
         return f"{self._root}/{key}"
