@@ -13,7 +13,7 @@ from cytodisk.errors import StudyError
 from cytodisk.study.batch.child_process import ChildProcess
 from cytodisk.study.batch.inputs import BatchInput
 
-_LARGE_MB = 400.0  # a process that has been as large is not used again, so that its memory is given back
+_LARGE_MB = 500.0  # a process that has been as large is not used again, so that its memory is given back
 
 
 @dataclass(frozen=True)
