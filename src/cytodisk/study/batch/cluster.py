@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import chain, count, islice
@@ -104,8 +105,11 @@ def connected(address: str) -> Iterator[Any]:
             "a cluster needs distributed, which is not installed: in the clone of cytodisk type "
             ".venv/bin/pip install -c constraints.txt -e '.[cluster]'"
         ) from error
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters is raised
+    for name in ("distributed", "distributed.client"):  # each has a level of its own
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is raised
     try:
+        with ThreadPoolExecutor(1) as thread:  # there may be an event loop in this one
+            thread.submit(asyncio.run, _greet(address)).result()
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except ValueError as error:
         raise ParameterError(
@@ -116,10 +120,23 @@ def connected(address: str) -> Iterator[Any]:
             f"scheduler {address} does not answer within {CONNECT_S:.0f} s: check the address, that "
             "`dask scheduler` runs there, and that this machine can reach it"
         ) from error
+    except MemoryError as error:  # an answer in another protocol, read as the size of a message
+        raise StudyError(
+            f"what answers at {address} is no Dask scheduler: pass the address that `dask scheduler` prints "
+            "behind `Scheduler at:`, not that of its dashboard"
+        ) from error
     try:
         yield client
     finally:
         client.close(timeout=CONNECT_S)
+
+
+async def _greet(address: str) -> None:
+    """Connect once, because `Client` waits for ever where something listens that never answers."""
+    from distributed.core import connect
+
+    comm = await asyncio.wait_for(connect(address, timeout=CONNECT_S), CONNECT_S)
+    comm.abort()
 
 
 class Flight(Generic[Task, Result]):
