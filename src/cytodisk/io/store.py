@@ -11,7 +11,7 @@ from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO, Protocol
 
-from cytodisk.errors import CytodiskError, StudyError
+from cytodisk.errors import CytodiskError, StudyError, WriteError
 from cytodisk.files import replacing
 from cytodisk.io.study_folder import alone_in
 
@@ -112,7 +112,7 @@ class FolderStore:
                 with _folder_may_stand():
                     arriving.rename(target)
         except OSError as error:
-            raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
+            raise WriteError(f"cannot write {target}: {error.strerror or error}") from error
         finally:
             shutil.rmtree(arriving, ignore_errors=True)
 
@@ -139,7 +139,7 @@ class FolderStore:
         except CytodiskError:
             raise
         except OSError as error:
-            raise StudyError(f"cannot write {work}: {error.strerror or error}") from error
+            raise WriteError(f"cannot write {work}: {error.strerror or error}") from error
         finally:
             shutil.rmtree(work, ignore_errors=True)
 
@@ -148,5 +148,5 @@ class FolderStore:
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
+            raise WriteError(f"cannot write {target}: {error.strerror or error}") from error
         return target

@@ -9,7 +9,7 @@ from threading import Lock
 from types import TracebackType
 from typing import Any
 
-from cytodisk.errors import StudyError
+from cytodisk.errors import StudyError, WriteError
 from cytodisk.study.batch.child_process import ChildProcess
 from cytodisk.study.batch.inputs import BatchInput
 
@@ -88,10 +88,7 @@ class ChildPool:
         if outcome.status in ("crashed", "killed"):
             outcome = self._compute_in(self._new_child(), item, folder, time_limit)
         if outcome.status == "cannot write":
-            raise StudyError(
-                f"{outcome.reason}: the run stops, what was done is kept; mend this (is the disk full?), "
-                "then run the same command again with --resume"
-            )
+            raise WriteError(outcome.reason)
         return outcome
 
     def _compute_in(

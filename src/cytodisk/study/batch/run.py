@@ -7,13 +7,14 @@ import json
 import os
 import platform
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
-from cytodisk.errors import OtherRunError, StudyError
+from cytodisk.errors import OtherRunError, StudyError, WriteError
 from cytodisk.io.provenance_file import PROVENANCE, differences
 from cytodisk.io.store import Store
 from cytodisk.study.batch.batch_file import Batch
@@ -22,7 +23,7 @@ from cytodisk.study.batch.inputs import BatchInput
 from cytodisk.study.batch.local import run_here
 from cytodisk.study.batch.merged import merge_batch
 from cytodisk.study.batch.rows import ROWS, STUDIES, InputRow, files_mark, read_row
-from cytodisk.study.batch.task import TaskResult, open_store
+from cytodisk.study.batch.task import BatchTask, TaskResult, open_store
 from cytodisk.study.run_steps import Progress, check_options, silent
 from cytodisk.study.versions import NUMERIC, installed
 
@@ -36,7 +37,8 @@ _OWN = (
     "inputs.csv",
 )
 
-Tell = Callable[[str], None]
+Results: TypeAlias = Generator[TaskResult, None, None]
+Tell: TypeAlias = Callable[[str], None]
 """Called with a sentence for the user."""
 
 
@@ -123,28 +125,38 @@ def run_batch(
         provenance = _start(store, batch, target, resume, overwrite)
         summary = BatchSummary(target)
         pending = _pending(store, batch, summary) if resume else list(batch.inputs)
-        report = progress or silent
-        total = len(batch.inputs)
-        done = total - len(pending)
-        report(done, total)
         if scheduler is None:
             tasks = make_tasks(pending, target, seconds=0, time_limit=time_limit)
             results = run_here(tasks, min(workers, max(1, len(pending))))
         else:
             tasks = make_tasks(pending, target, seconds=_CLUSTER_TASK_S, time_limit=time_limit)
             results = _on_cluster(tasks, scheduler, target, tell)
-        for result in results:
-            done += len(result.rows)
-            report(done, total)
-        summary.remarks += merge_batch(store, batch, summary.count)
-        _note(store, provenance | {"status": "complete", "finished": _now(), "warnings": summary.remarks})
+        try:
+            _take(results, len(pending), len(batch.inputs), progress or silent)
+            summary.remarks += merge_batch(store, batch, summary.count)
+            _note(store, provenance | {"status": "complete", "finished": _now(), "warnings": summary.remarks})
+        except WriteError as error:
+            raise WriteError(
+                f"{error}: the run stops, what was done is kept; mend this (is the disk full?), then run the "
+                "command again with --resume"
+            ) from error
     return summary
 
 
-def _on_cluster(tasks: Iterator[Any], scheduler: str, target: str, tell: Tell) -> Iterator[TaskResult]:
+def _take(results: Results, pending: int, total: int, report: Progress) -> None:
+    """Count what is done; the rows are written already."""
+    with closing(results):  # whatever happens, no process stays behind
+        done = total - pending
+        report(done, total)
+        for result in results:
+            done += len(result.rows)
+            report(done, total)
+
+
+def _on_cluster(tasks: Iterator[BatchTask], scheduler: str, target: str, tell: Tell) -> Results:
     from cytodisk.study.batch.cluster import run_on_cluster
 
-    return run_on_cluster(tasks, scheduler, target=target, tell=tell)
+    yield from run_on_cluster(tasks, scheduler, target=target, tell=tell)
 
 
 def _start(store: Store, batch: Batch, target: str, resume: bool, overwrite: bool) -> dict[str, Any]:
