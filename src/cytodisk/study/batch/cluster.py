@@ -9,13 +9,15 @@ from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import chain, count, islice
+from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any, Generic, TypeVar
 from uuid import uuid4
 
 from cytodisk.errors import CytodiskError, MissingPartError, ParameterError, StudyError
+from cytodisk.io.url_store import is_url
 from cytodisk.study.batch.cluster_workers import Tell, Workers
-from cytodisk.study.batch.on_worker import begin_run, give_up, single_inputs
+from cytodisk.study.batch.on_worker import as_seen_by_all, begin_run, give_up, single_inputs
 from cytodisk.study.batch.task import BatchTask, TaskResult, run_task
 
 Task = TypeVar("Task")
@@ -69,16 +71,17 @@ def run_on_cluster(
         The scheduler does not answer or is lost, no worker comes, or a worker has another version of
         cytodisk or does not see the target.
     """
+    target = target if is_url(target) else str(Path(target).absolute())
     rest = iter(tasks)
     first = next(rest, None)
     if first is None:
         return
     with connected(address) as client:
         run = begin_run(target)
-        shared = (target, run, *(str(item.masks) for item in first.inputs))
+        shared = (target, run, *(str(item.masks.absolute()) for item in first.inputs))
         workers = Workers(client, address, tell, wait_s, shared)
         flight = Flight(client, workers, _run_in_scratch, single_inputs, give_up)
-        yield from flight.results(replace(task, run=run) for task in chain([first], rest))
+        yield from flight.results(as_seen_by_all(task, target, run) for task in chain([first], rest))
 
 
 @contextmanager
@@ -133,7 +136,7 @@ def connected(address: str) -> Iterator[Any]:
 
 async def _greet(address: str) -> None:
     """Connect once, because `Client` waits for ever where something listens that never answers."""
-    from distributed.core import connect
+    from distributed.comm import connect  # type: ignore[attr-defined]
 
     comm = await asyncio.wait_for(connect(address, timeout=CONNECT_S), CONNECT_S)
     comm.abort()
