@@ -13,6 +13,7 @@ from cytodisk.errors import StudyError, WriteError
 from cytodisk.study.batch.child_process import ChildProcess
 from cytodisk.study.batch.inputs import BatchInput
 
+_STARTS = 3  # of a process that is killed before it is ready
 _LARGE_MB = 500.0  # a process that has been as large is not used again, so that its memory is given back
 
 
@@ -111,8 +112,7 @@ class ChildPool:
         if code == -signal.SIGKILL:
             reason = "its process was killed (signal 9), as the system does when memory is short"
             return Outcome("killed", reason, {"log": words})
-        cause = f"died of {signal.Signals(-code).name}" if code < 0 else f"ended with exit code {code}"
-        return Outcome("crashed", f"its process {cause}", {"log": words})
+        return Outcome("crashed", f"its process {_cause(code)}", {"log": words})
 
     def _idle_child(self) -> ChildProcess:
         with self._lock:
@@ -124,15 +124,20 @@ class ChildPool:
         return self._new_child()
 
     def _new_child(self) -> ChildProcess:
-        with self._lock:
+        for _ in range(_STARTS):
+            with self._lock:
+                self._check_open()
+                child = ChildProcess()
+                self._all.add(child)
+            if child.wait_until_ready():
+                return child
+            code, words = self._end(child)
             self._check_open()
-            child = ChildProcess()
-            self._all.add(child)
-        if not child.wait_until_ready():
-            _, words = self._end(child)
-            self._check_open()
-            raise StudyError(f"no process for the inputs can be started: {words or 'it said nothing'}")
-        return child
+            if code >= 0:
+                break  # it was not killed: there is something wrong with it
+        raise StudyError(
+            f"no process for the inputs can be started ({_cause(code)}): {words or 'no message'}"
+        )
 
     def _give_back(self, child: ChildProcess) -> None:
         with self._lock:
@@ -150,3 +155,7 @@ class ChildPool:
     def _check_open(self) -> None:
         if self._closed:
             raise StudyError("the run was stopped: run the same command again with --resume")
+
+
+def _cause(code: int) -> str:
+    return f"died of {signal.Signals(-code).name}" if code < 0 else f"ended with exit code {code}"

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from cytodisk.errors import OtherRunError, StudyError, WriteError
-from cytodisk.io.provenance_file import PROVENANCE, differences
+from cytodisk.io.provenance_file import PROVENANCE, command_of, differences
 from cytodisk.io.store import Store
 from cytodisk.study.batch.batch_file import Batch
 from cytodisk.study.batch.grouping import make_tasks
@@ -162,26 +162,38 @@ def _on_cluster(tasks: Iterator[BatchTask], scheduler: str, target: str, tell: T
 def _start(store: Store, batch: Batch, target: str, resume: bool, overwrite: bool) -> dict[str, Any]:
     """Make room for the batch; its provenance, which is written first."""
     provenance = _describe(batch)
-    text = store.read_text(PROVENANCE)
-    there = None if text is None else json.loads(text)
+    there = _read_provenance(store)
     if there is None:
         if any(not name.startswith(".") for name in store.names("")):
             raise StudyError(f"output folder {target} is not empty and holds no batch: pass another folder")
+    elif there.get("run") != "batch":
+        raise OtherRunError(
+            f"output folder {target} holds a study of {command_of(there)}: pass another folder for a batch"
+        )
     elif overwrite:
         _note(store, there | {"status": "being replaced", "fingerprint": {}})
         for name in _OWN:
             store.remove(name)
     elif not resume:
         raise StudyError(
-            f"output folder {target} holds a study: pass --resume to go on, --overwrite to replace it"
+            f"output folder {target} holds a batch: pass --resume to go on, --overwrite to replace it"
         )
-    elif there.get("fingerprint") != provenance["fingerprint"] or there.get("run") != "batch":
+    elif there.get("fingerprint") != provenance["fingerprint"]:
         raise OtherRunError(
             f"output folder {target} holds another run ({differences(there, provenance)}): "
             "pass --overwrite to replace it, or another folder"
         )
     _note(store, provenance)
     return provenance
+
+
+def _read_provenance(store: Store) -> dict[str, Any] | None:
+    """What the folder says of its run; None if that cannot be read, or is none."""
+    try:
+        found = json.loads(store.read_text(PROVENANCE) or "null")
+    except json.JSONDecodeError:
+        return None
+    return found if isinstance(found, dict) and "fingerprint" in found else None
 
 
 def _describe(batch: Batch) -> dict[str, Any]:
