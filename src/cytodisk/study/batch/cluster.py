@@ -226,7 +226,10 @@ class Flight(Generic[Task, Result]):
                 self._workers.check_all()  # a worker that does not fit is the likely cause
                 raise fault
             self._again += self._parts(task)
-            return [] if self._parts(task) else [self._given_up(task, f"workers died of it: {fault}")]
+            if self._parts(task):
+                return []
+            deaths = f"{fault.allowed_failures + 1} workers died while they were at it"
+            return [self._given_up(task, f"{deaths}, the last one at {fault.last_worker.address}")]
         try:
             found = future.result(timeout=_RESULT_S)
         except TimeoutError:  # its worker died with the result, and another one is at it
