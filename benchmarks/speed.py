@@ -6,7 +6,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,7 @@ from cytodisk.arrays import BoolArray
 from cytodisk.disk.mapping import map_to_disk
 
 _DEFAULT_DATA = Path(__file__).parents[2] / "shared" / "data"
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _FIRST_CALL = """
 import time
 start = time.perf_counter()
@@ -34,18 +34,20 @@ print(loaded - start, time.perf_counter() - loaded)
 
 def restart_with_one_thread() -> None:
     """Start this script anew unless it is held to one thread: the libraries ask when they are loaded."""
-    if any(os.environ.get(name) != "1" for name in _THREADS):
-        os.execve(sys.executable, [sys.executable, *sys.argv], os.environ | dict.fromkeys(_THREADS, "1"))
+    if any(os.environ.get(name) != "1" for name in THREADS):
+        os.execve(sys.executable, [sys.executable, *sys.argv], os.environ | dict.fromkeys(THREADS, "1"))
 
 
-def median_seconds(call: Callable[[], object], repeats: int) -> float:
+def median_seconds(
+    call: Callable[[], object], repeats: int, clock: Callable[[], float] = time.perf_counter
+) -> float:
     """Median time of a call, after one that does not count."""
     call()
     seconds = []
     for _ in range(repeats):
-        start = time.perf_counter()
+        start = clock()
         call()
-        seconds.append(time.perf_counter() - start)
+        seconds.append(clock() - start)
     return float(np.median(seconds))
 
 
@@ -62,8 +64,10 @@ def twice_as_large(mask: BoolArray) -> BoolArray:
     return mask.repeat(2, axis=0).repeat(2, axis=1)
 
 
-def print_doubling(data: Path, repeats: int) -> None:
-    """Print what the same shape costs when it is drawn twice as large."""
+def doubling(
+    data: Path, repeats: int, clock: Callable[[], float] = time.perf_counter
+) -> Iterator[tuple[str, float, float, list[int]]]:
+    """Each shape's name, its seconds, those when it is drawn twice as large, and Newton steps of both."""
     pairs = {
         "disk": (simulate.disk(40.0), simulate.disk(80.0)),
         "ellipse": (simulate.ellipse((16.0, 80.0)), simulate.ellipse((32.0, 160.0))),
@@ -76,11 +80,16 @@ def print_doubling(data: Path, repeats: int) -> None:
     for path in sorted((data / "reference_masks").glob("*.tif")):
         mask = tifffile.imread(path) > 0
         pairs[path.stem + " ×2"] = mask, twice_as_large(mask)
-    print(f"\n{'shape':<18}{'seconds':>9}{'twice as large':>16}{'ratio':>7}{'steps':>7}{'then':>6}")
     for name, (small, large) in pairs.items():
-        before = median_seconds(lambda small=small: map_to_disk(small), repeats)
-        after = median_seconds(lambda large=large: map_to_disk(large), repeats)
-        steps = [map_to_disk(mask).steps for mask in (small, large)]
+        before = median_seconds(lambda small=small: map_to_disk(small), repeats, clock)
+        after = median_seconds(lambda large=large: map_to_disk(large), repeats, clock)
+        yield name, before, after, [map_to_disk(mask).steps for mask in (small, large)]
+
+
+def print_doubling(data: Path, repeats: int) -> None:
+    """Print what the same shape costs when it is drawn twice as large."""
+    print(f"\n{'shape':<18}{'seconds':>9}{'twice as large':>16}{'ratio':>7}{'steps':>7}{'then':>6}")
+    for name, before, after, steps in doubling(data, repeats):
         print(f"{name:<18}{before:>9.3f}{after:>16.3f}{after / before:>7.2f}{steps[0]:>7}{steps[1]:>6}")
 
 

@@ -45,6 +45,10 @@ class StudyError(CytodiskError, OSError):
     """A study folder cannot be written, read or resumed."""
 
 
+class WriteError(StudyError):
+    """Results cannot be written, as on a full disk."""
+
+
 class OtherRunError(StudyError):
     """A study folder holds the results of another run."""
 

@@ -7,7 +7,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
-from cytodisk.errors import CytodiskError, StudyError
+from cytodisk.errors import CytodiskError, WriteError
 
 
 @contextmanager
@@ -26,7 +26,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
 
     Raises
     ------
-    StudyError
+    WriteError
         The folder does not exist or cannot be written.
     """
     target = Path(path)
@@ -37,7 +37,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     except CytodiskError:
         raise
     except OSError as error:
-        raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
+        raise WriteError(f"cannot write {target}: {error.strerror or error}") from error
     finally:
         with suppress(OSError):  # the error that matters is on its way already
             temporary.unlink(missing_ok=True)

@@ -14,9 +14,17 @@ def test_a_log_gets_a_line_every_half_minute(
     for done in (6, 20, 24, 30, 36):
         lines.report(done, 36)
     assert capsys.readouterr().err.splitlines() == [
-        "frames of 3 methods 24/36, 0.6 frames/s",
+        "frames of 3 methods 24/36, 0.6 frames/s, 20 s left",
         "frames of 3 methods 36/36, 0.5 frames/s",
     ]
+
+
+@pytest.mark.parametrize(
+    ("a_second", "words"),
+    [(1234.5, "1234 inputs/s"), (0.25, "0.25 inputs/s"), (0.05, "3 inputs/min"), (1 / 1800, "2 inputs/h")],
+)
+def test_a_rate_is_said_over_a_time_in_which_something_happens(a_second: float, words: str) -> None:
+    assert console._rate(a_second, "inputs") == words
 
 
 @pytest.mark.parametrize("quiet", [False, True])

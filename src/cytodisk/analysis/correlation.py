@@ -242,7 +242,7 @@ class _Run:
     def _add_to_mean(self, place: tuple[Any, ...], chance: FloatArray) -> None:
         merged = tuple(k for axis, k in enumerate(place) if axis != self._sector)
         known = np.isfinite(chance)
-        self._total[merged] += np.where(known, chance, 0.0)
+        self._total[merged] += chance if known.all() else np.where(known, chance, 0.0)
         self._known[merged] += known
 
     def _chance(self) -> dict[str, Any]:
@@ -304,9 +304,7 @@ def drifting_shares(a: xr.DataArray, b: xr.DataArray) -> dict[str, float]:
 
 def _largest(curves: FloatArray) -> FloatArray:
     """Largest magnitude along axis 0, NaN left out; NaN where there is nothing."""
-    magnitude = np.abs(curves)
-    nothing = np.isnan(magnitude).all(axis=0)
-    return np.where(nothing, np.nan, np.where(np.isnan(magnitude), -1.0, magnitude).max(axis=0))
+    return np.asarray(np.fmax.reduce(np.abs(curves), axis=0))
 
 
 def _threshold(null: FloatArray) -> FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cytodisk.analysis.series import standardised
-from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
 
 _CONSTANT = 1e-12  # share of the mean square that a variance must reach, else it is rounding
 
@@ -58,17 +58,39 @@ class LaggedSeries:
         square_b = self._product(self._present, values**2) / both
         variance_a = variance_of(square_a, mean_a)
         variance_b = variance_of(square_b, mean_b)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            found = self._product(self._values, values) / both - mean_a * mean_b
-            found /= np.sqrt(variance_a)
-            found /= np.sqrt(variance_b)
-        np.clip(found, -1.0, 1.0, out=found)
-        return np.where(count >= min_pairs, found, np.nan), count
+        found = self._product(self._values, values)
+        enough = np.broadcast_to(count >= min_pairs, found.shape)
+        parts = mean_a, mean_b, np.sqrt(variance_a), np.sqrt(variance_b), both
+        for of_lag, known, *by_lag in zip(
+            found, enough, *parts, strict=True
+        ):  # of a lag all stays in the cache
+            _pearson(of_lag, known, *by_lag)
+        return found, count
 
     def _product(self, lagged: FloatArray, others: FloatArray) -> FloatArray:
         """Sums over time of a (T, K, H) with a (T, R), shape (K, H, R)."""
         frames, lags, series = lagged.shape
         return np.asarray(lagged.reshape(frames, -1).T @ others).reshape(lags, series, -1)
+
+
+def _pearson(
+    products: FloatArray,
+    known: BoolArray,
+    mean_a: FloatArray,
+    mean_b: FloatArray,
+    spread_a: FloatArray,
+    spread_b: FloatArray,
+    pairs: FloatArray,
+) -> None:
+    """Make sums of products (H, R) correlations, NaN where they are not known."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        products /= pairs
+        products -= mean_a * mean_b
+        products /= spread_a
+        products /= spread_b
+    np.clip(products, -1.0, 1.0, out=products)
+    if not known.all():
+        products[~known] = np.nan
 
 
 def filled(series: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -2,6 +2,7 @@
 
 import typer
 
+from cytodisk.cli.batch import BATCH_HELP, batch_command
 from cytodisk.cli.compare import COMPARE_HELP, compare_command
 from cytodisk.cli.console import fail
 from cytodisk.cli.correlate import CORRELATE_HELP, REPORT_HELP, correlate_command, report_command
@@ -20,6 +21,7 @@ app = typer.Typer(
 )
 app.command("map", help=MAP_HELP)(map_command)
 app.command("movie", help=MOVIE_HELP)(movie_command)
+app.command("batch", help=BATCH_HELP)(batch_command)
 app.command("correlate", help=CORRELATE_HELP)(correlate_command)
 app.command("shapes", help=SHAPES_HELP)(shapes_command)
 app.command("report", help=REPORT_HELP)(report_command)

@@ -48,6 +48,7 @@ Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace the study 
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 _SECONDS_A_LINE = 30.0
+_RATE_OVER_S = 600.0  # what is counted may take minutes each
 RESUME = "run it again with --resume"
 
 
@@ -124,14 +125,16 @@ def progress_bar(
     console = Console(stderr=True)
     hidden = quiet or not console.is_terminal
     log = None if quiet or console.is_terminal else _ProgressLines(unit)
-    with Progress(*columns, console=console, disable=hidden, transient=True) as bar:
+    with Progress(
+        *columns, console=console, disable=hidden, transient=True, speed_estimate_period=_RATE_OVER_S
+    ) as bar:
         task = bar.add_task(unit, total=total, rate="")
 
         def report(done: int, total: int) -> None:
             if log is not None:
                 log.report(done, total)
             speed = bar.tasks[task].speed
-            rate = f"{speed:.1f} {unit.split()[0]}/s" if speed else ""
+            rate = _rate(speed, unit) if speed else ""
             bar.update(task, completed=done, total=total, rate=rate)
 
         try:
@@ -148,8 +151,23 @@ def progress_bar(
             print("this study is complete already: nothing was run again", file=sys.stderr)
 
 
+def _rate(a_second: float, unit: str) -> str:
+    """As "1.2 cells/s", or with a longer time where that would be a small number."""
+    rates = {"s": a_second, "min": 60 * a_second, "h": 3600 * a_second}
+    time, rate = next((pair for pair in rates.items() if pair[1] >= 0.1), ("h", rates["h"]))
+    return f"{rate:{'.0f' if rate >= 10 else '.2g'}} {unit.split()[0]}/{time}"
+
+
+def _duration(seconds: float) -> str:
+    """As "3 min"."""
+    for unit, name in ((86400, "days"), (3600, "h"), (60, "min")):
+        if seconds >= 2 * unit:
+            return f"{seconds / unit:.0f} {name}"
+    return f"{seconds:.0f} s"
+
+
 class _ProgressLines:
-    """Progress in plain lines, the first after 30 s, as "cells 24/36, 1.2 cells/s"."""
+    """Progress in plain lines, the first after 30 s, as "cells 24/36, 1.2 cells/s, 10 s left"."""
 
     def __init__(self, unit: str) -> None:
         self.unit = unit
@@ -164,7 +182,8 @@ class _ProgressLines:
             return
         self.said = now
         rate = (done - self.first) / (now - self.started)
-        print(f"{self.unit} {done}/{total}, {rate:.2g} {self.unit.split()[0]}/s", file=sys.stderr, flush=True)
+        left = f", {_duration((total - done) / rate)} left" if rate and done < total else ""
+        print(f"{self.unit} {done}/{total}, {_rate(rate, self.unit)}{left}", file=sys.stderr, flush=True)
 
 
 def _is_interrupt(error: BaseException | None) -> bool:

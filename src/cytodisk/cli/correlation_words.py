@@ -44,7 +44,7 @@ def say_replaced(console: "Console", before: dict[str, Any] | None, now: dict[st
 def _doubts(row: Any, settings: dict[str, Any]) -> Iterator[str]:
     """What speaks against a cell's correlations."""
     from cytodisk.analysis.series import DRIFTING_SHARE
-    from cytodisk.study.correlation_settings import VELOCITIES
+    from cytodisk.study.channel_names import VELOCITIES
 
     if row["status"] != "ok":
         yield f" left out: {row['reason']}"

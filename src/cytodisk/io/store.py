@@ -11,9 +11,11 @@ from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO, Protocol
 
-from cytodisk.errors import StudyError
+from cytodisk.errors import CytodiskError, StudyError, WriteError
 from cytodisk.files import replacing
 from cytodisk.io.study_folder import alone_in
+
+_WORK = ".work"
 
 
 class Store(Protocol):
@@ -42,6 +44,9 @@ class Store(Protocol):
 
     def alone(self) -> AbstractContextManager[None]:
         """Keep other runs out while the block runs."""
+
+    def work_folder(self) -> AbstractContextManager[Path]:
+        """A local folder to prepare files in, from where `put_file` takes them; it is removed at the end."""
 
 
 @contextmanager
@@ -107,7 +112,7 @@ class FolderStore:
                 with _folder_may_stand():
                     arriving.rename(target)
         except OSError as error:
-            raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
+            raise WriteError(f"cannot write {target}: {error.strerror or error}") from error
         finally:
             shutil.rmtree(arriving, ignore_errors=True)
 
@@ -124,10 +129,24 @@ class FolderStore:
     def alone(self) -> AbstractContextManager[None]:
         return alone_in(self.path)
 
+    @contextmanager
+    def work_folder(self) -> Iterator[Path]:
+        work = self._with_folder(_WORK)
+        try:
+            shutil.rmtree(work, ignore_errors=True)  # of a run that was killed
+            work.mkdir()
+            yield work
+        except CytodiskError:
+            raise
+        except OSError as error:
+            raise WriteError(f"cannot write {work}: {error.strerror or error}") from error
+        finally:
+            shutil.rmtree(work, ignore_errors=True)
+
     def _with_folder(self, key: str) -> Path:
         target = self.path / key
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
+            raise WriteError(f"cannot write {target}: {error.strerror or error}") from error
         return target

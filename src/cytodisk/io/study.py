@@ -242,6 +242,11 @@ def open_study(path: str | os.PathLike[str]) -> Study:
     run = provenance.get("run", "map")
     if run not in ("map", "movie"):
         table, reader = "comparison.csv", "open_comparison"
+        if run == "batch":
+            raise ReadError(
+                f"study {folder} holds a batch: open one of the studies in {folder / 'inputs'}, or read the "
+                "merged tables with pandas.read_parquet"
+            )
         if run == "shapes":
             table, reader = "shapes.csv", "open_shapes"
         raise ReadError(

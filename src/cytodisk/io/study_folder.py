@@ -14,7 +14,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from cytodisk.errors import StudyError
+from cytodisk.errors import StudyError, WriteError
 from cytodisk.files import lock, replacing
 from cytodisk.io.merging import merge_tables, repeating, write_rows
 from cytodisk.io.provenance_file import PROVENANCE, read_provenance, write_json
@@ -107,7 +107,7 @@ def alone_in(path: str | os.PathLike[str]) -> Iterator[None]:
     except BlockingIOError as error:
         raise StudyError(f"output folder {folder}: another run is writing there, wait for its end") from error
     except OSError as error:
-        raise StudyError(f"output folder {folder} cannot be written: {error.strerror}") from error
+        raise WriteError(f"output folder {folder} cannot be written: {error.strerror}") from error
     try:
         yield
     finally:
@@ -177,7 +177,7 @@ class StudyFolder:
         except StudyError:
             raise
         except OSError as error:
-            raise StudyError(f"output folder {folder} cannot be written: {error.strerror}") from error
+            raise WriteError(f"output folder {folder} cannot be written: {error.strerror}") from error
         return study
 
     @staticmethod

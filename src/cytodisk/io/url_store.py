@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import shutil
+from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from io import BytesIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, BinaryIO
 
 from cytodisk.errors import MissingPartError, StudyError
@@ -48,7 +50,7 @@ class UrlStore:
 
     def write_text(self, key: str, text: str) -> None:
         with self._faults(key, "written"):
-            self._files.makedirs(self._files._parent(self._at(key)), exist_ok=True)
+            self._make_folders([self._at(key)])
             self._files.pipe_file(self._at(key), text.encode())
 
     def open(self, key: str) -> AbstractContextManager[BinaryIO]:
@@ -66,13 +68,21 @@ class UrlStore:
 
     def put_file(self, file: Path, key: str) -> None:
         with self._faults(key, "written"):
-            self._files.makedirs(self._files._parent(self._at(key)), exist_ok=True)
+            self._make_folders([self._at(key)])
             self._files.put_file(str(file), self._at(key))
         file.unlink()
 
     def put_folder(self, folder: Path, key: str) -> None:
-        for file in sorted(path for path in folder.rglob("*") if path.is_file()):
-            self.put_file(file, f"{key}/{file.relative_to(folder).as_posix()}")
+        files = sorted(path for path in folder.rglob("*") if path.is_file())
+        targets = [self._at(f"{key}/{file.relative_to(folder).as_posix()}") for file in files]
+        with self._faults(key, "written"):
+            self._make_folders(targets)
+            self._files.put([str(file) for file in files], targets)
+            self._files.invalidate_cache()
+            # What an earlier study had more goes last: another worker may be writing the same one.
+            if others := sorted({*self._files.find(self._at(key))} - {*targets}):
+                self._files.rm(others)
+        shutil.rmtree(folder)
 
     def remove(self, key: str) -> None:
         with self._faults(key, "removed"):
@@ -84,6 +94,16 @@ class UrlStore:
     def alone(self) -> AbstractContextManager[None]:
         """Nothing: an object store has no locks. The run that began last is the one whose results count."""
         return nullcontext()
+
+    @contextmanager
+    def work_folder(self) -> Iterator[Path]:
+        with TemporaryDirectory(prefix="cytodisk-") as work:
+            yield Path(work)
+
+    def _make_folders(self, files: Iterable[str]) -> None:
+        """Make the folders that files are to stand in, where the place has folders."""
+        for folder in sorted({file.rpartition("/")[0] for file in files}):
+            self._files.makedirs(folder, exist_ok=True)
 
     def _at(self, key: str) -> str:
         return f"{self._root}/{key}"

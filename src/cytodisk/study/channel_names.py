@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+VELOCITIES = ("velocity", "velocity_cell_frame")  # of the edge: no channel can have such a name
 _LONGEST = 24
 
 

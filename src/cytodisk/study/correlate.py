@@ -19,8 +19,9 @@ from cytodisk.arrays import IntArray
 from cytodisk.errors import ParameterError, StationarityWarning, StudyError
 from cytodisk.io.correlation_store import Correlation, write_correlation
 from cytodisk.io.study import Study
+from cytodisk.study.channel_names import VELOCITIES
 from cytodisk.study.chosen_series import chosen_sectors, chosen_series
-from cytodisk.study.correlation_settings import VELOCITIES, CorrelationSettings
+from cytodisk.study.correlation_settings import CorrelationSettings
 from cytodisk.study.correlation_tables import as_table, merged, of_cell, tables_of
 from cytodisk.study.edge_episodes import episode_tables
 from cytodisk.study.versions import installed

@@ -15,7 +15,6 @@ from cytodisk.analysis.surrogates import Null
 from cytodisk.errors import ParameterError
 
 FEWEST_SURROGATES = 19
-VELOCITIES = ("velocity", "velocity_cell_frame")
 
 _LEAST = {"surrogates": 0, "seed": 0, "min_pairs": 3, "max_lag": 0}
 _PAIRS, _LISTS = ("frames", "sectors"), ("skip_lags", "without_frames")

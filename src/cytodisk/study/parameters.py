@@ -11,7 +11,7 @@ from cytodisk.errors import ParameterError
 from cytodisk.files import replacing
 from cytodisk.io.provenance_file import command_of, read_provenance
 from cytodisk.io.study_folder import PARAMETERS
-from cytodisk.study.correlation_settings import VELOCITIES
+from cytodisk.study.channel_names import VELOCITIES
 
 
 class MapParameters(BaseModel):

@@ -10,7 +10,7 @@ from typing import TypeAlias
 from cytodisk.errors import ParameterError, SignalError
 from cytodisk.io.frames import FrameFile
 from cytodisk.io.study_folder import StudyFolder
-from cytodisk.study.correlation_settings import VELOCITIES
+from cytodisk.study.channel_names import VELOCITIES
 
 Progress: TypeAlias = Callable[[int, int], None]
 """Called with (done, in all)."""

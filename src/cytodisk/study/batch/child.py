@@ -16,7 +16,7 @@ from queue import SimpleQueue
 from threading import Thread
 from typing import IO, Any
 
-from cytodisk.errors import CytodiskError, StudyError
+from cytodisk.errors import CytodiskError, WriteError
 from cytodisk.study.batch.compute import compute_input
 from cytodisk.study.batch.inputs import BatchInput
 
@@ -64,10 +64,8 @@ def _answer(item: BatchInput, folder: Path) -> dict[str, Any]:
 
 def _cannot_write(error: BaseException | None) -> bool:
     """Whether an error comes from a disk that is full, or from results that cannot be written at all."""
-    if isinstance(error, StudyError) and isinstance(error.__cause__, OSError):
-        return True
     while error is not None:
-        if isinstance(error, OSError) and error.errno in _NO_ROOM:
+        if isinstance(error, WriteError) or (isinstance(error, OSError) and error.errno in _NO_ROOM):
             return True
         error = error.__cause__ or error.__context__
     return False

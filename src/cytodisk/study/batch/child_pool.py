@@ -9,11 +9,12 @@ from threading import Lock
 from types import TracebackType
 from typing import Any
 
-from cytodisk.errors import StudyError
+from cytodisk.errors import StudyError, WriteError
 from cytodisk.study.batch.child_process import ChildProcess
 from cytodisk.study.batch.inputs import BatchInput
 
-_LARGE_MB = 400.0  # a process that has been as large is not used again, so that its memory is given back
+_STARTS = 3  # of a process that is killed before it is ready
+_LARGE_MB = 500.0  # a process that has been as large is not used again, so that its memory is given back
 
 
 @dataclass(frozen=True)
@@ -88,10 +89,7 @@ class ChildPool:
         if outcome.status in ("crashed", "killed"):
             outcome = self._compute_in(self._new_child(), item, folder, time_limit)
         if outcome.status == "cannot write":
-            raise StudyError(
-                f"{outcome.reason}: the run stops, what was done is kept; mend this (is the disk full?), "
-                "then run the same command again with --resume"
-            )
+            raise WriteError(outcome.reason)
         return outcome
 
     def _compute_in(
@@ -114,8 +112,7 @@ class ChildPool:
         if code == -signal.SIGKILL:
             reason = "its process was killed (signal 9), as the system does when memory is short"
             return Outcome("killed", reason, {"log": words})
-        cause = f"died of {signal.Signals(-code).name}" if code < 0 else f"ended with exit code {code}"
-        return Outcome("crashed", f"its process {cause}", {"log": words})
+        return Outcome("crashed", f"its process {_cause(code)}", {"log": words})
 
     def _idle_child(self) -> ChildProcess:
         with self._lock:
@@ -127,15 +124,20 @@ class ChildPool:
         return self._new_child()
 
     def _new_child(self) -> ChildProcess:
-        with self._lock:
+        for _ in range(_STARTS):
+            with self._lock:
+                self._check_open()
+                child = ChildProcess()
+                self._all.add(child)
+            if child.wait_until_ready():
+                return child
+            code, words = self._end(child)
             self._check_open()
-            child = ChildProcess()
-            self._all.add(child)
-        if not child.wait_until_ready():
-            _, words = self._end(child)
-            self._check_open()
-            raise StudyError(f"no process for the inputs can be started: {words or 'it said nothing'}")
-        return child
+            if code >= 0:
+                break  # it was not killed: there is something wrong with it
+        raise StudyError(
+            f"no process for the inputs can be started ({_cause(code)}): {words or 'no message'}"
+        )
 
     def _give_back(self, child: ChildProcess) -> None:
         with self._lock:
@@ -153,3 +155,7 @@ class ChildPool:
     def _check_open(self) -> None:
         if self._closed:
             raise StudyError("the run was stopped: run the same command again with --resume")
+
+
+def _cause(code: int) -> str:
+    return f"died of {signal.Signals(-code).name}" if code < 0 else f"ended with exit code {code}"

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import chain, count, islice
+from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any, Generic, TypeVar
 from uuid import uuid4
 
 from cytodisk.errors import CytodiskError, MissingPartError, ParameterError, StudyError
+from cytodisk.io.url_store import is_url
 from cytodisk.study.batch.cluster_workers import Tell, Workers
-from cytodisk.study.batch.on_worker import begin_run, give_up, single_inputs
+from cytodisk.study.batch.on_worker import as_seen_by_all, begin_run, give_up, single_inputs
 from cytodisk.study.batch.task import BatchTask, TaskResult, run_task
 
 Task = TypeVar("Task")
@@ -68,16 +71,17 @@ def run_on_cluster(
         The scheduler does not answer or is lost, no worker comes, or a worker has another version of
         cytodisk or does not see the target.
     """
+    target = target if is_url(target) else str(Path(target).absolute())
     rest = iter(tasks)
     first = next(rest, None)
     if first is None:
         return
     with connected(address) as client:
         run = begin_run(target)
-        shared = (target, run, *(str(item.masks) for item in first.inputs))
+        shared = (target, run, *(str(item.masks.absolute()) for item in first.inputs))
         workers = Workers(client, address, tell, wait_s, shared)
         flight = Flight(client, workers, _run_in_scratch, single_inputs, give_up)
-        yield from flight.results(replace(task, run=run) for task in chain([first], rest))
+        yield from flight.results(as_seen_by_all(task, target, run) for task in chain([first], rest))
 
 
 @contextmanager
@@ -104,8 +108,11 @@ def connected(address: str) -> Iterator[Any]:
             "a cluster needs distributed, which is not installed: in the clone of cytodisk type "
             ".venv/bin/pip install -c constraints.txt -e '.[cluster]'"
         ) from error
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters is raised
+    for name in ("distributed", "distributed.client"):  # each has a level of its own
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is raised
     try:
+        with ThreadPoolExecutor(1) as thread:  # there may be an event loop in this one
+            thread.submit(asyncio.run, _greet(address)).result()
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except ValueError as error:
         raise ParameterError(
@@ -116,10 +123,23 @@ def connected(address: str) -> Iterator[Any]:
             f"scheduler {address} does not answer within {CONNECT_S:.0f} s: check the address, that "
             "`dask scheduler` runs there, and that this machine can reach it"
         ) from error
+    except MemoryError as error:  # an answer in another protocol, read as the size of a message
+        raise StudyError(
+            f"what answers at {address} is no Dask scheduler: pass the address that `dask scheduler` prints "
+            "behind `Scheduler at:`, not that of its dashboard"
+        ) from error
     try:
         yield client
     finally:
         client.close(timeout=CONNECT_S)
+
+
+async def _greet(address: str) -> None:
+    """Connect once, because `Client` waits for ever where something listens that never answers."""
+    from distributed.comm import connect  # type: ignore[attr-defined]
+
+    comm = await asyncio.wait_for(connect(address, timeout=CONNECT_S), CONNECT_S)
+    comm.abort()
 
 
 class Flight(Generic[Task, Result]):
@@ -206,7 +226,10 @@ class Flight(Generic[Task, Result]):
                 self._workers.check_all()  # a worker that does not fit is the likely cause
                 raise fault
             self._again += self._parts(task)
-            return [] if self._parts(task) else [self._given_up(task, f"workers died of it: {fault}")]
+            if self._parts(task):
+                return []
+            deaths = f"{fault.allowed_failures + 1} workers died while they were at it"
+            return [self._given_up(task, f"{deaths}, the last one at {fault.last_worker.address}")]
         try:
             found = future.result(timeout=_RESULT_S)
         except TimeoutError:  # its worker died with the result, and another one is at it

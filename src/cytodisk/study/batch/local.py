@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Generator, Iterable
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from itertools import islice
 
@@ -12,7 +12,7 @@ from cytodisk.study.batch.task import BatchTask, TaskResult, run_task
 _WAITING = 2  # tasks a worker, so that a long list of inputs takes no memory
 
 
-def run_here(tasks: Iterable[BatchTask], workers: int) -> Iterator[TaskResult]:
+def run_here(tasks: Iterable[BatchTask], workers: int) -> Generator[TaskResult, None, None]:
     """Do tasks, several at a time.
 
     Parameters

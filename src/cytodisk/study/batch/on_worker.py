@@ -63,6 +63,27 @@ def what_is_hidden(target: str, run: str, *files: str) -> str:
     return ""
 
 
+def as_seen_by_all(task: BatchTask, target: str, run: str) -> BatchTask:
+    """A task of a run with full paths, since workers are in other folders.
+
+    Parameters
+    ----------
+    task : BatchTask
+    target : str
+    run : str
+        As `begin_run` returns it.
+
+    Returns
+    -------
+    BatchTask
+    """
+    inputs = (
+        replace(item, masks=item.masks.absolute(), signal=item.signal and item.signal.absolute())
+        for item in task.inputs
+    )
+    return replace(task, inputs=tuple(inputs), target=target, run=run)
+
+
 def single_inputs(task: BatchTask) -> list[BatchTask]:
     """Tasks of one input each; none if it has no more than one."""
     return [replace(task, inputs=(item,)) for item in task.inputs] if len(task.inputs) > 1 else []

@@ -1,0 +1,186 @@
+"""The studies of a batch → one set of tables, streamed, in the order of the batch file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.csv
+import pyarrow.parquet as pq
+
+from cytodisk.errors import StudyError
+from cytodisk.io.merging import merge_tables, write_rows
+from cytodisk.io.store import Store
+from cytodisk.io.study_folder import MAP_TABLES, MOVIE_TABLES
+from cytodisk.io.tables import Columns, schema
+from cytodisk.study.batch.batch_file import Batch
+from cytodisk.study.batch.inputs import BatchInput, Value
+from cytodisk.study.batch.inputs_table import INPUT_COLUMNS
+from cytodisk.study.batch.rows import InputRow, read_row, study_key
+
+_TIMES = ("seconds",)  # columns with running times, which differ from run to run
+INPUTS = "inputs"
+
+
+@dataclass(frozen=True)
+class _Done:
+    """An input with a study, and the units of its tables."""
+
+    item: BatchInput
+    units: tuple[str, str]
+
+
+def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None]) -> list[str]:
+    """Write the merged tables.
+
+    They depend on the inputs alone, to the last bit: not on the number of workers, nor on whether the run was
+    stopped and resumed. So columns with running times are not in them.
+
+    Parameters
+    ----------
+    store : Store
+        With a row for every input.
+    batch : Batch
+    saw : callable
+        Called with the row of each input.
+
+    Returns
+    -------
+    list of str
+        What a user should know of the tables.
+
+    Raises
+    ------
+    StudyError
+        A row or a study is missing, or the tables cannot be written.
+    """
+    own = _own_columns(batch)
+    done: list[_Done] = []
+    with store.work_folder() as folder:
+        file = folder / f"{INPUTS}.parquet"
+        write_rows(_input_rows(store, batch, done, saw), schema((*own, *INPUT_COLUMNS), ""), file)
+        _write_csv(file, folder / f"{INPUTS}.csv")
+        length, velocity = (_common([one.units[k] for one in done]) for k in range(2))
+        names = [f"{INPUTS}.csv", file.name]
+        for name, columns in _tables(batch).items():
+            columns_schema = schema((*own, *columns), length, velocity)
+            file = folder / f"{name}.parquet"
+            merge_tables(_parts(store, done, name, batch, columns_schema), columns_schema, file)
+            names.append(file.name)
+        for name in names:
+            store.put_file(folder / name, name)
+    if " or " not in length + velocity:
+        return []
+    return [
+        "inputs have different units: the columns length_unit and velocity_unit of inputs.parquet say which "
+        "input has which; give pixel_size_um and frame_interval_s to all inputs"
+    ]
+
+
+def _own_columns(batch: Batch) -> Columns:
+    """The input's name, and the columns that the user gives."""
+    types = [_type([item.columns[k] for item in batch.inputs]) for k in range(len(batch.columns))]
+    own = tuple((name, kind, "") for name, kind in zip(batch.columns, types, strict=True))
+    return (("input", pa.string(), ""), *own)
+
+
+def _type(values: Sequence[Value]) -> Any:
+    given = [value for value in values if value is not None]
+    if given and all(isinstance(value, bool) for value in given):
+        return pa.bool_()
+    if any(isinstance(value, bool | str) for value in given) or not given:
+        return pa.string()
+    return pa.int64() if all(isinstance(value, int) for value in given) else pa.float64()
+
+
+def _values(batch: Batch, item: BatchInput, own: Any) -> dict[str, Any]:
+    """The user's columns of an input, as the types of the table want them."""
+    texts = {
+        name: str(value) if value is not None and pa.types.is_string(own.field(name).type) else value
+        for name, value in zip(batch.columns, item.columns, strict=True)
+    }
+    return {"input": item.name} | texts
+
+
+def _input_rows(
+    store: Store, batch: Batch, done: list[_Done], saw: Callable[[InputRow], None]
+) -> Iterator[dict[str, Any]]:
+    """Rows of the table of inputs; on the way, those that have a study are noted."""
+    own = schema(_own_columns(batch), "")
+    for item in batch.inputs:
+        row = read_row(store, item.name)
+        if row is None:
+            raise StudyError(f"input {item.name} has not been done: run the same command again with --resume")
+        saw(row)
+        if row.complete:
+            done.append(_Done(item, (row.length_unit, row.velocity_unit)))
+        yield _values(batch, item, own) | _columns_of(row) | _paths(batch, item)
+
+
+def _columns_of(row: InputRow) -> dict[str, Any]:
+    return {name: getattr(row, name) for name, _, _ in INPUT_COLUMNS if name not in ("masks", "signal")}
+
+
+def _paths(batch: Batch, item: BatchInput) -> dict[str, str | None]:
+    folder = batch.path.absolute().parent
+    return {
+        "masks": _shown(item.masks, folder),
+        "signal": None if item.signal is None else _shown(item.signal, folder),
+    }
+
+
+def _shown(path: Path, folder: Path) -> str:
+    return (path.relative_to(folder) if path.is_relative_to(folder) else path).as_posix()
+
+
+def _write_csv(table: Path, target: Path) -> None:
+    with pq.ParquetFile(table) as rows, pa.csv.CSVWriter(target, rows.schema_arrow) as writer:
+        for some in rows.iter_batches():
+            writer.write_batch(some)
+
+
+def _common(units: Sequence[str]) -> str:
+    return " or ".join(sorted(set(units)))
+
+
+def _tables(batch: Batch) -> dict[str, Columns]:
+    """Columns of the merged tables: all that any kind of input has."""
+    kinds = {item.kind for item in batch.inputs}
+    kept = [tables for kind, tables in (("map", MAP_TABLES), ("movie", MOVIE_TABLES)) if kind in kinds]
+    merged: dict[str, dict[str, Any]] = {}
+    for tables in kept:
+        for name, columns in {"cells": tables.cells, **tables.others}.items():
+            known = merged.setdefault(name, {})
+            known |= {column[0]: column for column in columns if column[0] not in (*known, *_TIMES)}
+    return {name: tuple(columns.values()) for name, columns in merged.items()}
+
+
+def _parts(store: Store, done: Sequence[_Done], name: str, batch: Batch, columns: Any) -> Iterator[Any]:
+    """A table of all studies that have it, a row group at a time."""
+    of_maps = {"cells", *MAP_TABLES.others}
+    for one in done:
+        if one.item.kind == "map" and name not in of_maps:
+            continue
+        given = _values(batch, one.item, columns)
+        key = f"{study_key(one.item.name)}/{name}.parquet"
+        try:
+            with store.open(key) as opened, pq.ParquetFile(opened) as file:
+                for group in range(file.num_row_groups):
+                    yield _widened(file.read_row_group(group), given, columns)
+        except pa.ArrowException as error:
+            raise StudyError(f"{key} is damaged: {error}") from error
+
+
+def _widened(table: Any, given: dict[str, Any], columns: Any) -> Any:
+    """A study's table with the input's columns in front, and nulls for what only others have."""
+    found = set(table.column_names)
+    arrays = [
+        table.column(field.name).cast(field.type)
+        if field.name in found
+        else pa.repeat(pa.scalar(given.get(field.name), field.type), len(table))
+        for field in columns
+    ]
+    return pa.table(arrays, schema=columns)

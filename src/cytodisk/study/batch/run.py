@@ -1,0 +1,268 @@
+"""A batch: many inputs in one go, and their tables merged."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import platform
+from collections import Counter
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from cytodisk.errors import OtherRunError, StudyError, WriteError
+from cytodisk.io.provenance_file import PROVENANCE, command_of, differences
+from cytodisk.io.store import Store
+from cytodisk.study.batch.batch_file import Batch
+from cytodisk.study.batch.grouping import make_tasks
+from cytodisk.study.batch.inputs import BatchInput
+from cytodisk.study.batch.local import run_here
+from cytodisk.study.batch.merged import merge_batch
+from cytodisk.study.batch.rows import ROWS, STUDIES, InputRow, files_mark, read_row
+from cytodisk.study.batch.task import BatchTask, TaskResult, open_store
+from cytodisk.study.run_steps import Progress, check_options, silent
+from cytodisk.study.versions import NUMERIC, installed
+
+_CLUSTER_TASK_S = 10.0
+_MOST_NAMED = 5
+_MOST_FAILED = 20
+_OWN = (
+    ROWS,
+    STUDIES,
+    *(f"{name}.parquet" for name in ("inputs", "cells", "windows", "edge", "consistency")),
+    "inputs.csv",
+)
+
+Results: TypeAlias = Generator[TaskResult, None, None]
+Tell: TypeAlias = Callable[[str], None]
+"""Called with a sentence for the user."""
+
+
+@dataclass
+class BatchSummary:
+    """How a batch went.
+
+    Attributes
+    ----------
+    out : str
+        Folder of the results.
+    statuses : Counter of str
+        Number of inputs by status.
+    failed : list of InputRow
+        The first twenty that are not "ok".
+    remarks : list of str
+        What else the user should know.
+    """
+
+    out: str
+    statuses: Counter[str] = field(default_factory=Counter)
+    failed: list[InputRow] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
+
+    def count(self, row: InputRow) -> None:
+        """Take an input into account."""
+        self.statuses[row.status] += 1
+        if row.status != "ok" and len(self.failed) < _MOST_FAILED:
+            self.failed.append(row)
+
+
+def run_batch(
+    batch: Batch,
+    out: str | os.PathLike[str],
+    *,
+    workers: int = 1,
+    time_limit: float | None = None,
+    resume: bool = False,
+    overwrite: bool = False,
+    scheduler: str | None = None,
+    progress: Progress | None = None,
+    tell: Tell = print,
+) -> BatchSummary:
+    """Run all inputs of a batch, each in a process of its own, and merge their tables.
+
+    Parameters
+    ----------
+    batch : Batch
+        As `read_batch` returns it.
+    out : path-like
+        Folder of the results: a study for each input in inputs/, its row in rows/, and the merged tables.
+    workers : int
+        Processes on this machine. The merged tables do not depend on it.
+    time_limit : float, optional
+        Seconds for one input; one that takes longer is stopped, and has a row that says so.
+    resume : bool
+        Go on in a folder that holds part of the same batch: inputs that went well are not done again, those
+        that failed are tried anew, a movie that was stopped goes on from its last frame. The batch file may
+        have more inputs than before.
+    overwrite : bool
+        Remove the results that are there.
+    scheduler : str, optional
+        Address of a Dask scheduler, whose workers do the inputs.
+    progress : callable, optional
+        Called with (inputs done, inputs in all).
+    tell : callable
+        Called with sentences on workers of a cluster.
+
+    Returns
+    -------
+    BatchSummary
+
+    Raises
+    ------
+    ParameterError
+        `workers` is below 1, or both `resume` and `overwrite` are set.
+    StudyError
+        The folder cannot be used, or results cannot be written, as on a full disk.
+    """
+    check_options(workers, resume, overwrite)
+    target = os.fspath(out)
+    store = open_store(target)
+    with store.alone():
+        provenance = _start(store, batch, target, resume, overwrite)
+        summary = BatchSummary(target)
+        pending = _pending(store, batch, summary) if resume else list(batch.inputs)
+        if scheduler is None:
+            tasks = make_tasks(pending, target, seconds=0, time_limit=time_limit)
+            results = run_here(tasks, min(workers, max(1, len(pending))))
+        else:
+            tasks = make_tasks(pending, target, seconds=_CLUSTER_TASK_S, time_limit=time_limit)
+            results = _on_cluster(tasks, scheduler, target, tell)
+        try:
+            _take(results, len(pending), len(batch.inputs), progress or silent)
+            summary.remarks += merge_batch(store, batch, summary.count)
+            _note(store, provenance | {"status": "complete", "finished": _now(), "warnings": summary.remarks})
+        except WriteError as error:
+            raise WriteError(
+                f"{error}: the run stops, what was done is kept; mend this (is the disk full?), then run the "
+                "command again with --resume"
+            ) from error
+    return summary
+
+
+def _take(results: Results, pending: int, total: int, report: Progress) -> None:
+    """Count what is done; the rows are written already."""
+    with closing(results):  # whatever happens, no process stays behind
+        done = total - pending
+        report(done, total)
+        for result in results:
+            done += len(result.rows)
+            report(done, total)
+
+
+def _on_cluster(tasks: Iterator[BatchTask], scheduler: str, target: str, tell: Tell) -> Results:
+    from cytodisk.study.batch.cluster import run_on_cluster
+
+    yield from run_on_cluster(tasks, scheduler, target=target, tell=tell)
+
+
+def _start(store: Store, batch: Batch, target: str, resume: bool, overwrite: bool) -> dict[str, Any]:
+    """Make room for the batch; its provenance, which is written first."""
+    provenance = _describe(batch)
+    there = _read_provenance(store)
+    if there is None:
+        if any(not name.startswith(".") for name in store.names("")):
+            raise StudyError(f"output folder {target} is not empty and holds no batch: pass another folder")
+    elif there.get("run") != "batch":
+        raise OtherRunError(
+            f"output folder {target} holds a study of {command_of(there)}: pass another folder for a batch"
+        )
+    elif overwrite:
+        _note(store, there | {"status": "being replaced", "fingerprint": {}})
+        for name in _OWN:
+            store.remove(name)
+    elif not resume:
+        raise StudyError(
+            f"output folder {target} holds a batch: pass --resume to go on, --overwrite to replace it"
+        )
+    elif there.get("fingerprint") != provenance["fingerprint"]:
+        raise OtherRunError(
+            f"output folder {target} holds another run ({differences(there, provenance)}): "
+            "pass --overwrite to replace it, or another folder"
+        )
+    _note(store, provenance)
+    return provenance
+
+
+def _read_provenance(store: Store) -> dict[str, Any] | None:
+    """What the folder says of its run; None if that cannot be read, or is none."""
+    try:
+        found = json.loads(store.read_text(PROVENANCE) or "null")
+    except json.JSONDecodeError:
+        return None
+    return found if isinstance(found, dict) and "fingerprint" in found else None
+
+
+def _describe(batch: Batch) -> dict[str, Any]:
+    files = {"batch file": batch.path} | ({} if batch.table is None else {"table": batch.table})
+    return {
+        "run": "batch",
+        "status": "running",
+        "fingerprint": {"cytodisk": installed(("cytodisk",))["cytodisk"], "packages": installed(NUMERIC)},
+        "inputs": {role: _described_file(path) for role, path in files.items()},
+        "columns": list(batch.columns),
+        "versions": installed(),
+        "python": platform.python_version(),
+        "platform": platform.platform(),
+        "started": _now(),
+    }
+
+
+def _described_file(path: Path) -> dict[str, str]:
+    content = path.read_bytes()
+    return {
+        "path": str(path),
+        "sha256": hashlib.sha256(content).hexdigest(),
+        "text": content.decode("utf-8-sig"),
+    }
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def _note(store: Store, provenance: dict[str, Any]) -> None:
+    store.write_text(PROVENANCE, json.dumps(provenance, indent=2, ensure_ascii=False) + "\n")
+
+
+def _pending(store: Store, batch: Batch, summary: BatchSummary) -> list[BatchInput]:
+    """Inputs that are still to be done; what was done must be what the batch file says now."""
+    pending, changed, others = [], [], []
+    for item in batch.inputs:
+        row = read_row(store, item.name)
+        if row is None or row.status != "ok":
+            pending.append(item)
+        elif row.settings != item.settings:
+            others.append(item.name)
+        elif row.files != files_mark(item):
+            changed.append(item.name)
+            pending.append(item)
+    if others:
+        raise OtherRunError(
+            f"output folder {summary.out} holds results with other parameters for {_named(others)}: "
+            "pass --overwrite to replace all, or another folder"
+        )
+    names = {item.name for item in batch.inputs}
+    gone = sorted(name for name in _with_row(store) if name not in names)
+    if changed:
+        summary.remarks.append(
+            f"files changed since they were done, so they are looked at again: {_named(changed)}"
+        )
+    if gone:
+        summary.remarks.append(
+            f"not in the batch file any more, so not in the tables, though their results stay: {_named(gone)}"
+        )
+    return pending
+
+
+def _with_row(store: Store) -> Iterator[str]:
+    found = (name for name in store.names(ROWS) if name.endswith(".json") and not name.startswith("."))
+    return (name.removesuffix(".json") for name in found)
+
+
+def _named(names: Sequence[str]) -> str:
+    shown = ", ".join(names[:_MOST_NAMED])
+    return shown if len(names) <= _MOST_NAMED else f"{shown} and {len(names) - _MOST_NAMED} more"
