@@ -27,10 +27,11 @@ def test_every_part_is_in_the_window_that_its_place_maps_into(
     one_by_one = windows_of_parts(grid, disk, pixels, per_side)
     found = windows_of_all_parts(grid, disk, per_side)
     apart = found != one_by_one
-    # Rounding may decide for a part that lies on the border between two windows.
+    # Rounding may decide for a part that lies on the border between two windows, or at the centre.
     uv = disk.to_disk(part_places(pixels, per_side)[apart], outside="nearest")
     turned = [(1.0 + a) * uv @ np.array([[1.0, b], [-b, 1.0]]) for a in (-1e-9, 1e-9) for b in (-1e-9, 1e-9)]
-    assert (np.array([grid.window_of(near) for near in turned]) == found[apart]).any(axis=0).all()
+    beside = (np.array([grid.window_of(near) for near in turned]) == found[apart]).any(axis=0)
+    assert (beside | (np.hypot(*uv.T) < 1e-9)).all()
     assert apart.sum() <= 2 + 1e-3 * apart.size
 
 

@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -35,6 +36,7 @@ _MICROMETRES = {
     "m": 1e6,
 }
 _CUT_SHORT = re.compile("invalid (page|value) offset")
+_TIFFS_KEPT = 4  # whose pages are known
 _SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
 
 
@@ -107,7 +109,7 @@ class FrameFile:
 
     def _tiff_frame(self, number: int) -> np.ndarray[Any, Any]:
         without = tuple(size for axis, size in zip(self.axes, self.shape, strict=True) if axis != "T")
-        with tifffile.TiffFile(self.path) as tiff:
+        with _opened(self.path) as tiff:
             pages = len(tiff.series[0].pages) // self.n_frames
             if self.axes[0] == "T" and pages > 0 and pages * self.n_frames == len(tiff.series[0].pages):
                 keys = list(range(number * pages, (number + 1) * pages))
@@ -206,6 +208,26 @@ def _reading(path: Path, part: str) -> Iterator[None]:
     except Exception as error:
         words = " ".join(str(error).split())  # on one line, as tables of reasons need it
         raise ReadError(f"{path}: {part} cannot be read as an image ({words})") from error
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[tifffile.TiffFile]:
+    """Open a TIFF whose pages may be known from the frame before."""
+    state = path.stat()
+    tiff = _with_pages(path, state.st_mtime_ns, state.st_size)
+    tiff.filehandle.open()
+    try:
+        yield tiff
+    finally:
+        tiff.close()
+
+
+@lru_cache(maxsize=_TIFFS_KEPT)
+def _with_pages(path: Path, changed_ns: int, size: int) -> tifffile.TiffFile:
+    """A closed TIFF with the list of its pages, which takes longer to read than a frame of a long movie."""
+    with tifffile.TiffFile(path) as tiff:
+        len(tiff.series[0].pages)
+        return tiff
 
 
 @contextmanager
