@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from figure import Figure
 from suite import measure, with_progress
-from suite_blocks import Figure
 
 _ROOT = Path(__file__).parents[1]
 

@@ -19,16 +19,36 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from suite_blocks import BLOCKS, Figure, MissingError
+import suite_checks
+import suite_costs
+from figure import Figure, MissingError
 
 HERE = Path(__file__).parent
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 BLOCK_LIMIT_S = 900.0
+BLOCKS: dict[str, Callable[[Path], Iterator[Figure]]] = {
+    block.__name__: block
+    for block in (
+        suite_costs.map_time,
+        suite_costs.frame_time,
+        suite_costs.doubling,
+        suite_costs.movie,
+        suite_costs.demo,
+        suite_costs.cells,
+        suite_costs.batch,
+        suite_costs.scaling,
+        suite_checks.area,
+        suite_checks.random,
+        suite_checks.windows,
+        suite_checks.tracking,
+        suite_checks.false_positives,
+    )
+}
 
 
 def measure_here(name: str, data: Path) -> dict[str, Any]:

@@ -59,7 +59,6 @@ class UrlStore:
 
     def names(self, key: str) -> Iterator[str]:
         with self._faults(key, "read"):
-            self._files.invalidate_cache()
             try:
                 found = self._files.ls(self._at(key), detail=False)
             except FileNotFoundError:
@@ -78,7 +77,6 @@ class UrlStore:
         with self._faults(key, "written"):
             self._make_folders(targets)
             self._files.put([str(file) for file in files], targets)
-            self._files.invalidate_cache()
             # What an earlier study had more goes last: another worker may be writing the same one.
             if others := sorted({*self._files.find(self._at(key))} - {*targets}):
                 self._files.rm(others)
@@ -112,8 +110,8 @@ class UrlStore:
     def _faults(self, key: str, done: str) -> Iterator[None]:
         try:
             yield
-        except OSError as error:
-            raise StudyError(f"{self.url}/{key} cannot be {done}: {error.strerror or error}") from error
+        except Exception as error:  # each kind of store has errors of its own, beside those of the system
+            raise StudyError(f"{self.url}/{key} cannot be {done}: {error}") from error
 
 
 def _file_system(url: str) -> tuple[Any, str]:
@@ -125,7 +123,8 @@ def _file_system(url: str) -> tuple[Any, str]:
             ".venv/bin/pip install -c constraints.txt -e '.[cluster]'"
         ) from error
     try:
-        files, root = fsspec.core.url_to_fs(url)
+        # Without its memory of listings, which does not know what other processes write.
+        files, root = fsspec.core.url_to_fs(url, use_listings_cache=False)
     except ImportError as error:
         raise MissingPartError(f"results cannot go to {url}: {error}") from error
     except ValueError as error:

@@ -46,7 +46,6 @@ PAPER: Any = {
     "ytick.major.size": 2.0,
     "axes.spines.top": False,
     "axes.spines.right": False,
-    "axes.formatter.use_mathtext": True,
     "hatch.linewidth": 0.3,
     "savefig.facecolor": "white",
     "svg.fonttype": "none",  # text stays text in vector files
@@ -59,6 +58,16 @@ _PERCENTILES = (1.0, 99.5)
 _BAR_SHARE = 0.3  # of the axes' width, or of half their height, that a scale bar may take
 _BAR_BELOW = 5.0  # points from the axes to the bar
 _BAR_NAME = "scale bar"
+
+
+class _PlainNumbers(ScalarFormatter):
+    """Numbers as plain text, which is set far faster than formulas; a common power of ten is a formula."""
+
+    def get_offset(self) -> str:
+        self.set_useMathText(True)
+        power = super().get_offset()
+        self.set_useMathText(False)
+        return power
 
 
 @contextmanager
@@ -215,7 +224,7 @@ def colour_bar(
     bar.outline.set_linewidth(0.4)
     bar.ax.tick_params(width=0.4, length=2)
     bar.locator = MaxNLocator(5, steps=[1, 2, 2.5, 5, 10])
-    numbers = ScalarFormatter(useMathText=True)
+    numbers = _PlainNumbers(useMathText=False)
     numbers.set_powerlimits((-3, 4))
     bar.formatter = numbers
     bar.update_ticks()

@@ -17,7 +17,7 @@ from typing import IO, Any
 from cytodisk.errors import StudyError
 from cytodisk.study.batch.inputs import BatchInput
 
-_MOST_WORDS = 4000  # characters of what a process said last
+_MOST_WORDS = 2000  # characters kept of the beginning and of the end of what a process said
 _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
@@ -92,7 +92,7 @@ class ChildProcess:
                 self._process.kill()
 
     def end(self) -> tuple[int, str]:
-        """End it: its exit code (negative if it died of a signal) and what it said last."""
+        """End it: its exit code (negative if it died of a signal) and what it said on its last input."""
         if self._process.poll() is None:
             self.kill()
         code = self._process.wait()
@@ -100,10 +100,11 @@ class ChildProcess:
             with suppress(BrokenPipeError):  # what could not be sent to it is not missed
                 if pipe is not None:
                     pipe.close()
-        size = os.fstat(self._log.fileno()).st_size
-        self._log.seek(max(self._log_start, size - _MOST_WORDS))
+        self._log.seek(self._log_start)
         words = self._log.read().decode(errors="replace").strip()
         self._log.close()
+        if len(words) > 2 * _MOST_WORDS:
+            words = f"{words[:_MOST_WORDS]}\n…\n{words[-_MOST_WORDS:]}"
         return code, words
 
     @property

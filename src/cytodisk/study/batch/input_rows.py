@@ -80,7 +80,10 @@ class RowReader:
             )
             return
         found = self._matches(pattern, kind)
-        if not found:
+        if not found and (self.folder / pattern).is_dir():
+            hint = f"use a pattern as '{pattern}/*.tif', or kind = \"map\""
+            self.faults.add(row.place, f"masks {pattern!r} is a folder, and a movie is one file: {hint}")
+        elif not found:
             self.faults.add(row.place, f"masks {pattern!r} match nothing in {self.folder}")
         if not self._check_templates(row):
             return

@@ -122,9 +122,11 @@ def run_batch(
     target = os.fspath(out)
     store = open_store(target)
     with store.alone():
-        provenance = _start(store, batch, target, resume, overwrite)
+        provenance = _describe(batch)
+        _make_room(store, provenance, target, resume, overwrite)
         summary = BatchSummary(target)
         pending = _pending(store, batch, summary) if resume else list(batch.inputs)
+        _note(store, provenance)
         if scheduler is None:
             tasks = make_tasks(pending, target, seconds=0, time_limit=time_limit)
             results = run_here(tasks, min(workers, max(1, len(pending))))
@@ -159,9 +161,8 @@ def _on_cluster(tasks: Iterator[BatchTask], scheduler: str, target: str, tell: T
     yield from run_on_cluster(tasks, scheduler, target=target, tell=tell)
 
 
-def _start(store: Store, batch: Batch, target: str, resume: bool, overwrite: bool) -> dict[str, Any]:
-    """Make room for the batch; its provenance, which is written first."""
-    provenance = _describe(batch)
+def _make_room(store: Store, provenance: dict[str, Any], target: str, resume: bool, overwrite: bool) -> None:
+    """Check that the batch may write to a folder, and remove what it replaces."""
     there = _read_provenance(store)
     if there is None:
         if any(not name.startswith(".") for name in store.names("")):
@@ -183,8 +184,6 @@ def _start(store: Store, batch: Batch, target: str, resume: bool, overwrite: boo
             f"output folder {target} holds another run ({differences(there, provenance)}): "
             "pass --overwrite to replace it, or another folder"
         )
-    _note(store, provenance)
-    return provenance
 
 
 def _read_provenance(store: Store) -> dict[str, Any] | None:

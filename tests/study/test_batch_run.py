@@ -1,0 +1,248 @@
+"""A batch on this machine: what is killed, hangs or finds no room costs no other input anything."""
+
+import errno
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from threading import Timer
+from unittest.mock import Mock
+
+import numpy as np
+import pandas as pd
+import pytest
+import tifffile
+
+import cytodisk as cd
+from cytodisk.errors import MaskError, OtherRunError, ReadError, StudyError
+from cytodisk.io.study_folder import alone_in
+from cytodisk.study.batch import child
+from cytodisk.study.batch.batch_file import Batch, read_batch
+from cytodisk.study.batch.child_process import ChildProcess
+from cytodisk.study.batch.grouping import expected_seconds, make_tasks
+from cytodisk.study.batch.inputs import BatchInput
+from cytodisk.study.batch.run import run_batch
+from cytodisk.study.parameters import MovieParameters
+
+TABLES = ("cells", "windows", "edge", "consistency", "inputs")
+STUDY = """
+[study]
+columns = ["dose"]
+
+[parameters]
+layers = 2
+sectors = 6
+
+[[inputs]]
+masks = "movie_*.tif"
+condition = "moving"
+replicate = 1
+dose = 0.5
+
+[[inputs]]
+masks = "labels.tif"
+kind = "map"
+pixel_size_um = 0.5
+replicate = "third"
+
+[[inputs]]
+masks = "empty.tif"
+"""
+
+
+def write(path: Path, values: np.ndarray, axes: str) -> None:
+    tifffile.imwrite(path, values.astype(np.uint8), metadata={"axes": axes}, photometric="minisblack")
+
+
+def batch_of(folder: Path, text: str = STUDY) -> Batch:
+    (folder / "study.toml").write_text(text, encoding="utf-8")
+    return read_batch(folder / "study.toml")
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Three movies of a cell that moves, an image with two cells, and a movie without a cell."""
+    folder = tmp_path_factory.mktemp("batch")
+    for seed in range(3):
+        cell = np.pad(cd.simulate.random_smooth(seed, radius=12), 4)
+        write(folder / f"movie_{seed}.tif", np.stack([np.roll(cell, step, 1) for step in range(4)]), "TYX")
+    write(folder / "labels.tif", np.hstack([cell, 2 * cell]), "YX")
+    write(folder / "empty.tif", np.zeros((3, 40, 40)), "TYX")
+    batch_of(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def quiet(files: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Results of a run by one worker that nothing disturbs."""
+    out = tmp_path_factory.mktemp("quiet")
+    run_batch(read_batch(files / "study.toml"), out)
+    return out
+
+
+def children() -> list[int]:
+    """Processes for inputs, on this machine, that belong to this one or to a run that it started."""
+    lines = subprocess.run(["ps", "-eo", "pid,ppid,args"], capture_output=True, text=True, check=True).stdout
+    rows = [line.split(None, 2) for line in lines.splitlines()[1:]]
+    parents = {os.getpid(), *(int(pid) for pid, parent, _ in rows if int(parent) == os.getpid())}
+    return [int(pid) for pid, parent, what in rows if int(parent) in parents and "batch.child" in what]
+
+
+def wait_for(happened: Callable[[], object]) -> None:
+    deadline = time.monotonic() + 60
+    while not happened():
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+
+
+def rows_done(out: Path) -> int:
+    return len(list(out.glob("rows/[!.]*.json")))
+
+
+def test_inputs_are_merged_with_their_columns_in_front(quiet: Path) -> None:
+    inputs, cells, edge = (pd.read_parquet(quiet / f"{name}.parquet") for name in ("inputs", "cells", "edge"))
+    names = ["movie_0", "movie_1", "movie_2", "labels", "empty"]
+    assert inputs["input"].tolist() == names
+    assert inputs["status"].tolist() == ["ok"] * 4 + ["refused"]
+    assert "nothing could be mapped" in inputs["reason"].iloc[-1]
+    assert inputs["mapped"].tolist() == [4, 4, 4, 2, 0]
+    assert cells.columns[:4].tolist() == ["input", "condition", "replicate", "dose"]
+    assert cells["input"].tolist() == np.repeat(names, [4, 4, 4, 2, 3]).tolist()
+    assert cells["replicate"].fillna("").unique().tolist() == ["1", "third", ""]
+    assert "seconds" not in cells
+    whole = cd.open_study(quiet / "inputs" / "movie_1")
+    rows = edge[edge["input"] == "movie_1"].reset_index(drop=True)
+    pd.testing.assert_frame_equal(rows[whole.edge.columns], whole.edge, check_exact=True, check_dtype=False)
+    assert rows["dose"].eq(0.5).all()
+    assert pd.read_csv(quiet / "inputs.csv")["input"].tolist() == names
+
+
+def test_units_that_differ_are_said(quiet: Path, files: Path) -> None:
+    summary = run_batch(read_batch(files / "study.toml"), quiet, resume=True)
+    assert [remark for remark in summary.remarks if "different units" in remark]
+    assert summary.statuses == {"ok": 4, "refused": 1}
+
+
+def test_killed_and_resumed_by_two_workers_it_is_the_same_to_the_last_bit(
+    files: Path, quiet: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "cytodisk", "batch", str(files / "study.toml"), "-o", str(out)]
+    run = subprocess.Popen([*command, "--workers", "2", "-q"])
+    try:
+        wait_for(lambda: list(out.glob("inputs/*/.parts/*.json")))
+        for child in children():
+            os.kill(child, signal.SIGKILL)
+        wait_for(lambda: rows_done(out))
+    finally:
+        run.kill()
+        run.wait()
+    wait_for(lambda: not children())
+    assert 1 <= rows_done(out) < 5
+    assert not (out / "cells.parquet").exists()
+    run_batch(read_batch(files / "study.toml"), out, workers=2, resume=True)
+    for name in TABLES:
+        assert (out / f"{name}.parquet").read_bytes() == (quiet / f"{name}.parquet").read_bytes(), name
+
+
+def test_an_input_that_hangs_or_crashes_has_a_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("crashes.tif", "hangs.tif"):
+        os.mkfifo(tmp_path / name)  # whoever reads it waits for ever
+    answer, tries = ChildProcess.answer, []
+
+    def crash(child: ChildProcess, item: BatchInput, folder: Path, time_limit: float | None) -> object:
+        if item.name == "crashes":
+            tries.append(item)
+            Timer(0.1, os.kill, (child._process.pid, signal.SIGSEGV)).start()
+        return answer(child, item, folder, time_limit)
+
+    monkeypatch.setattr(ChildProcess, "answer", crash)
+    out = tmp_path / "out"
+    summary = run_batch(batch_of(tmp_path, "[[inputs]]\nmasks = '*.tif'\n"), out, time_limit=2)
+    assert summary.statuses == {"crashed": 1, "timed out": 1}
+    assert len(tries) == 2
+    crashed, hung = summary.failed
+    assert crashed.reason == "its process died of SIGSEGV"
+    assert "Segmentation fault" in crashed.log
+    assert hung.reason == "took longer than the time limit of 2 s"
+    assert not children()
+    assert pd.read_parquet(out / "cells.parquet").empty
+    with pytest.raises(ReadError, match="holds a batch"):
+        cd.open_study(out)
+
+
+def test_a_full_disk_stops_the_run_and_marks_no_input_as_failed(files: Path, tmp_path: Path) -> None:
+    """The system's limit on the size of a file stands for the end of the disk."""
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "cytodisk", "batch", str(files / "study.toml"), "-o", str(out)]
+    limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (12_000, 12_000))  # less than a map
+    run = subprocess.run(command, preexec_fn=limit, capture_output=True, text=True, check=False)
+    assert run.returncode == 2
+    assert "cannot write" in run.stderr
+    assert "what was done is kept" in run.stderr
+    assert "--resume" in run.stderr
+    assert "Traceback" not in run.stderr
+    assert rows_done(out) == 0
+
+
+def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) -> None:
+    batch = read_batch(files / "study.toml")
+    before = content(quiet)
+    with pytest.raises(StudyError, match="holds a batch: pass --resume to go on, --overwrite to replace it"):
+        run_batch(batch, quiet)
+    changed = replace(batch.inputs[0], parameters=MovieParameters(layers=3, sectors=6))
+    with pytest.raises(OtherRunError, match="other parameters for movie_0: pass --overwrite"):
+        run_batch(replace(batch, inputs=(changed, *batch.inputs[1:])), quiet, resume=True)
+    with pytest.raises(OtherRunError, match="holds a study of cytodisk movie: pass another folder"):
+        run_batch(batch, quiet / "inputs" / "movie_0", overwrite=True)
+    with pytest.raises(StudyError, match="is not empty and holds no batch"):
+        run_batch(batch, files)
+    with pytest.raises(StudyError, match="another run is writing there"), alone_in(quiet):
+        run_batch(batch, quiet, resume=True)
+    assert content(quiet) == before
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize(
+    ("fault", "status", "reason"),
+    [
+        (
+            MemoryError("Unable to allocate 3 TiB"),
+            "out of memory",
+            "memory ran out: Unable to allocate 3 TiB",
+        ),
+        (ZeroDivisionError("a fault of ours\nat length"), "failed", "ZeroDivisionError: a fault of ours"),
+        (MaskError("mask is empty"), "refused", "mask is empty"),
+        (
+            OSError(errno.ENOSPC, "No space left on device"),
+            "cannot write",
+            "[Errno 28] No space left on device",
+        ),
+    ],
+)
+def test_what_a_process_answers(
+    fault: Exception, status: str, reason: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(child, "compute_input", Mock(side_effect=fault))
+    answer = child._answer(Mock(), Path())
+    assert (answer["status"], answer["reason"]) == (status, reason)
+    assert ("Traceback" in answer.get("log", "")) == (status in ("out of memory", "failed"))
+
+
+def test_small_inputs_share_a_task(files: Path) -> None:
+    inputs = read_batch(files / "study.toml").inputs
+    alone = list(make_tasks(inputs, "out", seconds=0, time_limit=None))
+    assert [task.inputs for task in alone] == [(item,) for item in inputs]
+    together = list(make_tasks(inputs * 30, "out", seconds=1.0, time_limit=None))
+    assert [item for task in together for item in task.inputs] == list(inputs * 30)
+    expected = [sum(map(expected_seconds, task.inputs)) for task in together]
+    assert all(1.0 <= seconds < 2.0 for seconds in expected[:-1])
