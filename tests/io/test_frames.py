@@ -258,6 +258,6 @@ def test_a_name_that_is_too_long_is_a_read_error(tmp_path: Path) -> None:
 def test_a_file_that_was_replaced_is_read_anew(tmp_path: Path) -> None:
     path = tmp_path / "movie.tif"
     for frames, value in ((3, 7), (3, 9), (5, 2)):
-        tifffile.imwrite(path, np.full((frames, 6, 8), value, dtype=np.uint8), metadata={"axes": "TYX"})
+        tifffile.imwrite(path, np.full((frames, 6, 8), value, dtype=np.uint8), photometric="minisblack")
         found = open_frames(path)
         assert [int(found.frame(number).max()) for number in range(found.n_frames)] == [value] * frames
