@@ -7,7 +7,6 @@ import pytest
 from cytodisk import simulate
 from cytodisk.disk.certificate import certify
 from cytodisk.disk.circle import boundary_angles
-from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.disk.mapping import CellMesh, map_mesh, mesh_cell
 from cytodisk.disk.untangle import untangled
 from cytodisk.geometry.mesh import Mesh, triangle_areas
@@ -17,7 +16,7 @@ from cytodisk.geometry.mesh import Mesh, triangle_areas
 def valid_map(kind: str = "smooth") -> tuple[CellMesh, np.ndarray]:
     cell = mesh_cell(simulate.random_mask(kind, 3), 1.5)
     angles = boundary_angles(cell.outline)
-    return cell, harmonic_map(cell.mesh, np.column_stack([np.cos(angles), np.sin(angles)]))[0]
+    return cell, map_mesh(cell, angles).vertices_uv
 
 
 def flipped(mesh: Mesh, uv: np.ndarray) -> np.ndarray:
@@ -28,6 +27,22 @@ def deep_inside(mesh: Mesh, uv: np.ndarray, count: int, seed: int) -> np.ndarray
     inner = np.flatnonzero(np.hypot(*uv.T) < 0.8)
     chosen: np.ndarray = np.random.default_rng(seed).choice(inner[inner >= mesh.n_boundary], count, False)
     return chosen
+
+
+def share(mesh: Mesh) -> np.ndarray:
+    """Of the disk, that each triangle has in the cell."""
+    areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
+    return np.pi * areas / areas.sum()
+
+
+def pushed_over_a_neighbour(mesh: Mesh, uv: np.ndarray, vertices: np.ndarray) -> np.ndarray:
+    """The map with some vertices a little beyond one of those that they share an edge with."""
+    spoilt = uv.copy()
+    for vertex in vertices:
+        around = np.unique(mesh.triangles[(mesh.triangles == vertex).any(axis=1)])
+        other = around[around != vertex][0]
+        spoilt[vertex] += 1.3 * (uv[other] - uv[vertex])
+    return spoilt
 
 
 def within(mesh: Mesh, vertices: np.ndarray, rings: int) -> np.ndarray:
@@ -47,14 +62,12 @@ def test_a_valid_map_comes_back_as_it_is(kind: str) -> None:
     np.testing.assert_array_equal(found, uv)
 
 
-@pytest.mark.parametrize("kind", ["smooth", "spiky"])
 @pytest.mark.parametrize("count", [1, 5, 20])
-def test_pushed_vertices_are_mended_and_the_rest_stays(kind: str, count: int) -> None:
-    cell, uv = valid_map(kind)
-    spoilt = uv.copy()
+def test_pushed_vertices_are_mended_and_the_rest_stays(count: int) -> None:
+    cell, uv = valid_map()
     pushed = deep_inside(cell.mesh, uv, count, seed=count)
-    spoilt[pushed] *= -1.0
-    assert len(flipped(cell.mesh, spoilt)) > 0
+    spoilt = pushed_over_a_neighbour(cell.mesh, uv, pushed)
+    assert len(flipped(cell.mesh, spoilt)) >= count
     before = spoilt.copy()
     found = untangled(cell.mesh, spoilt)
     assert found is not None
@@ -63,31 +76,27 @@ def test_pushed_vertices_are_mended_and_the_rest_stays(kind: str, count: int) ->
     assert certify(cell.mesh.vertices_yx, found, cell.mesh.triangles, np.arange(n)).valid
     np.testing.assert_array_equal(found[:n], uv[:n])
     np.testing.assert_array_equal(spoilt, before)
-    stayed = (found == uv).all(axis=1)
-    assert not stayed[pushed].any()
-    assert stayed[~within(cell.mesh, pushed, 3)].all()
+    moved = (found != spoilt).any(axis=1)
+    reached = within(cell.mesh, pushed, 6)
+    assert moved[pushed].any()
+    assert not moved[~reached].any()
 
 
-def test_mended_vertices_are_means_of_their_neighbours() -> None:
+def test_mended_triangles_have_a_tenth_of_their_share_or_half_of_what_they_had() -> None:
     cell, uv = valid_map()
-    spoilt = uv.copy()
-    pushed = int(deep_inside(cell.mesh, uv, 1, seed=4)[0])
-    spoilt[pushed] *= -1.0
+    spoilt = pushed_over_a_neighbour(cell.mesh, uv, deep_inside(cell.mesh, uv, 3, seed=4))
     found = untangled(cell.mesh, spoilt)
     assert found is not None
-    around = np.unique(cell.mesh.triangles[(cell.mesh.triangles == pushed).any(axis=1)])
-    neighbours = found[around[around != pushed]]
-    np.testing.assert_allclose(found[pushed], neighbours.mean(axis=0), atol=1e-9)
+    before, after = (triangle_areas(a[:, ::-1], cell.mesh.triangles) for a in (spoilt, found))
+    tenth = 0.1 * share(cell.mesh)
+    assert (after >= np.where(before > 0.0, np.minimum(tenth, 0.5 * before), tenth) * (1.0 - 1e-9)).all()
 
 
-@pytest.mark.parametrize("lost", [np.nan, 0.0])
-def test_a_vertex_without_a_place_gets_one(lost: float) -> None:
+def test_a_vertex_without_a_place_is_hopeless() -> None:
     cell, uv = valid_map()
     spoilt = uv.copy()
-    spoilt[deep_inside(cell.mesh, uv, 3, seed=1)] = lost
-    found = untangled(cell.mesh, spoilt)
-    assert found is not None
-    assert len(flipped(cell.mesh, found)) == 0
+    spoilt[deep_inside(cell.mesh, uv, 3, seed=1)] = np.nan
+    assert untangled(cell.mesh, spoilt) is None
 
 
 def test_a_boundary_that_runs_backwards_is_hopeless() -> None:
@@ -101,7 +110,6 @@ def test_a_boundary_that_runs_backwards_is_hopeless() -> None:
 def test_a_map_starts_from_any_anchor(spoil: Callable[[np.ndarray], np.ndarray]) -> None:
     cell, uv = valid_map()
     disk = map_mesh(cell, boundary_angles(cell.outline), anchor_uv=spoil(uv), inertia=1.0)
-    assert disk.start == "previous"
     assert disk.converged
     assert disk.certificate.valid
 

@@ -61,7 +61,9 @@ def harmonic_map(
     )
 
 
-def harmonic_extension(mesh: Mesh, boundary_values: FloatArray) -> FloatArray:
+def harmonic_extension(
+    mesh: Mesh, boundary_values: FloatArray, system: BlockSystem | None = None
+) -> FloatArray:
     """Values at all vertices that are harmonic inside and given at the boundary.
 
     Parameters
@@ -69,12 +71,14 @@ def harmonic_extension(mesh: Mesh, boundary_values: FloatArray) -> FloatArray:
     mesh : Mesh
     boundary_values : ndarray of shape (B, 2) and dtype float
         Two numbers a boundary vertex, such as a displacement.
+    system : BlockSystem, optional
+        Of this mesh, if there is one already.
 
     Returns
     -------
     ndarray of shape (V, 2) and dtype float
     """
-    return _weighted_means(mesh, _cotangents(mesh), boundary_values, BlockSystem(mesh))
+    return _weighted_means(mesh, _cotangents(mesh), boundary_values, system or BlockSystem(mesh))
 
 
 def _cotangents(mesh: Mesh) -> FloatArray:

@@ -1,6 +1,7 @@
 """`map_to_disk`: from a mask to a map with its certificate."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -99,6 +100,11 @@ class CellMesh:
     corner: FloatArray
     edge_length: float
 
+    @cached_property
+    def system(self) -> BlockSystem:
+        """For functions on the mesh that are given at its boundary."""
+        return BlockSystem(self.mesh)
+
     @property
     def outline(self) -> FloatArray:
         """Outline in the frame of the bounding box, shape (B, 2)."""
@@ -171,11 +177,10 @@ def map_mesh(
         No valid map was found.
     """
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
-    system = BlockSystem(cell.mesh)
-    uv, start = _start(cell.mesh, circle, None if method == "advection" else anchor_uv, system)
+    uv, start = _start(cell, circle, None if method == "advection" else anchor_uv)
     triangles, steps, converged = cell.mesh.triangles, 0, True
     if method == "newton":
-        relaxed = relax(cell.mesh, uv, shape_weight, anchor_uv, inertia, system)
+        relaxed = relax(cell.mesh, uv, shape_weight, anchor_uv, inertia, cell.system)
         uv, steps, converged = relaxed.vertices_uv, relaxed.steps, relaxed.converged
     elif method == "advection":
         advected = advect(cell.mesh, uv)
@@ -199,14 +204,12 @@ def map_mesh(
     return disk
 
 
-def _start(
-    mesh: Mesh, circle: FloatArray, anchor_uv: FloatArray | None, system: BlockSystem
-) -> tuple[FloatArray, Start]:
+def _start(cell: CellMesh, circle: FloatArray, anchor_uv: FloatArray | None) -> tuple[FloatArray, Start]:
     if anchor_uv is not None:
-        uv = untangled(mesh, np.concatenate([circle, anchor_uv[mesh.n_boundary :]]))
+        uv = untangled(cell.mesh, np.concatenate([circle, anchor_uv[cell.mesh.n_boundary :]]))
         if uv is not None:
             return uv, "previous"
-    return harmonic_map(mesh, circle, system)
+    return harmonic_map(cell.mesh, circle, cell.system)
 
 
 def check_map_parameters(method: Any, shape_weight: Any, edge_length: Any) -> None:

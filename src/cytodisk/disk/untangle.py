@@ -1,20 +1,22 @@
-"""Mend a nearly valid map: the surroundings of flipped triangles are laid out anew."""
+"""Mend a nearly valid map: triangles that are flipped, or nearly, push their corners apart."""
 
 import numpy as np
-from scipy import sparse
+from numba import njit
 
-from cytodisk.arrays import BoolArray, FloatArray
-from cytodisk.disk.ldl import Factorisation
-from cytodisk.geometry.mesh import Mesh, triangle_areas, triangle_edges
+from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.geometry.mesh import Mesh, triangle_areas
 
 _LEAST_AREA = 1e-10  # of a triangle in the disk that a relaxation may start from
-_ROUNDS = 8
+_PUSHED = 0.1  # of its share of the disk: less is too small for a triangle
+_WANTED = 2.0  # times that is what it is given
+_SWEEPS = 100
 
 
 def untangled(mesh: Mesh, uv: FloatArray) -> FloatArray | None:
-    """Move interior vertices around flipped triangles to the mean of their neighbours, until none is left.
+    """Move interior vertices by little until no triangle is flipped.
 
-    Each round takes in one more ring of vertices around what is still flipped; all others stay.
+    Triangle after triangle, each that is too small moves its corners along the gradient of its area, by the
+    least motion that makes it large enough, until none is too small.
 
     Parameters
     ----------
@@ -25,29 +27,51 @@ def untangled(mesh: Mesh, uv: FloatArray) -> FloatArray | None:
     Returns
     -------
     ndarray of shape (V, 2) and dtype float, or None
-        Every triangle positive; None if that was not reached.
+        Every triangle positive; None if that was not reached. A map without flipped triangles comes back as
+        it is.
+
+    References
+    ----------
+    The projection of a constraint, as in Müller et al., "Position based dynamics", 2007,
+    doi:10.1016/j.jvcir.2007.01.005.
     """
-    start, stop = triangle_edges(mesh.triangles).T
-    n = len(uv)
-    half = sparse.csr_matrix((np.ones(len(start)), (start, stop)), shape=(n, n))
-    joined = ((half + half.T) > 0).astype(np.float64).tocsr()
-    free = np.zeros(n, dtype=bool)
-    for _ in range(_ROUNDS):
-        flipped = ~(triangle_areas(uv[:, ::-1], mesh.triangles) > _LEAST_AREA)
-        if not flipped.any():
-            return uv
-        free[mesh.triangles[flipped]] = True
-        free = (joined @ free.astype(np.float64)) + free > 0
-        free[: mesh.n_boundary] = False
-        uv = _neighbour_means(joined, uv, free)
-    return None
-
-
-def _neighbour_means(joined: sparse.csr_matrix, uv: FloatArray, free: BoolArray) -> FloatArray:
-    rows = joined[free]
-    laplacian = sparse.diags_array(np.asarray(rows.sum(axis=1)).ravel()) - rows[:, free]
-    factors = Factorisation(sparse.csc_matrix(sparse.triu(laplacian)))
-    right = rows[:, ~free] @ uv[~free]
+    found = triangle_areas(uv[:, ::-1], mesh.triangles)
+    if (found > _LEAST_AREA).all():
+        return uv
+    areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
+    least = _PUSHED * np.pi / areas.sum() * areas
+    positive = found > _LEAST_AREA
+    least[positive] = np.minimum(least, 0.5 * found)[positive]
     moved = uv.copy()
-    moved[free] = np.column_stack([factors.solve(np.ascontiguousarray(right[:, k])) for k in (0, 1)])
-    return moved
+    return moved if _push_apart(moved, mesh.triangles, mesh.n_boundary, least) else None
+
+
+@njit(cache=True, error_model="numpy")
+def _push_apart(uv: FloatArray, triangles: IntArray, n_boundary: int, least: FloatArray) -> bool:
+    """Whether all triangles became large enough; `uv` is changed."""
+    gradient = np.empty((3, 2))
+    for _ in range(_SWEEPS):
+        done = True
+        for t in range(triangles.shape[0]):
+            size = 0.0
+            for k in range(3):
+                b, c = triangles[t, (k + 1) % 3], triangles[t, (k + 2) % 3]
+                gradient[k, 0] = 0.5 * (uv[b, 1] - uv[c, 1])
+                gradient[k, 1] = 0.5 * (uv[c, 0] - uv[b, 0])
+                if triangles[t, k] >= n_boundary:
+                    size += gradient[k, 0] ** 2 + gradient[k, 1] ** 2
+            a, c = triangles[t, 0], triangles[t, 2]
+            area = gradient[2, 0] * (uv[c, 0] - uv[a, 0]) + gradient[2, 1] * (uv[c, 1] - uv[a, 1])
+            if area >= least[t]:
+                continue
+            done = False
+            if not size > 0.0:
+                return False
+            for k in range(3):
+                vertex = triangles[t, k]
+                if vertex >= n_boundary:
+                    for axis in range(2):
+                        uv[vertex, axis] += (_WANTED * least[t] - area) / size * gradient[k, axis]
+        if done:
+            return True
+    return False

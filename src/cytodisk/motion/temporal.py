@@ -74,5 +74,5 @@ def carried_inside(
     """
     was = carry(contour.arc[:-1], s, previous_s, contour.length, previous_contour.length)
     moved = previous_contour.outline_at(was) - contour.outline_yx
-    origin = cell.mesh.vertices_yx + cell.corner + harmonic_extension(cell.mesh, moved)
+    origin = cell.mesh.vertices_yx + cell.corner + harmonic_extension(cell.mesh, moved, cell.system)
     return previous.to_disk(origin, outside="nearest")
