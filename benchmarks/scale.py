@@ -56,7 +56,8 @@ def resident_mb(process: int) -> float:
         number = waiting.pop()
         try:
             status = Path(f"/proc/{number}/status").read_text()
-            children = Path(f"/proc/{number}/task/{number}/children").read_text()
+            threads = sorted(Path(f"/proc/{number}/task").iterdir())  # any of them may have started a process
+            children = " ".join((thread / "children").read_text() for thread in threads)
         except OSError:
             continue  # it has just ended
         resident = [line.split()[1] for line in status.splitlines() if line.startswith("VmRSS")]

@@ -67,7 +67,7 @@ SERIES: dict[str, Series] = {
             (
                 Growth("seconds", _OUTLINE, 2.0, "its area, in pixels, grows with the square of the outline"),
                 Growth("seconds", _AREA, _LINEAR, _PIXELS),
-                Growth("memory (MB)", _AREA, 1.0, _PIXELS),
+                Growth("memory (MB)", _AREA, _LINEAR, _PIXELS),
             ),
         ),
         Series(
@@ -90,7 +90,7 @@ SERIES: dict[str, Series] = {
             (
                 Growth("seconds", _OUTLINE, 2.0, "as the map of a disk"),
                 Growth("seconds", _AREA, _LINEAR, _PIXELS),
-                Growth("memory (MB)", _AREA, 1.0, _PIXELS),
+                Growth("memory (MB)", _AREA, _LINEAR, _PIXELS),
             ),
         ),
         Series(
@@ -98,7 +98,7 @@ SERIES: dict[str, Series] = {
             (1000, 5000, 20000, 100000, 500000, 2000000),
             (2000, 20000, 200000),
             points.windows_by_area,
-            (Growth("seconds", _AREA, _LINEAR, _PIXELS), Growth("memory (MB)", _AREA, 1.0, _PIXELS)),
+            (Growth("seconds", _AREA, _LINEAR, _PIXELS), Growth("memory (MB)", _AREA, _LINEAR, _PIXELS)),
         ),
         Series(
             "windows on one disk",
@@ -107,7 +107,7 @@ SERIES: dict[str, Series] = {
             points.windows_by_number,
             (
                 Growth("seconds", "windows", _LINEAR, "a window costs no more where there are many"),
-                Growth("memory (MB)", "windows", 1.0, "a window costs no more where there are many"),
+                Growth("memory (MB)", "windows", _LINEAR, "a window costs no more where there are many"),
             ),
         ),
         Series(

@@ -13,6 +13,8 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import pandas as pd
+
 from figure import Figure, MissingError
 
 MOVIE_MB = 600.0
@@ -131,8 +133,11 @@ def batch(data: Path) -> Iterator[Figure]:
             while running.poll() is None:
                 peak = max(peak, resident_mb(running.pid))
                 time.sleep(0.05)
-            if running.returncode:
-                raise SystemExit(f"cytodisk batch ended with {running.returncode}")
+            found = pd.read_parquet(folder / "out" / "inputs.parquet")
+            if running.returncode or set(found["status"]) != {"ok"}:
+                raise SystemExit(
+                    f"cytodisk batch ended with {running.returncode}: {found['status'].tolist()}"
+                )
         what = f"batch of two melanoma movies, {workers} worker(s): peak memory of all"
         yield Figure(what, peak, "MB", most=workers * MOVIE_MB)
 

@@ -65,6 +65,13 @@ def test_a_pattern_gives_an_input_for_each_file_in_natural_order(folder: Path) -
     assert last.parameters == MovieParameters(layers=7, sectors=12, pixel_size_um=0.16)
 
 
+def test_masks_beside_the_batch_file_are_in_its_folder(folder: Path) -> None:
+    for name in ("a_masks.tif", "a.tif"):
+        (folder / name).touch()
+    batch = batch_of(folder, '[[inputs]]\nmasks = "a_masks.tif"\nsignal = "{folder}/{image}.tif"\n')
+    assert (batch.inputs[0].name, batch.inputs[0].signal) == ("a_masks", folder / "a.tif")
+
+
 def test_images_and_movies_in_one_file_take_the_parameters_that_they_know(folder: Path) -> None:
     batch = batch_of(
         folder,
@@ -207,3 +214,15 @@ def test_a_table_whose_line_is_too_long_is_refused(folder: Path) -> None:
     (folder / "inputs.csv").write_text("masks,name\ncontrol/cell1_masks.tif,a,b\n", encoding="utf-8")
     faults = faults_of(folder, '[study]\ntable = "inputs.csv"')
     assert faults == ["inputs.csv line 2: has more fields than the 2 of the first line"]
+
+
+def test_the_example_of_the_documentation_is_a_batch_file(tmp_path: Path) -> None:
+    for place in ("control", "drug/plate_1", "drug/plate_2"):
+        (tmp_path / place).mkdir(parents=True)
+        (tmp_path / place / "a_masks.tif").touch()
+        (tmp_path / place / "a.ome.tif").touch()
+    example = Path(__file__).parents[2] / "docs" / "source" / "getting_started" / "study.toml"
+    batch = batch_of(tmp_path, example.read_text(encoding="utf-8"))
+    names = [item.name for item in batch.inputs]
+    assert names == ["control-a_masks", "drug-plate_1-a_masks", "drug-plate_2-a_masks"]
+    assert [item.columns for item in batch.inputs[1:]] == [("drug", f"plate_{k}", 50) for k in (1, 2)]

@@ -22,7 +22,7 @@ import tifffile
 import cytodisk as cd
 from cytodisk.errors import MaskError, OtherRunError, ReadError, StudyError
 from cytodisk.io.study_folder import alone_in
-from cytodisk.study.batch import child
+from cytodisk.study.batch import child, compute
 from cytodisk.study.batch.batch_file import Batch, read_batch
 from cytodisk.study.batch.child_process import ChildProcess
 from cytodisk.study.batch.grouping import expected_seconds, make_tasks
@@ -232,7 +232,7 @@ def content(folder: Path) -> dict[str, bytes]:
 def test_what_a_process_answers(
     fault: Exception, status: str, reason: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(child, "compute_input", Mock(side_effect=fault))
+    monkeypatch.setattr(compute, "compute_input", Mock(side_effect=fault))
     answer = child._answer(Mock(), Path())
     assert (answer["status"], answer["reason"]) == (status, reason)
     assert ("Traceback" in answer.get("log", "")) == (status in ("out of memory", "failed"))

@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 _ROWS_AT_ONCE = 50_000
+_PARTS_AT_ONCE = 500  # a table of a few rows takes as much memory as one of hundreds
 _CELLS_AT_ONCE = 1000  # dicts, which take far more room than columns
 
 
@@ -26,12 +27,16 @@ def merge_tables(parts: Iterable[Any], schema: Any, target: Path) -> None:
     target : Path
     """
     waiting: list[Any] = []
+    rows = 0
     with pq.ParquetWriter(target, schema, use_dictionary=repeating(schema)) as writer:
         for part in parts:
             waiting.append(part)
-            if sum(map(len, waiting)) >= _ROWS_AT_ONCE:
-                writer.write_table(pa.concat_tables(waiting).combine_chunks())
-                waiting = []
+            rows += len(part)
+            if rows >= _ROWS_AT_ONCE or len(waiting) == _PARTS_AT_ONCE:
+                waiting = [pa.concat_tables(waiting).combine_chunks()]
+            if rows >= _ROWS_AT_ONCE:
+                writer.write_table(*waiting)
+                waiting, rows = [], 0
         if waiting:
             writer.write_table(pa.concat_tables(waiting).combine_chunks())
 

@@ -14,11 +14,12 @@ import traceback
 from pathlib import Path
 from queue import SimpleQueue
 from threading import Thread
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from cytodisk.errors import CytodiskError, WriteError
-from cytodisk.study.batch.compute import compute_input
-from cytodisk.study.batch.inputs import BatchInput
+
+if TYPE_CHECKING:
+    from cytodisk.study.batch.inputs import BatchInput
 
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
@@ -30,6 +31,8 @@ def main() -> None:
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what libraries print must not get between answers
     jobs: SimpleQueue[tuple[BatchInput, Path]] = SimpleQueue()
     Thread(target=_read_jobs, args=(sys.stdin.buffer, jobs), daemon=True).start()
+    import cytodisk.study.batch.compute  # noqa: F401  takes a second or two, in which the end of stdin counts
+
     _say(answers, {"ready": True})
     while True:
         item, folder = jobs.get()
@@ -48,6 +51,8 @@ def _say(answers: IO[bytes], answer: dict[str, Any]) -> None:
 
 
 def _answer(item: BatchInput, folder: Path) -> dict[str, Any]:
+    from cytodisk.study.batch.compute import compute_input
+
     try:
         return {"status": "ok", "reason": "", **compute_input(item, folder)}
     except MemoryError as error:

@@ -98,7 +98,7 @@ class ChildPool:
         answer = child.answer(item, folder, time_limit)
         if answer is None:
             return self._death(child, time_limit)
-        if answer.pop("peak_mb") > _LARGE_MB:
+        if answer.pop("peak_mb") > _LARGE_MB or answer["status"] == "out of memory":
             self._end(child)
         else:
             self._give_back(child)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import pickle
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
@@ -200,8 +201,11 @@ class Flight(Generic[Task, Result]):
         some += islice(rest, room - len(some))
         if not some:
             return
+        from distributed.protocol.pickle import dumps
+
         keys = list(islice(self._keys, len(some)))
-        futures = self._client.map(self._work, some, key=keys, pure=False)
+        calls = [dumps(_Call(self._work, task)) for task in some]
+        futures = self._client.map(pickle.loads, calls, key=keys, pure=False)
         for key, future, task in zip(keys, futures, some, strict=True):
             self._flying[key] = future, task
             future.add_done_callback(self._landed.put)
@@ -249,6 +253,20 @@ class Flight(Generic[Task, Result]):
                 f"scheduler {self._workers.address} was lost: what was done is kept; start it again and run "
                 "the same command with --resume"
             ) from error
+
+
+class _Call:
+    """A call that is made by whoever unpickles it.
+
+    A scheduler unpickles the functions and arguments that it passes on. As bytes for `pickle.loads` they cost
+    it nothing, and it need not have cytodisk.
+    """
+
+    def __init__(self, work: Callable[[Any], Any], task: Any):
+        self._call = work, (task,)
+
+    def __reduce__(self) -> tuple[Callable[[Any], Any], tuple[Any]]:
+        return self._call
 
 
 def _run_in_scratch(task: BatchTask) -> TaskResult:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import glob
-import os
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -131,7 +130,7 @@ class RowReader:
         place = f"{row.place}, {masks.name}"
         filled = {key: _fill(value, fields) for key, value in row.values.items() if key != "masks"}
         signal = self._signal(place, masks, filled.get("signal"))
-        safe = {name: re.sub(r"[^\w.-]+", "-", text).strip("-") for name, text in fields.items()}
+        safe = {name: re.sub(r"[^\w.-]+", "-", text).strip("-.") for name, text in fields.items()}
         name = str(_fill(row.values.get("name", "{folder}-{stem}"), safe)).strip("-")
         if re.fullmatch(r"\w[\w.-]*(?<!\.)", name) is None or len(name) > _LONGEST_NAME:
             self.faults.add(
@@ -200,7 +199,7 @@ def path_fields(masks: Path, folder: Path) -> dict[str, str]:
     """
     parent = masks.parent.relative_to(folder) if masks.parent.is_relative_to(folder) else masks.parent
     return {
-        "folder": "" if parent == Path() else os.fspath(parent.as_posix()),
+        "folder": parent.as_posix(),
         "parent": masks.parent.name,
         "name": masks.name,
         "stem": image_stem(masks.name),

@@ -169,7 +169,7 @@ def _parts(store: Store, done: Sequence[_Done], name: str, batch: Batch, columns
         try:
             with store.open(key) as opened, pq.ParquetFile(opened) as file:
                 for group in range(file.num_row_groups):
-                    yield _widened(file.read_row_group(group), given, columns)
+                    yield _widened(file.read_row_group(group, use_threads=False), given, columns)
         except pa.ArrowException as error:
             raise StudyError(f"{key} is damaged: {error}") from error
 

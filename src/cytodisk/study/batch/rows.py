@@ -26,7 +26,8 @@ class InputRow:
         Its name.
     kind : {"movie", "map"}
     status : str
-        "ok"; "refused" (an error that a user can mend), "crashed", "timed out", "out of memory" or "killed".
+        "ok"; "refused" (a user can mend it), "failed" (an error that nobody expected), "crashed" (its process
+        died), "killed" (from outside), "timed out" or "out of memory".
     reason : str
         Why it has no result; empty if it has.
     settings, files : str

@@ -125,7 +125,10 @@ def run_batch(
         provenance = _describe(batch)
         _make_room(store, provenance, target, resume, overwrite)
         summary = BatchSummary(target)
-        pending = _pending(store, batch, summary) if resume else list(batch.inputs)
+        pending = list(batch.inputs)
+        if resume:
+            pending = _pending(store, batch, summary)
+            _remove_left_overs(store)
         _note(store, provenance)
         if scheduler is None:
             tasks = make_tasks(pending, target, seconds=0, time_limit=time_limit)
@@ -255,6 +258,14 @@ def _pending(store: Store, batch: Batch, summary: BatchSummary) -> list[BatchInp
             f"not in the batch file any more, so not in the tables, though their results stay: {_named(gone)}"
         )
     return pending
+
+
+def _remove_left_overs(store: Store) -> None:
+    """Remove what a run that was killed was about to write."""
+    for folder in (ROWS, STUDIES):
+        for name in list(store.names(folder)):
+            if name.startswith("."):
+                store.remove(f"{folder}/{name}")
 
 
 def _with_row(store: Store) -> Iterator[str]:
