@@ -56,19 +56,34 @@ def _level(i: int, j: int) -> int:
 
 
 @njit(cache=True)
+def _within(start: float, slope: float, low: float, high: float) -> tuple[float, float]:
+    """Range of t in which start + slope t lies between two bounds; none if the first is above the last."""
+    if abs(slope) < 1e-12:
+        return (-np.inf, np.inf) if low <= start <= high else (np.inf, -np.inf)
+    one, other = (low - start) / slope, (high - start) / slope
+    return min(one, other), max(one, other)
+
+
+@njit(cache=True)
 def _fill(
     depth: FloatArray, centre: FloatArray, angle: float, spacing: float, growth: float, clearance: float
 ) -> FloatArray:
     """Kept points of the lattice through `centre`; `depth` is padded by one pixel on each side."""
     height, width = depth.shape
-    reach = math.hypot(height, width) / spacing
-    last_row, last_column = int(reach / math.sqrt(0.75)) + 1, int(reach) + 1
+    reach = math.hypot(height, width)
+    last_row = int(reach / (math.sqrt(0.75) * spacing)) + 1
     cos, sin = math.cos(angle), math.sin(angle)
     points = np.empty((256, 2))
     count = 0
     for j in range(-last_row, last_row + 1):
         across = j * math.sqrt(0.75) * spacing
-        for k in range(-last_column, last_column + 1):
+        first, last = _within(centre[0] + across * cos, sin, -1.0, height - 1.0)
+        other_first, other_last = _within(centre[1] - across * sin, cos, -1.0, width - 1.0)
+        first, last = max(first, other_first, -reach), min(last, other_last, reach)
+        if first > last:
+            continue
+        shift = 0.5 * j - j // 2
+        for k in range(math.floor(first / spacing - shift), math.ceil(last / spacing - shift) + 1):
             i = k - j // 2
             along = (i + 0.5 * j) * spacing
             y = centre[0] + along * sin + across * cos

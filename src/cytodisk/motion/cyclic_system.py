@@ -30,14 +30,17 @@ def solve_cyclic(diagonal: FloatArray, coupling: FloatArray, right: FloatArray) 
     x[0, k], x[n - 1, k] = corner, coupling[n - 1]
     ratio = np.empty(n)
     pivot = diagonal[0] - corner
-    x[0] /= pivot
+    for a in range(k + 1):
+        x[0, a] /= pivot
     for i in range(1, n):
         ratio[i] = coupling[i - 1] / pivot
         last = coupling[n - 1] ** 2 / corner if i == n - 1 else 0.0
         pivot = diagonal[i] - last - coupling[i - 1] * ratio[i]
-        x[i] = (x[i] - coupling[i - 1] * x[i - 1]) / pivot
+        for a in range(k + 1):
+            x[i, a] = (x[i, a] - coupling[i - 1] * x[i - 1, a]) / pivot
     for i in range(n - 2, -1, -1):
-        x[i] -= ratio[i + 1] * x[i + 1]
+        for a in range(k + 1):
+            x[i, a] -= ratio[i + 1] * x[i + 1, a]
     end = coupling[n - 1] / corner
     factor = (x[0, :k] + end * x[n - 1, :k]) / (1.0 + x[0, k] + end * x[n - 1, k])
     return x[:, :k] - np.outer(x[:, k], factor)

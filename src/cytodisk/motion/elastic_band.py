@@ -99,7 +99,7 @@ def _energy(
 ) -> float:
     total = doubt * motion[0] ** 2
     for i in range(d.shape[0]):
-        after = (i + 1) % d.shape[0]
+        after = i + 1 if i < d.shape[0] - 1 else 0
         change = (d[after, 0] - d[i, 0]) ** 2 + (d[after, 1] - d[i, 1]) ** 2
         total += weight * (d[i, 0] ** 2 + d[i, 1] ** 2) + stiffness * (change + _SPRING * gaps[i] ** 2)
     return float(total)
@@ -121,17 +121,21 @@ def _displace(
     cosine, sine = math.cos(motion[0]), math.sin(motion[0])
     total, edges = arc[-1], target.shape[0]
     n = points.shape[0]
+    edge = 0
     for i in range(n):
-        gaps[i] = places[(i + 1) % n] - places[i] + (total if i == n - 1 else 0.0)
+        gaps[i] = places[i + 1] - places[i] if i < n - 1 else places[0] - places[i] + total
         wrapped = places[i] % total
-        edge = min(max(np.searchsorted(arc, wrapped, side="right") - 1, 0), edges - 1)
+        if wrapped < arc[edge]:  # around the start
+            edge = 0
+        while edge < edges - 1 and arc[edge + 1] <= wrapped:
+            edge += 1
         length = arc[edge + 1] - arc[edge]
         share = (wrapped - arc[edge]) / length
         y = cosine * points[i, 0] + sine * points[i, 1]
         x = cosine * points[i, 1] - sine * points[i, 0]
         by_motion[i, 0, 0], by_motion[i, 1, 0] = -x, y
         for k in range(2):
-            side = target[(edge + 1) % edges, k] - target[edge, k]
+            side = target[edge + 1 if edge < edges - 1 else 0, k] - target[edge, k]
             tangent[i, k] = side / length
             d[i, k] = target[edge, k] + share * side - (y if k == 0 else x) - motion[1 + k]
 
@@ -156,7 +160,7 @@ def _newton_step(
     square, pull = np.zeros((3, 3)), np.zeros(3)
     square[0, 0], pull[0] = doubt, doubt * motion[0]
     for i in range(n):
-        after, before = (i + 1) % n, i - 1
+        after, before = i + 1 if i < n - 1 else 0, i - 1
         alike = tangent[i, 0] * tangent[after, 0] + tangent[i, 1] * tangent[after, 1]
         coupling[i] = -stiffness * alike - spring
         right[i, 3] = spring * (gaps[i] - gaps[before])

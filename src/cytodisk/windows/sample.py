@@ -115,8 +115,9 @@ def _statistics(
     weights: sparse.csr_array, values: FloatArray, quantiles: tuple[float, ...], nan: str
 ) -> dict[str, FloatArray]:
     missing = ~np.isfinite(values)
-    n_nan = np.asarray(weights @ missing.astype(np.float64))
+    n_nan = np.zeros(weights.shape[0])
     if missing.any():
+        n_nan = np.asarray(weights @ missing.astype(np.float64))
         weights = sparse.csr_array(weights @ sparse.diags_array((~missing).astype(np.float64)))
         weights.eliminate_zeros()
         values = np.where(missing, 0.0, values)
@@ -124,12 +125,15 @@ def _statistics(
     window = np.repeat(np.arange(weights.shape[0]), np.diff(weights.indptr))
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = np.asarray(weights @ values) / n_pixels
-        deviation = values[weights.indices] - mean[window]
+        held = values[weights.indices]
+        deviation = held - mean[window]
         squares = np.bincount(window, weights.data * deviation**2, minlength=len(mean))
         sd = np.sqrt(squares / n_pixels)
     low, high = np.full(len(mean), np.inf), np.full(len(mean), -np.inf)
-    np.minimum.at(low, window, values[weights.indices])
-    np.maximum.at(high, window, values[weights.indices])
+    filled = np.diff(weights.indptr) > 0
+    if filled.any():
+        first = weights.indptr[:-1][filled]
+        low[filled], high[filled] = np.minimum.reduceat(held, first), np.maximum.reduceat(held, first)
     table = {"mean": mean, "sd": sd, "min": low, "max": high}
     if quantiles:
         table["quantile"] = _quantiles(weights, window, values, quantiles)
