@@ -168,7 +168,7 @@ def write_page(profiles: list[Profile]) -> None:
     """Write tables and picture of the page."""
     FILES.mkdir(parents=True, exist_ok=True)
     for profile in profiles:
-        table = profile.table()
+        table = profile.table().query("calls > 0").copy()
         table["ms"] = table["ms"].map("{:.1f}".format)
         table["share"] = table["share"].map("{:.1%}".format)
         table["calls"] = table["calls"].map("{:.0f}".format)
@@ -180,7 +180,7 @@ def write_page(profiles: list[Profile]) -> None:
 
 def draw(profiles: list[Profile]) -> Any:
     """Bars of milliseconds by stage, coloured by part."""
-    tables = [profile.table().query("part != 'all'") for profile in profiles]
+    tables = [profile.table().query("part != 'all' and calls > 0") for profile in profiles]
     parts = list(dict.fromkeys(part for table in tables for part in table["part"]))
     colour = {part: plt.get_cmap("tab10")(number) for number, part in enumerate(parts)}
     with plt.rc_context(PAPER):
@@ -193,6 +193,7 @@ def draw(profiles: list[Profile]) -> Any:
         for ax, table, profile in zip(np.atleast_1d(axes), tables, profiles, strict=True):
             names = [f"{row.part}: {row.stage}" for row in table.itertuples()]
             ax.barh(names, table["ms"], color=[colour[part] for part in table["part"]])
+            ax.margins(y=0.01)
             ax.invert_yaxis()
             ax.set_xlabel("processor time (ms)")
             ax.set_title(f"{profile.name}: {1e3 * profile.clock.medians()[0]:.0f} ms in all")

@@ -1,7 +1,10 @@
 """cytodisk: any cell, any moment, one disk."""
 
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from cytodisk.files import keep_kernels
 
 if TYPE_CHECKING:
     from cytodisk import errors as errors
@@ -127,6 +130,8 @@ _HOME = {
 _MODULES = ("errors", "plot", "simulate")
 
 __all__ = sorted([*_HOME, *_MODULES])
+
+keep_kernels(Path(__file__).parent)
 
 
 def __getattr__(name: str) -> Any:

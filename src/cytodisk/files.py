@@ -1,7 +1,11 @@
-"""Write a file whole or not at all."""
+"""Write a file whole or not at all, and where compiled kernels are kept."""
 
+import atexit
 import os
+import shutil
 import sys
+import tempfile
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -75,3 +79,46 @@ def lock(path: Path) -> IO[bytes]:
         file.close()
         raise BlockingIOError(f"{path} is held by another process") from error
     return file
+
+
+def keep_kernels(package: Path) -> None:
+    """See to it that compiled kernels can be kept, else Numba refuses to compile any.
+
+    Numba keeps them beside the code or, where that cannot be written, in the user's folder for caches.
+    Without either they go to a folder of this run, which the processes it starts share.
+
+    Parameters
+    ----------
+    package : Path
+        Folder of the code.
+
+    Warns
+    -----
+    UserWarning
+        They cannot be kept for the next start.
+    """
+    if os.environ.get("NUMBA_CACHE_DIR") or _can_be_written(package / "__pycache__"):
+        return
+    from numba.misc.appdirs import user_cache_dir
+
+    own = Path(user_cache_dir("numba"))  # type: ignore[no-untyped-call]
+    if _can_be_written(own):
+        return
+    folder = tempfile.mkdtemp(prefix="cytodisk-kernels-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    os.environ["NUMBA_CACHE_DIR"] = folder
+    import numba
+
+    numba.config.CACHE_DIR = folder  # type: ignore[attr-defined]
+    warnings.warn(
+        f"compiled kernels cannot be kept, as neither {package} nor {own} can be written: every start "
+        "compiles them anew, which takes about half a minute. Set the environment variable "
+        "NUMBA_CACHE_DIR to a folder that can be written",
+        stacklevel=2,
+    )
+
+
+def _can_be_written(folder: Path) -> bool:
+    """Whether files can be made in a folder, or it can itself be made."""
+    there = next(path for path in (folder, *folder.parents) if path.exists())
+    return os.access(there, os.W_OK | os.X_OK)

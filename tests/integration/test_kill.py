@@ -13,7 +13,7 @@ import xarray as xr
 
 import cytodisk as cd
 
-N_CELLS = 16
+N_CELLS = 10
 
 
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")

@@ -111,30 +111,30 @@ def test_pages_with_signal(scaled: Study, images: FloatArray, saved: list[Figure
     assert {"time (s)", "displacement (µm)", "correlation with next frame"} <= consistency
 
 
-def test_pages_without_signal_or_scale(bare: Study, saved: list[Figure]) -> None:
+def test_pages_without_signal_or_scale(bare: Study, drawn: list[Figure]) -> None:
     paths = draw_movie_figures(bare, WHOLE)
     endings = ["_velocity.png", "_edge.png", "_strip.png", "_consistency.png", ".gif"]
     assert _names(paths) == [f"cell_00000{ending}" for ending in endings]
-    velocity, edge, strip, consistency = map(_labels, saved)
+    velocity, edge, strip, consistency = map(_labels, drawn)
     assert velocity == {"frame", "edge velocity (px/frame)", "sector (0 at +x, towards +y)"}
     assert {"frame", "area per frame (px²)", "edge velocity (px/frame)"} <= edge
     assert strip == set()
     assert consistency == {"frame", "displacement (px)"}
 
 
-def test_a_gap_is_missing_in_the_map(bare: Study, saved: list[Figure]) -> None:
+def test_a_gap_is_missing_in_the_map(bare: Study, drawn: list[Figure]) -> None:
     draw_movie_figures(bare, WHOLE, animation=False)
-    velocity = saved[0].axes[0].images[0].get_array()
+    velocity = drawn[0].axes[0].images[0].get_array()
     known = ~np.ma.getmaskarray(velocity).all(axis=0)
     assert known.tolist() == [True, True, False, False, True, True, True, False]
-    stamps = [ax.get_title() for ax in saved[2].axes]
+    stamps = [ax.get_title() for ax in drawn[2].axes]
     assert stamps == ["frame 0", "frame 1", "frame 2", "frame 5", "frame 6", "frame 7"]
 
 
-def test_a_late_cell_has_the_recordings_times(scaled: Study, images: FloatArray, saved: list[Figure]) -> None:
+def test_a_late_cell_has_the_recordings_times(scaled: Study, images: FloatArray, drawn: list[Figure]) -> None:
     paths = draw_movie_figures(scaled, LATE, lambda time: images[time])
     assert _count(paths[-1]) == 2
-    activity, _, edge, strip, consistency = saved
+    activity, _, edge, strip, consistency = drawn
     assert activity.axes[0].get_xlim() == (22.5, 32.5)
     assert [ax.get_title() for ax in strip.axes if ax.get_title()] == ["25 s", "30 s"]
     won = edge.axes[2].lines[1]
@@ -142,12 +142,12 @@ def test_a_late_cell_has_the_recordings_times(scaled: Study, images: FloatArray,
     assert consistency.axes[0].lines[0].get_xdata().tolist() == [25.0, 30.0]
 
 
-def test_a_cell_in_one_frame(scaled: Study, images: FloatArray, saved: list[Figure]) -> None:
+def test_a_cell_in_one_frame(scaled: Study, images: FloatArray, drawn: list[Figure]) -> None:
     paths = draw_movie_figures(scaled, ONCE, lambda time: images[time])
     assert [path.name[len("cell_00002") :] for path in paths[2:]] == ["_edge.png", "_strip.png", ".gif"]
-    words = {text.get_text() for text in saved[2].texts}
+    words = {text.get_text() for text in drawn[2].texts}
     assert "no two frames in a row to compare" in words
-    assert len(saved[2].axes) == 1
+    assert len(drawn[2].axes) == 1
 
 
 def test_a_cell_without_map(scaled: Study) -> None:
@@ -155,12 +155,12 @@ def test_a_cell_without_map(scaled: Study) -> None:
     assert draw_movie_figures(replace(scaled, cells=refused), LATE) == []
 
 
-def test_images_may_be_missing(scaled: Study, images: FloatArray, saved: list[Figure]) -> None:
+def test_images_may_be_missing(scaled: Study, images: FloatArray, drawn: list[Figure]) -> None:
     def signal(time: int) -> FloatArray | None:
         return None if time < 2 else images[time, :1]
 
     draw_movie_figures(scaled, WHOLE, signal, animation=False)
-    assert np.ma.getmaskarray(saved[3].axes[0].images[0].get_array()).all()
+    assert np.ma.getmaskarray(drawn[3].axes[0].images[0].get_array()).all()
 
 
 def test_a_long_movie_is_thinned(bare: Study, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -40,7 +40,7 @@ def edge_signal(lag: int) -> list[tuple[FloatArray, IntArray]]:
         shown.masks, shown.boundary_yx, shown.truth.sel(channel="edge").to_numpy(), strict=True
     ):
         pixels = np.argwhere(mask)
-        depth, nearest = cKDTree(outline).query(pixels)
+        depth, nearest = cKDTree(outline, leafsize=64, compact_nodes=False, balanced_tree=False).query(pixels)
         at_edge = (counts[mask] - 20.0) * np.exp(depth / 5.0)
         found.append(((at_edge[depth < 1.5] - 500.0) / 80.0, nearest[depth < 1.5]))
     return found

@@ -120,6 +120,18 @@ def test_a_worker_that_joins_later_is_looked_at_too(tmp_path: Path, monkeypatch:
         workers.threads()
 
 
+def test_a_worker_that_does_not_answer_is_not_counted_until_it_does(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster_workers, "_LOOK_EVERY_S", 0.0)
+    client = FakeClient({"tcp://b:1": OSError("gone")})
+    client.workers["tcp://b:1"] = 5
+    workers = watched(client, tmp_path)
+    assert workers.threads() == THREADS
+    client.answers.clear()
+    assert workers.threads() == THREADS + 5
+
+
 def test_without_workers_it_is_said_what_to_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cluster_workers, "_LOOK_EVERY_S", 0.01)
     client, told = FakeClient(), []

@@ -83,8 +83,8 @@ def batch_command(
 def _kinds(batch: "Batch") -> str:
     movies = sum(item.kind == "movie" for item in batch.inputs)
     images = len(batch.inputs) - movies
-    words = [count(movies, "movie")] if movies else []
-    return ", ".join([*words, *([count(images, "image or folder of images")] if images else [])])
+    words = {"movies": movies, "images or folders of images": images}
+    return ", ".join(f"{what} {number}" for what, number in words.items() if number)
 
 
 def _list_inputs(batch: "Batch") -> None:

@@ -78,6 +78,8 @@ def write_report(
     shown = _open_cell(study, usual if cell is None else cell)
     if path is None:
         path = study.path / (REPORT if shown.cell == usual else f"report_cell_{shown.cell:05d}.html")
+    if not path.parent.is_dir():
+        raise StudyError(f"cannot write {path}: there is no folder {path.parent}")
     html = _render(shown, shown_signal(study, signal), progress)
     with replacing(path) as temporary:
         temporary.write_text(html, encoding="utf-8")

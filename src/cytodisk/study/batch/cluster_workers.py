@@ -66,7 +66,7 @@ class Workers:
 
     def _look(self) -> None:
         started, told = time.monotonic(), False
-        while not (found := self._client.nthreads()):
+        while not self._find():
             if time.monotonic() - started > self._wait_s:
                 raise StudyError(
                     f"scheduler {self.address} has had no worker for {self._wait_s:.0f} s: start workers "
@@ -76,12 +76,18 @@ class Workers:
                 self._tell(f"waiting for a worker: `dask worker {self.address}` starts one")
             told = True
             time.sleep(_LOOK_EVERY_S / 4)
-        if new := [worker for worker in found if worker not in self._fitting]:
-            self._check(new)
-        self._fitting = dict(found)
         self._looked = time.monotonic()
 
-    def _check(self, workers: list[str]) -> None:
+    def _find(self) -> bool:
+        """Whether there are workers; new ones must fit, and those that do not answer are not counted yet."""
+        found = self._client.nthreads()
+        new = [worker for worker in found if worker not in self._fitting]
+        fitting = {*self._fitting, *(self._check(new) if new else ())}
+        self._fitting = {worker: threads for worker, threads in found.items() if worker in fitting}
+        return bool(self._fitting)
+
+    def _check(self, workers: list[str]) -> set[str]:
+        """Those workers that answer; it is an error if one of them does not fit."""
         here = version("cytodisk")
         for worker, there in self._ask(workers, version, "cytodisk").items():
             if isinstance(there, PackageNotFoundError):
@@ -91,11 +97,13 @@ class Workers:
                     f"worker {worker} has cytodisk {there}, and here is {here}: "
                     "install the same version on both"
                 )
-        for worker, fault in self._ask(workers, what_is_hidden, *self._shared).items():
+        hidden = self._ask(workers, what_is_hidden, *self._shared)
+        for worker, fault in hidden.items():
             if fault:
                 raise StudyError(f"worker {worker} {fault}")
         for package in _ROUNDING:
             self._compare(package, self._ask(workers, version, package))
+        return set(hidden)
 
     def _compare(self, package: str, found: dict[str, Any]) -> None:
         here = version(package)

@@ -61,7 +61,7 @@ def _facts(study: Study) -> dict[str, Any]:
         "pixel_size_um": provenance["pixel_size_um"],
         "frame_interval_s": provenance["frame_interval_s"],
         "length_unit": provenance["length_unit"],
-        "velocity_unit": provenance["velocity_unit"],
+        "velocity_unit": provenance["velocity_unit"] if study.is_movie else "",
         "worker": {"host": platform.node(), "versions": provenance["versions"]},
     }
     if not mapped:

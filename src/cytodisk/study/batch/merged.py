@@ -21,6 +21,7 @@ from cytodisk.study.batch.inputs import BatchInput, Value
 from cytodisk.study.batch.inputs_table import INPUT_COLUMNS
 from cytodisk.study.batch.rows import InputRow, read_row, study_key
 
+_OF_MAPS = ("cells", *MAP_TABLES.others)
 _TIMES = ("seconds",)  # columns with running times, which differ from run to run
 INPUTS = "inputs"
 
@@ -63,16 +64,16 @@ def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None]) -> 
         file = folder / f"{INPUTS}.parquet"
         write_rows(_input_rows(store, batch, done, saw), schema((*own, *INPUT_COLUMNS), ""), file)
         _write_csv(file, folder / f"{INPUTS}.csv")
-        length, velocity = (_common([one.units[k] for one in done]) for k in range(2))
         names = [f"{INPUTS}.csv", file.name]
         for name, columns in _tables(batch).items():
-            columns_schema = schema((*own, *columns), length, velocity)
+            having = [one for one in done if one.item.kind == "movie" or name in _OF_MAPS]
+            columns_schema = _schema((*own, *columns), having)
             file = folder / f"{name}.parquet"
-            merge_tables(_parts(store, done, name, batch, columns_schema), columns_schema, file)
+            merge_tables(_parts(store, having, name, batch, columns_schema), columns_schema, file)
             names.append(file.name)
         for name in names:
             store.put_file(folder / name, name)
-    if " or " not in length + velocity:
+    if all(len({one.units[k] for one in done} - {""}) <= 1 for k in range(2)):
         return []
     return [
         "inputs have different units: the columns length_unit and velocity_unit of inputs.parquet say which "
@@ -142,8 +143,14 @@ def _write_csv(table: Path, target: Path) -> None:
             writer.write_batch(some)
 
 
-def _common(units: Sequence[str]) -> str:
-    return " or ".join(sorted(set(units)))
+def _schema(columns: Columns, done: Sequence[_Done]) -> Any:
+    """Arrow schema with the units of all inputs: as "px² or µm²" where they differ."""
+    schemas = [schema(columns, *units) for units in sorted({one.units for one in done}) or [("", "")]]
+    fields = []
+    for field in schemas[0]:
+        found = [one.field(field.name).metadata[b"unit"].decode() for one in schemas]
+        fields.append(field.with_metadata({"unit": " or ".join(dict.fromkeys(filter(None, found)))}))
+    return pa.schema(fields)
 
 
 def _tables(batch: Batch) -> dict[str, Columns]:
@@ -159,11 +166,8 @@ def _tables(batch: Batch) -> dict[str, Columns]:
 
 
 def _parts(store: Store, done: Sequence[_Done], name: str, batch: Batch, columns: Any) -> Iterator[Any]:
-    """A table of all studies that have it, a row group at a time."""
-    of_maps = {"cells", *MAP_TABLES.others}
+    """A table of all studies, a row group at a time."""
     for one in done:
-        if one.item.kind == "map" and name not in of_maps:
-            continue
         given = _values(batch, one.item, columns)
         key = f"{study_key(one.item.name)}/{name}.parquet"
         try:

@@ -1,0 +1,109 @@
+"""What the benchmarks say follows from their numbers, and what they time is there."""
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+import cytodisk as cd
+from cytodisk.geometry import outline
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def load() -> Iterator[Any]:
+    sys.path.insert(0, str(ROOT / "benchmarks"))
+    try:
+        yield __import__
+    finally:
+        sys.path.remove(str(ROOT / "benchmarks"))
+
+
+def watched(load: Any) -> Any:
+    profile: ModuleType = load("profile_frame")
+    clock = load("stages").StageClock(profile.FRAME_STAGES)
+    cd.map_to_disk(cd.simulate.disk(8.0))
+    with clock.watching():
+        cd.map_to_disk(cd.simulate.disk(8.0))
+        clock.lap()
+    return clock
+
+
+def test_every_stage_that_is_timed_is_in_the_package(load: Any) -> None:
+    assert watched(load).missing == []
+
+
+def test_stages_and_the_rest_add_up_and_functions_are_put_back(load: Any) -> None:
+    before = outline.trace_outline
+    lap = watched(load).laps[0]
+    assert outline.trace_outline is before
+    assert lap.calls["outline: trace"] == 1
+    assert 0.0 <= lap.rest < lap.seconds
+    assert all(seconds >= 0.0 for seconds in lap.by_stage.values())
+
+
+def test_a_stage_leaves_out_those_inside_it(load: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    stages = load("stages")
+    now = iter(range(100))
+    monkeypatch.setattr(stages.time, "process_time", lambda: float(next(now)))
+    clock = stages.StageClock([stages.Stage("a", "outer", ("x:y",)), stages.Stage("a", "inner", ("x:z",))])
+    inner = clock._timed("a: inner", lambda: None)
+    clock._timed("a: outer", inner)()
+    clock.lap()
+    # The clock is read at 0 (start), 1 (outer), 2 and 3 (inner), 4 (outer), 5 (lap).
+    assert clock.laps[0].by_stage == {"a: outer": 2.0, "a: inner": 1.0}
+    assert clock.laps[0].rest == 2.0
+
+
+def test_exponents_of_exact_powers(load: Any) -> None:
+    scaling, series = load("scaling"), load("scaling_series")
+    sizes = 10.0 ** np.arange(1, 7)
+    points = [{"n": n, "seconds": 1e-5 * n**1.5, "memory (MB)": 1e-3 * n} for n in sizes]
+    steep = scaling.fit("s", series.Growth("seconds", "n", 1.2, ""), points)
+    assert steep.exponent == pytest.approx(1.5)
+    assert steep.verdict == "NO"
+    memory = scaling.fit("s", series.Growth("memory (MB)", "n", 1.05, ""), points)
+    assert memory.first >= scaling._LEAST_MB / 1e-3
+    assert memory.verdict == "yes"
+
+
+def test_a_figure_is_met_between_its_ends_only(load: Any) -> None:
+    figure = load("figure").Figure
+    assert figure("share", 0.05, least=0.03, most=0.07).met
+    assert figure("share", 0.08, least=0.03, most=0.07).met is False
+    assert figure("speed", 49.0, "×", least=50).met is False
+    assert figure("rate", 3.0).met is None
+    assert figure("time", 0.04, "s", most=0.06).yardstick == "≤ 0.06 s"
+
+
+def test_a_block_that_was_not_measured_is_no_success(load: Any, tmp_path: Path) -> None:
+    suite = load("suite")
+    found = suite.measure_here("area", tmp_path)
+    assert "FileNotFoundError" in found["missing"]
+    assert suite.table_of({"area": ([], found["missing"])})[1][3] == "NO"
+
+
+def test_a_comparison_tells_ratios_and_what_is_missing(load: Any) -> None:
+    revisions, figure = load("revisions"), load("figure").Figure
+    before, after = ([figure("t", value, "s") for value in values] for values in ((2.0, 4.0), (1.0, 3.0)))
+    assert revisions._words(before, after) == ["3 s", "2 s", "0.667", "0.500 – 0.750"]
+    assert revisions._words([], after)[0] == "missing"
+
+
+def test_the_older_package_is_that_of_its_revision(load: Any, tmp_path: Path) -> None:
+    with pytest.raises(SystemExit, match="no-such-revision"):
+        load("revisions").package_of("no-such-revision", tmp_path)
+
+
+@pytest.mark.parametrize("page", ["where_time_goes", "scaling"])
+def test_pages_of_speed_have_their_files(page: str) -> None:
+    folder = ROOT / "docs" / "source" / "speed"
+    text = (folder / f"{page}.rst").read_text(encoding="utf-8")
+    named = [word for word in text.split() if word.startswith(f"{page}/")]
+    assert len(named) >= 3
+    assert [name for name in named if not (folder / name).exists()] == []

@@ -1,0 +1,62 @@
+"""`cytodisk batch`: what it prints, with runs that nothing computes."""
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from command_line import Run, assert_refused
+
+from cytodisk.study.batch import run as batch_run
+from cytodisk.study.batch.rows import InputRow
+from cytodisk.study.batch.run import BatchSummary
+
+
+@pytest.fixture
+def study(tmp_path: Path) -> Path:
+    (tmp_path / "a.tif").touch()
+    (tmp_path / "b.tif").touch()
+    text = '[study]\ncolumns = ["dose"]\n[[inputs]]\nmasks = "*.tif"\ncondition = "one, two"\ndose = 2\n'
+    (tmp_path / "study.toml").write_text(text, encoding="utf-8")
+    return tmp_path / "study.toml"
+
+
+def row(name: str, status: str, reason: str) -> InputRow:
+    return InputRow(name, "movie", status, reason, "", "")
+
+
+def test_a_dry_run_lists_the_inputs(run: Run, study: Path) -> None:
+    code, said, _ = run("batch", study, "-o", study.parent / "out", "--dry-run", "-q")
+    masks = [study.parent / name for name in ("a.tif", "b.tif")]
+    assert code == 0
+    assert said.splitlines() == [
+        "name,kind,masks,signal,condition,replicate,dose",
+        f'a,movie,{masks[0]},,"one, two",,2',
+        f'b,movie,{masks[1]},,"one, two",,2',
+    ]
+    assert not (study.parent / "out").exists()
+
+
+def test_a_file_that_cannot_be_used_is_refused(run: Run, study: Path) -> None:
+    study.write_text('[[inputs]]\nmask = "*.tif"\n', encoding="utf-8")
+    assert_refused(run("batch", study, "-o", study.parent / "out"), "did you mean 'masks'?", str(study))
+    assert_refused(run("batch", study.parent / "none.toml", "-o", "out"), "cannot be read")
+
+
+@pytest.mark.parametrize(("ok", "code"), [(3, 0), (0, 2)])
+def test_what_failed_is_said(
+    run: Run, study: Path, monkeypatch: pytest.MonkeyPatch, ok: int, code: int
+) -> None:
+    failed = [row("a", "refused", "mask is empty"), row("b", "timed out", "took longer")]
+    statuses = Counter({"ok": ok, "refused": 1, "timed out": 30})
+    summary = BatchSummary("out", statuses, failed, ["a remark"])
+    monkeypatch.setattr(batch_run, "run_batch", lambda *args, **options: summary)
+    exit_code, said, errors = run("batch", study, "-o", "out")
+    assert exit_code == code
+    assert said.splitlines()[:4] == [
+        "inputs: 2 (movies 2)",
+        f"{ok} of {ok + 31} inputs done; 1 refused, 30 timed out",
+        "note: a remark",
+        "mend what failed and run the same command with --resume: only that is done again",
+    ]
+    assert "a refused: mask is empty\nb timed out: took longer\n… and 29 more" in errors
+    assert ("no input went well" in errors) == (not ok)
