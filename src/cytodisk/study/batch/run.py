@@ -2,40 +2,28 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
-import platform
 from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
-from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
-from cytodisk.errors import OtherRunError, StudyError, WriteError
-from cytodisk.io.provenance_file import PROVENANCE, command_of, differences
+from cytodisk.errors import OtherRunError, WriteError
 from cytodisk.io.store import Store
 from cytodisk.study.batch.batch_file import Batch
+from cytodisk.study.batch.batch_folder import describe_batch, make_room, note, now, remove_left_overs
 from cytodisk.study.batch.grouping import make_tasks
 from cytodisk.study.batch.inputs import BatchInput
 from cytodisk.study.batch.local import run_here
 from cytodisk.study.batch.merged import merge_batch
-from cytodisk.study.batch.rows import ROWS, STUDIES, InputRow, files_mark, read_row
+from cytodisk.study.batch.rows import ROWS, InputRow, files_mark, read_row
 from cytodisk.study.batch.task import BatchTask, TaskResult, open_store
 from cytodisk.study.run_steps import Progress, check_options, silent
-from cytodisk.study.versions import NUMERIC, installed
 
 _CLUSTER_TASK_S = 10.0
 _MOST_NAMED = 5
 _MOST_FAILED = 20
-_OWN = (
-    ROWS,
-    STUDIES,
-    *(f"{name}.parquet" for name in ("inputs", "cells", "windows", "edge", "consistency")),
-    "inputs.csv",
-)
 
 Results: TypeAlias = Generator[TaskResult, None, None]
 Tell: TypeAlias = Callable[[str], None]
@@ -122,14 +110,14 @@ def run_batch(
     target = os.fspath(out)
     store = open_store(target)
     with store.alone():
-        provenance = _describe(batch)
-        _make_room(store, provenance, target, resume, overwrite)
+        provenance = describe_batch(batch)
+        make_room(store, provenance, target, resume, overwrite)
         summary = BatchSummary(target)
         pending = list(batch.inputs)
         if resume:
             pending = _pending(store, batch, summary)
-            _remove_left_overs(store)
-        _note(store, provenance)
+            remove_left_overs(store)
+        note(store, provenance)
         if scheduler is None:
             tasks = make_tasks(pending, target, seconds=0, time_limit=time_limit)
             results = run_here(tasks, min(workers, max(1, len(pending))))
@@ -139,7 +127,7 @@ def run_batch(
         try:
             _take(results, len(pending), len(batch.inputs), progress or silent)
             summary.remarks += merge_batch(store, batch, summary.count)
-            _note(store, provenance | {"status": "complete", "finished": _now(), "warnings": summary.remarks})
+            note(store, provenance | {"status": "complete", "finished": now(), "warnings": summary.remarks})
         except WriteError as error:
             raise WriteError(
                 f"{error}: the run stops, what was done is kept; mend this (is the disk full?), then run the "
@@ -162,72 +150,6 @@ def _on_cluster(tasks: Iterator[BatchTask], scheduler: str, target: str, tell: T
     from cytodisk.study.batch.cluster import run_on_cluster
 
     yield from run_on_cluster(tasks, scheduler, target=target, tell=tell)
-
-
-def _make_room(store: Store, provenance: dict[str, Any], target: str, resume: bool, overwrite: bool) -> None:
-    """Check that the batch may write to a folder, and remove what it replaces."""
-    there = _read_provenance(store)
-    if there is None:
-        if any(not name.startswith(".") for name in store.names("")):
-            raise StudyError(f"output folder {target} is not empty and holds no batch: pass another folder")
-    elif there.get("run") != "batch":
-        raise OtherRunError(
-            f"output folder {target} holds a study of {command_of(there)}: pass another folder for a batch"
-        )
-    elif overwrite:
-        _note(store, there | {"status": "being replaced", "fingerprint": {}})
-        for name in _OWN:
-            store.remove(name)
-    elif not resume:
-        raise StudyError(
-            f"output folder {target} holds a batch: pass --resume to go on, --overwrite to replace it"
-        )
-    elif there.get("fingerprint") != provenance["fingerprint"]:
-        raise OtherRunError(
-            f"output folder {target} holds another run ({differences(there, provenance)}): "
-            "pass --overwrite to replace it, or another folder"
-        )
-
-
-def _read_provenance(store: Store) -> dict[str, Any] | None:
-    """What the folder says of its run; None if that cannot be read, or is none."""
-    try:
-        found = json.loads(store.read_text(PROVENANCE) or "null")
-    except json.JSONDecodeError:
-        return None
-    return found if isinstance(found, dict) and "fingerprint" in found else None
-
-
-def _describe(batch: Batch) -> dict[str, Any]:
-    files = {"batch file": batch.path} | ({} if batch.table is None else {"table": batch.table})
-    return {
-        "run": "batch",
-        "status": "running",
-        "fingerprint": {"cytodisk": installed(("cytodisk",))["cytodisk"], "packages": installed(NUMERIC)},
-        "inputs": {role: _described_file(path) for role, path in files.items()},
-        "columns": list(batch.columns),
-        "versions": installed(),
-        "python": platform.python_version(),
-        "platform": platform.platform(),
-        "started": _now(),
-    }
-
-
-def _described_file(path: Path) -> dict[str, str]:
-    content = path.read_bytes()
-    return {
-        "path": str(path),
-        "sha256": hashlib.sha256(content).hexdigest(),
-        "text": content.decode("utf-8-sig"),
-    }
-
-
-def _now() -> str:
-    return datetime.now(UTC).isoformat(timespec="seconds")
-
-
-def _note(store: Store, provenance: dict[str, Any]) -> None:
-    store.write_text(PROVENANCE, json.dumps(provenance, indent=2, ensure_ascii=False) + "\n")
 
 
 def _pending(store: Store, batch: Batch, summary: BatchSummary) -> list[BatchInput]:
@@ -258,14 +180,6 @@ def _pending(store: Store, batch: Batch, summary: BatchSummary) -> list[BatchInp
             f"not in the batch file any more, so not in the tables, though their results stay: {_named(gone)}"
         )
     return pending
-
-
-def _remove_left_overs(store: Store) -> None:
-    """Remove what a run that was killed was about to write."""
-    for folder in (ROWS, STUDIES):
-        for name in list(store.names(folder)):
-            if name.startswith("."):
-                store.remove(f"{folder}/{name}")
 
 
 def _with_row(store: Store) -> Iterator[str]:
