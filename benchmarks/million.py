@@ -43,7 +43,7 @@ class Costs:
         Processor time of a further frame, of a movie beside its frames, of a cell of a label image.
     frame_kb, movie_kb, cell_kb : float
         Results on disk, beside the merged tables.
-    frame_files, movie_files : float
+    frame_files, movie_files, cell_files : float
     frame_in_kb : float
         Masks and two channels as they are read.
     merged_kb, merged_rows, merged_s : float
@@ -61,6 +61,7 @@ class Costs:
     cell_kb: float
     frame_files: float
     movie_files: float
+    cell_files: float
     frame_in_kb: float
     merged_kb: float
     merged_rows: float
@@ -110,6 +111,7 @@ def measure_costs() -> Costs:
         cell_kb=(many.kb - few.kb) / (3 * _CELLS),
         frame_files=frame_files,
         movie_files=movie_files,
+        cell_files=(many.files - few.files) / (3 * _CELLS),
         frame_in_kb=in_kb,
         merged_kb=(long.merged_kb - four.merged_kb) / 80,
         merged_rows=len(rows) / 30,
@@ -188,7 +190,7 @@ def _cost_lines(costs: Costs) -> list[list[str]]:
             "1000 cells of label images",
             f"{costs.cell_s / 3.6:.3f} core hours",
             f"{costs.cell_kb:.0f} MB",
-            "1000 (a map each)",
+            f"{1000 * costs.cell_files:,.0f}",
         ],
     ]
 
@@ -212,9 +214,9 @@ def _plan(costs: Costs, last: Flown) -> Iterable[list[str]]:
     yield line("memory of the client for its list", costs.listed_kb / 1e6, "GB", ",.2f")
     yield line("minutes to read the batch file and look at all masks", costs.listed_s / 60, "min", ",.1f")
     yield line("minutes to read the rows again at --resume", last.resume_s / last.tasks / 60, "min", ",.1f")
-    yield line("processor hours of the scheduler", last.scheduler_cpu_s / last.tasks / 3600, "h", ",.3f")
-    same = f"{THREADS / movie_s:.1f} of {last.tasks / last.scheduler_cpu_s:,.0f}"
-    yield ["tasks a second that the cluster needs, of those that the scheduler can do", same, same]
+    yield line("processor hours of the scheduler", last.scheduler_cpu_s / last.tasks / 3600, "h", ",.2f")
+    threads = f"{movie_s * last.tasks / max(last.scheduler_cpu_s, last.client_cpu_s):,.0f}"
+    yield ["threads that one scheduler keeps busy, with one movie a task", threads, threads]
 
 
 def _write(name: str, head: Sequence[str], lines: Iterable[Sequence[str]]) -> None:

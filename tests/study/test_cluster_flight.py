@@ -104,7 +104,7 @@ def test_inputs_of_a_task_that_workers_died_of_are_tried_one_by_one(tmp_path: Pa
     row = read_row(open_store(str(tmp_path)), "bad")
     assert row is not None
     assert row.status == "killed"
-    assert row.reason == "4 workers died while they were at it, the last one at tcp://a:1"
+    assert row.reason == "its workers died (4, the last one tcp://a:1)"
 
 
 def test_a_worker_that_joins_later_is_looked_at_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

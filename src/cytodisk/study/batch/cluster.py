@@ -232,8 +232,8 @@ class Flight(Generic[Task, Result]):
             self._again += self._parts(task)
             if self._parts(task):
                 return []
-            deaths = f"{fault.allowed_failures + 1} workers died while they were at it"
-            return [self._given_up(task, f"{deaths}, the last one at {fault.last_worker.address}")]
+            deaths, last = fault.allowed_failures + 1, fault.last_worker.address
+            return [self._given_up(task, f"its workers died ({deaths}, the last one {last})")]
         try:
             found = future.result(timeout=_RESULT_S)
         except TimeoutError:  # its worker died with the result, and another one is at it
