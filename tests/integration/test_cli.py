@@ -383,13 +383,14 @@ def test_info_lists_versions(run: Run) -> None:
     assert versions["image formats"] == "TIFF, OME-TIFF, ImageJ TIFF, PNG"
 
 
-def test_demo_once_and_again(run: Run, tmp_path: Path) -> None:
-    """One run of the demo, then the same again, then another seed in the same folder."""
+def test_demo_once_and_again(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One run of the demo, shortened, then the same again, then another seed in the same folder."""
+    monkeypatch.setattr("cytodisk.study.demo.FRAMES", 40)
     demo = tmp_path / "demo"
     code, said, _ = run("demo", "-o", demo)
     assert code == 0
-    assert "60 of 60 frames of 1 cell mapped, each one to one" in said
-    for line in ("boundary: after 59 frames", "edge velocity: error ", "signal: sum over windows", "lag: "):
+    assert "40 of 40 frames of 1 cell mapped, each one to one" in said
+    for line in ("boundary: after 39 frames", "edge velocity: error ", "signal: sum over windows", "lag: "):
         assert line in said
     assert "made to follow edge velocity by 20 s (4 frames), it is found to follow by 20 s (4 frames)" in said
     assert f"report: {demo / 'study' / 'report.html'}" in said
