@@ -2,7 +2,6 @@
 
 import errno
 import os
-import resource
 import signal
 import subprocess
 import sys
@@ -21,16 +20,19 @@ import tifffile
 
 import cytodisk as cd
 from cytodisk.errors import MaskError, OtherRunError, ReadError, StudyError
+from cytodisk.io.store import FolderStore
 from cytodisk.io.study_folder import alone_in
 from cytodisk.io.tables import read_table
 from cytodisk.study.batch import child, compute
+from cytodisk.study.batch import run as batch_run
 from cytodisk.study.batch.batch_file import Batch, read_batch
 from cytodisk.study.batch.child_process import ChildProcess
 from cytodisk.study.batch.grouping import expected_seconds, make_tasks
 from cytodisk.study.batch.inputs import BatchInput
-from cytodisk.study.batch.run import run_batch
+from cytodisk.study.batch.run import BatchSummary, run_batch
 from cytodisk.study.parameters import MovieParameters
 
+resource = pytest.importorskip("resource", reason="limits, signals and named pipes are POSIX")
 TABLES = ("cells", "windows", "edge", "consistency", "inputs")
 STUDY = """
 [study]
@@ -146,7 +148,9 @@ def test_killed_and_resumed_by_two_workers_it_is_the_same_to_the_last_bit(
     wait_for(lambda: not children())
     assert 1 <= rows_done(out) < 5
     assert not (out / "cells.parquet").exists()
+    (out / "rows" / ".movie_0.77.tmp.json").touch()  # as a kill in the middle of writing leaves it
     summary = run_batch(read_batch(files / "study.toml"), out, workers=2, resume=True)
+    assert not list(out.glob("rows/.*"))
     assert summary.statuses == {"ok": 4, "refused": 1}
     assert [remark for remark in summary.remarks if remark.startswith("inputs have different units")]
     for name in TABLES:
@@ -208,6 +212,21 @@ def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) ->
     with pytest.raises(StudyError, match="another run is writing there"), alone_in(quiet):
         run_batch(batch, quiet, resume=True)
     assert content(quiet) == before
+
+
+def test_resumed_it_does_what_failed_is_new_or_has_changed(files: Path, quiet: Path) -> None:
+    batch, store = read_batch(files / "study.toml"), FolderStore(quiet)
+    first, *others, last = batch.inputs
+    moved = replace(first, columns=("another condition", 1, 2.0))
+    new = replace(first, name="new", masks=files / "labels.tif")
+    changed = replace(others[0], masks=files / "labels.tif")
+    summary = BatchSummary("out")
+    now = replace(batch, inputs=(moved, changed, *others[2:], last, new))
+    assert batch_run._pending(store, now, summary) == [changed, last, new]
+    assert summary.remarks == [
+        "files changed since they were done, so they are looked at again: movie_1",
+        "not in the batch file any more, so not in the tables, though their results stay: movie_2",
+    ]
 
 
 def content(folder: Path) -> dict[str, bytes]:

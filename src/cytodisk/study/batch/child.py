@@ -11,6 +11,7 @@ import os
 import pickle
 import sys
 import traceback
+from contextlib import suppress
 from pathlib import Path
 from queue import SimpleQueue
 from threading import Thread
@@ -78,9 +79,8 @@ def _cannot_write(error: BaseException | None) -> bool:
 
 def _be_killed_first() -> None:
     """Where memory runs short, let the system kill this process before the one that keeps the books."""
-    score = Path("/proc/self/oom_score_adj")
-    if score.exists():
-        score.write_text("1000", encoding="ascii")
+    with suppress(OSError):  # only Linux has it, and not in every container
+        Path("/proc/self/oom_score_adj").write_text("1000", encoding="ascii")
 
 
 def _peak_mb() -> float:
