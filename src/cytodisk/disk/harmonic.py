@@ -51,7 +51,7 @@ def harmonic_map(
     flipped = 0
     for weights in choices:
         edge_weights = _cotangents(mesh) if weights == "cotangent" else np.full(3 * len(mesh.triangles), 0.5)
-        uv = _weighted_means(mesh, edge_weights, boundary_uv, system)
+        uv = weighted_means(mesh, edge_weights, boundary_uv, system)
         flipped = int((~(triangle_areas(uv[:, ::-1], mesh.triangles) > 0)).sum())
         if not flipped:
             return uv, weights
@@ -78,7 +78,7 @@ def harmonic_extension(
     -------
     ndarray of shape (V, 2) and dtype float
     """
-    return _weighted_means(mesh, _cotangents(mesh), boundary_values, system or BlockSystem(mesh))
+    return weighted_means(mesh, _cotangents(mesh), boundary_values, system or BlockSystem(mesh))
 
 
 def _cotangents(mesh: Mesh) -> FloatArray:
@@ -88,10 +88,24 @@ def _cotangents(mesh: Mesh) -> FloatArray:
     return np.concatenate([-areas * (hats[:, k] * hats[:, (k + 1) % 3]).sum(axis=1) for k in range(3)])
 
 
-def _weighted_means(
+def weighted_means(
     mesh: Mesh, edge_weights: FloatArray, boundary_uv: FloatArray, system: BlockSystem
 ) -> FloatArray:
-    """Interior vertices at the means of their neighbours; u and v are two copies of one system."""
+    """Positions with every interior vertex at the weighted mean of its neighbours.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    edge_weights : ndarray of shape (3 F,) and dtype float
+        Of edge k → k + 1 of triangle t in entry k F + t; an edge has the sum of what its triangles give it.
+    boundary_uv : ndarray of shape (B, 2) and dtype float
+    system : BlockSystem
+        Of this mesh; u and v are two copies of one system.
+
+    Returns
+    -------
+    ndarray of shape (V, 2) and dtype float
+    """
     out = np.zeros((len(mesh.vertices_yx), 2))
     out[: mesh.n_boundary] = boundary_uv
     weights = edge_weights.reshape(3, -1)

@@ -25,7 +25,7 @@ from cytodisk.geometry.mesh import Mesh, hat_gradients, triangle_areas
 _SAFE_SHARE = 0.9  # of the step at which the first triangle would lose its area
 _SUFFICIENT = 1e-4  # Armijo: share of the predicted decrease that a step must reach
 _HALVINGS = 50
-_LONGER, _MOMENTUM = 1.5, 0.3  # of a step near the minimum: its own length, and the step before
+LONGER, MOMENTUM = 1.5, 0.3  # of a step near the minimum: its own length, and the step before
 DECREMENT = 4e-5
 GAUSS_NEWTON_ABOVE = 1e-2  # decrement below which the whole projected Hessian takes over
 MAX_STEPS = 500
@@ -101,7 +101,7 @@ def relax(
             return Relaxed(uv, step, decrement > -DECREMENT)
         moved = None
         if last is not None and not gauss:
-            moved = problem.search(uv, _LONGER * newton + _MOMENTUM * last, value, decrement, halvings=1)
+            moved = problem.search(uv, LONGER * newton + MOMENTUM * last, value, decrement, halvings=1)
         moved = moved or problem.search(uv, newton, value, decrement)
         if moved is None:  # no descent left in double precision
             return Relaxed(uv, step, False)
