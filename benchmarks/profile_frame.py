@@ -48,7 +48,11 @@ MAP_STAGES = (
     ),
     Stage("map", "order of elimination", ("cytodisk.disk.ldl:Factorisation.__init__",)),
     Stage("map", "pattern of the system", ("cytodisk.disk.blocks:BlockSystem.__init__",)),
-    Stage("map", "assembly", ("cytodisk.disk.newton:_Problem.__init__", "cytodisk.disk.newton:_Problem.newton_direction")),
+    Stage(
+        "map",
+        "assembly",
+        ("cytodisk.disk.newton:_Problem.__init__", "cytodisk.disk.newton:_Problem.newton_direction"),
+    ),
     Stage("map", "factors", ("cytodisk.disk.blocks:BlockSystem.factorise",)),
     Stage("map", "solves", ("cytodisk.disk.blocks:BlockSystem.solve",)),
     Stage("map", "line search", ("cytodisk.disk.newton:_Problem.search",)),

@@ -97,16 +97,16 @@ def test_images_and_movies_in_one_file_take_the_parameters_that_they_know(folder
 
 def test_a_table_gives_the_rows_of_a_spreadsheet(folder: Path) -> None:
     lines = [
-        "masks;signal;name;replicate;plate;dose;channels;frame_interval_s",
-        "control/cell1_masks.tif;control/cell1.ome.tif;a;1;007;1;Rac1, RhoA;5",
-        ";;;;;;;",
-        "drug/cell2_masks.tif;;b;2;12;2.5;;",
+        "masks;signal;name;condition;replicate;plate;dose;channels;frame_interval_s",
+        "control/cell1_masks.tif;control/cell1.ome.tif;a;1_2;1;007;1;Rac1, RhoA;5",
+        ";;;;;;;;",
+        "drug/cell2_masks.tif;;b;3;2;12;2.5e-1;;",
     ]
     (folder / "inputs.csv").write_text("\ufeff" + "\n".join(lines), encoding="utf-8")
     batch = batch_of(folder, '[study]\ntable = "inputs.csv"\ncolumns = ["plate", "dose"]')
     first, second = batch.inputs
-    assert first.columns == (None, 1, "007", 1.0)
-    assert second.columns == (None, 2, "12", 2.5)
+    assert first.columns == ("1_2", 1, "007", 1.0)
+    assert second.columns == ("3", 2, "12", 0.25)
     assert first.parameters == MovieParameters(channels=("Rac1", "RhoA"), frame_interval_s=5.0)
     assert second.signal is None
 
@@ -178,6 +178,8 @@ def test_one_name_or_one_mask_file_stands_for_one_input(folder: Path) -> None:
         ("[study]\ncolumns = ['a', 'a']", "[study]: column 'a' stands twice"),
         ("[study]\ncolumns = 'a'", "[study]: columns must be a list of names, got 'a'"),
         ("[parameters]\nlayer = 3", "[parameters]: unknown parameter 'layer': did you mean 'layers'?"),
+        ("[study]\nkind = ['map']", "[study]: kind must be movie or map, got ['map']"),
+        (f"{LABELS}condition = '{{stem:5}}'", "unknown field in condition 'stem:5'"),
         ("[[input]]\nmasks = 'a.tif'", "top: unknown table 'input': did you mean 'inputs'?"),
         ("[inputs]\nmasks = 'a.tif'", "[[inputs]]: must be tables"),
         ("[[inputs]]\nname = 'a'", "[[inputs]] 1 (line 1): masks must be a path or a pattern"),

@@ -25,6 +25,8 @@ from cytodisk.study.batch.inputs import BatchInput
 from cytodisk.study.batch.inputs_table import OWN_COLUMNS
 
 _TABLES = (SOURCE_COLUMNS, TRACK_COLUMNS, WINDOW_COLUMNS, EDGE_COLUMNS, CONSISTENCY_COLUMNS)
+_WHOLE = r"[+-]?(0|[1-9][0-9]*)"
+_NUMBER = _WHOLE + r"(\.[0-9]*)?([eE][+-]?[0-9]+)?"
 _TAKEN = {*KEYS, *OWN_COLUMNS, *(name for columns in _TABLES for name, _, _ in columns)}
 
 
@@ -76,7 +78,7 @@ def read_batch(path: Path) -> Batch:
     study, parameters = _section(content, "study", faults), _section(content, "parameters", faults)
     faults.add_unknown("[study]", "name", study, ("kind", "columns", "table"))
     kind = study.get("kind", "movie")
-    if kind not in PARAMETERS_OF:
+    if kind not in tuple(PARAMETERS_OF):
         faults.add("[study]", f"kind must be movie or map, got {kind!r}")
         kind = "movie"
     faults.add_unknown("[parameters]", "parameter", parameters, PARAMETERS_OF[kind].model_fields)
@@ -159,19 +161,14 @@ def _rows_of_table(table: Path, columns: tuple[str, ...], faults: Faults) -> lis
 
 
 def _with_numbers(rows: list[FileRow], columns: Iterable[str]) -> list[FileRow]:
-    """Columns in which all fields are numbers become numbers: "1", but not "001", which is a name."""
+    """Columns in which all fields are numbers become numbers: "1", but not "001" or "1_2"."""
     for column in columns:
         given = [row.values for row in rows if column in row.values]
-        for kind in (int, float):
-            try:
-                numbers = [kind(values[column]) for values in given]
-            except ValueError:
-                continue
-            if any(re.match(r"[+-]?0\d", values[column]) for values in given):
+        for kind, pattern in ((int, _WHOLE), (float, _NUMBER)):
+            if all(re.fullmatch(pattern, values[column]) for values in given):
+                for values in given:
+                    values[column] = kind(values[column])
                 break
-            for values, number in zip(given, numbers, strict=True):
-                values[column] = number
-            break
     return rows
 
 

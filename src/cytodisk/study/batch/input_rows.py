@@ -68,7 +68,7 @@ class RowReader:
         """The inputs of a row, in natural order of their names; faults are noted."""
         self.faults.add_unknown(row.place, "column", row.values, [*KEYS, *self.columns])
         kind = row.values.get("kind", self.kind)
-        if kind not in PARAMETERS_OF:
+        if kind not in tuple(PARAMETERS_OF):
             self.faults.add(row.place, f"kind must be movie or map, got {kind!r}")
             return
         parameters = self._parameters(row, kind)
@@ -148,11 +148,12 @@ class RowReader:
             if key == "masks" or not isinstance(value, str):
                 continue
             try:
-                wanted = [field for _, field, _, _ in Formatter().parse(value) if field is not None]
+                fields = [(name, form or how) for _, name, form, how in Formatter().parse(value)]
             except ValueError as error:
                 self.faults.add(row.place, f"{key} {value!r} is no template: {error}; write {{{{ for a brace")
                 right = False
                 continue
+            wanted = [f"{name}:{form}" if form else name for name, form in fields if name is not None]
             self.faults.add_unknown(row.place, f"field in {key}", wanted, FIELDS)
             right = right and set(wanted) <= set(FIELDS)
         return right

@@ -22,6 +22,7 @@ from cytodisk.study.batch.inputs_table import INPUT_COLUMNS
 from cytodisk.study.batch.rows import InputRow, read_row, study_key
 
 _OF_MAPS = ("cells", *MAP_TABLES.others)
+_MOST = 2**63  # longer numbers are such as those on a label
 _TIMES = ("seconds",)  # columns with running times, which differ from run to run
 INPUTS = "inputs"
 
@@ -93,6 +94,8 @@ def _type(values: Sequence[Value]) -> Any:
     if given and all(isinstance(value, bool) for value in given):
         return pa.bool_()
     if any(isinstance(value, bool | str) for value in given) or not given:
+        return pa.string()
+    if any(isinstance(value, int) and abs(value) >= _MOST for value in given):
         return pa.string()
     return pa.int64() if all(isinstance(value, int) for value in given) else pa.float64()
 
