@@ -16,7 +16,7 @@ def machine_words() -> str:
     unit = median_seconds(yardstick(), 5, time.process_time)
     return (
         f"Measured on a machine with {os.cpu_count()} cores, Python {platform.python_version()}, which needs "
-        f"{1e3 * unit:.0f} ms of processor time to factorise the Laplacian of a 200 × 200 grid (SuperLU, one thread)."
+        f"{1e3 * unit:.0f} ms of processor time to factorise the Laplacian of a 200 × 200 grid (SuperLU)."
     )
 
 
