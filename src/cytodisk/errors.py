@@ -1,7 +1,8 @@
 """Every error a user can cause. A message names the argument, what came and what to do.
 
 All inherit `CytodiskError`, which is a `ValueError`; a leaf also inherits the built-in that a caller
-would catch for such a fault.
+would catch for such a fault. `OSError` stands first, because nothing but its own `__new__` can make one, and
+libraries that unpickle errors (Dask's tblib) call that of the first base.
 """
 
 
@@ -37,11 +38,11 @@ class MeshError(MapError):
     """The outline could not be triangulated into a topological disk."""
 
 
-class ReadError(CytodiskError, OSError):
+class ReadError(OSError, CytodiskError):
     """A file is missing, is not an image, or is damaged."""
 
 
-class StudyError(CytodiskError, OSError):
+class StudyError(OSError, CytodiskError):
     """A study folder cannot be written, read or resumed."""
 
 

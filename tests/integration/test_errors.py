@@ -1,0 +1,19 @@
+"""Errors go from process to process as they are."""
+
+import inspect
+import pickle
+
+import pytest
+
+from cytodisk import errors
+
+LEAVES = [
+    found for _, found in inspect.getmembers(errors, inspect.isclass) if found.__module__ == errors.__name__
+]
+
+
+@pytest.mark.parametrize("error", LEAVES, ids=lambda error: error.__name__)
+def test_an_error_can_be_made_again_from_what_it_says(error: type[Exception]) -> None:
+    remade = pickle.loads(pickle.dumps(error("words")))
+    assert (type(remade), str(remade)) == (error, "words")
+    assert str(error.__new__(error, "words")) == "words"  # how tblib does it, once Dask is loaded
