@@ -12,7 +12,7 @@ import numpy as np
 
 from figure import Figure
 
-RANDOM_MASKS = 700
+RANDOM_MASKS = 2800
 GRIDS = ((1, 1), (5, 12), (10, 60), (20, 120), (50, 100), (100, 200))
 TRACKED_FRAMES = 12
 SERIES_MOVIES = 12
