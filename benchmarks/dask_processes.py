@@ -6,6 +6,7 @@ import os
 import socket
 import subprocess
 import sys
+import time
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -46,9 +47,13 @@ class DaskProcesses:
         folder = ("--local-directory", str(self.folder))
         return self._start("worker", self.address, *flags, *folder, environment=environment)
 
-    def said(self) -> str:
-        """All that the processes wrote."""
-        return "".join(path.read_text(errors="replace") for path in sorted(self.folder.glob("*.log")))
+    def wait_for_workers(self) -> None:
+        """Wait until the scheduler knows all workers that were started."""
+        logs = list(self.folder.glob("*_worker.log"))
+        while not all("Registered to:" in log.read_text(errors="replace") for log in logs):
+            if any(process.poll() is not None for process in self._processes):
+                raise RuntimeError("".join(log.read_text(errors="replace") for log in logs))
+            time.sleep(0.05)
 
     def _start(
         self, command: str, *flags: str, environment: Mapping[str, str] | None = None

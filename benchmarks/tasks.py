@@ -86,11 +86,10 @@ def fly(number: int) -> Flown:
         scheduler = processes.scheduler()
         for _ in range(WORKERS):
             processes.worker(THREADS)
+        processes.wait_for_workers()
         with connected(processes.address) as client:
             shared = (str(target), begin_run(str(target)))
             workers = Workers(client, processes.address, print, 60, shared)
-            while workers.threads() < WORKERS * THREADS:
-                time.sleep(0.1)
             flight = Flight(client, workers, write_rows, lambda task: [], _no_death)
             used, before, most = time.process_time(), _memory_mb(os.getpid(), "VmRSS"), 0.0
             started, done = time.perf_counter(), 0

@@ -92,6 +92,7 @@ def test_a_worker_that_is_killed_changes_nothing_in_the_tables(
 ) -> None:
     cluster.scheduler()
     workers = [cluster.worker(), cluster.worker()]
+    cluster.wait_for_workers()
     summary = run_batch(
         read_batch(study),
         f"file://{tmp_path}/out",
