@@ -5,6 +5,8 @@ would catch for such a fault. `OSError` stands first, because nothing but its ow
 libraries that unpickle errors (Dask's tblib) call that of the first base.
 """
 
+from typing import TypeVar
+
 
 class CytodiskError(ValueError):
     """Base of all errors that cytodisk raises on purpose."""
@@ -56,6 +58,18 @@ class OtherRunError(StudyError):
 
 class MissingPartError(CytodiskError, ImportError):
     """An optional part is not installed; the message names the `pip install` to type."""
+
+
+Fault = TypeVar("Fault", bound=CytodiskError)
+
+
+def as_data(fault: Fault) -> Fault:
+    """An error to be kept and passed on, without what led to it: its message says that.
+
+    A traceback would hold on to images, and not every library's errors can go to another process.
+    """
+    fault.__cause__ = fault.__context__ = fault.__traceback__ = None
+    return fault
 
 
 class StationarityWarning(UserWarning):

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
-from cytodisk.errors import CytodiskError, EmptyMaskError, MaskError, ReadError
+from cytodisk.errors import CytodiskError, EmptyMaskError, MaskError, ReadError, as_data
 from cytodisk.io.frames import FrameFile, open_frames
 from cytodisk.io.mask_names import mask_names
 from cytodisk.io.masks import Kind, understood_as
@@ -139,7 +139,7 @@ def _opened(path: Path, kind: Kind) -> MaskSource:
             file.frame(0)  # raises where the picture itself is damaged; "auto" has read it
         return replace(source, file=file, kind=understood)
     except (ReadError, MaskError) as fault:
-        return replace(source, fault=fault)
+        return replace(source, fault=as_data(fault))
 
 
 def read_source_cells(sources: Iterable[MaskSource]) -> Iterator[SourceCell]:
@@ -173,7 +173,7 @@ def _cells_of(source: MaskSource) -> Iterator[SourceCell]:
             if source.kind == "labels":
                 _check_labels(frame, number)
         except (ReadError, MaskError) as fault:
-            yield replace(nothing, fault=fault)
+            yield replace(nothing, fault=as_data(fault))
             continue
         if source.kind == "labels":
             yield from _labelled(frame, nothing)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.errors import CytodiskError, MaskError, ReadError
+from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
 from cytodisk.io.frames import FrameFile
 from cytodisk.io.linking import link_labels
 from cytodisk.io.masks import Kind
@@ -82,7 +82,7 @@ def read_frame(file: FrameFile, time: int) -> Any:
     try:
         return file.frame(time)[0]
     except ReadError as error:
-        return error
+        return as_data(error)
 
 
 def list_tracks(file: FrameFile, kind: Kind, link: bool) -> list[CellTrack]:

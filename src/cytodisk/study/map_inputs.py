@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from cytodisk.errors import ReadError, SignalError
+from cytodisk.errors import ReadError, SignalError, as_data
 from cytodisk.io.frames import FrameFile, open_frames
 from cytodisk.io.mask_files import MaskSource, open_mask_files
 from cytodisk.io.signal_files import pair_images
@@ -199,7 +199,7 @@ def _open_paired(source: MaskSource, image: Path | SignalError) -> SignalFile:
     try:
         return SignalFile(_fitting_image(source, image))
     except (ReadError, SignalError) as fault:
-        return SignalFile(fault=fault)
+        return SignalFile(fault=as_data(fault))
 
 
 def check_signal(masks: FrameFile, signal: FrameFile) -> None:

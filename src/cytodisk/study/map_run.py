@@ -10,7 +10,7 @@ from typing import Any
 
 import xarray as xr
 
-from cytodisk.errors import CytodiskError, ReadError
+from cytodisk.errors import CytodiskError, ReadError, as_data
 from cytodisk.geometry.mask import MaskReport, clean_mask
 from cytodisk.io.mask_files import SourceCell, read_source_cells
 from cytodisk.io.mask_names import without_name
@@ -159,7 +159,7 @@ def _signal_at(
     try:
         values = signal.file.frame(min(frame, signal.file.n_frames - 1))
     except ReadError as error:
-        return None, error
+        return None, as_data(error)
     coords = {"channel": list(signal.file.channels)}
     return xr.DataArray(values, dims=("channel", "y", "x"), coords=coords), None
 

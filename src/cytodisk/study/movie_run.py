@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cytodisk.errors import MaskError, ReadError
+from cytodisk.errors import MaskError, ReadError, as_data
 from cytodisk.io.frames import FrameFile
 from cytodisk.io.study import Study, open_study
 from cytodisk.io.study_folder import MOVIE_TABLES, PARAMETERS, StudyFolder, alone_in, part_key
@@ -221,7 +221,7 @@ def _signal_at(signal: FrameFile | None, time: int) -> Any:
     try:
         values = signal.frame(time)
     except ReadError as error:
-        return error
+        return as_data(error)
     coords = {"channel": list(signal.channels)}
     return xr.DataArray(values.astype(np.float64), dims=("channel", "y", "x"), coords=coords)
 
