@@ -73,6 +73,7 @@ def _fill(
     reach = math.hypot(height, width)
     last_row = int(reach / (math.sqrt(0.75) * spacing)) + 1
     cos, sin = math.cos(angle), math.sin(angle)
+    finest = 3.0 ** (0.5 * np.arange(1, _COARSEST + 2))  # a level is too fine from here on
     points = np.empty((256, 2))
     count = 0
     for j in range(-last_row, last_row + 1):
@@ -97,7 +98,7 @@ def _fill(
             here = upper * (1.0 - t) + lower * t
             if here < clearance * spacing:
                 continue
-            if (1.0 + growth * here / spacing) >= 3.0 ** (0.5 * (_level(i, j) + 1)):
+            if 1.0 + growth * here / spacing >= finest[_level(i, j)]:
                 continue
             if count == len(points):
                 points = np.concatenate((points, np.empty_like(points)))

@@ -1,7 +1,7 @@
 """Windows of the parts of all pixels of a cell, triangle after triangle and row after row.
 
-Within a triangle the map is linear, so a part's place in the disk follows from its neighbour's by an
-addition, and nearly always it is in the same window.
+Within a triangle the map is linear, so a row of parts goes to a straight line in the disk, and where that
+meets the next ray or circle of the grid is known without looking at the parts before.
 """
 
 import math
@@ -16,10 +16,11 @@ from cytodisk.windows.edge_parts import part_places
 from cytodisk.windows.grid import PolarWindows
 
 _MARGIN = 1e-12  # of the disk's radius: nearer to a window's border than this, a point is looked at closely
+_BEFORE_BORDER = 1e-6  # of a part: so far before a border a stretch ends, and its next part is looked at
 _ON_EDGE = 1e-9  # of a part: a point so far beyond a triangle's edge is still on it
 
 
-def windows_of_all_parts(grid: PolarWindows, disk: DiskMap, per_side: int) -> Int32Array:
+def windows_of_all_parts(grid: PolarWindows, disk: DiskMap, pixels_yx: IntArray, per_side: int) -> Int32Array:
     """Window that each part of each mask pixel maps into; a part outside goes with the nearest outline point.
 
     Parameters
@@ -27,19 +28,22 @@ def windows_of_all_parts(grid: PolarWindows, disk: DiskMap, per_side: int) -> In
     grid : PolarWindows
     disk : DiskMap
         One to one: not by "advection", whose triangles may lie over each other.
+    pixels_yx : ndarray of shape (P, 2) and dtype int
+        (row, column) of all pixels of the mask, in row-major order.
     per_side : int
         Parts along a pixel's side.
 
     Returns
     -------
     ndarray of shape (P, parts) and dtype int32
-        Pixels of the mask in row-major order, parts row by row.
+        Parts row by row.
     """
-    rows, columns = np.flatnonzero(disk.mask.any(axis=1)), np.flatnonzero(disk.mask.any(axis=0))
-    corner = np.array([rows[0], columns[0]])
-    inside = disk.mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-    number = np.where(inside, np.cumsum(inside, dtype=np.int32).reshape(inside.shape) - 1, -1)
-    window = np.full((int(inside.sum()), per_side**2), -1, dtype=np.int32)
+    corner = pixels_yx.min(axis=0)
+    height, width = pixels_yx.max(axis=0) - corner + 1
+    number = np.full((height, width), -1, dtype=np.int32)
+    inside = disk.mask[corner[0] : corner[0] + height, corner[1] : corner[1] + width]
+    number[inside] = np.arange(len(pixels_yx), dtype=np.int32)
+    window = np.full((len(pixels_yx), per_side**2), -1, dtype=np.int32)
     _paint(
         (disk.vertices_yx - (corner - 0.5)) * per_side,
         disk.vertices_uv,
@@ -52,7 +56,7 @@ def windows_of_all_parts(grid: PolarWindows, disk: DiskMap, per_side: int) -> In
         window,
     )
     pixel, part = _outside(window)
-    places = part_places(np.argwhere(disk.mask)[pixel], per_side)[np.arange(len(pixel)), part]
+    places = part_places(pixels_yx[pixel], per_side)[np.arange(len(pixel)), part]
     window[pixel, part] = grid.window_of(disk.to_disk(places, outside="nearest"))
     return window
 
@@ -62,6 +66,11 @@ def _outside(window: Int32Array) -> tuple[IntArray, IntArray]:
     """Pixel and part of every part that no triangle holds."""
     pixels, parts = [], []
     for pixel in range(window.shape[0]):
+        signs = 0
+        for part in range(window.shape[1]):
+            signs |= window[pixel, part]
+        if signs >= 0:
+            continue
         for part in range(window.shape[1]):
             if window[pixel, part] < 0:
                 pixels.append(pixel)
@@ -90,7 +99,7 @@ def _paint(
     outer[0] = np.inf
     pixel_column = np.arange(width * per_side, dtype=np.int32) // per_side
     part_column = np.arange(width * per_side, dtype=np.int32) % per_side
-    layer, sector, here = 0, 0, 0  # of the part before
+    layer, sector = 0, 0
     for t in range(triangles.shape[0]):
         i, j, k = triangles[t, 0], triangles[t, 1], triangles[t, 2]
         y0, x0 = vertices_yx[i, 0], vertices_yx[i, 1]
@@ -104,39 +113,155 @@ def _paint(
         u_by_y = (u2 * (x1 - x0) - u1 * (x2 - x0)) / twice
         v_by_x = (v1 * (y2 - y0) - v2 * (y1 - y0)) / twice
         v_by_y = (v2 * (x1 - x0) - v1 * (x2 - x0)) / twice
-        first_row = max(math.ceil(min(y0, y1, y2) - 0.5 - _ON_EDGE), 0)
-        last_row = min(math.floor(max(y0, y1, y2) - 0.5 + _ON_EDGE), height * per_side - 1)
+        if not _holds(u0, v0, u0 * u0 + v0 * v0, layer, sector, inner, outer, rays):
+            layer, sector = _window_at(u0, v0, boundary_angles, radii, sectors)
+        alike = _holds_triangle(u0, v0, u0 + u1, v0 + v1, u0 + u2, v0 + v2, layer, sector, inner, outer, rays)
+        row_layer, row_sector = layer, sector  # of the first part of the row before
+        (ya, xa), (yb, xb), (yc, xc) = _by_row((y0, x0), (y1, x1), (y2, x2))
+        ab = (xb - xa) / (yb - ya) if yb > ya else 0.0
+        bc = (xc - xb) / (yc - yb) if yc > yb else 0.0
+        ac = (xc - xa) / (yc - ya)
+        first_row = max(math.ceil(ya - 0.5 - _ON_EDGE), 0)
+        last_row = min(math.floor(yc - 0.5 + _ON_EDGE), height * per_side - 1)
         for row in range(first_row, last_row + 1):
+            y = min(max(row + 0.5, ya), yc)
+            one = xa + (y - ya) * ac
+            other = xa + (y - ya) * ab if y < yb else xb + (y - yb) * bc
+            first = max(math.ceil(min(one, other) - 0.5 - _ON_EDGE), 0)
+            last = min(math.floor(max(one, other) - 0.5 + _ON_EDGE), width * per_side - 1)
             y = row + 0.5
-            left, right = np.inf, -np.inf
-            for ya, xa, yb, xb in ((y0, x0, y1, x1), (y1, x1, y2, x2), (y2, x2, y0, x0)):
-                if min(ya, yb) - _ON_EDGE <= y <= max(ya, yb) + _ON_EDGE:
-                    s = min(max((y - ya) / (yb - ya), 0.0), 1.0) if ya != yb else 0.0
-                    x = xa + s * (xb - xa)
-                    left, right = min(left, x), max(right, x)
-                    if ya == yb:
-                        left, right = min(left, xb), max(right, xb)
-            first = max(math.ceil(left - 0.5 - _ON_EDGE), 0)
-            last = min(math.floor(right - 0.5 + _ON_EDGE), width * per_side - 1)
             u_row = u0 + u_by_y * (y - y0) + u_by_x * (0.5 - x0)
             v_row = v0 + v_by_y * (y - y0) + v_by_x * (0.5 - x0)
             pixel_row, part_row = row // per_side, (row % per_side) * per_side
-            for column in range(first, last + 1):
-                pixel = number[pixel_row, pixel_column[column]]
-                if pixel < 0:
-                    continue
+            layer, sector = row_layer, row_sector
+            column = first
+            while column <= last:
                 u, v = u_row + column * u_by_x, v_row + column * v_by_x
                 square = u * u + v * v
-                if not (
-                    inner[layer] <= square < outer[layer]
-                    and rays[sector, 0] * v - rays[sector, 1] * u > _MARGIN
-                    and rays[sector + 1, 0] * v - rays[sector + 1, 1] * u < -_MARGIN
-                ):
+                end = last
+                if not alike and not _holds(u, v, square, layer, sector, inner, outer, rays):
                     layer, sector = _next_window(u, v, square, layer, sector, inner, outer, rays)
                     if layer < 0:
                         layer, sector = _window_at(u, v, boundary_angles, radii, sectors)
-                    here = layer * sectors + sector
-                window[pixel, part_row + part_column[column]] = here
+                    if not _holds(u, v, square, layer, sector, inner, outer, rays):
+                        end = column  # on a border: the next part is looked at by itself
+                if column == first:
+                    row_layer, row_sector = layer, sector
+                if end > column and not alike:
+                    end = column + _further(
+                        u, v, u_by_x, v_by_x, end - column, layer, sector, inner, outer, rays
+                    )
+                here = layer * sectors + sector
+                for part in range(column, end + 1):
+                    pixel = number[pixel_row, pixel_column[part]]
+                    if pixel >= 0:
+                        window[pixel, part_row + part_column[part]] = here
+                column = end + 1
+
+
+@njit(cache=True)
+def _holds(
+    u: float,
+    v: float,
+    square: float,
+    layer: int,
+    sector: int,
+    inner: FloatArray,
+    outer: FloatArray,
+    rays: FloatArray,
+) -> bool:
+    """Whether a point is surely in a window. All but the inner bound are convex."""
+    return (
+        inner[layer] <= square < outer[layer]
+        and rays[sector, 0] * v - rays[sector, 1] * u > _MARGIN
+        and rays[sector + 1, 0] * v - rays[sector + 1, 1] * u < -_MARGIN
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _further(
+    u: float,
+    v: float,
+    du: float,
+    dv: float,
+    most: int,
+    layer: int,
+    sector: int,
+    inner: FloatArray,
+    outer: FloatArray,
+    rays: FloatArray,
+) -> int:
+    """How many steps (du, dv) a point of a window surely stays in it: until it meets a ray or a circle."""
+    steps = float(most)
+    to_right = rays[sector, 0] * v - rays[sector, 1] * u - _MARGIN
+    by_step = rays[sector, 0] * dv - rays[sector, 1] * du
+    if by_step < 0.0:
+        steps = min(steps, -to_right / by_step)
+    to_left = rays[sector + 1, 1] * u - rays[sector + 1, 0] * v - _MARGIN
+    by_step = rays[sector + 1, 1] * du - rays[sector + 1, 0] * dv
+    if by_step < 0.0:
+        steps = min(steps, -to_left / by_step)
+    length, along, square = du * du + dv * dv, u * du + v * dv, u * u + v * v
+    if layer > 0 and length > 0.0:
+        root = math.sqrt(along * along + length * (outer[layer] - square))
+        steps = min(steps, (root - along) / length)
+    discriminant = along * along - length * (square - inner[layer])
+    if along < 0.0 and discriminant > 0.0:
+        steps = min(steps, (-along - math.sqrt(discriminant)) / length)
+    return max(math.floor(steps - _BEFORE_BORDER), 0) if steps < most else most
+
+
+@njit(cache=True)
+def _holds_triangle(
+    u0: float,
+    v0: float,
+    u1: float,
+    v1: float,
+    u2: float,
+    v2: float,
+    layer: int,
+    sector: int,
+    inner: FloatArray,
+    outer: FloatArray,
+    rays: FloatArray,
+) -> bool:
+    """Whether all of a triangle is surely in a window; the centre of the disk is at most at its corner."""
+    return (
+        _holds(u0, v0, u0 * u0 + v0 * v0, layer, sector, inner, outer, rays)
+        and _holds(u1, v1, u1 * u1 + v1 * v1, layer, sector, inner, outer, rays)
+        and _holds(u2, v2, u2 * u2 + v2 * v2, layer, sector, inner, outer, rays)
+        and _square_of_nearest(u0, v0, u1, v1) >= inner[layer]
+        and _square_of_nearest(u1, v1, u2, v2) >= inner[layer]
+        and _square_of_nearest(u2, v2, u0, v0) >= inner[layer]
+    )
+
+
+@njit(cache=True)
+def _by_row(
+    a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]
+) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
+    """Three points by their first coordinate."""
+    if b[0] < a[0]:
+        a, b = b, a
+    if c[0] < b[0]:
+        b, c = c, b
+    if b[0] < a[0]:
+        a, b = b, a
+    return a, b, c
+
+
+@njit(cache=True)
+def _square_of_nearest(u0: float, v0: float, u1: float, v1: float) -> float:
+    """Square of the distance from the centre to the segment between two points."""
+    du, dv = u1 - u0, v1 - v0
+    length = du * du + dv * dv
+    along = -(u0 * du + v0 * dv)
+    if along <= 0.0:
+        return u0 * u0 + v0 * v0
+    if along >= length:
+        return u1 * u1 + v1 * v1
+    across = u0 * dv - v0 * du
+    return across * across / length
 
 
 @njit(cache=True)
@@ -160,13 +285,7 @@ def _next_window(
         sector = sector - 1 if sector else last
     elif rays[sector + 1, 0] * v - rays[sector + 1, 1] * u >= -_MARGIN:
         sector = sector + 1 if sector < last else 0
-    if (
-        inner[layer] <= square
-        and rays[sector, 0] * v - rays[sector, 1] * u > _MARGIN
-        and rays[sector + 1, 0] * v - rays[sector + 1, 1] * u < -_MARGIN
-    ):
-        return layer, sector
-    return -1, -1
+    return (layer, sector) if _holds(u, v, square, layer, sector, inner, outer, rays) else (-1, -1)
 
 
 @njit(cache=True)

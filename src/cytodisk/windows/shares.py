@@ -131,12 +131,10 @@ def _gather(
     entries = 0
     for row in range(count):
         first = entries
-        whole = window[row, 0]
-        for part in range(1, parts):
-            if window[row, part] != whole:
-                whole = -1
-                break
-        if whole >= 0:
+        whole, others = window[row, 0], 0
+        for part in range(parts):
+            others |= window[row, part] ^ whole
+        if others == 0 and whole >= 0:
             y, x = float(places_yx[row, 0]), float(places_yx[row, 1])
             area = parts * share[row]
             moments[whole, 0] += area * y

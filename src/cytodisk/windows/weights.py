@@ -38,7 +38,7 @@ def window_shares(grid: PolarWindows, disk: DiskMap) -> WindowShares:
     if disk.method == "advection":
         coarse: IntArray | Int32Array = windows_of_parts(grid, disk, pixels, PARTS)
     else:
-        coarse = windows_of_all_parts(grid, disk, PARTS)
+        coarse = windows_of_all_parts(grid, disk, pixels, PARTS)
     shares = gather_shares(pixels, grid.n_windows, _blocks(np.arange(len(pixels)), coarse))
     empty = np.flatnonzero(np.diff(shares.weights.indptr) == 0)
     if not empty.size:
