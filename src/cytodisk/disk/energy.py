@@ -129,6 +129,8 @@ def derivatives(
         p, q, r, even, odd = _projected(s1, s2, 0.0 if gauss else log_det, weight)
         slope1 = 2.0 * log_det / s1 + weight * (1.0 / s2 - s2 / (s1 * s1))
         slope2 = 2.0 * log_det / s2 + weight * (1.0 / s1 - s1 / (s2 * s2))
+        p, q, r, even, odd = share[t] * p, share[t] * q, share[t] * r, share[t] * even, share[t] * odd
+        cc, ss, cs = cu * cu, su * su, cu * su
         for k in range(3):
             x[k] = cv * hats[t, k, 0] - sv * hats[t, k, 1]
             y[k] = sv * hats[t, k, 0] + cv * hats[t, k, 1]
@@ -142,15 +144,14 @@ def derivatives(
                 if block < 0:
                     continue
                 xx, xy, yx, yy = x[k] * x[l], x[k] * y[l], y[k] * x[l], y[k] * y[l]
-                uu, vv = share[t] * (p * xx + even * yy), share[t] * (r * yy + even * xx)
-                uv_, vu = share[t] * (q * xy + odd * yx), share[t] * (q * yx + odd * xy)
+                uu, vv = p * xx + even * yy, r * yy + even * xx
+                uv_, vu = q * xy + odd * yx, q * yx + odd * xy
                 # U times this block times Uᵀ
-                top, bottom = cu * uu - su * vu, su * uu + cu * vu
-                top_right, bottom_right = cu * uv_ - su * vv, su * uv_ + cu * vv
-                blocks[block, 0, 0] += cu * top - su * top_right
-                blocks[block, 0, 1] += su * top + cu * top_right
-                blocks[block, 1, 0] += cu * bottom - su * bottom_right
-                blocks[block, 1, 1] += su * bottom + cu * bottom_right
+                apart, together = (uu - vv) * cs, (uv_ + vu) * cs
+                blocks[block, 0, 0] += uu * cc + vv * ss - together
+                blocks[block, 0, 1] += apart + uv_ * cc - vu * ss
+                blocks[block, 1, 0] += apart + vu * cc - uv_ * ss
+                blocks[block, 1, 1] += uu * ss + vv * cc + together
 
 
 @njit(cache=True)

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 from numba import njit
-from scipy import ndimage
 
 from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.geometry.depth import depth_of
 
 _COARSEST = 16  # √3¹⁶ = 6561 times the finest spacing: beyond any image
 
@@ -33,7 +33,7 @@ def graded_lattice(mask: BoolArray, edge_length: float, growth: float, clearance
     ndarray of shape (M, 2) and dtype float
         (row, column) in pixels; may be empty for thin cells.
     """
-    depth = ndimage.distance_transform_edt(np.pad(mask, 1)) - 0.5
+    depth = depth_of(np.pad(mask, 1)) - 0.5
     pixels = np.argwhere(mask)
     centre = pixels.mean(axis=0)
     return _fill(depth, centre, _long_axis(pixels - centre), edge_length, growth, clearance)
@@ -74,6 +74,7 @@ def _fill(
     last_row = int(reach / (math.sqrt(0.75) * spacing)) + 1
     cos, sin = math.cos(angle), math.sin(angle)
     finest = 3.0 ** (0.5 * np.arange(1, _COARSEST + 2))  # a level is too fine from here on
+    deepest = (finest - 1.0) * spacing / growth if growth > 0.0 else np.full_like(finest, np.inf)
     points = np.empty((256, 2))
     count = 0
     for j in range(-last_row, last_row + 1):
@@ -92,13 +93,16 @@ def _fill(
             row, column = math.floor(y) + 1, math.floor(x) + 1
             if row < 0 or column < 0 or row >= height - 1 or column >= width - 1:
                 continue
+            level = _level(i, j)
+            if depth[row, column] - 1.5 > deepest[level]:  # so is the point: depth changes by 1 a pixel
+                continue
             t, s = y + 1.0 - row, x + 1.0 - column
             upper = depth[row, column] * (1.0 - s) + depth[row, column + 1] * s
             lower = depth[row + 1, column] * (1.0 - s) + depth[row + 1, column + 1] * s
             here = upper * (1.0 - t) + lower * t
             if here < clearance * spacing:
                 continue
-            if 1.0 + growth * here / spacing >= finest[_level(i, j)]:
+            if 1.0 + growth * here / spacing >= finest[level]:
                 continue
             if count == len(points):
                 points = np.concatenate((points, np.empty_like(points)))

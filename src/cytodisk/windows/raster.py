@@ -171,7 +171,7 @@ def _holds(
     rays: FloatArray,
 ) -> bool:
     """Whether a point is surely in a window. All but the inner bound are convex."""
-    return (
+    return bool(
         inner[layer] <= square < outer[layer]
         and rays[sector, 0] * v - rays[sector, 1] * u > _MARGIN
         and rays[sector + 1, 0] * v - rays[sector + 1, 1] * u < -_MARGIN
