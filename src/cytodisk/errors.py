@@ -56,7 +56,7 @@ class OtherRunError(StudyError):
     """A study folder holds the results of another run."""
 
 
-class MissingPartError(CytodiskError, ImportError):
+class MissingPartError(ImportError, CytodiskError):
     """An optional part is not installed; the message names the `pip install` to type."""
 
 
