@@ -1,8 +1,8 @@
 """Ways to a faster map that were tried: Newton steps, time, and area error as a mesh twice as fine sees it.
 
-The first row of a mask is the package as it is; the others change one thing each. A coarser mesh has a smaller
-error on its own triangles than the cell has, so all are compared on one mesh that is finer than any. With
-`--page` the table of the page "What was tried" is written.
+The first row of a mask is the package as it is; the others change one thing each. A coarser mesh has a
+smaller error on its own triangles than the cell has, so all are compared on one mesh that is finer than any.
+With `--page` the table of the page "What was tried" is written.
 """
 
 import argparse
