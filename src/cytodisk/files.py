@@ -120,5 +120,12 @@ def keep_kernels(package: Path) -> None:
 
 def _can_be_written(folder: Path) -> bool:
     """Whether files can be made in a folder, or it can itself be made."""
-    there = next(path for path in (folder, *folder.parents) if path.exists())
+    there = next(path for path in (folder, *folder.parents) if _is_seen(path))
     return os.access(there, os.W_OK | os.X_OK)
+
+
+def _is_seen(path: Path) -> bool:
+    try:
+        return path.exists()
+    except PermissionError:  # in a folder that may not be searched, as the home of another user
+        return False

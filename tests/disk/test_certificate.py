@@ -149,3 +149,25 @@ def test_it_says_what_is_malformed(valid: Arrays) -> None:
     valid.triangles = triangles.copy()
     valid.triangles[0, 0] = -1
     assert says(valid.certify(), "name a vertex that does not exist")
+
+
+def test_it_sees_a_ring_that_is_covered_twice_though_every_triangle_is_positive() -> None:
+    n = 12
+    angle, onwards = 2.0 * np.pi * np.arange(n) / n, np.roll(np.arange(n), -1)
+    circle = np.column_stack([np.cos(angle), np.sin(angle)])
+    rim, outer, inner, centre, second = 0, n, 2 * n, 3 * n, 3 * n + 1  # first vertex of each ring
+
+    def band(a: int, b: int) -> np.ndarray:
+        one = np.column_stack([a + np.arange(n), a + onwards, b + np.arange(n)])
+        other = np.column_stack([a + onwards, b + onwards, b + np.arange(n)])
+        return np.concatenate([one, other])
+
+    fan = np.column_stack([inner + np.arange(n), inner + onwards, np.full(n, centre)])
+    once = np.concatenate([band(rim, outer), band(outer, inner), fan])
+    uv = np.concatenate([circle, 0.75 * circle, 0.25 * circle, np.zeros((1, 2)), 0.5 * circle])
+    boundary = np.arange(n)
+    assert certify(uv[:second, ::-1], uv[:second], once, boundary).valid
+    twice = np.concatenate([once, band(outer, second), band(second, inner)])
+    assert certify(uv[:, ::-1], uv, twice, boundary).faults == (
+        "two triangles are on the same side of an edge",
+    )

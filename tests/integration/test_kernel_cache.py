@@ -74,3 +74,20 @@ def test_kernels_beside_the_code_or_of_the_user_are_left_alone(
     monkeypatch.setenv("XDG_CACHE_HOME", str(Path.home()))
     keep_kernels(tmp_path / "package")
     assert os.environ["NUMBA_CACHE_DIR"] == ""
+
+
+def test_a_home_that_may_not_be_searched_is_no_place_for_kernels(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def exists(path: Path) -> bool:
+        if tmp_path in path.parents:
+            raise PermissionError(13, "Permission denied", str(path))
+        return True
+
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "")
+    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
+    monkeypatch.setattr(Path, "exists", exists)
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    with pytest.warns(UserWarning, match="can be written"):
+        keep_kernels(tmp_path / "package")

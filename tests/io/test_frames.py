@@ -1,3 +1,4 @@
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import imageio.v3 as imageio
@@ -261,3 +262,39 @@ def test_a_file_that_was_replaced_is_read_anew(tmp_path: Path) -> None:
         tifffile.imwrite(path, np.full((frames, 6, 8), value, dtype=np.uint8), photometric="minisblack")
         found = open_frames(path)
         assert [int(found.frame(number).max()) for number in range(found.n_frames)] == [value] * frames
+
+
+def test_threads_do_not_close_each_others_file(tmp_path: Path) -> None:
+    path = tmp_path / "movie.tif"
+    movie = np.arange(40, dtype=np.uint8).repeat(64 * 64).reshape(40, 64, 64)
+    tifffile.imwrite(path, movie, photometric="minisblack", compression="zlib")
+    found = open_frames(path)
+    with ThreadPoolExecutor(8) as threads:
+        read = list(threads.map(lambda number: int(found.frame(number % 40).max()), range(800)))
+    assert read == list(range(40)) * 20
+
+
+@pytest.mark.filterwarnings("ignore:.*reading array from closed file")
+def test_a_file_beside_that_was_replaced_is_read_anew(tmp_path: Path) -> None:
+    names = "urn:uuid:0a0a0a0a-0000-0000-0000-000000000000", "urn:uuid:0b0b0b0b-0000-0000-0000-000000000000"
+    planes = "".join(
+        f'<TiffData FirstT="{t}" IFD="0" PlaneCount="1"><UUID FileName="{t}.ome.tif">{name}</UUID></TiffData>'
+        for t, name in enumerate(names)
+    )
+
+    def write(t: int, value: int, padding: str) -> None:
+        xml = (
+            '<OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06" '
+            f'UUID="{names[t]}"><Image ID="Image:0"><Pixels ID="Pixels:0" DimensionOrder="XYZCT" '
+            'Type="uint8" SizeX="16" SizeY="16" SizeZ="1" SizeC="1" SizeT="2">'
+            f"{planes}</Pixels></Image></OME>"
+        )
+        pixels = np.full((16, 16), value, dtype=np.uint8)
+        tifffile.imwrite(tmp_path / f"{t}.ome.tif", pixels, description=xml + padding, metadata=None)
+
+    write(0, 3, "")
+    write(1, 5, "")
+    found = open_frames(tmp_path / "0.ome.tif")
+    assert [int(found.frame(number).min()) for number in (1, 0, 1)] == [5, 3, 5]
+    write(1, 7, " " * 500)
+    assert int(found.frame(1).min()) == 7

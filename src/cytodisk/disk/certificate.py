@@ -79,6 +79,8 @@ def certify(
     ]
     if edges.euler_characteristic != 1:
         faults.append(f"the Euler characteristic is {edges.euler_characteristic}, not 1")
+    if edges.repeated:
+        faults.append("two triangles are on the same side of an edge")
     if not edges.all_used:
         faults.append("a vertex belongs to no triangle")
     faults += _boundary_faults(vertices_yx, vertices_uv, edges, boundary)

@@ -60,7 +60,7 @@ def _half_angle(x: float, y: float, length: float) -> tuple[float, float]:
 def _singular_frame(
     a: float, b: float, c: float, d: float
 ) -> tuple[float, float, float, float, float, float]:
-    """σ₁, σ₂ and the rotations U and V of J = U diag(σ₁, σ₂) Vᵀ as (cos, sin) each; det J > 0."""
+    """σ₁, σ₂ and the rotations U and Vᵀ of J = U diag(σ₁, σ₂) Vᵀ as (cos, sin) each; det J > 0."""
     e, f, g, h = 0.5 * (a + d), 0.5 * (a - d), 0.5 * (c + b), 0.5 * (c - b)
     turned, mirrored = math.sqrt(e * e + h * h), math.sqrt(f * f + g * g)
     s1 = turned + mirrored

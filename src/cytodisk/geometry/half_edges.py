@@ -42,6 +42,11 @@ class HalfEdges:
         return bool((np.diff(self.first) > 0).all())
 
     @property
+    def repeated(self) -> bool:
+        """Whether two triangles run along an edge the same way: then they are on the same side of it."""
+        return bool(((np.diff(self.start) == 0) & (np.diff(self.end) == 0)).any())
+
+    @property
     def euler_characteristic(self) -> int:
         """Vertices - edges + triangles; 1 for a topological disk."""
         return len(self.first) - 1 - self.n_edges + len(self.end) // 3

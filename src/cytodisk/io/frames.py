@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+from threading import get_ident
 from typing import Any
 from xml.etree import ElementTree
 
@@ -214,7 +215,11 @@ def _reading(path: Path, part: str) -> Iterator[None]:
 def _opened(path: Path) -> Iterator[tifffile.TiffFile]:
     """Open a TIFF whose pages may be known from the frame before."""
     state = path.stat()
-    tiff = _with_pages(path, state.st_mtime_ns, state.st_size)
+    tiff = _with_pages(path, state.st_mtime_ns, state.st_size, get_ident())
+    if tiff.series[0].is_multifile:  # whether its other files are as they were, this one does not say
+        with tifffile.TiffFile(path) as anew:
+            yield anew
+        return
     tiff.filehandle.open()
     try:
         yield tiff
@@ -223,8 +228,11 @@ def _opened(path: Path) -> Iterator[tifffile.TiffFile]:
 
 
 @lru_cache(maxsize=_TIFFS_KEPT)
-def _with_pages(path: Path, changed_ns: int, size: int) -> tifffile.TiffFile:
-    """A closed TIFF with the list of its pages, which takes longer to read than a frame of a long movie."""
+def _with_pages(path: Path, changed_ns: int, size: int, thread: int) -> tifffile.TiffFile:
+    """A closed TIFF with the list of its pages, which takes longer to read than a frame of a long movie.
+
+    Each thread has its own, as one that is done closes the file.
+    """
     with tifffile.TiffFile(path) as tiff:
         len(tiff.series[0].pages)
         return tiff
