@@ -30,6 +30,8 @@ def test_a_place_that_cannot_be_used_is_named(tmp_path: Path) -> None:
     assert not is_url("C:/batch")
     with pytest.raises(StudyError, match="results cannot go to nowhere://batch: Protocol not known"):
         UrlStore("nowhere://batch")
+    with pytest.raises(StudyError, match="would be gone with the process"):
+        UrlStore("memory://batch")
     (tmp_path / "file").touch()
     with pytest.raises(StudyError, match=r"file/rows/a.json cannot be written"):
         UrlStore(f"file://{tmp_path}/file").write_text("rows/a.json", "")

@@ -1,5 +1,7 @@
 """The batch file: what it means, and what is said where it cannot be used."""
 
+import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -144,7 +146,7 @@ signal = "drug/missing.tif"
         f"[[inputs]] 2 (line 8): masks 'nothing*.tif' match nothing in {folder}",
         "[[inputs]] 3 (line 11): parameters: pixel_size_um: Input should be greater than 0, got -1",
         "[[inputs]] 3 (line 11), cell2_masks.tif: name 'a b' cannot be that of a folder: use letters, "
-        "digits, '_', '-' and '.' (at most 120)",
+        "digits, '_', '-' and '.' (at most 120 bytes)",
         "[[inputs]] 4 (line 15): kind must be movie or map, got 'film'",
         f"[[inputs]] 5 (line 19), cell1_masks.tif: signal {folder / 'drug' / 'missing.tif'} does not exist",
     ]
@@ -212,10 +214,38 @@ def test_a_file_that_is_none_is_refused(folder: Path, text: str, words: str) -> 
         batch_of(folder, text)
 
 
-def test_a_table_whose_line_is_too_long_is_refused(folder: Path) -> None:
-    (folder / "inputs.csv").write_text("masks,name\ncontrol/cell1_masks.tif,a,b\n", encoding="utf-8")
-    faults = faults_of(folder, '[study]\ntable = "inputs.csv"')
-    assert faults == ["inputs.csv line 2: has more fields than the 2 of the first line"]
+@pytest.mark.parametrize(
+    ("table", "fault"),
+    [
+        ("masks,name\ncontrol/cell1_masks.tif,a,b\n", "2: has more fields than the 2 of the first line"),
+        ("\nmasks,name, name\ncontrol/cell1_masks.tif,a,b\n", "2: column 'name' stands twice"),
+        (
+            ",masks\n0,control/cell1_masks.tif\n",
+            "2: '0' stands in a column without a name: name or remove it",
+        ),
+    ],
+)
+def test_a_table_with_fields_of_no_column_is_refused(folder: Path, table: str, fault: str) -> None:
+    (folder / "inputs.csv").write_text(table, encoding="utf-8")
+    assert faults_of(folder, '[study]\ntable = "inputs.csv"') == [f"inputs.csv line {fault}"]
+
+
+def test_a_field_of_a_table_may_have_any_sign(folder: Path) -> None:
+    table = '\n\nmasks;condition\n\ncontrol/cell1_masks.tif;"a\nb"\ncontrol/cell2_masks.tif;c\u2028d\n'
+    (folder / "inputs.csv").write_text(table, encoding="utf-8-sig")
+    inputs = batch_of(folder, '[study]\ntable = "inputs.csv"').inputs
+    assert [item.columns[0] for item in inputs] == ["a\nb", "c\u2028d"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only there names of files have any bytes")
+def test_names_that_no_table_or_folder_can_hold_are_faults(folder: Path) -> None:
+    Path(os.fsdecode(os.fsencode(folder / "drug") + b"/m\xe9.tif")).touch()
+    (folder / "drug" / f"{'日' * 60}.tif").touch()
+    (not_text, long) = faults_of(folder, '[[inputs]]\nmasks = "drug/[m日]*.tif"')
+    assert not_text.endswith("m\\udce9.tif' is not in UTF-8: rename the file")
+    assert long.endswith("(at most 120 bytes)")
+    (missing,) = faults_of(folder, f'[[inputs]]\nmasks = "{300 * "m"}.tif"')
+    assert "match nothing" in missing
 
 
 def test_the_example_of_the_documentation_is_a_batch_file(tmp_path: Path) -> None:

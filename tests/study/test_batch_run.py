@@ -19,7 +19,7 @@ import pytest
 import tifffile
 
 import cytodisk as cd
-from cytodisk.errors import MaskError, OtherRunError, ReadError, StudyError
+from cytodisk.errors import MaskError, OtherRunError, ParameterError, ReadError, StudyError
 from cytodisk.io.store import FolderStore
 from cytodisk.io.study_folder import alone_in
 from cytodisk.io.tables import read_table
@@ -212,7 +212,16 @@ def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) ->
         run_batch(batch, files)
     with pytest.raises(StudyError, match="another run is writing there"), alone_in(quiet):
         run_batch(batch, quiet, resume=True)
+    with pytest.raises(ParameterError, match="must be an address"):
+        run_batch(batch, quiet, overwrite=True, scheduler="nonsense")
     assert content(quiet) == before
+
+
+def test_a_batch_goes_to_a_url_without_a_cluster_too(files: Path, tmp_path: Path) -> None:
+    batch = read_batch(files / "study.toml")
+    assert run_batch(replace(batch, inputs=batch.inputs[:1]), f"file://{tmp_path}/out").statuses == {"ok": 1}
+    assert len(pd.read_parquet(tmp_path / "out" / "cells.parquet")) == 4
+    assert (tmp_path / "out" / "inputs" / "movie_0" / "cells.parquet").is_file()
 
 
 def test_resumed_it_does_what_failed_is_new_or_has_changed(files: Path, quiet: Path) -> None:

@@ -1,9 +1,13 @@
 """How many tasks are on their way to a cluster, which workers get them, and what comes of those that fail."""
 
+import asyncio
+import os
 import socket
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from threading import Thread
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,12 +19,19 @@ from cytodisk.study.batch import cluster, cluster_workers
 from cytodisk.study.batch.cluster import PER_THREAD, Flight
 from cytodisk.study.batch.cluster_workers import Workers
 from cytodisk.study.batch.inputs import BatchInput
-from cytodisk.study.batch.on_worker import begin_run, give_up, single_inputs, what_is_hidden
+from cytodisk.study.batch.on_worker import (
+    as_seen_by_all,
+    begin_run,
+    give_up,
+    single_inputs,
+    what_is_hidden,
+)
 from cytodisk.study.batch.rows import read_row
 from cytodisk.study.batch.task import BatchTask, open_store
 from cytodisk.study.parameters import MapParameters
 
 THREADS = 2
+HANGS = "hangs"
 
 
 class DoneFuture:
@@ -53,7 +64,12 @@ class FakeClient:
     def nthreads(self) -> dict[str, int]:
         return dict(self.workers)
 
-    def run(self, question: Any, *about: str, workers: Sequence[str], on_error: str) -> dict[str, Any]:
+    def sync(self, work: Any, *about: Any) -> Any:
+        return asyncio.run(work(*about))
+
+    async def run(self, question: Any, *about: str, workers: Sequence[str], on_error: str) -> dict[str, Any]:
+        if any(self.answers.get(worker) == HANGS for worker in workers):
+            await asyncio.sleep(60)
         return {worker: self.answers.get(worker) or question(*about) for worker in workers}
 
     def map(self, work: Any, tasks: Sequence[Any], *, key: Sequence[str], pure: bool) -> list[DoneFuture]:
@@ -120,11 +136,13 @@ def test_a_worker_that_joins_later_is_looked_at_too(tmp_path: Path, monkeypatch:
         workers.threads()
 
 
+@pytest.mark.parametrize("answer", [OSError("gone"), HANGS])
 def test_a_worker_that_does_not_answer_is_not_counted_until_it_does(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    answer: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cluster_workers, "_LOOK_EVERY_S", 0.0)
-    client = FakeClient({"tcp://b:1": OSError("gone")})
+    monkeypatch.setattr(cluster_workers, "_ANSWER_S", 0.2)
+    client = FakeClient({"tcp://b:1": answer})
     client.workers["tcp://b:1"] = 5
     workers = watched(client, tmp_path)
     assert workers.threads() == THREADS
@@ -150,6 +168,18 @@ def test_a_worker_must_see_results_and_inputs(tmp_path: Path) -> None:
     assert "does not see the results" in what_is_hidden(str(tmp_path), first)
 
 
+def test_on_a_worker_paths_are_full_and_how_names_go_on_is_no_path(tmp_path: Path) -> None:
+    masks = Path(os.path.relpath(tmp_path))
+    item = BatchInput("a", "map", masks, Path("_img"), MapParameters())
+    task = BatchTask(version("cytodisk"), (item, replace(item, signal=masks)), str(tmp_path))
+    inputs = as_seen_by_all(task, str(tmp_path), "run").inputs
+    assert all(item.masks.is_absolute() for item in inputs)
+    assert inputs[0].signal == Path("_img")
+    assert inputs[1].signal is not None
+    assert inputs[1].signal.samefile(tmp_path)
+    assert inputs[1].signal.is_absolute()
+
+
 def test_what_is_no_scheduler_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     assert cluster.CONNECT_S < 15
     monkeypatch.setattr(cluster, "CONNECT_S", 0.5)
@@ -166,3 +196,21 @@ def test_what_is_no_scheduler_is_an_error(monkeypatch: pytest.MonkeyPatch) -> No
         pass
     with pytest.raises(ParameterError, match="must be an address"), cluster.connected("nonsense"):
         pass
+    with pytest.raises(ParameterError, match=r"tls://.* cannot be reached"), cluster.connected("tls://a:1"):
+        pass
+
+
+def test_what_speaks_otherwise_is_no_scheduler() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        other.settimeout(30)
+
+        def talk() -> None:
+            with other.accept()[0] as heard:
+                heard.sendall(bytes(64))
+
+        talks = Thread(target=talk)
+        talks.start()
+        address = f"tcp://127.0.0.1:{other.getsockname()[1]}"
+        with pytest.raises(StudyError, match="is no Dask scheduler"), cluster.connected(address):
+            pass
+        talks.join()

@@ -33,7 +33,7 @@ class UrlStore:
     MissingPartError
         fsspec, or what it needs for such a URL, is not installed.
     StudyError
-        fsspec does not know such a URL.
+        fsspec does not know such a URL, or it is that of a process's memory.
     """
 
     def __init__(self, url: str):
@@ -129,4 +129,6 @@ def _file_system(url: str) -> tuple[Any, str]:
         raise MissingPartError(f"results cannot go to {url}: {error}") from error
     except ValueError as error:
         raise StudyError(f"results cannot go to {url}: {error}") from error
+    if "memory" in files.protocol:
+        raise StudyError(f"results at {url} would be gone with the process: pass a folder or another URL")
     return files, str(root)

@@ -8,6 +8,7 @@ import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -137,24 +138,25 @@ def _inputs_of(given: Any, text: str, faults: Faults) -> Iterator[FileRow]:
 
 def _rows_of_table(table: Path, columns: tuple[str, ...], faults: Faults) -> list[FileRow]:
     """Rows of a CSV file; an empty field is one that is not given."""
-    lines = _read(table).splitlines()
-    separator = max(",;\t", key=lambda sign: lines[0].count(sign)) if lines else ","
-    reader = csv.DictReader(lines, delimiter=separator, strict=True)
+    text = _read(table)
+    separator = max(",;\t", key=text.lstrip().partition("\n")[0].count)
+    reader = csv.reader(StringIO(text), delimiter=separator, strict=True)
+    filled = ([field.strip() for field in fields] for fields in reader if any(map(str.strip, fields)))
     rows = []
     try:
-        for values in reader:
+        names = next(filled, [])
+        for name in (name for name, number in Counter(filter(None, names)).items() if number > 1):
+            faults.add(f"{table.name} line {reader.line_num}", f"column {name!r} stands twice")
+        for fields in filled:
             place = f"{table.name} line {reader.line_num}"
-            if None in values:
-                faults.add(
-                    place, f"has more fields than the {len(reader.fieldnames or ())} of the first line"
-                )
-            given = {
-                name.strip(): text.strip() for name, text in values.items() if name and text and text.strip()
-            }
+            if any(fields[len(names) :]):
+                faults.add(place, f"has more fields than the {len(names)} of the first line")
+            given: dict[str, Any] = {name: field for name, field in zip(names, fields, strict=False) if field}
+            if "" in given:
+                faults.add(place, f"{given.pop('')!r} stands in a column without a name: name or remove it")
             if "channels" in given:
                 given |= {"channels": [part.strip() for part in re.split("[,;|]", given["channels"])]}
-            if given:
-                rows.append(FileRow(place, given))
+            rows.append(FileRow(place, given))
     except csv.Error as error:
         faults.add(f"{table.name} line {reader.line_num}", f"is no CSV: {error}")
     return _with_numbers(rows, columns)

@@ -12,6 +12,7 @@ from dataclasses import replace
 from itertools import chain, count, islice
 from pathlib import Path
 from queue import Empty, SimpleQueue
+from struct import error as StructError
 from typing import Any, Generic, TypeVar
 from uuid import uuid4
 
@@ -113,21 +114,25 @@ def connected(address: str) -> Iterator[Any]:
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is raised
     try:
         with ThreadPoolExecutor(1) as thread:  # there may be an event loop in this one
-            thread.submit(asyncio.run, _greet(address)).result()
+            who = thread.submit(asyncio.run, _greet(address)).result()
+        if who != "Scheduler":
+            raise LookupError(f"its type is {who}")
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except ValueError as error:
         raise ParameterError(
             f"scheduler must be an address as tcp://10.0.0.1:8786, got {address!r}: {error}"
         ) from error
+    except TypeError as error:  # "tls" without certificates, "ucx" without its library
+        raise ParameterError(f"scheduler {address} cannot be reached from here: {error}") from error
     except OSError as error:
         raise StudyError(
             f"scheduler {address} does not answer within {CONNECT_S:.0f} s: check the address, that "
             "`dask scheduler` runs there, and that this machine can reach it"
         ) from error
-    except MemoryError as error:  # an answer in another protocol, read as the size of a message
+    except (MemoryError, LookupError, StructError) as error:  # a worker, or an answer in another protocol
         raise StudyError(
             f"what answers at {address} is no Dask scheduler: pass the address that `dask scheduler` prints "
-            "behind `Scheduler at:`, not that of its dashboard"
+            "behind `Scheduler at:`, not that of its dashboard or of a worker"
         ) from error
     try:
         yield client
@@ -135,12 +140,17 @@ def connected(address: str) -> Iterator[Any]:
         client.close(timeout=CONNECT_S)
 
 
-async def _greet(address: str) -> None:
-    """Connect once, because `Client` waits for ever where something listens that never answers."""
+async def _greet(address: str) -> str:
+    """Ask who is there, because `Client` waits for ever where something listens that never answers."""
     from distributed.comm import connect  # type: ignore[attr-defined]
+    from distributed.core import send_recv
 
-    comm = await asyncio.wait_for(connect(address, timeout=CONNECT_S), CONNECT_S)
-    comm.abort()
+    async with asyncio.timeout(CONNECT_S):
+        comm = await connect(address, timeout=CONNECT_S)
+        try:
+            return str((await send_recv(comm, op="identity"))["type"])
+        finally:
+            comm.abort()
 
 
 class Flight(Generic[Task, Result]):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 from collections.abc import Callable, Sequence
 from importlib.metadata import PackageNotFoundError, version
@@ -14,6 +15,7 @@ Tell: TypeAlias = Callable[[str], None]
 """Called with a message for the user."""
 
 _LOOK_EVERY_S = 2.0
+_ANSWER_S = 15.0
 _ROUNDING = ("numpy", "scipy", "numba", "qdldl")  # another version may round the last bit otherwise
 
 
@@ -89,7 +91,9 @@ class Workers:
     def _check(self, workers: list[str]) -> set[str]:
         """Those workers that answer; it is an error if one of them does not fit."""
         here = version("cytodisk")
-        for worker, there in self._ask(workers, version, "cytodisk").items():
+        versions = self._ask(workers, version, "cytodisk")
+        workers = list(versions)
+        for worker, there in versions.items():
             if isinstance(there, PackageNotFoundError):
                 raise StudyError(f"worker {worker} has no cytodisk: install version {here} there, as here")
             if there != here:
@@ -115,6 +119,18 @@ class Workers:
             )
 
     def _ask(self, workers: list[str], question: Any, *about: str) -> dict[str, Any]:
-        """What workers answer, an exception included; those that have gone meanwhile do not answer."""
-        found = self._client.run(question, *about, workers=workers, on_error="return")
+        """What workers answer, an exception included; those that have gone or hang do not answer."""
+        found = self._client.sync(self._answers, workers, question, about)
         return {worker: answer for worker, answer in found.items() if not isinstance(answer, OSError)}
+
+    async def _answers(self, workers: list[str], question: Any, about: tuple[str, ...]) -> dict[str, Any]:
+        answers = await asyncio.gather(*(self._answer(worker, question, about) for worker in workers))
+        return {worker: answer for some in answers for worker, answer in some.items()}
+
+    async def _answer(self, worker: str, question: Any, about: tuple[str, ...]) -> dict[str, Any]:
+        """The answer of one worker; each is waited for by itself, since one that hangs would hold up all."""
+        try:
+            async with asyncio.timeout(_ANSWER_S):
+                return dict(await self._client.run(question, *about, workers=[worker], on_error="return"))
+        except TimeoutError as error:
+            return {worker: error}

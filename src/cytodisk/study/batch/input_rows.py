@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import glob
+import os
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -21,7 +22,7 @@ COLUMNS = ("condition", "replicate")
 KEYS = ("masks", "signal", "name", "kind", "parameters", *COLUMNS, *SCALE)
 PARAMETERS_OF: dict[str, type[MapParameters]] = {"movie": MovieParameters, "map": MapParameters}
 FIELDS = ("folder", "parent", "name", "stem", "image")  # of templates
-_LONGEST_NAME = 120
+_LONGEST_NAME = 120  # bytes in UTF-8; folders and files may have 255, of which some go for temporary names
 _BESIDE = ("_", "-", ".")  # how the ending of an image's name begins, for a folder of masks
 
 
@@ -79,7 +80,7 @@ class RowReader:
             )
             return
         found = self._matches(pattern, kind)
-        if not found and (self.folder / pattern).is_dir():
+        if not found and _exists(self.folder / pattern):
             hint = f"use a pattern as '{pattern}/*.tif', or kind = \"map\""
             self.faults.add(row.place, f"masks {pattern!r} is a folder, and a movie is one file: {hint}")
         elif not found:
@@ -116,7 +117,7 @@ class RowReader:
 
     def _matches(self, pattern: str, kind: str) -> list[Path]:
         literal = self.folder / pattern
-        if literal.exists():
+        if _exists(literal):
             found = [literal]
         else:
             names = glob.glob(pattern, root_dir=self.folder, recursive=True)  # noqa: PTH207  may be absolute
@@ -126,17 +127,20 @@ class RowReader:
     def _input(
         self, row: FileRow, kind: InputKind, masks: Path, parameters: MapParameters | None
     ) -> BatchInput | None:
+        if not _is_text(masks):
+            self.faults.add(row.place, f"the name of {str(masks)!a} is not in UTF-8: rename the file")
+            return None
         fields = path_fields(masks, self.folder)
         place = f"{row.place}, {masks.name}"
         filled = {key: _fill(value, fields) for key, value in row.values.items() if key != "masks"}
         signal = self._signal(place, masks, filled.get("signal"))
         safe = {name: re.sub(r"[^\w.-]+", "-", text).strip("-.") for name, text in fields.items()}
         name = str(_fill(row.values.get("name", "{folder}-{stem}"), safe)).strip("-")
-        if re.fullmatch(r"\w[\w.-]*(?<!\.)", name) is None or len(name) > _LONGEST_NAME:
+        if re.fullmatch(r"\w[\w.-]*(?<!\.)", name) is None or len(name.encode()) > _LONGEST_NAME:
             self.faults.add(
                 place,
                 f"name {name!r} cannot be that of a folder: use letters, digits, '_', '-' and '.' (at most "
-                f"{_LONGEST_NAME})",
+                f"{_LONGEST_NAME} bytes)",
             )
             return None
         columns = tuple(self._value(place, column, filled.get(column)) for column in self.columns)
@@ -165,9 +169,9 @@ class RowReader:
             self.faults.add(place, f"signal must be a path, got {signal!r}")
             return None
         path = self.folder / signal
-        if masks.is_dir() and signal.startswith(_BESIDE) and not path.exists():
+        if masks.is_dir() and signal.startswith(_BESIDE) and not _exists(path):
             return Path(signal)  # how the names of images go on beside the masks
-        if not path.exists():
+        if not _exists(path):
             self.faults.add(place, f"signal {path} does not exist")
         return path
 
@@ -176,6 +180,15 @@ class RowReader:
             return value
         self.faults.add(place, f"{column} must be a text or a number, got {value!r}")
         return None
+
+
+def _exists(path: Path) -> bool:
+    return os.path.exists(path)  # noqa: PTH110  where Path would raise for a name that is too long
+
+
+def _is_text(path: Path) -> bool:
+    """Whether tables and messages can hold it; names of files can have any bytes."""
+    return re.search("[\ud800-\udfff]", str(path)) is None
 
 
 def _fill(value: Any, fields: Mapping[str, str]) -> Any:

@@ -7,6 +7,7 @@ from pathlib import Path
 from uuid import uuid4
 
 from cytodisk.errors import CytodiskError
+from cytodisk.study.batch.inputs import BatchInput
 from cytodisk.study.batch.rows import InputRow, files_mark, write_row
 from cytodisk.study.batch.task import RUN, BatchTask, TaskResult, open_store
 
@@ -77,11 +78,15 @@ def as_seen_by_all(task: BatchTask, target: str, run: str) -> BatchTask:
     -------
     BatchTask
     """
-    inputs = (
-        replace(item, masks=item.masks.absolute(), signal=item.signal and item.signal.absolute())
-        for item in task.inputs
-    )
+    inputs = (replace(item, masks=item.masks.absolute(), signal=_signal(item)) for item in task.inputs)
     return replace(task, inputs=tuple(inputs), target=target, run=run)
+
+
+def _signal(item: BatchInput) -> Path | None:
+    """The signal's full path; how names of images go on beside a folder's masks, as "_img", is no path."""
+    if item.signal is None or (item.masks.is_dir() and not item.signal.exists()):
+        return item.signal
+    return item.signal.absolute()
 
 
 def single_inputs(task: BatchTask) -> list[BatchTask]:

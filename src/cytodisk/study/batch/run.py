@@ -6,17 +6,19 @@ import os
 from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from cytodisk.errors import OtherRunError, WriteError
 from cytodisk.io.store import Store
+from cytodisk.io.url_store import is_url
 from cytodisk.study.batch.batch_file import Batch
 from cytodisk.study.batch.batch_folder import describe_batch, make_room, note, now, remove_left_overs
 from cytodisk.study.batch.grouping import make_tasks
 from cytodisk.study.batch.inputs import BatchInput
 from cytodisk.study.batch.local import run_here
 from cytodisk.study.batch.merged import merge_batch
+from cytodisk.study.batch.on_worker import begin_run
 from cytodisk.study.batch.rows import ROWS, InputRow, files_mark, read_row
 from cytodisk.study.batch.task import BatchTask, TaskResult, open_store
 from cytodisk.study.run_steps import Progress, check_options, silent
@@ -111,6 +113,8 @@ def run_batch(
     store = open_store(target)
     with store.alone():
         provenance = describe_batch(batch)
+        if scheduler is not None and overwrite:
+            _reach(scheduler)  # before anything is removed
         make_room(store, provenance, target, resume, overwrite)
         summary = BatchSummary(target)
         pending = list(batch.inputs)
@@ -120,7 +124,7 @@ def run_batch(
         note(store, provenance)
         if scheduler is None:
             tasks = make_tasks(pending, target, seconds=0, time_limit=time_limit)
-            results = run_here(tasks, min(workers, max(1, len(pending))))
+            results = run_here(_started(tasks, target), min(workers, max(1, len(pending))))
         else:
             tasks = make_tasks(pending, target, seconds=_CLUSTER_TASK_S, time_limit=time_limit)
             results = _on_cluster(tasks, scheduler, target, tell)
@@ -146,10 +150,24 @@ def _take(results: Results, pending: int, total: int, report: Progress) -> None:
             report(done, total)
 
 
+def _started(tasks: Iterator[BatchTask], target: str) -> Iterator[BatchTask]:
+    """Tasks of a run that takes over from workers of a cluster which may still be at an earlier one."""
+    run = begin_run(target)
+    for task in tasks:
+        yield replace(task, scratch="", run=run) if is_url(target) else task
+
+
 def _on_cluster(tasks: Iterator[BatchTask], scheduler: str, target: str, tell: Tell) -> Results:
     from cytodisk.study.batch.cluster import run_on_cluster
 
     yield from run_on_cluster(tasks, scheduler, target=target, tell=tell)
+
+
+def _reach(scheduler: str) -> None:
+    from cytodisk.study.batch.cluster import connected
+
+    with connected(scheduler):
+        return
 
 
 def _pending(store: Store, batch: Batch, summary: BatchSummary) -> list[BatchInput]:
