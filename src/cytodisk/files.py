@@ -5,6 +5,7 @@ import os
 import shutil
 import sys
 import tempfile
+import uuid
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -34,7 +35,8 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         The folder does not exist or cannot be written.
     """
     target = Path(path)
-    temporary = target.with_name(f".{target.stem}.{os.getpid()}.tmp{target.suffix}")
+    # Processes of several machines that share a folder may have one number.
+    temporary = target.with_name(f".{target.stem}.{uuid.uuid4().int >> 64}.tmp{target.suffix}")
     try:
         yield temporary
         temporary.replace(target)

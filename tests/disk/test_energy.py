@@ -107,6 +107,12 @@ def test_hessian_and_gradient_at_a_similarity_have_no_nan() -> None:
     )
 
 
+def test_the_hessian_of_a_large_similarity_is_finite_where_its_stretches_are_alike() -> None:
+    yx = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]])
+    _, hessian = free_triangle_hessian(5.0 * yx[:, ::-1], hat_gradients(yx, ONE), 1.0)
+    assert np.isfinite(hessian).all()
+
+
 @pytest.fixture(scope="module")
 def problem() -> dict[str, np.ndarray | Mesh]:
     mask = simulate.random_spiky(4, radius=12.0, spike_length=15.0)

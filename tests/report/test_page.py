@@ -39,7 +39,8 @@ def test_default_path_and_progress_and_the_same_page_again(study: Study, tmp_pat
     assert path == study.path / "report.html"
     assert done == [(number + 1, FRAMES) for number in range(FRAMES)]
     assert not list(study.path.glob(".report*"))
-    pages = [page.read_text(encoding="utf-8") for page in (path, write_report(study, tmp_path / "b.html"))]
+    again = write_report(study, str(tmp_path / "b.html"))
+    pages = [page.read_text(encoding="utf-8") for page in (path, again)]
     path.unlink()
     ids = re.compile(r"p\d{4,}|[0-9a-f]{8}-[0-9a-f-]{27}")  # the library's own
     first, second = (ids.sub("", page) for page in pages)

@@ -91,10 +91,9 @@ def _projected(
     root = math.sqrt(half * half + q * q)
     if mean < root:
         high, low = max(mean + root, 0.0), max(mean - root, 0.0)
-        along = half / root
-        p = 0.5 * (high + low) + 0.5 * (high - low) * along
-        r = 0.5 * (high + low) - 0.5 * (high - low) * along
-        q = 0.5 * (high - low) * q / root
+        middle = 0.5 * (high + low)
+        along = 0.5 * (high - low) / root if root > 0.0 else 0.0
+        p, q, r = middle + along * half, along * q, middle - along * half
     # (ψ₁ + ψ₂) / (σ₁ + σ₂) and (ψ₁ - ψ₂) / (σ₁ - σ₂) with the division carried out
     twist = max(2.0 * log_det / det - weight * ((s1 - s2) / det) ** 2, 0.0)
     flip = max(-2.0 * log_det / det + weight * ((s1 + s2) / det) ** 2, 0.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Callable
 from importlib.resources import files
@@ -33,7 +34,7 @@ Progress = Callable[[int, int], None]
 
 def write_report(
     study: Study,
-    path: Path | None = None,
+    path: str | os.PathLike[str] | None = None,
     *,
     cell: int | None = None,
     signal: FrameSource | None = None,
@@ -47,7 +48,7 @@ def write_report(
     ----------
     study : Study
         Of a movie.
-    path : Path, optional
+    path : path-like, optional
         By default report.html in the study, or report_cell_00003.html for a cell that is not the usual one.
     cell : int, optional
         By default the one with the most mapped frames.
@@ -76,14 +77,14 @@ def write_report(
     bokeh()  # before any work is done
     usual = _usual_cell(study)
     shown = _open_cell(study, usual if cell is None else cell)
-    if path is None:
-        path = study.path / (REPORT if shown.cell == usual else f"report_cell_{shown.cell:05d}.html")
-    if not path.parent.is_dir():
-        raise StudyError(f"cannot write {path}: there is no folder {path.parent}")
+    usual_path = study.path / (REPORT if shown.cell == usual else f"report_cell_{shown.cell:05d}.html")
+    target = usual_path if path is None else Path(path)
+    if not target.parent.is_dir():
+        raise StudyError(f"cannot write {target}: there is no folder {target.parent}")
     html = _render(shown, shown_signal(study, signal), progress)
-    with replacing(path) as temporary:
+    with replacing(target) as temporary:
         temporary.write_text(html, encoding="utf-8")
-    return path
+    return target
 
 
 def _usual_cell(study: Study) -> int:
