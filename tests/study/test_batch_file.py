@@ -176,6 +176,7 @@ def test_one_name_or_one_mask_file_stands_for_one_input(folder: Path) -> None:
     ("text", "words"),
     [
         ("[study]\nkinds = 'map'", "[study]: unknown name 'kinds': did you mean 'kind'?"),
+        ("[[inputs]]\nmasks='*/cell1_*'\nsignal='labels/../{folder}/{name}'", "is the mask file itself"),
         ("[study]\ncolumns = ['mean']", "[study]: column 'mean' is one that the tables have anyway"),
         ("[study]\ncolumns = ['a', 'a']", "[study]: column 'a' stands twice"),
         ("[study]\ncolumns = 'a'", "[study]: columns must be a list of names, got 'a'"),
