@@ -203,20 +203,31 @@ def _plan(costs: Costs, last: Flown) -> Iterable[list[str]]:
     def line(what: str, of_one: float, unit: str, digits: str = ",.0f") -> list[str]:
         return [what, *(f"{of_one * number:{digits}} {unit}".rstrip() for number in (MOVIES, PLATE))]
 
+    def time(what: str, of_one: float) -> list[str]:
+        return [what, *(_duration(of_one * number) for number in (MOVIES, PLATE))]
+
     yield line("core hours", movie_s / 3600, "h")
-    yield line(f"days with {THREADS} threads", clock_s / 86400, "", ",.2f")
+    yield time(f"time with {THREADS} threads", clock_s)
     yield line("images that workers read", FRAMES * costs.frame_in_kb / 1e6, "GB")
     yield line("results of the movies", (costs.movie_kb + FRAMES * costs.frame_kb) / 1e6, "GB")
     yield line("files", costs.movie_files + FRAMES * costs.frame_files + 1, "")
     yield line("rows of windows in the merged table", FRAMES * costs.merged_rows, "")
     yield line("merged tables", FRAMES * costs.merged_kb / 1e6, "GB", ",.1f")
-    yield line("hours to merge, by one process", FRAMES * costs.merged_s / 3600, "h", ",.2f")
-    yield line("memory of the client for its list", costs.listed_kb / 1e6, "GB", ",.2f")
-    yield line("minutes to read the batch file and look at all masks", costs.listed_s / 60, "min", ",.1f")
-    yield line("minutes to read the rows again at --resume", last.resume_s / last.tasks / 60, "min", ",.1f")
-    yield line("processor hours of the scheduler", last.scheduler_cpu_s / last.tasks / 3600, "h", ",.2f")
+    yield time("to merge, by one process", FRAMES * costs.merged_s)
+    yield line("memory of the client for its list", costs.listed_kb / 1e3, "MB")
+    yield time("to read the batch file and look at all masks", costs.listed_s)
+    yield time("to read the rows again at --resume", last.resume_s / last.tasks)
+    yield time("processor time of the scheduler", last.scheduler_cpu_s / last.tasks)
     threads = f"{movie_s * last.tasks / max(last.scheduler_cpu_s, last.client_cpu_s):,.0f}"
     yield ["threads that one scheduler keeps busy, with one movie a task", threads, threads]
+
+
+def _duration(seconds: float) -> str:
+    """In the unit that suits it."""
+    for unit, size in (("h", 3600.0), ("min", 60.0)):
+        if seconds >= size:
+            return f"{seconds / size:,.1f} {unit}"
+    return f"{seconds:.1f} s"
 
 
 def _write(name: str, head: Sequence[str], lines: Iterable[Sequence[str]]) -> None:

@@ -151,6 +151,8 @@ def main() -> int:
     if chosen.block:
         print(json.dumps(measure_here(chosen.block, chosen.data)))
         return 0
+    if not chosen.data.is_dir():
+        print(f"{chosen.data} does not exist, so no figures on real data: set CYTODISK_DATA or pass --data")
     names = chosen.only or list(BLOCKS)
     if chosen.compare:
         from revisions import compare

@@ -121,13 +121,10 @@ def keep_kernels(package: Path) -> None:
 
 
 def _can_be_written(folder: Path) -> bool:
-    """Whether files can be made in a folder, or it can itself be made."""
-    there = next(path for path in (folder, *folder.parents) if _is_seen(path))
-    return os.access(there, os.W_OK | os.X_OK)
-
-
-def _is_seen(path: Path) -> bool:
+    """Whether files can be made in a folder, tried as Numba does: rights alone do not tell."""
     try:
-        return path.exists()
-    except PermissionError:  # in a folder that may not be searched, as the home of another user
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
         return False

@@ -226,6 +226,8 @@ def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) ->
         run_batch(batch, files)
     with pytest.raises(StudyError, match="another run is writing there"), alone_in(quiet):
         run_batch(batch, quiet, resume=True)
+    with pytest.raises(ParameterError, match="time_limit must be a number of seconds above 0, got inf"):
+        run_batch(batch, quiet, overwrite=True, time_limit=np.inf)
     with pytest.raises(ParameterError, match="must be an address"):
         run_batch(batch, quiet, overwrite=True, scheduler="nonsense")
     with pytest.raises(ParameterError, match="must be an address"):

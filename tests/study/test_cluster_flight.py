@@ -123,6 +123,13 @@ def test_inputs_of_a_task_that_workers_died_of_are_tried_one_by_one(tmp_path: Pa
     assert row.reason == "its workers died (4, the last one tcp://a:1)"
 
 
+def test_an_error_of_a_workers_system_is_no_loss_of_the_scheduler(tmp_path: Path) -> None:
+    client, broken = FakeClient(), OSError("no such device")
+    flight = Flight(client, watched(client, tmp_path), lambda number: broken, list, max)
+    with pytest.raises(StudyError, match="a worker failed: no such device"):
+        list(flight.results([1]))
+
+
 def test_a_worker_that_joins_later_is_looked_at_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cluster_workers, "_LOOK_EVERY_S", 0.0)
     client = FakeClient({"tcp://b:1": "0.0.1", "tcp://c:1": PackageNotFoundError("cytodisk")})

@@ -40,7 +40,7 @@ def batch_command(
     out: Annotated[
         str,
         typer.Option(
-            "--out", "-o", help="Folder for the results; on a cluster also a URL.", show_default=False
+            "--out", "-o", help="Folder for the results, or a URL as s3://bucket/batch.", show_default=False
         ),
     ],
     workers: Workers = 1,

@@ -1,6 +1,7 @@
 """`cytodisk demo` and `cytodisk info`."""
 
 import platform
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
@@ -13,6 +14,7 @@ from cytodisk.cli.correlation_words import say_correlation
 from cytodisk.cli.movie import draw_movie, finish_movie, say_movie
 
 _AGAIN = "run the same command again"
+_AND_ONE_THAT_DRAWS = 2  # processes, of which this is one
 
 
 def info_command() -> None:
@@ -29,7 +31,7 @@ def info_command() -> None:
 def demo_command(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the demo.")] = Path("cytodisk_demo"),
     seed: Annotated[int, typer.Option(help="Seed of the simulated movie.")] = 0,
-    workers: Annotated[int, typer.Option(help="Processes.")] = 1,
+    workers: Annotated[int, typer.Option(help="Processes that map; one more draws.")] = 1,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in OUT/study.")] = False,
     quiet: Quiet = False,
 ) -> None:
@@ -42,29 +44,58 @@ def demo_command(
     from cytodisk.study.movie_inputs import open_movie
     from cytodisk.study.movie_run import run_movie
     from cytodisk.study.parameters import MovieParameters
+    from cytodisk.study.workers import worker_pool
 
     console = console_for(quiet)
-    truth, masks, signal = write_demo_input(out / "input", seed, overwrite=overwrite)
-    console.print(f"A simulated cell in {len(truth.masks)} frames, with two signals, is in {masks.parent}.")
-    console.print(f"The same by hand: cytodisk movie {masks} --signal {signal} -o {out / 'mine'}\n")
-    inputs = open_movie(masks, signal, MovieParameters())
-    say_movie(console, inputs)
-    with progress_bar(quiet, "frames", again=_AGAIN) as progress:
-        study = run_movie(
-            inputs,
-            out / "study",
-            workers=workers,
-            resume=not overwrite,
-            overwrite=overwrite,
-            progress=progress,
+    with worker_pool(_AND_ONE_THAT_DRAWS) as beside:
+        beside.submit(_load_drawing)
+        truth, masks, signal = write_demo_input(out / "input", seed, overwrite=overwrite)
+        console.print(
+            f"A simulated cell in {len(truth.masks)} frames, with two signals, is in {masks.parent}."
         )
-    draw_movie(quiet, study, inputs, 1, again=_AGAIN)
-    finish_movie(console, study)
-    with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
-        found = correlate_study(study, "edge", "velocity", progress=progress)
-    draw_correlation(quiet, study, found, 1, ("png",))
-    say_correlation(console, found)
-    write_page(console, quiet, study)
+        console.print(f"The same by hand: cytodisk movie {masks} --signal {signal} -o {out / 'mine'}\n")
+        inputs = open_movie(masks, signal, MovieParameters())
+        say_movie(console, inputs)
+        with progress_bar(quiet, "frames", again=_AGAIN) as progress:
+            study = run_movie(
+                inputs,
+                out / "study",
+                workers=workers,
+                resume=not overwrite,
+                overwrite=overwrite,
+                progress=progress,
+            )
+        drawings = [beside.submit(_draw_movie, masks, signal, study.path)]
+        finish_movie(console, study)
+        with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
+            found = correlate_study(study, "edge", "velocity", progress=progress)
+        drawings.append(beside.submit(_draw_correlation, study.path))
+        say_correlation(console, found)
+        write_page(console, quiet, study)
+        with progress_bar(quiet, "drawings", total=len(drawings), again=_AGAIN) as progress:
+            for number, drawing in enumerate(drawings):
+                drawing.result()
+                progress(number + 1, len(drawings))
     console.print("")
     for what, answer in compare_with_truth(study, truth).items():
         console.print(f"{what}: {answer}")
+
+
+def _load_drawing() -> None:
+    """Let a process be ready to draw."""
+    import_module("cytodisk.plot.movie")
+
+
+def _draw_movie(masks: Path, signal: Path, study: Path) -> None:
+    from cytodisk.io.study import open_study
+    from cytodisk.study.movie_inputs import open_movie
+    from cytodisk.study.parameters import MovieParameters
+
+    draw_movie(True, open_study(study), open_movie(masks, signal, MovieParameters()), 1)
+
+
+def _draw_correlation(study: Path) -> None:
+    from cytodisk.io.study import open_study
+
+    there = open_study(study)
+    draw_correlation(True, there, there.correlation("edge", "velocity"), 1, ("png",))

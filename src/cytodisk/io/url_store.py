@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from io import BytesIO
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import TemporaryDirectory, gettempdir
 from typing import Any, BinaryIO
 
-from cytodisk.errors import MissingPartError, StudyError
+from cytodisk.errors import CytodiskError, MissingPartError, StudyError, WriteError
 
 
 def is_url(target: str) -> bool:
@@ -95,8 +95,13 @@ class UrlStore:
 
     @contextmanager
     def work_folder(self) -> Iterator[Path]:
-        with TemporaryDirectory(prefix="cytodisk-") as work:
-            yield Path(work)
+        try:
+            with TemporaryDirectory(prefix="cytodisk-") as work:
+                yield Path(work)
+        except CytodiskError:
+            raise
+        except OSError as error:
+            raise WriteError(f"cannot write in {gettempdir()}: {error.strerror or error}") from error
 
     def _make_folders(self, files: Iterable[str]) -> None:
         """Make the folders that files are to stand in, where the place has folders."""

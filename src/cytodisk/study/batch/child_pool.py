@@ -127,7 +127,7 @@ class ChildPool:
         for _ in range(_STARTS):
             with self._lock:
                 self._check_open()
-                child = ChildProcess()
+                child = _start()
                 self._all.add(child)
             if child.wait_until_ready():
                 return child
@@ -155,6 +155,13 @@ class ChildPool:
     def _check_open(self) -> None:
         if self._closed:
             raise StudyError("the run was stopped: run the same command again with --resume")
+
+
+def _start() -> ChildProcess:
+    try:
+        return ChildProcess()
+    except OSError as error:
+        raise StudyError(f"no process for the inputs can be started: {error}") from error
 
 
 def _cause(code: int) -> str:

@@ -238,7 +238,7 @@ class Flight(Generic[Task, Result]):
             _, task = self._flying.pop(future.key)
             if not isinstance(fault, KilledWorker):
                 self._workers.check_all()  # a worker that does not fit is the likely cause
-                raise fault
+                raise fault if not _of_system(fault) else StudyError(f"a worker failed: {fault}") from fault
             self._again += self._parts(task)
             if self._parts(task):
                 return []
@@ -263,6 +263,11 @@ class Flight(Generic[Task, Result]):
                 f"scheduler {self._workers.address} was lost: what was done is kept; start it again and run "
                 "the same command with --resume"
             ) from error
+
+
+def _of_system(fault: BaseException) -> bool:
+    """Whether it is an error of the worker's system, not to be taken for a loss of the scheduler."""
+    return isinstance(fault, OSError) and not isinstance(fault, CytodiskError)
 
 
 class _Call:

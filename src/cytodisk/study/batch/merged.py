@@ -19,7 +19,7 @@ from cytodisk.io.tables import Columns, schema
 from cytodisk.study.batch.batch_file import Batch
 from cytodisk.study.batch.inputs import BatchInput, Value
 from cytodisk.study.batch.inputs_table import INPUT_COLUMNS
-from cytodisk.study.batch.rows import InputRow, read_row, study_key
+from cytodisk.study.batch.rows import InputRow, read_row, row_key, study_key
 
 _OF_MAPS = ("cells", *MAP_TABLES.others)
 _MOST = 2**63  # longer numbers are such as those on a label
@@ -196,8 +196,12 @@ def _parts(store: Store, done: Sequence[_Done], name: str, batch: Batch, columns
             with store.open(key) as opened, pq.ParquetFile(opened) as file:
                 for group in range(file.num_row_groups):
                     yield _widened(file.read_row_group(group, use_threads=False), given, columns)
-        except pa.ArrowException as error:
-            raise StudyError(f"{key} is damaged: {error}") from error
+        except (pa.ArrowException, StudyError) as error:
+            name = one.item.name
+            raise StudyError(
+                f"the study of input {name} is damaged: {error}: remove {study_key(name)} and "
+                f"{row_key(name)}, and run the same command with --resume: then it is done anew"
+            ) from error
 
 
 def _widened(table: Any, given: dict[str, Any], columns: Any) -> Any:

@@ -7,9 +7,10 @@ from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
+from threading import TIMEOUT_MAX
 from typing import TypeAlias
 
-from cytodisk.errors import OtherRunError, WriteError
+from cytodisk.errors import OtherRunError, ParameterError, WriteError
 from cytodisk.io.store import Store
 from cytodisk.io.url_store import is_url
 from cytodisk.study.batch.batch_file import Batch
@@ -104,11 +105,15 @@ def run_batch(
     Raises
     ------
     ParameterError
-        `workers` is below 1, or both `resume` and `overwrite` are set.
+        `workers` is below 1, `time_limit` is no time, or both `resume` and `overwrite` are set.
     StudyError
         The folder cannot be used, or results cannot be written, as on a full disk.
     """
     check_options(workers, resume, overwrite)
+    if time_limit is not None and not 0 < time_limit <= TIMEOUT_MAX:
+        raise ParameterError(
+            f"time_limit must be a number of seconds above 0, got {time_limit}: leave it out for any"
+        )
     if scheduler is not None and not resume:
         _reach(scheduler)  # before the folder is touched
     target = os.fspath(out)
