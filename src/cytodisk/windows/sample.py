@@ -51,7 +51,7 @@ def sample(
     _check(quantiles, nan)
     values, channels = _parse_signal(signal, windows.mask.shape)
     weights = windows.weights
-    pixels = values[:, windows.mask]
+    pixels = values.reshape(len(values), -1)[:, np.flatnonzero(windows.mask)]
     shape = (len(values), *windows.areas.shape)
     tables = [_statistics(weights, row, tuple(quantiles), nan) for row in pixels]
     dims = ("channel", "layer", "sector")
@@ -65,10 +65,10 @@ def sample(
     coords: dict[str, Any] = {"layer": np.arange(shape[1]), "sector": np.arange(shape[2])}
     if quantiles:
         coords["q"] = list(quantiles)
+    if channels is not None:
+        coords["channel"] = channels
     dataset = xr.Dataset(data, coords, attrs={"area_unit": "px²"})
-    if channels is None:
-        return dataset.isel(channel=0)
-    return dataset.assign_coords(channel=channels)
+    return dataset.isel(channel=0) if channels is None else dataset
 
 
 _NAMES = ("mean", "sd", "n_pixels", "n_nan", "min", "max")
