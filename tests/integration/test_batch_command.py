@@ -1,9 +1,12 @@
 """`cytodisk batch`: what it prints, with runs that nothing computes."""
 
+import csv
 from collections import Counter
 from pathlib import Path
 
+import numpy as np
 import pytest
+import tifffile
 from command_line import Run, assert_refused
 
 from cytodisk.study.batch import run as batch_run
@@ -13,8 +16,10 @@ from cytodisk.study.batch.run import BatchSummary
 
 @pytest.fixture
 def study(tmp_path: Path) -> Path:
-    (tmp_path / "a.tif").touch()
-    (tmp_path / "b.tif").touch()
+    for name in ("a.tif", "b.tif"):
+        tifffile.imwrite(
+            tmp_path / name, np.zeros((3, 8, 8), np.uint8), photometric="minisblack", metadata={"axes": "TYX"}
+        )
     text = '[study]\ncolumns = ["dose"]\n[[inputs]]\nmasks = "*.tif"\ncondition = "one, two"\ndose = 2\n'
     (tmp_path / "study.toml").write_text(text, encoding="utf-8")
     return tmp_path / "study.toml"
@@ -29,11 +34,45 @@ def test_a_dry_run_lists_the_inputs(run: Run, study: Path) -> None:
     masks = [study.parent / name for name in ("a.tif", "b.tif")]
     assert code == 0
     assert said.splitlines() == [
-        "name,kind,masks,signal,condition,replicate,dose",
-        f'a,movie,{masks[0]},,"one, two",,2',
-        f'b,movie,{masks[1]},,"one, two",,2',
+        "name,kind,masks,signal,condition,replicate,dose,"
+        "frames,pixel_size_um,frame_interval_s,channels,layers,sectors,parameters,fault",
+        f'a,movie,{masks[0]},,"one, two",,2,3,,,,10,60,,',
+        f'b,movie,{masks[1]},,"one, two",,2,3,,,,10,60,,',
     ]
     assert not (study.parent / "out").exists()
+
+
+def test_a_dry_run_says_what_the_files_say_and_which_do_not_fit(run: Run, study: Path) -> None:
+    image = np.zeros((2, 8, 8), np.uint16)
+    scale = {"axes": "CYX", "PhysicalSizeX": 0.2, "PhysicalSizeY": 0.2}
+    tifffile.imwrite(
+        study.parent / "image.ome.tif", image, metadata=scale | {"Channel": {"Name": ["A", "B"]}}
+    )
+    tifffile.imwrite(study.parent / "labels.tif", image[0] + 1)
+    text = """
+[parameters]
+sectors = 12
+nan = "omit"
+[[inputs]]
+masks = "labels.tif"
+kind = "map"
+signal = "image.ome.tif"
+[[inputs]]
+masks = "[ab].tif"
+frame_interval_s = 5
+parameters = {depth_um = 2.0}
+channels = ["C"]
+"""
+    study.write_text(text, encoding="utf-8")
+    code, said, errors = run("batch", study, "-o", study.parent / "out", "--dry-run", "-q")
+    first, second, _ = csv.DictReader(said.splitlines())
+    assert (first["pixel_size_um"], first["channels"], first["sectors"]) == ("0.2", "A; B", "12")
+    assert (first["layers"], first["parameters"], first["fault"]) == ("10", 'nan = "omit"', "")
+    assert (second["frame_interval_s"], second["layers"], second["channels"]) == ("5.0", "", "C")
+    assert second["parameters"] == 'nan = "omit"; depth_um = 2.0'
+    assert "there is no signal" in second["fault"]
+    assert code == 2
+    assert "2 of 3 inputs cannot be used" in errors
 
 
 def test_a_file_that_cannot_be_used_is_refused(run: Run, study: Path) -> None:

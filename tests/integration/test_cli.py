@@ -15,6 +15,7 @@ from rich.progress import Progress
 
 import cytodisk as cd
 from cytodisk.cli.console import progress_bar
+from cytodisk.study import versions as versions_of
 
 GRID = ("--layers", "3", "--sectors", "8", "--figures", "0")
 
@@ -374,13 +375,16 @@ def test_check_of_a_file_that_cannot_be_read(run: Run, mask: Path, tmp_path: Pat
     assert_refused(run("check", mask, "--signal", tmp_path / "gone.tif"), "does not exist")
 
 
-def test_info_lists_versions(run: Run) -> None:
+def test_info_lists_versions(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(versions_of.PARTS, "umap", ("umap-learn", "no-such-package"))
     code, said, _ = run("info")
     assert code == 0
     versions = dict(line.split("\t") for line in said.splitlines())
     assert versions["numpy"] == np.__version__
     assert versions["cytodisk"]
     assert versions["image formats"] == "TIFF, OME-TIFF, ImageJ TIFF, PNG"
+    assert {"report", "link", "cluster"} <= set(versions)
+    assert "no-such-package not installed: in the clone" in versions["umap"]
 
 
 def test_demo_once_and_again(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -176,6 +176,7 @@ def test_one_name_or_one_mask_file_stands_for_one_input(folder: Path) -> None:
     ("text", "words"),
     [
         ("[study]\nkinds = 'map'", "[study]: unknown name 'kinds': did you mean 'kind'?"),
+        ("[[inputs]]\nmasks='*/cell1_*'\nsignal='labels/../{folder}/{name}'", "is the mask file itself"),
         ("[study]\ncolumns = ['mean']", "[study]: column 'mean' is one that the tables have anyway"),
         ("[study]\ncolumns = ['a', 'a']", "[study]: column 'a' stands twice"),
         ("[study]\ncolumns = 'a'", "[study]: columns must be a list of names, got 'a'"),
@@ -249,12 +250,13 @@ def test_names_that_no_table_or_folder_can_hold_are_faults(folder: Path) -> None
 
 
 def test_the_example_of_the_documentation_is_a_batch_file(tmp_path: Path) -> None:
-    for place in ("control", "drug/plate_1", "drug/plate_2"):
+    for place in ("control/day_1", "drug/day_1", "drug/day_2"):
         (tmp_path / place).mkdir(parents=True)
         (tmp_path / place / "a_masks.tif").touch()
         (tmp_path / place / "a.ome.tif").touch()
     example = Path(__file__).parents[2] / "docs" / "source" / "getting_started" / "study.toml"
     batch = batch_of(tmp_path, example.read_text(encoding="utf-8"))
     names = [item.name for item in batch.inputs]
-    assert names == ["control-a_masks", "drug-plate_1-a_masks", "drug-plate_2-a_masks"]
-    assert [item.columns for item in batch.inputs[1:]] == [("drug", f"plate_{k}", 50) for k in (1, 2)]
+    assert names == ["control-day_1-a_masks", "drug-day_1-a_masks", "drug-day_2-a_masks"]
+    assert batch.inputs[0].columns == ("control", "day_1", None)
+    assert [item.columns for item in batch.inputs[1:]] == [("drug", f"day_{k}", 50) for k in (1, 2)]

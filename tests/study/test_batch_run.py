@@ -75,7 +75,9 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for seed in range(3):
         cell = np.pad(cd.simulate.random_smooth(seed, radius=12), 4)
         write(folder / f"movie_{seed}.tif", np.stack([np.roll(cell, step, 1) for step in range(4)]), "TYX")
-    write(folder / "labels.tif", np.hstack([cell, 2 * cell]), "YX")
+    hollow = cell.copy()
+    hollow[27:33, 29:35] = 0
+    write(folder / "labels.tif", np.hstack([cell, 2 * hollow]), "YX")
     write(folder / "empty.tif", np.zeros((3, 40, 40)), "TYX")
     batch_of(folder)
     return folder
@@ -115,12 +117,22 @@ def test_inputs_are_merged_with_their_columns_in_front(quiet: Path) -> None:
     assert inputs["status"].tolist() == ["ok"] * 4 + ["refused"]
     assert "nothing could be mapped" in inputs["reason"].iloc[-1]
     assert inputs["mapped"].tolist() == [4, 4, 4, 2, 0]
+    assert inputs["doubts"].tolist() == [0, 0, 0, 1, 0]
     assert inputs["length_unit"].tolist() == ["px", "px", "px", "µm", "px"]
     assert inputs["velocity_unit"].tolist() == ["px/frame"] * 3 + ["", "px/frame"]
     assert read_table(quiet / "edge.parquet").attrs["units"]["velocity"] == "px/frame"
     assert read_table(quiet / "cells.parquet").attrs["units"]["area"] == "px² or µm²"
     assert read_table(quiet / "edge.parquet").attrs["units"]["protruded_area"] == "px²"
-    assert cells.columns[:4].tolist() == ["input", "condition", "replicate", "dose"]
+    assert cells.columns[:5].tolist() == ["input", "condition", "replicate", "dose", "length_unit"]
+    assert edge.columns[4:6].tolist() == ["length_unit", "velocity_unit"]
+    assert edge["velocity_unit"].unique().tolist() == ["px/frame"]
+    assert (
+        cells.groupby("input", sort=False)["length_unit"]
+        .unique()
+        .explode()
+        .eq(inputs.set_index("input")["length_unit"])
+        .all()
+    )
     assert cells["input"].tolist() == np.repeat(names, [4, 4, 4, 2, 3]).tolist()
     assert cells["replicate"].fillna("").unique().tolist() == ["1", "third", ""]
     assert "seconds" not in cells
@@ -152,7 +164,9 @@ def test_killed_and_resumed_by_two_workers_it_is_the_same_to_the_last_bit(
     summary = run_batch(read_batch(files / "study.toml"), out, workers=2, resume=True)
     assert not list(out.glob("rows/.*"))
     assert summary.statuses == {"ok": 4, "refused": 1}
-    assert [remark for remark in summary.remarks if remark.startswith("inputs have different units")]
+    units, doubts = summary.remarks
+    assert units.startswith("inputs have different units")
+    assert doubts.startswith("1 input has cells with doubts")
     for name in TABLES:
         assert (out / f"{name}.parquet").read_bytes() == (quiet / f"{name}.parquet").read_bytes(), name
 
@@ -204,7 +218,7 @@ def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) ->
     with pytest.raises(StudyError, match="holds a batch: pass --resume to go on, --overwrite to replace it"):
         run_batch(batch, quiet)
     changed = replace(batch.inputs[0], parameters=MovieParameters(layers=3, sectors=6))
-    with pytest.raises(OtherRunError, match="other parameters for movie_0: pass --overwrite"):
+    with pytest.raises(OtherRunError, match=r"for movie_0: .*remove .*rows/movie_0\.json"):
         run_batch(replace(batch, inputs=(changed, *batch.inputs[1:])), quiet, resume=True)
     with pytest.raises(OtherRunError, match="holds a study of cytodisk movie: pass another folder"):
         run_batch(batch, quiet / "inputs" / "movie_0", overwrite=True)
@@ -216,7 +230,10 @@ def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) ->
         run_batch(batch, quiet, overwrite=True, time_limit=np.inf)
     with pytest.raises(ParameterError, match="must be an address"):
         run_batch(batch, quiet, overwrite=True, scheduler="nonsense")
+    with pytest.raises(ParameterError, match="must be an address"):
+        run_batch(batch, quiet / "new", scheduler="nonsense")
     assert content(quiet) == before
+    assert not (quiet / "new").exists()
 
 
 def test_a_batch_goes_to_a_url_without_a_cluster_too(files: Path, tmp_path: Path) -> None:

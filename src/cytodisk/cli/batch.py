@@ -31,7 +31,7 @@ Examples:
   cytodisk batch study.toml -o /shared/out --scheduler tcp://10.0.0.1:8786
 
 Exit code: 0 when done (an input that failed has a row with the reason), 2 if no input went well, or the
-batch file or the folder cannot be used.
+batch file or the folder cannot be used. With --dry-run 2 if files of an input cannot be used.
 """
 
 
@@ -50,7 +50,9 @@ def batch_command(
     scheduler: Annotated[
         str | None, typer.Option(help="Address of a Dask scheduler, as tcp://host:8786: run on its workers.")
     ] = None,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="List the inputs and run nothing.")] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="List the inputs as they are understood and run nothing.")
+    ] = False,
     resume: Resume = False,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
@@ -88,14 +90,22 @@ def _kinds(batch: "Batch") -> str:
 
 
 def _list_inputs(batch: "Batch") -> None:
-    """A line an input, as CSV, so that it can be read by a person and by a program."""
+    """A line an input, as CSV, for a person or a program; exit code 2 for faults."""
     import csv
+    from dataclasses import astuple, fields
 
-    lines = csv.writer(sys.stdout, lineterminator="\n")
-    lines.writerow(["name", "kind", "masks", "signal", *batch.columns])
+    from cytodisk.study.batch.dry_run import Understood, understand
+
+    lines = csv.writer(sys.stdout, lineterminator="\n")  # which writes None as an empty field
+    understood = [field.name for field in fields(Understood)]
+    lines.writerow(["name", "kind", "masks", "signal", *batch.columns, *understood])
+    faults = 0
     for item in batch.inputs:
-        values = ["" if value is None else value for value in item.columns]
-        lines.writerow([item.name, item.kind, item.masks, item.signal or "", *values])
+        found = understand(item)
+        lines.writerow([item.name, item.kind, item.masks, item.signal, *item.columns, *astuple(found)])
+        faults += bool(found.fault)
+    if faults:
+        fail(f"{faults} of {count(len(batch.inputs), 'input')} cannot be used: the column fault says why")
 
 
 def _finish(console: "Console", summary: "BatchSummary") -> None:

@@ -12,6 +12,7 @@ from cytodisk.cli.console import Quiet, console_for, progress_bar
 from cytodisk.cli.correlate import NOTHING_CHANGED, draw_correlation, write_page
 from cytodisk.cli.correlation_words import say_correlation
 from cytodisk.cli.movie import draw_movie, finish_movie, say_movie
+from cytodisk.study.versions import NOT_INSTALLED, PACKAGES, PARTS, installed
 
 _AGAIN = "run the same command again"
 _AND_ONE_THAT_DRAWS = 2  # processes, of which this is one
@@ -19,13 +20,22 @@ _AND_ONE_THAT_DRAWS = 2  # processes, of which this is one
 
 def info_command() -> None:
     """Print versions, and which optional parts are there."""
-    from cytodisk.study.versions import PACKAGES, installed
-
     print(f"python\t{platform.python_version()} on {platform.platform()}")
-    for name, found in installed(PACKAGES).items():
-        print(f"{name}\t{found}")
+    optional = {name for packages in PARTS.values() for name in packages}
+    for name, number in installed(PACKAGES).items():
+        if name not in optional:
+            print(f"{name}\t{number}")
+    for part, packages in PARTS.items():
+        print(f"{part}\t{_part_words(part, installed(packages))}")
     print("image formats\tTIFF, OME-TIFF, ImageJ TIFF, PNG")
     print(f"compressed TIFF\t{'yes' if find_spec('imagecodecs') else 'no: pip install imagecodecs'}")
+
+
+def _part_words(part: str, found: dict[str, str]) -> str:
+    words = ", ".join(f"{name} {number}" for name, number in found.items())
+    if NOT_INSTALLED not in found.values():
+        return words
+    return f"{words}: in the clone of cytodisk type .venv/bin/pip install -c constraints.txt -e '.[{part}]'"
 
 
 def demo_command(

@@ -23,6 +23,24 @@ from cytodisk.windows.grid import PolarWindows, first_depth, layers_for_depth, p
 
 
 @dataclass(frozen=True)
+class MovieFiles:
+    """The files of a run that fit each other, as far as their heads say.
+
+    Attributes
+    ----------
+    masks : FrameFile
+    signal : FrameFile or None
+        With the names that were given to its channels.
+    scale : Scale
+        The given one, or else the files' own.
+    """
+
+    masks: FrameFile
+    signal: FrameFile | None
+    scale: Scale
+
+
+@dataclass(frozen=True)
 class MovieInputs:
     """The files of a run, opened and checked against each other.
 
@@ -105,9 +123,38 @@ def open_movie(
     ReadError, MaskError, SignalError, ParameterError, MissingPartError
         A file is missing, damaged, or does not fit.
     """
+    files = open_movie_files(masks, signal, parameters)
+    mask_file, scale = files.masks, files.scale
+    kind = understood_as(mask_file, parameters.kind)
+    tracks = tuple(list_tracks(mask_file, kind, parameters.link))
+    layers, depth_um = parameters.layers, None
+    if parameters.depth_um is not None:
+        layers, depth_um = _layers(mask_file, tracks, parameters, scale)
+    grid = polar_windows(layers, parameters.sectors, parameters.spacing)
+    return MovieInputs(mask_file, kind, tracks, files.signal, parameters, grid, scale, depth_um)
+
+
+def open_movie_files(
+    masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: MovieParameters
+) -> MovieFiles:
+    """Open the files of a run and check what their heads say, without looking at a frame.
+
+    Parameters
+    ----------
+    masks, signal, parameters
+        As for `open_movie`.
+
+    Returns
+    -------
+    MovieFiles
+
+    Raises
+    ------
+    ReadError, MaskError, SignalError, ParameterError
+        A file is missing, damaged, or does not fit.
+    """
     mask_file = open_frames(masks, unnamed="T")
     _check_masks(mask_file)
-    kind = understood_as(mask_file, parameters.kind)
     signal_file = None
     if signal is not None:
         signal_file = open_frames(signal, unnamed="T")
@@ -115,17 +162,12 @@ def open_movie(
     signal_file = name_channels(signal_file, parameters.channels)
     if signal_file is not None:
         check_signal(mask_file, signal_file)
-    tracks = tuple(list_tracks(mask_file, kind, parameters.link))
     opened = [file for file in (signal_file, mask_file) if file is not None]
     scale = Scale(
         parameters.pixel_size_um or common_pixel_size(opened),
         parameters.frame_interval_s or _frame_interval(mask_file, signal_file),
     )
-    layers, depth_um = parameters.layers, None
-    if parameters.depth_um is not None:
-        layers, depth_um = _layers(mask_file, tracks, parameters, scale)
-    grid = polar_windows(layers, parameters.sectors, parameters.spacing)
-    return MovieInputs(mask_file, kind, tracks, signal_file, parameters, grid, scale, depth_um)
+    return MovieFiles(mask_file, signal_file, scale)
 
 
 def _check_masks(masks: FrameFile) -> None:

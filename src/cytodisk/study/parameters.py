@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
@@ -145,11 +146,13 @@ def write_parameters(parameters: BaseModel, path: Path) -> None:
     parameters : BaseModel
     path : Path
     """
-    lines = [
-        f"{name} = {_toml(value)}" for name, value in parameters.model_dump().items() if value is not None
-    ]
     with replacing(path) as temporary:
-        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        temporary.write_text("\n".join(toml_lines(parameters.model_dump())) + "\n", encoding="utf-8")
+
+
+def toml_lines(values: Mapping[str, Any]) -> list[str]:
+    """Values as lines of TOML; those that are None are left out."""
+    return [f"{name} = {_toml(value)}" for name, value in values.items() if value is not None]
 
 
 def _toml(value: Any) -> str:

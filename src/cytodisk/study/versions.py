@@ -2,6 +2,7 @@
 
 from importlib.metadata import PackageNotFoundError, version
 
+NOT_INSTALLED = "not installed"
 PACKAGES = (
     "cytodisk",
     "numpy",
@@ -18,16 +19,24 @@ PACKAGES = (
     "laptrack",
 )
 
+# Extras of the package, with what each one brings.
+PARTS = {
+    "report": ("bokeh", "jinja2"),
+    "link": ("laptrack",),
+    "umap": ("umap-learn",),
+    "cluster": ("distributed", "fsspec"),
+}
+
 # What the last bits of results may depend on.
 NUMERIC = ("numpy", "scipy", "numba", "pythoncdt", "qdldl", "shapely", "scikit-image", "SimpleITK")
 
 
 def installed(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
-    """Version of each package, "not installed" where it is missing."""
+    """Version of each package, `NOT_INSTALLED` where it is missing."""
     found = {}
     for name in packages:
         try:
             found[name] = version(name)
         except PackageNotFoundError:
-            found[name] = "not installed"
+            found[name] = NOT_INSTALLED
     return found

@@ -173,6 +173,10 @@ class RowReader:
             return Path(signal)  # how the names of images go on beside the masks
         if not _exists(path):
             self.faults.add(place, f"signal {path} does not exist")
+        elif not masks.is_dir() and path.resolve() == masks.resolve():
+            self.faults.add(
+                place, f"signal {path} is the mask file itself: name its image, or take signal out"
+            )
         return path
 
     def _value(self, place: str, column: str, value: Any) -> Value:

@@ -29,10 +29,11 @@ INPUTS = "inputs"
 
 @dataclass(frozen=True)
 class _Done:
-    """An input with a study, and the units of its tables."""
+    """An input with a study, the units of its tables, and how many of its cells are doubtful."""
 
     item: BatchInput
     units: tuple[str, str]
+    doubts: int
 
 
 def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None]) -> list[str]:
@@ -68,18 +69,28 @@ def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None]) -> 
         names = [f"{INPUTS}.csv", file.name]
         for name, columns in _tables(batch).items():
             having = [one for one in done if one.item.kind == "movie" or name in _OF_MAPS]
-            columns_schema = _schema((*own, *columns), having)
+            columns_schema = _schema((*own, *_unit_columns(columns), *columns), having)
             file = folder / f"{name}.parquet"
             merge_tables(_parts(store, having, name, batch, columns_schema), columns_schema, file)
             names.append(file.name)
         for name in names:
             store.put_file(folder / name, name)
-    if all(len({one.units[k] for one in done} - {""}) <= 1 for k in range(2)):
-        return []
-    return [
-        "inputs have different units: the columns length_unit and velocity_unit of inputs.parquet say which "
-        "input has which; give pixel_size_um and frame_interval_s to all inputs"
-    ]
+    return list(_remarks(done))
+
+
+def _remarks(done: Sequence[_Done]) -> Iterator[str]:
+    if any(len({one.units[k] for one in done} - {""}) > 1 for k in range(2)):
+        yield (
+            "inputs have different units: the columns length_unit and velocity_unit say which row has which; "
+            "give pixel_size_um and frame_interval_s to all inputs"
+        )
+    doubtful = sum(one.doubts > 0 for one in done)
+    if doubtful:
+        have = "1 input has" if doubtful == 1 else f"{doubtful} inputs have"
+        yield (
+            f"{have} cells with doubts: column doubts of inputs.csv counts them, that of cells.parquet "
+            "says what they are"
+        )
 
 
 def _own_columns(batch: Batch) -> Columns:
@@ -87,6 +98,12 @@ def _own_columns(batch: Batch) -> Columns:
     types = [_type([item.columns[k] for item in batch.inputs]) for k in range(len(batch.columns))]
     own = tuple((name, kind, "") for name, kind in zip(batch.columns, types, strict=True))
     return (("input", pa.string(), ""), *own)
+
+
+def _unit_columns(columns: Columns) -> Columns:
+    """Columns for the units of each row, of those quantities that a table has."""
+    units = " ".join(unit for _, _, unit in columns)
+    return tuple((f"{what}_unit", pa.string(), "") for what in ("length", "velocity") if what in units)
 
 
 def _type(values: Sequence[Value]) -> Any:
@@ -120,7 +137,7 @@ def _input_rows(
             raise StudyError(f"input {item.name} has not been done: run the same command again with --resume")
         saw(row)
         if row.complete:
-            done.append(_Done(item, (row.length_unit, row.velocity_unit)))
+            done.append(_Done(item, (row.length_unit, row.velocity_unit), row.doubts))
         yield _values(batch, item, own) | _columns_of(row) | _paths(batch, item)
 
 
@@ -171,7 +188,9 @@ def _tables(batch: Batch) -> dict[str, Columns]:
 def _parts(store: Store, done: Sequence[_Done], name: str, batch: Batch, columns: Any) -> Iterator[Any]:
     """A table of all studies, a row group at a time."""
     for one in done:
+        length_unit, velocity_unit = one.units
         given = _values(batch, one.item, columns)
+        given |= {"length_unit": length_unit, "velocity_unit": velocity_unit}
         key = f"{study_key(one.item.name)}/{name}.parquet"
         try:
             with store.open(key) as opened, pq.ParquetFile(opened) as file:

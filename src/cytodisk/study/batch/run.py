@@ -20,7 +20,7 @@ from cytodisk.study.batch.inputs import BatchInput
 from cytodisk.study.batch.local import run_here
 from cytodisk.study.batch.merged import merge_batch
 from cytodisk.study.batch.on_worker import begin_run
-from cytodisk.study.batch.rows import ROWS, InputRow, files_mark, read_row
+from cytodisk.study.batch.rows import ROWS, InputRow, files_mark, read_row, row_key
 from cytodisk.study.batch.task import BatchTask, TaskResult, open_store
 from cytodisk.study.run_steps import Progress, check_options, silent
 
@@ -114,12 +114,12 @@ def run_batch(
         raise ParameterError(
             f"time_limit must be a number of seconds above 0, got {time_limit}: leave it out for any"
         )
+    if scheduler is not None and not resume:
+        _reach(scheduler)  # before the folder is touched
     target = os.fspath(out)
     store = open_store(target)
     with store.alone():
         provenance = describe_batch(batch)
-        if scheduler is not None and overwrite:
-            _reach(scheduler)  # before anything is removed
         make_room(store, provenance, target, resume, overwrite)
         summary = BatchSummary(target)
         pending = list(batch.inputs)
@@ -190,7 +190,8 @@ def _pending(store: Store, batch: Batch, summary: BatchSummary) -> list[BatchInp
     if others:
         raise OtherRunError(
             f"output folder {summary.out} holds results with other parameters for {_named(others)}: "
-            "pass --overwrite to replace all, or another folder"
+            "pass --overwrite to replace all, or another folder; to do only these anew, remove their rows "
+            f"(as {row_key(others[0])}) and pass --resume"
         )
     names = {item.name for item in batch.inputs}
     gone = sorted(name for name in _with_row(store) if name not in names)
