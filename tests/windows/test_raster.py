@@ -32,7 +32,7 @@ def test_every_part_is_in_the_window_that_its_place_maps_into(
     turned = [(1.0 + a) * uv @ np.array([[1.0, b], [-b, 1.0]]) for a in (-1e-9, 1e-9) for b in (-1e-9, 1e-9)]
     beside = (np.array([grid.window_of(near) for near in turned]) == found[apart]).any(axis=0)
     assert (beside | (np.hypot(*uv.T) < 1e-9)).all()
-    assert apart.sum() <= 2 + 1e-3 * apart.size
+    assert apart.sum() <= 16 + 1e-3 * apart.size  # a symmetric pixel has many such parts
 
 
 @pytest.mark.parametrize("mask", [np.ones((1, 1)), np.ones((2, 9)), np.eye(6)])

@@ -134,23 +134,40 @@ def _paint(
             v_row = v0 + v_by_y * (y - y0) + v_by_x * (0.5 - x0)
             pixel_row, part_row = row // per_side, (row % per_side) * per_side
             layer, sector = row_layer, row_sector
+            low, high = inner[layer], outer[layer]
+            right_u, right_v = rays[sector, 0], rays[sector, 1]
+            left_u, left_v = rays[sector + 1, 0], rays[sector + 1, 1]
             column = first
             while column <= last:
                 u, v = u_row + column * u_by_x, v_row + column * v_by_x
                 square = u * u + v * v
                 end = last
-                if not alike and not _holds(u, v, square, layer, sector, inner, outer, rays):
+                if not alike and not (
+                    low <= square < high
+                    and right_u * v - right_v * u > _MARGIN
+                    and left_u * v - left_v * u < -_MARGIN
+                ):
                     layer, sector = _next_window(u, v, square, layer, sector, inner, outer, rays)
                     if layer < 0:
                         layer, sector = _window_at(u, v, boundary_angles, radii, sectors)
+                    low, high = inner[layer], outer[layer]
+                    right_u, right_v = rays[sector, 0], rays[sector, 1]
+                    left_u, left_v = rays[sector + 1, 0], rays[sector + 1, 1]
                     if not _holds(u, v, square, layer, sector, inner, outer, rays):
                         end = column  # on a border: the next part is looked at by itself
                 if column == first:
                     row_layer, row_sector = layer, sector
                 if end > column and not alike:
-                    end = column + _further(
-                        u, v, u_by_x, v_by_x, end - column, layer, sector, inner, outer, rays
-                    )
+                    steps = float(end - column)
+                    by_step = right_u * v_by_x - right_v * u_by_x
+                    if by_step < 0.0:
+                        steps = min(steps, (_MARGIN - right_u * v + right_v * u) / by_step)
+                    by_step = left_v * u_by_x - left_u * v_by_x
+                    if by_step < 0.0:
+                        steps = min(steps, (_MARGIN - left_v * u + left_u * v) / by_step)
+                    steps = _steps_within(u, v, square, u_by_x, v_by_x, steps, low, high)
+                    if steps < end - column:
+                        end = column + max(math.floor(steps - _BEFORE_BORDER), 0)
                 here = layer * sectors + sector
                 for part in range(column, end + 1):
                     pixel = number[pixel_row, pixel_column[part]]
@@ -179,36 +196,19 @@ def _holds(
 
 
 @njit(cache=True, error_model="numpy")
-def _further(
-    u: float,
-    v: float,
-    du: float,
-    dv: float,
-    most: int,
-    layer: int,
-    sector: int,
-    inner: FloatArray,
-    outer: FloatArray,
-    rays: FloatArray,
-) -> int:
-    """How many steps (du, dv) a point of a window surely stays in it: until it meets a ray or a circle."""
-    steps = float(most)
-    to_right = rays[sector, 0] * v - rays[sector, 1] * u - _MARGIN
-    by_step = rays[sector, 0] * dv - rays[sector, 1] * du
-    if by_step < 0.0:
-        steps = min(steps, -to_right / by_step)
-    to_left = rays[sector + 1, 1] * u - rays[sector + 1, 0] * v - _MARGIN
-    by_step = rays[sector + 1, 1] * du - rays[sector + 1, 0] * dv
-    if by_step < 0.0:
-        steps = min(steps, -to_left / by_step)
-    length, along, square = du * du + dv * dv, u * du + v * dv, u * u + v * v
-    if layer > 0 and length > 0.0:
-        root = math.sqrt(along * along + length * (outer[layer] - square))
-        steps = min(steps, (root - along) / length)
-    discriminant = along * along - length * (square - inner[layer])
-    if along < 0.0 and discriminant > 0.0:
-        steps = min(steps, (-along - math.sqrt(discriminant)) / length)
-    return max(math.floor(steps - _BEFORE_BORDER), 0) if steps < most else most
+def _steps_within(
+    u: float, v: float, square: float, du: float, dv: float, steps: float, low: float, high: float
+) -> float:
+    """How many steps (du, dv), at most `steps`, keep the square of a point's radius between two bounds."""
+    length, along = du * du + dv * dv, u * du + v * dv
+    there = square + steps * (2.0 * along + steps * length)
+    if there >= high:
+        steps = min(steps, (math.sqrt(along * along + length * (high - square)) - along) / length)
+    if along < 0.0 and min(square, there) - 0.25 * steps * steps * length < low:
+        discriminant = along * along - length * (square - low)
+        if discriminant > 0.0:
+            steps = min(steps, (-along - math.sqrt(discriminant)) / length)
+    return steps
 
 
 @njit(cache=True)
