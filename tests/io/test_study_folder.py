@@ -8,7 +8,7 @@ import pytest
 import cytodisk as cd
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.io.provenance_file import differences
-from cytodisk.io.study_folder import StudyFolder, part_key
+from cytodisk.io.study_folder import StudyFolder, figures_folder, part_key
 from cytodisk.io.tables import SOURCE_COLUMNS, WINDOW_COLUMNS
 
 
@@ -48,7 +48,7 @@ def test_a_study_reads_back_what_was_added(tmp_path: Path) -> None:
 def test_no_temporary_file_is_left(tmp_path: Path) -> None:
     finished(tmp_path / "out")
     names = sorted(str(path.relative_to(tmp_path / "out")) for path in (tmp_path / "out").rglob("*"))
-    assert names == ["cells.parquet", "figures", "maps", "provenance.json", "windows.parquet"]
+    assert names == ["cells.parquet", "maps", "provenance.json", "windows.parquet"]
 
 
 @pytest.mark.parametrize("unit", ["px", "µm"])
@@ -132,11 +132,12 @@ def test_a_part_without_its_row_is_not_complete(tmp_path: Path) -> None:
 def test_overwrite_removes_the_study_and_nothing_else(tmp_path: Path) -> None:
     finished(tmp_path / "out")
     (tmp_path / "out" / "notes.txt").write_text("mine")
-    (tmp_path / "out" / "figures" / "cell_00000.png").write_bytes(b"old")
+    old = figures_folder(tmp_path / "out") / "cell_00000.png"
+    old.write_bytes(b"old")
     folder = StudyFolder.start(tmp_path / "out", run(layers=5), overwrite=True)
     assert folder.rows() == []
     assert (tmp_path / "out" / "notes.txt").read_text() == "mine"
-    assert not (tmp_path / "out" / "figures" / "cell_00000.png").exists()
+    assert not old.exists()
     assert not (tmp_path / "out" / "cells.parquet").exists()
 
 

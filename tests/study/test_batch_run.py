@@ -140,6 +140,7 @@ def test_inputs_are_merged_with_their_columns_in_front(quiet: Path) -> None:
     rows = edge[edge["input"] == "movie_1"].reset_index(drop=True)
     pd.testing.assert_frame_equal(rows[whole.edge.columns], whole.edge, check_exact=True, check_dtype=False)
     assert rows["dose"].eq(0.5).all()
+    assert not list(quiet.glob("inputs/*/figures"))
     assert pd.read_csv(quiet / "inputs.csv")["input"].tolist() == names
 
 

@@ -24,11 +24,12 @@ _EMPTY = {"no cell": "empty", "no image": "without an image", "unreadable": "dam
 
 def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool) -> None:
     """Draw the overview and say what came out; exit code 2 if that is nothing, or an input is damaged."""
+    from cytodisk.io.study_folder import figures_folder
     from cytodisk.plot.study import draw_overview
 
     rows = study.cells
     if len(rows) > 1:
-        draw_overview(study.path / "figures" / "overview.png", rows)
+        draw_overview(figures_folder(study.path) / "overview.png", rows)
     cells, without = rows[rows["label"] != 0], rows[rows["label"] == 0]
     mapped, lost = rows[rows["status"] == "ok"], rows[rows["status"] != "ok"]
     if of_folder:

@@ -93,12 +93,13 @@ def shapes_command(
 
 
 def _draw(inputs: "MapInputs", table: "pd.DataFrame", out: Path) -> None:
+    from cytodisk.io.study_folder import figures_folder
     from cytodisk.plot.shape_figures import cells_to_draw, draw_shape_figures
     from cytodisk.study.shape_run import cleaned_masks
 
     if table["complexity"].notna().any():
         masks = cleaned_masks(inputs, cells_to_draw(table))
-        draw_shape_figures(out / "figures", table, masks, inputs.pixel_size_um)
+        draw_shape_figures(figures_folder(out), table, masks, inputs.pixel_size_um)
 
 
 def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:

@@ -54,6 +54,22 @@ _OWN = (
 _UNITS = ("length_unit", "velocity_unit")  # of the provenance
 
 
+def figures_folder(study: Path) -> Path:
+    """The folder for the figures of a study; it is made where there is none.
+
+    Raises
+    ------
+    WriteError
+        It cannot be made.
+    """
+    folder = study / FIGURES
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise WriteError(f"cannot write {folder}: {error.strerror or error}") from error
+    return folder
+
+
 @dataclass(frozen=True)
 class Tables:
     """Which tables a run writes.
@@ -171,9 +187,10 @@ class StudyFolder:
             if any(not is_left_over(file) for file in folder.iterdir()):
                 make_room(folder, provenance, _OWN, resume, overwrite)
             study.note("status", "running")  # first, so that a folder that stands is known as a study
-            for name in (MAPS, FIGURES, _PARTS):
+            for name in (MAPS, _PARTS):
                 (folder / name).mkdir(exist_ok=True)
-            remove_left_overs([folder, *(folder / name for name in (MAPS, FIGURES, _PARTS))])
+            places = (folder, *(folder / name for name in (MAPS, FIGURES, _PARTS)))
+            remove_left_overs(place for place in places if place.is_dir())
         except StudyError:
             raise
         except OSError as error:
@@ -202,11 +219,6 @@ class StudyFolder:
     def map_path(self, key: str) -> Path:
         """Where a part's map stands."""
         return self.path / MAPS / f"cell_{key}.npz"
-
-    @property
-    def figures(self) -> Path:
-        """Where figures stand."""
-        return self.path / FIGURES
 
     def for_workers(self) -> StudyFolder:
         """The same folder for other processes, without what only the main one needs."""

@@ -16,6 +16,7 @@ from matplotlib.image import AxesImage
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
 from cytodisk.files import replacing
+from cytodisk.io.study_folder import figures_folder
 from cytodisk.plot.comparison import spread_over
 from cytodisk.plot.outlines import outline_sides
 from cytodisk.plot.sheet import Sheet
@@ -67,7 +68,7 @@ def draw_compared_cells(comparison: Comparison, cells: Sequence[int] | None = No
     chosen = chosen_cells(comparison) if cells is None else _asked_for(comparison, cells)
     if not chosen:
         return None
-    path = comparison.path / "figures" / "cells.png"
+    path = figures_folder(comparison.path) / "cells.png"
     size = (DOUBLE_COLUMN_MM - _LEFT - 2.0 - _GAP * (_MOST_CELLS - 1)) / _MOST_CELLS
     with paper_style():
         sheet = Sheet(_TOP + len(comparison.methods) * (size + _WORDS + _GAP) + _BELOW)

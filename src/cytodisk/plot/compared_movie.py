@@ -15,6 +15,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from cytodisk.files import replacing
+from cytodisk.io.study_folder import figures_folder
 from cytodisk.plot.comparison import METHOD_STYLES, draw_measure_by_layer, write_method_key
 from cytodisk.plot.kymograph import shown_layers
 from cytodisk.plot.sheet import Sheet
@@ -67,7 +68,7 @@ def draw_compared_movie(comparison: Comparison, cell: int, channel: str | None =
         names = _channels(comparison, cell, methods)
         number = names.index(channel)
         name += f"_{file_names(names)[number]}"
-    path = comparison.path / "figures" / f"{name}.png"
+    path = figures_folder(comparison.path) / f"{name}.png"
     layers = shown_layers(comparison.provenance["parameters"]["layers"]) if channel is not None else []
     maps = _TOP + len(layers) * (_MAP + _MAP_GAP) + 8.0 if layers else 0.0
     with paper_style():

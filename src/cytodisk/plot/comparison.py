@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from cytodisk.files import replacing
+from cytodisk.io.study_folder import figures_folder
 from cytodisk.plot.sheet import Sheet
 from cytodisk.plot.style import DPI, paper_style
 from cytodisk.plot.time_axis import TICK_STEPS
@@ -57,7 +58,7 @@ def draw_comparison(comparison: Comparison) -> Path:
     ----------
     u-Unwrap, Fig. 3B.
     """
-    path = comparison.path / "figures" / "comparison.png"
+    path = figures_folder(comparison.path) / "comparison.png"
     with paper_style():
         sheet = Sheet(_TOP + _HEIGHT + 15.0)
         for number, (name, title) in enumerate(PANELS):

@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from cytodisk.errors import ParameterError, StudyError
+from cytodisk.errors import ParameterError
 from cytodisk.files import replacing
 from cytodisk.io.correlation_store import Correlation
 from cytodisk.io.study import Study
-from cytodisk.io.study_folder import FIGURES, part_key
+from cytodisk.io.study_folder import figures_folder, part_key
 from cytodisk.plot.correlated_cell import CellCorrelation
 from cytodisk.plot.correlation_pages import curves_page, events_page, maps_page, pairs_page, peaks_page
 from cytodisk.plot.movie_cell import CellMovie
@@ -78,11 +78,7 @@ def draw_correlation_figures(
     chosen = _formats(formats)
     _check_cell(correlation, cell)
     one = CellCorrelation(CellMovie.of(study, cell), correlation)
-    folder = correlation.path / FIGURES
-    try:
-        folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise StudyError(f"cannot write {folder}: {error.strerror or error}") from error
+    folder = figures_folder(correlation.path)
     report = progress or (lambda done, whole: None)
     paths = []
     for done, (what, draw) in enumerate(_PAGES.items()):

@@ -12,7 +12,7 @@ import xarray as xr
 from cytodisk.arrays import FloatArray
 from cytodisk.files import replacing
 from cytodisk.io.study import Study
-from cytodisk.io.study_folder import FIGURES, part_key
+from cytodisk.io.study_folder import figures_folder, part_key
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.plot.sheet import Sheet
 from cytodisk.plot.style import DPI
@@ -122,8 +122,8 @@ class CellMovie:
         return path
 
     def path(self, ending: str) -> Path:
-        """Where a figure stands."""
-        return self.study.path / FIGURES / f"cell_{part_key(self.cell)}{ending}"
+        """Where a figure is to stand."""
+        return figures_folder(self.study.path) / f"cell_{part_key(self.cell)}{ending}"
 
     def _facts(self) -> list[str]:
         last = self.first + self.frames - 1

@@ -18,7 +18,7 @@ from cytodisk.errors import CytodiskError, EmptyMaskError, ReadError, SignalErro
 from cytodisk.files import replacing
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
 from cytodisk.io.mask_files import SourceCell
-from cytodisk.io.study_folder import StudyFolder, part_key
+from cytodisk.io.study_folder import StudyFolder, figures_folder, part_key
 from cytodisk.study.parameters import MapParameters
 from cytodisk.windows.cell_windows import CellWindows
 from cytodisk.windows.grid import polar_windows
@@ -139,7 +139,7 @@ def _measure_cell(task: CellTask, settings: CellSettings) -> Rows:
     if task.drawn and settings.draw is not None:
         name = f"cell_{found.cell:05d}"
         image = None if task.image is None else task.image.astype(np.float64)
-        settings.draw(settings.folder.figures, name, placed, image, settings.pixel_size_um)
+        settings.draw(figures_folder(settings.folder.path), name, placed, image, settings.pixel_size_um)
     return row | {"status": "ok", "reason": "", "seconds": seconds}, {"windows": columns}
 
 
