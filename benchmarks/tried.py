@@ -118,8 +118,8 @@ def steps_of(way: Way) -> Iterator[None]:
         newton.LONGER, newton.MOMENTUM = kept
 
 
-def measure(cell: Cell, way: Way, fine: Mesh, repeats: int) -> tuple[int, float, float]:
-    """Newton steps, least milliseconds from outline to map, and area error on the fine mesh."""
+def measure(cell: Cell, way: Way, fine: Mesh, repeats: int) -> tuple[int, float, float, float]:
+    """Newton steps, least milliseconds from outline to map; area error and share folded, on the fine mesh."""
     best = np.inf
     with steps_of(way):
         for _ in range(repeats + 1):  # the first may compile
@@ -134,7 +134,8 @@ def measure(cell: Cell, way: Way, fine: Mesh, repeats: int) -> tuple[int, float,
     in_disk = triangle_areas(uv[:, ::-1], fine.triangles)
     share, seen = in_cell / in_cell.sum(), in_disk / np.nansum(in_disk)
     whole = seen > 0  # a triangle of the fine mesh across two of the coarse one may be folded
-    return found.steps, 1e3 * best, float((share * np.abs(np.log(np.where(whole, seen / share, 1.0)))).sum())
+    error = (share * np.abs(np.log(np.where(whole, seen / share, 1.0)))).sum()
+    return found.steps, 1e3 * best, float(error), float(share[~whole].sum())
 
 
 def main() -> int:
@@ -149,14 +150,15 @@ def main() -> int:
         cell = cell_of(tifffile.imread(path) > 0)
         fine = mesh_inside(cell.outline_yx, cell.mask, edge_length=0.45, growth=0.25)
         for way in WAYS:
-            steps, milliseconds, error = measure(cell, way, fine, arguments.repeats)
-            rows.append([path.stem, way.name, str(steps), f"{milliseconds:.0f}", f"{error:.3f}"])
-            print(f"{path.stem:<14}{way.name:<30}{steps:>5} steps{milliseconds:>7.0f} ms   error {error:.3f}")
+            steps, milliseconds, error, folded = measure(cell, way, fine, arguments.repeats)
+            row = [path.stem, way.name, str(steps), f"{milliseconds:.0f}", f"{error:.3f}", f"{folded:.2%}"]
+            rows.append(row)
+            print("".join(f"{text:<{width}}" for text, width in zip(row, (14, 30, 7, 7, 8, 8), strict=True)))
     if arguments.page:
         folder = PAGES / "tried"
         folder.mkdir(exist_ok=True)
         with (folder / "ways.csv").open("w", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerows([["mask", "way", "steps", "ms", "area error"], *rows])
+            csv.writer(file).writerows([["mask", "way", "steps", "ms", "area error", "folded"], *rows])
     return 0
 
 
