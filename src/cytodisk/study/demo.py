@@ -21,7 +21,7 @@ from cytodisk.io.frames import open_frames
 from cytodisk.io.study import Study
 from cytodisk.simulate.moving_cells import SimulatedMovie, movie
 
-FRAMES = 48
+FRAMES = 40
 _COUPLED = 0.5  # share of the edge along which the signal follows its velocity
 _MOSTLY = 0.95  # share of a sector that must be coupled, or not, for it to count
 
