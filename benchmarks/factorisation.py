@@ -6,13 +6,13 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import qdldl
 import tifffile
 from scipy import sparse
 
 from cytodisk import simulate
 from cytodisk.arrays import BoolArray
 from cytodisk.disk.blocks import BlockSystem
-from cytodisk.disk.ldl import Factorisation
 from cytodisk.disk.mapping import mesh_cell
 from cytodisk.geometry.mesh import Mesh
 from speed import _DEFAULT_DATA, median_seconds, restart_with_one_thread
@@ -44,20 +44,20 @@ def compare(name: str, mask: BoolArray, repeats: int) -> None:
     system = BlockSystem(mesh)
     upper = fill(system, mesh)
     right = np.random.default_rng(1).normal(size=(len(system.vertex), 2))
-    factors = Factorisation(upper)
+    solver = qdldl.Solver(upper, upper=True)
 
     def by_blocks() -> object:
         system.factorise()
         return system.solve(right)
 
     def by_numbers() -> object:
-        factors.update(upper)
-        return factors.solve(right.ravel())
+        solver.update(upper, upper=True)
+        return solver.solve(right.ravel())
 
     apart = float(np.abs(np.asarray(by_blocks()).ravel() - np.asarray(by_numbers())).max())
     blocks, numbers = median_seconds(by_blocks, repeats), median_seconds(by_numbers, repeats)
     found = median_seconds(lambda: BlockSystem(mesh), max(3, repeats // 5))
-    anew = median_seconds(lambda: Factorisation(upper), max(3, repeats // 5))
+    anew = median_seconds(lambda: qdldl.Solver(upper, upper=True), max(3, repeats // 5))
     print(
         f"{name:<18}{len(right):>8}{1e3 * blocks:>11.2f}{1e3 * numbers:>9.2f}{numbers / blocks:>7.2f}"
         f"{1e3 * found:>15.2f}{1e3 * anew:>9.2f}{apart:>10.0e}"

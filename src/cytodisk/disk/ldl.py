@@ -1,4 +1,4 @@
-"""Sparse symmetric systems with one pattern and many values."""
+"""Sparse symmetric systems, and the order in which their unknowns are best eliminated."""
 
 import numpy as np
 import qdldl
@@ -8,7 +8,7 @@ from cytodisk.arrays import FloatArray, IntArray
 
 
 class Factorisation:
-    """LDLᵀ of a symmetric matrix; a second matrix of the same pattern costs less than the first.
+    """LDLᵀ of a symmetric matrix, by QDLDL.
 
     Parameters
     ----------
@@ -18,10 +18,6 @@ class Factorisation:
 
     def __init__(self, upper: sparse.csc_matrix):
         self._solver = qdldl.Solver(upper, upper=True)
-
-    def update(self, upper: sparse.csc_matrix) -> None:
-        """Factor another matrix of the same pattern."""
-        self._solver.update(upper, upper=True)
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solution for one right-hand side of shape (N,)."""

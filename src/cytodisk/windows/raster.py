@@ -108,11 +108,8 @@ def _paint(
         u0, v0 = vertices_uv[i, 0], vertices_uv[i, 1]
         u1, v1 = vertices_uv[j, 0] - u0, vertices_uv[j, 1] - v0
         u2, v2 = vertices_uv[k, 0] - u0, vertices_uv[k, 1] - v0
-        twice = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
-        u_by_x = (u1 * (y2 - y0) - u2 * (y1 - y0)) / twice
-        u_by_y = (u2 * (x1 - x0) - u1 * (x2 - x0)) / twice
-        v_by_x = (v1 * (y2 - y0) - v2 * (y1 - y0)) / twice
-        v_by_y = (v2 * (x1 - x0) - v1 * (x2 - x0)) / twice
+        u_by_y, u_by_x = _gradient(u1, u2, y1 - y0, x1 - x0, y2 - y0, x2 - x0)
+        v_by_y, v_by_x = _gradient(v1, v2, y1 - y0, x1 - x0, y2 - y0, x2 - x0)
         if not _holds(u0, v0, u0 * u0 + v0 * v0, layer, sector, inner, outer, rays):
             layer, sector = _window_at(u0, v0, boundary_angles, radii, sectors)
         alike = _holds_triangle(u0, v0, u0 + u1, v0 + v1, u0 + u2, v0 + v2, layer, sector, inner, outer, rays)
@@ -174,6 +171,13 @@ def _paint(
                     if pixel >= 0:
                         window[pixel, part_row + part_column[part]] = here
                 column = end + 1
+
+
+@njit(cache=True, error_model="numpy")
+def _gradient(one: float, other: float, y1: float, x1: float, y2: float, x2: float) -> tuple[float, float]:
+    """Slopes along y and x of a linear function that is 0 at the origin and known at two points."""
+    twice = x1 * y2 - y1 * x2
+    return (other * x1 - one * x2) / twice, (one * y2 - other * y1) / twice
 
 
 @njit(cache=True)
