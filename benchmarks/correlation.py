@@ -42,17 +42,17 @@ import xarray as xr
 
 from cytodisk.analysis.accuracy import share_by_sector
 from cytodisk.analysis.activity import sample_movie
-from cytodisk.analysis.correlation import correlation_by_layer, cross_correlate
-from cytodisk.analysis.jitter import JITTERED_LAGS, jitter_step
-from cytodisk.analysis.pairs import correlate_pairs
-from cytodisk.analysis.peaks import peak_correlation
-from cytodisk.analysis.surrogates import Null
+from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer, cross_correlate
+from cytodisk.analysis.correlation.jitter_mark import JITTERED_LAGS, jitter_step
+from cytodisk.analysis.correlation.peaks import peak_correlation
+from cytodisk.analysis.correlation.surrogates import Null
+from cytodisk.analysis.pairs.pair_correlation import correlate_pairs
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import StationarityWarning
 from cytodisk.motion.map_movie import map_movie
 from cytodisk.motion.velocity import edge_velocity
 from cytodisk.simulate import SERIES_KINDS, independent_series, movie
-from cytodisk.simulate.series import SeriesKind
+from cytodisk.simulate.null_series import SeriesKind
 from cytodisk.windows.grid import polar_windows
 
 ALPHA = 0.05

@@ -18,10 +18,10 @@ import numpy as np
 import tifffile
 
 import cytodisk as cd
-from cytodisk.study.batch.batch_file import read_batch
-from cytodisk.study.batch.grouping import expected_seconds
-from cytodisk.study.batch.merged import merge_batch
-from cytodisk.study.batch.task import open_store
+from cytodisk.runs.batch.batch_file import read_batch
+from cytodisk.runs.batch.grouping import expected_seconds
+from cytodisk.runs.batch.merged import merge_batch
+from cytodisk.runs.batch.task import open_store
 from pages import PAGES, machine_words, write_words
 
 if TYPE_CHECKING:

@@ -25,9 +25,9 @@ import tifffile
 
 import cytodisk as cd
 from cytodisk.plot.style import PAPER
-from cytodisk.study.movie_inputs import open_movie
-from cytodisk.study.movie_run import run_movie
-from cytodisk.study.parameters import MovieParameters
+from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.parameters import MovieParameters
 from pages import PAGES, machine_words, write_words
 from reference_masks import data_folder
 from speed import restart_with_one_thread
@@ -60,7 +60,7 @@ MAP_STAGES = (
     Stage("map", "the rest of it", ("cytodisk.disk.mapping:map_mesh",)),
 )
 FRAME_STAGES = (
-    Stage("files", "read", ("cytodisk.io.frames:FrameFile.frame",)),
+    Stage("files", "read", ("cytodisk.images.frames:FrameFile.frame",)),
     *MAP_STAGES,
     Stage("tracking", "registration", ("cytodisk.motion.registration:register",)),
     Stage("tracking", "matching and the rest", ("cytodisk.motion.tracking:follow",)),
@@ -70,12 +70,12 @@ FRAME_STAGES = (
     Stage("sampling", "two channels", ("cytodisk.windows.sample:sample",)),
     Stage("measures", "edge motion", ("cytodisk.motion.edge:edge_motion",)),
     Stage("measures", "distortion", ("cytodisk.disk.distortion:distortion_of",)),
-    Stage("measures", "rows", ("cytodisk.study.one_frame:measure_frame",)),
+    Stage("measures", "rows", ("cytodisk.runs.movie.frame_rows:measure_frame",)),
     Stage("files", "map", ("cytodisk.motion.frame_file:save_frame",)),
     Stage(
         "files",
         "tables",
-        ("cytodisk.io.study_folder:StudyFolder.add", "cytodisk.io.study_folder:StudyFolder.add_table"),
+        ("cytodisk.store.study_folder:StudyFolder.add", "cytodisk.store.study_folder:StudyFolder.add_table"),
     ),
 )
 COUNTED = ("outline", "mesh", "map", "tracking", "windows", "sampling")

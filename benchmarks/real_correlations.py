@@ -13,12 +13,12 @@ from pathlib import Path
 
 import pandas as pd
 
-from cytodisk.io.correlation_store import Correlation
-from cytodisk.io.study import Study, open_study
-from cytodisk.study.correlate import channels_of, correlate_study
-from cytodisk.study.movie_inputs import open_movie
-from cytodisk.study.movie_run import run_movie
-from cytodisk.study.parameters import MovieParameters
+from cytodisk.runs.correlate.correlate_run import channels_of, correlate_study
+from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.parameters import MovieParameters
+from cytodisk.store.correlation_store import Correlation
+from cytodisk.store.study import Study, open_study
 
 MOVIES = (
     ("melanoma_vasp_lpd", "signal.ome.tif", None),

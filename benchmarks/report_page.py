@@ -14,7 +14,7 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.support.ui import WebDriverWait
 
 import cytodisk as cd
-from cytodisk.report.page import write_report
+from cytodisk.pages.report.page import write_report
 
 _QUIET = (
     "--headless=new",

@@ -17,13 +17,13 @@ from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
 
-from cytodisk.study.batch.cluster import Flight, connected
-from cytodisk.study.batch.cluster_workers import Workers
-from cytodisk.study.batch.inputs import BatchInput
-from cytodisk.study.batch.on_worker import begin_run
-from cytodisk.study.batch.rows import ROWS, InputRow, read_row, write_row
-from cytodisk.study.batch.task import BatchTask, TaskResult, open_store
-from cytodisk.study.parameters import MovieParameters
+from cytodisk.runs.batch.cluster import Flight, connected
+from cytodisk.runs.batch.cluster_workers import Workers
+from cytodisk.runs.batch.inputs import BatchInput
+from cytodisk.runs.batch.on_worker import begin_run
+from cytodisk.runs.batch.rows import ROWS, InputRow, read_row, write_row
+from cytodisk.runs.batch.task import BatchTask, TaskResult, open_store
+from cytodisk.runs.parameters import MovieParameters
 from dask_processes import DaskProcesses
 from million import Costs, measure_costs, predictions, write_page
 

@@ -43,7 +43,7 @@ from cytodisk.motion.tracking import TRACKERS, TrackedBoundary, Tracker, Trackin
 from cytodisk.motion.velocity import edge_velocity
 from cytodisk.simulate import MOVIE_KINDS, SimulatedMovie
 from cytodisk.simulate.movie_kinds import MovieKind
-from cytodisk.windows.grid import PolarWindows, polar_windows
+from cytodisk.windows.grid import PolarGrid, polar_windows
 
 HORIZONS = (1, 10, 50)
 GRIDS = {"5×24": polar_windows(5, 24), "10×60": polar_windows(10, 60)}
@@ -106,7 +106,7 @@ def velocity_error(truth: SimulatedMovie, movie: DiskMovie, first: TrackedBounda
     return float(np.sqrt(np.square(error).mean()))
 
 
-def share_in_place(truth: SimulatedMovie, movie: DiskMovie, grid: PolarWindows, frame: int) -> float:
+def share_in_place(truth: SimulatedMovie, movie: DiskMovie, grid: PolarGrid, frame: int) -> float:
     """Share of the points inside the cell that are in the window that they were in in the first frame."""
     first, last = (
         grid.window_of(movie[number].to_disk(truth.interior_yx[number], outside="nearest"))

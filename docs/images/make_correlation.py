@@ -9,7 +9,7 @@ import cytodisk as cd
 from cytodisk.errors import StationarityWarning
 from cytodisk.files import replacing
 from cytodisk.plot.cell import draw_windows, frame_cell
-from cytodisk.plot.correlation_cell import PeakMap, draw_peaks_on_cell
+from cytodisk.plot.peak_maps import PeakMap, draw_peaks_on_cell
 from cytodisk.plot.style import colour_bar, paper_style
 
 WIDTH_PX, HEIGHT_PX, DPI = 1400, 420, 200

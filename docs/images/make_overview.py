@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from cytodisk.disk.mapping import map_to_disk
 from cytodisk.files import replacing
 from cytodisk.plot.cell import draw_cell, draw_window_means, draw_windows
-from cytodisk.plot.disk import draw_disk_image, draw_disk_means
+from cytodisk.plot.disk_axes import draw_disk_image, draw_disk_means
 from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, paper_style, signal_limits
 from cytodisk.simulate import cell_with_signal
 from cytodisk.windows.grid import polar_windows

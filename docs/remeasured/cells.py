@@ -6,11 +6,11 @@ from typing import Any
 
 import pandas as pd
 
-from cytodisk.plot.compared_cells import draw_compared_cells
-from cytodisk.plot.comparison import draw_comparison
-from cytodisk.study.compare_cells import compare_cells
-from cytodisk.study.compare_parameters import TITLES, CompareParameters, WindowMethod
-from cytodisk.study.comparison import Comparison
+from cytodisk.pages.compared_cells import write_compared_cells
+from cytodisk.pages.compared_layers import write_comparison
+from cytodisk.runs.compare_windows.compare_cells import compare_cells
+from cytodisk.runs.compare_windows.compare_parameters import TITLES, CompareParameters, WindowMethod
+from cytodisk.runs.compare_windows.comparison import Comparison
 from remeasured import shapes
 
 GRIDS: dict[str, tuple[int, int, tuple[WindowMethod, ...]]] = {
@@ -37,8 +37,8 @@ def write(found: dict[str, Any], files: Path) -> dict[str, Any]:
     """Fig. 3A and 3B, and the tables by layer and by grid."""
     comparison = found["cells"]["12x60"]
     chosen = shapes.representatives(found["shapes"]["table"])
-    draw_compared_cells(comparison, chosen)
-    draw_comparison(comparison)
+    write_compared_cells(comparison, chosen)
+    write_comparison(comparison)
     for name in ("cells", "comparison"):
         shutil.copy(comparison.path / "figures" / f"{name}.png", files / f"{name}.png")
     by_layer(comparison).to_csv(files / "by_layer.csv", index=False)

@@ -8,9 +8,9 @@ import numpy as np
 import tifffile
 
 import cytodisk as cd
-from cytodisk.plot.compared_cells import draw_labels
+from cytodisk.pages.compared_cells import draw_labels
 from cytodisk.plot.style import DPI, PAPER
-from cytodisk.study.compare_parameters import TITLES
+from cytodisk.runs.compare_windows.compare_parameters import TITLES
 from cytodisk.windows.edge_windows import EdgeGrid
 from remeasured.movies import LAYERS, MOVIES, SECTORS
 

@@ -6,10 +6,10 @@ from typing import Any
 
 import pandas as pd
 
-from cytodisk.plot.compared_movie import draw_compared_movie
-from cytodisk.study.compare_movie import compare_movie
-from cytodisk.study.compare_parameters import TITLES, CompareMovieParameters
-from cytodisk.study.comparison import Comparison
+from cytodisk.pages.compared_movie import write_compared_movie
+from cytodisk.runs.compare_windows.compare_movie import compare_movie
+from cytodisk.runs.compare_windows.compare_parameters import TITLES, CompareMovieParameters
+from cytodisk.runs.compare_windows.comparison import Comparison
 from remeasured import shapes
 from remeasured.cells import percent
 
@@ -43,7 +43,7 @@ def measure(data: Path, work: Path) -> dict[str, Comparison]:
 def write(found: dict[str, Any], files: Path) -> dict[str, Any]:
     """Fig. 4B to D of each movie, and a table."""
     for name, comparison in found["movies"].items():
-        picture = draw_compared_movie(comparison, 0, channel_of(name))
+        picture = write_compared_movie(comparison, 0, channel_of(name))
         shutil.copy(picture, files / f"{name}.png")
     words(summaries(found["movies"])).to_csv(files / "movies.csv", index=False)
     return {}

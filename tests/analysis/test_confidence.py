@@ -7,8 +7,8 @@ from scipy.signal import lfilter
 from scipy.stats import pearsonr
 from statsmodels.tsa import stattools
 
-from cytodisk.analysis.confidence import autocorrelation, effective_share, fisher_interval
-from cytodisk.analysis.lagged import LaggedSeries
+from cytodisk.analysis.correlation.confidence import autocorrelation, effective_share, fisher_interval
+from cytodisk.analysis.correlation.lagged import LaggedSeries
 
 NAN = np.nan
 

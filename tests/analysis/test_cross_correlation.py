@@ -9,11 +9,11 @@ from scipy.signal import lfilter
 from scipy.stats import binom, pearsonr
 
 import cytodisk as cd
-from cytodisk.analysis.confidence import effective_share, fisher_interval
-from cytodisk.analysis.correlation import correlation_by_layer, cross_correlate
-from cytodisk.analysis.peaks import peak_correlation
-from cytodisk.analysis.series import prepare_series
-from cytodisk.analysis.surrogates import surrogates
+from cytodisk.analysis.correlation.confidence import effective_share, fisher_interval
+from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer, cross_correlate
+from cytodisk.analysis.correlation.peaks import peak_correlation
+from cytodisk.analysis.correlation.prepared_series import prepare_series
+from cytodisk.analysis.correlation.surrogates import surrogates
 from cytodisk.errors import ParameterError, StationarityWarning
 from cytodisk.simulate import coupled_series, independent_series
 

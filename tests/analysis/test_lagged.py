@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import pearsonr
 
-from cytodisk.analysis.lagged import LaggedSeries
+from cytodisk.analysis.correlation.lagged import LaggedSeries
 
 NAN = np.nan
 LAGS = np.arange(-5, 6)

@@ -6,15 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import pearsonr
 
-from cytodisk.analysis.lagged import LaggedSeries
-from cytodisk.analysis.pair_blocks import (
+from cytodisk.analysis.correlation.lagged import LaggedSeries
+from cytodisk.analysis.correlation.prepared_series import standardised
+from cytodisk.analysis.pairs.pair_blocks import (
     DistanceBins,
     Distribution,
     correlation_blocks,
     distributions,
     mean_by_bin,
 )
-from cytodisk.analysis.series import standardised
 
 NAN = np.nan
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from cytodisk.analysis.distances import disk_distances
-from cytodisk.analysis.pairs import correlate_pairs
-from cytodisk.analysis.series import prepare_series
-from cytodisk.analysis.surrogates import surrogates
+from cytodisk.analysis.correlation.prepared_series import prepare_series
+from cytodisk.analysis.correlation.surrogates import surrogates
+from cytodisk.analysis.pairs.pair_correlation import correlate_pairs
+from cytodisk.analysis.pairs.window_distances import disk_distances
 from cytodisk.errors import ParameterError, StationarityWarning
 
 NAN = np.nan
@@ -310,7 +310,7 @@ def test_surrogates_of_all_at_once_and_one_by_one_agree(monkeypatch: pytest.Monk
     a[:, 1, 2] = 3.0  # a window that does not vary
     distances = np.abs(np.subtract.outer(np.arange(15.0), np.arange(15.0)))
     fast = correlate_pairs(a, b, 4, distances=distances, bins=6, surrogates=40)
-    monkeypatch.setattr("cytodisk.analysis.pair_chance._same_gaps", lambda series: False)
+    monkeypatch.setattr("cytodisk.analysis.pairs.pair_chance._same_gaps", lambda series: False)
     slow = correlate_pairs(a, b, 4, distances=distances, bins=6, surrogates=40)
     for name in ("null_low", "null_high", "threshold"):
         np.testing.assert_allclose(fast[name], slow[name], atol=1e-12)

@@ -10,8 +10,8 @@ from hypothesis.extra.numpy import arrays
 from scipy.stats import false_discovery_control
 from statsmodels.stats.multitest import multipletests
 
-from cytodisk.analysis.correlation import cross_correlate
-from cytodisk.analysis.peaks import RULES, false_discovery, find_peak, p_value, peak_correlation
+from cytodisk.analysis.correlation.cross_correlation import cross_correlate
+from cytodisk.analysis.correlation.peaks import RULES, false_discovery, find_peak, p_value, peak_correlation
 from cytodisk.errors import ParameterError
 
 NAN = np.nan

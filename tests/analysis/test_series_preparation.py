@@ -9,9 +9,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from statsmodels.tsa import stattools
 
-from cytodisk.analysis.correlation import cross_correlate
-from cytodisk.analysis.pairs import correlate_pairs
-from cytodisk.analysis.series import KPSS_LIMIT, interpolated, kpss, prepare_series, standardised
+from cytodisk.analysis.correlation.cross_correlation import cross_correlate
+from cytodisk.analysis.correlation.prepared_series import (
+    KPSS_LIMIT,
+    interpolated,
+    kpss,
+    prepare_series,
+    standardised,
+)
+from cytodisk.analysis.pairs.pair_correlation import correlate_pairs
 from cytodisk.errors import ParameterError
 
 NAN = np.nan

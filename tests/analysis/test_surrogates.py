@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 
-from cytodisk.analysis.surrogates import circularly_shifted, phase_randomised, surrogates
+from cytodisk.analysis.correlation.surrogates import circularly_shifted, phase_randomised, surrogates
 from cytodisk.errors import ParameterError
 
 NAN = np.nan

@@ -6,11 +6,11 @@ import pytest
 import xarray as xr
 
 import cytodisk as cd
-from cytodisk.analysis.distances import window_distances
+from cytodisk.analysis.pairs.window_distances import window_distances
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError, WindowError
-from cytodisk.windows.grid import PolarWindows, polar_windows
+from cytodisk.windows.grid import PolarGrid, polar_windows
 
 RADIUS = 40.0
 
@@ -20,7 +20,7 @@ def table(distances: xr.Dataset, name: str) -> FloatArray:
     return distances[name].to_numpy().reshape(windows, windows)
 
 
-def centres(disk: DiskMap, grid: PolarWindows) -> FloatArray:
+def centres(disk: DiskMap, grid: PolarGrid) -> FloatArray:
     """Middle of each window's radii and angles, in the cell, (W, 2)."""
     radius = 0.5 * (grid.radii[:-1] + grid.radii[1:])
     angle = 0.5 * (grid.angles[:-1] + grid.angles[1:])

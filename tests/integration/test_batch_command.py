@@ -9,9 +9,9 @@ import pytest
 import tifffile
 from command_line import Run, assert_refused
 
-from cytodisk.study.batch import run as batch_run
-from cytodisk.study.batch.rows import InputRow
-from cytodisk.study.batch.run import BatchSummary
+from cytodisk.runs.batch import batch_run
+from cytodisk.runs.batch.batch_run import BatchSummary
+from cytodisk.runs.batch.rows import InputRow
 
 
 @pytest.fixture

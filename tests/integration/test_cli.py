@@ -15,7 +15,7 @@ from rich.progress import Progress
 
 import cytodisk as cd
 from cytodisk.cli.console import progress_bar
-from cytodisk.study import versions as versions_of
+from cytodisk.runs import versions as versions_of
 
 GRID = ("--layers", "3", "--sectors", "8", "--figures", "0")
 
@@ -389,7 +389,7 @@ def test_info_lists_versions(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_demo_once_and_again(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One run of the demo, shortened, then the same again, then another seed in the same folder."""
-    monkeypatch.setattr("cytodisk.study.demo.FRAMES", 40)
+    monkeypatch.setattr("cytodisk.runs.demo_input.FRAMES", 40)
     demo = tmp_path / "demo"
     code, said, _ = run("demo", "-o", demo)
     assert code == 0

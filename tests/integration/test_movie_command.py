@@ -149,7 +149,7 @@ def test_a_run_that_is_stopped_says_how_to_go_on(
 
     out = tmp_path / "out"
     with monkeypatch.context() as patch:
-        patch.setattr("cytodisk.plot.movie.draw_movie_figures", stop)
+        patch.setattr("cytodisk.pages.movie_pages.write_movie_figures", stop)
         code, _, error = run("movie", masks, "-o", out, *GRID[:4])
     assert code == 130
     assert "what was done is kept (0 of 1 drawings): run it again with --resume." in error

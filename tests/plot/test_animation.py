@@ -8,8 +8,8 @@ from PIL import Image
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError, SignalError, StudyError
-from cytodisk.plot import animation
-from cytodisk.plot.animation import write_animation
+from cytodisk.pages import animation
+from cytodisk.pages.animation import write_animation
 from cytodisk.windows.cell_windows import CellWindows
 from cytodisk.windows.grid import polar_windows
 

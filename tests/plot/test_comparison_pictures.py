@@ -9,10 +9,11 @@ from matplotlib.figure import Figure
 
 import cytodisk as cd
 from cytodisk.errors import ParameterError
-from cytodisk.plot.compared_cells import chosen_cells, draw_labels, window_colours
-from cytodisk.plot.compared_movie import consistency_by_layer, draw_displacement
-from cytodisk.plot.comparison import METHOD_STYLES, draw_measure_by_layer, spread_over
-from cytodisk.study.compare_parameters import TITLES
+from cytodisk.pages.compared_cells import chosen_cells, draw_labels
+from cytodisk.pages.compared_layers import METHOD_STYLES, draw_measure_by_layer, spread_over
+from cytodisk.pages.compared_movie import consistency_by_layer, draw_displacement
+from cytodisk.plot.window_labels import window_colours
+from cytodisk.runs.compare_windows.compare_parameters import TITLES
 
 METHODS = ("newton", "edge")
 
@@ -81,9 +82,9 @@ def test_cells_are_chosen_from_simple_to_complex(comparison: cd.Comparison) -> N
 
 def test_cells_that_cannot_be_drawn_are_refused(comparison: cd.Comparison) -> None:
     with pytest.raises(ParameterError, match=r"cells: 7 has no windows in comparison .* numbered 0 to 1"):
-        cd.plot.draw_compared_cells(comparison, [0, 7])
+        cd.pages.write_compared_cells(comparison, [0, 7])
     with pytest.raises(ParameterError, match="cells: got 6: name one to 5"):
-        cd.plot.draw_compared_cells(comparison, range(6))
+        cd.pages.write_compared_cells(comparison, range(6))
 
 
 def test_layers_have_colours_and_every_other_sector_is_paler() -> None:
@@ -125,8 +126,8 @@ def test_displacement_is_the_mean_over_layers_through_time() -> None:
 
 
 def test_pages_stand_in_the_folder(comparison: cd.Comparison, tmp_path: Path) -> None:
-    assert cd.plot.draw_comparison(comparison) == comparison.path / "figures" / "comparison.png"
-    assert cd.plot.draw_compared_cells(comparison) == comparison.path / "figures" / "cells.png"
+    assert cd.pages.write_comparison(comparison) == comparison.path / "figures" / "comparison.png"
+    assert cd.pages.write_compared_cells(comparison) == comparison.path / "figures" / "cells.png"
     shown = cd.simulate.movie("translating", 2, frames=3, radius_px=12.0)
     assert shown.signal is not None
     options: Any = {"photometric": "minisblack"}
@@ -135,10 +136,10 @@ def test_pages_stand_in_the_folder(comparison: cd.Comparison, tmp_path: Path) ->
     tifffile.imwrite(tmp_path / "s.ome.tif", shown.signal.to_numpy(), metadata=names, **options)
     grid = cd.CompareMovieParameters(methods=METHODS, layers=3, sectors=8)
     movie = cd.compare_movie(tmp_path / "m.tif", tmp_path / "out", grid, signal=tmp_path / "s.ome.tif")
-    first = cd.plot.draw_compared_movie(movie, 0, "material")
-    second = cd.plot.draw_compared_movie(movie, 0, "edge")
+    first = cd.pages.write_compared_movie(movie, 0, "material")
+    second = cd.pages.write_compared_movie(movie, 0, "edge")
     assert (first.name, second.name) == ("movie_cell_00000_material.png", "movie_cell_00000_edge.png")
     silent = cd.compare_movie(tmp_path / "m.tif", tmp_path / "silent", grid)
-    assert cd.plot.draw_compared_movie(silent, 0).name == "movie_cell_00000.png"
+    assert cd.pages.write_compared_movie(silent, 0).name == "movie_cell_00000.png"
     for path in (first, second, comparison.path / "figures" / "cells.png"):
         assert path.read_bytes().startswith(b"\x89PNG")

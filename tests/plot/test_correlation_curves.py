@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from cytodisk.analysis.correlation import correlation_by_layer, cross_correlate
-from cytodisk.analysis.peaks import peak_correlation
+from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer, cross_correlate
+from cytodisk.analysis.correlation.peaks import peak_correlation
 from cytodisk.errors import ParameterError
-from cytodisk.plot.correlation import PEAK_NAME, curve_key, draw_correlation_curves, draw_map_pair
+from cytodisk.plot.correlation_curves import PEAK_NAME, curve_key, draw_correlation_curves, draw_map_pair
 from cytodisk.plot.lag_axis import sides
 
 LAGS = np.arange(-3, 4)

@@ -14,13 +14,13 @@ from matplotlib.figure import Figure
 
 import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError, StudyError
-from cytodisk.io.correlation_store import Correlation
-from cytodisk.plot.correlation_figures import draw_correlation_figures
+from cytodisk.pages.correlation_files import write_correlation_figures
+from cytodisk.runs.correlate.correlate_run import correlate_study
+from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.parameters import MovieParameters
 from cytodisk.simulate import movie
-from cytodisk.study.correlate import correlate_study
-from cytodisk.study.movie_inputs import open_movie
-from cytodisk.study.movie_run import run_movie
-from cytodisk.study.parameters import MovieParameters
+from cytodisk.store.correlation_store import Correlation
 
 SMALL = MovieParameters(layers=3, sectors=8)
 SHORT, LONG = "Rac1", "a very long name of a channel, much too long"
@@ -63,7 +63,7 @@ def test_pages_of_a_signal_with_velocity(
     study: cd.Study, with_velocity: Correlation, saved: list[Figure]
 ) -> None:
     steps: list[tuple[int, int]] = []
-    paths = draw_correlation_figures(study, with_velocity, progress=lambda *step: steps.append(step))
+    paths = write_correlation_figures(study, with_velocity, progress=lambda *step: steps.append(step))
     assert names(paths) == [f"cell_00000_{what}.png" for what in ("curves", "maps", "peaks", "events")]
     assert {path.parent for path in paths} == {with_velocity.path / "figures"}
     assert sorted(path.name for path in paths[0].parent.iterdir()) == sorted(names(paths))
@@ -81,16 +81,16 @@ def test_pages_of_a_signal_with_velocity(
 
 def test_pages_of_two_signals(study: cd.Study, saved: list[Figure]) -> None:
     found = correlate_study(study, SHORT, LONG, **FEW, pairs=True)
-    paths = draw_correlation_figures(study, found)
+    paths = write_correlation_figures(study, found)
     assert names(paths) == [f"cell_00000_{what}.png" for what in ("curves", "maps", "peaks", "pairs")]
     assert len(saved[-1].axes) >= 6  # two for each kind of distance
     edge = correlate_study(study, LONG, LONG, **FEW, against="edge")
-    draw_correlation_figures(study, edge)
+    write_correlation_figures(study, edge)
     assert any("at the edge" in text.get_text() for text in saved[4].texts)
 
 
 def test_notes_of_pairs_say_which_way_is_up(study: cd.Study, saved: list[Figure]) -> None:
-    draw_correlation_figures(study, correlate_study(study, SHORT, LONG, **FEW, pairs=True))
+    write_correlation_figures(study, correlate_study(study, SHORT, LONG, **FEW, pairs=True))
     words = [text.get_text() for text in saved[-1].texts]
     assert f"lag: ↓ {LONG[:17]}… first  ·  ↑ Rac1 first" in words
     assert sum("left out" in line for line in words) == 1
@@ -98,7 +98,7 @@ def test_notes_of_pairs_say_which_way_is_up(study: cd.Study, saved: list[Figure]
 
 def test_what_was_not_used_is_grey(study: cd.Study, saved: list[Figure]) -> None:
     some: Any = {"sectors": (6, 1), "frames": (2, 20), "without_frames": (9, 10), "name": "some"}
-    draw_correlation_figures(study, correlate_study(study, LONG, **FEW | some | {"min_pairs": 5}))
+    write_correlation_figures(study, correlate_study(study, LONG, **FEW | some | {"min_pairs": 5}))
     _, maps, peaks, *events = saved
     for figure in saved:
         words = " ".join(text.get_text() for text in figure.texts)
@@ -123,7 +123,7 @@ def shown_places(figure: Figure, axes: int) -> tuple[list[int], list[int]]:
 
 def test_without_surrogates_nothing_is_called_significant(study: cd.Study, saved: list[Figure]) -> None:
     found = correlate_study(study, LONG, "velocity_cell_frame", max_lag=4, surrogates=0)
-    draw_correlation_figures(study, found)
+    write_correlation_figures(study, found)
     words = [
         text.get_text() for figure in saved for text in figure.findobj(lambda one: hasattr(one, "get_text"))
     ]
@@ -140,7 +140,7 @@ def without_numbers(found: Correlation) -> Correlation:
 
 
 def test_a_cell_without_numbers_has_its_maps_alone(study: cd.Study, with_velocity: Correlation) -> None:
-    paths = draw_correlation_figures(study, without_numbers(with_velocity))
+    paths = write_correlation_figures(study, without_numbers(with_velocity))
     assert names(paths) == ["cell_00000_maps.png"]
 
 
@@ -149,8 +149,8 @@ def test_text_stays_text_and_the_same_picture_is_the_same_file(
 ) -> None:
     files: list[dict[Path, bytes]] = []
     for _ in range(2):
-        paths = draw_correlation_figures(study, with_velocity, formats=("svg",))
-        paths += draw_correlation_figures(study, without_numbers(with_velocity), formats=["pdf"])
+        paths = write_correlation_figures(study, with_velocity, formats=("svg",))
+        paths += write_correlation_figures(study, without_numbers(with_velocity), formats=["pdf"])
         files.append({path: path.read_bytes() for path in paths})
     assert files[0] == files[1]
     *pages, (printed, content) = files[0].items()
@@ -164,18 +164,18 @@ def test_text_stays_text_and_the_same_picture_is_the_same_file(
 
 def test_what_cannot_be_drawn_is_refused(study: cd.Study, with_velocity: Correlation, tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="formats must be of png, pdf, svg, got 'jpg'"):
-        draw_correlation_figures(study, with_velocity, formats=("png", "jpg"))
+        write_correlation_figures(study, with_velocity, formats=("png", "jpg"))
     with pytest.raises(ParameterError, match=r"cell 4 is not in .*: it has \[0\]"):
-        draw_correlation_figures(study, with_velocity, cell=4)
+        write_correlation_figures(study, with_velocity, cell=4)
     refused = replace(with_velocity)
     refused.__dict__["cells"] = pd.DataFrame({"cell": [0], "status": ["refused"], "reason": ["too short"]})
     with pytest.raises(ParameterError, match="cell 0 has no correlation to draw: too short"):
-        draw_correlation_figures(study, refused)
+        write_correlation_figures(study, refused)
     with pytest.raises(ReadError, match="damaged"):
-        draw_correlation_figures(study, replace(with_velocity, path=tmp_path))
+        write_correlation_figures(study, replace(with_velocity, path=tmp_path))
     blocked = replace(with_velocity, path=tmp_path)
     for name in ("cells", "windows", "layers", "layer_curves"):
         blocked.__dict__[name] = getattr(with_velocity, name)
     (tmp_path / "figures").write_text("")
     with pytest.raises(StudyError, match="cannot write"):
-        draw_correlation_figures(study, blocked)
+        write_correlation_figures(study, blocked)

@@ -7,10 +7,10 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from cytodisk.analysis.pairs import correlate_pairs
+from cytodisk.analysis.pairs.pair_correlation import correlate_pairs
 from cytodisk.errors import ParameterError
+from cytodisk.plot.pair_curves import OUTLINE_NAME, draw_pairs
 from cytodisk.plot.pair_table import PairTable, drawn_kinds
-from cytodisk.plot.pairs import OUTLINE_NAME, draw_pairs
 
 LAGS = np.arange(-2, 3)
 DISTANCES = np.array([0.0, 1.0, 3.0, 5.0, 7.0])  # bins of 2 µm

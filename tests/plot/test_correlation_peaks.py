@@ -11,7 +11,8 @@ from matplotlib.patches import PathPatch
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError, WindowError
-from cytodisk.plot.correlation_cell import (
+from cytodisk.plot.outline_sides import outline_sides
+from cytodisk.plot.peak_maps import (
     OUTLINE_NAME,
     PALE_NAME,
     PeakMap,
@@ -20,7 +21,6 @@ from cytodisk.plot.correlation_cell import (
     draw_peaks_on_disk,
     peak_key,
 )
-from cytodisk.plot.outlines import outline_sides
 from cytodisk.plot.style import colour_bar
 from cytodisk.windows.cell_windows import CellWindows
 from cytodisk.windows.grid import polar_windows

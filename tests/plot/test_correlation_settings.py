@@ -1,6 +1,6 @@
 import numpy as np
 
-from cytodisk.plot.correlation_settings import scope_words, settings_words, used_windows
+from cytodisk.pages.correlation_words import scope_words, settings_words, used_windows
 
 
 def test_defaults_need_no_words() -> None:

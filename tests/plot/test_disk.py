@@ -5,14 +5,14 @@ from matplotlib.axes import Axes
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import SignalError, WindowError
-from cytodisk.plot.disk import (
+from cytodisk.plot.disk_axes import (
     disk_polygons,
     draw_disk_image,
     draw_disk_means,
     draw_disk_mesh,
     draw_disk_windows,
 )
-from cytodisk.windows.grid import PolarWindows, polar_windows
+from cytodisk.windows.grid import PolarGrid, polar_windows
 
 
 def test_image_is_not_mirrored(ax: Axes, image: FloatArray, disk: DiskMap) -> None:
@@ -40,7 +40,7 @@ def test_angles_go_clockwise_on_the_page(ax: Axes) -> None:
 
 
 @pytest.mark.parametrize("grid", [polar_windows(3, 8), polar_windows(1, 1), polar_windows(4, 100, "radius")])
-def test_polygons_hold_their_windows_centre(grid: PolarWindows) -> None:
+def test_polygons_hold_their_windows_centre(grid: PolarGrid) -> None:
     polygons = disk_polygons(grid)
     assert len(polygons) == grid.n_windows
     area = sum(0.5 * abs(p[:, 0] @ np.roll(p[:, 1], -1) - p[:, 1] @ np.roll(p[:, 0], -1)) for p in polygons)

@@ -7,7 +7,7 @@ from matplotlib.colors import to_rgba
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
-from cytodisk.plot.edge import (
+from cytodisk.plot.edge_motion import (
     INWARD_COLOUR,
     OUTWARD_COLOUR,
     draw_area_change,

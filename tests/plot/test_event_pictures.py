@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from cytodisk.analysis.event_average import average_around
 from cytodisk.analysis.events import edge_events
 from cytodisk.errors import ParameterError
-from cytodisk.plot.events import ONSET_NAME, band_key, draw_event_average, draw_events
+from cytodisk.plot.event_curves import ONSET_NAME, band_key, draw_event_average, draw_events
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
-from cytodisk.plot.kymograph import (
+from cytodisk.plot.activity_maps import (
     draw_activity_map,
     draw_layers,
     draw_velocity_map,

@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 
 from cytodisk.analysis.kymograph import line_kymograph
 from cytodisk.errors import ParameterError
-from cytodisk.plot.line_kymograph import draw_boundary_kymograph, draw_line_kymograph
+from cytodisk.plot.kymograph_lines import draw_boundary_kymograph, draw_line_kymograph
 
 
 @pytest.fixture

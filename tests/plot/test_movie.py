@@ -10,14 +10,15 @@ from PIL import Image
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError, SignalError
-from cytodisk.io.study import Study
+from cytodisk.pages.edge_page import fastest_frame
+from cytodisk.pages.movie_pages import write_movie_figures
 from cytodisk.plot import movie as pages
-from cytodisk.plot.consistency import draw_by_layer
-from cytodisk.plot.movie import draw_movie_figures
-from cytodisk.plot.movie_edge import draw_mean_velocity, fastest_frame
-from cytodisk.study.movie_inputs import open_movie
-from cytodisk.study.movie_run import run_movie
-from cytodisk.study.parameters import MovieParameters
+from cytodisk.plot.layer_lines import draw_by_layer
+from cytodisk.plot.mean_velocity import draw_mean_velocity
+from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.parameters import MovieParameters
+from cytodisk.store.study import Study
 
 FRAMES, GAP, SHAPE = 8, 3, (50, 150)
 WHOLE, LATE, ONCE = range(3)  # cells: with a gap, from frame 5 to 6, in frame 6 alone
@@ -93,7 +94,7 @@ def test_pages_with_signal(scaled: Study, images: FloatArray, saved: list[Figure
         asked.append(time)
         return np.asarray(images[time])
 
-    paths = draw_movie_figures(scaled, WHOLE, signal, progress=lambda *state: done.append(state))
+    paths = write_movie_figures(scaled, WHOLE, signal, progress=lambda *state: done.append(state))
     endings = ["activity_Rac_1_a", "activity_rac_1_a_1", "edge", "strip", "consistency"]
     assert _names(paths) == [*(f"cell_00000_{ending}.png" for ending in endings), "cell_00000.gif"]
     assert {path.parent for path in paths} == {scaled.path / "figures"}
@@ -112,7 +113,7 @@ def test_pages_with_signal(scaled: Study, images: FloatArray, saved: list[Figure
 
 
 def test_pages_without_signal_or_scale(bare: Study, drawn: list[Figure]) -> None:
-    paths = draw_movie_figures(bare, WHOLE)
+    paths = write_movie_figures(bare, WHOLE)
     endings = ["_velocity.png", "_edge.png", "_strip.png", "_consistency.png", ".gif"]
     assert _names(paths) == [f"cell_00000{ending}" for ending in endings]
     velocity, edge, strip, consistency = map(_labels, drawn)
@@ -123,7 +124,7 @@ def test_pages_without_signal_or_scale(bare: Study, drawn: list[Figure]) -> None
 
 
 def test_a_gap_is_missing_in_the_map(bare: Study, drawn: list[Figure]) -> None:
-    draw_movie_figures(bare, WHOLE, animation=False)
+    write_movie_figures(bare, WHOLE, animation=False)
     velocity = drawn[0].axes[0].images[0].get_array()
     known = ~np.ma.getmaskarray(velocity).all(axis=0)
     assert known.tolist() == [True, True, False, False, True, True, True, False]
@@ -132,7 +133,7 @@ def test_a_gap_is_missing_in_the_map(bare: Study, drawn: list[Figure]) -> None:
 
 
 def test_a_late_cell_has_the_recordings_times(scaled: Study, images: FloatArray, drawn: list[Figure]) -> None:
-    paths = draw_movie_figures(scaled, LATE, lambda time: images[time])
+    paths = write_movie_figures(scaled, LATE, lambda time: images[time])
     assert _count(paths[-1]) == 2
     activity, _, edge, strip, consistency = drawn
     assert activity.axes[0].get_xlim() == (22.5, 32.5)
@@ -143,7 +144,7 @@ def test_a_late_cell_has_the_recordings_times(scaled: Study, images: FloatArray,
 
 
 def test_a_cell_in_one_frame(scaled: Study, images: FloatArray, drawn: list[Figure]) -> None:
-    paths = draw_movie_figures(scaled, ONCE, lambda time: images[time])
+    paths = write_movie_figures(scaled, ONCE, lambda time: images[time])
     assert [path.name[len("cell_00002") :] for path in paths[2:]] == ["_edge.png", "_strip.png", ".gif"]
     words = {text.get_text() for text in drawn[2].texts}
     assert "no two frames in a row to compare" in words
@@ -152,28 +153,28 @@ def test_a_cell_in_one_frame(scaled: Study, images: FloatArray, drawn: list[Figu
 
 def test_a_cell_without_map(scaled: Study) -> None:
     refused = scaled.cells.assign(status="refused", reason="mask is empty")
-    assert draw_movie_figures(replace(scaled, cells=refused), LATE) == []
+    assert write_movie_figures(replace(scaled, cells=refused), LATE) == []
 
 
 def test_images_may_be_missing(scaled: Study, images: FloatArray, drawn: list[Figure]) -> None:
     def signal(time: int) -> FloatArray | None:
         return None if time < 2 else images[time, :1]
 
-    draw_movie_figures(scaled, WHOLE, signal, animation=False)
+    write_movie_figures(scaled, WHOLE, signal, animation=False)
     assert np.ma.getmaskarray(drawn[3].axes[0].images[0].get_array()).all()
 
 
 def test_a_long_movie_is_thinned(bare: Study, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pages, "_MOST_ANIMATED", 1)
-    paths = draw_movie_figures(bare, LATE)
+    paths = write_movie_figures(bare, LATE)
     assert _count(paths[-1]) == 1
 
 
 def test_figures_refuse(scaled: Study) -> None:
     with pytest.raises(ReadError, match="has no cell 9"):
-        draw_movie_figures(scaled, 9)
+        write_movie_figures(scaled, 9)
     with pytest.raises(SignalError, match=r"signal has shape \(3, 3\)"):
-        draw_movie_figures(scaled, ONCE, lambda _: np.ones((1, 3, 3)))
+        write_movie_figures(scaled, ONCE, lambda _: np.ones((1, 3, 3)))
 
 
 def test_mean_velocity_and_spread() -> None:

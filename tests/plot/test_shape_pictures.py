@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 import cytodisk as cd
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import ParameterError
-from cytodisk.plot.shape_figures import cells_to_draw, draw_shape_figures
+from cytodisk.pages.shape_pages import cells_to_draw, write_shape_figures
 from cytodisk.plot.shape_plane import principal_direction, spread_cells, unit_outline
 from cytodisk.plot.shape_rows import cells_along, least_median_most
 
@@ -117,7 +117,7 @@ def test_pages_are_whole(
     score: pd.DataFrame, masks: dict[int, BoolArray], tmp_path: Path, saved: list[Figure]
 ) -> None:
     needed = {cell: masks[cell] for cell in cells_to_draw(score)}
-    paths = draw_shape_figures(tmp_path, score, needed, 0.5)
+    paths = write_shape_figures(tmp_path, score, needed, 0.5)
     assert [path.name for path in paths] == ["complexity.png", "extremes.png"]
     assert len(saved) == 2
     words = [text.get_text() for figure in saved for text in figure.findobj(lambda a: hasattr(a, "get_text"))]

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError, SignalError, StudyError
-from cytodisk.plot.study import draw_cell_figures, draw_overview
+from cytodisk.pages.cell_pages import write_cell_figures, write_overview
 from cytodisk.windows.cell_windows import CellWindows
 
 
@@ -45,7 +45,7 @@ def test_page_with_channels(
     signal = xr.DataArray(
         np.stack([image, image**2]), dims=("channel", "y", "x"), coords={"channel": ["VASP", "$Rac1$"]}
     )
-    (path,) = draw_cell_figures(tmp_path, "cell 1.b", windows, signal, 0.25)
+    (path,) = write_cell_figures(tmp_path, "cell 1.b", windows, signal, 0.25)
     assert path == tmp_path / "cell 1.b.png"
     assert list(tmp_path.iterdir()) == [path]
     assert _pixels_across(path) == round(180 / 25.4 * 200)
@@ -58,7 +58,7 @@ def test_page_with_channels(
 def test_page_of_one_channel_without_name_or_scale(
     tmp_path: Path, windows: CellWindows, image: FloatArray, saved: list[Figure]
 ) -> None:
-    draw_cell_figures(tmp_path, "a", windows, xr.DataArray(image, dims=("y", "x")), None)
+    write_cell_figures(tmp_path, "a", windows, xr.DataArray(image, dims=("y", "x")), None)
     assert "signal (a.u.)" in _labels(saved[0])
     assert not any("µm" in words for words in _words(saved[0]))
 
@@ -67,14 +67,14 @@ def test_page_says_which_channels_it_leaves_out(
     tmp_path: Path, windows: CellWindows, image: FloatArray, saved: list[Figure]
 ) -> None:
     signal = xr.DataArray(np.stack([image] * 5), dims=("channel", "y", "x"))
-    draw_cell_figures(tmp_path, "a", windows, signal, None)
+    write_cell_figures(tmp_path, "a", windows, signal, None)
     assert any("channels 1–3 of 5" in words for words in _words(saved[0]))
     assert "channel 2 (a.u.)" in _labels(saved[0])
     assert "channel 3 (a.u.)" not in _labels(saved[0])
 
 
 def test_page_without_signal(tmp_path: Path, windows: CellWindows, saved: list[Figure]) -> None:
-    draw_cell_figures(tmp_path, "x" * 200, windows, None, None)
+    write_cell_figures(tmp_path, "x" * 200, windows, None, None)
     labels = {"layer, 0 at the cell's edge", "disk area / cell area, log2", "cell's area (%)"}
     assert _labels(saved[0]) == labels
 
@@ -82,24 +82,24 @@ def test_page_without_signal(tmp_path: Path, windows: CellWindows, saved: list[F
 @pytest.mark.parametrize("value", [0.0, np.nan])
 def test_page_of_an_empty_signal(tmp_path: Path, windows: CellWindows, value: float) -> None:
     signal = xr.DataArray(np.full(windows.mask.shape, value), dims=("y", "x"))
-    (path,) = draw_cell_figures(tmp_path, "a", windows, signal, None)
+    (path,) = write_cell_figures(tmp_path, "a", windows, signal, None)
     assert path.exists()
 
 
 def test_page_refuses(tmp_path: Path, windows: CellWindows) -> None:
     with pytest.raises(ParameterError, match="name must be a file name without folders, got 'a/b'"):
-        draw_cell_figures(tmp_path, "a/b", windows, None, None)
+        write_cell_figures(tmp_path, "a/b", windows, None, None)
     with pytest.raises(SignalError, match="signal has shape"):
-        draw_cell_figures(tmp_path, "a", windows, xr.DataArray(np.ones((3, 3)), dims=("y", "x")), None)
+        write_cell_figures(tmp_path, "a", windows, xr.DataArray(np.ones((3, 3)), dims=("y", "x")), None)
     with pytest.raises(StudyError, match="cannot write"):
-        draw_cell_figures(tmp_path / "missing", "a", windows, None, None)
+        write_cell_figures(tmp_path / "missing", "a", windows, None, None)
     assert not list(tmp_path.iterdir())
 
 
 def test_overview_of_many(tmp_path: Path, saved: list[Figure]) -> None:
     cells = _cells(["ok"] * 30 + ["refused"] * 3 + ["unreadable"])
     cells.attrs["units"] = {"area": "µm²"}
-    path = draw_overview(tmp_path / "overview.png", cells)
+    path = write_overview(tmp_path / "overview.png", cells)
     assert _pixels_across(path) == round(180 / 25.4 * 200)
     status, histogram, scatter = saved[0].axes
     assert [patch.get_width() for patch in status.patches] == [30, 3, 1]
@@ -111,7 +111,7 @@ def test_overview_of_many(tmp_path: Path, saved: list[Figure]) -> None:
 def test_files_without_a_cell_are_no_cells_in_the_overview(tmp_path: Path, saved: list[Figure]) -> None:
     cells = _cells(["ok"] * 30 + ["refused"] * 3 + ["unreadable", "no cell"])
     cells["label"] = [1] * 33 + [0] * 2
-    draw_overview(tmp_path / "overview.png", cells)
+    write_overview(tmp_path / "overview.png", cells)
     status = saved[0].axes[0]
     assert [patch.get_width() for patch in status.patches] == [30, 3, 0]
     assert (status.get_xlabel(), status.get_title()) == ("cells", "status (and 2 without a cell)")
@@ -119,7 +119,7 @@ def test_files_without_a_cell_are_no_cells_in_the_overview(tmp_path: Path, saved
 
 @pytest.mark.parametrize("status", [["ok"], ["refused"], ["unreadable", "refused"]])
 def test_overview_of_few(tmp_path: Path, saved: list[Figure], status: list[str]) -> None:
-    draw_overview(tmp_path / "overview.png", _cells(status))
+    write_overview(tmp_path / "overview.png", _cells(status))
     assert ("no cell was mapped" in _words(saved[0])) == ("ok" not in status)
 
 
@@ -132,7 +132,7 @@ def test_labels_of_areas_do_not_lie_over_each_other(
 ) -> None:
     cells = _cells(["ok"] * 50)
     cells["area"] = np.geomspace(190.0, largest, 50)
-    draw_overview(tmp_path / "overview.png", cells)
+    write_overview(tmp_path / "overview.png", cells)
     ax = saved[0].axes[2]
     low, high = ax.get_xlim()
     inside = [tick for tick in ax.get_xticks() if low <= tick <= high]
@@ -149,7 +149,7 @@ def test_overview_draws_cells_from_least_to_most(tmp_path: Path, disk: DiskMap, 
 
     cells = _cells(["refused", *["ok"] * 11])
     cells.index = cells.index[::-1]
-    draw_overview(tmp_path / "overview.png", cells, find)
+    write_overview(tmp_path / "overview.png", cells, find)
     assert asked == sorted(asked)
     assert len(asked) == 6
     assert (asked[0], asked[-1]) == (1, 11)
@@ -157,6 +157,6 @@ def test_overview_draws_cells_from_least_to_most(tmp_path: Path, disk: DiskMap, 
 
 def test_overview_refuses(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="cells has no rows"):
-        draw_overview(tmp_path / "a.png", _cells([]))
+        write_overview(tmp_path / "a.png", _cells([]))
     with pytest.raises(ParameterError, match=r"cells lacks the columns \['area'\]"):
-        draw_overview(tmp_path / "a.png", _cells(["ok"]).drop(columns="area"))
+        write_overview(tmp_path / "a.png", _cells(["ok"]).drop(columns="area"))

@@ -4,7 +4,7 @@ import pytest
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
 from cytodisk.simulate import SERIES_KINDS, coupled_series, independent_series
-from cytodisk.simulate.series import SeriesKind
+from cytodisk.simulate.null_series import SeriesKind
 
 FRAMES, LAYERS, SECTORS = 1500, 3, 48
 OSCILLATION = 2.0 * 0.9 * np.cos(2.0 * np.pi / 10.0)

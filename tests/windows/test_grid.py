@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 import cytodisk as cd
 from cytodisk.errors import WindowError
-from cytodisk.windows.grid import PolarWindows, layers_for_depth, polar_windows
+from cytodisk.windows.grid import PolarGrid, layers_for_depth, polar_windows
 
 SPACINGS = ("area", "radius")
 JUST_BELOW_A_TURN = -1e-17  # its remainder modulo one turn rounds to a whole turn
@@ -77,7 +77,7 @@ def test_a_point_lies_between_the_sides_of_its_window(
 
 
 def test_counts_may_be_numpy_integers() -> None:
-    assert polar_windows(np.int64(2), np.uint8(3)) == PolarWindows(2, 3, "area")
+    assert polar_windows(np.int64(2), np.uint8(3)) == PolarGrid(2, 3, "area")
 
 
 @pytest.mark.parametrize("value", [0, -1, 2.0, True, "3", None])

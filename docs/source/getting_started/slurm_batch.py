@@ -4,8 +4,8 @@ from pathlib import Path
 
 from dask_jobqueue import SLURMCluster
 
-from cytodisk.study.batch.batch_file import read_batch
-from cytodisk.study.batch.run import run_batch
+from cytodisk.runs.batch.batch_file import read_batch
+from cytodisk.runs.batch.batch_run import run_batch
 
 cluster = SLURMCluster(
     queue="standard",

@@ -19,7 +19,7 @@ STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
 
 
 class Grid(Protocol):
-    """What `sample_movie` needs of a grid: `PolarWindows`, `EdgeGrid` or `RingGrid`."""
+    """What `sample_movie` needs of a grid: `PolarGrid`, `EdgeGrid` or `RingGrid`."""
 
     @property
     def layers(self) -> int: ...
@@ -41,7 +41,7 @@ def sample_movie(
     Parameters
     ----------
     movie : DiskMovie
-    grid : PolarWindows, EdgeGrid or RingGrid
+    grid : PolarGrid, EdgeGrid or RingGrid
         A window that is empty in a frame has n_pixels 0 and is NaN there.
     signals : array_like of shape (T, H, W) or (T, C, H, W), DataArray or sequence
         As many frames as the movie; a DataArray has the dims time, (channel,) y, x. A sequence may read its

@@ -2,14 +2,14 @@
 
 import typer
 
-from cytodisk.cli.batch import BATCH_HELP, batch_command
-from cytodisk.cli.compare import COMPARE_HELP, compare_command
+from cytodisk.cli.batch_command import BATCH_HELP, batch_command
+from cytodisk.cli.compare_windows_command import COMPARE_HELP, compare_command
 from cytodisk.cli.console import fail
-from cytodisk.cli.correlate import CORRELATE_HELP, REPORT_HELP, correlate_command, report_command
-from cytodisk.cli.demo import demo_command, info_command
-from cytodisk.cli.map import MAP_HELP, check_command, map_command
-from cytodisk.cli.movie import MOVIE_HELP, movie_command
-from cytodisk.cli.shapes import SHAPES_HELP, shapes_command
+from cytodisk.cli.correlate_command import CORRELATE_HELP, REPORT_HELP, correlate_command, report_command
+from cytodisk.cli.demo_command import demo_command, info_command
+from cytodisk.cli.map_command import MAP_HELP, check_command, map_command
+from cytodisk.cli.movie_command import MOVIE_HELP, movie_command
+from cytodisk.cli.shapes_command import SHAPES_HELP, shapes_command
 from cytodisk.errors import CytodiskError
 
 app = typer.Typer(

@@ -11,7 +11,7 @@ from cytodisk.cli.map_totals import say_reasons
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from cytodisk.study.comparison import Comparison
+    from cytodisk.runs.compare_windows.comparison import Comparison
 
 _NAME, _VALUE = 26, 12  # characters of a column
 _MOST_ROWS = 10
@@ -35,7 +35,7 @@ _MEASURES: tuple[tuple[str, Callable[[Any], str], str], ...] = (
 
 def say_comparison(console: "Console", found: "Comparison") -> None:
     """Print a line a measure, where the default is worse, and what was lost."""
-    from cytodisk.study.comparison_words import where_worse
+    from cytodisk.runs.compare_windows.comparison_words import where_worse
 
     for line in table_lines(found):
         console.print(line)
@@ -69,7 +69,7 @@ def say_tables(console: "Console", found: "Comparison") -> None:
 
 def table_lines(found: "Comparison") -> Iterator[str]:
     """Lines of a table with a column a method, and rows named as the columns of the CSV files."""
-    from cytodisk.study.compare_parameters import TITLES
+    from cytodisk.runs.compare_windows.compare_parameters import TITLES
 
     titles = [textwrap.wrap(TITLES[method], _VALUE - 1) for method in found.methods]
     for line in range(max(len(title) for title in titles)):
@@ -87,7 +87,7 @@ def table_lines(found: "Comparison") -> Iterator[str]:
 
 def _through_time(found: "Comparison") -> Iterator[str]:
     """Medians over frames of the mean over layers."""
-    from cytodisk.study.channel_names import shown_name
+    from cytodisk.runs.channel_names import shown_name
 
     table, name = found.through_time, "centroid_displacement"
     if not len(table):

@@ -9,7 +9,7 @@ from cytodisk.cli.console import count
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from cytodisk.io.correlation_store import Correlation
+    from cytodisk.store.correlation_store import Correlation
 
 
 def say_correlation(console: "Console", found: "Correlation") -> None:
@@ -43,8 +43,8 @@ def say_replaced(console: "Console", before: dict[str, Any] | None, now: dict[st
 
 def _doubts(row: Any, settings: dict[str, Any]) -> Iterator[str]:
     """What speaks against a cell's correlations."""
-    from cytodisk.analysis.series import DRIFTING_SHARE
-    from cytodisk.study.channel_names import VELOCITIES
+    from cytodisk.analysis.correlation.prepared_series import DRIFTING_SHARE
+    from cytodisk.runs.channel_names import VELOCITIES
 
     if row["status"] != "ok":
         yield f" left out: {row['reason']}"

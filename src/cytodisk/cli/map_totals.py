@@ -7,15 +7,15 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from cytodisk.cli.console import count, fail
-from cytodisk.io.mask_names import without_name
+from cytodisk.images.mask_names import without_name
 
 if TYPE_CHECKING:
     import pandas as pd
     from rich.console import Console
 
-    from cytodisk.io.study import Study
-    from cytodisk.study.map_inputs import MapInputs
-    from cytodisk.study.map_run import CheckedCell
+    from cytodisk.runs.map.map_inputs import MapInputs
+    from cytodisk.runs.map.map_run import CheckedCell
+    from cytodisk.store.study import Study
 
 _MOST_LINES = 20
 _LOST = {"refused": "refused", "no image": "without an image", "unreadable": "with a damaged image"}
@@ -24,12 +24,12 @@ _EMPTY = {"no cell": "empty", "no image": "without an image", "unreadable": "dam
 
 def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool) -> None:
     """Draw the overview and say what came out; exit code 2 if that is nothing, or an input is damaged."""
-    from cytodisk.io.study_folder import figures_folder
-    from cytodisk.plot.study import draw_overview
+    from cytodisk.pages.cell_pages import write_overview
+    from cytodisk.store.study_folder import figures_folder
 
     rows = study.cells
     if len(rows) > 1:
-        draw_overview(figures_folder(study.path) / "overview.png", rows)
+        write_overview(figures_folder(study.path) / "overview.png", rows)
     cells, without = rows[rows["label"] != 0], rows[rows["label"] == 0]
     mapped, lost = rows[rows["status"] == "ok"], rows[rows["status"] != "ok"]
     if of_folder:

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.image import AxesImage
 
+from cytodisk.arrays import FloatArray
 from cytodisk.errors import WindowError
-from cytodisk.plot.compared_cells import window_colours
-from cytodisk.plot.outlines import outline_sides
-from cytodisk.plot.style import LINE_COLOUR
+from cytodisk.plot.outline_sides import outline_sides
+from cytodisk.plot.style import LAYER_COLOURS, LINE_COLOUR
 from cytodisk.windows.on_cell import WindowsOnCell
 
 
@@ -50,3 +51,32 @@ def draw_window_labels(ax: Axes, windows: WindowsOnCell) -> AxesImage:
     ax.set_aspect("equal")
     ax.set_axis_off()
     return drawn
+
+
+_PALE = 0.35  # share of white in every other sector
+
+
+_DARKEST, _LIGHTEST = 0.05, 0.9  # share of the colours that is used
+_PALE = 0.35  # share of white in every other sector
+
+
+def window_colours(labels: Any, grid: tuple[int, int]) -> FloatArray:
+    """Colour of each pixel by its window.
+
+    Parameters
+    ----------
+    labels : ndarray of shape (H, W) and dtype int
+    grid : (int, int)
+        Layers and sectors.
+
+    Returns
+    -------
+    ndarray of shape (H, W, 3) and dtype float
+        Red, green, blue; white where there is no window.
+    """
+    layers, sectors = grid
+    layer, sector = np.divmod(labels, sectors)
+    share = _DARKEST + (_LIGHTEST - _DARKEST) * layer / max(layers - 1, 1)
+    colours = np.asarray(mpl.colormaps[LAYER_COLOURS](share))[..., :3]
+    pale = _PALE * (sector % 2)[..., None]
+    return np.where((labels >= 0)[..., None], colours * (1.0 - pale) + pale, 1.0)

@@ -4,9 +4,9 @@ from cytodisk.simulate.cells import disk, dumbbell, ellipse, star
 from cytodisk.simulate.label_images import label_image
 from cytodisk.simulate.movie_kinds import MOVIE_KINDS
 from cytodisk.simulate.moving_cells import SimulatedMovie, movie
+from cytodisk.simulate.null_series import SERIES_KINDS, coupled_series, independent_series
 from cytodisk.simulate.random_cells import branching, migrating, random_smooth, random_spiky
 from cytodisk.simulate.random_masks import KINDS, random_mask
-from cytodisk.simulate.series import SERIES_KINDS, coupled_series, independent_series
 from cytodisk.simulate.signals import SimulatedCell, cell_with_signal, linear_signal, ring_signal
 
 __all__ = [

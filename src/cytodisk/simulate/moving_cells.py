@@ -9,7 +9,7 @@ from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import ParameterError
 from cytodisk.simulate.coupling import coupled_stretch, partly_followed
 from cytodisk.simulate.drawing import check_at_least, check_whole
-from cytodisk.simulate.jitter import jittered
+from cytodisk.simulate.jittered_masks import jittered
 from cytodisk.simulate.movie_kinds import HABITS, MOVIE_KINDS, Habits, MovieKind, plan_movie
 from cytodisk.simulate.movie_signals import Scene, camera, expected_counts, rasterised
 from cytodisk.simulate.paths import normal_displacement, paths

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from cytodisk.arrays import FloatArray
-from cytodisk.simulate.jitter import evenly_spaced
+from cytodisk.simulate.jittered_masks import evenly_spaced
 from cytodisk.simulate.movie_kinds import Plan
 
 BOUNDARY_POINTS = 3000

@@ -11,7 +11,7 @@ import numpy as np
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
-from cytodisk.windows.grid import PolarWindows
+from cytodisk.windows.grid import PolarGrid
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.outlines import window_polygons
 from cytodisk.windows.shares import PARTS, WindowShares
@@ -24,11 +24,11 @@ class CellWindows(WindowsOnCell):
 
     Attributes
     ----------
-    grid : PolarWindows
+    grid : PolarGrid
     disk : DiskMap
     """
 
-    grid: PolarWindows
+    grid: PolarGrid
     disk: DiskMap
 
     @cached_property

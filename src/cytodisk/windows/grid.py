@@ -1,4 +1,4 @@
-"""`PolarWindows`: a grid of layers and sectors on the unit disk."""
+"""`PolarGrid`: a grid of layers and sectors on the unit disk."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Spacing: TypeAlias = Literal["area", "radius"]
 
 
 @dataclass(frozen=True)
-class PolarWindows:
+class PolarGrid:
     """Layers from the edge (0) inwards, sectors from angle 0 (+u) towards +v.
 
     Window (layer, sector) has number layer · sectors + sector.
@@ -103,7 +103,7 @@ class PolarWindows:
         return CellWindows(self, disk)
 
 
-def polar_windows(layers: int = 10, sectors: int = 60, spacing: Spacing = "area") -> PolarWindows:
+def polar_windows(layers: int = 10, sectors: int = 60, spacing: Spacing = "area") -> PolarGrid:
     """Grid of windows on the unit disk.
 
     Parameters
@@ -118,7 +118,7 @@ def polar_windows(layers: int = 10, sectors: int = 60, spacing: Spacing = "area"
 
     Returns
     -------
-    PolarWindows
+    PolarGrid
 
     Raises
     ------
@@ -132,7 +132,7 @@ def polar_windows(layers: int = 10, sectors: int = 60, spacing: Spacing = "area"
     check_counts(layers, sectors)
     if spacing not in ("area", "radius"):
         raise WindowError(f"spacing must be 'area' or 'radius', got {spacing!r}")
-    return PolarWindows(int(layers), int(sectors), spacing)
+    return PolarGrid(int(layers), int(sectors), spacing)
 
 
 def check_counts(layers: Any, sectors: Any) -> None:

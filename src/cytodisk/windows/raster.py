@@ -13,19 +13,19 @@ from cytodisk.arrays import FloatArray, Int32Array, IntArray
 from cytodisk.disk.circle import polygon_radius_at
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.windows.edge_parts import part_places
-from cytodisk.windows.grid import PolarWindows
+from cytodisk.windows.grid import PolarGrid
 
 _MARGIN = 1e-12  # of the disk's radius: nearer to a window's border than this, a point is looked at closely
 _BEFORE_BORDER = 1e-6  # of a part: so far before a border a stretch ends, and its next part is looked at
 _ON_EDGE = 1e-9  # of a part: a point so far beyond a triangle's edge is still on it
 
 
-def windows_of_all_parts(grid: PolarWindows, disk: DiskMap, pixels_yx: IntArray, per_side: int) -> Int32Array:
+def windows_of_all_parts(grid: PolarGrid, disk: DiskMap, pixels_yx: IntArray, per_side: int) -> Int32Array:
     """Window that each part of each mask pixel maps into; a part outside goes with the nearest outline point.
 
     Parameters
     ----------
-    grid : PolarWindows
+    grid : PolarGrid
     disk : DiskMap
         One to one: not by "advection", whose triangles may lie over each other.
     pixels_yx : ndarray of shape (P, 2) and dtype int
@@ -305,7 +305,7 @@ def _least_polygon_radius(angles: FloatArray) -> float:
 def _window_at(
     u: float, v: float, boundary_angles: FloatArray, radii: FloatArray, sectors: int
 ) -> tuple[int, int]:
-    """Layer and sector of a point of the mapped polygon, as `PolarWindows.window_of` after `to_disk`."""
+    """Layer and sector of a point of the mapped polygon, as `PolarGrid.window_of` after `to_disk`."""
     radius = math.hypot(u, v) / polygon_radius_at(u, v, boundary_angles)
     layer = 0
     while layer < len(radii) - 2 and radii[layer + 1] > radius:

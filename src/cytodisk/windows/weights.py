@@ -9,14 +9,14 @@ from scipy.spatial import cKDTree
 from cytodisk.arrays import FloatArray, Int32Array, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.windows.edge_parts import part_places
-from cytodisk.windows.grid import PolarWindows
+from cytodisk.windows.grid import PolarGrid
 from cytodisk.windows.raster import windows_of_all_parts
 from cytodisk.windows.shares import PARTS, PIXELS_AT_ONCE, PixelParts, WindowShares, gather_shares
 
 _FINE = 16  # parts along a pixel's side
 
 
-def window_shares(grid: PolarWindows, disk: DiskMap) -> WindowShares:
+def window_shares(grid: PolarGrid, disk: DiskMap) -> WindowShares:
     """Weights of a cell's pixels in its windows, and moments of the windows.
 
     Every pixel is divided into 4×4 parts, and each part goes whole to the window it maps into; a part
@@ -26,7 +26,7 @@ def window_shares(grid: PolarWindows, disk: DiskMap) -> WindowShares:
 
     Parameters
     ----------
-    grid : PolarWindows
+    grid : PolarGrid
     disk : DiskMap
 
     Returns
@@ -58,12 +58,12 @@ def window_shares(grid: PolarWindows, disk: DiskMap) -> WindowShares:
     return gather_shares(pixels, grid.n_windows, parts)
 
 
-def windows_of_parts(grid: PolarWindows, disk: DiskMap, pixels_yx: IntArray, per_side: int) -> IntArray:
+def windows_of_parts(grid: PolarGrid, disk: DiskMap, pixels_yx: IntArray, per_side: int) -> IntArray:
     """Window that each part of some pixels maps into.
 
     Parameters
     ----------
-    grid : PolarWindows
+    grid : PolarGrid
     disk : DiskMap
     pixels_yx : ndarray of shape (P, 2) and dtype int
         (row, column).
@@ -93,7 +93,7 @@ def _blocks(
         yield PixelParts(pixel[block], window[block], share[pixel[block]])
 
 
-def _held(grid: PolarWindows, window: IntArray | Int32Array) -> IntArray:
+def _held(grid: PolarGrid, window: IntArray | Int32Array) -> IntArray:
     """Number of parts in each window."""
     return np.bincount(window.ravel(), minlength=grid.n_windows)
 

@@ -7,8 +7,8 @@ from drawn_shapes import ellipse, rectangle, star, turned
 
 import cytodisk as cd
 from cytodisk.analysis.shape.cell_shape import crop_shape, even_steps
-from cytodisk.analysis.shape.curvature import turn_of_runs, turning
-from cytodisk.analysis.shape.distortion import coarse_mesh, measure_distortion
+from cytodisk.analysis.shape.curvature_features import turn_of_runs, turning
+from cytodisk.analysis.shape.distortion_features import coarse_mesh, measure_distortion
 from cytodisk.analysis.shape.skeleton import pruned, skeleton_of
 from cytodisk.arrays import BoolArray
 from cytodisk.geometry.mesh import mesh_inside

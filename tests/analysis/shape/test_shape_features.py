@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import cytodisk as cd
-from cytodisk.analysis.shape.distortion import FINE_MESH
+from cytodisk.analysis.shape.distortion_features import FINE_MESH
 from cytodisk.analysis.shape.features import FEATURES, GROUPS, SCALE_FREE, split_doubts
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import MaskError, ParameterError

@@ -2,7 +2,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import cytodisk as cd
-from cytodisk.analysis.surrogates import surrogates
+from cytodisk.analysis.correlation.surrogates import surrogates
 
 frames, count = 150, 100
 here = np.ones((1, 1), dtype=bool)

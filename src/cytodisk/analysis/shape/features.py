@@ -10,9 +10,9 @@ import pandas as pd
 from scipy import ndimage
 
 from cytodisk.analysis.shape.cell_shape import CellShape, crop_shape
-from cytodisk.analysis.shape.curvature import CURVATURE, RESOLVED_PX
-from cytodisk.analysis.shape.depth import DEPTH
-from cytodisk.analysis.shape.distortion import DISTORTION
+from cytodisk.analysis.shape.curvature_features import CURVATURE, RESOLVED_PX
+from cytodisk.analysis.shape.depth_features import DEPTH
+from cytodisk.analysis.shape.distortion_features import DISTORTION
 from cytodisk.analysis.shape.feature import Feature, FeatureGroup
 from cytodisk.analysis.shape.form import FORM
 from cytodisk.analysis.shape.fourier import FOURIER

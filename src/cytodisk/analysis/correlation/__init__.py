@@ -1,0 +1,1 @@
+"""Correlation over lags, its peaks, and what chance gives."""

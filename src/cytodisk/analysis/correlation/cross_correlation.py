@@ -1,0 +1,314 @@
+"""Correlation of signals in windows with the motion of the edge, or with each other, over lags."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.analysis.correlation.confidence import effective_share, fisher_interval
+from cytodisk.analysis.correlation.lagged import LaggedSeries
+from cytodisk.analysis.correlation.pairing import Pair, named_series, paired
+from cytodisk.analysis.correlation.prepared_series import (
+    DRIFTING_SHARE,
+    Detrend,
+    default_frames,
+    drifts,
+    kpss,
+    prepare_series,
+)
+from cytodisk.analysis.correlation.surrogates import Null, Surrogates, check_null
+from cytodisk.analysis.correlation.surrogates import surrogates as make_surrogates
+from cytodisk.analysis.parameters import whole_number
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.errors import ParameterError, StationarityWarning
+
+ALPHA = 0.05
+_SECTOR = "sector"
+
+
+def cross_correlate(
+    a: Any,
+    b: Any,
+    max_lag: int,
+    *,
+    detrend: Detrend = "none",
+    detrend_frames: int | None = None,
+    difference: bool = False,
+    zscore: bool = False,
+    min_pairs: int = 10,
+    skip_lags: Sequence[int] = (),
+    surrogates: int = 0,
+    null: Null = "phase",
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+) -> xr.Dataset:
+    """Pearson correlation of `a` with `b` at every lag, for every window, and what chance would give.
+
+    Parameters
+    ----------
+    a : DataArray or array_like with dims (time, …)
+        A signal in windows, as the mean of `sample_movie` for one channel. An array without names has the
+        dims (time), (time, sector), (time, layer, sector) or (time, channel, layer, sector).
+    b : DataArray or array_like with dims (time, …)
+        Edge velocity (time, sector), layer 0 of a signal, or anything else that broadcasts against `a` by
+        name. Frames are those of `a`.
+    max_lag : int
+        In frames, to both sides of 0.
+    detrend, detrend_frames, difference, zscore
+        As for `prepare_series`, of both; the moving median takes 4 max_lag + 1 frames without
+        `detrend_frames`.
+    min_pairs : int
+        Lags at which fewer frames have both values are NaN; at least 3.
+    skip_lags : sequence of int
+        Lags that are NaN, for `a` and its surrogates alike, such as those that jitter of the masks may have
+        made, see `jitter_step`.
+    surrogates : int
+        How many surrogates of `b` to compare with; 0 for none. 999 give p-values down to 0.001.
+    null : {"phase", "shift"}
+        Surrogates with random phases, or circularly shifted. Shifts that share no lag are few, at most
+        T / (2 max_lag + 1), so only long movies and short lags let p reach 0.05; attrs `surrogates` says how
+        many there were.
+    seed : int
+        Of the surrogates.
+    progress : callable, optional
+        Called with (series of `b` done, in all).
+
+    Returns
+    -------
+    Dataset with the dims of the windows and lag
+        correlation, of a[t] with b[t + lag]: at a positive lag `b` follows `a`; n, pairs; n_effective, what
+        they are worth given the autocorrelations; low and high, the 95 % confidence interval by it. With
+        surrogates also null, the largest |correlation| of each at any lag, and threshold, which 5 % of them
+        exceed; with sectors mean_null and mean_threshold, those of the mean over sectors, for
+        `correlation_by_layer`. The coordinate
+        lag_s is there when `a` or `b` has time_s. Edge velocity stands at the start of its step, so it is
+        half a frame later than its lag says.
+
+    Raises
+    ------
+    ParameterError
+        `a` and `b` do not fit, frames are not consecutive, the lag leaves fewer than `min_pairs` pairs, or an
+        option is unknown.
+
+    Warns
+    -----
+    StationarityWarning
+        The level of more than a quarter of the series drifts, so that correlations may be spurious.
+
+    References
+    ----------
+    u-Unwrap, section 4.3, Fig. 5.
+    """
+    first, second, interval_s = named_series(a, b)
+    lags = lags_within(max_lag, min_pairs, first.sizes["time"])
+    _check_skipped(skip_lags, lags)
+    surrogates = whole_number("surrogates", surrogates, 0)
+    check_null(null)
+    options: dict[str, Any] = {
+        "detrend": detrend,
+        "detrend_frames": default_frames(detrend, detrend_frames, max_lag),
+        "difference": difference,
+        "zscore": zscore,
+    }
+    first, second = (series.copy(data=prepare_series(series, **options)) for series in (first, second))
+    attrs = {name: value for name, value in options.items() if value is not None}
+    attrs |= {
+        "max_lag": max_lag,
+        "min_pairs": min_pairs,
+        "skip_lags": [int(lag) for lag in skip_lags],
+        "null": null,
+        "seed": seed,
+    }
+    attrs |= drifting_shares(first, second)
+    pair = paired(first, second)
+    changed = make_surrogates(null, len(pair.a), surrogates, seed, max_lag) if surrogates else None
+    attrs["surrogates"] = changed.count if changed else 0
+    run = _Run(pair, lags, np.isin(lags, skip_lags), min_pairs, attrs["surrogates"])
+    run.correlate(changed, progress)
+    order = [str(dim) for dim in (*first.dims, *second.dims) if dim != "time"]
+    return run.dataset(list(dict.fromkeys(order)), interval_s).assign_attrs(attrs)
+
+
+def correlation_by_layer(correlations: xr.Dataset) -> xr.Dataset:
+    """Mean over sectors of the correlations, and what chance would give for it.
+
+    Parameters
+    ----------
+    correlations : Dataset
+        Of `cross_correlate`, with sectors.
+
+    Returns
+    -------
+    Dataset with the dims of the windows but sector, and lag
+        correlation, the mean over sectors; lower_quartile and upper_quartile over them. With surrogates also
+        threshold and null of the mean, as those of `cross_correlate`, but of surrogates that keep how sectors
+        correlate with each other at every lag (`filtered_noise`): neighbours that move together, and waves
+        that run around the edge, are not taken for independent.
+
+    Raises
+    ------
+    ParameterError
+        There are no sectors.
+    """
+    curves = correlations.get("correlation") if isinstance(correlations, xr.Dataset) else None
+    if curves is None or _SECTOR not in curves.dims:
+        raise ParameterError("correlations must be the Dataset that cross_correlate returns, with sectors")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # lags without a correlation have no quartiles
+        quartiles = curves.quantile([0.25, 0.75], dim=_SECTOR)
+    data = {
+        "correlation": curves.mean(_SECTOR),
+        "lower_quartile": quartiles.isel(quantile=0, drop=True),
+        "upper_quartile": quartiles.isel(quantile=1, drop=True),
+    }
+    for name in ("threshold", "null"):
+        if f"mean_{name}" in correlations:
+            data[name] = correlations[f"mean_{name}"]
+    return xr.Dataset(data, attrs=correlations.attrs)
+
+
+class _Run:
+    """Tables of one correlation, filled series by series of `b`."""
+
+    def __init__(self, pair: Pair, lags: IntArray, skipped: BoolArray, min_pairs: int, surrogates: int):
+        self._pair, self._lags, self._skipped, self._min_pairs = pair, lags, skipped, min_pairs
+        windows = pair.a.shape[1:]
+        own = len(pair.own)
+        self._correlation, self._count = np.full((2, len(lags), *windows), np.nan)
+        self._null = np.full((surrogates, *windows), np.nan)
+        self._sector = pair.own.index(_SECTOR) if _SECTOR in pair.own else None
+        if self._sector is not None and surrogates:
+            self._merged = tuple(n for k, n in enumerate(windows) if k != self._sector)
+            shape = (*self._merged[: own - 1], len(lags), *self._merged[own - 1 :], surrogates)
+            self._total, self._known = np.zeros((2, *shape))
+
+    def correlate(self, surrogates: Surrogates | None, progress: Callable[[int, int], None] | None) -> None:
+        """Fill the tables."""
+        own = self._pair.b.shape[1:]
+        for done, place in enumerate(np.ndindex(own)):
+            lagged = LaggedSeries(self._series(place), self._lags)
+            b = self._pair.b[(slice(None), *place)]
+            found, count = lagged.correlate(b[:, None], self._min_pairs)
+            found[self._skipped] = np.nan
+            self._correlation[(slice(None), *place)] = self._unfold(found)[..., 0]
+            self._count[(slice(None), *place)] = self._unfold(np.broadcast_to(count, found.shape))[..., 0]
+            if surrogates is not None:
+                chance = self._by_chance(lagged, surrogates.alone(b))
+                self._null[(slice(None), *place)] = np.moveaxis(_largest(chance), -1, 0)
+                if self._sector is not None:
+                    self._add_to_mean(place, self._by_chance(lagged, surrogates.together(b)))
+            if progress is not None:
+                progress(done + 1, int(np.prod(own)))
+
+    def dataset(self, order: list[str], frame_interval_s: float | None) -> xr.Dataset:
+        """The tables with names, windows in a given order of dims."""
+        pair, dims = self._pair, self._pair.dims
+        b = pair.b.reshape(*pair.b.shape, *[1] * (pair.a.ndim - pair.b.ndim))
+        n_effective = self._count * effective_share(pair.a, b)
+        low, high = fisher_interval(self._correlation, n_effective, 1.0 - ALPHA)
+        by_lag = {
+            "correlation": self._correlation,
+            "n": self._count,
+            "n_effective": n_effective,
+            "low": low,
+            "high": high,
+        }
+        data: dict[str, Any] = {name: (("lag", *dims), values) for name, values in by_lag.items()}
+        data |= self._chance()
+        coords: dict[str, Any] = {"lag": ("lag", self._lags, {"units": "frame"})} | pair.coords
+        if frame_interval_s is not None:
+            coords["lag_s"] = ("lag", self._lags * frame_interval_s, {"units": "s"})
+        found = xr.Dataset(data, coords).transpose("surrogate", *order, "lag", missing_dims="ignore")
+        return found.assign(n=found["n"].astype(np.int64))
+
+    def _series(self, place: tuple[Any, ...]) -> FloatArray:
+        """Series of `a` that are compared with one of `b`, shape (T, H)."""
+        return self._pair.a[(slice(None), *place)].reshape(len(self._pair.a), -1)
+
+    def _unfold(self, table: FloatArray) -> FloatArray:
+        """A table (K, H, R) with the dims of H."""
+        others = self._pair.a.shape[1 + len(self._pair.own) :]
+        return table.reshape(len(table), *others, table.shape[-1])
+
+    def _by_chance(self, lagged: LaggedSeries, series: FloatArray) -> FloatArray:
+        chance, _ = lagged.correlate(series, self._min_pairs)
+        chance[self._skipped] = np.nan
+        return self._unfold(chance)
+
+    def _add_to_mean(self, place: tuple[Any, ...], chance: FloatArray) -> None:
+        merged = tuple(k for axis, k in enumerate(place) if axis != self._sector)
+        known = np.isfinite(chance)
+        self._total[merged] += chance if known.all() else np.where(known, chance, 0.0)
+        self._known[merged] += known
+
+    def _chance(self) -> dict[str, Any]:
+        """What surrogates gave, of windows and of the mean over sectors."""
+        dims = self._pair.dims
+        if not len(self._null):
+            return {}
+        data: dict[str, Any] = {"null": (("surrogate", *dims), self._null)}
+        data["threshold"] = (dims, _threshold(self._null))
+        if self._sector is not None:
+            rest = tuple(dim for dim in dims if dim != _SECTOR)
+            with np.errstate(invalid="ignore"):
+                mean = np.moveaxis(self._total / self._known, len(self._pair.own) - 1, 0)
+            null = np.moveaxis(_largest(mean), -1, 0)
+            data["mean_null"] = (("surrogate", *rest), null)
+            data["mean_threshold"] = (rest, _threshold(null))
+        return data
+
+
+def lags_within(max_lag: int, min_pairs: int, frames: int) -> IntArray:
+    """Lags from -max_lag to max_lag; ParameterError when a movie of so many frames is too short for them."""
+    max_lag, min_pairs = whole_number("max_lag", max_lag, 0), whole_number("min_pairs", min_pairs, 3)
+    if frames - max_lag < min_pairs:
+        most = frames - min_pairs
+        advice = f"pass at most {most}" if most >= 0 else "that is too short a movie"
+        raise ParameterError(
+            f"max_lag {max_lag} leaves {max(frames - max_lag, 0)} pairs of {frames} frames, fewer than "
+            f"min_pairs {min_pairs}: {advice}"
+        )
+    return np.arange(-max_lag, max_lag + 1)
+
+
+def _check_skipped(skipped: Sequence[int], lags: IntArray) -> None:
+    if not isinstance(skipped, Iterable):
+        raise ParameterError(f"skip_lags must be a sequence of lags, got {skipped!r}: pass [{skipped!r}]")
+    unknown = [lag for lag in skipped if lag not in lags]
+    if unknown:
+        raise ParameterError(f"skip_lags has {unknown[0]!r}: lags run from {lags[0]} to {lags[-1]}")
+    if len(set(skipped)) == len(lags):
+        raise ParameterError("skip_lags leaves no lag: pass fewer, or a larger max_lag")
+
+
+def drifting_shares(a: xr.DataArray, b: xr.DataArray) -> dict[str, float]:
+    """Share of the series whose level drifts; warns where it is large."""
+    shares = {}
+    for name, series in (("a", a), ("b", b)):
+        known = np.isfinite(kpss(series))
+        share = float(drifts(series)[known].mean()) if known.any() else 0.0
+        shares[f"drifting_{name}"] = share
+        if share > DRIFTING_SHARE:
+            warnings.warn(
+                f"the level of {share:.0%} of the series of {name} drifts: they "
+                "may correlate for that alone; detrend, or take first differences",
+                StationarityWarning,
+                stacklevel=3,
+            )
+    return shares
+
+
+def _largest(curves: FloatArray) -> FloatArray:
+    """Largest magnitude along axis 0, NaN left out; NaN where there is nothing."""
+    return np.asarray(np.fmax.reduce(np.abs(curves), axis=0))
+
+
+def _threshold(null: FloatArray) -> FloatArray:
+    """Magnitude that a share ALPHA of the null exceeds, along axis 0; NaN without a null."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # windows without a correlation have no null
+        return np.asarray(np.nanquantile(null, 1.0 - ALPHA, axis=0, method="higher"))

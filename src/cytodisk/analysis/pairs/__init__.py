@@ -1,0 +1,1 @@
+"""Correlation of all pairs of windows, by distance."""

@@ -1,0 +1,67 @@
+"""One checker for each kind of argument; each raises `ParameterError` that names it, what came and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any
+
+import numpy as np
+
+from cytodisk.errors import ParameterError
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value is one finite real number; True and False are none."""
+    plain = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+    return bool(plain and np.isfinite(value))
+
+
+def whole_number(name: str, value: Any, least: int) -> int:
+    """A parameter as a whole number; 2.0 counts as 2.
+
+    Parameters
+    ----------
+    name : str
+        Of the parameter, for the message.
+    value : object
+    least : int
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    ParameterError
+        It is not a number, not whole, or below `least`.
+    """
+    if not (is_number(value) and value >= least and value == int(value)):
+        raise ParameterError(f"{name} must be a whole number of at least {least}, got {value!r}")
+    return int(value)
+
+
+def number_between(name: str, value: Any, low: float, high: float = np.inf) -> float:
+    """A parameter as a number from `low` to `high`, both counted.
+
+    Raises
+    ------
+    ParameterError
+        It is not a number, or out of range.
+    """
+    if not (is_number(value) and low <= value <= high):
+        words = f"of at least {low:g}" if high == np.inf else f"from {low:g} to {high:g}"
+        raise ParameterError(f"{name} must be a number {words}, got {value!r}")
+    return float(value)
+
+
+def one_of(name: str, value: Any, choices: Collection[str]) -> str:
+    """A parameter that is one of a few words.
+
+    Raises
+    ------
+    ParameterError
+        It is another one.
+    """
+    if not (isinstance(value, str) and value in choices):
+        raise ParameterError(f"{name} must be one of {', '.join(choices)}, got {value!r}")
+    return value

@@ -1,0 +1,127 @@
+"""`cytodisk batch`."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from cytodisk.cli.console import Overwrite, Quiet, Resume, Workers, console_for, count, fail, progress_bar
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from cytodisk.runs.batch.batch_file import Batch
+    from cytodisk.runs.batch.batch_run import BatchSummary
+
+BATCH_HELP = """Run many movies and images in one go, and merge their tables.
+
+STUDY is a TOML file that names the inputs, by patterns or in a table, with their condition, replicate and
+scale. Each input runs in a process of its own: a crash, a time-out or a lack of memory costs a row, not
+the run.
+
+Examples:
+
+  cytodisk batch study.toml -o out/ --dry-run
+
+  cytodisk batch study.toml -o out/ --workers 4 --time-limit 3600
+
+  cytodisk batch study.toml -o out/ --workers 4 --resume
+
+  cytodisk batch study.toml -o /shared/out --scheduler tcp://10.0.0.1:8786
+
+Exit code: 0 when done (an input that failed has a row with the reason), 2 if no input went well, or the
+batch file or the folder cannot be used. With --dry-run 2 if files of an input cannot be used.
+"""
+
+
+def batch_command(
+    study: Annotated[Path, typer.Argument(help="Batch file: TOML.", show_default=False)],
+    out: Annotated[
+        str,
+        typer.Option(
+            "--out", "-o", help="Folder for the results, or a URL as s3://bucket/batch.", show_default=False
+        ),
+    ],
+    workers: Workers = 1,
+    time_limit: Annotated[
+        float | None, typer.Option(min=0.001, help="Seconds that one input may take (default any).")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a Dask scheduler, as tcp://host:8786: run on its workers.")
+    ] = None,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="List the inputs as they are understood and run nothing.")
+    ] = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    from cytodisk.runs.batch.batch_file import read_batch
+
+    console = console_for(quiet)
+    batch = read_batch(study)
+    console.print(f"inputs: {len(batch.inputs)} ({_kinds(batch)})")
+    if dry_run:
+        _list_inputs(batch)
+        return
+    from cytodisk.runs.batch.batch_run import run_batch
+
+    with progress_bar(quiet, "inputs") as progress:
+        summary = run_batch(
+            batch,
+            out,
+            workers=workers,
+            time_limit=time_limit,
+            resume=resume,
+            overwrite=overwrite,
+            scheduler=scheduler,
+            progress=progress,
+            tell=console.print,
+        )
+    _finish(console, summary)
+
+
+def _kinds(batch: "Batch") -> str:
+    movies = sum(item.kind == "movie" for item in batch.inputs)
+    images = len(batch.inputs) - movies
+    words = {"movies": movies, "images or folders of images": images}
+    return ", ".join(f"{what} {number}" for what, number in words.items() if number)
+
+
+def _list_inputs(batch: "Batch") -> None:
+    """A line an input, as CSV, for a person or a program; exit code 2 for faults."""
+    import csv
+    from dataclasses import astuple, fields
+
+    from cytodisk.runs.batch.dry_run import Understood, understand
+
+    lines = csv.writer(sys.stdout, lineterminator="\n")  # which writes None as an empty field
+    understood = [field.name for field in fields(Understood)]
+    lines.writerow(["name", "kind", "masks", "signal", *batch.columns, *understood])
+    faults = 0
+    for item in batch.inputs:
+        found = understand(item)
+        lines.writerow([item.name, item.kind, item.masks, item.signal, *item.columns, *astuple(found)])
+        faults += bool(found.fault)
+    if faults:
+        fail(f"{faults} of {count(len(batch.inputs), 'input')} cannot be used: the column fault says why")
+
+
+def _finish(console: "Console", summary: "BatchSummary") -> None:
+    total = sum(summary.statuses.values())
+    done = summary.statuses.pop("ok", 0)
+    lost = ", ".join(f"{number} {status}" for status, number in sorted(summary.statuses.items()))
+    console.print(f"{done} of {count(total, 'input')} done" + (f"; {lost}" if lost else ""))
+    for row in summary.failed:
+        print(f"{row.input} {row.status}: {row.reason}", file=sys.stderr)
+    if total - done > len(summary.failed):
+        rest = total - done - len(summary.failed)
+        print(f"… and {rest} more: columns 'status' and 'reason' of inputs.csv", file=sys.stderr)
+    for remark in summary.remarks:
+        console.print(f"note: {remark}")
+    if lost:
+        console.print("mend what failed and run the same command with --resume: only that is done again")
+    console.print(f"tables: {summary.out}; studies of the inputs: {summary.out.rstrip('/')}/inputs")
+    if not done:
+        fail("no input went well")

@@ -1,0 +1,243 @@
+"""`cytodisk correlate` and `cytodisk report`."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
+
+import typer
+
+from cytodisk.cli.console import Quiet, console_for, progress_bar
+from cytodisk.cli.correlation_words import say_correlation, say_replaced
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from cytodisk.store.correlation_store import Correlation
+    from cytodisk.store.study import Study
+
+NOTHING_CHANGED = "Stopped; nothing was changed."
+Format = Literal["png", "pdf", "svg"]
+
+CORRELATE_HELP = """Correlate a signal with the motion of the edge, or with another signal, window by window.
+
+STUDY is the folder of a movie, as cytodisk movie writes it. At a positive lag what comes second (--with)
+follows the signal. Tables and figures go to STUDY/correlation/SIGNAL~WITH.
+
+Examples:
+
+  cytodisk correlate out/ --signal VASP --with velocity --max-lag 20
+
+  cytodisk correlate out/ --signal Rac1 --with RhoA --pairs --format pdf,png
+
+  cytodisk correlate out/ --signal Rac1 --with Rac1 --against edge --detrend linear
+
+Exit code: 0 when done (a cell that cannot be correlated has a row with the reason), 2 if none could be.
+"""
+
+REPORT_HELP = """Write one HTML page that shows a study: red flags, windows, activity, velocity, correlation.
+
+The page holds all it needs: it opens in any browser, without a network, and can be sent as one file.
+
+Examples:
+
+  cytodisk report out/
+
+  cytodisk report out/ --cell 3
+"""
+
+StudyFolder = Annotated[Path, typer.Argument(help="Folder of a movie's study.", show_default=False)]
+
+
+def correlate_command(
+    study: StudyFolder,
+    signal: Annotated[
+        str | None, typer.Option(help="Channel of the study; not needed if it has but one.")
+    ] = None,
+    with_: Annotated[
+        str, typer.Option("--with", help="velocity, velocity_cell_frame or a channel.")
+    ] = "velocity",
+    max_lag: Annotated[
+        int | None, typer.Option(help="Longest lag, frames (default a quarter of the movie, at most 20).")
+    ] = None,
+    against: Annotated[
+        str | None,
+        typer.Option(
+            help="Of another signal: the same window, or the edge's of the sector (default window)."
+        ),
+    ] = None,
+    rule: Annotated[
+        str | None,
+        typer.Option(
+            help="Peak: nearest to lag 0 of what chance does not give, or largest (default nearest)."
+        ),
+    ] = None,
+    detrend: Annotated[str | None, typer.Option(help="none, linear or median (default none).")] = None,
+    detrend_frames: Annotated[
+        int | None, typer.Option(help="Frames of the moving median (default 4 × max lag + 1).")
+    ] = None,
+    difference: Annotated[
+        bool | None,
+        typer.Option("--difference", help="Correlate changes between frames.", show_default=False),
+    ] = None,
+    skip_lags: Annotated[
+        str | None, typer.Option(help="Lags that do not count, such as -1,0 where masks jitter.")
+    ] = None,
+    surrogates: Annotated[int | None, typer.Option(help="0 for no significance (default 1999).")] = None,
+    null: Annotated[
+        str | None, typer.Option(help="Surrogates by random phase or circular shift (default phase).")
+    ] = None,
+    min_pairs: Annotated[int | None, typer.Option(help="Fewest frames at a lag (default 10).")] = None,
+    seed: Annotated[int | None, typer.Option(help="Of the surrogates (default 0).")] = None,
+    pairs: Annotated[
+        bool | None,
+        typer.Option("--pairs", help="Also every window with every other, by distance.", show_default=False),
+    ] = None,
+    frames: Annotated[str | None, typer.Option(help="First and last frame that count, as 10:80.")] = None,
+    without_frames: Annotated[
+        str | None, typer.Option(help="Frames that do not count, such as 17,24 where the mask is wrong.")
+    ] = None,
+    sectors: Annotated[
+        str | None, typer.Option(help="First and last sector that count, as 40:55, or 50:5 around 0.")
+    ] = None,
+    cell: Annotated[list[int] | None, typer.Option(help="Only this cell; can be given again.")] = None,
+    name: Annotated[
+        str | None, typer.Option(help="Keeps the result beside others of the same signals.")
+    ] = None,
+    figures: Annotated[int, typer.Option(help="Draw this many cells, from the first; -1 for all.")] = 4,
+    formats: Annotated[str, typer.Option("--format", help="Of figures: png, pdf, svg, or several.")] = "png",
+    quiet: Quiet = False,
+) -> None:
+    from cytodisk.runs.correlate.correlate_run import channels_of, correlate_study
+    from cytodisk.store.study import open_study
+
+    wanted = _formats(formats)
+    there = open_study(study)
+    given = {
+        "max_lag": max_lag,
+        "against": against,
+        "rule": rule,
+        "detrend": detrend,
+        "detrend_frames": detrend_frames,
+        "difference": difference,
+        "surrogates": surrogates,
+        "null": null,
+        "min_pairs": min_pairs,
+        "skip_lags": numbers("skip_lags", skip_lags),
+        "frames": first_and_last("frames", frames),
+        "without_frames": numbers("without_frames", without_frames),
+        "sectors": first_and_last("sectors", sectors),
+        "name": name,
+        "seed": seed,
+        "pairs": pairs,
+    }
+    settings = {name: value for name, value in given.items() if value is not None}
+    chosen = signal if signal is not None else _only(channels_of(there))
+    console = console_for(quiet)
+    before = earlier_settings(there, chosen, with_, name or "")
+    with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
+        found = correlate_study(there, chosen, with_, cells=cell, progress=progress, **settings)
+    draw_correlation(quiet, there, found, figures, wanted)
+    say_correlation(console, found)
+    say_replaced(console, before, found.settings)
+
+
+def report_command(
+    study: StudyFolder,
+    cell: Annotated[
+        int | None, typer.Option(help="The cell to show (default that with the most frames).")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="The page (default STUDY/report.html).")
+    ] = None,
+    signal: Annotated[
+        Path | None, typer.Option(help="The movie's image, if it is no longer where it was.")
+    ] = None,
+    quiet: Quiet = False,
+) -> None:
+    from cytodisk.store.study import open_study
+
+    write_page(console_for(quiet), quiet, open_study(study), out, cell, signal)
+
+
+def write_page(
+    console: "Console",
+    quiet: bool,
+    study: "Study",
+    out: Path | None = None,
+    cell: int | None = None,
+    signal: Path | None = None,
+) -> None:
+    """Write the report and say where it is and what is wrong with the study."""
+    from cytodisk.images.frames import open_frames
+    from cytodisk.pages.report.page import page_flags, write_report
+
+    image = open_frames(signal) if signal is not None else None
+    with progress_bar(quiet, "frames", stopped=NOTHING_CHANGED) as progress:
+        page = write_report(study, out, cell=cell, signal=image, progress=progress)
+    flags = page_flags(study, image)
+    for flag in flags:
+        console.print(f"red flag: {flag.what}")
+    if not flags:
+        console.print("no red flags")
+    console.print(f"report: {page} ({page.stat().st_size / 1e6:.1f} MB), open it in a browser")
+
+
+def draw_correlation(
+    quiet: bool, study: "Study", found: "Correlation", figures: int, formats: tuple[Format, ...]
+) -> None:
+    """Draw the first cells that were correlated."""
+    from cytodisk.pages.correlation_files import write_correlation_figures
+
+    done = [int(cell) for cell in found.windows["cell"].unique()]
+    cells = done if figures < 0 else done[:figures]
+    if cells:
+        stopped = f"Stopped while drawing; the tables are in {found.path}."
+        with progress_bar(quiet, "cells drawn", total=len(cells), stopped=stopped) as progress:
+            for place, cell in enumerate(cells):
+                write_correlation_figures(study, found, cell=cell, formats=formats)
+                progress(place + 1, len(cells))
+
+
+def earlier_settings(study: "Study", *names: str) -> dict[str, Any] | None:
+    """Settings of a correlation that the next one will replace."""
+    there = {(*one, "")[:3] for one in study.correlations}
+    return study.correlation(*names).settings if names in there else None
+
+
+def numbers(name: str, text: str | None) -> tuple[int, ...] | None:
+    from cytodisk.errors import ParameterError
+
+    if text is None:
+        return None
+    try:
+        return tuple(int(part) for part in text.split(","))
+    except ValueError:
+        raise ParameterError(f"{name} must be whole numbers with commas between, got {text!r}") from None
+
+
+def first_and_last(name: str, text: str | None) -> tuple[int, int] | None:
+    from cytodisk.errors import ParameterError
+
+    if text is None:
+        return None
+    try:
+        first, last = (int(part) for part in text.split(":"))
+    except ValueError:
+        raise ParameterError(f"{name} must be FIRST:LAST, such as 10:80, got {text!r}") from None
+    return first, last
+
+
+def _formats(text: str) -> tuple["Format", ...]:
+    from cytodisk.errors import ParameterError
+
+    wanted = tuple(dict.fromkeys(part.strip().lower() for part in text.split(",")))
+    if not set(wanted) <= set(get_args(Format)):
+        raise ParameterError(f"format must be png, pdf, svg or several with commas between, got {text!r}")
+    return cast(tuple[Format, ...], wanted)
+
+
+def _only(names: list[str]) -> str:
+    from cytodisk.errors import ParameterError
+
+    if len(names) == 1:
+        return names[0]
+    raise ParameterError(f"signal is not given: pass --signal with one of {', '.join(map(repr, names))}")

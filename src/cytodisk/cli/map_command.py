@@ -1,0 +1,163 @@
+"""`cytodisk map` and `cytodisk check`."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from cytodisk.cli.console import (
+    Channels,
+    Kind,
+    Layers,
+    MaskFiles,
+    OutFolder,
+    Overwrite,
+    ParametersFile,
+    PixelSize,
+    Quiet,
+    Resume,
+    Sectors,
+    SignalFiles,
+    Workers,
+    console_for,
+    parse_align,
+    parse_channels,
+    progress_bar,
+)
+from cytodisk.cli.map_totals import finish_map
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from cytodisk.runs.map.map_inputs import MapInputs
+
+MAP_HELP = """Map masks onto the disk and sample a signal in windows, into a study folder.
+
+MASKS is one mask, a stack of masks, or a label image (each label a cell), as TIFF or PNG; or a folder of such
+files, as Cellpose writes them (_masks.tif, _cp_masks.png, _seg.npy). Cells are counted through all files.
+
+Examples:
+
+  cytodisk map mask.tif -o out/
+
+  cytodisk map masks.tif --signal image.ome.tif -o out/ --layers 10 --sectors 60 --workers 2
+
+  cytodisk map cellpose_folder/ --signal _img -o out/ --workers 4 --no-maps
+
+  cytodisk map labels.tif -o out/ --parameters other_study/parameters.toml --resume
+
+Exit code: 0 when done (refused cells have a row with the reason), 2 if nothing could be mapped or an input is
+damaged (the rest is done all the same).
+"""
+
+
+def map_command(
+    masks: MaskFiles,
+    out: OutFolder,
+    signal: SignalFiles = None,
+    channels: Channels = None,
+    kind: Kind = None,
+    layers: Layers = None,
+    sectors: Sectors = None,
+    spacing: Annotated[
+        str | None, typer.Option(help="Layers of equal area or radius (default area).")
+    ] = None,
+    method: Annotated[
+        str | None, typer.Option(help="newton (equal area, default), harmonic, or advection (the paper's).")
+    ] = None,
+    shape_weight: Annotated[
+        float | None, typer.Option(help="Shape against area, above 0 (default 0.005).")
+    ] = None,
+    edge_length: Annotated[
+        float | None, typer.Option(help="Mesh spacing at the edge, px (default 0.9).")
+    ] = None,
+    align: Annotated[
+        str | None,
+        typer.Option(help="upright, an angle in degrees, or a point ROW,COLUMN (default upright)."),
+    ] = None,
+    nan: Annotated[
+        str | None, typer.Option(help="Windows with NaN pixels: propagate or omit (default propagate).")
+    ] = None,
+    pixel_size: PixelSize = None,
+    parameters: ParametersFile = None,
+    workers: Workers = 1,
+    figures: Annotated[int, typer.Option(help="Draw this many cells, from the first; -1 for all.")] = 8,
+    no_maps: Annotated[
+        bool, typer.Option("--no-maps", help="Do not keep the map of each cell: it saves disk space.")
+    ] = False,
+    geojson: Annotated[
+        bool, typer.Option("--geojson", help="Write window outlines beside the maps.")
+    ] = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    from cytodisk.pages.cell_pages import write_cell_figures
+    from cytodisk.runs.map.map_inputs import open_inputs
+    from cytodisk.runs.map.map_run import run_map
+    from cytodisk.runs.parameters import parameters_from
+
+    given = {
+        "kind": kind,
+        "channels": parse_channels(channels),
+        "layers": layers,
+        "sectors": sectors,
+        "spacing": spacing,
+        "method": method,
+        "shape_weight": shape_weight,
+        "edge_length": edge_length,
+        "align": parse_align(align),
+        "nan": nan,
+        "pixel_size_um": pixel_size,
+    }
+    console = console_for(quiet)
+    inputs = open_inputs(masks, signal, parameters_from(given, parameters))
+    say_inputs(console, inputs)
+    with progress_bar(quiet, "cells") as progress:
+        study = run_map(
+            inputs,
+            out,
+            workers=workers,
+            resume=resume,
+            overwrite=overwrite,
+            draw=write_cell_figures if figures else None,  # workers that draw nothing stay small
+            draw_at_most=None if figures < 0 else figures,
+            maps=not no_maps,
+            geojson=geojson,
+            progress=progress,
+        )
+    finish_map(console, study, figures, inputs.is_folder)
+
+
+def check_command(
+    masks: MaskFiles,
+    signal: SignalFiles = None,
+    channels: Channels = None,
+    kind: Annotated[str, typer.Option(help="What MASKS is: auto, mask, stack or labels.")] = "auto",
+) -> None:
+    """Say what is wrong with masks before a run: a line a cell, or a frame of a stack.
+
+    Exit code: 0 when all can be used (an image of a folder may be empty), 1 if any cannot, 2 if the file
+    cannot be read at all.
+
+    Example: cytodisk check labels.tif
+    """
+    from cytodisk.cli.map_totals import say_checked
+    from cytodisk.runs.map.map_inputs import open_inputs
+    from cytodisk.runs.map.map_run import check_cells
+    from cytodisk.runs.parameters import parameters_from
+
+    given = {"kind": kind, "channels": parse_channels(channels)}
+    inputs = open_inputs(masks, signal, parameters_from(given))
+    console = console_for(False)
+    say_inputs(console, inputs)
+    unusable = say_checked(console, inputs, check_cells(inputs))
+    raise typer.Exit(1 if unusable else 0)
+
+
+def say_inputs(console: "Console", inputs: "MapInputs") -> None:
+    for role, words in inputs.understood.items():
+        console.print(f"{role}: {words}")
+    size = inputs.pixel_size_um
+    console.print(f"pixel size: {size:g} µm" if size else "pixel size: unknown, results are in px")
+    for remark in inputs.remarks:
+        console.print(f"note: {remark}")

@@ -1,0 +1,226 @@
+"""`cytodisk movie`."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from cytodisk.cli.console import (
+    RESUME,
+    Channels,
+    Layers,
+    OutFolder,
+    Overwrite,
+    ParametersFile,
+    PixelSize,
+    Quiet,
+    Resume,
+    Sectors,
+    Signal,
+    Workers,
+    console_for,
+    count,
+    fail,
+    parse_align,
+    parse_channels,
+    progress_bar,
+)
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from cytodisk.runs.movie.movie_inputs import MovieInputs
+    from cytodisk.store.study import Study
+
+MOVIE_HELP = """Follow cells through a movie: maps, activity of a signal, edge velocity, into a study folder.
+
+MASKS is a stack of masks of one cell, or label images in which a label is a cell in all frames, as TIFF.
+
+Examples:
+
+  cytodisk movie masks.tif --signal movie.ome.tif -o out/ --layers 10 --sectors 60 --workers 2
+
+  cytodisk movie masks.tif --signal movie.tif -o out/ --pixel-size 0.16 --frame-interval 5 --depth-um 1.6
+
+  cytodisk movie labels.tif -o out/ --link --resume
+
+Exit code: 0 when done (frames without a map have a row with the reason), 2 if nothing could be mapped.
+"""
+
+Movie = Annotated[Path, typer.Argument(help="Masks or label images by frame: TIFF.", show_default=False)]
+
+
+def movie_command(
+    masks: Movie,
+    out: OutFolder,
+    signal: Signal = None,
+    channels: Channels = None,
+    kind: Annotated[
+        str | None, typer.Option(help="What MASKS is: auto, stack (one cell) or labels (a label a cell).")
+    ] = None,
+    link: Annotated[
+        bool | None,
+        typer.Option(
+            "--link", help="Labels differ from frame to frame: link them by overlap.", show_default=False
+        ),
+    ] = None,
+    layers: Layers = None,
+    depth_um: Annotated[
+        float | None, typer.Option(help="Instead of --layers: thickness of the first layer, µm.")
+    ] = None,
+    sectors: Sectors = None,
+    spacing: Annotated[
+        str | None, typer.Option(help="Layers of equal area or radius (default area).")
+    ] = None,
+    tracker: Annotated[str | None, typer.Option(help="matching or demons (default matching).")] = None,
+    tension: Annotated[
+        float | None,
+        typer.Option(help="Boundary points: 0 stay with matter … 1 equidistant (default 0.01)."),
+    ] = None,
+    register: Annotated[
+        bool | None,
+        typer.Option(
+            "--register/--no-register",
+            help="Take out rigid motion before tracking (default yes).",
+            show_default=False,
+        ),
+    ] = None,
+    frame_interval: Annotated[
+        float | None, typer.Option(help="Seconds between frames; overrules the file's own.")
+    ] = None,
+    pixel_size: PixelSize = None,
+    method: Annotated[
+        str | None, typer.Option(help="newton (equal area, default), harmonic, or advection (the paper's).")
+    ] = None,
+    align: Annotated[
+        str | None,
+        typer.Option(
+            help="First frame's disk: upright, an angle in degrees, or ROW,COLUMN (default upright)."
+        ),
+    ] = None,
+    nan: Annotated[
+        str | None, typer.Option(help="Windows with NaN pixels: propagate or omit (default propagate).")
+    ] = None,
+    jitter_px: Annotated[
+        float | None,
+        typer.Option(help="How uncertain the masks' edges are, px, for the velocity's error (default 0.5)."),
+    ] = None,
+    parameters: ParametersFile = None,
+    workers: Workers = 1,
+    figures: Annotated[int, typer.Option(help="Draw this many cells, from the first; -1 for all.")] = 4,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    from cytodisk.errors import ParameterError
+    from cytodisk.runs.movie.movie_inputs import open_movie
+    from cytodisk.runs.movie.movie_run import run_movie
+    from cytodisk.runs.parameters import MovieParameters, parameters_from
+
+    if layers is not None and depth_um is not None:
+        raise ParameterError("layers and depth_um exclude each other: pass --layers or --depth-um")
+    given = {
+        "kind": kind,
+        "channels": parse_channels(channels),
+        "link": link,
+        "layers": layers,
+        "depth_um": depth_um,
+        "sectors": sectors,
+        "spacing": spacing,
+        "tracker": tracker,
+        "tension": tension,
+        "registration": register,
+        "frame_interval_s": frame_interval,
+        "pixel_size_um": pixel_size,
+        "method": method,
+        "align": parse_align(align),
+        "nan": nan,
+        "jitter_px": jitter_px,
+    }
+    console = console_for(quiet)
+    inputs = open_movie(masks, signal, parameters_from(given, parameters, MovieParameters))
+    say_movie(console, inputs)
+    with progress_bar(quiet, "frames") as progress:
+        study = run_movie(inputs, out, workers=workers, resume=resume, overwrite=overwrite, progress=progress)
+    draw_movie(quiet, study, inputs, figures)
+    finish_movie(console, study)
+
+
+def say_movie(console: "Console", inputs: "MovieInputs") -> None:
+    for role, words in inputs.understood.items():
+        console.print(f"{role}: {words}")
+    pixel, interval = inputs.scale.pixel_size_um, inputs.scale.frame_interval_s
+    console.print(f"pixel size: {pixel:g} µm" if pixel else "pixel size: unknown, lengths are in px")
+    console.print(
+        f"frame interval: {interval:g} s" if interval else "frame interval: unknown, times are in frames"
+    )
+
+
+def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int, again: str = RESUME) -> None:
+    """Draw cells that have no figures yet, so that a run that was stopped while drawing goes on."""
+    from cytodisk.pages.movie_pages import write_movie_figures
+
+    signal = inputs.signal
+    image = None if signal is None else lambda time: signal.frame(time)
+    cells = sorted(study.cells["cell"].unique())
+    wanted = cells if figures < 0 else cells[:figures]
+    missing = [cell for cell in wanted if not any((study.path / "figures").glob(f"cell_{cell:05d}*.gif"))]
+    if not missing:
+        return
+    with progress_bar(quiet, "drawings", total=len(missing), again=again) as progress:
+        for number, cell in enumerate(missing):
+            write_movie_figures(study, int(cell), image)
+            progress(number + 1, len(missing))
+
+
+def finish_movie(console: "Console", study: "Study") -> None:
+    """Say what came out; exit code 2 if that is nothing, or a frame is damaged."""
+    frames = study.cells
+    mapped = frames[frames["status"] == "ok"]
+    cells = frames["cell"].nunique()
+    console.print(f"{len(mapped)} of {len(frames)} frames of {count(cells)} mapped, each one to one")
+    if len(mapped):
+        _say_measures(console, study, mapped)
+    for status in ("refused", "missing", "unreadable"):
+        lost = frames[frames["status"] == status]
+        for _, row in lost.head(10).iterrows():
+            print(f"cell {row['cell']}, frame {row['time']} {status}: {row['reason']}", file=sys.stderr)
+        if len(lost) > 10:
+            print(f"… and {len(lost) - 10} more {status}: column 'reason' of cells.parquet", file=sys.stderr)
+    console.print(f"results: {study.path}")
+    if not len(mapped):
+        fail(f"no frame could be mapped: {frames['reason'].iloc[0]}")
+    unreadable = int((frames["status"] == "unreadable").sum())
+    if unreadable:
+        fail(f"damaged frames of the input: {unreadable}; all others are in {study.path}")
+
+
+def _say_measures(console: "Console", study: "Study", mapped: Any) -> None:
+    speed, unit = study.edge["velocity"], study.edge.attrs["units"]["velocity"]
+    length = study.consistency.attrs["units"]["centroid_displacement"]
+    console.print(
+        f"edge velocity: {speed.min():.3g} to {speed.max():.3g} {unit}, error of one sector "
+        f"{study.edge['velocity_error'].median():.2g} {unit}"
+    )
+    correlation = study.consistency["correlation"].mean()
+    alike = f"consecutive frames correlate by {correlation:.2f}; " if correlation == correlation else ""
+    console.print(
+        f"window centroids move {study.consistency['centroid_displacement'].mean():.3g} {length} a frame; "
+        f"{alike}empty windows {int(mapped['empty_windows'].sum())}"
+    )
+    for name, words in (
+        ("restarted", "tracking started anew"),
+        ("doubts", "look at the mask"),
+    ):
+        marked = mapped[mapped[name] != ""]
+        for _, row in marked.head(10).iterrows():
+            console.print(f"cell {row['cell']}, frame {row['time']}: {words}: {row[name]}")
+        if len(marked) > 10:
+            console.print(f"… and {len(marked) - 10} more frames: column '{name}' of cells.parquet")
+    border = mapped.groupby("cell")["touches_border"].sum()
+    if border.any():
+        console.print(
+            f"{count(int((border > 0).sum()))} on the image's border in {int(border.sum())} frames: "
+            "that part of the edge has no velocity"
+        )

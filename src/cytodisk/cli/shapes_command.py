@@ -1,0 +1,158 @@
+"""`cytodisk shapes`."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from cytodisk.cli.console import (
+    Kind,
+    MaskFiles,
+    OutFolder,
+    Overwrite,
+    ParametersFile,
+    PixelSize,
+    Quiet,
+    Resume,
+    Workers,
+    console_for,
+    count,
+    fail,
+    progress_bar,
+)
+from cytodisk.cli.map_totals import say_reasons
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.console import Console
+
+    from cytodisk.runs.map.map_inputs import MapInputs
+
+SHAPES_HELP = """Measure the shape of cells in a hundred features, and order them from plain to complex ones.
+
+MASKS is one mask, a stack of masks, or a label image (each label a cell), or a folder of such files.
+The score of complexity (features, UMAP, principal axis) is relative to the cells of the run: at least ten.
+
+Examples:
+
+  cytodisk shapes labels.tif -o out/ --pixel-size 0.3
+
+  cytodisk shapes cellpose_folder/ -o out/ --workers 4
+
+Exit code: 0 when done (refused cells have a row with the reason), 2 if nothing could be measured.
+"""
+
+_LEAST_SHARE = 0.65  # of the plane's variance along the axis, below which the axis says little
+_FAR_FROM_LINE = (
+    "look at figures/complexity.png: the shapes do not lie along one axis, so the score says little"
+)
+
+
+def shapes_command(
+    masks: MaskFiles,
+    out: OutFolder,
+    kind: Kind = None,
+    pixel_size: PixelSize = None,
+    seed: Annotated[int | None, typer.Option(help="Of the layout by UMAP (default 0).")] = None,
+    neighbors: Annotated[
+        int | None, typer.Option(help="Of UMAP: how many cells count as alike (default 15).")
+    ] = None,
+    min_dist: Annotated[
+        float | None, typer.Option(help="Of UMAP: how close cells may come, 0 to 1 (default 0.1).")
+    ] = None,
+    parameters: ParametersFile = None,
+    workers: Workers = 1,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    from cytodisk.runs.parameters import parameters_from
+    from cytodisk.runs.shapes.shape_run import ShapeParameters, open_shape_inputs, run_shapes
+
+    given = {
+        "kind": kind,
+        "pixel_size_um": pixel_size,
+        "seed": seed,
+        "n_neighbors": neighbors,
+        "min_dist": min_dist,
+    }
+    settings = parameters_from(given, parameters, ShapeParameters)
+    console = console_for(quiet)
+    inputs = open_shape_inputs(masks, settings)
+    console.print(f"masks: {inputs.understood['masks']}")
+    size = inputs.pixel_size_um
+    console.print(f"pixel size: {size:g} µm" if size else "pixel size: unknown, lengths are in px")
+    for remark in inputs.remarks:
+        console.print(f"note: {remark}")
+    with progress_bar(quiet, "cells") as progress:
+        table = run_shapes(
+            inputs, out, settings, workers=workers, resume=resume, overwrite=overwrite, progress=progress
+        )
+    _draw(inputs, table, out)
+    _say(console, table, out)
+
+
+def _draw(inputs: "MapInputs", table: "pd.DataFrame", out: Path) -> None:
+    from cytodisk.pages.shape_pages import cells_to_draw, write_shape_figures
+    from cytodisk.runs.shapes.shape_run import cleaned_masks
+    from cytodisk.store.study_folder import figures_folder
+
+    if table["complexity"].notna().any():
+        masks = cleaned_masks(inputs, cells_to_draw(table))
+        write_shape_figures(figures_folder(out), table, masks, inputs.pixel_size_um)
+
+
+def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:
+    """Say what came out; exit code 2 if that is nothing, or an input is damaged."""
+    from cytodisk.analysis.shape.complexity import why_unscored
+
+    measured, lost = table[table["status"] == "ok"], table[table["status"] != "ok"]
+    status = table["status"].value_counts()
+    refused = [f"{status['refused']} refused"] if "refused" in status else []
+    files, cells = count(table["source"].nunique(), "file"), int((table["label"] != 0).sum())
+    console.print(f"{files}, {count(cells)}: " + "; ".join([f"{len(measured)} measured", *refused]))
+    if cells < len(table):
+        console.print(f"files or images without a cell: {len(table) - cells}")
+    border = int(measured["touches_border"].sum())
+    console.print(f"on the image border, so measured in part: {count(border)}")
+    _say_doubts(console, measured)
+    say_reasons(zip(lost["cell"], lost["source"], lost["status"], lost["reason"], strict=True))
+    if measured["complexity"].notna().any():
+        _say_complexity(console, measured)
+    elif len(measured):
+        console.print(f"no complexity: {why_unscored(table)}")
+    console.print(f"results: {out}")
+    if measured.empty:
+        fail(f"no cell could be measured: {lost['reason'].iloc[0]}")
+    if "unreadable" in status:
+        fail(f"damaged files or frames of the input: {status['unreadable']}; all others are in {out}")
+
+
+def _say_doubts(console: "Console", measured: "pd.DataFrame") -> None:
+    from cytodisk.analysis.shape.curvature_features import RESOLVED_PX
+    from cytodisk.analysis.shape.features import split_doubts
+
+    small, others = split_doubts(measured["doubts"])
+    if doubtful := int((others != "").sum()):
+        console.print(f"perhaps not one whole cell: {doubtful}, column 'doubts' of shapes.parquet")
+    if small.any():
+        console.print(
+            f"equivalent diameter below {RESOLVED_PX:.0f} px: {small.sum()} of {count(len(measured))}; their "
+            "curvature and roughness depend on the resolution: compare them with cells of the same size only"
+        )
+
+
+def _say_complexity(console: "Console", measured: "pd.DataFrame") -> None:
+    from cytodisk.analysis.shape.complexity import principal_axis
+
+    _, share = principal_axis(measured[["umap_1", "umap_2"]].to_numpy())
+    ranked = measured.sort_values("complexity", kind="stable")
+    least, most = (
+        ", ".join(f"{cell} ({source})" for cell, source in zip(some["cell"], some["source"], strict=True))
+        for some in (ranked.head(3), ranked.tail(3)[::-1])
+    )
+    console.print(f"complexity: {share:.0%} of the plane's variance lies along its axis")
+    console.print(f"least complex cells: {least}")
+    console.print(f"most complex cells: {most}")
+    if share < _LEAST_SHARE:
+        console.print(_FAR_FROM_LINE)

@@ -1,0 +1,1 @@
+"""Files to images, masks, labels and tracks; axes, channels, scale."""

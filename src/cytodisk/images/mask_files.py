@@ -1,0 +1,236 @@
+"""Mask files → cells: a file or a folder of label images, each cell cut out of its image."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy import ndimage
+
+from cytodisk.errors import CytodiskError, EmptyMaskError, MaskError, ReadError, as_data
+from cytodisk.images.frames import FrameFile, open_frames
+from cytodisk.images.mask_kinds import Kind, understood_as
+from cytodisk.images.mask_names import mask_names
+
+_MOST_SLOTS = 1_000_000  # labels up to here index a list of boxes; larger ones are renumbered first
+
+
+@dataclass(frozen=True)
+class MaskSource:
+    """One file of masks, or the reason why it cannot be used.
+
+    Attributes
+    ----------
+    name : str
+        Relative to the folder.
+    path : Path
+    file : FrameFile or None
+        None if it cannot be opened.
+    kind : {"mask", "stack", "labels"} or None
+    fault : CytodiskError or None
+    instead_of : tuple of str
+        Names of files with masks of the same image, which are left out so that no cell counts twice.
+    damaged : tuple of str
+        Those of them that should have come first, but cannot be used.
+    """
+
+    name: str
+    path: Path
+    file: FrameFile | None
+    kind: Kind | None
+    fault: CytodiskError | None = None
+    instead_of: tuple[str, ...] = ()
+    damaged: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class SourceCell:
+    """One cell of a mask file, cut out of its image, or the reason why there is none.
+
+    Attributes
+    ----------
+    cell : int
+        Running number through all files.
+    source : str
+        Name of the file.
+    frame : int
+    label : int
+        Its label in a label image or of its mask, otherwise 1; 0 where a file or an image holds no cell.
+    mask : ndarray of shape (h, w), or None
+        Pixels of the cell's box and one more on every side where the image goes on: as they stand in the
+        file for a mask, boolean for a label.
+    corner : (int, int)
+        (row, column) of the first pixel of `mask` in the image.
+    image_shape : (int, int)
+    fault : CytodiskError or None
+    """
+
+    cell: int
+    source: str
+    frame: int
+    label: int
+    mask: np.ndarray[Any, Any] | None
+    corner: tuple[int, int] = (0, 0)
+    image_shape: tuple[int, int] = (0, 0)
+    fault: CytodiskError | None = None
+
+
+def open_mask_files(
+    path: str | os.PathLike[str], kind: Kind = "auto", images: str = ""
+) -> tuple[MaskSource, ...]:
+    """Find the mask files of a folder, or open a single one.
+
+    Parameters
+    ----------
+    path : path-like
+        A file, or a folder with `*_masks.tif`, `*_masks.png`, `*_cp_masks.tif`, `*_cp_masks.png` or
+        `*_seg.npy`; if it holds none of these, every TIFF and PNG of it. Folders in it are not looked into.
+        Of several files for one image only the first in this order that can be used is taken.
+    kind : {"auto", "mask", "stack", "labels"}
+        What each file is; "auto" decides for each by itself.
+    images : str
+        How names of images go on that are no masks, as "_img"; in a folder whose masks have other endings.
+
+    Returns
+    -------
+    tuple of MaskSource
+        In natural order of names (2 before 10). In a folder, a file that cannot be used has its fault.
+
+    Raises
+    ------
+    ReadError
+        The folder or the file is missing or cannot be read, or the folder holds no image.
+    MaskError
+        A single file is no mask.
+    ParameterError
+        An unknown kind.
+    """
+    place = Path(path)
+    if not place.is_dir():
+        file = open_frames(place, unnamed="T")
+        return (MaskSource(place.name, place, file, understood_as(file, kind)),)
+    return tuple(_source(chosen, others, kind) for chosen, others in mask_names(place, images))
+
+
+def _source(path: Path, others: list[Path], kind: Kind) -> MaskSource:
+    """The first of an image's mask files that can be used, or the very first with its fault."""
+    paths = [path, *others]
+    first = None
+    for place, taken in enumerate(paths):
+        found = _opened(taken, kind)
+        first = found if first is None else first
+        if found.fault is None:
+            left = tuple(file.name for file in paths if file != taken)
+            return replace(found, instead_of=left, damaged=tuple(file.name for file in paths[:place]))
+    assert first is not None  # there is one path at least
+    return replace(first, instead_of=tuple(file.name for file in others))
+
+
+def _opened(path: Path, kind: Kind) -> MaskSource:
+    source = MaskSource(path.name, path, None, None)
+    try:
+        file = open_frames(path, unnamed="T")
+        understood = understood_as(file, kind)
+        if kind != "auto" and file.n_frames == 1:
+            file.frame(0)  # raises where the picture itself is damaged; "auto" has read it
+        return replace(source, file=file, kind=understood)
+    except (ReadError, MaskError) as fault:
+        return replace(source, fault=as_data(fault))
+
+
+def read_source_cells(sources: Iterable[MaskSource]) -> Iterator[SourceCell]:
+    """The cells of mask files, file by file and frame by frame; a damaged one comes as a cell with its fault.
+
+    Parameters
+    ----------
+    sources : iterable of MaskSource
+
+    Yields
+    ------
+    SourceCell
+    """
+    cell = 0
+    for source in sources:
+        for found in _cells_of(source):
+            yield replace(found, cell=cell)
+            cell += 1
+
+
+def _cells_of(source: MaskSource) -> Iterator[SourceCell]:
+    if source.file is None or source.kind is None:
+        yield SourceCell(0, source.name, 0, 0, None, fault=source.fault)
+        return
+    shape = source.file.image_shape
+    for number in range(source.file.n_frames):
+        nothing = SourceCell(0, source.name, number, 0, None, image_shape=shape)
+        try:
+            frame = source.file.frame(number)[0]
+            _check_size(frame, number, source.kind)
+            if source.kind == "labels":
+                _check_labels(frame, number)
+        except (ReadError, MaskError) as fault:
+            yield replace(nothing, fault=as_data(fault))
+            continue
+        if source.kind == "labels":
+            yield from _labelled(frame, nothing)
+        else:
+            box = ndimage.find_objects(np.asarray(frame != 0).view(np.uint8))
+            rows, columns = with_margin(box[0], shape) if box else (slice(0, None), slice(0, None))
+            corner = rows.start, columns.start
+            # A copy, so that a waiting cell does not hold its whole image.
+            yield replace(
+                nothing, label=_single_label(frame), mask=frame[rows, columns].copy(), corner=corner
+            )
+
+
+def _check_labels(frame: np.ndarray[Any, Any], number: int) -> None:
+    if not np.issubdtype(frame.dtype, np.integer):
+        raise MaskError(f"labels must be whole numbers, got dtype {frame.dtype}: save the labels as uint16")
+    if frame.min() < 0:
+        raise MaskError(
+            f"frame {number} has negative labels (down to {frame.min()}): set what is no cell to 0"
+        )
+    if not frame.any():
+        raise EmptyMaskError(f"frame {number} is empty: it holds no label")
+
+
+def _check_size(frame: np.ndarray[Any, Any], number: int, kind: Kind) -> None:
+    """Tables hold labels as 64-bit integers with a sign; the greatest of all may be a plain mask."""
+    largest = int(frame.max(initial=0)) if frame.dtype == np.uint64 else 0
+    plain = kind != "labels" and largest == np.iinfo(np.uint64).max
+    if largest > np.iinfo(np.int64).max and not plain:
+        raise MaskError(f"frame {number} has labels up to {largest}: number the cells from 1")
+
+
+def _labelled(frame: np.ndarray[Any, Any], nothing: SourceCell) -> Iterator[SourceCell]:
+    """Each label's crop, in one pass over the frame."""
+    values, ranks = None, frame
+    if int(frame.max()) > _MOST_SLOTS:
+        values = np.unique(frame[frame != 0])
+        ranks = np.where(frame != 0, np.searchsorted(values, frame) + 1, 0)
+    for place, box in enumerate(ndimage.find_objects(ranks.astype(np.int32))):
+        if box is not None:
+            label = place + 1 if values is None else int(values[place])
+            rows, columns = with_margin(box, frame.shape)
+            inside = frame[rows, columns] == label
+            yield replace(nothing, label=label, mask=inside, corner=(rows.start, columns.start))
+
+
+def with_margin(box: tuple[slice, ...], shape: tuple[int, ...]) -> tuple[slice, slice]:
+    """A box with one more pixel on every side where the image goes on."""
+    rows, columns = (
+        slice(max(side.start - 1, 0), min(side.stop + 1, size)) for side, size in zip(box, shape, strict=True)
+    )
+    return rows, columns
+
+
+def _single_label(frame: np.ndarray[Any, Any]) -> int:
+    """The label of a frame that holds just one; 1 for plain masks such as 0/1 and 0/255, 0 without a cell."""
+    if not np.issubdtype(frame.dtype, np.integer):
+        return int(frame.any())
+    label = int(frame.max(initial=0))
+    return 1 if label == np.iinfo(frame.dtype).max else max(label, 0)

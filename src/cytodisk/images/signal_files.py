@@ -1,0 +1,85 @@
+"""Which image belongs to which mask file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from cytodisk.errors import ReadError, SignalError
+from cytodisk.images.mask_files import MaskSource
+from cytodisk.images.mask_names import base_name, image_stem, visible_files
+
+_USUAL_ENDINGS = ("", "_img")
+_STARTS_OF_ENDINGS = ("_", "-", ".")
+
+
+def pair_images(
+    sources: Sequence[MaskSource], signal: str | os.PathLike[str]
+) -> tuple[Path | SignalError, ...]:
+    """Find the image of each mask file of a folder, by its name.
+
+    Parameters
+    ----------
+    sources : sequence of MaskSource
+        As `open_mask_files` finds them in a folder.
+    signal : path-like
+        A folder, where `a.tif` or `a_img.tif` (TIFF or PNG) belongs to `a_masks.tif`; or how the names of the
+        images go on, as "_img" or "_w1.tif", with the folder in front if it is another than that of the
+        masks.
+
+    Returns
+    -------
+    tuple of (Path or SignalError)
+        By mask file; the error says that there is no image, or more than one.
+
+    Raises
+    ------
+    ReadError
+        There is no such folder.
+    SignalError
+        `signal` is a single file, or no mask file has an image.
+    """
+    folder, endings = _where(Path(signal), sources[0].path.parent)
+    images: dict[str, list[Path]] = {}
+    for file in visible_files(folder):
+        for name in {file.name, image_stem(file.name)}:
+            images.setdefault(name, []).append(file)
+    found = tuple(_image_of(source, folder, images, endings) for source in sources)
+    if all(isinstance(image, SignalError) for image in found):
+        raise SignalError(f"signal {signal} fits no mask file: {found[0]}")
+    return found
+
+
+def _where(signal: Path, masks: Path) -> tuple[Path, tuple[str, ...]]:
+    if signal.is_dir():
+        return signal, _USUAL_ENDINGS
+    if signal.is_file():
+        raise SignalError(
+            f"signal {signal} is one file for a folder of masks: pass a folder of images with names as those "
+            "of the masks, or how their names go on, as --signal _img"
+        )
+    folder = masks if signal.parent == Path() else signal.parent
+    if not signal.name.startswith(_STARTS_OF_ENDINGS) or not folder.is_dir():
+        raise ReadError(
+            f"signal {signal} does not exist: pass a folder of images, or how the names of images go on "
+            "beside the masks, as --signal _img"
+        )
+    return folder, (signal.name,)
+
+
+def _image_of(
+    source: MaskSource, folder: Path, images: dict[str, list[Path]], endings: tuple[str, ...]
+) -> Path | SignalError:
+    names = [base_name(source.name) + ending for ending in endings]
+    found = [file for name in names for file in images.get(name, []) if file != source.path]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        several = ", ".join(file.name for file in found)
+        return SignalError(
+            f"{source.name} has several images in {folder} ({several}): "
+            "pass how the names of the right ones go on, as --signal _img.tif"
+        )
+    looked_for = " or ".join(name if Path(name).suffix else f"{name}.tif" for name in names)
+    return SignalError(f"{source.name} has no image in {folder}: {looked_for} (or .png) is not there")

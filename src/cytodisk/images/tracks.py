@@ -1,0 +1,160 @@
+"""Mask movies → tracks: which cell is where in which frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
+from cytodisk.images.frames import FrameFile
+from cytodisk.images.linking import link_labels
+from cytodisk.images.mask_kinds import Kind
+
+
+@dataclass(frozen=True)
+class CellTrack:
+    """One cell of a movie.
+
+    Attributes
+    ----------
+    cell : int
+        Running number in the movie.
+    label : int
+        Its label, or its track when labels were linked; 1 in a movie of one cell.
+    first, last : int
+        Frames it is in, both included; between them it may be missing.
+    labels : dict of int to int, or None
+        Its label in the file by frame; None if every frame is a mask of this one cell.
+    """
+
+    cell: int
+    label: int
+    first: int
+    last: int
+    labels: dict[int, int] | None
+
+    @property
+    def times(self) -> range:
+        """Frames from the first to the last."""
+        return range(self.first, self.last + 1)
+
+    def mask_in(self, frame: Any, time: int) -> Any:
+        """The cell's mask in a frame.
+
+        Parameters
+        ----------
+        frame : ndarray of shape (H, W), or CytodiskError
+            As `read_frame` returns it.
+        time : int
+
+        Returns
+        -------
+        ndarray of shape (H, W), or CytodiskError
+            An error says why there is no mask: the frame is damaged, or the label is not in it.
+        """
+        if isinstance(frame, CytodiskError) or self.labels is None:
+            return frame
+        if time not in self.labels:
+            return MissingLabel(f"label {self.label} is not in frame {time}")
+        return frame == self.labels[time]
+
+
+class MissingLabel(MaskError):
+    """A tracked cell is not in a frame between its first and its last."""
+
+
+def read_frame(file: FrameFile, time: int) -> Any:
+    """A frame of a mask movie.
+
+    Parameters
+    ----------
+    file : FrameFile
+    time : int
+
+    Returns
+    -------
+    ndarray of shape (H, W), or ReadError
+        The error of a damaged frame, so that the frames around it can be used.
+    """
+    try:
+        return file.frame(time)[0]
+    except ReadError as error:
+        return as_data(error)
+
+
+def list_tracks(file: FrameFile, kind: Kind, link: bool) -> list[CellTrack]:
+    """The cells of a mask movie.
+
+    Parameters
+    ----------
+    file : FrameFile
+    kind : {"stack", "labels"}
+    link : bool
+        Labels are not the same from frame to frame: link them by overlap.
+
+    Returns
+    -------
+    list of CellTrack
+        By label, or by first appearance when linked.
+
+    Raises
+    ------
+    MaskError
+        Labels are not whole numbers, or none is there.
+    MissingPartError
+        `link` needs a package that is not installed.
+    """
+    if kind != "labels":
+        return [CellTrack(0, 1, 0, file.n_frames - 1, None)]
+    found: dict[int, dict[int, int]] = {}
+    damaged: list[int] = []
+    frames = _label_frames(file, damaged)
+    tracks = link_labels(frames) if link else _labels_as_tracks(frames)
+    for time, in_frame in enumerate(tracks):
+        for label, track in in_frame.items():
+            found.setdefault(track, {})[time] = label
+    if not found:
+        raise MaskError(f"{file.path} holds no label in any of its {file.n_frames} frames")
+    cells = [
+        CellTrack(cell, track, min(found[track]), max(found[track]), found[track])
+        for cell, track in enumerate(sorted(found))
+    ]
+    for time in damaged:
+        cells = _with_damaged(cells, time)
+    return cells
+
+
+def _with_damaged(tracks: list[CellTrack], time: int) -> list[CellTrack]:
+    """Give a damaged frame that no cell spans to the cells nearest in time, so that their rows tell of it."""
+    away = [max(track.first - time, time - track.last, 0) for track in tracks]
+    nearest = min(away)
+    return [
+        replace(track, first=min(track.first, time), last=max(track.last, time))
+        if distance == nearest > 0
+        else track
+        for track, distance in zip(tracks, away, strict=True)
+    ]
+
+
+def _labels_as_tracks(frames: Iterable[Any]) -> list[dict[int, int]]:
+    return [{int(label): int(label) for label in np.unique(frame) if label} for frame in frames]
+
+
+def _label_frames(file: FrameFile, damaged: list[int]) -> Iterator[Any]:
+    """Frames as label images; a damaged one is noted, and counts as empty here."""
+    for time in range(file.n_frames):
+        frame = read_frame(file, time)
+        if isinstance(frame, ReadError):
+            damaged.append(time)
+            yield np.zeros(file.image_shape, dtype=np.uint8)
+            continue
+        if not np.issubdtype(frame.dtype, np.integer):
+            raise MaskError(f"labels must be whole numbers, got dtype {frame.dtype}: save them as uint16")
+        if frame.min() < 0:
+            raise MaskError(
+                f"frame {time} has negative labels (down to {frame.min()}): set what is no cell to 0"
+            )
+        yield frame

@@ -1,1 +1,0 @@
-"""Read images and masks; write and read a study folder."""

@@ -1,0 +1,227 @@
+"""The picture of one frame of an animation: a cell beside its disk."""
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import Colormap, Normalize
+from PIL import Image
+
+from cytodisk.arrays import FloatArray
+from cytodisk.errors import ParameterError, SignalError
+from cytodisk.pages.sheet import Sheet
+from cytodisk.plot.disk_axes import disk_polygons, fit_disk, frame_disk
+from cytodisk.plot.strip import (
+    EDGE_WIDTH,
+    ON_WHITE,
+    OVER_SIGNAL,
+    Extent,
+    draw_edge,
+    frame_field,
+    mark_point,
+    note_sector,
+    sector_arcs,
+    sector_colours,
+)
+from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, colour_map, paper_style, scale_bar, signal_limits
+from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.grid import PolarGrid
+
+_DPI = 100
+_WIDTH, _PANEL, _TOP, _BELOW = 140.0, 56.0, 7.0, 7.0  # mm
+_DISK_PIXELS = 176  # as wide as it is drawn
+_SIGNAL_LEVELS = 48  # noise in many colours is what makes such files long
+_RING_POINTS, _SPOKE_POINTS = 720, 96
+_SIDE_WIDTH = 0.36  # points; as strong as the sides that neighbours share in `draw_sectors`
+
+
+class AnimatedFrames:
+    """Draws frames one by one: what moves is drawn for each, what stays is drawn once and laid over it.
+
+    Parameters
+    ----------
+    grid : PolarGrid
+        Of all frames.
+    extent_yx : (float, float, float, float)
+        Field of view: top, bottom, left and right in pixels.
+    pixel_size_um : float or None
+        Micrometres a pixel; without it the scale bar is in px.
+    limits : (float, float) or None
+        Of the signal's colours; by default percentiles 1 and 99.5 inside the first cell with a signal.
+    label : str
+        Of the colour bar, with its unit.
+    """
+
+    def __init__(
+        self,
+        grid: PolarGrid,
+        extent_yx: Extent,
+        pixel_size_um: float | None,
+        limits: tuple[float, float] | None,
+        label: str,
+    ) -> None:
+        self._grid, self._extent, self._pixel_size_um = grid, extent_yx, pixel_size_um
+        self._limits, self._label = limits, label
+        self._colours, self._palette = _signal_colours(), _palette()
+        self._has_bar = False
+        self._moving = _Scene(extent_yx)
+        self._fixed: dict[tuple[bool, bool], Image.Image] = {}
+
+    def draw(self, windows: CellWindows, signal: Any, stamp: str) -> Image.Image:
+        """The picture of one frame, in the colours that all frames share.
+
+        Raises
+        ------
+        ParameterError
+            The windows have another grid, or the pixel size is not a positive number.
+        SignalError
+            The signal has another shape than the mask.
+        """
+        if windows.grid != self._grid:
+            raise ParameterError(f"frames have the grids {self._grid} and {windows.grid}: pass one for all")
+        image = None if signal is None else np.asarray(signal)
+        if image is not None and image.shape != windows.mask.shape:
+            raise SignalError(
+                f"signal has shape {image.shape}, the mask {windows.mask.shape}: pass one channel a frame"
+            )
+        with paper_style():
+            self._moving.clear(stamp)
+            if image is not None:
+                self._draw_signal(windows, image)
+            _draw_cell(self._moving.cell, windows, over_signal=image is not None)
+            picture = self._moving.rendered()
+            picture.alpha_composite(self._laid_over(over_signal=image is not None))
+        return picture.convert("RGB").quantize(palette=self._palette, dither=Image.Dither.NONE)
+
+    def _draw_signal(self, windows: CellWindows, image: FloatArray) -> None:
+        self._limits = self._limits or signal_limits(image, windows.mask)
+        self._has_bar = True
+        low, high = self._limits
+        self._moving.cell.imshow(image, cmap=self._colours, vmin=low, vmax=high)
+        shown = self._colours.with_extremes(bad=(1.0, 1.0, 1.0, 0.0))
+        on_disk = windows.disk.image(image, _DISK_PIXELS)
+        extent = (-1.0, 1.0, 1.0, -1.0)
+        self._moving.disk.imshow(on_disk, cmap=shown, vmin=low, vmax=high, extent=extent)
+
+    def _laid_over(self, *, over_signal: bool) -> Image.Image:
+        """Scale bar, the disk's windows and, once there was a signal, its colour bar, on nothing."""
+        kind = over_signal, self._has_bar
+        if kind not in self._fixed:
+            scene = _Scene(self._extent)
+            scale_bar(scene.cell, self._pixel_size_um)
+            note_sector(scene.cell)
+            _draw_disk(scene.disk, self._grid, over_signal=over_signal)
+            if self._has_bar:
+                self._draw_bar(scene.sheet)
+            scene.sheet.figure.patch.set_visible(False)
+            self._fixed[kind] = scene.rendered()
+        return self._fixed[kind]
+
+    def _draw_bar(self, sheet: Sheet) -> None:
+        low, high = self._limits or (0.0, 1.0)
+        colours = ScalarMappable(Normalize(low, high), self._colours)
+        beside = sheet.axes(8.0 + 2 * _PANEL, _TOP + 0.15 * _PANEL, 2.4, 0.7 * _PANEL)
+        colour_bar(colours, beside, self._label, extend="both")
+
+
+class _Scene:
+    """A page with room for a cell and its disk."""
+
+    def __init__(self, extent_yx: Extent) -> None:
+        with paper_style():
+            self.sheet = Sheet(_TOP + _PANEL + _BELOW, _WIDTH)
+            self.cell = self.sheet.axes(3.0, _TOP, _PANEL, _PANEL)
+            self.disk = self.sheet.axes(6.0 + _PANEL, _TOP, _PANEL, _PANEL)
+            self._stamp = self.sheet.text(3.0, 4.5, "", fontsize=9)
+        self.sheet.figure.set_dpi(_DPI)
+        self._canvas = FigureCanvasAgg(self.sheet.figure)
+        frame_field(self.cell, extent_yx)
+        fit_disk(self.disk)
+
+    def clear(self, stamp: str) -> None:
+        """Take away what is drawn, but not the axes' own parts, which take long to make."""
+        self._stamp.set_text(stamp)
+        for ax in (self.cell, self.disk):
+            for artist in (*ax.images, *ax.collections, *ax.patches, *ax.lines, *ax.texts):
+                artist.remove()
+
+    def rendered(self) -> Image.Image:
+        """What is drawn, red, green, blue and opacity."""
+        self._canvas.draw()  # type: ignore[no-untyped-call]
+        pixels = np.asarray(self._canvas.buffer_rgba())  # type: ignore[no-untyped-call]
+        return Image.fromarray(pixels.copy())
+
+
+def _draw_cell(ax: Axes, windows: CellWindows, *, over_signal: bool) -> None:
+    """As `draw_sectors`, with lines rather than a polygon a window."""
+    grid = windows.grid
+    rings, spokes = _inner_rings(windows), _spokes(windows)
+    if not over_signal:
+        inner = rings[0, :-1].reshape(grid.sectors, -1, 2)
+        ends = np.concatenate([inner, np.roll(inner[:, :1], -1, axis=0)], axis=1)
+        outermost = [np.concatenate(pair) for pair in zip(sector_arcs(windows), ends[:, ::-1], strict=True)]
+        filled = [polygon[:, ::-1] for polygon in outermost]
+        ax.add_collection(PolyCollection(filled, facecolors=sector_colours(grid.sectors)), autolim=False)
+    lines = [line[:, ::-1] for line in (*rings[: grid.layers - 1], *spokes)]
+    colour = (OVER_SIGNAL if over_signal else ON_WHITE)["edgecolors"]
+    ax.add_collection(LineCollection(lines, colors=colour, linewidths=_SIDE_WIDTH), autolim=False)
+    draw_edge(ax, windows, over_signal=over_signal)
+
+
+def _inner_rings(windows: CellWindows) -> FloatArray:
+    """Inner side of each layer in the cell, closed, as many points a sector, shape (layers, N, 2)."""
+    grid = windows.grid
+    angle = np.linspace(0.0, 2.0 * np.pi, grid.sectors * -(-_RING_POINTS // grid.sectors) + 1)
+    return _in_cell(windows, grid.radii[1:, None], angle)
+
+
+def _spokes(windows: CellWindows) -> FloatArray:
+    """First side of each sector in the cell, from outside in, shape (sectors, N, 2)."""
+    return _in_cell(windows, np.linspace(1.0, 0.0, _SPOKE_POINTS), windows.grid.angles[:-1, None])
+
+
+def _in_cell(windows: CellWindows, radius: FloatArray, angle: FloatArray) -> FloatArray:
+    return windows.disk.to_cell(np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1))
+
+
+def _draw_disk(ax: Axes, grid: PolarGrid, *, over_signal: bool) -> None:
+    colours = sector_colours(grid.sectors)
+    faces = np.zeros((grid.n_windows, 4))
+    if not over_signal:
+        faces[: grid.sectors] = colours
+    lines = OVER_SIGNAL if over_signal else ON_WHITE
+    ax.add_collection(PolyCollection(disk_polygons(grid), facecolors=faces, **lines), autolim=False)
+    frame_disk(ax)
+    if over_signal:
+        edge = LineCollection(_arcs(grid), colors=colours, linewidths=EDGE_WIDTH, zorder=4)
+        ax.add_collection(edge, autolim=False)
+    middle = 0.5 * grid.angles[1]
+    mark_point(ax, float(np.sin(middle)), float(np.cos(middle)))
+
+
+def _arcs(grid: PolarGrid) -> list[FloatArray]:
+    """The circle, one arc a sector."""
+    arcs = []
+    for start, stop in pairwise(grid.angles):
+        angle = np.linspace(start, stop, 8 + 360 // grid.sectors)
+        arcs.append(np.column_stack([np.cos(angle), np.sin(angle)]))
+    return arcs
+
+
+def _signal_colours() -> Colormap:
+    return colour_map(SIGNAL_COLOURS).resampled(_SIGNAL_LEVELS)
+
+
+def _palette() -> Image.Image:
+    """The colours of all frames, so that nothing flickers: greys, signal, signal under lines, sectors."""
+    signal = _signal_colours()(np.linspace(0.0, 1.0, _SIGNAL_LEVELS))[:, :3]
+    greys = np.repeat(np.linspace(0.0, 1.0, 17)[:, None], 3, axis=1)
+    under_lines = [(1.0 - share) * signal + share for share in (0.2, 0.45)]
+    colours = np.concatenate([greys, signal, *under_lines, sector_colours(48)[:, :3]])
+    image = Image.new("P", (1, 1))
+    image.putpalette((255.0 * colours).round().astype(np.uint8).tobytes())
+    return image

@@ -1,0 +1,282 @@
+"""The pictures of a study: one page a cell."""
+
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import Normalize
+
+from cytodisk.arrays import FloatArray
+from cytodisk.disk.disk_map import DiskMap
+from cytodisk.errors import ParameterError
+from cytodisk.files import replacing
+from cytodisk.pages.overview import write_overview
+from cytodisk.pages.sheet import Sheet
+from cytodisk.plot.cell import (
+    DISTORTION_LABEL,
+    distortion_limit,
+    draw_area_distortion,
+    draw_cell,
+    draw_mesh,
+    draw_outline,
+    draw_window_means,
+    draw_windows,
+    frame_cell,
+)
+from cytodisk.plot.disk_axes import draw_disk_image, draw_disk_means, draw_disk_mesh, draw_disk_windows
+from cytodisk.plot.style import DIVERGING_COLOURS, DPI, SIGNAL_COLOURS, colour_bar, paper_style, signal_limits
+from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.sample import sample
+
+__all__ = ["write_cell_figures", "write_overview"]
+
+_MOST_CHANNELS = 3
+_LONGEST_NAME = 80
+_LONGEST_CHANNEL = 20
+_PANEL, _GAP, _LEFT, _BAR = 32.5, 4.0, 6.0, 14.0  # mm, with a signal
+_PAIR = 2 * (_PANEL + _GAP) + _BAR - 1.0  # mm, cell, disk and colour bar; two of them side by side
+_WIDE_PANEL = 43.0  # mm, without a signal: three panels
+_TOP, _HEADING, _BELOW = 11.0, 4.5, 6.0  # mm: page heading, headings of panels, room for scale bars
+_TALLEST = 1.45  # height of a panel over its width
+
+
+def write_cell_figures(
+    folder: Path,
+    name: str,
+    windows: CellWindows,
+    signal: xr.DataArray | None,
+    pixel_size_um: float | None,
+) -> list[Path]:
+    """Write the page of one cell: signal and means in cell and disk by channel, mesh and area distortion.
+
+    Without a signal the windows are drawn in the colours of their layers.
+
+    Parameters
+    ----------
+    folder : Path
+        Exists already.
+    name : str
+        Of the cell; the file is `<name>.png`, 180 mm wide at 200 dots per inch.
+    windows : CellWindows
+    signal : DataArray with dims (channel,) y, x, or None
+        One frame. The first three channels are drawn.
+    pixel_size_um : float or None
+        Micrometres a pixel; None when not known, then scale bars are in px.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+
+    Raises
+    ------
+    SignalError
+        The signal does not fit the mask.
+    ParameterError
+        The name cannot be a file's, or the pixel size is not a positive number.
+    StudyError
+        The folder cannot be written.
+    """
+    if not name or Path(name).name != name:
+        raise ParameterError(f"name must be a file name without folders, got {name!r}: pass the cell's name")
+    path = Path(folder) / f"{name}.png"
+    with paper_style():
+        if signal is None:
+            sheet = _sheet_without_signal(name, windows, pixel_size_um)
+        else:
+            sheet = _sheet_with_signal(name, windows, signal, pixel_size_um)
+        with replacing(path) as temporary:
+            sheet.figure.savefig(temporary, dpi=DPI)
+    return [path]
+
+
+def _sheet_with_signal(
+    name: str, windows: CellWindows, signal: xr.DataArray, pixel_size_um: float | None
+) -> Sheet:
+    images = signal.transpose("channel", ...) if "channel" in signal.dims else signal.expand_dims("channel")
+    means = np.asarray(sample(windows, images)["mean"])
+    names = _channel_names(images)
+    shown = min(len(means), _MOST_CHANNELS)
+    height = _panel_height(windows.disk, _PANEL)
+    row = _HEADING + height + _BELOW
+    sheet = Sheet(_TOP + (shown + 1) * row + 2.0)
+    left_out = f"channels 1–{shown} of {len(means)}" if len(means) > shown else ""
+    _write_heading(sheet, name, windows, pixel_size_um, left_out)
+    for k in range(shown):
+        top = _TOP + k * row + _HEADING
+        _draw_channel(sheet, top, height, windows, np.asarray(images[k]), means[k], names[k], pixel_size_um)
+    _draw_map_row(sheet, _TOP + shown * row + _HEADING, height, windows.disk, pixel_size_um)
+    return sheet
+
+
+def _channel_names(images: xr.DataArray) -> list[str]:
+    if "channel" in images.coords:
+        return [str(name) for name in images["channel"].to_numpy()]
+    count = images.sizes["channel"]
+    return ["signal"] if count == 1 else [f"channel {k}" for k in range(count)]
+
+
+def _draw_channel(
+    sheet: Sheet,
+    top: float,
+    height: float,
+    windows: CellWindows,
+    image: FloatArray,
+    means: FloatArray,
+    channel: str,
+    pixel_size_um: float | None,
+) -> None:
+    """The signal in cell and disk in the same colours, then the means, whose range is narrower."""
+    sheet.text(
+        3.5,
+        top + 0.5 * height,
+        _shortened(channel, _LONGEST_CHANNEL),
+        rotation=90,
+        ha="center",
+        va="center",
+        fontsize=7.5,
+        weight="bold",
+    )
+    second = _LEFT + _PAIR
+    headings = ("signal and windows", "signal on the disk")
+    cell, wheel = _row_of_axes(sheet, top, height, _PANEL, headings)
+    limits = signal_limits(image, windows.mask)
+    drawn = draw_cell(
+        cell, image, windows.disk, pixel_size_um=pixel_size_um, cmap=SIGNAL_COLOURS, limits=limits
+    )
+    draw_windows(cell, windows, linewidth=0.15, alpha=0.6)
+    draw_disk_image(wheel, windows.disk, image, limits=limits)
+    bar = _bar_axes(sheet, top, height, second - _BAR)
+    colour_bar(drawn, bar, _shortened(channel, _LONGEST_CHANNEL), "a.u.", extend="both")
+    headings = ("window means", "window means on the disk")
+    cell, wheel = _row_of_axes(sheet, top, height, _PANEL, headings, left=second)
+    filled = draw_window_means(cell, windows, means, pixel_size_um=pixel_size_um)
+    draw_disk_means(wheel, windows.grid, means)
+    bar = _bar_axes(sheet, top, height, second + _PAIR - _BAR)
+    colour_bar(filled, bar, f"mean {_shortened(channel, _LONGEST_CHANNEL)}", "a.u.", extend="both")
+
+
+def _draw_map_row(
+    sheet: Sheet, top: float, height: float, disk: DiskMap, pixel_size_um: float | None
+) -> None:
+    second = _LEFT + _PAIR
+    mesh, wheel = _row_of_axes(sheet, top, height, _PANEL, ("mesh in the cell", "mesh on the disk"))
+    spread, area = _row_of_axes(sheet, top, height, _PANEL, ("", "area distortion"), left=second)
+    _draw_meshes(mesh, wheel, disk, pixel_size_um)
+    _inset(spread, sheet, 4.0, 9.0, min(height, _PANEL))
+    draw_area_spread(spread, disk)
+    drawn = draw_area_distortion(area, disk, pixel_size_um=pixel_size_um)
+    bar = _bar_axes(sheet, top, height, second + _PAIR - _BAR)
+    colour_bar(drawn, bar, DISTORTION_LABEL, extend="both")
+
+
+def _sheet_without_signal(name: str, windows: CellWindows, pixel_size_um: float | None) -> Sheet:
+    """Two rows of three: cell, disk, area distortion."""
+    disk, height = windows.disk, _panel_height(windows.disk, _WIDE_PANEL)
+    row = _HEADING + height + _BELOW
+    sheet = Sheet(_TOP + 2 * row + 2.0)
+    _write_heading(sheet, name, windows, pixel_size_um, "")
+    first, second = _TOP + _HEADING, _TOP + row + _HEADING
+    third = _LEFT + 2 * (_WIDE_PANEL + _GAP) + 17.0
+    cell, wheel = _row_of_axes(sheet, first, height, _WIDE_PANEL, ("windows by layer", "windows on the disk"))
+    mesh, disk_mesh = _row_of_axes(
+        sheet, second, height, _WIDE_PANEL, ("mesh in the cell", "mesh on the disk")
+    )
+    (area,) = _row_of_axes(sheet, first, height, _WIDE_PANEL, ("area distortion",), left=third)
+    (spread,) = _row_of_axes(sheet, second, height, _WIDE_PANEL, ("",), left=third)
+    draw_windows(cell, windows, by_layer=True, linewidth=0.15)
+    draw_outline(cell, disk)
+    frame_cell(cell, disk, pixel_size_um=pixel_size_um)
+    layers = draw_disk_windows(wheel, windows.grid, by_layer=True, color="white", linewidth=0.15)
+    _draw_layer_bar(layers, _bar_axes(sheet, first, height, _LEFT + 2 * (_WIDE_PANEL + _GAP)), windows)
+    _draw_meshes(mesh, disk_mesh, disk, pixel_size_um)
+    drawn = draw_area_distortion(area, disk, pixel_size_um=pixel_size_um)
+    bar = _bar_axes(sheet, first, height, third + _WIDE_PANEL + 1.0)
+    colour_bar(drawn, bar, DISTORTION_LABEL, extend="both")
+    _inset(spread, sheet, 9.0, 9.0, min(height, _WIDE_PANEL))
+    draw_area_spread(spread, disk)
+    return sheet
+
+
+def draw_area_spread(ax: Axes, disk: DiskMap) -> None:
+    """Draw how much of the cell's area has which log2 λ, in the colours of `draw_area_distortion`.
+
+    Parameters
+    ----------
+    ax : Axes
+    disk : DiskMap
+    """
+    top = distortion_limit(disk.distortion)
+    edges = np.linspace(-top, top, 32)
+    ratio = np.clip(np.log2(disk.distortion.triangle_area_ratio), -top, top)
+    share, _ = np.histogram(ratio, edges, weights=100.0 * disk.distortion.area_share)
+    middle = 0.5 * (edges[:-1] + edges[1:])
+    colours = mpl.colormaps[DIVERGING_COLOURS](Normalize(-top, top)(middle))
+    ax.bar(middle, share, np.diff(edges), color=colours, edgecolor="0.4", linewidth=0.25)
+    ax.set(xlim=(-top, top), xlabel=DISTORTION_LABEL, ylabel="cell's area (%)")
+
+
+def _draw_meshes(cell: Axes, wheel: Axes, disk: DiskMap, pixel_size_um: float | None) -> None:
+    draw_mesh(cell, disk.vertices_yx, disk.triangles)
+    draw_outline(cell, disk, linewidth=0.4)
+    frame_cell(cell, disk, pixel_size_um=pixel_size_um)
+    draw_disk_mesh(wheel, disk)
+
+
+def _draw_layer_bar(layers: PolyCollection, into: Axes, windows: CellWindows) -> None:
+    bar = colour_bar(layers, into, "layer, 0 at the cell's edge")
+    count = windows.grid.layers
+    bar.set_ticks(list(range(0, count, max(1, -(-count // 10)))))
+    bar.ax.minorticks_off()
+    bar.ax.invert_yaxis()
+
+
+def _panel_height(disk: DiskMap, width: float) -> float:
+    high, wide = np.ptp(disk.outline_yx, axis=0)
+    return float(np.clip(width * high / wide, width, _TALLEST * width))
+
+
+def _row_of_axes(
+    sheet: Sheet, top: float, height: float, width: float, headings: tuple[str, ...], left: float = _LEFT
+) -> list[Axes]:
+    """Axes side by side, each with its heading above."""
+    places = [left + k * (width + _GAP) for k in range(len(headings))]
+    for place, heading in zip(places, headings, strict=True):
+        sheet.text(place + 0.5 * width, top - 1.5, heading, ha="center", fontsize=7.5)
+    return [sheet.axes(place, top, width, height) for place in places]
+
+
+def _bar_axes(sheet: Sheet, top: float, height: float, left: float) -> Axes:
+    return sheet.axes(left, top + 0.12 * height, 2.2, 0.76 * height)
+
+
+def _inset(ax: Axes, sheet: Sheet, left: float, bottom: float, height: float) -> None:
+    """Make room inside a panel for the labels of its axes, in millimetres."""
+    box = ax.get_position()
+    x = left / sheet.width_mm
+    tall = (height - bottom) / sheet.height_mm
+    ax.set_position((box.x0 + x, box.y1 - tall, box.width - x - 1.0 / sheet.width_mm, tall))
+
+
+def _write_heading(
+    sheet: Sheet, name: str, windows: CellWindows, pixel_size_um: float | None, more: str
+) -> None:
+    pixels = float(windows.mask.sum())
+    size, unit = (pixels, "px²") if pixel_size_um is None else (pixels * pixel_size_um**2, "µm²")
+    area = f"{size:,.0f} {unit}" if size >= 100 else f"{size:.3g} {unit}"
+    grid = f"{windows.grid.layers} layers × {windows.grid.sectors} sectors"
+    distortion = windows.disk.distortion
+    facts = [area, grid, f"area distortion {distortion.area:.3f}", f"angle distortion {distortion.angle:.3g}"]
+    sheet.text(_LEFT, 5.0, _shortened(name, _LONGEST_NAME), fontsize=8, weight="bold")
+    sheet.text(_LEFT, 8.6, " · ".join([*facts, more] if more else facts), color="0.3")
+
+
+def _shortened(name: str, longest: int) -> str:
+    """A name short enough for its place, cut in its middle."""
+    if len(name) <= longest:
+        return name
+    half = (longest - 1) // 2
+    return f"{name[:half]}…{name[-half:]}"

@@ -1,0 +1,201 @@
+"""Windows of several methods on a few cells of a comparison (the paper's Fig. 3A)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.image import AxesImage
+
+from cytodisk.errors import ParameterError
+from cytodisk.files import replacing
+from cytodisk.pages.compared_layers import spread_over
+from cytodisk.pages.sheet import Sheet
+from cytodisk.plot.outline_sides import outline_sides
+from cytodisk.plot.style import DOUBLE_COLUMN_MM, LINE_COLOUR, paper_style
+from cytodisk.plot.window_labels import window_colours
+from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, TITLES
+from cytodisk.runs.compare_windows.comparison import Comparison
+from cytodisk.store.study_folder import figures_folder
+
+_MOST_CELLS = 5
+_LEFT, _TOP, _GAP, _WORDS = 6.0, 13.0, 2.0, 4.0  # mm
+_BELOW = 8.0
+_DPI = 300
+_KEY = (
+    "Dark: layer at the edge, yellow: at the centre; every other sector is paler; white: in no window.",
+    "Percent: filled windows, that is with a part of the cell (completeness). Turned over: triangles of a "
+    "map that is not one to one.",
+)
+
+
+def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = None) -> Path | None:
+    """Write `figures/cells.png`: up to five cells, a row a method.
+
+    Layers have colours from the edge (dark) to the centre (light), and every other sector is paler; what lies
+    in no window is white.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Not that of a movie.
+    cells : sequence of int, optional
+        Which cells, at most five, in this order; by default they go from the smallest area error of the map
+        to the largest.
+
+    Returns
+    -------
+    Path or None
+        None if no cell has windows.
+
+    Raises
+    ------
+    ParameterError
+        There are more than five, or no such cell with windows.
+
+    References
+    ----------
+    u-Unwrap, Fig. 3A.
+    """
+    chosen = chosen_cells(comparison) if cells is None else _asked_for(comparison, cells)
+    if not chosen:
+        return None
+    path = figures_folder(comparison.path) / "cells.png"
+    size = (DOUBLE_COLUMN_MM - _LEFT - 2.0 - _GAP * (_MOST_CELLS - 1)) / _MOST_CELLS
+    with paper_style():
+        sheet = Sheet(_TOP + len(comparison.methods) * (size + _WORDS + _GAP) + _BELOW)
+        for column, cell in enumerate(chosen):
+            labels = comparison.labels(cell)
+            left = _LEFT + column * (size + _GAP)
+            sheet.text(left, _TOP - 1.5, _cell_name(comparison.cells, cell))
+            for row, method in enumerate(comparison.methods):
+                top = _TOP + row * (size + _WORDS + _GAP)
+                ax = sheet.axes(left, top, size, size)
+                draw_labels(ax, labels.get(method), labels["mask"], _grid(comparison))
+                sheet.text(left, top + size + _WORDS - 1.2, _outcome(comparison, cell, method), color="0.35")
+        for row, method in enumerate(comparison.methods):
+            middle = _TOP + row * (size + _WORDS + _GAP) + size / 2
+            sheet.text(2.0, middle, TITLES[method], rotation=90, va="center", ha="left")
+        sheet.text(_LEFT, 4.0, _title(comparison, chosen, cells is None), size=7.5)
+        for line, words in enumerate(_KEY):
+            sheet.text(_LEFT, sheet.height_mm - 5.0 + 3.5 * line, words, color="0.35")
+        with replacing(path) as temporary:
+            sheet.figure.savefig(temporary, dpi=_DPI)
+    return path
+
+
+def chosen_cells(comparison: Comparison) -> list[int]:
+    """Up to five cells, spread over the area error of the first map, or else over empty windows.
+
+    Parameters
+    ----------
+    comparison : Comparison
+
+    Returns
+    -------
+    list of int
+        From the simplest on.
+    """
+    method = _ordered_by(comparison)
+    if method is None:
+        return []
+    rows = comparison.cells[(comparison.cells["mapped"] > 0) & (comparison.cells["method"] == method)]
+    measure = rows["area_distortion" if method in ON_A_MAP else "empty_windows"]
+    return [int(rows["cell"].iloc[place]) for place in spread_over(measure, _MOST_CELLS)]
+
+
+def check_cells(cells: Sequence[int]) -> None:
+    """Raise ParameterError unless there is room for so many cells.
+
+    Parameters
+    ----------
+    cells : sequence of int
+    """
+    if not 0 < len(cells) <= _MOST_CELLS:
+        raise ParameterError(f"cells: got {len(cells)}: name one to {_MOST_CELLS}, as many as fit the page")
+
+
+def _asked_for(comparison: Comparison, cells: Sequence[int]) -> list[int]:
+    check_cells(cells)
+    known = comparison.cells.loc[comparison.cells["mapped"] > 0, "cell"].unique()
+    missing = [cell for cell in cells if cell not in known]
+    if missing:
+        raise ParameterError(
+            f"cells: {missing[0]} has no windows in comparison {comparison.path}, whose cells are numbered "
+            f"{known.min()} to {known.max()}: name others"
+        )
+    return list(cells)
+
+
+def _ordered_by(comparison: Comparison) -> str | None:
+    """The first method with a map, or else the first, of those that have windows."""
+    with_windows = set(comparison.cells.loc[comparison.cells["mapped"] > 0, "method"])
+    by_map = [method for method in comparison.methods if method in ON_A_MAP]
+    return next((method for method in (*by_map, *comparison.methods) if method in with_windows), None)
+
+
+def _title(comparison: Comparison, chosen: Sequence[int], by_order: bool) -> str:
+    if not by_order:
+        return f"{len(chosen)} chosen cell{'s' if len(chosen) > 1 else ''}"
+    method, number = _ordered_by(comparison), comparison.cells["cell"].nunique()
+    measure = f"area error of {TITLES[method]}" if method in ON_A_MAP else "number of empty windows"
+    if len(chosen) == 1:
+        return f"1 of {number} cells" if number > 1 else "the cell"
+    return f"{len(chosen)} of {number} cells, from the smallest to the largest {measure}"
+
+
+def draw_labels(ax: Axes, labels: Any, mask: Any, grid: tuple[int, int]) -> AxesImage | None:
+    """Draw which pixel is in which window, with the outline of the cell.
+
+    Parameters
+    ----------
+    ax : Axes
+    labels : ndarray of shape (H, W) and dtype int, or None
+        layer · sectors + sector, -1 for none. None if there are no windows: the cell is left white.
+    mask : ndarray of shape (H, W) and dtype bool
+    grid : (int, int)
+        Layers and sectors.
+
+    Returns
+    -------
+    AxesImage or None
+    """
+    height, width = mask.shape
+    drawn = None
+    if labels is not None:
+        extent = (0.0, width, height, 0.0)
+        drawn = ax.imshow(window_colours(labels, grid), extent=extent, interpolation="nearest")
+    ax.add_collection(LineCollection(list(outline_sides(mask)), colors=LINE_COLOUR, linewidths=0.25))
+    side = max(height, width) / 2 + 1
+    ax.set(xlim=(width / 2 - side, width / 2 + side), ylim=(height / 2 + side, height / 2 - side))
+    ax.set_aspect("equal")
+    ax.set_axis_off()
+    return drawn
+
+
+def _grid(comparison: Comparison) -> tuple[int, int]:
+    settings = comparison.provenance["parameters"]
+    return settings["layers"], settings["sectors"]
+
+
+def _cell_name(cells: pd.DataFrame, cell: int) -> str:
+    rows = cells[(cells["cell"] == cell) & cells["area_px"].notna()]
+    return f"cell {cell} ({rows['area_px'].iloc[0]:.0f} px²)"
+
+
+def _outcome(comparison: Comparison, cell: int, method: str) -> str:
+    cells = comparison.cells
+    (row,) = cells[(cells["cell"] == cell) & (cells["method"] == method)].to_dict("records")
+    if not row["mapped"]:
+        return "no map"
+    layers, sectors = _grid(comparison)
+    words = f"{1 - row['empty_windows'] / (layers * sectors):.0%}"
+    if row["coverage"] < 0.995:
+        words += f" ({row['coverage']:.0%} of the area)"
+    if row["certificate_valid"] is False:
+        words += f", {row['flipped']:.0f} turned over"
+    return words

@@ -1,0 +1,155 @@
+"""Figures of a comparison of windows: completeness and regularity by layer (the paper's Fig. 3B)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from cytodisk.files import replacing
+from cytodisk.pages.sheet import Sheet
+from cytodisk.plot.style import DPI, paper_style
+from cytodisk.plot.time_axis import TICK_STEPS
+from cytodisk.runs.compare_windows.compare_parameters import TITLES
+from cytodisk.runs.compare_windows.comparison import Comparison
+from cytodisk.store.study_folder import figures_folder
+
+# Colours that the colour-blind can tell apart (Okabe and Ito), and a mark beside. Where lines lie on each
+# other the thinner ones, and those with gaps, are in front, so that each is seen.
+METHOD_STYLES: dict[str, dict[str, Any]] = {
+    "newton": {"color": "#0072B2", "marker": "o", "linewidth": 2.2, "markersize": 4.6, "zorder": 2.1},
+    "harmonic": {"color": "#56B4E9", "marker": "s", "linestyle": (0, (3, 2)), "zorder": 2.2}
+    | {"linewidth": 1.2, "markersize": 3.2},
+    "advection": {"color": "#009E73", "marker": "^", "linestyle": (0, (1.2, 2)), "zorder": 2.3}
+    | {"linewidth": 1.0, "markersize": 2.0},
+    "edge": {"color": "#D55E00", "marker": "D", "linewidth": 1.0, "markersize": 2.5, "zorder": 2.4},
+    "rings": {"color": "#CC79A7", "marker": "v", "linestyle": (0, (4, 1, 1, 1)), "zorder": 2.5}
+    | {"linewidth": 1.0, "markersize": 2.5},
+}
+
+# Column of the table by layer, and its name in words.
+PANELS = (
+    ("completeness", "filled windows"),
+    ("area_cv", "CV of area"),
+    ("eccentricity_cv", "CV of eccentricity"),
+    ("eccentricity", "mean eccentricity"),
+)
+_PANEL, _HEIGHT, _TOP, _LEFT, _GAP = 31.5, 34.0, 14.0, 11.0, 13.5  # mm
+
+
+def write_comparison(comparison: Comparison) -> Path:
+    """Write `figures/comparison.png`: completeness, spread of area and eccentricity, and length, by layer.
+
+    Parameters
+    ----------
+    comparison : Comparison
+
+    Returns
+    -------
+    Path
+
+    References
+    ----------
+    u-Unwrap, Fig. 3B.
+    """
+    path = figures_folder(comparison.path) / "comparison.png"
+    with paper_style():
+        sheet = Sheet(_TOP + _HEIGHT + 15.0)
+        for number, (name, title) in enumerate(PANELS):
+            ax = sheet.axes(_LEFT + number * (_PANEL + _GAP), _TOP, _PANEL, _HEIGHT)
+            draw_measure_by_layer(ax, comparison.by_layer, name, name, comparison.methods)
+            ax.set_title(title, loc="left")
+        write_method_key(sheet, comparison.methods, _LEFT)
+        tried = int(comparison.by_method["tried"].max())
+        what = "frames" if comparison.is_movie else "cells"
+        words = (
+            f"{tried} {what}. Completeness: share of filled windows, all {what} together; "
+            f"other lines: median over {what}; bands: their quartiles"
+        )
+        sheet.text(_LEFT, sheet.height_mm - 1.5, words, color="0.35")
+        with replacing(path) as temporary:
+            sheet.figure.savefig(temporary, dpi=DPI)
+    return path
+
+
+def draw_measure_by_layer(
+    ax: Axes, by_layer: pd.DataFrame, name: str, label: str, methods: Sequence[str]
+) -> list[Line2D]:
+    """Draw a measure by layer, a line a method, with a band from quartile to quartile.
+
+    Parameters
+    ----------
+    ax : Axes
+    by_layer : DataFrame
+        `Comparison.by_layer`, or a table with the columns method, layer, and the measure with its quartiles.
+    name : str
+        Column of the measure; its quartiles end in _q25 and _q75.
+    label : str
+    methods : sequence of str
+
+    Returns
+    -------
+    list of Line2D
+        One a method.
+    """
+    lines = []
+    for method in methods:
+        rows = by_layer[by_layer["method"] == method]
+        style = METHOD_STYLES[method]
+        layer = rows["layer"]
+        band = {"color": style["color"], "alpha": 0.18, "linewidth": 0.0}
+        ax.fill_between(layer, rows[f"{name}_q25"], rows[f"{name}_q75"], **band)
+        lines += ax.plot(layer, rows[name], label=TITLES[method], clip_on=False, **style)
+    ax.set(xlabel="layer (0 at the edge)", ylabel=label)
+    if not (by_layer[f"{name}_q25"] < 0).any():  # correlations may be negative
+        ax.set_ylim(bottom=0.0)
+    if name == "completeness":
+        ax.set_ylim(0.0, 1.0)
+    if len(by_layer):
+        ax.set_xlim(-0.5, float(by_layer["layer"].max()) + 0.5)
+    ax.xaxis.set_major_locator(MaxNLocator(6, integer=True))
+    ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
+    return lines
+
+
+def write_method_key(sheet: Sheet, methods: Sequence[str], left: float, top: float = 1.5) -> None:
+    """Write which line is which method.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    methods : sequence of str
+    left, top : float
+        In millimetres from the sheet's upper left corner.
+    """
+    handles = [Line2D([], [], label=TITLES[method], **METHOD_STYLES[method]) for method in methods]
+    place = left / sheet.width_mm, 1.0 - top / sheet.height_mm
+    options: dict[str, Any] = {"loc": "upper left", "borderpad": 0.0, "frameon": False}
+    options |= {"ncols": len(handles), "handlelength": 2.6}
+    sheet.figure.legend(handles=handles, bbox_to_anchor=place, **options)
+
+
+def spread_over(values: Any, count: int) -> list[int]:
+    """Places of a few values, from the smallest to the largest, evenly by rank.
+
+    Parameters
+    ----------
+    values : array_like of shape (N,)
+        NaN is never chosen.
+    count : int
+
+    Returns
+    -------
+    list of int
+        At most `count`, by increasing value.
+    """
+    found = np.asarray(values, dtype=np.float64)
+    order = np.argsort(found, kind="stable")[: int(np.isfinite(found).sum())]
+    ranks = np.unique(np.linspace(0, len(order) - 1, min(count, len(order))).round().astype(int))
+    return [int(order[rank]) for rank in ranks]

@@ -1,0 +1,118 @@
+"""The pictures of a study's correlation, a set for each cell, at the widths of a paper's columns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from cytodisk.errors import ParameterError
+from cytodisk.files import replacing
+from cytodisk.pages.cell_correlation import CellCorrelation
+from cytodisk.pages.cell_movie import CellMovie
+from cytodisk.pages.correlation_pages import curves_page, events_page, maps_page, pairs_page, peaks_page
+from cytodisk.pages.sheet import Sheet
+from cytodisk.plot.style import DPI, paper_style
+from cytodisk.store.correlation_store import Correlation
+from cytodisk.store.study import Study
+from cytodisk.store.study_folder import figures_folder, part_key
+
+FORMATS = ("png", "pdf", "svg")
+
+_PAGES: dict[str, Callable[[CellCorrelation], Sheet | None]] = {
+    "curves": curves_page,
+    "maps": maps_page,
+    "peaks": peaks_page,
+    "pairs": pairs_page,
+    "events": events_page,
+}
+# Without dates, the same picture is the same file.
+_DATELESS: dict[str, dict[str, Any]] = {"png": {}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
+
+
+def write_correlation_figures(
+    study: Study,
+    correlation: Correlation,
+    *,
+    cell: int = 0,
+    formats: Sequence[str] = ("png",),
+    progress: Callable[[int, int], None] | None = None,
+) -> list[Path]:
+    """Write the pictures of one cell's correlation into the folder `figures` of the correlation.
+
+    Parameters
+    ----------
+    study : Study
+        Of a movie.
+    correlation : Correlation
+        Of that study, as of `study.correlation`.
+    cell : int
+        Its number in the tables.
+    formats : sequence of {"png", "pdf", "svg"}
+        Text stays text in the last two, and pictures of many pixels are pixels, at 200 dots per inch.
+    progress : callable, optional
+        Called with (pages done, in all).
+
+    Returns
+    -------
+    list of Path
+        `cell_<number>_<what>.<format>`: correlation against lag by layer (`curves`, 85 mm wide); the two
+        quantities by time and sector (`maps`, 180 mm); peaks and their lags on disk and cell (`peaks`,
+        85 mm); and where there are such tables, all pairs by distance and lag (`pairs`, up to 180 mm) and
+        the signal around onsets of protrusion (`events`, 180 mm). What a cell has no numbers for is not
+        drawn.
+
+    Raises
+    ------
+    ParameterError
+        A format is unknown, or the cell was not correlated: the message says why.
+    ReadError
+        The study has no such cell, or a table or a map is damaged.
+    StudyError
+        The folder cannot be written.
+
+    References
+    ----------
+    u-Unwrap, Fig. 5 and S4.
+    """
+    chosen = _formats(formats)
+    _check_cell(correlation, cell)
+    one = CellCorrelation(CellMovie.of(study, cell), correlation)
+    folder = figures_folder(correlation.path)
+    report = progress or (lambda done, whole: None)
+    paths = []
+    for done, (what, draw) in enumerate(_PAGES.items()):
+        report(done, len(_PAGES))
+        with paper_style():
+            sheet = draw(one)
+            if sheet is not None:
+                paths += _save(sheet, folder, f"cell_{part_key(cell)}_{what}", chosen)
+    report(len(_PAGES), len(_PAGES))
+    return paths
+
+
+def _formats(formats: Any) -> list[str]:
+    given = [formats] if isinstance(formats, str) else list(formats)
+    unknown = [name for name in given if name not in FORMATS]
+    if unknown or not given:
+        came = repr(unknown[0]) if unknown else "none"
+        raise ParameterError(f"formats must be of {', '.join(FORMATS)}, got {came}")
+    return list(dict.fromkeys(given))
+
+
+def _check_cell(correlation: Correlation, cell: int) -> None:
+    rows = correlation.cells[correlation.cells["cell"] == cell]
+    if rows.empty:
+        there = sorted(int(number) for number in correlation.cells["cell"])
+        raise ParameterError(f"cell {cell} is not in {correlation.path}: it has {there}")
+    if rows["status"].iloc[0] != "ok":
+        raise ParameterError(f"cell {cell} has no correlation to draw: {rows['reason'].iloc[0]}")
+
+
+def _save(sheet: Sheet, folder: Path, name: str, formats: Sequence[str]) -> list[Path]:
+    """Write a page in each format, whole or not at all."""
+    paths = [folder / f"{name}.{kind}" for kind in formats]
+    for path, kind in zip(paths, formats, strict=True):
+        with replacing(path) as temporary:
+            sheet.figure.savefig(temporary, dpi=DPI, format=kind, metadata=_DATELESS[kind])
+    return paths

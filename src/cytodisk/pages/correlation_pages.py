@@ -1,0 +1,276 @@
+"""The pages of a cell's correlation: what goes where on paper."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.axes import Axes
+
+from cytodisk.pages.cell_correlation import CellCorrelation, broken_lines
+from cytodisk.pages.cell_movie import LEFT_MM
+from cytodisk.pages.correlation_words import detrending
+from cytodisk.pages.sheet import Sheet
+from cytodisk.plot.activity_maps import bar_beside, shown_layers
+from cytodisk.plot.correlation_curves import curve_key, draw_correlation_curves, draw_map_pair
+from cytodisk.plot.event_curves import band_key, draw_event_average, draw_events
+from cytodisk.plot.lag_axis import sides
+from cytodisk.plot.pair_curves import draw_pairs
+from cytodisk.plot.pair_table import PairTable, drawn_kinds
+from cytodisk.plot.peak_maps import PeakMap, Shown, draw_peaks_on_cell, draw_peaks_on_disk, peak_key
+from cytodisk.plot.strip import time_stamp
+from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM, colour_bar
+
+_CURVE, _CURVE_GAP, _CURVE_LEFT = 17.0, 5.5, 14.0  # mm
+_PANEL, _PANEL_GAP, _TALLEST = 29.5, 4.0, 1.45  # mm, mm, height over width
+_MAP_LEFT, _MAP, _MAP_HEIGHT, _MAP_BAR = 14.0, 62.0, 48.0, 18.0  # mm
+_EPISODES, _AVERAGE_LEFT, _AVERAGE = 80.0, 124.0, 53.0  # mm
+_PAIR_LEFT, _PAIR_GAP, _PAIR_LINES, _PAIR_IMAGE, _PAIR_BAR = 14.0, 5.0, 30.0, 34.0, 18.0  # mm
+_KEY, _KEY_POINTS = 10.0, 31.0  # height of the key above the average in mm, and of what stands on it
+_KEY_LEFT = -0.05  # of the axes of the average: its key is wider than they are
+_LINE = 3.6  # mm
+
+
+def curves_page(one: CellCorrelation) -> Sheet | None:
+    """Mean correlation against lag by layer; None when no window has a correlation."""
+    curves = one.rows(one.correlation.layer_curves)
+    if curves.empty or not curves["correlation"].notna().any():
+        return None
+    heading = one.heading(SINGLE_COLUMN_MM, f"{one.signal_name} with {one.with_words}")
+    head = heading.height_mm
+    count = len(shown_layers(int(curves["layer"].nunique())))
+    first = head + 10.5
+    sheet = Sheet(first + count * (_CURVE + _CURVE_GAP) + 7.5, SINGLE_COLUMN_MM)
+    heading.write(sheet)
+    axes = [
+        sheet.axes(_CURVE_LEFT, first + k * (_CURVE + _CURVE_GAP), SINGLE_COLUMN_MM - _CURVE_LEFT - 4, _CURVE)
+        for k in range(count)
+    ]
+    draw_correlation_curves(
+        axes,
+        curves,
+        cell=one.cell,
+        peaks=one.correlation.layers,
+        signal=one.first_names[0],
+        with_=one.first_names[1],
+    )
+    chance = "threshold" in curves and bool(curves["threshold"].notna().any())
+    _write_key(sheet, curve_key(chance=chance), head - 2.0, columns=2)
+    return sheet
+
+
+def maps_page(one: CellCorrelation) -> Sheet:
+    """The signal in the outermost layer, and what it was correlated with, by time and sector."""
+    heading = one.heading(DOUBLE_COLUMN_MM, f"{one.signal_name} and {one.with_words}", *_map_notes(one))
+    head = heading.height_mm
+    sheet = Sheet(head + 4.0 + _MAP_HEIGHT + 9.0)
+    heading.write(sheet)
+    lefts = (_MAP_LEFT, _MAP_LEFT + _MAP + _MAP_BAR + 3.0)
+    axes = [sheet.axes(left, head + 3.0, _MAP, _MAP_HEIGHT) for left in lefts]
+    other = one.correlation.with_
+    unit = one.movie.unit(other) if one.by_velocity else None
+    title = f"{one.with_words}: protrusion red, retraction blue"
+    if unit is None:
+        title = f"{one.movie.shown_name(_place(one))}, layer 0 (edge)"
+    draw_map_pair(
+        axes,
+        one.activity(one.correlation.signal),
+        one.velocity if one.by_velocity else one.activity(other),
+        label=f"mean {one.signal_name} (a.u.)",
+        other_label=f"mean {one.with_name} (a.u.)",
+        velocity_unit=unit,
+        **one.time,
+    )
+    for ax, name in zip(axes, (f"{one.signal_name}, layer 0 (edge)", title), strict=True):
+        ax.set_title(name, loc="left", y=1.0, pad=2.5, parse_math=False)
+    return sheet
+
+
+def peaks_page(one: CellCorrelation) -> Sheet | None:
+    """Peak correlation and its lag, on the disk and on the cell; None when no window has one."""
+    peaks, movie = one.peaks, one.movie
+    if not movie.mapped or not np.isfinite(peaks.correlation).any():
+        return None
+    heading = one.heading(SINGLE_COLUMN_MM, f"{one.signal_name} with {one.with_words}: peaks")
+    head = heading.height_mm
+    time = one.drawn_time
+    windows = movie.windows(time)
+    high, wide = np.ptp(windows.disk.outline_yx, axis=0)
+    height = _PANEL * float(np.clip(high / wide, 1.0, _TALLEST))
+    key = peak_key(peaks)
+    row = height + 9.0
+    key_rows = -(-len(key) // 2)  # legends fill columns first: two of them
+    sheet = Sheet(head + 2 * row + 7.5 + 4.0 * key_rows, SINGLE_COLUMN_MM)
+    heading.write(sheet)
+    lefts = (LEFT_MM, LEFT_MM + _PANEL + _PANEL_GAP)
+    stamp = f"on the cell, {time_stamp(time, movie.interval_s)}"
+    for left, words in zip(lefts, ("on the disk", stamp), strict=True):
+        sheet.text(left + 0.5 * _PANEL, head, words, ha="center")
+    for number, (shown, label) in enumerate(_shown(peaks)):
+        top = head + 4.0 + number * row
+        disk, cell = (sheet.axes(left, top, _PANEL, height) for left in lefts)
+        drawn = draw_peaks_on_disk(disk, peaks, movie.grid, shown)
+        draw_peaks_on_cell(cell, peaks, windows, shown, pixel_size_um=movie.pixel_size_um)
+        bar = sheet.axes(lefts[1] + _PANEL + 3.0, top + 0.1 * height, 2.2, 0.8 * height)
+        colour_bar(drawn, bar, label, extend=_extend(peaks, shown))
+    foot = head + 2 * row + 3.0
+    sheet.text(LEFT_MM, foot + 2.0, "lag: " + sides(*one.first_names))
+    if key:
+        _write_key(sheet, key, foot + 3.5, columns=2)
+    return sheet
+
+
+def pairs_page(one: CellCorrelation) -> Sheet | None:
+    """Correlation of all pairs of windows by distance and lag; None when pairs were not asked for."""
+    pairs = one.correlation.pairs
+    kinds = [] if pairs is None else drawn_kinds(pairs, one.cell)
+    if pairs is None or not kinds:
+        return None
+    tables = [PairTable.of(pairs, along=kind, cell=one.cell) for kind in kinds]
+    width = (DOUBLE_COLUMN_MM - _PAIR_LEFT - _PAIR_BAR - 2 * _PAIR_GAP) / 3
+    page = _PAIR_LEFT + len(kinds) * (width + _PAIR_GAP) - _PAIR_GAP + _PAIR_BAR
+    page = max(page, SINGLE_COLUMN_MM)
+    heading = one.heading(page, f"{one.signal_name} with {one.with_name}, all pairs of windows")
+    top = heading.height_mm + 5.0
+    second = top + _PAIR_LINES + 4.0
+    notes = broken_lines(_pair_notes(tables), " · ", page - 2 * LEFT_MM)
+    foot = second + _PAIR_IMAGE + 15.7
+    sheet = Sheet(foot + _LINE * len(notes) + 2.2, page)
+    heading.write(sheet)
+    limit = max(float(np.nanmax(np.abs(table.correlation))) for table in tables)
+    columns = []
+    for number, kind in enumerate(kinds):
+        left = _PAIR_LEFT + number * (width + _PAIR_GAP)
+        axes = [sheet.axes(left, top, width, _PAIR_LINES), sheet.axes(left, second, width, _PAIR_IMAGE)]
+        _, image = draw_pairs(axes, pairs, cell=one.cell, along=kind, limit=limit)
+        columns.append(axes)
+    _share_pairs(columns)
+    columns[0][0].set_ylabel("correlation")
+    colour_bar(image, bar_beside(columns[-1][1]), "correlation")
+    sheet.text(LEFT_MM, foot, f"lag: {sides(*one.first_names, upright=True)}")
+    for number, words in enumerate(notes):
+        sheet.text(LEFT_MM, foot + _LINE * (number + 1), words, color="0.3")
+    return sheet
+
+
+def events_page(one: CellCorrelation) -> Sheet | None:
+    """Episodes of the edge, and the signal around onsets of protrusion; None when there are none."""
+    events, averages = one.used_events(), one.rows(one.correlation.event_averages)
+    if events.empty or averages.empty:
+        return None
+    what = f"episodes of the edge, and {one.signal_name} around onsets of protrusion"
+    heading = one.heading(DOUBLE_COLUMN_MM, what, *_event_notes(one))
+    head = heading.height_mm
+    sheet = Sheet(head + 4.0 + _MAP_HEIGHT + 9.0)
+    heading.write(sheet)
+    ax = sheet.axes(_MAP_LEFT, head + 3.0, _EPISODES, _MAP_HEIGHT)
+    outlines = draw_events(ax, one.velocity, events)
+    words = (
+        "episodes outlined, onsets bold" if len(outlines.get_segments()) else "onsets of protrusion marked"
+    )
+    ax.set_title(words, loc="left", y=1.0, pad=2.5)
+    around = sheet.axes(_AVERAGE_LEFT, head + 3.0 + _KEY, _AVERAGE, _MAP_HEIGHT - _KEY)
+    _draw_average(around, one, averages)
+    return sheet
+
+
+def _draw_average(ax: Axes, one: CellCorrelation, averages: pd.DataFrame) -> None:
+    """The signal around onsets, its key above the axes, where no line can run through it."""
+    average = _average(averages, "protrusion")
+    if not np.isfinite(average["mean"]).any():
+        ax.set_axis_off()
+        ax.text(0.5, 0.5, "no onset of protrusion is known", ha="center", color="0.3")
+        return
+    lines = draw_event_average(ax, average, label=one.first_names[0])
+    key: Any = {"loc": "lower left", "frameon": False, "borderaxespad": 0.2, "borderpad": 0.0}
+    key |= {"handlelength": 1.8, "labelspacing": 0.25}
+    if band := band_key(average):
+        ax.add_artist(ax.legend(handles=band, bbox_to_anchor=(_KEY_LEFT, 1.0), **key))
+    else:
+        words = "no band: too few patches"
+        ax.text(_KEY_LEFT, 1.02, words, color="0.3", transform=ax.transAxes)
+    above = 1.0 + _LINE / (_MAP_HEIGHT - _KEY)
+    ax.legend(handles=lines, ncols=2, bbox_to_anchor=(_KEY_LEFT, above), **key)
+    count = ax.get_title(loc="right")
+    ax.set_title("", loc="right")
+    ax.set_title(count, loc="left", pad=_KEY_POINTS, fontsize=7.0, color="0.3")
+
+
+def _event_notes(one: CellCorrelation) -> list[str]:
+    settings = one.correlation.settings
+    notes = [] if detrending(settings) else ["averages not detrended"]
+    notes += ["averages of values, not of differences"] if settings.get("difference") else []
+    return notes + ["grey: not used"] * (not one.used.all())
+
+
+def _average(table: pd.DataFrame, kind: str) -> xr.Dataset:
+    """The Dataset of `average_around` from its table."""
+    rows = table[table["kind"] == kind].drop(columns=["cell", "kind"])
+    units = table.attrs.get("units", {}).get("mean", "a.u.")
+    seconds = rows.drop_duplicates("delay").sort_values("delay")["delay_s"].to_numpy(dtype=np.float64)
+    average = xr.Dataset.from_dataframe(rows.drop(columns="delay_s").set_index(["layer", "delay"]))
+    if np.isfinite(seconds).all():
+        average = average.assign_coords(delay_s=("delay", seconds))
+    for name in ("mean", "lower", "upper"):
+        average[name].attrs["units"] = units
+    return average.assign_attrs(kind=kind, at="onset", normalise="mean", confidence=0.95)
+
+
+def _place(one: CellCorrelation) -> int:
+    return one.movie.channels.index(one.correlation.with_)
+
+
+def _shown(peaks: PeakMap) -> list[tuple[Shown, str]]:
+    """The two rows of the page of peaks, with the labels of their colours."""
+    return [("correlation", "peak correlation"), ("lag", f"lag of the peak ({peaks.lag_unit.unit})")]
+
+
+def _extend(peaks: PeakMap, shown: Shown) -> str:
+    values, _, (low, high) = peaks.picture(shown, None)
+    below, above = bool((values < low).any()), bool((values > high).any())
+    return "both" if below and above else "min" if below else "max" if above else "neither"
+
+
+def _map_notes(one: CellCorrelation) -> list[str]:
+    """What the maps show other than what was correlated."""
+    settings = one.correlation.settings
+    changed = settings.get("detrend", "none") != "none" or settings.get("difference")
+    return ["values as measured"] * bool(changed) + ["grey: not used"] * (not one.used.all())
+
+
+def _pair_notes(tables: list[PairTable]) -> list[str]:
+    facts = ["coloured bands: quartiles of pairs"]
+    if any(np.isfinite(table.threshold) for table in tables):
+        facts.append("grey band: chance, 95 % at all distances and lags")
+    if any((np.abs(table.correlation) >= table.threshold).any() for table in tables):
+        facts.append("outlined: beyond chance")
+    return [*facts, f"bins of fewer than {min(table.fewest for table in tables)} pairs left out"]
+
+
+def _share_pairs(columns: list[list[Any]]) -> None:
+    """The same correlations and lags in all columns, written on the left."""
+    ends = np.array([lines.get_ylim() for lines, _ in columns])
+    for number, (lines, image) in enumerate(columns):
+        lines.set_ylim(ends[:, 0].min(), ends[:, 1].max())
+        if number:
+            image.set_ylabel("")
+            lines.tick_params(labelleft=False)
+            image.tick_params(labelleft=False)
+
+
+def _write_key(sheet: Sheet, handles: list[Any], top: float, columns: int) -> None:
+    place = (LEFT_MM / sheet.width_mm, 1.0 - top / sheet.height_mm)
+    sheet.figure.legend(
+        handles=handles,
+        ncols=columns,
+        frameon=False,
+        loc="upper left",
+        bbox_to_anchor=place,
+        borderpad=0.0,
+        borderaxespad=0.0,
+        handlelength=1.6,
+        columnspacing=1.2,
+        labelspacing=0.3,
+    )

@@ -1,0 +1,226 @@
+"""The pictures of one cell of a movie's study."""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cytodisk.arrays import FloatArray
+from cytodisk.pages.animation import write_animation
+from cytodisk.pages.cell_movie import HEADING_MM, LEFT_MM, CellMovie
+from cytodisk.pages.consistency_page import consistency_sheet
+from cytodisk.pages.edge_page import edge_sheet
+from cytodisk.pages.sheet import Sheet
+from cytodisk.plot.activity_maps import bar_beside, draw_layers, draw_velocity_map, shown_layers
+from cytodisk.plot.strip import draw_strip, field_of_view, time_stamp
+from cytodisk.plot.style import DOUBLE_COLUMN_MM, colour_bar, paper_style, signal_limits
+from cytodisk.runs.channel_names import file_names
+from cytodisk.store.study import Study
+
+SignalAt = Callable[[int], FloatArray | None]
+Progress = Callable[[int, int], None]
+
+_MOST_ANIMATED = 60  # frames; more make long files
+_STRIP_FRAMES, _STRIP_COLUMNS = 6, 3
+_MAP_LEFT, _MAP_WIDTH, _VELOCITY, _MAP, _MAP_GAP = 15.0, 145.0, 34.0, 25.0, 5.5  # mm
+_TALLEST = 1.3  # height of a panel of the strip over its width
+
+
+def write_movie_figures(
+    study: Study,
+    cell: int,
+    signal: SignalAt | None = None,
+    *,
+    animation: bool = True,
+    progress: Progress | None = None,
+) -> list[Path]:
+    """Write the pictures of one cell of a movie into the study's folder of figures.
+
+    They are activity maps of each channel (without a signal the map of edge velocity alone), the motion of
+    the edge, windows on the cell in a few frames, consistency, and last an animation of cell and disk.
+    Frames without a map are gaps in the maps, and left out elsewhere; what a cell has too few frames for is
+    not drawn.
+
+    Parameters
+    ----------
+    study : Study
+        Of a movie.
+    cell : int
+        Its number in the tables.
+    signal : callable, optional
+        Gives the image of a frame, shape (C, H, W), by the recording's frame number, or None if it has none;
+        is asked for the few frames drawn, one at a time. The first channel is the background of the windows.
+    animation : bool
+        Whether to write the animation, which takes longest: at most 60 frames, evenly spaced.
+    progress : callable, optional
+        Called with (done, in all), counted in pages and frames of the animation.
+
+    Returns
+    -------
+    list of Path
+        The files written: `cell_<number>_<what>.png`, 180 mm wide, and `cell_<number>.gif`. Empty when no
+        frame has a map.
+
+    Raises
+    ------
+    ReadError
+        The study is not a movie's, has no such cell, or a map of it is damaged.
+    SignalError
+        An image has another shape than the masks.
+    StudyError
+        The folder cannot be written.
+    """
+    movie = CellMovie.of(study, cell)
+    if not movie.mapped:
+        return []
+    pages = _pages(movie, signal)
+    times = _evenly(movie.mapped, _MOST_ANIMATED) if animation else []
+    report = progress or (lambda done, whole: None)
+    whole, paths = len(pages) + len(times), []
+    for done, (what, draw) in enumerate(pages):
+        report(done, whole)
+        with paper_style():
+            sheet = draw()
+            if sheet is not None:
+                paths.append(movie.save(sheet, what))
+    if times:
+        paths.append(_animate(movie, signal, times, lambda done: report(len(pages) + done, whole)))
+    report(whole, whole)
+    return paths
+
+
+def _pages(movie: CellMovie, signal: SignalAt | None) -> list[tuple[str, Callable[[], Sheet | None]]]:
+    """Name of each page, and what draws it."""
+    pages: list[tuple[str, Callable[[], Sheet | None]]] = []
+    if not movie.channels:
+        pages.append(("velocity", partial(_velocity_sheet, movie)))
+    for number, name in enumerate(file_names(movie.channels)):
+        pages.append((f"activity_{name}", partial(_activity_sheet, movie, number)))
+    pages.append(("edge", partial(edge_sheet, movie)))
+    pages.append(("strip", partial(_strip_sheet, movie, signal)))
+    pages.append(("consistency", partial(consistency_sheet, movie)))
+    return pages
+
+
+def _velocity_sheet(movie: CellMovie) -> Sheet:
+    sheet = Sheet(HEADING_MM + 6.0 + 2 * _VELOCITY + 12.0)
+    movie.write_heading(sheet, "edge velocity")
+    ax = sheet.axes(_MAP_LEFT, HEADING_MM + 6.0, _MAP_WIDTH, 2 * _VELOCITY)
+    draw_velocity_map(ax, movie.activity["velocity"], unit=movie.unit("velocity"), **_time(movie))
+    ax.set_title("edge velocity: protrusion red, retraction blue", loc="left", y=1.0, pad=2.5)
+    return sheet
+
+
+def _activity_sheet(movie: CellMovie, channel: int) -> Sheet:
+    layers = len(shown_layers(movie.grid.layers))
+    first = HEADING_MM + 5.0
+    below = first + _VELOCITY + _MAP_GAP
+    sheet = Sheet(below + layers * (_MAP + _MAP_GAP) + 5.0)
+    name = movie.shown_name(channel)
+    movie.write_heading(sheet, f"activity of {name}")
+    maps = [sheet.axes(_MAP_LEFT, below + k * (_MAP + _MAP_GAP), _MAP_WIDTH, _MAP) for k in range(layers)]
+    draw_layers(
+        [sheet.axes(_MAP_LEFT, first, _MAP_WIDTH, _VELOCITY), *maps],
+        movie.activity["mean"][:, channel],
+        movie.activity["velocity"],
+        label=f"mean {name} (a.u.)",
+        unit=movie.unit("velocity"),
+        **_time(movie),
+    )
+    return sheet
+
+
+def _strip_sheet(movie: CellMovie, signal: SignalAt | None) -> Sheet:
+    times = _spread(movie.mapped, _STRIP_FRAMES)
+    images = [_background(signal, time) for time in times]
+    shown = [image for image in images if image is not None]
+    extent = field_of_view([movie.points_yx])
+    wide, right = extent[3] - extent[2], 15.0 if shown else 0.0
+    width = (DOUBLE_COLUMN_MM - 2 * LEFT_MM - right - 3.0 * (_STRIP_COLUMNS - 1)) / _STRIP_COLUMNS
+    height = width * min((extent[1] - extent[0]) / wide, _TALLEST)
+    rows = -(-len(times) // _STRIP_COLUMNS)
+    sheet = Sheet(HEADING_MM + rows * (height + 10.0) + 1.0)
+    movie.write_heading(sheet, "windows through time" + (f", over {movie.shown_name()}" if shown else ""))
+    axes = [
+        sheet.axes(
+            LEFT_MM + (k % _STRIP_COLUMNS) * (width + 3.0),
+            HEADING_MM + 4.5 + (k // _STRIP_COLUMNS) * (height + 10.0),
+            width,
+            height,
+        )
+        for k in range(len(times))
+    ]
+    windows = [movie.windows(time) for time in times]
+    stamps = [time_stamp(time, movie.interval_s) for time in times]
+    # A frame without its image stays blank below its windows, as its neighbours keep their colours.
+    missing = np.full(movie.maps.image_shape, np.nan)
+    draw_strip(
+        axes,
+        windows,
+        stamps,
+        extent_yx=extent,
+        pixel_size_um=movie.pixel_size_um,
+        signal=[missing if image is None else image for image in images] if shown else None,
+    )
+    if shown:
+        beside = bar_beside(axes[min(_STRIP_COLUMNS, len(axes)) - 1])
+        colour_bar(axes[0].images[0], beside, movie.shown_name(), "a.u.", extend="both")
+    return sheet
+
+
+def _animate(
+    movie: CellMovie, signal: SignalAt | None, times: list[int], progress: Callable[[int], None]
+) -> Path:
+    def frames() -> Iterator[tuple[Any, FloatArray | None, int]]:
+        for time in times:
+            yield movie.windows(time), _background(signal, time), time
+
+    return write_animation(
+        movie.path(".gif"),
+        frames(),
+        extent_yx=field_of_view([movie.points_yx]),
+        pixel_size_um=movie.pixel_size_um,
+        frame_interval_s=movie.interval_s,
+        limits=_limits(movie, signal),
+        label=f"{movie.shown_name()} (a.u.)",
+        progress=progress,
+    )
+
+
+def _limits(movie: CellMovie, signal: SignalAt | None) -> tuple[float, float] | None:
+    """Colours that suit first, middle and last frame alike."""
+    inside = []
+    for time in _spread(movie.mapped, 3):
+        image = _background(signal, time)
+        if image is not None and image.shape == movie.maps.image_shape:
+            inside.append(image[movie.maps[time].mask])
+    if not inside:
+        return None
+    values = np.concatenate(inside)
+    return signal_limits(values, np.ones(values.shape, dtype=bool))
+
+
+def _background(signal: SignalAt | None, time: int) -> FloatArray | None:
+    """First channel of a frame's image."""
+    image = None if signal is None else signal(time)
+    if image is None:
+        return None
+    values = np.asarray(image, dtype=np.float64)
+    return values if values.ndim == 2 else values[0]
+
+
+def _time(movie: CellMovie) -> Any:
+    return {"frame_interval_s": movie.interval_s, "first_frame": movie.first}
+
+
+def _spread(times: list[int], most: int) -> list[int]:
+    """First, last, and as many between as wanted."""
+    chosen = np.linspace(0, len(times) - 1, min(most, len(times))).round().astype(int)
+    return [times[k] for k in chosen]
+
+
+def _evenly(times: list[int], most: int) -> list[int]:
+    """Every k-th, so that at most so many are left."""
+    return times[:: -(-len(times) // most)]

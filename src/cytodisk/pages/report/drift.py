@@ -1,0 +1,116 @@
+"""Slow trends of a cell's mean signal, as bleaching leaves them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from scipy.stats import kendalltau, theilslopes
+
+from cytodisk.arrays import FloatArray
+from cytodisk.store.study import Study
+
+FEWEST_FRAMES = 8
+"""A trend needs so many frames."""
+LARGEST_CHANGE = 0.15
+"""Share of the median by which the mean may change over the movie."""
+STEADINESS = 0.5
+"""Kendall's τ of a trend: it goes one way, rather than up and down."""
+
+_MOST_FRAMES = 500  # that a trend is fitted to, as time and memory grow with their square
+
+
+@dataclass(frozen=True)
+class Drift:
+    """A channel's trend in one cell.
+
+    Attributes
+    ----------
+    cell : int
+    channel : str
+    change : float
+        From the first to the last frame, as a share of the median; negative for a loss.
+    """
+
+    cell: int
+    channel: str
+    change: float
+
+    @property
+    def words(self) -> str:
+        """Channel and change, as "VASP −23 %"."""
+        return f"{self.channel} {self.change:+.0%} over the movie".replace("-", "−")
+
+
+def mean_by_frame(windows: pd.DataFrame) -> pd.Series[float]:
+    """Mean signal of each cell by channel and frame.
+
+    Parameters
+    ----------
+    windows : DataFrame
+        As `Study.windows` of a movie with a signal.
+
+    Returns
+    -------
+    Series
+        By cell, channel and time; windows count by their pixels, those without a mean not at all.
+    """
+    known = windows[windows["mean"].notna()]
+    pixels = known["n_pixels"]
+    keys = [known["cell"], known["channel"], known["time"]]
+    return (known["mean"] * pixels).groupby(keys).sum() / pixels.groupby(keys).sum()
+
+
+def relative_trend(time: FloatArray, mean: FloatArray) -> float:
+    """Change of a mean over a movie along its straight line, 0 where there is no steady one.
+
+    Parameters
+    ----------
+    time : ndarray of shape (T,) and dtype float
+        In frames.
+    mean : ndarray of shape (T,) and dtype float
+
+    Returns
+    -------
+    float
+        As a share of the median.
+
+    References
+    ----------
+    Sen, "Estimates of the regression coefficient based on Kendall's tau", 1968.
+    """
+    every = max(1, mean.size // _MOST_FRAMES)
+    time, mean = time[::every], mean[::every]
+    middle = float(np.median(mean)) if mean.size else 0.0
+    if mean.size < FEWEST_FRAMES or middle == 0.0 or np.ptp(mean) == 0.0:
+        return 0.0
+    if abs(kendalltau(time, mean).statistic) < STEADINESS:
+        return 0.0
+    return float(theilslopes(mean, time)[0] * np.ptp(time) / abs(middle))
+
+
+def signal_drifts(study: Study) -> list[Drift]:
+    """Channels of cells whose mean changes steadily by more than `LARGEST_CHANGE`.
+
+    Parameters
+    ----------
+    study : Study
+        Of a movie.
+
+    Returns
+    -------
+    list of Drift
+        By cell, then channel; empty without a signal.
+    """
+    return list(_drifts(study.windows)) if "mean" in study.windows else []
+
+
+def _drifts(windows: pd.DataFrame) -> Iterator[Drift]:
+    means = mean_by_frame(windows).rename("mean").reset_index()
+    for (cell, channel), rows in means.groupby(["cell", "channel"]):
+        time, mean = (np.asarray(rows[name], dtype=np.float64) for name in ("time", "mean"))
+        change = relative_trend(time, mean)
+        if abs(change) > LARGEST_CHANGE:
+            yield Drift(int(str(cell)), str(channel), change)

@@ -1,0 +1,203 @@
+"""`write_report`: one self-contained HTML page of a movie's study."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cytodisk.errors import ParameterError, StudyError
+from cytodisk.files import replacing
+from cytodisk.pages.report.bokeh_parts import bokeh
+from cytodisk.pages.report.cell_data import CellData
+from cytodisk.pages.report.encode import json_for_script
+from cytodisk.pages.report.flag import Flag
+from cytodisk.pages.report.flags import red_flags
+from cytodisk.pages.report.page_figures import LAG_COLOURS, figures_of, library_script, palette
+from cytodisk.pages.report.pictures import MOST_BYTES, OUTSIDE, Pictures, box_around, encode_frames, size_of
+from cytodisk.pages.report.shown_correlations import pairs_of
+from cytodisk.pages.report.signal_file import FoundSignal, FrameSource, shown_signal
+from cytodisk.pages.report.words import MOST_PLACES, page_words
+from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS
+from cytodisk.store.study import Study
+
+REPORT = "report.html"
+_SCRIPTS = ("decode", "store", "raster", "views", "controls", "main")
+
+Progress = Callable[[int, int], None]
+
+
+def write_report(
+    study: Study,
+    path: str | os.PathLike[str] | None = None,
+    *,
+    cell: int | None = None,
+    signal: FrameSource | None = None,
+    progress: Progress | None = None,
+) -> Path:
+    """Write a page with the study's red flags and linked views of one of its cells.
+
+    The page is one file that needs no network: BokehJS, pictures and numbers are inside.
+
+    Parameters
+    ----------
+    study : Study
+        Of a movie.
+    path : path-like, optional
+        By default report.html in the study, or report_cell_00003.html for a cell that is not the usual one.
+    cell : int, optional
+        By default the one with the most mapped frames.
+    signal : FrameSource, optional
+        The movie behind the windows, with the study's channels; by default the file that the study names,
+        if it is still there and unchanged. Otherwise the page shows windows over plain masks, and says so.
+    progress : callable, optional
+        Called with the number of frames done and that of all.
+
+    Returns
+    -------
+    Path
+        Of the page.
+
+    Raises
+    ------
+    StudyError
+        The study has no time or no mapped frame, or the page cannot be written.
+    ParameterError
+        The study has no such cell, none of its frames is mapped, or a page cannot hold so many windows.
+    SignalError
+        The signal has images of another size, other channels or fewer frames than the study.
+    MissingPartError
+        Bokeh is not installed.
+    """
+    bokeh()  # before any work is done
+    usual = _usual_cell(study)
+    shown = _open_cell(study, usual if cell is None else cell)
+    usual_path = study.path / (REPORT if shown.cell == usual else f"report_cell_{shown.cell:05d}.html")
+    target = usual_path if path is None else Path(path)
+    if not target.parent.is_dir():
+        raise StudyError(f"cannot write {target}: there is no folder {target.parent}")
+    html = _render(shown, shown_signal(study, signal), progress)
+    with replacing(target) as temporary:
+        temporary.write_text(html, encoding="utf-8")
+    return target
+
+
+def _usual_cell(study: Study) -> int:
+    """The cell with the most mapped frames, the first of several."""
+    if not study.is_movie:
+        raise StudyError(
+            f"study {study.path} has no time: the report shows movies, so make one with cytodisk movie; the "
+            "pictures of single masks are in figures/"
+        )
+    mapped = study.cells.loc[study.cells["status"] == "ok", "cell"]
+    if mapped.empty:
+        raise StudyError(f"study {study.path} has no mapped frame: column 'reason' of cells.parquet says why")
+    cells, counts = np.unique(mapped, return_counts=True)
+    return int(cells[counts.argmax()])
+
+
+def _open_cell(study: Study, cell: int) -> CellData:
+    rows = study.cells[study.cells["cell"] == cell]
+    if rows.empty:
+        count = study.cells["cell"].nunique()
+        raise ParameterError(f"cell must be a number of the study's {count} cells from 0, got {cell}")
+    if not (rows["status"] == "ok").any():
+        raise ParameterError(f"cell {cell} has no mapped frame: choose another one, or leave it out")
+    data = CellData(study, cell)
+    if data.grid.n_windows >= OUTSIDE:
+        raise ParameterError(
+            f"study {study.path} has {data.grid.n_windows} windows a cell, a page holds fewer than "
+            f"{OUTSIDE}: run it with fewer layers or sectors"
+        )
+    return data.thinned()
+
+
+def page_flags(study: Study, signal: FrameSource | None = None) -> list[Flag]:
+    """The red flags that stand on the page of a study.
+
+    Parameters
+    ----------
+    study : Study
+        Of a movie.
+    signal : FrameSource, optional
+        As for `write_report`.
+
+    Returns
+    -------
+    list of Flag
+        Those of `red_flags`, and before them one if the signal cannot be shown.
+
+    Raises
+    ------
+    SignalError
+        As for `write_report`.
+    """
+    return _flags(study, shown_signal(study, signal))
+
+
+def _flags(study: Study, found: FoundSignal) -> list[Flag]:
+    return [*_signal_flags(study, found), *red_flags(study)]
+
+
+def _render(cell: CellData, found: FoundSignal, progress: Progress | None) -> str:
+    from jinja2 import Environment, StrictUndefined
+
+    box = box_around(cell)
+    limits = Pictures(cell, box, found.source).limits()
+    cell = cell.every_frames(Pictures(cell, box, found.source).every(limits))
+    pictures = list(encode_frames(Pictures(cell, box, found.source), limits, progress))
+    while sum(map(size_of, pictures)) > MOST_BYTES and len(pictures) > 1:  # larger than the frames judged by
+        cell, pictures = cell.every_frames(2 * cell.every), pictures[::2]
+    pairs, left_out = pairs_of(cell)
+    data = cell.as_json() | {
+        "pairs": pairs,
+        "first": next(k for k, frame in enumerate(pictures) if frame["labels"]) if _any(pictures) else 0,
+        "picture": {"shape": box.shape, "limits": limits, "box": vars(box)},
+        "palettes": {
+            "signal": palette(SIGNAL_COLOURS),
+            "diverging": palette(DIVERGING_COLOURS),
+            "lag": palette(LAG_COLOURS),
+        },
+    }
+    words = page_words(cell, _flags(cell.study, found), found, box, left_out)
+    template = Environment(autoescape=True, undefined=StrictUndefined).from_string(_asset("page.html"))
+    return template.render(
+        words
+        | {
+            "data": data,
+            "most_places": MOST_PLACES,
+            "style": _asset("page.css"),
+            "library": library_script(),
+            "scripts": [_asset(f"{name}.js") for name in _SCRIPTS],
+            "data_json": json_for_script(data),
+            "pictures_json": json_for_script(pictures),
+            "figures_json": json_for_script(figures_of(cell, box, correlated=bool(pairs))),
+        }
+    )
+
+
+def _any(pictures: list[dict[str, Any]]) -> bool:
+    return any(frame["labels"] for frame in pictures)
+
+
+def _signal_flags(study: Study, found: FoundSignal) -> list[Flag]:
+    if not found.fault:
+        return []
+    return [
+        Flag(
+            "signal not shown",
+            f"the movie's pixels are not on this page: {found.fault}",
+            "The cell is drawn as its windows alone; all numbers are those of the run.",
+            "Put the file back where it was, or name the place where it is now: cytodisk report "
+            f"{shlex.quote(study.path.name or '.')} --signal FILE",
+        )
+    ]
+
+
+def _asset(name: str) -> str:
+    return (files("cytodisk.pages.report") / "assets" / name).read_text(encoding="utf-8")

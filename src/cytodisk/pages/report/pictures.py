@@ -1,0 +1,247 @@
+"""Pictures of a cell by frame: its pixels, and which window each of them lies in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.ndimage import binary_dilation
+
+from cytodisk.arrays import FloatArray
+from cytodisk.errors import ReadError
+from cytodisk.pages.report.cell_data import CellData
+from cytodisk.pages.report.encode import grey_levels, pack_labels, pack_picture
+from cytodisk.pages.report.signal_file import FrameSource
+
+MOST_BYTES = 10_000_000
+"""Of pictures and labels together, as text; a longer movie is thinned out."""
+LONGEST_SIDE = 400
+"""Of a picture, in its own pixels."""
+OUTSIDE = 65535
+"""Label of a pixel outside the cell."""
+
+_MARGIN = 0.04  # of the box around the cell, on each side
+_SAMPLE = 3  # frames that are encoded to estimate the size of all
+_FINEST = 4  # labels a pixel and direction
+_PERCENTILES = (0.5, 99.9)
+
+
+@dataclass(frozen=True)
+class Box:
+    """The part of the image that is shown, and how finely.
+
+    Attributes
+    ----------
+    top, left, height, width : int
+        In pixels of the image.
+    scale : float
+        Pixels of the picture a pixel of the image.
+    """
+
+    top: int
+    left: int
+    height: int
+    width: int
+    scale: float
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(H, W) of the picture."""
+        return max(1, round(self.height * self.scale)), max(1, round(self.width * self.scale))
+
+    @property
+    def repeats_pixels(self) -> bool:
+        """Whether each pixel of the image stays a square of one colour."""
+        return self.scale >= 1
+
+    @property
+    def axes_yx(self) -> tuple[FloatArray, FloatArray]:
+        """Where the picture's rows and columns lie in the image, shapes (H,) and (W,)."""
+        rows, columns = self.shape
+        y = self.top - 0.5 + (np.arange(rows) + 0.5) * self.height / rows
+        x = self.left - 0.5 + (np.arange(columns) + 0.5) * self.width / columns
+        return y, x
+
+    def nearest(self, image: Any) -> Any:
+        """Value of an image, shape (H, W), at the pixel nearest to each pixel of the picture."""
+        image = np.asarray(image)
+        rows, columns = (
+            np.clip(np.floor(along + 0.5).astype(int), 0, size - 1)
+            for along, size in zip(self.axes_yx, image.shape, strict=True)
+        )
+        return image[np.ix_(rows, columns)]
+
+
+def box_around(cell: CellData) -> Box:
+    """The box that holds the cell in all frames.
+
+    Parameters
+    ----------
+    cell : CellData
+        With one mapped frame at least.
+
+    Returns
+    -------
+    Box
+        At most `LONGEST_SIDE` picture pixels long; finer than the image where the cell is small.
+    """
+    outlines = [record.boundary.contour.outline_yx for record in cell.maps.records if record.boundary]
+    low = np.min([outline.min(axis=0) for outline in outlines], axis=0)
+    high = np.max([outline.max(axis=0) for outline in outlines], axis=0)
+    margin = 2 + _MARGIN * (high - low).max()
+    top, left = np.maximum(np.floor(low - margin), 0).astype(int).tolist()
+    shape = np.array(cell.maps.image_shape)
+    bottom, right = np.minimum(np.ceil(high + margin) + 1, shape).astype(int).tolist()
+    height, width = bottom - top, right - left
+    return Box(top, left, height, width, min(_FINEST, LONGEST_SIDE / max(height, width)))
+
+
+def window_labels(cell: CellData, box: Box, time: int) -> Any:
+    """Number of the window at each pixel of a picture.
+
+    Parameters
+    ----------
+    cell : CellData
+    box : Box
+    time : int
+        A frame with a map.
+
+    Returns
+    -------
+    ndarray of shape (H, W) and dtype uint16
+        `OUTSIDE` outside the cell.
+    """
+    disk, (y, x) = cell.maps[time], box.axes_yx
+    # The outline is nowhere further from the mask than its neighbouring pixels.
+    row, column = np.nonzero(box.nearest(binary_dilation(disk.mask, np.ones((3, 3), dtype=bool))))
+    uv = disk.to_disk(np.column_stack([y[row], x[column]]))
+    inside = np.isfinite(uv[:, 0])
+    labels = np.full(box.shape, OUTSIDE, dtype=np.uint16)
+    labels[row[inside], column[inside]] = np.minimum(cell.grid.window_of(uv[inside]), OUTSIDE - 1)
+    return labels
+
+
+def resampled(image: Any, box: Box) -> FloatArray:
+    """The box's part of an image: mean over the pixels that fall together, or interpolated.
+
+    Parameters
+    ----------
+    image : array_like of shape (H, W)
+    box : Box
+
+    Returns
+    -------
+    ndarray of the box's shape and dtype float
+    """
+    values = np.asarray(image, dtype=np.float64)
+    if box.repeats_pixels:
+        return np.asarray(box.nearest(values))
+    part = values[box.top : box.top + box.height, box.left : box.left + box.width]
+    return _shares(part.shape[0], box.shape[0]) @ part @ _shares(part.shape[1], box.shape[1]).T
+
+
+def _shares(before: int, after: int) -> FloatArray:
+    """Weights of old pixels in fewer new ones along an axis, shape (after, before)."""
+    edges = np.linspace(0, before, after + 1)
+    low = np.maximum(edges[:-1, None], np.arange(before))
+    high = np.minimum(edges[1:, None], np.arange(1, before + 1))
+    overlap = np.maximum(high - low, 0.0)
+    return np.asarray(overlap / overlap.sum(axis=1, keepdims=True))
+
+
+@dataclass(frozen=True, eq=False)
+class Pictures:
+    """Encoder of a cell's frames.
+
+    Attributes
+    ----------
+    cell : CellData
+    box : Box
+    source : FrameSource or None
+        Without one there are labels alone.
+    """
+
+    cell: CellData
+    box: Box
+    source: FrameSource | None
+
+    def frame(self, time: int, limits: list[tuple[float, float]]) -> dict[str, Any]:
+        """Labels and channels of a frame, each None where there is none."""
+        labels = None
+        if self.cell.maps.records[time].has_map:
+            labels = pack_labels(window_labels(self.cell, self.box, time))
+        pixels = self._pixels(time)
+        if pixels is None:
+            return {"labels": labels, "channels": None}
+        pairs = zip(pixels, limits, strict=True)
+        channels = [pack_picture(self._grey(image, *pair)) for image, pair in pairs]
+        return {"labels": labels, "channels": channels}
+
+    def _grey(self, image: Any, low: float, high: float) -> Any:
+        if self.box.repeats_pixels:  # first the few pixels, then their copies
+            return self.box.nearest(grey_levels(image, low, high))
+        return grey_levels(resampled(image, self.box), low, high)
+
+    def _pixels(self, time: int) -> Any:
+        try:
+            return None if self.source is None else self.source.frame(time)
+        except ReadError:  # has its row and its flag in the study
+            return None
+
+    def limits(self) -> list[tuple[float, float]]:
+        """Black and white of each channel, from frames spread over the movie."""
+        if self.source is None:
+            return []
+        found = [self._pixels(time) for time in self._spread()]
+        known = [pixels for pixels in found if pixels is not None]
+        return [self._limits_of([pixels[k] for pixels in known]) for k in range(len(self.source.channels))]
+
+    def _limits_of(self, images: list[Any]) -> tuple[float, float]:
+        parts = [resampled(image, self.box).ravel() for image in images]
+        values = np.concatenate(parts) if parts else np.zeros(0)
+        values = values[np.isfinite(values)]
+        if not values.size:
+            return 0.0, 1.0
+        low, high = np.percentile(values, _PERCENTILES).tolist()
+        return (low, high) if high > low else (low - 0.5, low + 0.5)
+
+    def _spread(self) -> list[int]:
+        frames = self.cell.frames
+        return sorted({frames[round(k)] for k in np.linspace(0, len(frames) - 1, _SAMPLE)})
+
+    def every(self, limits: list[tuple[float, float]]) -> int:
+        """Every so-manyth frame may be shown within `MOST_BYTES`, judged by some frames."""
+        largest = max(size_of(self.frame(time, limits)) for time in self._spread())
+        return self.cell.every * max(1, int(np.ceil(largest * len(self.cell.frames) / MOST_BYTES)))
+
+
+def size_of(frame: dict[str, Any]) -> int:
+    """Length of an encoded frame as text."""
+    return len(frame["labels"] or "") + sum(len(text) for text in frame["channels"] or [])
+
+
+def encode_frames(
+    pictures: Pictures, limits: list[tuple[float, float]], progress: Callable[[int, int], None] | None
+) -> Iterator[dict[str, Any]]:
+    """Labels and channels of all shown frames, one after the other.
+
+    Parameters
+    ----------
+    pictures : Pictures
+    limits : list of (float, float)
+        Black and white of each channel.
+    progress : callable, optional
+        Called with the number of frames done and that of all.
+
+    Yields
+    ------
+    dict
+        As `Pictures.frame`.
+    """
+    frames = pictures.cell.frames
+    for number, time in enumerate(frames):
+        yield pictures.frame(time, limits)
+        if progress is not None:
+            progress(number + 1, len(frames))

@@ -1,0 +1,109 @@
+"""Correlations of a cell as the page shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from cytodisk.arrays import FloatArray
+from cytodisk.pages.report.cell_data import CellData
+from cytodisk.pages.report.encode import pack_floats
+from cytodisk.pages.report.shown_names import correlation_name, differences, labels_of, shown_name
+from cytodisk.store.correlation_store import Correlation
+
+MOST_CURVE_NUMBERS = 900_000
+"""Of curves of single windows that a page holds; beyond, only peaks and the layers' curves are shown."""
+
+_PEAK = ("correlation", "lag", "p", "q", "threshold")  # low and high hold for a lag chosen beforehand
+_LAYER_PEAK = ("correlation", "lag", "p", "q", "threshold")
+_CURVE = ("correlation", "low", "high")
+
+
+def pairs_of(cell: CellData) -> tuple[list[dict[str, Any]], list[str]]:
+    """Every correlation of a study for one cell.
+
+    Parameters
+    ----------
+    cell : CellData
+
+    Returns
+    -------
+    pairs : list of dict
+        For the page's scripts, those with velocity first; empty if nothing was correlated. What was not
+        computed, as p and q without surrogates, is NaN.
+    notes : list of str
+        What was left out, in words.
+    """
+    names = sorted(cell.study.correlations, key=lambda names: not names[1].startswith("velocity"))
+    found = [(pair, cell.study.correlation(*pair)) for pair in names]
+    known = [(pair, one) for pair, one in found if len(_of(cell, one.windows))]
+    shown = {pair for pair, _ in known}
+    notes = [
+        f"correlation of {correlation_name(pair)}, which this cell has not"
+        for pair in names
+        if pair not in shown
+    ]
+    numbers = sum(len(_of(cell, one.curves)) * len(_CURVE) for _, one in known)
+    with_curves = numbers <= MOST_CURVE_NUMBERS
+    if not with_curves:
+        notes.append("correlation curves of single windows (only those of layers are shown)")
+    labels = labels_of([(pair, one.settings) for pair, one in known])
+    pairs = [
+        {"label": label, "differs": differences(one.settings)} | _pair(cell, one, with_curves)
+        for label, (_, one) in zip(labels, known, strict=True)
+    ]
+    return pairs, notes
+
+
+def _pair(cell: CellData, found: Correlation, with_curves: bool) -> dict[str, Any]:
+    windows, layers = _of(cell, found.windows), _of(cell, found.layers)
+    layer_curves = _of(cell, found.layer_curves)
+    curves = _of(cell, found.curves) if with_curves else None
+    lags = np.unique(pd.concat([table["lag"] for table in (layer_curves, curves) if table is not None]))
+    return {
+        "signal": shown_name(found.signal),
+        "with": shown_name(found.with_),
+        "lags": lags.tolist(),
+        "windows": {name: pack_floats(_grid(cell, windows, name)) for name in _PEAK},
+        "curves": None if curves is None else dict(_curves(cell, curves, lags)),
+        "layers": {name: pack_floats(_layer(cell, layers, name)) for name in _LAYER_PEAK},
+        "layer_curves": pack_floats(_curve(cell, layer_curves, "correlation", lags)),
+    }
+
+
+def _curves(cell: CellData, curves: pd.DataFrame, lags: Any) -> Iterator[tuple[str, Any]]:
+    for name in _CURVE:
+        yield name, pack_floats(_curve(cell, curves, name, lags))
+
+
+def _of(cell: CellData, table: pd.DataFrame) -> pd.DataFrame:
+    return table[table["cell"] == cell.cell]
+
+
+def _grid(cell: CellData, table: pd.DataFrame, name: str) -> FloatArray:
+    values = np.full((cell.grid.layers, cell.grid.sectors), np.nan)
+    if name in table:
+        values[table["layer"].to_numpy(), table["sector"].to_numpy()] = table[name].to_numpy(dtype=np.float64)
+    return values
+
+
+def _layer(cell: CellData, table: pd.DataFrame, name: str) -> FloatArray:
+    values = np.full(cell.grid.layers, np.nan)
+    if name in table:
+        values[table["layer"].to_numpy()] = table[name].to_numpy(dtype=np.float64)
+    return values
+
+
+def _curve(cell: CellData, table: pd.DataFrame, name: str, lags: Any) -> FloatArray:
+    """By layer, sector if the table has one, and lag."""
+    axes = [table["layer"].to_numpy(), np.searchsorted(lags, table["lag"].to_numpy())]
+    shape = [cell.grid.layers, len(lags)]
+    if "sector" in table:
+        axes.insert(1, table["sector"].to_numpy())
+        shape.insert(1, cell.grid.sectors)
+    values = np.full(shape, np.nan)
+    values[tuple(axes)] = table[name].to_numpy(dtype=np.float64)
+    return values

@@ -1,0 +1,86 @@
+"""Names of channels, correlations and files, and what sets correlations apart, in the page's words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import PureWindowsPath
+from typing import Any
+
+from cytodisk.pages.correlation_words import settings_words
+from cytodisk.store.study import Study
+
+
+def shown_name(name: str) -> str:
+    """Name of a channel: files without names number them."""
+    return f"channel {name}" if name.isdigit() else name
+
+
+def correlation_name(names: Sequence[str]) -> str:
+    """Words for a correlation.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Signal, what it was correlated with, and the name of a variant if it has one, as an item of
+        `Study.correlations`.
+
+    Returns
+    -------
+    str
+        As "edge with velocity (early frames)".
+    """
+    signal, with_, *variant = names
+    words = f"{shown_name(signal)} with {shown_name(with_)}"
+    return f"{words} ({variant[0]})" if variant and variant[0] else words
+
+
+def labels_of(correlations: Sequence[tuple[Sequence[str], Mapping[str, Any]]]) -> list[str]:
+    """Labels of correlations to choose from, each its own.
+
+    Parameters
+    ----------
+    correlations : sequence of (names, settings)
+
+    Returns
+    -------
+    list of str
+        Those of the same names are told apart by their settings.
+    """
+    labels = []
+    for names, settings in correlations:
+        words = correlation_name(names)
+        alike = [other for other, _ in correlations if tuple(other[:2]) == tuple(names[:2])]
+        differs = differences({**settings, "name": ""}) if len(alike) > 1 else ""
+        labels.append(f"{words}: {differs}" if differs else words)
+    return labels
+
+
+def differences(settings: Mapping[str, Any]) -> str:
+    """What in a correlation's settings is not the default.
+
+    Parameters
+    ----------
+    settings : dict
+        As in settings.json.
+
+    Returns
+    -------
+    str
+        As "linear detrending, without lags −1, 0"; empty if all is the default.
+    """
+    facts = settings_words(settings)
+    if settings.get("against", "window") != "window":
+        facts.append(f"against the {settings['against']}")
+    return ", ".join(facts)
+
+
+def file_name(path: str) -> str:
+    """Last part of a path of any system: folders are nobody's business but the owner's."""
+    return PureWindowsPath(path).name or path
+
+
+def without_folders(text: str, study: Study) -> str:
+    """A reason or warning with file names in place of the paths of the run's inputs."""
+    for told in study.provenance.get("inputs", {}).values():
+        text = text.replace(told["path"], file_name(told["path"]))
+    return text

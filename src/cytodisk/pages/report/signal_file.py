@@ -1,0 +1,139 @@
+"""Find the image file that a study's signal was read from."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from cytodisk.errors import ReadError, SignalError
+from cytodisk.images.frames import open_frames
+from cytodisk.pages.report.shown_names import file_name
+from cytodisk.store.study import Study
+
+
+class FrameSource(Protocol):
+    """A movie that gives a frame at a time, as `cytodisk.images.frames.open_frames` returns it."""
+
+    @property
+    def n_frames(self) -> int:
+        """Number of frames."""
+        ...
+
+    @property
+    def image_shape(self) -> tuple[int, int]:
+        """(H, W) of a frame, in pixels."""
+        ...
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the channels."""
+        ...
+
+    def frame(self, number: int) -> np.ndarray[Any, Any]:
+        """Pixels of a frame, shape (C, H, W)."""
+        ...
+
+
+@dataclass(frozen=True)
+class FoundSignal:
+    """The movie to show behind the windows.
+
+    Attributes
+    ----------
+    source : FrameSource or None
+        None if there is none to show.
+    fault : str
+        Why the study's signal is not shown; empty if it is, or if the study has none.
+    """
+
+    source: FrameSource | None
+    fault: str = ""
+
+
+def find_signal(study: Study) -> FoundSignal:
+    """Open the file that a study names as its signal, if it still holds what was measured.
+
+    Parameters
+    ----------
+    study : Study
+
+    Returns
+    -------
+    FoundSignal
+        A relative path is looked up from the current folder, then from the study's and the one around it.
+    """
+    told = study.provenance.get("inputs", {}).get("signal")
+    if not told:
+        return FoundSignal(None)
+    path, name = Path(told["path"]), file_name(told["path"])
+    places = [path] if path.is_absolute() else [path, study.path.parent / path, study.path / path]
+    there = [place for place in places if place.is_file()]
+    if not there:
+        return FoundSignal(None, f"{name} is not there any more")
+    try:
+        same = next((place for place in there if _sha256(place) == told.get("sha256")), None)
+        if same is None:
+            return FoundSignal(None, f"{name} does not hold what was measured (its sha256 differs)")
+        source = open_frames(same)
+    except (ReadError, OSError) as error:
+        words = str(error)
+        for place in there:
+            words = words.replace(str(place), name)
+        return FoundSignal(None, words)
+    fault = misfit(study, source)
+    return (
+        FoundSignal(None, f"{name} is not the movie that was measured: it {fault}")
+        if fault
+        else FoundSignal(source)
+    )
+
+
+def shown_signal(study: Study, signal: FrameSource | None = None) -> FoundSignal:
+    """The movie to show behind a study's windows: the one that is given, or else the one that it names.
+
+    Parameters
+    ----------
+    study : Study
+        Of a movie.
+    signal : FrameSource, optional
+
+    Returns
+    -------
+    FoundSignal
+
+    Raises
+    ------
+    SignalError
+        The given one is not of the size of the study's masks, or has other channels or fewer frames.
+    """
+    if signal is None:
+        return find_signal(study)
+    fault = misfit(study, signal)
+    if fault:
+        raise SignalError(f"signal {fault}: pass the movie that was measured")
+    return FoundSignal(signal)
+
+
+def misfit(study: Study, source: FrameSource) -> str:
+    """Why a movie cannot lie behind a study's windows, as "has …"; empty if it can."""
+    (height, width), (mask_height, mask_width) = source.image_shape, study.provenance["image_shape"]
+    if (height, width) != (mask_height, mask_width):
+        return f"has images of {height} × {width} pixels, the study's masks have {mask_height} × {mask_width}"
+    activity = study.activity(int(study.cells["cell"].iloc[0]))
+    channels = activity.sizes["channel"] if "mean" in activity else 0
+    last = int(study.cells["time"].max())
+    if len(source.channels) != channels or source.n_frames <= last:
+        return (
+            f"has {source.n_frames} frames of {len(source.channels)} channels, the study's has {channels} "
+            f"channels and at least {last + 1} frames"
+        )
+    return ""
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

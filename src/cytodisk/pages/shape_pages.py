@@ -1,0 +1,126 @@
+"""Pages about shapes for the folder of a study: the landscape of shapes, and the extremes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from cytodisk.arrays import BoolArray
+from cytodisk.files import replacing
+from cytodisk.pages.sheet import Sheet
+from cytodisk.plot.shape_plane import known_scores, plane_limits, shape_landscape, spread_cells
+from cytodisk.plot.shape_rows import cells_along, least_median_most, shape_examples
+from cytodisk.plot.style import DPI, colour_bar, paper_style
+
+_ALONG = 7  # example cells beside the landscape
+_WIDE, _FLATTEST = 108.0, 0.6  # of the landscape in mm; least height over width, for the examples beside it
+_EXTREMES_WIDE, _EXTREMES_TALL = 142.0, 160.0  # in mm, at most
+_ROWS = ("least", "median", "most")
+
+
+def cells_to_draw(score: pd.DataFrame) -> list[int]:
+    """Cells whose masks `write_shape_figures` needs.
+
+    Parameters
+    ----------
+    score : DataFrame
+        As `complexity_score` returns it.
+
+    Returns
+    -------
+    list of int
+    """
+    extremes = [cell for row in least_median_most(score) for cell in row]
+    return sorted({*spread_cells(score), *cells_along(score, _ALONG), *extremes})
+
+
+def write_shape_figures(
+    folder: Path, score: pd.DataFrame, masks: Mapping[int, BoolArray], pixel_size_um: float | None = None
+) -> list[Path]:
+    """Draw the landscape of shapes and the least, median and most complex cells.
+
+    Parameters
+    ----------
+    folder : Path
+        Gets `complexity.png` and `extremes.png`.
+    score : DataFrame
+        As `complexity_score` returns it.
+    masks : mapping of int to ndarray of shape (h, w) and dtype bool
+        Masks of the cells that `cells_to_draw` names.
+    pixel_size_um : float, optional
+
+    Returns
+    -------
+    list of Path
+    """
+    with paper_style():
+        pages = {
+            "complexity": _landscape_page(score, masks),
+            "extremes": _extremes_page(score, masks, pixel_size_um),
+        }
+        return [_save(page, folder / f"{name}.png") for name, page in pages.items()]
+
+
+def _landscape_page(score: pd.DataFrame, masks: Mapping[int, BoolArray]) -> Figure:
+    known = known_scores(score)
+    low, high = plane_limits(known)
+    width, height = high - low
+    tall = float(_WIDE * min(max(height / width, _FLATTEST), 1.0))
+    sheet = Sheet(tall + 16.0)
+    title = f"{len(known)} shapes, alike ones close together; arrow: principal axis"
+    sheet.text(6.0, 6.0, title, fontsize=7.5)
+    ax = sheet.axes(6.0, 9.0, _WIDE, tall)
+    dots, _ = shape_landscape(ax, score, masks)
+    spare = max(0.0, float(width * tall / _WIDE - height))
+    ax.set_ylim(low[1] - 0.5 * spare, high[1] + 0.5 * spare)
+    sheet.text(121.0, 6.0, "at even steps of rank", fontsize=7.5)
+    along = cells_along(score, _ALONG)[::-1]
+    strip = sheet.axes(121.0, 9.0, 24.0, tall)
+    drawn = shape_examples(strip, score, masks, [[cell] for cell in along], one_scale=False)
+    values = known.set_index("cell")["complexity"]
+    for cell, path in zip(along, drawn.get_paths(), strict=True):
+        strip.annotate(
+            f"{values[cell]:.1f}".replace("-", "−"),
+            (strip.get_xlim()[1], float(path.get_extents().intervaly.mean())),
+            xytext=(2, 0),
+            textcoords="offset points",
+            va="center",
+        )
+    colour_bar(dots, sheet.axes(159.0, 9.0, 2.5, min(45.0, tall)), "complexity")
+    return sheet.figure
+
+
+def _extremes_page(
+    score: pd.DataFrame, masks: Mapping[int, BoolArray], pixel_size_um: float | None
+) -> Figure:
+    rows = least_median_most(score)
+    trial = Figure().add_subplot()
+    shape_examples(trial, score, masks, rows)
+    right, bottom = trial.get_xlim()[1], trial.get_ylim()[0]
+    tall = min(_EXTREMES_WIDE * bottom / right, _EXTREMES_TALL)
+    sheet = Sheet(tall + 18.0)
+    sheet.text(6.0, 6.0, "Least, median and most complex cells, at one scale", fontsize=7.5)
+    ax = sheet.axes(18.0, 9.0, tall * right / bottom, tall)
+    drawn = shape_examples(ax, score, masks, rows, pixel_size_um=pixel_size_um)
+    for name, path in zip(_ROWS, drawn.get_paths()[:: len(rows[0])], strict=True):
+        ax.annotate(
+            name,
+            (0.0, float(path.get_extents().intervaly.mean())),
+            xytext=(-2, 0),
+            textcoords="offset points",
+            ha="right",
+            va="center",
+        )
+    colour_bar(drawn, sheet.axes(162.0, 9.0, 2.5, 40.0), "complexity")
+    return sheet.figure
+
+
+def _save(page: Figure, path: Path) -> Path:
+    with replacing(path) as temporary:
+        options: dict[str, Any] = {"dpi": DPI}
+        page.savefig(temporary, **options)
+    return path

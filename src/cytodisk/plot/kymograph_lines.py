@@ -1,0 +1,136 @@
+"""Draw kymographs along a line of the image and along the tracked edge: time to the right."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.image import AxesImage
+from matplotlib.ticker import MaxNLocator
+
+from cytodisk.analysis.time_steps import frame_interval, frame_numbers
+from cytodisk.arrays import FloatArray
+from cytodisk.errors import ParameterError
+from cytodisk.plot.activity_maps import Extend, bar_beside
+from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, colour_map, signal_limits
+from cytodisk.plot.time_axis import TICK_STEPS, time_axis
+
+_QUARTER = 90.0  # degrees
+
+
+def draw_line_kymograph(
+    ax: Axes,
+    kymograph: xr.DataArray,
+    *,
+    label: str = "intensity",
+    limits: tuple[float, float] | None = None,
+) -> AxesImage:
+    """Draw intensity along a line through time, with a colour bar to the right; the line starts below.
+
+    Parameters
+    ----------
+    ax : Axes
+    kymograph : DataArray with dims time and distance
+        Of `line_kymograph`; select one channel.
+    label : str
+        Of the colour bar; the unit follows.
+    limits : (float, float), optional
+        Of the colours; by default percentiles 1 and 99.5 of the values.
+
+    Returns
+    -------
+    AxesImage
+        Its array has shape (D, T).
+
+    Raises
+    ------
+    ParameterError
+        It has other dims, or distances that are not evenly spaced.
+    """
+    table = _parse(kymograph, "distance")
+    distance = kymograph["distance"].to_numpy().astype(np.float64)
+    half = 0.5 * (distance[1] - distance[0] if len(distance) > 1 else 1.0)
+    if not np.allclose(np.diff(distance), 2.0 * half):
+        raise ParameterError(
+            "kymograph has distances that are not evenly spaced: pass that of line_kymograph"
+        )
+    drawn = _draw(ax, kymograph, table, (distance[0] - half, distance[-1] + half), limits, label)
+    ax.set_ylabel(f"distance along the line ({kymograph['distance'].attrs.get('units', 'px')})")
+    ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
+    return drawn
+
+
+def draw_boundary_kymograph(
+    ax: Axes,
+    kymograph: xr.DataArray,
+    *,
+    label: str = "intensity",
+    limits: tuple[float, float] | None = None,
+) -> AxesImage:
+    """Draw intensity along the tracked edge through time, by the angle on the disk.
+
+    Parameters
+    ----------
+    ax : Axes
+    kymograph : DataArray with dims time and point
+        Of `boundary_kymograph`; select one channel. NaN is drawn light grey.
+    label : str
+        Of the colour bar; the depth and the unit follow.
+    limits : (float, float), optional
+        Of the colours; by default percentiles 1 and 99.5 of the values.
+
+    Returns
+    -------
+    AxesImage
+        Its array has shape (P, T).
+
+    Raises
+    ------
+    ParameterError
+        It has other dims.
+    """
+    table = _parse(kymograph, "point")
+    depth, unit = kymograph.attrs.get("depth"), kymograph.attrs.get("depth_units", "px")
+    where = "" if depth is None else f", {depth:g} {unit} deep"
+    drawn = _draw(ax, kymograph, table, (0.0, 4.0 * _QUARTER), limits, label + where)
+    ax.set_ylabel("angle (°, 0 at +x, towards +y)")
+    ax.set_yticks(_QUARTER * np.arange(5))
+    return drawn
+
+
+def _parse(kymograph: Any, along: str) -> FloatArray:
+    if not isinstance(kymograph, xr.DataArray) or set(kymograph.dims) != {"time", along}:
+        came = kymograph.dims if isinstance(kymograph, xr.DataArray) else type(kymograph).__name__
+        raise ParameterError(
+            f"kymograph must be a DataArray with dims time and {along}, got {came}: "
+            "of several channels select one, as in kymograph.sel(channel=…)"
+        )
+    return np.asarray(kymograph.transpose("time", along).to_numpy(), dtype=np.float64)
+
+
+def _draw(
+    ax: Axes,
+    kymograph: xr.DataArray,
+    table: FloatArray,
+    span: tuple[float, float],
+    limits: tuple[float, float] | None,
+    label: str,
+) -> AxesImage:
+    first = int(frame_numbers(kymograph, "kymograph")[0])
+    time_axis(ax, len(table), frame_interval(kymograph), first)
+    low, high = limits or signal_limits(table, np.isfinite(table))
+    drawn = ax.imshow(
+        np.ma.masked_invalid(table.T),
+        cmap=colour_map(SIGNAL_COLOURS),
+        vmin=low,
+        vmax=high,
+        origin="lower",
+        aspect="auto",
+        interpolation="nearest",
+        extent=(*ax.get_xlim(), *span),
+    )
+    below, above = bool((table < low).any()), bool((table > high).any())
+    extend: Extend = "both" if below and above else "min" if below else "max" if above else "neither"
+    unit = kymograph.attrs.get("units", "a.u.")
+    colour_bar(drawn, bar_beside(ax), label, unit, extend=extend)
+    return drawn

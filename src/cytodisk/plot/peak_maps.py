@@ -1,0 +1,293 @@
+"""Draw the peak of each window's correlation, and its lag, on the disk and on the cell.
+
+Windows that chance could explain are pale and hatched, regions of others have an outline; windows
+without a correlation are grey.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import Colormap
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path
+from shapely import Polygon, get_parts, unary_union
+
+from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.errors import ParameterError
+from cytodisk.plot.cell import draw_window_means
+from cytodisk.plot.disk_axes import disk_polygons, draw_disk_means
+from cytodisk.plot.lag_axis import LagUnit, rows_of_cell
+from cytodisk.plot.strip import sector_arcs
+from cytodisk.plot.style import DIVERGING_COLOURS, LINE_COLOUR, MISSING_COLOUR, colour_map
+from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.grid import PolarGrid
+
+PALE_NAME, OUTLINE_NAME, SECTOR_NAME = "not significant", "significant", "sector"
+
+LAG_COLOURS = "PuOr"
+"""Diverging as those of correlations, for colour-blind eyes too, and not taken for them."""
+
+Shown: TypeAlias = Literal["correlation", "lag"]
+
+_PALE = 0.4  # how far windows that are not significant let the page's white through
+_HATCH, _HATCH_COLOUR = "/////", "0.5"
+_PERCENTILE, _STEP = 99.0, 0.1  # limits of correlations: what 99 % stay within, rounded up
+_NUMBER_AWAY, _NUMBER_SIZE = 7.0, 6.0  # points: of a sector's number from the edge, and its height
+_MOST_VECTOR = 3000  # windows; more become pixels inside vector files
+_COLUMNS = {"cell", "layer", "sector", "correlation", "lag"}
+
+
+@dataclass(frozen=True, eq=False)
+class PeakMap:
+    """Peaks of one cell's windows.
+
+    Attributes
+    ----------
+    correlation, lag : ndarray of shape (layers, sectors) and dtype float
+        NaN where a window has no correlation.
+    significant : ndarray of shape (layers, sectors) and dtype bool, or None
+        Where q is below `alpha`; None when it was not tested.
+    lag_unit : LagUnit
+    alpha : float
+    """
+
+    correlation: FloatArray
+    lag: FloatArray
+    significant: BoolArray | None
+    lag_unit: LagUnit
+    alpha: float
+
+    @classmethod
+    def of(cls, windows: pd.DataFrame, grid: PolarGrid, *, cell: int = 0, alpha: float = 0.05) -> PeakMap:
+        """Peaks as tables by layer and sector.
+
+        Parameters
+        ----------
+        windows : DataFrame
+            `windows` of a study's correlation: cell, layer, sector, correlation, lag; lag_s and q where they
+            are known.
+        grid : PolarGrid
+        cell : int
+        alpha : float
+            Share of false discoveries that is accepted.
+
+        Raises
+        ------
+        ParameterError
+            The table lacks columns or the cell, has windows beyond the grid, or alpha is not in (0, 1).
+        """
+        if not 0.0 < alpha < 1.0:
+            raise ParameterError(f"alpha must be between 0 and 1, got {alpha!r}: 0.05 is the default")
+        rows = rows_of_cell(windows, cell, _COLUMNS, "windows")
+        layer, sector = (rows[name].to_numpy(dtype=np.int64) for name in ("layer", "sector"))
+        if layer.max() >= grid.layers or sector.max() >= grid.sectors:
+            raise ParameterError(
+                f"windows has layer {layer.max()} and sector {sector.max()}, the grid {grid.layers} layers "
+                f"and {grid.sectors} sectors: pass the grid of the study"
+            )
+        unit = LagUnit.of(rows)
+        tables = {}
+        for name in ("correlation", unit.column, "q"):
+            tables[name] = np.full((grid.layers, grid.sectors), np.nan)
+            if name in rows:
+                tables[name][layer, sector] = rows[name].to_numpy(dtype=np.float64)
+        tested = bool(np.isfinite(tables["q"]).any())
+        significant = tables["q"] < alpha if tested else None
+        return cls(tables["correlation"], tables[unit.column], significant, unit, alpha)
+
+    @property
+    def pale(self) -> BoolArray:
+        """Windows with a correlation that is not significant, shape (layers, sectors)."""
+        if self.significant is None:
+            return np.zeros(self.correlation.shape, dtype=bool)
+        return np.isfinite(self.correlation) & ~self.significant
+
+    def limit(self, shown: Shown) -> float:
+        """End of symmetric colours: percentile 99 of |correlation|, up to 1; the largest |lag|."""
+        size = np.abs(self._values(shown))
+        size = size[np.isfinite(size)]
+        if not size.size:
+            return 1.0
+        if shown == "lag":
+            return float(size.max()) or 1.0
+        steps = np.ceil(np.round(float(np.percentile(size, _PERCENTILE)) / _STEP, 6))
+        return float(np.clip(steps * _STEP, _STEP, 1.0))
+
+    def _values(self, shown: Shown) -> FloatArray:
+        if shown not in get_args(Shown):
+            raise ParameterError(f"shown must be 'correlation' or 'lag', got {shown!r}")
+        return self.correlation if shown == "correlation" else self.lag
+
+    def picture(self, shown: Shown, limit: float | None) -> tuple[FloatArray, Colormap, tuple[float, float]]:
+        """Values, colours and limits of a map."""
+        values = self._values(shown)
+        if limit is not None and not 0.0 < limit < np.inf:
+            raise ParameterError(f"limit must be a positive number, got {limit!r}: None chooses it")
+        top = limit or self.limit(shown)
+        return values, colour_map(LAG_COLOURS if shown == "lag" else DIVERGING_COLOURS), (-top, top)
+
+
+def draw_peaks_on_disk(
+    ax: Axes,
+    peaks: PeakMap,
+    grid: PolarGrid,
+    shown: Shown = "correlation",
+    *,
+    limit: float | None = None,
+) -> PolyCollection:
+    """Draw the correlation at each window's peak, or its lag, on the disk.
+
+    Parameters
+    ----------
+    ax : Axes
+    peaks : PeakMap
+    grid : PolarGrid
+    shown : {"correlation", "lag"}
+    limit : float, optional
+        Colours go from -limit to limit; by default `peaks.limit(shown)`.
+
+    Returns
+    -------
+    PolyCollection
+        One polygon a window, by window number, for a colour bar. Windows that are not significant are
+        translucent, and covered by a hatch with the gid "not significant"; the outline of the others has
+        the gid "significant". Four sectors have their numbers.
+
+    Raises
+    ------
+    ParameterError
+        `shown` is unknown, or the limit is not a positive number.
+    WindowError
+        The peaks are of another grid.
+    """
+    values, colours, limits = peaks.picture(shown, limit)
+    drawn = draw_disk_means(ax, grid, values, cmap=colours, limits=limits, number_sectors=True)
+    _fade(ax, disk_polygons(grid), peaks, drawn)
+    return drawn
+
+
+def draw_peaks_on_cell(
+    ax: Axes,
+    peaks: PeakMap,
+    windows: CellWindows,
+    shown: Shown = "correlation",
+    *,
+    limit: float | None = None,
+    pixel_size_um: float | None = None,
+) -> PolyCollection:
+    """Draw the correlation at each window's peak, or its lag, on the cell.
+
+    Parameters
+    ----------
+    ax : Axes
+    peaks : PeakMap
+    windows : CellWindows
+        Of the frame to draw on.
+    shown : {"correlation", "lag"}
+    limit : float, optional
+        Colours go from -limit to limit; by default `peaks.limit(shown)`.
+    pixel_size_um : float, optional
+        Micrometres a pixel; without it the scale bar is in px.
+
+    Returns
+    -------
+    PolyCollection
+        As of `draw_peaks_on_disk`; numbers of sectors, with the gid "sector", stand where they begin.
+
+    Raises
+    ------
+    ParameterError
+        `shown` is unknown, or a number is not positive.
+    WindowError
+        The peaks are of another grid.
+
+    References
+    ----------
+    u-Unwrap, Fig. 5G.
+    """
+    values, colours, limits = peaks.picture(shown, limit)
+    drawn = draw_window_means(ax, windows, values, cmap=colours, limits=limits, pixel_size_um=pixel_size_um)
+    _fade(ax, [polygon[:, ::-1] for polygon in windows.polygons()], peaks, drawn)
+    _number_sectors(ax, windows)
+    return drawn
+
+
+def peak_key(peaks: PeakMap) -> list[Any]:
+    """Handles of a legend: what is pale, framed and grey, of windows that are there.
+
+    Parameters
+    ----------
+    peaks : PeakMap
+
+    Returns
+    -------
+    list of Artist
+    """
+    handles: list[Any] = []
+    pale, known = int(peaks.pale.sum()), int(np.isfinite(peaks.correlation).sum())
+    if pale:
+        frame: Any = {"facecolor": "white", "linewidth": 0.6}
+        words = f"not significant (q ≥ {peaks.alpha:g}): {pale} of {known}"
+        handles.append(Patch(label=words, hatch=_HATCH, **frame | {"edgecolor": _HATCH_COLOUR}))
+        if pale < known:
+            handles.append(Patch(label=f"q < {peaks.alpha:g}", **frame | {"edgecolor": LINE_COLOUR}))
+    if known < peaks.correlation.size:
+        handles.append(Patch(facecolor=MISSING_COLOUR, linewidth=0, label="none, or not used"))
+    return handles
+
+
+def _fade(ax: Axes, polygons_xy: Sequence[FloatArray], peaks: PeakMap, drawn: PolyCollection) -> None:
+    """Make windows that are not significant paler and hatch them, and frame regions of the others."""
+    pale = peaks.pale.ravel()
+    drawn.set_rasterized(len(polygons_xy) > _MOST_VECTOR)
+    if not pale.any() or peaks.significant is None:
+        return
+    # Arrays are allowed, whatever the stubs say: colour bars take no notice of them, but of lists.
+    drawn.set_alpha(np.where(pale, 1.0 - _PALE, 1.0))  # type: ignore[arg-type]
+    drawn.set_linewidth(np.where(pale, 0.0, 0.2).tolist())  # translucent lines would be darker than areas
+    covered = [polygons_xy[number] for number in np.flatnonzero(pale).tolist()]
+    style: Any = {"facecolor": "none", "edgecolor": _HATCH_COLOUR, "linewidth": 0.0}
+    hatched = PathPatch(_region(covered), hatch=_HATCH, gid=PALE_NAME, **style)
+    ax.add_artist(hatched)
+    others = [polygons_xy[number] for number in np.flatnonzero(peaks.significant.ravel()).tolist()]
+    if others:
+        framed: Any = {"fill": False, "edgecolor": LINE_COLOUR, "linewidth": 0.6, "zorder": 2.5}
+        ax.add_artist(PathPatch(_region(others), gid=OUTLINE_NAME, **framed))
+
+
+def _number_sectors(ax: Axes, windows: CellWindows) -> None:
+    """Numbers of the four sectors that have theirs on the disk, outside the cell at their beginning."""
+    arcs = sector_arcs(windows)
+    for quarter in range(4):
+        number = len(arcs) * quarter // 4
+        y, x = arcs[number][0]
+        down, right = arcs[number][-1] - arcs[number - 1][0]
+        # Sectors follow one another clockwise on the page: where they go down, outwards is to the right.
+        away = _NUMBER_AWAY * np.array([down, right]) / max(np.hypot(down, right), 1e-9)
+        ax.annotate(
+            str(number),
+            (x, y),
+            xytext=tuple(away.tolist()),
+            textcoords="offset points",
+            ha="center",
+            va="center_baseline",
+            fontsize=_NUMBER_SIZE,
+            annotation_clip=False,
+            gid=SECTOR_NAME,
+            arrowprops={"arrowstyle": "-", "linewidth": 0.5, "shrinkA": 3.0, "shrinkB": 0.0},
+        )
+
+
+def _region(polygons_xy: Sequence[FloatArray]) -> Path:
+    """What windows cover together, with a line around neighbours and none between them."""
+    region = unary_union([Polygon(polygon).buffer(0) for polygon in polygons_xy])
+    parts = [part for part in get_parts(region) if isinstance(part, Polygon)]
+    rings = [ring for part in parts for ring in (part.exterior, *part.interiors) if not ring.is_empty]
+    return Path.make_compound_path(*(Path(np.asarray(ring.coords), closed=True) for ring in rings))

@@ -1,0 +1,216 @@
+"""A batch: many inputs in one go, and their tables merged."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+from threading import TIMEOUT_MAX
+from typing import TypeAlias
+
+from cytodisk.errors import OtherRunError, ParameterError, WriteError
+from cytodisk.runs.batch.batch_file import Batch
+from cytodisk.runs.batch.batch_folder import describe_batch, make_room, note, now, remove_left_overs
+from cytodisk.runs.batch.grouping import make_tasks
+from cytodisk.runs.batch.inputs import BatchInput
+from cytodisk.runs.batch.local import run_here
+from cytodisk.runs.batch.merged import merge_batch
+from cytodisk.runs.batch.on_worker import begin_run
+from cytodisk.runs.batch.rows import ROWS, InputRow, files_mark, read_row, row_key
+from cytodisk.runs.batch.task import BatchTask, TaskResult, open_store
+from cytodisk.runs.steps import Progress, check_options, silent
+from cytodisk.store.targets import Store
+from cytodisk.store.url_store import is_url
+
+_CLUSTER_TASK_S = 10.0
+_MOST_NAMED = 5
+_MOST_FAILED = 20
+
+Results: TypeAlias = Generator[TaskResult, None, None]
+Tell: TypeAlias = Callable[[str], None]
+"""Called with a sentence for the user."""
+
+
+@dataclass
+class BatchSummary:
+    """How a batch went.
+
+    Attributes
+    ----------
+    out : str
+        Folder of the results.
+    statuses : Counter of str
+        Number of inputs by status.
+    failed : list of InputRow
+        The first twenty that are not "ok".
+    remarks : list of str
+        What else the user should know.
+    """
+
+    out: str
+    statuses: Counter[str] = field(default_factory=Counter)
+    failed: list[InputRow] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
+
+    def count(self, row: InputRow) -> None:
+        """Take an input into account."""
+        self.statuses[row.status] += 1
+        if row.status != "ok" and len(self.failed) < _MOST_FAILED:
+            self.failed.append(row)
+
+
+def run_batch(
+    batch: Batch,
+    out: str | os.PathLike[str],
+    *,
+    workers: int = 1,
+    time_limit: float | None = None,
+    resume: bool = False,
+    overwrite: bool = False,
+    scheduler: str | None = None,
+    progress: Progress | None = None,
+    tell: Tell = print,
+) -> BatchSummary:
+    """Run all inputs of a batch, each in a process of its own, and merge their tables.
+
+    Parameters
+    ----------
+    batch : Batch
+        As `read_batch` returns it.
+    out : path-like
+        Folder of the results: a study for each input in inputs/, its row in rows/, and the merged tables.
+    workers : int
+        Processes on this machine. The merged tables do not depend on it.
+    time_limit : float, optional
+        Seconds for one input; one that takes longer is stopped, and has a row that says so.
+    resume : bool
+        Go on in a folder that holds part of the same batch: inputs that went well are not done again, those
+        that failed are tried anew, a movie that was stopped goes on from its last frame. The batch file may
+        have more inputs than before.
+    overwrite : bool
+        Remove the results that are there.
+    scheduler : str, optional
+        Address of a Dask scheduler, whose workers do the inputs.
+    progress : callable, optional
+        Called with (inputs done, inputs in all).
+    tell : callable
+        Called with sentences on workers of a cluster.
+
+    Returns
+    -------
+    BatchSummary
+
+    Raises
+    ------
+    ParameterError
+        `workers` is below 1, `time_limit` is no time, or both `resume` and `overwrite` are set.
+    StudyError
+        The folder cannot be used, or results cannot be written, as on a full disk.
+    """
+    check_options(workers, resume, overwrite)
+    if time_limit is not None and not 0 < time_limit <= TIMEOUT_MAX:
+        raise ParameterError(
+            f"time_limit must be a number of seconds above 0, got {time_limit}: leave it out for any"
+        )
+    if scheduler is not None and not resume:
+        _reach(scheduler)  # before the folder is touched
+    target = os.fspath(out)
+    store = open_store(target)
+    with store.alone():
+        provenance = describe_batch(batch)
+        make_room(store, provenance, target, resume, overwrite)
+        summary = BatchSummary(target)
+        pending = list(batch.inputs)
+        if resume:
+            pending = _pending(store, batch, summary)
+            remove_left_overs(store)
+        note(store, provenance)
+        if scheduler is None:
+            tasks = make_tasks(pending, target, seconds=0, time_limit=time_limit)
+            results = run_here(_started(tasks, target), min(workers, max(1, len(pending))))
+        else:
+            tasks = make_tasks(pending, target, seconds=_CLUSTER_TASK_S, time_limit=time_limit)
+            results = _on_cluster(tasks, scheduler, target, tell)
+        try:
+            _take(results, len(pending), len(batch.inputs), progress or silent)
+            summary.remarks += merge_batch(store, batch, summary.count)
+            note(store, provenance | {"status": "complete", "finished": now(), "warnings": summary.remarks})
+        except WriteError as error:
+            raise WriteError(
+                f"{error}: the run stops, what was done is kept; mend this (is the disk full?), then run the "
+                "command again with --resume"
+            ) from error
+    return summary
+
+
+def _take(results: Results, pending: int, total: int, report: Progress) -> None:
+    """Count what is done; the rows are written already."""
+    with closing(results):  # whatever happens, no process stays behind
+        done = total - pending
+        report(done, total)
+        for result in results:
+            done += len(result.rows)
+            report(done, total)
+
+
+def _started(tasks: Iterator[BatchTask], target: str) -> Iterator[BatchTask]:
+    """Tasks of a run that takes over from workers of a cluster which may still be at an earlier one."""
+    run = begin_run(target)
+    for task in tasks:
+        yield replace(task, scratch="", run=run) if is_url(target) else task
+
+
+def _on_cluster(tasks: Iterator[BatchTask], scheduler: str, target: str, tell: Tell) -> Results:
+    from cytodisk.runs.batch.cluster import run_on_cluster
+
+    yield from run_on_cluster(tasks, scheduler, target=target, tell=tell)
+
+
+def _reach(scheduler: str) -> None:
+    from cytodisk.runs.batch.cluster import connected
+
+    with connected(scheduler):
+        return
+
+
+def _pending(store: Store, batch: Batch, summary: BatchSummary) -> list[BatchInput]:
+    """Inputs that are still to be done; what was done must be what the batch file says now."""
+    pending, changed, others = [], [], []
+    for item in batch.inputs:
+        row = read_row(store, item.name)
+        if row is None or row.status != "ok":
+            pending.append(item)
+        elif row.settings != item.settings:
+            others.append(item.name)
+        elif row.files != files_mark(item):
+            changed.append(item.name)
+            pending.append(item)
+    if others:
+        raise OtherRunError(
+            f"output folder {summary.out} holds results with other parameters for {_named(others)}: "
+            "pass --overwrite to replace all, or another folder; to do only these anew, remove their rows "
+            f"(as {row_key(others[0])}) and pass --resume"
+        )
+    names = {item.name for item in batch.inputs}
+    gone = sorted(name for name in _with_row(store) if name not in names)
+    if changed:
+        summary.remarks.append(
+            f"files changed since they were done, so they are looked at again: {_named(changed)}"
+        )
+    if gone:
+        summary.remarks.append(
+            f"not in the batch file any more, so not in the tables, though their results stay: {_named(gone)}"
+        )
+    return pending
+
+
+def _with_row(store: Store) -> Iterator[str]:
+    found = (name for name in store.names(ROWS) if name.endswith(".json") and not name.startswith("."))
+    return (name.removesuffix(".json") for name in found)
+
+
+def _named(names: Sequence[str]) -> str:
+    shown = ", ".join(names[:_MOST_NAMED])
+    return shown if len(names) <= _MOST_NAMED else f"{shown} and {len(names) - _MOST_NAMED} more"

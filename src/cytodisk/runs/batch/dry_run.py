@@ -1,0 +1,96 @@
+"""What a batch would take for the scale, the channels and the parameters of an input."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from cytodisk.errors import CytodiskError
+from cytodisk.runs.batch.input_rows import SCALE
+from cytodisk.runs.batch.inputs import BatchInput
+from cytodisk.runs.map.map_inputs import open_inputs
+from cytodisk.runs.movie.movie_inputs import open_movie_files
+from cytodisk.runs.parameters import MapParameters, MovieParameters, toml_lines
+
+_APART = ("layers", "sectors", *SCALE)  # what has a column of its own
+
+
+@dataclass(frozen=True)
+class Understood:
+    """An input as it is understood; its fields are columns of a dry run.
+
+    Attributes
+    ----------
+    frames : int or None
+        Of the mask file; None for images, and where a file cannot be used.
+    pixel_size_um, frame_interval_s : float or None
+        As given, or else as the files say.
+    channels : str
+        Names of the signal's channels.
+    layers : int or None
+        None where `depth_um` takes their place.
+    sectors : int
+    parameters : str
+        Others that are not the default ones, as TOML.
+    fault : str
+        Why the files cannot be used; empty if they can, as far as that is known without any work.
+    """
+
+    frames: int | None
+    pixel_size_um: float | None
+    frame_interval_s: float | None
+    channels: str
+    layers: int | None
+    sectors: int
+    parameters: str
+    fault: str = ""
+
+
+def understand(item: BatchInput) -> Understood:
+    """Look at the files of an input without running it.
+
+    Parameters
+    ----------
+    item : BatchInput
+
+    Returns
+    -------
+    Understood
+    """
+    parameters = item.parameters
+    own = parameters if isinstance(parameters, MovieParameters) else None
+    given = Understood(
+        frames=None,
+        pixel_size_um=parameters.pixel_size_um,
+        frame_interval_s=own.frame_interval_s if own else None,
+        channels=_together(parameters.channels or ()),
+        layers=None if own and own.depth_um is not None else parameters.layers,
+        sectors=parameters.sectors,
+        parameters=_together(toml_lines(_not_default(parameters))),
+    )
+    try:
+        return _with_files(given, item)
+    except CytodiskError as error:
+        return replace(given, fault=str(error))
+
+
+def _with_files(given: Understood, item: BatchInput) -> Understood:
+    if isinstance(item.parameters, MovieParameters):
+        files = open_movie_files(item.masks, item.signal, item.parameters)
+        given = replace(given, frames=files.masks.n_frames, frame_interval_s=files.scale.frame_interval_s)
+        signal, pixel_size_um = files.signal, files.scale.pixel_size_um
+    else:
+        inputs = open_inputs(item.masks, item.signal, item.parameters)
+        signal, pixel_size_um = next(iter(inputs.signal_files), None), inputs.pixel_size_um
+    channels = signal.channels if signal is not None else ()
+    return replace(given, pixel_size_um=pixel_size_um, channels=_together(channels))
+
+
+def _together(words: Sequence[str]) -> str:
+    return "; ".join(words)
+
+
+def _not_default(parameters: MapParameters) -> dict[str, Any]:
+    given = parameters.model_dump(exclude_defaults=True)
+    return {name: value for name, value in given.items() if name not in _APART}

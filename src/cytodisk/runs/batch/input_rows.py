@@ -1,0 +1,225 @@
+"""A row of a batch file → its inputs: a pattern of mask files, and templates that follow each of them."""
+
+from __future__ import annotations
+
+import glob
+import os
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from string import Formatter
+from typing import Any
+
+from cytodisk.errors import ParameterError
+from cytodisk.images.mask_names import base_name, image_stem, natural_order
+from cytodisk.runs.batch.faults import Faults
+from cytodisk.runs.batch.inputs import BatchInput, InputKind, Value
+from cytodisk.runs.parameters import MapParameters, MovieParameters, parameters_from
+
+SCALE = ("pixel_size_um", "frame_interval_s", "channels")  # parameters with a column of their own
+COLUMNS = ("condition", "replicate")
+KEYS = ("masks", "signal", "name", "kind", "parameters", *COLUMNS, *SCALE)
+PARAMETERS_OF: dict[str, type[MapParameters]] = {"movie": MovieParameters, "map": MapParameters}
+FIELDS = ("folder", "parent", "name", "stem", "image")  # of templates
+_LONGEST_NAME = 120  # bytes in UTF-8; folders and files may have 255, of which some go for temporary names
+_BESIDE = ("_", "-", ".")  # how the ending of an image's name begins, for a folder of masks
+
+
+@dataclass(frozen=True)
+class FileRow:
+    """A row as it stands in the file.
+
+    Attributes
+    ----------
+    place : str
+        Where it stands, in words.
+    values : dict
+        By key; none of them is None.
+    """
+
+    place: str
+    values: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class RowReader:
+    """What all rows of a file have in common.
+
+    Attributes
+    ----------
+    folder : Path
+        Of the batch file; paths are relative to it.
+    kind : {"movie", "map"}
+        Of inputs that say none.
+    parameters : dict
+        Of the file.
+    columns : tuple of str
+        Names of the columns that the user gives.
+    faults : Faults
+    """
+
+    folder: Path
+    kind: InputKind
+    parameters: dict[str, Any]
+    columns: tuple[str, ...]
+    faults: Faults
+
+    def inputs(self, row: FileRow) -> Iterator[BatchInput]:
+        """The inputs of a row, in natural order of their names; faults are noted."""
+        self.faults.add_unknown(row.place, "column", row.values, [*KEYS, *self.columns])
+        kind = row.values.get("kind", self.kind)
+        if kind not in tuple(PARAMETERS_OF):
+            self.faults.add(row.place, f"kind must be movie or map, got {kind!r}")
+            return
+        parameters = self._parameters(row, kind)
+        pattern = row.values.get("masks")
+        if not isinstance(pattern, str) or not pattern:
+            self.faults.add(
+                row.place, f"masks must be a path or a pattern as 'control/*.tif', got {pattern!r}"
+            )
+            return
+        found = self._matches(pattern, kind)
+        if not found and _exists(self.folder / pattern):
+            hint = f"use a pattern as '{pattern}/*.tif', or kind = \"map\""
+            self.faults.add(row.place, f"masks {pattern!r} is a folder, and a movie is one file: {hint}")
+        elif not found:
+            self.faults.add(row.place, f"masks {pattern!r} match nothing in {self.folder}")
+        if not self._check_templates(row):
+            return
+        for masks in found:
+            item = self._input(row, kind, masks, parameters)
+            if item is not None:
+                yield item
+
+    def _parameters(self, row: FileRow, kind: str) -> MapParameters | None:
+        """The file's parameters, but for those that only the other kind has, overruled by the row's own."""
+        of = PARAMETERS_OF[kind]
+        own = row.values.get("parameters", {})
+        if not isinstance(own, dict):
+            self.faults.add(row.place, f"parameters must be a table as {{layers = 5}}, got {own!r}")
+            return None
+        if set(own) - set(of.model_fields):
+            self.faults.add_unknown(row.place, "parameter", own, of.model_fields)
+            return None
+        own = own | {name: row.values[name] for name in SCALE if name in row.values}
+        if kind == "map" and "frame_interval_s" in own:
+            self.faults.add(row.place, "frame_interval_s is for movies only: take it out")
+            return None
+        shared = {name: value for name, value in self.parameters.items() if name in of.model_fields}
+        if "layers" in own:
+            shared.pop("depth_um", None)  # the two exclude each other
+        try:
+            return parameters_from(shared | own, None, of)
+        except ParameterError as error:
+            self.faults.add(row.place, str(error))
+            return None
+
+    def _matches(self, pattern: str, kind: str) -> list[Path]:
+        literal = self.folder / pattern
+        if _exists(literal):
+            found = [literal]
+        else:
+            names = glob.glob(pattern, root_dir=self.folder, recursive=True)  # noqa: PTH207  may be absolute
+            found = [self.folder / name for name in sorted(names, key=natural_order)]
+        return [path for path in found if kind == "map" or not path.is_dir()]
+
+    def _input(
+        self, row: FileRow, kind: InputKind, masks: Path, parameters: MapParameters | None
+    ) -> BatchInput | None:
+        if not _is_text(masks):
+            self.faults.add(row.place, f"the name of {str(masks)!a} is not in UTF-8: rename the file")
+            return None
+        fields = path_fields(masks, self.folder)
+        place = f"{row.place}, {masks.name}"
+        filled = {key: _fill(value, fields) for key, value in row.values.items() if key != "masks"}
+        signal = self._signal(place, masks, filled.get("signal"))
+        safe = {name: re.sub(r"[^\w.-]+", "-", text).strip("-.") for name, text in fields.items()}
+        name = str(_fill(row.values.get("name", "{folder}-{stem}"), safe)).strip("-")
+        if re.fullmatch(r"\w[\w.-]*(?<!\.)", name) is None or len(name.encode()) > _LONGEST_NAME:
+            self.faults.add(
+                place,
+                f"name {name!r} cannot be that of a folder: use letters, digits, '_', '-' and '.' (at most "
+                f"{_LONGEST_NAME} bytes)",
+            )
+            return None
+        columns = tuple(self._value(place, column, filled.get(column)) for column in self.columns)
+        return None if parameters is None else BatchInput(name, kind, masks, signal, parameters, columns)
+
+    def _check_templates(self, row: FileRow) -> bool:
+        right = True
+        for key, value in row.values.items():
+            if key == "masks" or not isinstance(value, str):
+                continue
+            try:
+                fields = [(name, form or how) for _, name, form, how in Formatter().parse(value)]
+            except ValueError as error:
+                self.faults.add(row.place, f"{key} {value!r} is no template: {error}; write {{{{ for a brace")
+                right = False
+                continue
+            wanted = [f"{name}:{form}" if form else name for name, form in fields if name is not None]
+            self.faults.add_unknown(row.place, f"field in {key}", wanted, FIELDS)
+            right = right and set(wanted) <= set(FIELDS)
+        return right
+
+    def _signal(self, place: str, masks: Path, signal: Any) -> Path | None:
+        if signal is None:
+            return None
+        if not isinstance(signal, str):
+            self.faults.add(place, f"signal must be a path, got {signal!r}")
+            return None
+        path = self.folder / signal
+        if masks.is_dir() and signal.startswith(_BESIDE) and not _exists(path):
+            return Path(signal)  # how the names of images go on beside the masks
+        if not _exists(path):
+            self.faults.add(place, f"signal {path} does not exist")
+        elif not masks.is_dir() and path.resolve() == masks.resolve():
+            self.faults.add(
+                place, f"signal {path} is the mask file itself: name its image, or take signal out"
+            )
+        return path
+
+    def _value(self, place: str, column: str, value: Any) -> Value:
+        if value is None or isinstance(value, str | int | float):
+            return value
+        self.faults.add(place, f"{column} must be a text or a number, got {value!r}")
+        return None
+
+
+def _exists(path: Path) -> bool:
+    return os.path.exists(path)  # noqa: PTH110  where Path would raise for a name that is too long
+
+
+def _is_text(path: Path) -> bool:
+    """Whether tables and messages can hold it; names of files can have any bytes."""
+    return re.search("[\ud800-\udfff]", str(path)) is None
+
+
+def _fill(value: Any, fields: Mapping[str, str]) -> Any:
+    """A template's text for one mask file; what is no text stays as it is."""
+    return value.format_map(fields) if isinstance(value, str) else value
+
+
+def path_fields(masks: Path, folder: Path) -> dict[str, str]:
+    """What templates can take from the path of a mask file.
+
+    Parameters
+    ----------
+    masks, folder : Path
+        The file, and the folder of the batch file.
+
+    Returns
+    -------
+    dict of str to str
+        "folder" (its path from the folder of the batch file, or else in full), "parent" (the last part of
+        it), "name" (of the file), "stem" (without .tif or .ome.tif), "image" (without _masks.tif and the like
+        too).
+    """
+    parent = masks.parent.relative_to(folder) if masks.parent.is_relative_to(folder) else masks.parent
+    return {
+        "folder": parent.as_posix(),
+        "parent": masks.parent.name,
+        "name": masks.name,
+        "stem": image_stem(masks.name),
+        "image": base_name(masks.name),
+    }

@@ -1,0 +1,47 @@
+"""The inputs of a batch, checked."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+from cytodisk.runs.parameters import MapParameters
+
+InputKind: TypeAlias = Literal["movie", "map"]
+Value: TypeAlias = str | int | float | bool | None
+"""What stands in a column that the user gives."""
+
+
+@dataclass(frozen=True, slots=True)
+class BatchInput:
+    """One input: what `cytodisk movie` or `cytodisk map` takes, a name, and the columns of its rows.
+
+    Attributes
+    ----------
+    name : str
+        Name of its result folder; no other input has it.
+    kind : {"movie", "map"}
+    masks : Path
+        A file, or for "map" also a folder of files.
+    signal : Path or None
+    parameters : MapParameters
+        For a movie `MovieParameters`; with the scale and the names of channels that were given.
+    columns : tuple of value
+        Condition, replicate and further columns; their names stand in the batch.
+    """
+
+    name: str
+    kind: InputKind
+    masks: Path
+    signal: Path | None
+    parameters: MapParameters
+    columns: tuple[Value, ...] = ()
+
+    @property
+    def settings(self) -> str:
+        """A hash of what decides the result beside the files."""
+        content = [self.kind, self.parameters.model_dump(mode="json")]
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]

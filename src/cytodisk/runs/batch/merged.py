@@ -1,0 +1,216 @@
+"""The studies of a batch → one set of tables, streamed, in the order of the batch file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.csv
+import pyarrow.parquet as pq
+
+from cytodisk.errors import StudyError
+from cytodisk.runs.batch.batch_file import Batch
+from cytodisk.runs.batch.inputs import BatchInput, Value
+from cytodisk.runs.batch.inputs_table import INPUT_COLUMNS
+from cytodisk.runs.batch.rows import InputRow, read_row, row_key, study_key
+from cytodisk.store.merging import merge_tables, write_rows
+from cytodisk.store.study_folder import MAP_TABLES, MOVIE_TABLES
+from cytodisk.store.tables import Columns, schema
+from cytodisk.store.targets import Store
+
+_OF_MAPS = ("cells", *MAP_TABLES.others)
+_MOST = 2**63  # longer numbers are such as those on a label
+_TIMES = ("seconds",)  # columns with running times, which differ from run to run
+INPUTS = "inputs"
+
+
+@dataclass(frozen=True)
+class _Done:
+    """An input with a study, the units of its tables, and how many of its cells are doubtful."""
+
+    item: BatchInput
+    units: tuple[str, str]
+    doubts: int
+
+
+def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None]) -> list[str]:
+    """Write the merged tables.
+
+    They depend on the inputs alone, to the last bit: not on the number of workers, nor on whether the run was
+    stopped and resumed. So columns with running times are not in them.
+
+    Parameters
+    ----------
+    store : Store
+        With a row for every input.
+    batch : Batch
+    saw : callable
+        Called with the row of each input.
+
+    Returns
+    -------
+    list of str
+        What a user should know of the tables.
+
+    Raises
+    ------
+    StudyError
+        A row or a study is missing, or the tables cannot be written.
+    """
+    own = _own_columns(batch)
+    done: list[_Done] = []
+    with store.work_folder() as folder:
+        file = folder / f"{INPUTS}.parquet"
+        write_rows(_input_rows(store, batch, done, saw), schema((*own, *INPUT_COLUMNS), ""), file)
+        _write_csv(file, folder / f"{INPUTS}.csv")
+        names = [f"{INPUTS}.csv", file.name]
+        for name, columns in _tables(batch).items():
+            having = [one for one in done if one.item.kind == "movie" or name in _OF_MAPS]
+            columns_schema = _schema((*own, *_unit_columns(columns), *columns), having)
+            file = folder / f"{name}.parquet"
+            merge_tables(_parts(store, having, name, batch, columns_schema), columns_schema, file)
+            names.append(file.name)
+        for name in names:
+            store.put_file(folder / name, name)
+    return list(_remarks(done))
+
+
+def _remarks(done: Sequence[_Done]) -> Iterator[str]:
+    if any(len({one.units[k] for one in done} - {""}) > 1 for k in range(2)):
+        yield (
+            "inputs have different units: the columns length_unit and velocity_unit say which row has which; "
+            "give pixel_size_um and frame_interval_s to all inputs"
+        )
+    doubtful = sum(one.doubts > 0 for one in done)
+    if doubtful:
+        have = "1 input has" if doubtful == 1 else f"{doubtful} inputs have"
+        yield (
+            f"{have} cells with doubts: column doubts of inputs.csv counts them, that of cells.parquet "
+            "says what they are"
+        )
+
+
+def _own_columns(batch: Batch) -> Columns:
+    """The input's name, and the columns that the user gives."""
+    types = [_type([item.columns[k] for item in batch.inputs]) for k in range(len(batch.columns))]
+    own = tuple((name, kind, "") for name, kind in zip(batch.columns, types, strict=True))
+    return (("input", pa.string(), ""), *own)
+
+
+def _unit_columns(columns: Columns) -> Columns:
+    """Columns for the units of each row, of those quantities that a table has."""
+    units = " ".join(unit for _, _, unit in columns)
+    return tuple((f"{what}_unit", pa.string(), "") for what in ("length", "velocity") if what in units)
+
+
+def _type(values: Sequence[Value]) -> Any:
+    given = [value for value in values if value is not None]
+    if given and all(isinstance(value, bool) for value in given):
+        return pa.bool_()
+    if any(isinstance(value, bool | str) for value in given) or not given:
+        return pa.string()
+    if any(isinstance(value, int) and abs(value) >= _MOST for value in given):
+        return pa.string()
+    return pa.int64() if all(isinstance(value, int) for value in given) else pa.float64()
+
+
+def _values(batch: Batch, item: BatchInput, own: Any) -> dict[str, Any]:
+    """The user's columns of an input, as the types of the table want them."""
+    texts = {
+        name: str(value) if value is not None and pa.types.is_string(own.field(name).type) else value
+        for name, value in zip(batch.columns, item.columns, strict=True)
+    }
+    return {"input": item.name} | texts
+
+
+def _input_rows(
+    store: Store, batch: Batch, done: list[_Done], saw: Callable[[InputRow], None]
+) -> Iterator[dict[str, Any]]:
+    """Rows of the table of inputs; on the way, those that have a study are noted."""
+    own = schema(_own_columns(batch), "")
+    for item in batch.inputs:
+        row = read_row(store, item.name)
+        if row is None:
+            raise StudyError(f"input {item.name} has not been done: run the same command again with --resume")
+        saw(row)
+        if row.complete:
+            done.append(_Done(item, (row.length_unit, row.velocity_unit), row.doubts))
+        yield _values(batch, item, own) | _columns_of(row) | _paths(batch, item)
+
+
+def _columns_of(row: InputRow) -> dict[str, Any]:
+    return {name: getattr(row, name) for name, _, _ in INPUT_COLUMNS if name not in ("masks", "signal")}
+
+
+def _paths(batch: Batch, item: BatchInput) -> dict[str, str | None]:
+    folder = batch.path.absolute().parent
+    return {
+        "masks": _shown(item.masks, folder),
+        "signal": None if item.signal is None else _shown(item.signal, folder),
+    }
+
+
+def _shown(path: Path, folder: Path) -> str:
+    return (path.relative_to(folder) if path.is_relative_to(folder) else path).as_posix()
+
+
+def _write_csv(table: Path, target: Path) -> None:
+    with pq.ParquetFile(table) as rows, pa.csv.CSVWriter(target, rows.schema_arrow) as writer:
+        for some in rows.iter_batches():
+            writer.write_batch(some)
+
+
+def _schema(columns: Columns, done: Sequence[_Done]) -> Any:
+    """Arrow schema with the units of all inputs: as "px² or µm²" where they differ."""
+    schemas = [schema(columns, *units) for units in sorted({one.units for one in done}) or [("", "")]]
+    fields = []
+    for field in schemas[0]:
+        found = [one.field(field.name).metadata[b"unit"].decode() for one in schemas]
+        fields.append(field.with_metadata({"unit": " or ".join(dict.fromkeys(filter(None, found)))}))
+    return pa.schema(fields)
+
+
+def _tables(batch: Batch) -> dict[str, Columns]:
+    """Columns of the merged tables: all that any kind of input has."""
+    kinds = {item.kind for item in batch.inputs}
+    kept = [tables for kind, tables in (("map", MAP_TABLES), ("movie", MOVIE_TABLES)) if kind in kinds]
+    merged: dict[str, dict[str, Any]] = {}
+    for tables in kept:
+        for name, columns in {"cells": tables.cells, **tables.others}.items():
+            known = merged.setdefault(name, {})
+            known |= {column[0]: column for column in columns if column[0] not in (*known, *_TIMES)}
+    return {name: tuple(columns.values()) for name, columns in merged.items()}
+
+
+def _parts(store: Store, done: Sequence[_Done], name: str, batch: Batch, columns: Any) -> Iterator[Any]:
+    """A table of all studies, a row group at a time."""
+    for one in done:
+        length_unit, velocity_unit = one.units
+        given = _values(batch, one.item, columns)
+        given |= {"length_unit": length_unit, "velocity_unit": velocity_unit}
+        key = f"{study_key(one.item.name)}/{name}.parquet"
+        try:
+            with store.open(key) as opened, pq.ParquetFile(opened) as file:
+                for group in range(file.num_row_groups):
+                    yield _widened(file.read_row_group(group, use_threads=False), given, columns)
+        except (pa.ArrowException, StudyError) as error:
+            name = one.item.name
+            raise StudyError(
+                f"the study of input {name} is damaged: {error}: remove {study_key(name)} and "
+                f"{row_key(name)}, and run the same command with --resume: then it is done anew"
+            ) from error
+
+
+def _widened(table: Any, given: dict[str, Any], columns: Any) -> Any:
+    """A study's table with the input's columns in front, and nulls for what only others have."""
+    found = set(table.column_names)
+    arrays = [
+        table.column(field.name).cast(field.type)
+        if field.name in found
+        else pa.repeat(pa.scalar(given.get(field.name), field.type), len(table))
+        for field in columns
+    ]
+    return pa.table(arrays, schema=columns)

@@ -1,0 +1,119 @@
+"""The row of an input: how it went."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from cytodisk.errors import StudyError
+from cytodisk.images.mask_names import visible_files
+from cytodisk.runs.batch.inputs import BatchInput
+from cytodisk.store.targets import Store
+
+ROWS, STUDIES = "rows", "inputs"
+
+
+@dataclass(frozen=True)
+class InputRow:
+    """How an input went.
+
+    Attributes
+    ----------
+    input : str
+        Its name.
+    kind : {"movie", "map"}
+    status : str
+        "ok"; "refused" (a user can mend it), "failed" (an error that nobody expected), "crashed" (its process
+        died), "killed" (from outside), "timed out" or "out of memory".
+    reason : str
+        Why it has no result; empty if it has.
+    settings, files : str
+        Hashes of the parameters, and of sizes and times of the files: whether the result still fits.
+    complete : bool
+        Whether its study is there; so it may be for a refused input too, without any map.
+    cells, frames, mapped : int
+        Cells; for a movie frames of all cells, else the same; and how many of them have a map.
+    doubts : int
+        Cells (of a movie frames of all cells) whose mask is doubtful.
+    pixel_size_um, frame_interval_s : float or None
+    length_unit, velocity_unit : str
+        Units of its tables.
+    seconds : float
+        Wall time.
+    log : str
+        The traceback, or what the process said last, where something went wrong unexpectedly.
+    worker : dict
+        Where it ran: host, and versions of what the results depend on.
+    """
+
+    input: str
+    kind: str
+    status: str
+    reason: str
+    settings: str
+    files: str
+    complete: bool = False
+    cells: int = 0
+    frames: int = 0
+    mapped: int = 0
+    doubts: int = 0
+    pixel_size_um: float | None = None
+    frame_interval_s: float | None = None
+    length_unit: str = ""
+    velocity_unit: str = ""
+    seconds: float = 0.0
+    log: str = ""
+    worker: dict[str, Any] | None = None
+
+
+def study_key(name: str) -> str:
+    """Where the study of an input stands."""
+    return f"{STUDIES}/{name}"
+
+
+def row_key(name: str) -> str:
+    """Where the row of an input stands."""
+    return f"{ROWS}/{name}.json"
+
+
+def write_row(store: Store, row: InputRow) -> None:
+    """Write the row of an input, which marks it as done."""
+    store.write_text(row_key(row.input), json.dumps(asdict(row), indent=1, ensure_ascii=False) + "\n")
+
+
+def read_row(store: Store, name: str) -> InputRow | None:
+    """The row of an input; None if it was not done.
+
+    Raises
+    ------
+    StudyError
+        The row is damaged.
+    """
+    text = store.read_text(row_key(name))
+    if text is None:
+        return None
+    try:
+        return InputRow(**json.loads(text))
+    except (TypeError, json.JSONDecodeError) as error:
+        raise StudyError(
+            f"row {row_key(name)} is damaged ({error}): remove it, and its input is done anew"
+        ) from error
+
+
+def files_mark(item: BatchInput) -> str:
+    """A hash of sizes and times of an input's files; it changes when one of them does."""
+    marks = [_marks(path) for path in (item.masks, item.signal) if path is not None]
+    return hashlib.sha256(json.dumps(marks).encode()).hexdigest()[:16]
+
+
+def _marks(path: Path) -> list[Any]:
+    try:
+        if path.is_dir():
+            return [[file.name, *_marks(file)] for file in visible_files(path)]
+        found = path.stat()
+    except OSError:
+        return []  # whoever opens it says what is wrong
+    return [found.st_size, found.st_mtime_ns]

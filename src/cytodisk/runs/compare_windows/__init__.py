@@ -1,0 +1,1 @@
+"""`cytodisk compare-windows`: windows of several methods, measured."""

@@ -1,0 +1,224 @@
+"""Compare windows on cells that are followed through time: `cytodisk compare --movie`."""
+
+from __future__ import annotations
+
+import os
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from cytodisk.errors import CytodiskError
+from cytodisk.files import replacing
+from cytodisk.images.tracks import CellTrack, read_frame
+from cytodisk.motion.disk_movie import DiskMovie
+from cytodisk.motion.map_movie import map_movie
+from cytodisk.runs.compare_windows.compare_frames import FollowedCell, measure_frames, usable
+from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, CompareMovieParameters
+from cytodisk.runs.compare_windows.compare_tables import COMPARED_MOVIE
+from cytodisk.runs.compare_windows.comparison import Comparison, open_comparison, write_summaries
+from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
+from cytodisk.runs.parameters import write_parameters
+from cytodisk.runs.provenance import describe_run
+from cytodisk.runs.steps import check_options, finish_run, silent
+from cytodisk.store.study_folder import PARAMETERS, StudyFolder, alone_in, part_key
+
+
+@dataclass(frozen=True)
+class _Part:
+    """One cell followed by one method."""
+
+    track: CellTrack
+    method: str
+    key: str
+
+
+def compare_movie(
+    masks: str | os.PathLike[str],
+    out: str | os.PathLike[str],
+    parameters: CompareMovieParameters | None = None,
+    *,
+    signal: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    overwrite: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> Comparison:
+    """Follow each cell with the windows of several methods and measure how consistent they are.
+
+    The edge is tracked in the same way for all: edge-based windows have the sectors of the polar ones.
+
+    Parameters
+    ----------
+    masks : path-like
+        Masks of one cell by frame, or label images by frame.
+    out : path-like
+        Folder for the results.
+    parameters : CompareMovieParameters, optional
+    signal : path-like, optional
+        As many images, of the same shape; without it there is no correlation of consecutive frames.
+    resume, overwrite : bool
+        Go on with the same run in this folder; replace the study that is there.
+    progress : callable, optional
+        Called with (frames done, frames in all), over all methods.
+
+    Returns
+    -------
+    Comparison
+        Complete; its `consistency` has the measures of the paper's Fig. 4.
+
+    Raises
+    ------
+    ReadError, MaskError, SignalError, ParameterError
+        A file is missing, damaged, or does not fit.
+    StudyError
+        The folder cannot be used.
+
+    References
+    ----------
+    u-Unwrap, section 4.2 and Fig. 4.
+    """
+    parameters = CompareMovieParameters() if parameters is None else parameters
+    inputs = open_movie(masks, signal, parameters)
+    options = {"resume": resume, "overwrite": overwrite}
+    return compare_opened_movie(inputs, out, parameters, progress=progress, **options)
+
+
+def compare_opened_movie(
+    inputs: MovieInputs,
+    out: str | os.PathLike[str],
+    parameters: CompareMovieParameters,
+    *,
+    resume: bool = False,
+    overwrite: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> Comparison:
+    """As `compare_movie`, with files that are open already.
+
+    Parameters
+    ----------
+    inputs : MovieInputs
+        Opened with these parameters.
+    out, parameters, resume, overwrite, progress
+        See `compare_movie`.
+
+    Returns
+    -------
+    Comparison
+    """
+    check_options(1, resume, overwrite)
+    scale = inputs.scale.pixel_size_um, inputs.scale.frame_interval_s
+    paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
+    provenance = describe_run(paths, parameters, inputs.understood, *scale) | {"run": "movie comparison"}
+    with alone_in(out):
+        if resume and StudyFolder.is_complete(out, provenance):
+            write_summaries(Path(out))  # in case it was stopped just before
+            return open_comparison(out)
+        folder = StudyFolder.start(out, provenance, COMPARED_MOVIE, resume=resume, overwrite=overwrite)
+        write_parameters(parameters, folder.path / PARAMETERS)
+        parts = _parts(inputs, parameters.methods)
+        _run(parts, inputs, parameters, folder, progress or silent)
+        keys = [part.key for part in parts]
+        rows = list(folder.read_rows(keys))
+        reasons = [f"cell {row['cell']}, {row['method']}: {row['reason']}" for row in rows if row["reason"]]
+        finish_run(folder, keys, reasons)
+        write_summaries(folder.path)
+        return open_comparison(folder.path)
+
+
+def _run(
+    parts: list[_Part],
+    inputs: MovieInputs,
+    parameters: CompareMovieParameters,
+    folder: StudyFolder,
+    progress: Callable[[int, int], None],
+) -> None:
+    """Do the parts that are not there yet; progress is counted in frames of all parts."""
+    lengths = [len(part.track.times) for part in parts]
+    for number, part in enumerate(parts):
+        before, total = sum(lengths[:number]), sum(lengths)
+        if not folder.has(part.key):
+            report = partial(_report, progress, before, total)
+            folder.add(part.key, *_compare(part, inputs, parameters, folder.path, report))
+        progress(before + lengths[number], total)
+
+
+def _report(progress: Callable[[int, int], None], before: int, total: int, done: int, _: int) -> None:
+    progress(before + done, total)
+
+
+def _parts(inputs: MovieInputs, methods: tuple[str, ...]) -> list[_Part]:
+    return [
+        _Part(track, method, part_key(track.cell, number))
+        for track in inputs.tracks
+        for number, method in enumerate(methods)
+    ]
+
+
+def _compare(
+    part: _Part,
+    inputs: MovieInputs,
+    parameters: CompareMovieParameters,
+    folder: Path,
+    report: Callable[[int, int], None],
+) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+    """Row and tables of one cell by one method; a movie without any map has the reason in its row."""
+    track, started = part.track, clock.perf_counter()
+    masks = [track.mask_in(read_frame(inputs.masks, time), time) for time in track.times]
+    row: dict[str, Any] = {
+        "cell": track.cell,
+        "source": inputs.masks.path.name,
+        "time": track.first,
+        "label": track.label,
+        "method": part.method,
+        "frames": usable(masks),
+    }
+    with TemporaryDirectory(dir=folder, prefix=".", suffix=f".{os.getpid()}.tmp.maps") as maps:
+        try:
+            movie = _map(part.method, masks, inputs, parameters, maps, report)
+        except CytodiskError as fault:
+            seconds = (clock.perf_counter() - started) / len(masks)
+            return row | {"status": "no map", "reason": str(fault), "mapped": 0, "seconds": seconds}, {}
+        followed = FollowedCell(track.cell, track.first, part.method, movie, inputs.signal, parameters)
+        measured = measure_frames(followed)
+    seconds = (clock.perf_counter() - started) / len(masks)
+    activity = measured.activity
+    with replacing(folder / "maps" / f"activity_{part_key(track.cell)}_{part.method}.npz") as temporary:
+        channels = np.array(activity["channel"].to_numpy(), dtype=str)
+        arrays: dict[str, Any] = {name: activity[name].to_numpy() for name in ("mean", "area", "time")}
+        np.savez_compressed(temporary, channel=channels, **arrays)
+    reasons = [(track.first + time, record.reason) for time, record in enumerate(movie.records)]
+    faults = "; ".join(f"frame {time}: {reason}" for time, reason in reasons if reason)
+    outcome = {"status": "partly" if faults else "ok", "reason": faults, "seconds": seconds}
+    return row | measured.row | outcome, measured.tables
+
+
+def _map(
+    method: str,
+    masks: list[Any],
+    inputs: MovieInputs,
+    parameters: CompareMovieParameters,
+    folder: str,
+    report: Callable[[int, int], None],
+) -> DiskMovie:
+    return map_movie(
+        masks,
+        tracker=parameters.tracker,
+        register=parameters.registration,
+        tension=parameters.tension,
+        renew_every=parameters.renew_every,
+        # Windows that are not on a map need its edge alone, which is the same for all methods.
+        method=method if method in ON_A_MAP else "harmonic",  # type: ignore[arg-type]
+        shape_weight=parameters.shape_weight,
+        edge_length=parameters.edge_length,
+        align=parameters.align,
+        inertia=parameters.inertia,
+        pixel_size_um=inputs.scale.pixel_size_um,
+        frame_interval_s=inputs.scale.frame_interval_s,
+        folder=folder,
+        progress=report,
+    )

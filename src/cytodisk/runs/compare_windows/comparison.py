@@ -1,0 +1,159 @@
+"""What a comparison found: its tables, and what they say over all cells."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from cytodisk.errors import ReadError
+from cytodisk.files import replacing
+from cytodisk.runs.compare_windows.compare_columns import (
+    BY_LAYER,
+    BY_METHOD,
+    THROUGH_TIME,
+    describe_columns,
+    units_of,
+)
+from cytodisk.runs.compare_windows.compare_summaries import layer_summary, method_summary, movie_summary
+from cytodisk.store.provenance_file import read_provenance
+from cytodisk.store.study_folder import CELLS, CONSISTENCY, MAPS, part_key
+from cytodisk.store.tables import read_table
+
+COLUMNS_FILE = "comparison_columns.csv"
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The reading side of a comparison.
+
+    Attributes
+    ----------
+    path : Path
+    cells : DataFrame
+        One row a cell and method, with its status and the reason.
+    layers : DataFrame
+        One row a cell, frame, method and layer.
+    provenance : dict
+    """
+
+    path: Path
+    cells: pd.DataFrame
+    layers: pd.DataFrame
+    provenance: dict[str, Any]
+
+    def __repr__(self) -> str:
+        return f"<Comparison {self.path}: {self.cells['cell'].nunique()} cells, {', '.join(self.methods)}>"
+
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """Methods in the order they were asked for."""
+        return tuple(self.provenance["parameters"]["methods"])
+
+    @property
+    def is_movie(self) -> bool:
+        """Whether cells were followed through time."""
+        return self.provenance.get("run") == "movie comparison"
+
+    @cached_property
+    def consistency(self) -> pd.DataFrame:
+        """For a movie, one row a cell, method, time, channel and layer."""
+        if not self.is_movie:
+            raise ReadError(f"comparison {self.path} is not that of a movie: it has no {CONSISTENCY}")
+        return read_table(self.path / CONSISTENCY)
+
+    @cached_property
+    def by_layer(self) -> pd.DataFrame:
+        """One row a method and layer, over all cells; see `layer_summary`."""
+        return self._with_units(layer_summary(self.cells, self.layers, self.methods), BY_LAYER)
+
+    @cached_property
+    def by_method(self) -> pd.DataFrame:
+        """One row a method, over all cells; see `method_summary`."""
+        return self._with_units(method_summary(self.cells, self.layers, self.methods), BY_METHOD)
+
+    @cached_property
+    def through_time(self) -> pd.DataFrame:
+        """For a movie, one row a method, channel and layer, and one for all layers; see `movie_summary`."""
+        return self._with_units(movie_summary(self.consistency, self.methods), THROUGH_TIME)
+
+    @property
+    def summaries(self) -> dict[str, pd.DataFrame]:
+        """What stands in CSV files, by their names."""
+        tables = {BY_LAYER: self.by_layer, BY_METHOD: self.by_method}
+        if self.is_movie:
+            tables[THROUGH_TIME] = self.through_time
+        tables[COLUMNS_FILE] = describe_columns(tables, self.provenance.get("length_unit", "px"))
+        return tables
+
+    def _with_units(self, table: pd.DataFrame, name: str) -> pd.DataFrame:
+        table.attrs["units"] = units_of(table, name, self.provenance.get("length_unit", "px"))
+        return table
+
+    def labels(self, cell: int) -> dict[str, Any]:
+        """Which part of a cell is in which window: "mask", and by method an int array, -1 for none.
+
+        In cells of up to 4000 pixels each pixel is divided into 4×4.
+        """
+        path = self.path / MAPS / f"windows_{part_key(cell)}.npz"
+        try:
+            with np.load(path) as file:
+                return {name: file[name] for name in file.files}
+        except OSError as error:
+            raise ReadError(f"cell {cell} has no windows in comparison {self.path}") from error
+
+    def activity(self, cell: int, method: str) -> xr.DataArray:
+        """For a movie, the signal in the windows of a method, dims (time, channel, layer, sector)."""
+        path = self.path / MAPS / f"activity_{part_key(cell)}_{method}.npz"
+        try:
+            with np.load(path) as file:
+                _, _, layers, sectors = file["mean"].shape
+                coords = {"time": file["time"], "channel": file["channel"]}
+                coords |= {"layer": np.arange(layers), "sector": np.arange(sectors)}
+                return xr.DataArray(file["mean"], coords, ("time", "channel", "layer", "sector"))
+        except OSError as error:
+            raise ReadError(f"cell {cell} has no activity by {method} in comparison {self.path}") from error
+
+
+def open_comparison(path: str | os.PathLike[str]) -> Comparison:
+    """Read what `cytodisk compare` wrote.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    ReadError
+        The folder holds no complete comparison.
+    """
+    folder = Path(path)
+    provenance = read_provenance(folder)
+    if provenance is None or "comparison" not in str(provenance.get("run")):
+        raise ReadError(f"{folder} holds no comparison: pass a folder that cytodisk compare wrote")
+    if provenance.get("status") != "complete":
+        raise ReadError(f"comparison {folder} is not complete: run the same command again with --resume")
+    return Comparison(folder, read_table(folder / CELLS), read_table(folder / "layers.parquet"), provenance)
+
+
+def write_summaries(path: Path) -> None:
+    """Write the summaries of a complete comparison, and what their columns are, as CSV files.
+
+    Parameters
+    ----------
+    path : Path
+        Its folder.
+    """
+    for name, table in open_comparison(path).summaries.items():
+        with replacing(path / name) as temporary:
+            table.to_csv(temporary, index=False, float_format="%.6g")

@@ -1,0 +1,1 @@
+"""`cytodisk correlate`: signals and the motion of the edge."""

@@ -1,0 +1,82 @@
+"""The part of a cell's activity that is correlated: some frames, some sectors."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from cytodisk.errors import ParameterError
+from cytodisk.runs.correlate.correlation_settings import CorrelationSettings
+from cytodisk.store.activity_store import EDGE_VARIABLES
+
+
+def chosen_series(activity: xr.Dataset, settings: CorrelationSettings) -> xr.Dataset:
+    """Activity of the frames and sectors that settings ask for.
+
+    Parameters
+    ----------
+    activity : Dataset
+        Of one cell of a study.
+    settings : CorrelationSettings
+        Its frames, without_frames and sectors.
+
+    Returns
+    -------
+    Dataset
+        Frames that are left out are NaN, as are steps of the edge from and to them, so that lags stay even;
+        steps out of the last frame are NaN.
+
+    Raises
+    ------
+    ParameterError
+        There are no such frames or sectors.
+    """
+    activity = _without(activity, settings.without_frames)
+    if settings.frames is not None:
+        first, last = settings.frames
+        there = activity["time"].to_numpy()
+        if last < there[0] or first > there[-1]:
+            raise ParameterError(f"frames {first}:{last} are not in the movie: it has {there[0]}:{there[-1]}")
+        activity = _without_steps(activity.sel(time=slice(first, last)), [min(last, int(there[-1]))])
+    if settings.sectors is not None:
+        activity = activity.isel(sector=chosen_sectors(settings, activity.sizes["sector"]))
+    return activity
+
+
+def chosen_sectors(settings: CorrelationSettings, count: int) -> list[int]:
+    """Numbers of the sectors that settings ask for, of so many; 50:5 goes on over the last.
+
+    Raises
+    ------
+    ParameterError
+        There are no such sectors.
+    """
+    if settings.sectors is None:
+        return list(range(count))
+    first, last = settings.sectors
+    if not (0 <= first < count and 0 <= last < count):
+        raise ParameterError(f"sectors {first}:{last} are not on the edge: it has 0:{count - 1}")
+    if first == last + 1:
+        raise ParameterError(f"sectors {first}:{last} are the whole edge, or two swapped: leave sectors out")
+    around = range(first, last + 1 + (count if last < first else 0))
+    return sorted(sector % count for sector in around)
+
+
+def _without(activity: xr.Dataset, frames: tuple[int, ...]) -> xr.Dataset:
+    missing = sorted(set(frames) - set(activity["time"].to_numpy().tolist()))
+    if missing:
+        there = activity["time"].to_numpy()
+        raise ParameterError(f"without_frames has {missing[0]}: the movie has {there[0]}:{there[-1]}")
+    if not frames:
+        return activity
+    left, mean = ~activity["time"].isin(list(frames)), activity["mean"]
+    means = activity.assign({"mean": mean.where(left).assign_attrs(mean.attrs)})
+    return _without_steps(means, [*frames, *(frame - 1 for frame in frames)])
+
+
+def _without_steps(activity: xr.Dataset, frames: list[int]) -> xr.Dataset:
+    """NaN for the steps of the edge from some frames to the next."""
+    left = ~activity["time"].isin(frames)
+    named = [name for name in EDGE_VARIABLES if name in activity and name != "edge_length"]
+    return activity.assign(
+        {name: activity[name].where(left).assign_attrs(activity[name].attrs) for name in named}
+    )

@@ -1,0 +1,182 @@
+"""The demo's input files, and how far its results are from the known answer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tifffile
+
+from cytodisk.analysis.accuracy import (
+    first_boundary_of,
+    share_by_sector,
+    tracking_error,
+    true_edge_velocity,
+)
+from cytodisk.arrays import FloatArray
+from cytodisk.errors import ReadError, StudyError
+from cytodisk.files import replacing
+from cytodisk.images.frames import open_frames
+from cytodisk.simulate.moving_cells import SimulatedMovie, movie
+from cytodisk.store.study import Study
+
+FRAMES = 40
+_COUPLED = 0.5  # share of the edge along which the signal follows its velocity
+_MOSTLY = 0.95  # share of a sector that must be coupled, or not, for it to count
+
+
+def write_demo_input(
+    folder: Path, seed: int, *, overwrite: bool = False
+) -> tuple[SimulatedMovie, Path, Path]:
+    """Write a simulated movie as a mask file and an OME-TIFF; files that hold it already are left alone.
+
+    Parameters
+    ----------
+    folder : Path
+        Is made if need be.
+    seed : int
+    overwrite : bool
+        Replace files that hold something else.
+
+    Returns
+    -------
+    truth : SimulatedMovie
+    masks, signal : Path
+
+    Raises
+    ------
+    StudyError
+        The folder cannot be written, or holds something else.
+    """
+    truth = movie("fluctuating", seed, frames=FRAMES, speed_px=0.5, coupled=_COUPLED)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StudyError(f"output folder {folder} cannot be written: {error.strerror}") from error
+    masks, signal = folder / "masks.tif", folder / "signal.ome.tif"
+    _write(masks, truth.masks.astype(np.uint8), {"axes": "TYX"}, overwrite)
+    counts = _signal(truth)
+    metadata = {
+        "axes": "TCYX",
+        "Channel": {"Name": [str(name) for name in counts["channel"].to_numpy()]},
+        "PhysicalSizeX": truth.pixel_size_um,
+        "PhysicalSizeXUnit": "µm",
+        "PhysicalSizeY": truth.pixel_size_um,
+        "PhysicalSizeYUnit": "µm",
+        "TimeIncrement": truth.frame_interval_s,
+        "TimeIncrementUnit": "s",
+    }
+    _write(signal, counts.to_numpy(), metadata, overwrite)
+    return truth, masks, signal
+
+
+def compare_with_truth(study: Study, truth: SimulatedMovie) -> dict[str, str]:
+    """How far the results of a demo are from the known answer, in words.
+
+    Parameters
+    ----------
+    study : Study
+        Of the files that `write_demo_input` wrote, with its edge signal correlated with velocity.
+    truth : SimulatedMovie
+
+    Returns
+    -------
+    dict of str to str
+        By what is compared.
+    """
+    activity = study.activity(0)
+    return {
+        "boundary": _boundary_words(study, truth),
+        "edge velocity": _velocity_words(study, truth, activity["velocity"].to_numpy()),
+        "signal": _signal_words(study, truth),
+        "lag": _lag_words(study, truth),
+    }
+
+
+def _boundary_words(study: Study, truth: SimulatedMovie) -> str:
+    movie = study.movie(0)
+    first, last = first_boundary_of(movie), movie.records[-1].boundary
+    if last is None:
+        return f"the last frame has no map: {movie.records[-1].reason}"
+    error = tracking_error(first, last, truth.boundary_yx[0], truth.boundary_yx[-1]) * truth.pixel_size_um
+    share = error.mean() / (last.contour.length * truth.pixel_size_um)
+    return (
+        f"after {len(movie) - 1} frames the tracked points are {error.mean():.2f} µm along the edge from "
+        f"where they belong on average (95 % within {np.percentile(error, 95):.2f} µm), {share:.1%} of the "
+        "way around"
+    )
+
+
+def _velocity_words(study: Study, truth: SimulatedMovie, found: FloatArray) -> str:
+    first = first_boundary_of(study.movie(0))
+    known = true_edge_velocity(first, truth.boundary_yx, truth.normal_displacement_px, found.shape[1])
+    known = known * truth.pixel_size_um / truth.frame_interval_s
+    both = np.isfinite(found) & np.isfinite(known)
+    error = float(np.sqrt(np.mean((found - known)[both] ** 2)))
+    spread = float(known[both].std())
+    correlation = float(np.corrcoef(found[both], known[both])[0, 1])
+    return (
+        f"error {error:.3f} µm/s (rms; the velocities spread by {spread:.3f} µm/s), correlation with the "
+        f"known ones {correlation:.3f}"
+    )
+
+
+def _signal_words(study: Study, truth: SimulatedMovie) -> str:
+    """Sums over windows against counts in the mask, which must agree but for rounding."""
+    windows = study.windows
+    products = windows["mean"] * windows["n_pixels"]
+    found = products.groupby([windows["channel"], windows["time"]]).sum()
+    off = []
+    counts = _signal(truth)
+    for number, channel in enumerate(counts["channel"].to_numpy()):
+        for time, mask in enumerate(truth.masks):
+            counted = float(counts.to_numpy()[time, number][mask].sum(dtype=np.float64))
+            off.append(abs(found[str(channel), time] - counted) / counted)
+    worst = float(np.max(off))
+    return f"sum over windows against counts in the cell: at most {worst:.0e} off, in any frame and channel"
+
+
+def _lag_words(study: Study, truth: SimulatedMovie) -> str:
+    """The lag of the edge signal where it follows the edge, and what was found where it does not."""
+    found = study.correlation("edge", "velocity").windows
+    outer = found[found["layer"] == 0].sort_values("sector")
+    share = share_by_sector(study.movie(0), truth.boundary_yx, truth.coupled, len(outer))
+    coupled, others = outer[share > _MOSTLY], outer[share < 1.0 - _MOSTLY]
+    interval, lag = truth.frame_interval_s, -float(coupled["lag"].median())
+    right = (coupled["lag"] + truth.lag_frames).abs() <= 1
+    return (
+        f"where the edge signal was made to follow edge velocity by {truth.lag_frames * interval:g} s "
+        f"({truth.lag_frames} frames), it is found to follow by {lag * interval:g} s ({lag:g} frames), "
+        f"within a frame in {right.sum()} of {len(coupled)} sectors, q < 0.05 in "
+        f"{(coupled['q'] < 0.05).sum()}; where it has nothing to do with velocity, q < 0.05 in "
+        f"{(others['q'] < 0.05).sum()} of {len(others)}"
+    )
+
+
+def _signal(truth: SimulatedMovie) -> Any:
+    if truth.signal is None:
+        raise StudyError("the demo's movie has no signal: simulate it with signals=True")
+    return truth.signal
+
+
+def _write(path: Path, values: Any, metadata: dict[str, Any], overwrite: bool) -> None:
+    if path.exists() and _holds(path, values):
+        return
+    if path.exists() and not overwrite:
+        raise StudyError(f"{path} holds something else than this demo: pass --overwrite, or another folder")
+    with replacing(path) as temporary:
+        tifffile.imwrite(temporary, values, metadata=metadata, ome=path.name.endswith(".ome.tif"))
+
+
+def _holds(path: Path, values: Any) -> bool:
+    try:
+        found = open_frames(path)
+        if found.n_frames != len(values) or found.image_shape != values.shape[-2:]:
+            return False
+        return all(
+            np.array_equal(found.frame(time), frame.reshape(-1, *values.shape[-2:]))
+            for time, frame in enumerate(values)
+        )
+    except ReadError:
+        return False  # a file that cannot be read is written anew

@@ -1,0 +1,1 @@
+"""`cytodisk map`: cells of mask files."""

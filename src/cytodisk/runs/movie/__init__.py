@@ -1,0 +1,1 @@
+"""`cytodisk movie`: cells followed through time."""

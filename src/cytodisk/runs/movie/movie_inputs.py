@@ -1,0 +1,235 @@
+"""The files of a movie's run, opened and checked against each other."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from cytodisk.errors import CytodiskError, MaskError, ParameterError, SignalError
+from cytodisk.geometry.mask import clean_mask
+from cytodisk.geometry.outline import trace_outline
+from cytodisk.geometry.polygon import edge_lengths, smooth_closed
+from cytodisk.images.frames import FrameFile, open_frames
+from cytodisk.images.mask_kinds import Kind, understood_as
+from cytodisk.images.tracks import CellTrack, list_tracks, read_frame
+from cytodisk.runs.map.map_inputs import check_signal
+from cytodisk.runs.movie.frame_rows import Scale
+from cytodisk.runs.parameters import MovieParameters
+from cytodisk.runs.pixel_sizes import common_pixel_size
+from cytodisk.runs.steps import name_channels
+from cytodisk.store.study_folder import part_key
+from cytodisk.windows.grid import PolarGrid, first_depth, layers_for_depth, polar_windows
+
+
+@dataclass(frozen=True)
+class MovieFiles:
+    """The files of a run that fit each other, as far as their heads say.
+
+    Attributes
+    ----------
+    masks : FrameFile
+    signal : FrameFile or None
+        With the names that were given to its channels.
+    scale : Scale
+        The given one, or else the files' own.
+    """
+
+    masks: FrameFile
+    signal: FrameFile | None
+    scale: Scale
+
+
+@dataclass(frozen=True)
+class MovieInputs:
+    """The files of a run, opened and checked against each other.
+
+    Attributes
+    ----------
+    masks : FrameFile
+    kind : {"stack", "labels"}
+    tracks : tuple of CellTrack
+    signal : FrameFile or None
+    parameters : MovieParameters
+        As given.
+    grid : PolarGrid
+    scale : Scale
+        The given one, or else the files' own.
+    first_depth_um : float or None
+        Thickness of the first layer in the first frame of the first cell, where `depth_um` was asked for.
+    """
+
+    masks: FrameFile
+    kind: Kind
+    tracks: tuple[CellTrack, ...]
+    signal: FrameFile | None
+    parameters: MovieParameters
+    grid: PolarGrid
+    scale: Scale
+    first_depth_um: float | None = None
+
+    @property
+    def understood(self) -> dict[str, str]:
+        """What each file was read as, in words."""
+        height, width = self.masks.image_shape
+        size = f"{self.masks.n_frames} frames of {height} × {width} pixels"
+        what = "masks of one cell" if self.kind == "stack" else f"labels of {len(self.tracks)} cells"
+        if self.parameters.link and self.kind == "labels":
+            what += ", linked by overlap"
+        words = {"masks": f"{what}, {size} ({self.masks.axes}, {self.masks.dtype})"}
+        if self.signal is not None:
+            names = ", ".join(self.signal.channels)
+            words["signal"] = (
+                f"channels {names}; {self.signal.n_frames} frames ({self.signal.axes}, {self.signal.dtype})"
+            )
+        if self.parameters.depth_um is not None:
+            words["windows"] = (
+                f"layers {self.grid.layers}, sectors {self.grid.sectors}; the first layer is about "
+                f"{self.first_depth_um:.2g} µm deep in the first frame of the first cell (wanted "
+                f"{self.parameters.depth_um:g} µm)"
+            )
+        return words
+
+    @property
+    def n_frames(self) -> int:
+        """Frames of all cells together."""
+        return sum(len(track.times) for track in self.tracks)
+
+    @property
+    def keys(self) -> list[str]:
+        """Parts of the study, by cell, then time."""
+        return [part_key(track.cell, time) for track in self.tracks for time in track.times]
+
+
+def open_movie(
+    masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: MovieParameters
+) -> MovieInputs:
+    """Open the files of a run and check that they fit.
+
+    Parameters
+    ----------
+    masks : path-like
+        Masks of one cell by frame, or label images by frame.
+    signal : path-like, optional
+        Images of the shape of the masks, as many frames as they.
+    parameters : MovieParameters
+
+    Returns
+    -------
+    MovieInputs
+
+    Raises
+    ------
+    ReadError, MaskError, SignalError, ParameterError, MissingPartError
+        A file is missing, damaged, or does not fit.
+    """
+    files = open_movie_files(masks, signal, parameters)
+    mask_file, scale = files.masks, files.scale
+    kind = understood_as(mask_file, parameters.kind)
+    tracks = tuple(list_tracks(mask_file, kind, parameters.link))
+    layers, depth_um = parameters.layers, None
+    if parameters.depth_um is not None:
+        layers, depth_um = _layers(mask_file, tracks, parameters, scale)
+    grid = polar_windows(layers, parameters.sectors, parameters.spacing)
+    return MovieInputs(mask_file, kind, tracks, files.signal, parameters, grid, scale, depth_um)
+
+
+def open_movie_files(
+    masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: MovieParameters
+) -> MovieFiles:
+    """Open the files of a run and check what their heads say, without looking at a frame.
+
+    Parameters
+    ----------
+    masks, signal, parameters
+        As for `open_movie`.
+
+    Returns
+    -------
+    MovieFiles
+
+    Raises
+    ------
+    ReadError, MaskError, SignalError, ParameterError
+        A file is missing, damaged, or does not fit.
+    """
+    mask_file = open_frames(masks, unnamed="T")
+    _check_masks(mask_file)
+    signal_file = None
+    if signal is not None:
+        signal_file = open_frames(signal, unnamed="T")
+        _check_frames(mask_file, signal_file)
+    signal_file = name_channels(signal_file, parameters.channels)
+    if signal_file is not None:
+        check_signal(mask_file, signal_file)
+    opened = [file for file in (signal_file, mask_file) if file is not None]
+    scale = Scale(
+        parameters.pixel_size_um or common_pixel_size(opened),
+        parameters.frame_interval_s or _frame_interval(mask_file, signal_file),
+    )
+    return MovieFiles(mask_file, signal_file, scale)
+
+
+def _check_masks(masks: FrameFile) -> None:
+    if "T" not in masks.axes:
+        channels = masks.shape[masks.axes.index("C")] if "C" in masks.axes else 1
+        if channels > 1:
+            raise MaskError(
+                f"masks {masks.path} were understood as one frame with {channels} channels ({masks.axes} "
+                f"{masks.shape}): if these are frames, save them with axes TYX"
+            )
+        raise MaskError(f"masks {masks.path} hold one frame: a movie has two at least; use cytodisk map")
+    height, width = masks.image_shape
+    if width < masks.n_frames / 4 and width < height / 4:
+        raise MaskError(
+            f"masks {masks.path} were understood as {masks.n_frames} frames of {height} × {width} pixels, "
+            "which looks like time on the last axis: save them with axes TYX"
+        )
+
+
+def _check_frames(masks: FrameFile, signal: FrameFile) -> None:
+    if signal.n_frames == masks.n_frames:
+        return
+    hint = "pass as many"
+    if len(signal.channels) == masks.n_frames:
+        hint = f"its {len(signal.channels)} channels look like frames: save it with axes TYX or TCYX"
+    raise SignalError(
+        f"signal {signal.path} was understood as {signal.n_frames} frames of {len(signal.channels)} channels "
+        f"({signal.axes} {signal.shape}), the masks have {masks.n_frames} frames: {hint}"
+    )
+
+
+def _frame_interval(masks: FrameFile, signal: FrameFile | None) -> float | None:
+    known = [file for file in (signal, masks) if file is not None and file.frame_interval_s is not None]
+    intervals = [file.frame_interval_s for file in known if file.frame_interval_s is not None]
+    if intervals and max(intervals) > 1.01 * min(intervals):
+        raise SignalError(
+            f"frame intervals differ: {known[0].path} says {intervals[0]:g} s, {known[1].path} "
+            f"{intervals[1]:g} s: pass the right one, as --frame-interval"
+        )
+    return intervals[0] if intervals else None
+
+
+def _layers(
+    masks: FrameFile, tracks: tuple[CellTrack, ...], parameters: MovieParameters, scale: Scale
+) -> tuple[int, float]:
+    """Layers for the wanted depth, and the depth they give, on the first frame that can be used."""
+    depth = parameters.depth_um
+    if scale.pixel_size_um is None or depth is None:
+        raise ParameterError("depth_um needs a pixel size: pass it as --pixel-size, or layers instead")
+    for track, time in _first_frames(tracks):
+        try:
+            mask, report = clean_mask(track.mask_in(read_frame(masks, time), time))
+        except CytodiskError:
+            continue  # has its row in the run; the next frame serves as well
+        perimeter = float(edge_lengths(smooth_closed(trace_outline(mask), 1.0)).sum())
+        cell = report.area_px, perimeter, parameters.spacing
+        layers = layers_for_depth(depth / scale.pixel_size_um, *cell)
+        return layers, float(first_depth(layers, *cell)) * scale.pixel_size_um
+    raise MaskError(f"no frame of {masks.path} can be used")
+
+
+def _first_frames(tracks: tuple[CellTrack, ...]) -> Iterator[tuple[CellTrack, int]]:
+    for track in tracks:
+        for time in track.times:
+            yield track, time

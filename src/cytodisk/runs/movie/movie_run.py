@@ -1,0 +1,232 @@
+"""A run over a mask movie: `cytodisk movie` and the same from Python."""
+
+from __future__ import annotations
+
+import os
+import time as clock
+from collections import deque
+from concurrent.futures import Executor, Future
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.errors import MaskError, ReadError, as_data
+from cytodisk.images.frames import FrameFile
+from cytodisk.images.tracks import CellTrack, read_frame
+from cytodisk.motion.demons import DemonsParameters
+from cytodisk.motion.frame_file import load_frame
+from cytodisk.motion.map_movie import FrameResult, map_one
+from cytodisk.motion.mapped_frame import MappedFrame, MovieSettings
+from cytodisk.motion.tracking import TrackingSettings
+from cytodisk.runs.movie.frame_rows import FrameRows, FrameTask, measure_frame, unmapped_row
+from cytodisk.runs.movie.movie_inputs import MovieInputs
+from cytodisk.runs.movie.movie_tables import finish_tables
+from cytodisk.runs.parameters import MovieParameters, write_parameters
+from cytodisk.runs.provenance import describe_run
+from cytodisk.runs.steps import Progress, check_options, finish_run
+from cytodisk.runs.workers import worker_pool
+from cytodisk.store.study import Study, open_study
+from cytodisk.store.study_folder import MOVIE_TABLES, PARAMETERS, StudyFolder, alone_in, part_key
+
+
+def run_movie(
+    inputs: MovieInputs,
+    out: str | os.PathLike[str],
+    *,
+    workers: int = 1,
+    resume: bool = False,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> Study:
+    """Map, sample and measure every frame of every cell, and write a study.
+
+    Parameters
+    ----------
+    inputs : MovieInputs
+        As `open_movie` returns it.
+    out : path-like
+        Folder of the study.
+    workers : int
+        Processes; with 1 everything runs in this one. The results do not depend on it.
+    resume, overwrite : bool
+        What to do with a study that is there; see `StudyFolder.start`.
+    progress : callable, optional
+        Called with (frames done, frames in all), counted over all cells.
+
+    Returns
+    -------
+    Study
+        Complete; a frame that could not be mapped has a row with the reason.
+
+    Raises
+    ------
+    ParameterError
+        `workers` is below 1, or both `resume` and `overwrite` are set.
+    StudyError
+        The folder cannot be used.
+    """
+    check_options(workers, resume, overwrite)
+    paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
+    provenance = describe_run(
+        paths, inputs.parameters, inputs.understood, inputs.scale.pixel_size_um, inputs.scale.frame_interval_s
+    )
+    provenance |= {
+        "run": "movie",
+        "layers": inputs.grid.layers,
+        "image_shape": list(inputs.masks.image_shape),
+    }
+    with alone_in(out):
+        if resume and StudyFolder.is_complete(out, provenance):
+            return open_study(out)
+        folder = StudyFolder.start(out, provenance, MOVIE_TABLES, resume=resume, overwrite=overwrite)
+        write_parameters(inputs.parameters, folder.path / PARAMETERS)
+        with worker_pool(workers) as pool:
+            _Run(inputs, folder, pool, 2 * workers, progress).all_frames()
+        channels = inputs.signal.channels if inputs.signal else ()
+        finish_tables(folder, inputs.tracks, inputs.grid, inputs.scale, channels)
+        rows = folder.rows()
+        finish_run(folder, inputs.keys, [_warning(row) for row in rows if _warning(row)])
+        return open_study(folder.path)
+
+
+def movie_settings(parameters: MovieParameters) -> MovieSettings:
+    """The mapping's part of a run's parameters."""
+    tracking = TrackingSettings(
+        tracker=parameters.tracker,
+        tension=parameters.tension,
+        register=parameters.registration,
+        renew_every=parameters.renew_every,
+        demons=DemonsParameters(),
+    )
+    return MovieSettings(
+        tracking,
+        parameters.method,
+        parameters.shape_weight,
+        parameters.edge_length,
+        parameters.align,
+        parameters.inertia,
+    )
+
+
+class _Run:
+    """Frame after frame, all cells of a frame side by side.
+
+    A frame is mapped when the one before is; measuring it runs beside the mapping of the next one. At most
+    `queue` measured frames wait to be written, so memory does not grow with the movie.
+    """
+
+    def __init__(
+        self, inputs: MovieInputs, folder: StudyFolder, pool: Executor, queue: int, progress: Progress | None
+    ):
+        self._inputs = inputs
+        self._folder = folder
+        self._pool = pool
+        self._queue = queue
+        self._progress = progress
+        self._settings = movie_settings(inputs.parameters)
+        self._last: dict[int, MappedFrame] = {}
+        self._waiting: deque[tuple[str, str, Future[FrameRows]]] = deque()
+        self._done = sum(folder.has(key) for key in inputs.keys)
+
+    def all_frames(self) -> None:
+        """Do what is not done yet."""
+        self._report()
+        for time in range(self._inputs.masks.n_frames):
+            present = [track for track in self._inputs.tracks if time in track.times]
+            pending = [track for track in present if not self._folder.has(part_key(track.cell, time))]
+            if pending:
+                self._one_time(time, pending)
+            for track in present:
+                if time == track.last:
+                    self._last.pop(track.cell, None)
+        while self._waiting:
+            self._write_next()
+
+    def _one_time(self, time: int, tracks: list[CellTrack]) -> None:
+        frame = read_frame(self._inputs.masks, time)
+        signal = _signal_at(self._inputs.signal, time)
+        mapping = []
+        for track in tracks:
+            if track.cell not in self._last:
+                self._resume_from(track, time)
+            mask = signal if isinstance(signal, ReadError) else track.mask_in(frame, time)
+            last = self._last.get(track.cell)
+            mapping.append((track, self._pool.submit(_map_timed, time, mask, last, self._settings)))
+        for track, future in mapping:
+            self._take(track, time, *future.result(), signal)
+
+    def _take(
+        self, track: CellTrack, time: int, result: FrameResult, seconds: float, signal: xr.DataArray | None
+    ) -> None:
+        key = part_key(track.cell, time)
+        if result.mapped is None:
+            fault = result.fault or MaskError("no map")
+            place = track.cell, time, self._inputs.scale.seconds(time)
+            rows = FrameRows(unmapped_row(place, track.label, fault, seconds), {}, None)
+            future: Future[FrameRows] = Future()
+            future.set_result(rows)
+        else:
+            last = self._last.get(track.cell)
+            task = FrameTask(
+                track.cell,
+                track.label,
+                result.mapped,
+                last if last is not None and last.time == time - 1 else None,
+                signal,
+                self._inputs.grid,
+                self._inputs.parameters,
+                self._inputs.scale,
+                self._folder.map_path(key),
+                seconds,
+            )
+            self._last[track.cell] = result.mapped
+            future = self._pool.submit(measure_frame, task)
+        self._waiting.append((key, part_key(track.cell, time - 1) if time else key, future))
+        while len(self._waiting) > self._queue:
+            self._write_next()
+
+    def _write_next(self) -> None:
+        key, before, future = self._waiting.popleft()
+        rows = future.result()
+        if rows.edge_before is not None:
+            self._folder.add_table(before, "edge", rows.edge_before)
+        self._folder.add(key, rows.row, rows.tables)
+        self._done += 1
+        self._report()
+
+    def _resume_from(self, track: CellTrack, time: int) -> None:
+        """Read the last frame that has a map back, if an earlier run left any."""
+        done = [t for t in range(track.first, time) if self._folder.has(part_key(track.cell, t))]
+        paths = {t: self._folder.map_path(part_key(track.cell, t)) for t in done}
+        mapped = {t: path for t, path in paths.items() if path.exists()}
+        if mapped:
+            self._last[track.cell] = load_frame(mapped[max(mapped)], mapped)
+
+    def _report(self) -> None:
+        if self._progress is not None:
+            self._progress(self._done, self._inputs.n_frames)
+
+
+def _map_timed(
+    time: int, mask: Any, last: MappedFrame | None, settings: MovieSettings
+) -> tuple[FrameResult, float]:
+    started = clock.perf_counter()
+    return map_one(time, mask, last, settings), clock.perf_counter() - started
+
+
+def _signal_at(signal: FrameFile | None, time: int) -> Any:
+    if signal is None:
+        return None
+    try:
+        values = signal.frame(time)
+    except ReadError as error:
+        return as_data(error)
+    coords = {"channel": list(signal.channels)}
+    return xr.DataArray(values.astype(np.float64), dims=("channel", "y", "x"), coords=coords)
+
+
+def _warning(row: dict[str, Any]) -> str:
+    remarks = [row.get(name) for name in ("reason", "doubts", "restarted")]
+    words = "; ".join(str(remark) for remark in remarks if remark)
+    return f"cell {row['cell']}, frame {row['time']}: {words}" if words else ""

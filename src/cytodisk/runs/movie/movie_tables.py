@@ -1,0 +1,148 @@
+"""What a movie's run writes at its end: frames without a next one, consistency, and the activity store."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from cytodisk.analysis.activity import STATISTICS
+from cytodisk.analysis.consistency import correlation_over_sectors, displacement_between
+from cytodisk.images.tracks import CellTrack
+from cytodisk.motion.registration import RigidTransform
+from cytodisk.runs.movie.frame_rows import Scale, edge_columns
+from cytodisk.store.activity_store import EDGE_VARIABLES, GEOMETRY, ActivityStore
+from cytodisk.store.study_folder import ACTIVITY, StudyFolder, part_key
+from cytodisk.windows.grid import PolarGrid
+
+
+def finish_tables(
+    folder: StudyFolder,
+    tracks: Sequence[CellTrack],
+    grid: PolarGrid,
+    scale: Scale,
+    channels: Sequence[str],
+) -> None:
+    """Complete the parts of all cells and write the activity store, a few frames in memory at a time.
+
+    Parameters
+    ----------
+    folder : StudyFolder
+        All frames measured.
+    tracks : sequence of CellTrack
+    grid : PolarGrid
+    scale : Scale
+    channels : sequence of str
+        Of the signal; empty if there is none.
+    """
+    rows = {(row["cell"], row["time"]): row for row in folder.rows()}
+    target = folder.path / ACTIVITY
+    with ActivityStore.replacing(target) as store:
+        for track in tracks:
+            _finish_track(folder, track, grid, scale, channels, rows, store)
+    for left_over in folder.path.glob(".activity.*"):
+        shutil.rmtree(left_over)
+
+
+def _finish_track(
+    folder: StudyFolder,
+    track: CellTrack,
+    grid: PolarGrid,
+    scale: Scale,
+    channels: Sequence[str],
+    rows: dict[tuple[int, int], dict[str, Any]],
+    store: ActivityStore,
+) -> None:
+    before: dict[str, Any] | None = None
+    cell = store.cell(track.cell, track.label, grid, channels, scale.pixel_size_um, scale.frame_interval_s)
+    for time in track.times:
+        key, row = part_key(track.cell, time), rows[track.cell, time]
+        here = _frame_arrays(folder, key, grid, row, channels) if row["status"] == "ok" else None
+        if here is not None:
+            _complete_edge(folder, track, time, grid.sectors, scale, rows)
+            here |= _edge_arrays(folder, key)
+        if before is not None:
+            there = None if row.get("restarted") else here
+            _add_consistency(folder, track.cell, time - 1, scale, channels, before, there)
+        cell.append(time, here, row["status"], row["reason"])
+        before = here
+    if before is not None:
+        _add_consistency(folder, track.cell, track.last, scale, channels, before, None)
+    cell.close()
+
+
+def _frame_arrays(
+    folder: StudyFolder, key: str, grid: PolarGrid, row: dict[str, Any], channels: Sequence[str]
+) -> dict[str, Any]:
+    """A frame's windows as arrays: statistics (C, L, S), geometry (L, S), and its rigid motion."""
+    part = folder.part_table(key, "windows")
+    columns = {name: part.column(name).to_numpy(zero_copy_only=False) for name in GEOMETRY}
+    shape = (-1, grid.layers, grid.sectors)
+    arrays: dict[str, Any] = {name: values.reshape(shape)[0] for name, values in columns.items()}
+    if channels:
+        arrays |= {name: part.column(name).to_numpy().reshape(shape) for name in STATISTICS}
+    arrays["transform"] = RigidTransform(
+        np.radians(row["registration_angle"]), row["registration_shift_y"], row["registration_shift_x"]
+    )
+    return arrays
+
+
+def _edge_arrays(folder: StudyFolder, key: str) -> dict[str, Any]:
+    part = folder.part_table(key, "edge")
+    return {name: part.column(name).to_numpy() for name in EDGE_VARIABLES}
+
+
+def _complete_edge(
+    folder: StudyFolder,
+    track: CellTrack,
+    time: int,
+    sectors: int,
+    scale: Scale,
+    rows: dict[tuple[int, int], dict[str, Any]],
+) -> None:
+    """Give a frame without a next one its rows of the edge table, with the reason."""
+    key = part_key(track.cell, time)
+    if folder.has_table(key, "edge"):
+        return
+    following = rows.get((track.cell, time + 1))
+    status = "last frame" if following is None else f"the next frame has no map: {following['reason']}"
+    place = track.cell, time, scale.seconds(time)
+    folder.add_table(key, "edge", edge_columns(place, sectors, scale, None, None, status))
+
+
+def _add_consistency(
+    folder: StudyFolder,
+    cell: int,
+    time: int,
+    scale: Scale,
+    names: Sequence[str],
+    here: dict[str, Any],
+    there: dict[str, Any] | None,
+) -> None:
+    layers = len(here["area"])
+    channels: list[str | None] = [*names] or [None]
+    moved = np.full(layers, np.nan)
+    correlation = np.full((len(channels), layers), np.nan)
+    if there is not None:
+        places = np.stack([_registered(here), _registered(there)])
+        moved = displacement_between(places)[0].mean(axis=-1) * (scale.pixel_size_um or 1.0)
+        if "mean" in here:
+            correlation = correlation_over_sectors(here["mean"], there["mean"])
+    rows = len(channels) * layers
+    columns = {
+        "cell": np.full(rows, cell),
+        "time": np.full(rows, time),
+        "time_s": [scale.seconds(time)] * rows,
+        "channel": [name for name in channels for _ in range(layers)],
+        "layer": np.tile(np.arange(layers), len(channels)),
+        "correlation": correlation.ravel(),
+        "centroid_displacement": np.tile(moved, len(channels)),
+        "completeness": np.tile((here["area"] > 0).mean(axis=-1), len(channels)),
+    }
+    folder.add_table(part_key(cell, time), "consistency", columns)
+
+
+def _registered(arrays: dict[str, Any]) -> Any:
+    return arrays["transform"](np.stack([arrays["centroid_y"], arrays["centroid_x"]], axis=-1))

@@ -1,0 +1,1 @@
+"""`cytodisk shapes`: features and complexity of shapes."""

@@ -1,0 +1,139 @@
+"""The tables of a run over shapes: what is measured of each cell, and what the names mean."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+
+from cytodisk.analysis.shape.complexity import complexity_score, why_unscored
+from cytodisk.analysis.shape.features import FEATURES, GROUPS, SCALE_FREE, feature_table
+from cytodisk.errors import ReadError
+from cytodisk.files import replacing
+from cytodisk.store.provenance_file import read_provenance
+from cytodisk.store.study_folder import Tables
+from cytodisk.store.tables import Columns, read_table, write_table
+
+SHAPES, SHAPES_CSV, FEATURES_CSV = "shapes.parquet", "shapes.csv", "features.csv"
+SCORES = ("complexity", "umap_1", "umap_2")
+_CELL: Columns = (
+    ("cell", pa.int64(), ""),
+    ("source", pa.string(), ""),
+    ("time", pa.int64(), "frame"),
+    ("label", pa.int64(), ""),
+    ("status", pa.string(), ""),
+    ("reason", pa.string(), ""),
+    ("notes", pa.string(), ""),
+    ("doubts", pa.string(), ""),
+    ("touches_border", pa.bool_(), ""),
+)
+SHAPE_TABLES = Tables(_CELL, {})
+"""What a study has beside `shapes.parquet`: its table of cells, without features."""
+
+
+def shape_table(
+    rows: Iterable[dict[str, Any]], pixel_size_um: float | None, seed: int, n_neighbors: int, min_dist: float
+) -> pd.DataFrame:
+    """The rows of all cells with their complexity.
+
+    Parameters
+    ----------
+    rows : iterable of dict
+        As `shape_row` returns them, with cell, source, frame and label before.
+    pixel_size_um : float or None
+    seed, n_neighbors, min_dist
+        See `complexity_score`.
+
+    Returns
+    -------
+    DataFrame
+        As `shape_features` returns it, with "source", and "complexity", "umap_1" and "umap_2" before the
+        features: NaN where cells cannot be scored, see `why_unscored`.
+    """
+    table = feature_table([_known_columns(row) for row in rows], pixel_size_um)
+    attrs, first = table.attrs, table.columns.get_loc(GROUPS[0].features[0].name)
+    if not why_unscored(table):
+        score = complexity_score(table, seed=seed, n_neighbors=n_neighbors, min_dist=min_dist)
+        attrs |= {name: score.attrs[name] for name in ("axis_share", "first_component")}
+    else:
+        score = pd.DataFrame(np.nan, table.index, SCORES)
+    joined = pd.concat([table.iloc[:, :first], score[list(SCORES)], table.iloc[:, first:]], axis=1)
+    joined.attrs = attrs | {"units": dict.fromkeys(SCORES, "1") | attrs["units"]}
+    return joined
+
+
+def _known_columns(row: dict[str, Any]) -> dict[str, Any]:
+    """A row with its frame by the name that shapes have for it."""
+    return {("frame" if name == "time" else name): value for name, value in row.items()}
+
+
+def write_shapes(table: pd.DataFrame, folder: Path) -> None:
+    """Write the table of shapes, the same as CSV, and what its features mean.
+
+    Parameters
+    ----------
+    table : DataFrame
+        As `shape_table` returns it.
+    folder : Path
+    """
+    with replacing(folder / SHAPES) as temporary:
+        write_table(table, temporary)
+    with replacing(folder / SHAPES_CSV) as temporary:
+        table.to_csv(temporary, index=False)
+    with replacing(folder / FEATURES_CSV) as temporary:
+        describe_features(table.attrs["units"]).to_csv(temporary, index=False)
+
+
+def describe_features(units: dict[str, str]) -> pd.DataFrame:
+    """Name, group, unit, whether it is scale-free, and a line of description of each feature.
+
+    Parameters
+    ----------
+    units : dict of str to str
+        By name of the feature.
+
+    Returns
+    -------
+    DataFrame
+    """
+    rows = [
+        (feature.name, group.name, units[feature.name], feature.scale_free, feature.description)
+        for group in GROUPS
+        for feature in group.features
+    ]
+    return pd.DataFrame(rows, columns=["name", "group", "unit", "scale_free", "description"])
+
+
+def open_shapes(path: str | os.PathLike[str]) -> pd.DataFrame:
+    """Read what `cytodisk shapes` wrote.
+
+    Parameters
+    ----------
+    path : path-like
+        Its folder.
+
+    Returns
+    -------
+    DataFrame
+        A row a cell with its complexity and features; units by column in `attrs["units"]`.
+
+    Raises
+    ------
+    ReadError
+        The folder holds no complete run of `cytodisk shapes`.
+    """
+    folder = Path(path)
+    provenance = read_provenance(folder)
+    if provenance is None or provenance.get("run") != "shapes":
+        raise ReadError(f"{folder} holds no shapes: pass a folder that cytodisk shapes wrote")
+    if provenance.get("status") != "complete":
+        raise ReadError(f"shapes in {folder} are not complete: run the same command again with --resume")
+    table = read_table(folder / SHAPES)
+    table.attrs["scale_free"] = list(SCALE_FREE)
+    table.attrs["description"] = {feature.name: feature.description for feature in FEATURES}
+    return table

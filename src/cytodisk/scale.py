@@ -1,0 +1,133 @@
+"""`Scale`: µm per pixel and seconds per frame, or unknown; converts lengths, areas and velocities, and names their units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+
+from cytodisk.errors import ParameterError
+
+Number = TypeVar("Number", bound=Any)
+
+
+@dataclass(frozen=True)
+class Scale:
+    """µm per pixel and seconds per frame; None where unknown, and then results are in px and frames.
+
+    Parameters
+    ----------
+    pixel_size_um : float or None
+        Side of a pixel in µm.
+    frame_interval_s : float or None
+        Time from a frame to the next in seconds.
+
+    Raises
+    ------
+    ParameterError
+        One of them is not a positive, finite number.
+
+    Examples
+    --------
+    >>> from cytodisk import Scale
+    >>> scale = Scale(pixel_size_um=0.1, frame_interval_s=5.0)
+    >>> scale.velocity(2.0), scale.velocity_unit  # 2 px/frame
+    (0.04, 'µm/s')
+    >>> Scale().velocity(2.0), Scale().velocity_unit
+    (2.0, 'px/frame')
+    """
+
+    pixel_size_um: float | None = None
+    frame_interval_s: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("pixel_size_um", "frame_interval_s"):
+            value = getattr(self, name)
+            if value is not None and not _is_positive(value):
+                raise ParameterError(
+                    f"{name} must be a positive number, got {value!r}: pass None when it is not known"
+                )
+
+    @classmethod
+    def of(cls, carrier: Any) -> Scale:
+        """The scale that something carries.
+
+        Parameters
+        ----------
+        carrier : DataArray, Dataset, map, movie or windows
+            Has a `scale`, or `attrs` with `pixel_size_um` and `frame_interval_s`. Anything else has none.
+
+        Returns
+        -------
+        Scale
+        """
+        scale = getattr(carrier, "scale", None)
+        if isinstance(scale, Scale):
+            return scale
+        attrs = getattr(carrier, "attrs", None)
+        if not isinstance(attrs, Mapping):
+            return cls()
+        return cls(attrs.get("pixel_size_um"), attrs.get("frame_interval_s"))
+
+    @property
+    def attrs(self) -> dict[str, float]:
+        """What is known, as attrs of an array: `pixel_size_um` and `frame_interval_s`."""
+        both = {"pixel_size_um": self.pixel_size_um, "frame_interval_s": self.frame_interval_s}
+        return {name: value for name, value in both.items() if value is not None}
+
+    @property
+    def length_unit(self) -> str:
+        """µm, or px."""
+        return "px" if self.pixel_size_um is None else "µm"
+
+    @property
+    def area_unit(self) -> str:
+        """µm², or px²."""
+        return f"{self.length_unit}²"
+
+    @property
+    def time_unit(self) -> str:
+        """s, or frame."""
+        return "frame" if self.frame_interval_s is None else "s"
+
+    @property
+    def velocity_unit(self) -> str:
+        """Such as µm/s or px/frame."""
+        return f"{self.length_unit}/{self.time_unit}"
+
+    def length(self, pixels: Number) -> Number:
+        """A length in pixels → in `length_unit`."""
+        return pixels if self.pixel_size_um is None else pixels * self.pixel_size_um
+
+    def area(self, square_pixels: Number) -> Number:
+        """An area in square pixels → in `area_unit`."""
+        return square_pixels if self.pixel_size_um is None else square_pixels * self.pixel_size_um**2
+
+    def velocity(self, pixels_per_frame: Number) -> Number:
+        """A velocity in px/frame → in `velocity_unit`."""
+        return pixels_per_frame * ((self.pixel_size_um or 1) / (self.frame_interval_s or 1))
+
+    def time(self, frames: Number) -> Number:
+        """A time in frames → in `time_unit`."""
+        return frames if self.frame_interval_s is None else frames * self.frame_interval_s
+
+    def seconds(self, frame: int) -> float | None:
+        """Time of a frame in seconds; None where the interval is unknown."""
+        return None if self.frame_interval_s is None else frame * self.frame_interval_s
+
+    def words(self) -> tuple[str, str]:
+        """Two sentences for a user: the pixel size and the frame interval, or what their lack means."""
+        pixel, interval = self.pixel_size_um, self.frame_interval_s
+        return (
+            "pixel size: unknown, lengths are in px" if pixel is None else f"pixel size: {pixel:g} µm",
+            "frame interval: unknown, times are in frames"
+            if interval is None
+            else f"frame interval: {interval:g} s",
+        )
+
+
+def _is_positive(value: Any) -> bool:
+    number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+    return bool(number and 0 < value < np.inf)

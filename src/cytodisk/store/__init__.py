@@ -1,0 +1,1 @@
+"""The study folder: tables, arrays, maps, provenance."""

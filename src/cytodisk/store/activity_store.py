@@ -1,0 +1,199 @@
+"""The activity store of a movie's study: a Zarr group a cell, written a few frames at a time."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.analysis.activity import STATISTICS, with_places
+from cytodisk.errors import ReadError, StudyError
+from cytodisk.windows.grid import PolarGrid
+
+_FRAMES_PER_CHUNK = 64
+_ZARR: dict[str, Any] = {"zarr_format": 2, "consolidated": False}  # format 3 has no strings yet
+GEOMETRY = ("area", "centroid_y", "centroid_x")
+EDGE_VARIABLES = (
+    "velocity",
+    "velocity_cell_frame",
+    "velocity_error",
+    "protruded_area",
+    "retracted_area",
+    "edge_length",
+)
+
+
+class ActivityStore:
+    """The writing side of an activity store."""
+
+    def __init__(self, path: Path):
+        self._path = path
+
+    @classmethod
+    @contextmanager
+    def replacing(cls, target: Path) -> Iterator[ActivityStore]:
+        """Write a store under a temporary name and rename it when the block ends well.
+
+        Parameters
+        ----------
+        target : Path
+
+        Yields
+        ------
+        ActivityStore
+
+        Raises
+        ------
+        StudyError
+            The folder cannot be written.
+        """
+        temporary = target.with_name(f".{target.stem}.{os.getpid()}.tmp{target.suffix}")
+        try:
+            shutil.rmtree(temporary, ignore_errors=True)  # of an earlier process with this number
+            temporary.mkdir()
+            yield cls(temporary)
+            if target.exists():
+                shutil.rmtree(target)
+            temporary.replace(target)
+        except OSError as error:
+            raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
+
+    def cell(
+        self,
+        cell: int,
+        label: int,
+        grid: PolarGrid,
+        channels: Sequence[str],
+        pixel_size_um: float | None,
+        frame_interval_s: float | None,
+    ) -> CellActivity:
+        """Start the group of a cell; without channels it has no statistics."""
+        attrs: dict[str, Any] = {"cell": cell, "label": label}
+        scale = {"pixel_size_um": pixel_size_um, "frame_interval_s": frame_interval_s}
+        attrs |= {name: value for name, value in scale.items() if value is not None}
+        return CellActivity(self._path, group_name(cell), grid, channels, attrs)
+
+
+class CellActivity:
+    """One cell's group; frames are appended in order."""
+
+    def __init__(
+        self, path: Path, group: str, grid: PolarGrid, channels: Sequence[str], attrs: dict[str, Any]
+    ):
+        self._path = path
+        self._group = group
+        self._grid = grid
+        self._channels = list(channels)
+        self._attrs = attrs
+        self._frames: list[tuple[int, dict[str, Any] | None, str, str]] = []
+        self._written = False
+
+    def append(self, time: int, arrays: dict[str, Any] | None, status: str, reason: str) -> None:
+        """Add a frame.
+
+        Parameters
+        ----------
+        time : int
+        arrays : dict of str to ndarray, or None
+            Statistics of shape (C, L, S), geometry (L, S), edge (S,); None without a map.
+        status, reason : str
+        """
+        self._frames.append((time, arrays, status, reason))
+        if len(self._frames) >= _FRAMES_PER_CHUNK:
+            self._flush()
+
+    def close(self) -> None:
+        """Write what is left."""
+        if self._frames:
+            self._flush()
+
+    def _flush(self) -> None:
+        chunk = self._dataset()
+        if self._written:
+            fixed = [name for name in chunk.variables if "time" not in chunk[name].dims]
+            chunk.drop_vars(fixed).to_zarr(self._path, group=self._group, append_dim="time", **_ZARR)
+        else:
+            encoding = {
+                name: {"chunks": (_FRAMES_PER_CHUNK, *variable.shape[1:])}
+                for name, variable in chunk.variables.items()
+                if variable.dims[:1] == ("time",)
+            }
+            chunk.to_zarr(self._path, group=self._group, encoding=encoding, **_ZARR)
+        self._written = True
+        self._frames = []
+
+    def _dataset(self) -> xr.Dataset:
+        layers, sectors = self._grid.layers, self._grid.sectors
+        names = self._channels
+        shapes: dict[str, tuple[tuple[str, ...], tuple[int, ...]]] = {}
+        shapes |= dict.fromkeys(GEOMETRY, (("layer", "sector"), (layers, sectors)))
+        shapes |= dict.fromkeys(EDGE_VARIABLES, (("sector",), (sectors,)))
+        if names:
+            three = ("channel", "layer", "sector"), (len(names), layers, sectors)
+            shapes = dict.fromkeys(STATISTICS, three) | shapes
+        data: dict[str, Any] = {}
+        for name, (dims, shape) in shapes.items():
+            values = [
+                np.full(shape, np.nan) if arrays is None else arrays[name] for _, arrays, _, _ in self._frames
+            ]
+            data[name] = (("time", *dims), np.stack(values), {"units": self._unit(name)})
+        for place, name in ((2, "status"), (3, "reason")):
+            data[name] = ("time", np.array([frame[place] for frame in self._frames], dtype=object))
+        times = np.array([frame[0] for frame in self._frames])
+        coords: dict[str, Any] = {
+            "time": ("time", times, {"units": "frame"}),
+            "layer": np.arange(layers),
+            "sector": np.arange(sectors),
+        }
+        if names:
+            coords["channel"] = np.array(names, dtype=object)
+        if "frame_interval_s" in self._attrs:
+            coords["time_s"] = ("time", times * self._attrs["frame_interval_s"], {"units": "s"})
+        return xr.Dataset(data, coords, self._attrs)
+
+    def _unit(self, name: str) -> str:
+        length = "µm" if "pixel_size_um" in self._attrs else "px"
+        second = "s" if "frame_interval_s" in self._attrs else "frame"
+        if name.startswith("velocity"):
+            return f"{length}/{second}"
+        if name == "edge_length":
+            return length
+        if name.endswith("area"):
+            return f"{length}²"
+        return {"n_pixels": "px²", "n_nan": "px²", "centroid_y": "px", "centroid_x": "px"}.get(name, "a.u.")
+
+
+def group_name(cell: int) -> str:
+    """Name of a cell's group."""
+    return f"cell_{cell:05d}"
+
+
+def open_activity(path: Path, cell: int) -> xr.Dataset:
+    """Read a cell's group; arrays are read when asked for.
+
+    Parameters
+    ----------
+    path : Path
+        The store.
+    cell : int
+
+    Returns
+    -------
+    Dataset with dims (time, channel, layer, sector)
+
+    Raises
+    ------
+    ReadError
+        It is not there or damaged.
+    """
+    try:
+        found: xr.Dataset = xr.open_zarr(path, group=group_name(cell), chunks=None, **_ZARR)
+    except (OSError, KeyError, ValueError) as error:
+        raise ReadError(f"{path} has no activity of cell {cell}: {error}") from error
+    return with_places(found)

@@ -1,0 +1,208 @@
+"""Correlations of a study on disk: a folder for each pair of names, with its tables and settings."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+import pandas as pd
+import pyarrow as pa
+
+from cytodisk.errors import ReadError, StudyError
+from cytodisk.store.tables import read_table, write_table
+
+CORRELATION = "correlation"
+SETTINGS = "settings.json"
+
+
+@dataclass(frozen=True)
+class Correlation:
+    """A correlation of a study, read from disk; tables are read when asked for.
+
+    Every table has its units by column in `attrs["units"]`.
+
+    Attributes
+    ----------
+    path : Path
+        Its folder.
+    signal, with_ : str
+        What was correlated: at a positive lag `with_` follows `signal`.
+    name : str
+        Of a variant; empty for none.
+    settings : dict
+        What was asked for, and the version of cytodisk.
+    """
+
+    path: Path
+    signal: str
+    with_: str
+    name: str
+    settings: dict[str, Any]
+
+    @cached_property
+    def cells(self) -> pd.DataFrame:
+        """One row a cell of the study: status, the reason if it was left out, share of drifting series."""
+        return self._table("cells")
+
+    @cached_property
+    def windows(self) -> pd.DataFrame:
+        """One row a window: correlation at the peak, its lag, n, confidence, p and q."""
+        return self._table("windows")
+
+    @cached_property
+    def layers(self) -> pd.DataFrame:
+        """One row a layer: the peak of the mean over sectors, its lag, p, q and threshold."""
+        return self._table("layers")
+
+    @cached_property
+    def curves(self) -> pd.DataFrame:
+        """One row a window and lag."""
+        return self._table("curves")
+
+    @cached_property
+    def layer_curves(self) -> pd.DataFrame:
+        """One row a layer and lag: mean over sectors, quartiles, threshold."""
+        return self._table("layer_curves")
+
+    @cached_property
+    def pairs(self) -> pd.DataFrame | None:
+        """One row a kind of distance, distance and lag; None when pairs were not asked for."""
+        return self._optional("pairs")
+
+    @cached_property
+    def events(self) -> pd.DataFrame | None:
+        """One row an episode of the edge; None unless `with_` is a velocity."""
+        return self._optional("events")
+
+    @cached_property
+    def event_averages(self) -> pd.DataFrame | None:
+        """One row a kind of episode, layer and delay: the signal around onsets; None as for `events`."""
+        return self._optional("event_averages")
+
+    def _optional(self, name: str) -> pd.DataFrame | None:
+        return self._table(name) if (self.path / f"{name}.parquet").exists() else None
+
+    def _table(self, name: str) -> pd.DataFrame:
+        try:
+            return read_table(self.path / f"{name}.parquet")
+        except (OSError, pa.ArrowException) as error:
+            raise ReadError(f"{self.path} is damaged, correlate again: {error}") from error
+
+
+def correlation_path(study: Path, signal: str, with_: str, name: str = "") -> Path:
+    """Folder of a correlation; what no file name can hold is written with %."""
+    names = (signal, with_, name) if name else (signal, with_)
+    return study / CORRELATION / "~".join(_quoted(part) for part in names)
+
+
+def write_correlation(
+    study: Path,
+    signal: str,
+    with_: str,
+    tables: Mapping[str, pd.DataFrame],
+    settings: dict[str, Any],
+    name: str = "",
+) -> Correlation:
+    """Write a correlation whole, in place of the one that was there.
+
+    Parameters
+    ----------
+    study : Path
+    signal, with_ : str
+    tables : dict of str to DataFrame
+        With units in `attrs`.
+    settings : dict
+    name : str
+        Of a variant, which stands beside the others.
+
+    Returns
+    -------
+    Correlation
+
+    Raises
+    ------
+    StudyError
+        The folder cannot be written.
+    """
+    target = correlation_path(study, signal, with_, name)
+    content = {"signal": signal, "with": with_, "name": name} | settings
+    text = json.dumps(content, indent=2, ensure_ascii=False)
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    try:
+        shutil.rmtree(temporary, ignore_errors=True)  # of an earlier process with this number
+        temporary.mkdir(parents=True)
+        for table_name, table in tables.items():
+            write_table(table, temporary / f"{table_name}.parquet")
+        (temporary / SETTINGS).write_text(text + "\n", encoding="utf-8")
+        _exchange(target, temporary)
+    except OSError as error:
+        raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+    return read_correlation(study, signal, with_, name)
+
+
+def _exchange(target: Path, new: Path) -> None:
+    """Put a folder in the place of another, which is there until the new one is, or comes back."""
+    old = target.with_name(f".{target.name}.old")
+    if old.exists() and not target.exists():
+        old.replace(target)  # an earlier process died between the two steps below
+    shutil.rmtree(old, ignore_errors=True)
+    if target.exists():
+        target.replace(old)
+    try:
+        new.replace(target)
+    except BaseException:
+        if old.exists():
+            old.replace(target)
+        raise
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def read_correlation(study: Path, signal: str, with_: str, name: str = "") -> Correlation:
+    """Open a correlation.
+
+    Raises
+    ------
+    ReadError
+        It is not there; the message lists those that are.
+    """
+    path = correlation_path(study, signal, with_, name)
+    settings = _settings(path)
+    if settings is None:
+        there = [titled(*names) for names in list_correlations(study)]
+        advice = f"it has {'; '.join(there)}" if there else "run cytodisk correlate first"
+        raise ReadError(f"study {study} has no correlation of {titled(signal, with_, name)}: {advice}")
+    return Correlation(path, signal, with_, name, settings)
+
+
+def list_correlations(study: Path) -> list[tuple[str, ...]]:
+    """What was correlated, in the order of the folders: (signal, with), or (signal, with, name)."""
+    found = [_settings(path) for path in sorted((study / CORRELATION).glob("[!.]*~*"))]
+    names = [(known["signal"], known["with"], known.get("name", "")) for known in found if known is not None]
+    return [one if one[2] else one[:2] for one in names]
+
+
+def titled(signal: str, with_: str, name: str = "") -> str:
+    """A correlation in words, such as "Rac1 with velocity (linear)"."""
+    return f"{signal} with {with_}" + (f" ({name})" if name else "")
+
+
+def _settings(path: Path) -> dict[str, Any] | None:
+    try:
+        found = json.loads((path / SETTINGS).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError):
+        return None
+    return found if isinstance(found, dict) and {"signal", "with"} <= set(found) else None
+
+
+def _quoted(name: str) -> str:
+    quoted = quote(name, safe=" +-,()").replace("~", "%7E")
+    return f"%2E{quoted[1:]}" if quoted.startswith(".") else quoted  # a dot in front hides a folder

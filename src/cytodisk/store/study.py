@@ -1,0 +1,262 @@
+"""Read a study: tables, maps, activity and movies of a finished run."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+import xarray as xr
+
+from cytodisk.disk.disk_map import DiskMap, load_map
+from cytodisk.errors import ReadError
+from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
+from cytodisk.motion.frame_file import load_boundary
+from cytodisk.store.activity_store import open_activity
+from cytodisk.store.correlation_store import Correlation, list_correlations, read_correlation
+from cytodisk.store.provenance_file import PROVENANCE, read_provenance
+from cytodisk.store.study_folder import (
+    ACTIVITY,
+    CELLS,
+    CONSISTENCY,
+    EDGE,
+    MAPS,
+    WINDOWS,
+    part_key,
+)
+from cytodisk.store.tables import read_table
+
+
+@dataclass(frozen=True)
+class Study:
+    """The reading side of a study.
+
+    Attributes
+    ----------
+    path : Path
+    cells : DataFrame
+        One row a cell, or a frame of a cell, with its status and the reason; units in
+        `cells.attrs["units"]`.
+    provenance : dict
+        Versions, inputs with their hashes, parameters, times.
+    """
+
+    path: Path
+    cells: pd.DataFrame
+    provenance: dict[str, Any]
+
+    def __repr__(self) -> str:
+        what = f"{len(self.cells)} cells"
+        if self.is_movie:
+            what = f"{self.cells['cell'].nunique()} cells in {self.cells['time'].nunique()} frames"
+        return f"<Study {self.path}: {what}>"
+
+    @cached_property
+    def windows(self) -> pd.DataFrame:
+        """One row a cell, time, channel, layer and sector; units in `attrs["units"]`. Read when asked for."""
+        return read_table(self.path / WINDOWS)
+
+    @cached_property
+    def edge(self) -> pd.DataFrame:
+        """For a movie, one row a cell, time and sector: edge velocity, areas won and lost."""
+        return self._movie_table(EDGE)
+
+    @cached_property
+    def consistency(self) -> pd.DataFrame:
+        """For a movie, one row a cell, time, channel and layer: the paper's measures."""
+        return self._movie_table(CONSISTENCY)
+
+    @property
+    def correlations(self) -> list[tuple[str, ...]]:
+        """What was correlated: (signal, with), or (signal, with, name) for a variant."""
+        return list_correlations(self.path)
+
+    def correlation(self, signal: str, with_: str = "velocity", name: str = "") -> Correlation:
+        """Read a correlation.
+
+        Parameters
+        ----------
+        signal, with_, name : str
+            As they were given to `cytodisk correlate`.
+
+        Returns
+        -------
+        Correlation
+
+        Raises
+        ------
+        ReadError
+            It is not there; the message lists those that are.
+        """
+        return read_correlation(self.path, signal, with_, name)
+
+    @property
+    def is_movie(self) -> bool:
+        """Whether the run was that of a movie."""
+        return self.provenance.get("run") == "movie"
+
+    def _movie_table(self, name: str) -> pd.DataFrame:
+        if not self.is_movie:
+            raise ReadError(f"study {self.path} is not that of a movie: it has no {name}")
+        return read_table(self.path / name)
+
+    def map(self, cell: int, time: int | None = None) -> DiskMap:
+        """Read the map of one cell, in one frame of a movie.
+
+        Parameters
+        ----------
+        cell : int
+            Its number in the tables.
+        time : int, optional
+            Number of the frame, for a movie.
+
+        Returns
+        -------
+        DiskMap
+
+        Raises
+        ------
+        ReadError
+            There is no such map, as the row in `cells` says.
+        """
+        if self.is_movie != (time is not None):
+            raise ReadError(
+                f"study {self.path}: pass {'cell and time' if self.is_movie else 'the cell alone'}"
+            )
+        key = part_key(cell, time)
+        rows = self._rows_of(cell)
+        if time is not None:
+            rows = rows[rows["time"] == time]
+            if rows.empty:
+                raise ReadError(f"cell {cell} of {self.path} is not in frame {time}")
+        path = self._map_path(key)
+        if not path.exists():
+            frame = "" if time is None else f", frame {time},"
+            reason = rows["reason"].iloc[0] or "it was not kept (--no-maps)"
+            raise ReadError(f"cell {cell}{frame} of {self.path} has no map: {reason}")
+        return load_map(path)
+
+    def activity(self, cell: int = 0) -> xr.Dataset:
+        """Activity of one cell of a movie, read from disk when asked for.
+
+        Parameters
+        ----------
+        cell : int
+
+        Returns
+        -------
+        Dataset with dims (time, channel, layer, sector)
+            Statistics of the signal and geometry of the windows; edge velocity and areas by (time, sector);
+            status and reason by frame. Units are in the attrs of each variable.
+
+        Raises
+        ------
+        ReadError
+            The study is not a movie's, or has no such cell.
+        """
+        self._rows_of(cell)
+        return open_activity(self.path / ACTIVITY, cell)
+
+    def movie(self, cell: int = 0) -> DiskMovie:
+        """Maps of one cell through time, each read from disk when asked for.
+
+        Parameters
+        ----------
+        cell : int
+
+        Returns
+        -------
+        DiskMovie
+            Its frame 0 is the first frame of the recording, which the cell may enter later.
+
+        Raises
+        ------
+        ReadError
+            The study is not a movie's, or has no such cell.
+        """
+        rows = self._rows_of(cell)
+        if not self.is_movie:
+            raise ReadError(f"study {self.path} is not that of a movie: use map({cell})")
+        at = {int(row["time"]): row for _, row in rows.iterrows()}
+        last = max(at)
+        records = [self._record(cell, time, at.get(time)) for time in range(last + 1)]
+        height, width = self.provenance["image_shape"]
+        return DiskMovie(
+            tuple(records),
+            (height, width),
+            self.provenance["pixel_size_um"],
+            self.provenance["frame_interval_s"],
+            lambda time: load_map(self._map_path(part_key(cell, time))),
+        )
+
+    def _record(self, cell: int, time: int, row: Any) -> FrameRecord:
+        if row is None:
+            return FrameRecord("missing", f"cell {cell} is not in frame {time} yet", None)
+        if row["status"] != "ok":
+            return FrameRecord(row["status"], row["reason"], None)
+        path = self._map_path(part_key(cell, time))
+        return FrameRecord("ok", "", lambda: load_boundary(path))
+
+    def _map_path(self, key: str) -> Path:
+        return self.path / MAPS / f"cell_{key}.npz"
+
+    def _rows_of(self, cell: int) -> pd.DataFrame:
+        rows = self.cells[self.cells["cell"] == cell]
+        if rows.empty:
+            first, last = self.cells["cell"].min(), self.cells["cell"].max()
+            there = f"only cell {first}" if first == last else f"the cells {first} to {last}"
+            raise ReadError(f"study {self.path} has no cell {cell}: it has {there}")
+        return rows
+
+
+def open_study(path: str | os.PathLike[str]) -> Study:
+    """Read a study folder.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    ReadError
+        The folder does not exist, is not a study of `cytodisk map` or `cytodisk movie`, is damaged, or its
+        run is not complete.
+    """
+    folder = Path(path)
+    provenance = read_provenance(folder)
+    if provenance is None and not folder.exists():
+        raise ReadError(f"study {folder} does not exist: check the path")
+    if provenance is None:
+        raise ReadError(f"{folder} is no study: it has no readable {PROVENANCE}")
+    if provenance.get("status") != "complete":
+        raise ReadError(f"study {folder} is not complete: run the same command again with --resume")
+    run = provenance.get("run", "map")
+    if run not in ("map", "movie"):
+        table, reader = "comparison.csv", "open_comparison"
+        if run == "batch":
+            raise ReadError(
+                f"study {folder} holds a batch: open one of the studies in {folder / 'inputs'}, or read the "
+                "merged tables with pandas.read_parquet"
+            )
+        if run == "shapes":
+            table, reader = "shapes.csv", "open_shapes"
+        raise ReadError(
+            f"study {folder} holds {run}, not windows: look at its {table} and figures; from Python, read it "
+            f"with {reader}"
+        )
+    names = (CELLS, WINDOWS, EDGE, CONSISTENCY) if run == "movie" else (CELLS, WINDOWS)
+    try:
+        for name in names:
+            pq.read_schema(folder / name)
+        return Study(folder, read_table(folder / CELLS), provenance)
+    except (OSError, pa.ArrowException) as error:
+        raise ReadError(f"study {folder} is damaged: {error}") from error

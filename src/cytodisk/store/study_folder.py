@@ -1,0 +1,341 @@
+"""A study: the folder that a run writes its results to, piece by piece."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from cytodisk.errors import StudyError, WriteError
+from cytodisk.files import lock, replacing
+from cytodisk.store.merging import merge_tables, repeating, write_rows
+from cytodisk.store.provenance_file import PROVENANCE, read_provenance, write_json
+from cytodisk.store.study_room import LOCK, is_left_over, make_room, remove_left_overs
+from cytodisk.store.tables import (
+    CELL_COLUMNS,
+    CONSISTENCY_COLUMNS,
+    EDGE_COLUMNS,
+    SOURCE_COLUMNS,
+    TRACK_COLUMNS,
+    WINDOW_COLUMNS,
+    Columns,
+    schema,
+)
+
+PARAMETERS = "parameters.toml"
+CELLS, WINDOWS, EDGE = "cells.parquet", "windows.parquet", "edge.parquet"
+CONSISTENCY, ACTIVITY = "consistency.parquet", "activity.zarr"
+MAPS, FIGURES, _PARTS = "maps", "figures", ".parts"
+_LATER = ("correlation", "report.html", "report_cell_*.html")  # what other commands wrote from these results
+_COMPARED = ("layers.parquet", "comparison*.csv")  # beside cells, by a comparison of windows
+_SHAPES = ("shapes.parquet", "shapes.csv", "features.csv")  # beside cells, by a run over shapes
+_OWN = (
+    PARAMETERS,
+    CELLS,
+    WINDOWS,
+    EDGE,
+    CONSISTENCY,
+    ACTIVITY,
+    MAPS,
+    FIGURES,
+    _PARTS,
+    *_LATER,
+    *_COMPARED,
+    *_SHAPES,
+)
+_UNITS = ("length_unit", "velocity_unit")  # of the provenance
+
+
+def figures_folder(study: Path) -> Path:
+    """The folder for the figures of a study; it is made where there is none.
+
+    Raises
+    ------
+    WriteError
+        It cannot be made.
+    """
+    folder = study / FIGURES
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise WriteError(f"cannot write {folder}: {error.strerror or error}") from error
+    return folder
+
+
+@dataclass(frozen=True)
+class Tables:
+    """Which tables a run writes.
+
+    Attributes
+    ----------
+    cells : tuple of (name, type, unit)
+        Columns of the table with a row for each cell, or for each frame of a cell.
+    others : dict of str to tuple of (name, type, unit)
+        By name of the table.
+    """
+
+    cells: Columns
+    others: dict[str, Columns]
+
+
+MAP_TABLES = Tables(SOURCE_COLUMNS, {"windows": WINDOW_COLUMNS})
+MOVIE_TABLES = Tables(
+    (*CELL_COLUMNS, *TRACK_COLUMNS),
+    {"windows": WINDOW_COLUMNS, "edge": EDGE_COLUMNS, "consistency": CONSISTENCY_COLUMNS},
+)
+
+
+def part_key(cell: int, time: int | None = None) -> str:
+    """Name of a part of a study: a cell, or a frame of a cell."""
+    return f"{cell:05d}" if time is None else f"{cell:05d}_t{time:05d}"
+
+
+@contextmanager
+def alone_in(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Keep other runs out of a folder while the block runs.
+
+    Parameters
+    ----------
+    path : path-like
+        Is made if need be.
+
+    Raises
+    ------
+    StudyError
+        Another run is writing there, or the folder cannot be written.
+    """
+    folder = Path(path)
+    try:
+        if folder.exists() and not folder.is_dir():
+            raise StudyError(f"output {folder} is a file: pass a folder")
+        folder.mkdir(parents=True, exist_ok=True)
+        held = lock(folder / LOCK)
+    except StudyError:
+        raise
+    except BlockingIOError as error:
+        raise StudyError(f"output folder {folder}: another run is writing there, wait for its end") from error
+    except OSError as error:
+        raise WriteError(f"output folder {folder} cannot be written: {error.strerror}") from error
+    try:
+        yield
+    finally:
+        (folder / LOCK).unlink(missing_ok=True)
+        held.close()
+
+
+class StudyFolder:
+    """The writing side of a study: one part a cell, or a frame of a cell, merged into the tables at the end.
+
+    A part's last file marks it as done; every file is written under a temporary name and renamed. So a run
+    that is killed at any moment loses only the cells it was at, and another run can do the rest. Use it
+    within `alone_in`.
+    """
+
+    def __init__(self, path: Path, provenance: dict[str, Any], tables: Tables = MAP_TABLES):
+        self.path = path
+        self.provenance = provenance
+        self.tables = tables
+
+    @classmethod
+    def start(
+        cls,
+        path: str | os.PathLike[str],
+        provenance: dict[str, Any],
+        tables: Tables = MAP_TABLES,
+        *,
+        resume: bool = False,
+        overwrite: bool = False,
+    ) -> StudyFolder:
+        """Open a folder for a run.
+
+        Parameters
+        ----------
+        path : path-like
+            Is made if need be.
+        provenance : dict
+            Must hold "fingerprint": what the results depend on. Two runs with one fingerprint have the same
+            results.
+        tables : Tables
+        resume : bool
+            Go on in a folder that holds part of the same run.
+        overwrite : bool
+            Remove a study that is there.
+
+        Returns
+        -------
+        StudyFolder
+
+        Raises
+        ------
+        StudyError
+            The folder holds something else, or another run, or cannot be written.
+        """
+        folder = Path(path)
+        study = cls(folder, provenance, tables)
+        try:
+            if folder.exists() and not folder.is_dir():
+                raise StudyError(f"output {folder} is a file: pass a folder")
+            folder.mkdir(parents=True, exist_ok=True)
+            if any(not is_left_over(file) for file in folder.iterdir()):
+                make_room(folder, provenance, _OWN, resume, overwrite)
+            study.note("status", "running")  # first, so that a folder that stands is known as a study
+            for name in (MAPS, _PARTS):
+                (folder / name).mkdir(exist_ok=True)
+            places = (folder, *(folder / name for name in (MAPS, FIGURES, _PARTS)))
+            remove_left_overs(place for place in places if place.is_dir())
+        except StudyError:
+            raise
+        except OSError as error:
+            raise WriteError(f"output folder {folder} cannot be written: {error.strerror}") from error
+        return study
+
+    @staticmethod
+    def is_complete(path: str | os.PathLike[str], provenance: dict[str, Any]) -> bool:
+        """Whether a folder holds the whole of the same run already."""
+        there = read_provenance(Path(path)) or {}
+        return there.get("status") == "complete" and there.get("fingerprint") == provenance["fingerprint"]
+
+    def note(self, name: str, value: Any) -> None:
+        """Set an entry of the provenance and write it."""
+        self.provenance[name] = value
+        write_json(self.path / PROVENANCE, self.provenance)
+
+    def has(self, key: str) -> bool:
+        """Whether a part is complete."""
+        return self._part(key, "json").exists()
+
+    def has_table(self, key: str, table: str) -> bool:
+        """Whether a part has rows for a table."""
+        return self._part(key, f"{table}.parquet").exists()
+
+    def map_path(self, key: str) -> Path:
+        """Where a part's map stands."""
+        return self.path / MAPS / f"cell_{key}.npz"
+
+    def for_workers(self) -> StudyFolder:
+        """The same folder for other processes, without what only the main one needs."""
+        units = {name: self.provenance[name] for name in _UNITS if name in self.provenance}
+        return StudyFolder(self.path, units, self.tables)
+
+    def add_table(self, key: str, table: str, *columns: dict[str, Any]) -> None:
+        """Write a part's rows for a table.
+
+        Parameters
+        ----------
+        key : str
+            See `part_key`.
+        table : str
+            One of `self.tables.others`.
+        *columns : dict of str to array
+            One below the other, such as those of several cells.
+        """
+        columns_schema = self._schema(self.tables.others[table])
+        rows = pa.concat_tables([pa.table(some, schema=columns_schema) for some in columns])
+        with replacing(self._part(key, f"{table}.parquet")) as temporary:
+            pq.write_table(rows, temporary, use_dictionary=repeating(columns_schema))
+
+    def add(self, key: str, row: dict[str, Any], tables: dict[str, dict[str, Any]]) -> None:
+        """Write a part: its rows for the tables, then its own row, which marks it as complete.
+
+        Parameters
+        ----------
+        key : str
+            See `part_key`.
+        row : dict
+            Values for the table of cells; missing ones are null.
+        tables : dict of str to columns
+            Empty for a cell without a map.
+        """
+        for table, columns in tables.items():
+            self.add_table(key, table, columns)
+        write_json(self._part(key, "json"), row)
+
+    def add_cells(self, key: str, cells: Sequence[tuple[dict[str, Any], dict[str, dict[str, Any]]]]) -> None:
+        """Write several cells as one part.
+
+        Parameters
+        ----------
+        key : str
+            See `part_key`; that of the first cell.
+        cells : sequence of (row, tables)
+            As `add` takes them.
+        """
+        for table in self.tables.others:
+            columns = [tables[table] for _, tables in cells if table in tables]
+            if columns:
+                self.add_table(key, table, *columns)
+        write_json(self._part(key, "json"), [row for row, _ in cells])
+
+    def read_rows(self, keys: Collection[str]) -> Iterator[dict[str, Any]]:
+        """The rows of all parts, one after the other.
+
+        Parameters
+        ----------
+        keys : collection of str
+
+        Yields
+        ------
+        dict
+            As it was passed to `add` or `add_cells`.
+
+        Raises
+        ------
+        StudyError
+            A part is missing, or there are others.
+        """
+        complete = self._complete()
+        if set(complete) != set(keys):
+            raise StudyError(
+                f"study {self.path} has {len(complete)} parts instead of {len(keys)}: "
+                "run the same command again with --resume"
+            )
+        for key in keys:
+            found = json.loads(self._part(key, "json").read_text(encoding="utf-8"))
+            yield from found if isinstance(found, list) else [found]
+
+    def rows(self) -> list[dict[str, Any]]:
+        """The rows of all complete parts, in the order of cells, then time."""
+        return sorted(self.read_rows(self._complete()), key=lambda row: (row["cell"], row["time"]))
+
+    def part_table(self, key: str, table: str) -> Any:
+        """A part's rows for a table, as an Arrow table."""
+        return pq.read_table(self._part(key, f"{table}.parquet"))
+
+    def finish(self, keys: list[str]) -> None:
+        """Merge the parts into the tables and mark the study as complete.
+
+        Parameters
+        ----------
+        keys : list of str
+            All parts of the run, in the order of the tables.
+
+        Raises
+        ------
+        StudyError
+            A part is missing.
+        """
+        with replacing(self.path / CELLS) as temporary:
+            write_rows(self.read_rows(keys), self._schema(self.tables.cells), temporary)
+        for name, columns in self.tables.others.items():
+            parts = (self.part_table(key, name) for key in keys if self.has_table(key, name))
+            with replacing(self.path / f"{name}.parquet") as temporary:
+                merge_tables(parts, self._schema(columns), temporary)
+        self.note("status", "complete")
+        shutil.rmtree(self.path / _PARTS, ignore_errors=True)  # the tables stand; parts are only in the way
+
+    def _complete(self) -> list[str]:
+        return [part.stem for part in (self.path / _PARTS).glob("[0-9]*.json")]
+
+    def _part(self, key: str, suffix: str) -> Path:
+        return self.path / _PARTS / f"{key}.{suffix}"
+
+    def _schema(self, columns: Columns) -> Any:
+        return schema(columns, *(str(self.provenance.get(unit, "")) for unit in _UNITS))

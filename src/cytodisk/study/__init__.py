@@ -1,1 +1,0 @@
-"""Runs: parameters, one cell, many cells, and where the results came from."""

@@ -1,0 +1,76 @@
+import shutil
+
+import numpy as np
+import pytest
+from report_study import LAGS, LAYERS, NAMES, SECTORS, correlated
+
+from cytodisk.pages.report import shown_correlations as correlations
+from cytodisk.pages.report.cell_data import CellData
+from cytodisk.pages.report.shown_correlations import pairs_of
+from cytodisk.store.correlation_store import write_correlation
+from cytodisk.store.study import Study
+
+
+@pytest.fixture
+def plain(study: Study, monkeypatch: pytest.MonkeyPatch) -> CellData:
+    """A cell with one correlation whose arrays are not packed."""
+    write_correlation(study.path, NAMES[1], "velocity", correlated(), {"max_lag": 3})
+    monkeypatch.setattr(correlations, "pack_floats", np.asarray)
+    return CellData(study, 0)
+
+
+def test_tables_become_arrays(plain: CellData) -> None:
+    (pair,), notes = pairs_of(plain)
+    assert notes == []
+    assert (pair["signal"], pair["with"], pair["lags"]) == (NAMES[1], "velocity", LAGS.tolist())
+    assert pair["windows"]["correlation"].shape == (LAYERS, SECTORS)
+    np.testing.assert_allclose(pair["windows"]["correlation"][2], 0.01 * np.arange(SECTORS))
+    assert pair["curves"]["low"].shape == (LAYERS, SECTORS, len(LAGS))
+    np.testing.assert_allclose(pair["curves"]["correlation"][1, 5], 0.1 * LAGS)
+    np.testing.assert_allclose(pair["layer_curves"], np.full((LAYERS, len(LAGS)), 0.05))
+    np.testing.assert_allclose(pair["layers"]["threshold"], 0.25)
+
+
+def test_variants_of_the_same_names_are_told_apart(study: Study, plain: CellData) -> None:
+    settings = {"detrend": "linear"}
+    folder = write_correlation(study.path, NAMES[1], "velocity", correlated(), settings, "steady").path
+    pairs, _ = pairs_of(plain)
+    shutil.rmtree(folder)
+    words = f"{NAMES[1]} with velocity"
+    assert [pair["label"] for pair in pairs] == [words, f"{words} (steady): linear detrending"]
+    assert [pair["differs"] for pair in pairs] == ["", "“steady”, linear detrending"]
+
+
+def test_those_with_velocity_come_first(study: Study, plain: CellData) -> None:
+    folder = write_correlation(study.path, NAMES[1], NAMES[0], correlated(), {}).path
+    pairs, _ = pairs_of(plain)
+    assert [pair["with"] for pair in pairs] == ["velocity", NAMES[0]]
+    shutil.rmtree(folder)
+
+
+def test_what_was_not_computed_is_unknown(study: Study, plain: CellData) -> None:
+    tables = correlated()
+    tables["windows"] = tables["windows"].drop(columns=["p", "q", "threshold"])
+    tables["layers"] = tables["layers"].drop(columns=["p", "q", "threshold"])
+    write_correlation(study.path, NAMES[1], "velocity", tables, {})
+    (pair,), _ = pairs_of(plain)
+    assert np.isnan(pair["windows"]["q"]).all()
+    assert np.isnan(pair["layers"]["threshold"]).all()
+    assert np.isfinite(pair["windows"]["correlation"]).all()
+
+
+def test_too_many_curves_are_left_out(plain: CellData, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(correlations, "MOST_CURVE_NUMBERS", 10)
+    (pair,), notes = pairs_of(plain)
+    assert pair["curves"] is None
+    assert notes == ["correlation curves of single windows (only those of layers are shown)"]
+
+
+def test_cell_that_was_not_correlated(study: Study, plain: CellData) -> None:
+    tables = {name: table.assign(cell=7) for name, table in correlated().items()}
+    for table in tables.values():
+        table.attrs["units"] = dict.fromkeys(table, "")
+    write_correlation(study.path, NAMES[1], "velocity", tables, {})
+    pairs, notes = pairs_of(plain)
+    assert pairs == []
+    assert notes == [f"correlation of {NAMES[1]} with velocity, which this cell has not"]

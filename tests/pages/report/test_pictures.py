@@ -1,0 +1,88 @@
+import numpy as np
+import pytest
+from report_study import GAP, LAYERS, SECTORS
+
+import cytodisk as cd
+from cytodisk.pages.report import pictures
+from cytodisk.pages.report.cell_data import CellData, velocity_limit
+from cytodisk.pages.report.pictures import OUTSIDE, Box, Pictures, box_around, resampled, window_labels
+from cytodisk.store.study import Study
+
+
+@pytest.fixture(scope="module")
+def cell(study: Study) -> CellData:
+    return CellData(study, 0)
+
+
+def test_box_holds_the_cell_in_every_frame(cell: CellData) -> None:
+    box = box_around(cell)
+    for time in range(len(cell.maps)):
+        if time == GAP:
+            continue
+        rows, columns = np.nonzero(cell.maps[time].mask)
+        assert box.top <= rows.min()
+        assert rows.max() < box.top + box.height
+        assert box.left <= columns.min()
+        assert columns.max() < box.left + box.width
+
+
+def test_labels_are_those_of_the_windows(cell: CellData) -> None:
+    """At whole pixels a label is the window of the pixel's centre: mostly that of its largest share."""
+    box = box_around(cell)
+    box = Box(box.top, box.left, box.height, box.width, 1.0)
+    found = window_labels(cell, box, 0)
+    windows = cd.polar_windows(LAYERS, SECTORS).on(cell.maps[0])
+    expected = windows.labels[box.top : box.top + box.height, box.left : box.left + box.width]
+    inside = expected >= 0
+    assert found[~inside].min() == OUTSIDE
+    assert (found[inside] == expected[inside]).mean() > 0.97
+
+
+def test_finer_labels_agree_with_coarse_ones(cell: CellData) -> None:
+    box = box_around(cell)
+    coarse = window_labels(cell, Box(box.top, box.left, box.height, box.width, 1.0), 0)
+    fine = window_labels(cell, Box(box.top, box.left, box.height, box.width, 3.0), 0)
+    np.testing.assert_array_equal(fine[1::3, 1::3], coarse)
+
+
+def test_reduced_image_keeps_the_mean() -> None:
+    image = np.random.default_rng(0).random((40, 60))
+    found = resampled(image, Box(0, 0, 40, 60, 0.3))
+    assert found.shape == (12, 18)
+    assert found.mean() == pytest.approx(image.mean())
+    np.testing.assert_allclose(
+        resampled(image, Box(10, 20, 20, 30, 0.1)), image[10:30, 20:50].reshape(2, 10, 3, 10).mean((1, 3))
+    )
+
+
+def test_enlarged_image_repeats_pixels() -> None:
+    image = np.arange(12.0).reshape(3, 4)
+    found = resampled(image, Box(1, 1, 2, 3, 2.0))
+    np.testing.assert_array_equal(found, image[1:3, 1:4].repeat(2, axis=0).repeat(2, axis=1))
+
+
+def test_long_movies_are_thinned_out(cell: CellData, monkeypatch: pytest.MonkeyPatch) -> None:
+    encoder = Pictures(cell, box_around(cell), None)
+    assert encoder.every([]) == 1
+    sizes = [len(encoder.frame(time, [])["labels"] or "") for time in cell.frames]
+    monkeypatch.setattr(pictures, "MOST_BYTES", max(sizes) * 3)
+    assert encoder.every([]) >= 2
+    thinned = cell.every_frames(encoder.every([]))
+    assert thinned.frames == cell.frames[:: encoder.every([])]
+
+
+def test_a_frame_without_a_map_has_no_labels(cell: CellData) -> None:
+    assert Pictures(cell, box_around(cell), None).frame(GAP, []) == {"labels": None, "channels": None}
+
+
+@pytest.mark.parametrize(
+    ("velocity", "limit"),
+    [
+        (np.zeros((3, 4)), 1.0),
+        (np.full((3, 4), np.nan), 1.0),
+        (np.linspace(-1, 1, 2001)[None], 0.99),
+        (np.r_[np.full(900, 0.1), np.full(100, 50.0)][None], 0.3),
+    ],
+)
+def test_a_few_faults_do_not_pale_the_velocity(velocity: np.ndarray, limit: float) -> None:
+    assert velocity_limit(velocity) == pytest.approx(limit, rel=1e-2)

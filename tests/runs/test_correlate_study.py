@@ -1,0 +1,320 @@
+"""Correlating a study: the tables hold what the functions give, whatever its cells are like."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from movie_files import write_masks, write_movie
+
+import cytodisk as cd
+from cytodisk.errors import ParameterError, ReadError, StudyError
+from cytodisk.runs.correlate.correlate_run import correlate_study
+from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.parameters import MovieParameters
+from cytodisk.simulate import movie
+from cytodisk.store.correlation_store import list_correlations, write_correlation
+
+SMALL = MovieParameters(layers=4, sectors=12)
+FEW = {"surrogates": 49}
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> cd.Study:
+    folder = tmp_path_factory.mktemp("correlate")
+    truth = movie("fluctuating", 3, frames=36, radius_px=22, dropped=0.06, lag_frames=2)
+    masks, signal = write_movie(folder, truth)
+    return run_movie(open_movie(masks, signal, SMALL), folder / "out")
+
+
+def test_tables_are_those_of_the_functions(study: cd.Study) -> None:
+    found = correlate_study(study, "edge", max_lag=6, **FEW)
+    activity = study.activity(0)
+    expected = cd.cross_correlate(
+        activity["mean"].sel(channel="edge"), activity["velocity"], 6, surrogates=49
+    )
+    peak = cd.peak_correlation(expected)
+    windows = found.windows.set_index(["layer", "sector"])
+    for name in ("correlation", "lag", "lag_s", "n", "n_effective", "low", "high", "p", "q"):
+        table = windows[name].unstack("sector").to_numpy()
+        np.testing.assert_array_equal(table, peak[name].transpose("layer", "sector").to_numpy(), name)
+    curves = found.curves.set_index(["layer", "sector", "lag"])["correlation"].to_xarray()
+    np.testing.assert_array_equal(curves, expected["correlation"].transpose(*curves.dims))
+    mean = cd.correlation_by_layer(expected)
+    layers = found.layer_curves.set_index(["layer", "lag"])
+    for name in ("correlation", "lower_quartile", "upper_quartile"):
+        np.testing.assert_array_equal(layers[name].to_xarray(), mean[name].transpose("layer", "lag"))
+    np.testing.assert_array_equal(found.layers["threshold"], mean["threshold"])
+    assert found.windows.attrs["units"]["lag_s"] == "s"
+    np.testing.assert_allclose(found.windows["lag_s"], 5.0 * found.windows["lag"])
+
+
+def test_the_lag_that_was_simulated_is_found(study: cd.Study) -> None:
+    found = correlate_study(study, "edge", **FEW)
+    assert found.settings["max_lag"] == 9  # a quarter of the frames
+    outer = found.layers.set_index("layer").loc[0]
+    assert outer["lag"] == -2
+    assert outer["correlation"] > 0.8
+    assert outer["q"] < 0.05
+
+
+def test_it_can_be_read_again_and_is_replaced(study: cd.Study) -> None:
+    first = correlate_study(study, "edge", max_lag=4, **FEW)
+    again = cd.open_study(study.path).correlation("edge", "velocity")
+    pd.testing.assert_frame_equal(again.windows, first.windows)
+    assert ("edge", "velocity") in study.correlations
+    assert correlate_study(study, "edge", max_lag=5, **FEW).settings["max_lag"] == 5
+    assert study.correlation("edge").settings["max_lag"] == 5
+    assert not list(first.path.parent.glob(".*"))
+
+
+def test_the_same_seed_gives_the_same_bytes(study: cd.Study) -> None:
+    def content() -> dict[str, bytes]:
+        path = correlate_study(study, "edge", max_lag=5, **FEW).path
+        return {file.name: file.read_bytes() for file in path.iterdir()}
+
+    assert content() == content()
+
+
+def test_two_signals_and_their_pairs(study: cd.Study) -> None:
+    found = correlate_study(study, "material", "edge", max_lag=3, pairs=True, surrogates=19)
+    pairs = found.pairs
+    assert pairs is not None
+    assert set(pairs["along"]) == {"straight", "interior", "edge"}
+    assert pairs.attrs["units"]["distance"] == "µm"
+    n = pairs.groupby(["along", "lag"])["n"].sum()
+    assert (n == 48 * 48).all()
+    assert found.events is None
+
+
+def test_a_signal_against_the_edge_of_its_sector(study: cd.Study) -> None:
+    found = correlate_study(study, "edge", "edge", against="edge", max_lag=3, surrogates=0)
+    outer = found.windows[found.windows["layer"] == 0]
+    np.testing.assert_allclose(outer["correlation"], 1.0)
+    assert (outer["lag"] == 0).all()
+    assert "q" not in found.windows
+
+
+def test_episodes_and_averages_stand_beside(study: cd.Study) -> None:
+    found = correlate_study(study, "edge", max_lag=5, **FEW)
+    assert found.events is not None
+    assert set(found.events["kind"]) == {"protrusion", "retraction"}
+    assert found.events.attrs["units"]["area"] == "µm²"
+    averages = found.event_averages
+    assert averages is not None
+    assert set(averages["delay"]) == set(range(-5, 6))
+    outer = averages[(averages["layer"] == 0) & (averages["kind"] == "protrusion")].set_index("delay")["mean"]
+    assert outer.idxmax() >= 2  # the signal follows the edge by two frames
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        ({"signal": "VASP"}, "signal 'VASP' is not in the study: it has 'material', 'edge'"),
+        ({"with_": "speed"}, "with 'speed' is not in the study: it has velocity, velocity_cell_frame"),
+        ({"with_": "edge"}, "with itself in the same window is 1"),
+        ({"pairs": True}, "pairs need two signals"),
+        ({"max_lag": 40}, "max_lag 40 leaves 0 pairs of 36 frames"),
+        ({"cells": [2]}, "has no cell 2"),
+        ({"rule": "best"}, "rule must be one of nearest, largest, got 'best'"),
+        ({"null": "shuffle"}, "null must be one of phase, shift, got 'shuffle'"),
+        ({"surrogates": -1}, "surrogates must be a whole number of at least 0, got -1"),
+        ({"lag": 3}, "settings have no 'lag'"),
+        ({"detrend": "spline"}, "detrend must be one of none, linear, median, got 'spline'"),
+    ],
+)
+def test_what_cannot_be_correlated_is_refused(study: cd.Study, call: dict, message: str) -> None:
+    before = list_correlations(study.path)
+    with pytest.raises(ParameterError, match=message):
+        correlate_study(study, **({"signal": "edge", "surrogates": 19} | call))
+    assert list_correlations(study.path) == before
+
+
+def test_a_correlation_that_is_not_there_lists_those_that_are(study: cd.Study) -> None:
+    correlate_study(study, "edge", max_lag=3, surrogates=0)
+    with pytest.raises(ReadError, match=r"no correlation of edge with nothing: .*edge with vel"):
+        study.correlation("edge", "nothing")
+
+
+def test_a_study_without_a_signal(tmp_path: Path) -> None:
+    truth = movie("bulging", 0, frames=12, radius_px=14, signals=False)
+    masks = write_masks(tmp_path / "masks.tif", truth.masks.astype(np.uint8))
+    bare = run_movie(open_movie(masks, None, SMALL), tmp_path / "out")
+    with pytest.raises(StudyError, match="has no signal: run cytodisk movie with --signal"):
+        correlate_study(bare, "edge")
+
+
+def test_short_cells_have_a_row_with_the_reason(tmp_path: Path) -> None:
+    """Two cells as labels, of which one is there for a few frames only."""
+    truth = movie("fluctuating", 0, frames=30, radius_px=16)
+    assert truth.signal is not None
+    labels = np.concatenate([truth.masks, 2 * truth.masks.astype(np.uint8)], axis=2).astype(np.uint8)
+    labels[8:][labels[8:] == 2] = 0
+    truth = type(truth)(**(vars(truth) | {"masks": labels, "signal": _twice(truth.signal)}))
+    masks, signal = write_movie(tmp_path, truth)
+    study = run_movie(open_movie(masks, signal, SMALL), tmp_path / "out")
+    found = correlate_study(study, "edge", max_lag=5, surrogates=19)
+    cells = found.cells.set_index("cell")
+    assert cells["status"].tolist() == ["ok", "refused"]
+    assert "fewer than min_pairs 10" in cells.loc[1, "reason"]
+    assert set(found.windows["cell"]) == {0}
+    with pytest.raises(ParameterError, match=r"no cell of .* can be correlated: max_lag 5 leaves"):
+        correlate_study(study, "edge", max_lag=5, cells=[1])
+
+
+def test_names_that_no_file_can_have(tmp_path: Path) -> None:
+    table = pd.DataFrame({"cell": [0]})
+    for signal, with_ in (("a/b", "velocity"), ("a_b", "velocity"), ("β~γ", "../x"), ("β", "γ~../x")):
+        found = write_correlation(tmp_path, signal, with_, {"windows": table}, {})
+        assert found.path.parent == tmp_path / "correlation"
+        assert (found.signal, found.with_) == (signal, with_)
+    assert len(list_correlations(tmp_path)) == 4
+
+
+def test_a_damaged_correlation_says_so(study: cd.Study) -> None:
+    found = correlate_study(study, "edge", max_lag=3, surrogates=0)
+    (found.path / "windows.parquet").unlink()
+    with pytest.raises(ReadError, match="is damaged, correlate again"):
+        _ = study.correlation("edge").windows
+    (found.path / "settings.json").write_text("{", encoding="utf-8")
+    with pytest.raises(ReadError, match="no correlation of edge with velocity"):
+        study.correlation("edge")
+    assert json.loads((correlate_study(study, "edge", surrogates=0).path / "settings.json").read_text())
+
+
+def _twice(signal: object) -> object:
+    import xarray as xr
+
+    assert isinstance(signal, xr.DataArray)
+    return xr.concat([signal, signal], dim="x")
+
+
+def test_some_frames_and_sectors(study: cd.Study) -> None:
+    """What is left out is as if it were not there: the same as correlating the rest by hand."""
+    settings = {"max_lag": 3, "frames": (4, 30), "without_frames": (12,), "sectors": (10, 2), **FEW}
+    found = correlate_study(study, "edge", name="part", **settings)
+    assert sorted(found.windows["sector"].unique()) == [0, 1, 2, 10, 11]
+    activity = study.activity(0).load()
+    signal = activity["mean"].sel(channel="edge", sector=[0, 1, 2, 10, 11], time=slice(4, 30)).copy()
+    velocity = activity["velocity"].sel(sector=[0, 1, 2, 10, 11], time=slice(4, 30)).copy()
+    signal.loc[{"time": 12}] = np.nan
+    velocity.loc[{"time": [11, 12, 30]}] = np.nan
+    expected = cd.peak_correlation(cd.cross_correlate(signal, velocity, 3, surrogates=49))
+    table = found.windows.set_index(["layer", "sector"])["correlation"].unstack("sector").to_numpy()
+    np.testing.assert_array_equal(table, expected["correlation"].transpose("layer", "sector"))
+    assert found.settings["sectors"] == [10, 2]
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"frames": (90, 99)}, "frames 90:99 are not in the movie: it has 0:35"),
+        ({"frames": (20, 10)}, "frames must go from the first to the last"),
+        ({"without_frames": (3, 77)}, "without_frames has 77: the movie has 0:35"),
+        ({"sectors": (0, 12)}, "sectors 0:12 are not on the edge: it has 0:11"),
+        ({"sectors": (5, 4)}, "sectors 5:4 are the whole edge, or two swapped"),
+        ({"sectors": (3,)}, "sectors must be the first and the last"),
+        ({"sectors": (1.5, 7)}, "sectors must be a whole number of at least 0, got 1.5"),
+        ({"without_frames": 17}, "without_frames must be whole numbers"),
+        ({"name": 5}, "name must be a text of at most 60 letters"),
+        ({"name": "n" * 300}, "name must be a text of at most 60 letters"),
+        ({"surrogates": 5}, "surrogates must be 0, or at least 19"),
+        ({"max_lag": "x"}, "max_lag must be a whole number of at least 0, got 'x'"),
+    ],
+)
+def test_parts_that_are_not_there(study: cd.Study, settings: dict, message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        correlate_study(study, "edge", **settings)
+
+
+def test_variants_stand_beside_each_other(study: cd.Study) -> None:
+    correlate_study(study, "edge", max_lag=3, surrogates=0)
+    correlate_study(study, "edge", max_lag=4, surrogates=0, detrend="linear", name="linear")
+    assert ("edge", "velocity", "linear") in study.correlations
+    assert ("edge", "velocity") in study.correlations
+    assert study.correlation("edge").settings["max_lag"] == 3
+    assert study.correlation("edge", "velocity", "linear").settings["detrend"] == "linear"
+
+
+def test_a_crash_while_replacing_loses_nothing(study: cd.Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = correlate_study(study, "edge", max_lag=3, surrogates=0).windows
+
+    def no_room(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("cytodisk.store.correlation_store.write_table", no_room)
+        with pytest.raises(StudyError, match="No space left on device"):
+            correlate_study(study, "edge", max_lag=4, surrogates=0)
+    pd.testing.assert_frame_equal(study.correlation("edge").windows, before)
+    assert not list((study.path / "correlation").glob(".*"))
+
+
+def test_a_cut_off_table_says_so(study: cd.Study) -> None:
+    found = correlate_study(study, "edge", max_lag=3, surrogates=0)
+    table = found.path / "layers.parquet"
+    table.write_bytes(table.read_bytes()[:100])
+    with pytest.raises(ReadError, match="is damaged, correlate again"):
+        _ = study.correlation("edge").layers
+    correlate_study(study, "edge", max_lag=3, surrogates=0)
+
+
+def test_jitter_is_looked_for_whatever_the_lags(study: cd.Study) -> None:
+    assert correlate_study(study, "edge", max_lag=2, surrogates=0).cells["jitter"].notna().all()
+    short = correlate_study(study, "edge", max_lag=2, surrogates=0, frames=(0, 13), name="short")
+    assert short.cells["jitter"].isna().all()  # fewer than six lags
+    assert correlate_study(study, "edge", surrogates=0, skip_lags=(-1, 0)).cells["jitter"].item() == 0.0
+
+
+def test_numbers_of_numpy_are_numbers(study: cd.Study) -> None:
+    found = correlate_study(
+        study,
+        "edge",
+        cells=list(study.cells["cell"].unique()),
+        max_lag=np.int64(3),
+        frames=(np.int64(0), np.int64(30)),
+        skip_lags=np.array([-1, 0]),
+        surrogates=0,
+        name="numpy",
+    )
+    assert found.settings["skip_lags"] == [-1, 0]
+    assert found.settings["cells"] == [0]
+
+
+def test_a_folder_that_cannot_be_exchanged_stays(study: cd.Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither a failure between the two renames nor a kill there loses the old result."""
+    found = correlate_study(study, "edge", max_lag=3, surrogates=0)
+    before, rename = found.windows, Path.replace
+
+    def fail(self: Path, target: Path) -> Path:
+        if self.suffix == ".tmp" and not target.suffix:
+            raise OSError(28, "No space left on device")
+        return rename(self, target)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "replace", fail)
+        with pytest.raises(StudyError, match="No space left on device"):
+            correlate_study(study, "edge", max_lag=4, surrogates=0)
+    pd.testing.assert_frame_equal(study.correlation("edge").windows, before)
+    found.path.replace(found.path.with_name(f".{found.path.name}.old"))  # as a kill leaves it
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "replace", fail)
+        with pytest.raises(StudyError, match="No space left on device"):
+            correlate_study(study, "edge", max_lag=4, surrogates=0)
+    pd.testing.assert_frame_equal(study.correlation("edge").windows, before)
+
+
+def test_episodes_of_some_sectors_are_those_of_the_whole_edge(study: cd.Study) -> None:
+    whole = correlate_study(study, "edge", max_lag=3, surrogates=0).events
+    part = correlate_study(study, "edge", max_lag=3, surrogates=0, sectors=(10, 2), name="part").events
+    assert whole is not None
+    assert part is not None
+    expected = whole[whole["sector"].isin([10, 11, 0, 1, 2])].reset_index(drop=True)
+    pd.testing.assert_frame_equal(part, expected)
+
+
+def test_the_number_of_surrogates_is_that_which_was_made(study: cd.Study) -> None:
+    shifted = correlate_study(study, "edge", max_lag=2, null="shift", surrogates=99, name="shift")
+    assert shifted.settings["surrogates_made"] == shifted.cells["surrogates"].item() < 7

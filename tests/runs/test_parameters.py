@@ -1,0 +1,125 @@
+import tomllib
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cytodisk.errors import ParameterError
+from cytodisk.runs.parameters import MapParameters, MovieParameters, parameters_from, write_parameters
+from cytodisk.runs.shapes.shape_run import ShapeParameters
+
+POSITIVE = st.floats(1e-6, 1e6)
+NAMES = st.text(min_size=1, max_size=9).filter(lambda name: name.isprintable() and name.strip())
+NUMBER = st.floats(-1e6, 1e6)
+
+
+@given(
+    given_values=st.fixed_dictionaries(
+        {},
+        optional={
+            "kind": st.sampled_from(["auto", "mask", "stack", "labels"]),
+            "method": st.sampled_from(["newton", "harmonic"]),
+            "shape_weight": POSITIVE,
+            "edge_length": st.floats(0.25, 10),
+            "align": st.just("upright") | NUMBER | st.tuples(NUMBER, NUMBER),
+            "layers": st.integers(1, 1000),
+            "sectors": st.integers(1, 1000),
+            "spacing": st.sampled_from(["area", "radius"]),
+            "nan": st.sampled_from(["propagate", "omit"]),
+            "pixel_size_um": st.none() | POSITIVE,
+            "channels": st.none() | st.lists(NAMES, min_size=1, max_size=4, unique=True).map(tuple),
+        },
+    )
+)
+def test_parameters_survive_the_file(
+    tmp_path_factory: pytest.TempPathFactory, given_values: dict[str, object]
+) -> None:
+    path = tmp_path_factory.mktemp("run") / "parameters.toml"
+    parameters = parameters_from(given_values)
+    write_parameters(parameters, path)
+    assert parameters_from({}, path) == parameters
+
+
+def test_every_parameter_that_is_set_stands_in_the_file(tmp_path: Path) -> None:
+    write_parameters(MapParameters(), tmp_path / "a.toml")
+    names = set(tomllib.loads((tmp_path / "a.toml").read_text(encoding="utf-8")))
+    assert names == set(MapParameters.model_fields) - {"pixel_size_um", "channels"}
+
+
+def test_given_values_overrule_the_file(tmp_path: Path) -> None:
+    (tmp_path / "a.toml").write_text("layers = 3\nsectors = 7\n")
+    parameters = parameters_from({"layers": 5, "sectors": None}, tmp_path / "a.toml")
+    assert (parameters.layers, parameters.sectors) == (5, 7)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"layers": 0}, "layers: Input should be greater than or equal to 1, got 0"),
+        ({"sectors": -2}, "sectors: Input should be greater than or equal to 1, got -2"),
+        ({"layers": 2.5}, "layers: Input should be a valid integer.*got 2.5"),
+        ({"shape_weight": 0.0}, "shape_weight: Input should be greater than 0, got 0.0"),
+        ({"edge_length": 0.1}, "edge_length: Input should be greater than or equal to 0.25, got 0.1"),
+        ({"method": "demons"}, "method: Input should be 'newton', 'harmonic' or 'advection', got"),
+        ({"kind": "cells"}, "kind: Input should be 'auto', 'mask', 'stack' or 'labels', got 'cells'"),
+        ({"align": "left"}, "align: .*got 'left'"),
+        ({"pixel_size_um": -1.0}, "pixel_size_um: Input should be greater than 0, got -1.0"),
+        ({"channels": ()}, r"channels: every channel needs a name that can be printed, got \(\)"),
+        ({"channels": ("Rac1", " ")}, "channels: every channel needs a name"),
+        ({"channels": ("Rac1", "a\nb")}, "channels: every channel needs a name"),
+        ({"channels": ("a", "b", "a")}, r"channels: two channels have one name, got \('a', 'b', 'a'\)"),
+        ({"channels": ("a", "velocity")}, "channels: velocity is the name of the edge's velocity"),
+        ({"channels": ("velocity_cell_frame",)}, "channels: velocity_cell_frame is the name of the edge's"),
+        ({"channels": "Rac1"}, "channels: Input should be a valid tuple, got 'Rac1'"),
+        ({"channels": (1, 2)}, "channels: Input should be a valid string, got 1"),
+        ({"colour": "red"}, "colour: Extra inputs are not permitted, got 'red'"),
+    ],
+)
+def test_values_out_of_range_are_named(values: dict[str, object], message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        parameters_from(values)
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+@pytest.mark.parametrize("name", ["shape_weight", "edge_length", "align", "pixel_size_um"])
+def test_numbers_must_be_finite(name: str, value: float) -> None:
+    with pytest.raises(ParameterError, match=name):
+        parameters_from({name: value})
+
+
+def test_all_faults_are_named_at_once() -> None:
+    with pytest.raises(ParameterError, match=r"layers: .*; sectors: "):
+        parameters_from({"layers": 0, "sectors": 0})
+
+
+@pytest.mark.parametrize("name", ['say "Rac1"', "back\\slash", "µ ~/.:", "#1 = [x]"])
+def test_any_name_of_a_channel_survives_the_file(tmp_path: Path, name: str) -> None:
+    parameters = parameters_from({"channels": (name, "other")})
+    write_parameters(parameters, tmp_path / "a.toml")
+    assert parameters_from({}, tmp_path / "a.toml").channels == (name, "other")
+
+
+@pytest.mark.parametrize("content", [b"layers = ", b"\xff\xfe", None])
+def test_a_file_that_cannot_be_read_is_named(tmp_path: Path, content: bytes | None) -> None:
+    if content is not None:
+        (tmp_path / "a.toml").write_bytes(content)
+    with pytest.raises(ParameterError, match=r"parameters file .*a\.toml cannot be read"):
+        parameters_from({}, tmp_path / "a.toml")
+
+
+def test_a_file_of_another_command_is_called_so(tmp_path: Path) -> None:
+    write_parameters(MovieParameters(), tmp_path / "parameters.toml")
+    words = (
+        r"no parameters of this command \(frame_interval_s, tension\): perhaps it is that of another command"
+    )
+    (tmp_path / "mine.toml").write_text("layers = 3\ntension = 0.1\nframe_interval_s = 2.0\n")
+    with pytest.raises(ParameterError, match=words):
+        parameters_from({}, tmp_path / "mine.toml")
+    (tmp_path / "provenance.json").write_text('{"fingerprint": {}, "run": "movie"}')
+    with pytest.raises(ParameterError, match=r"tension, tracker.*: it is that of cytodisk movie; use that"):
+        parameters_from({}, tmp_path / "parameters.toml")
+    write_parameters(MapParameters(), tmp_path / "parameters.toml")
+    (tmp_path / "provenance.json").write_text('{"fingerprint": {}}')
+    with pytest.raises(ParameterError, match=r"layers, .*: it is that of cytodisk map; use that"):
+        parameters_from({}, tmp_path / "parameters.toml", ShapeParameters)

@@ -1,0 +1,196 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+import cytodisk as cd
+from cytodisk.errors import ReadError, StudyError
+from cytodisk.store.provenance_file import differences
+from cytodisk.store.study_folder import StudyFolder, figures_folder, part_key
+from cytodisk.store.tables import SOURCE_COLUMNS, WINDOW_COLUMNS
+
+
+def run(length_unit: str = "px", **settings: object) -> dict[str, object]:
+    return {"fingerprint": {"layers": 10} | settings, "length_unit": length_unit}
+
+
+def windows_of(cell: int) -> dict[str, object]:
+    columns: dict[str, object] = {name: np.array([0.5 * cell, 1.0]) for name, _, _ in WINDOW_COLUMNS}
+    whole = {"cell": np.array([cell, cell]), "time": [0, 0], "layer": [0, 0], "sector": [0, 1]}
+    return columns | whole | {"channel": ["a", "a"], "status": ["ok", "ok"]}
+
+
+def add(folder: StudyFolder, cell: int, **values: object) -> None:
+    tables = {"windows": windows_of(cell)} if values["status"] == "ok" else {}
+    folder.add(part_key(cell), {"cell": cell, "time": 0} | values, tables)
+
+
+def finished(path: Path, length_unit: str = "px") -> StudyFolder:
+    folder = StudyFolder.start(path, run(length_unit))
+    add(folder, 0, status="ok", area=12.5)
+    add(folder, 1, status="refused", reason="empty")
+    folder.finish([part_key(0), part_key(1)])
+    return folder
+
+
+def test_a_study_reads_back_what_was_added(tmp_path: Path) -> None:
+    finished(tmp_path / "out")
+    study = cd.open_study(tmp_path / "out")
+    assert study.cells["status"].tolist() == ["ok", "refused"]
+    assert study.cells["area"].iloc[0] == 12.5
+    assert np.isnan(study.cells["area"].iloc[1])
+    assert study.windows["sector"].tolist() == [0, 1]
+    assert study.provenance["status"] == "complete"
+
+
+def test_no_temporary_file_is_left(tmp_path: Path) -> None:
+    finished(tmp_path / "out")
+    names = sorted(str(path.relative_to(tmp_path / "out")) for path in (tmp_path / "out").rglob("*"))
+    assert names == ["cells.parquet", "maps", "provenance.json", "windows.parquet"]
+
+
+@pytest.mark.parametrize("unit", ["px", "µm"])
+def test_units_stand_in_the_tables_metadata(tmp_path: Path, unit: str) -> None:
+    finished(tmp_path / "out", unit)
+    for name, columns in (("cells.parquet", SOURCE_COLUMNS), ("windows.parquet", WINDOW_COLUMNS)):
+        schema = pq.read_schema(tmp_path / "out" / name)
+        found = {field.name: field.metadata[b"unit"].decode() for field in schema}
+        assert found == {column: kind.replace("length", unit) for column, _, kind in columns}
+        assert found["area"] == f"{unit}²"
+    study = cd.open_study(tmp_path / "out")
+    assert study.cells.attrs["units"]["perimeter"] == unit
+    assert study.windows.attrs["units"]["time"] == "frame"
+
+
+def test_parts_come_in_the_order_of_cells_whatever_the_order_of_adding(tmp_path: Path) -> None:
+    folder = StudyFolder.start(tmp_path / "out", run())
+    for cell in (10, 2, 0):
+        add(folder, cell, status="ok")
+    folder.finish([part_key(cell) for cell in (0, 2, 10)])
+    study = cd.open_study(tmp_path / "out")
+    assert study.cells["cell"].tolist() == [0, 2, 10]
+    assert study.windows["cell"].tolist() == [0, 0, 2, 2, 10, 10]
+
+
+def test_a_folder_with_something_else_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "thesis.txt").write_text("years of work")
+    for options in ({}, {"resume": True}, {"overwrite": True}):
+        with pytest.raises(StudyError, match="is not empty and holds no study: pass another folder"):
+            StudyFolder.start(tmp_path, run(), **options)
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_a_provenance_of_something_else_is_no_study(tmp_path: Path) -> None:
+    (tmp_path / "provenance.json").write_text('{"made by": "another program"}')
+    with pytest.raises(StudyError, match="holds no study"):
+        StudyFolder.start(tmp_path, run(), overwrite=True)
+    assert json.loads((tmp_path / "provenance.json").read_text()) == {"made by": "another program"}
+
+
+def test_a_study_is_not_overwritten_unasked(tmp_path: Path) -> None:
+    finished(tmp_path / "out")
+    with pytest.raises(StudyError, match="holds a study: pass --resume to go on, --overwrite to replace it"):
+        StudyFolder.start(tmp_path / "out", run())
+    assert len(cd.open_study(tmp_path / "out").cells) == 2
+
+
+def test_resume_names_what_differs_from_another_run(tmp_path: Path) -> None:
+    finished(tmp_path / "out")
+    with pytest.raises(StudyError, match=r"holds another run \(layers: 10 then, 5 now\): pass --overwrite"):
+        StudyFolder.start(tmp_path / "out", run(layers=5), resume=True)
+    assert len(cd.open_study(tmp_path / "out").cells) == 2
+
+
+def test_resume_says_first_which_command_another_run_is_of() -> None:
+    there = {"run": "shapes", "fingerprint": {"seed": 0, "packages": {"numpy": "1"}}}
+    here = {"fingerprint": {"layers": 10, "packages": {"numpy": "2"}}}
+    assert differences(there, here) == "that of cytodisk shapes, not of cytodisk map"
+
+
+def test_resume_names_the_packages_that_differ_alone() -> None:
+    there = {"fingerprint": {"packages": {"numpy": "1.26.4", "scipy": "1.11"}, "gone": 1}}
+    here = {"fingerprint": {"packages": {"numpy": "2.1.0", "scipy": "1.11"}}}
+    assert differences(there, here) == "numpy: 1.26.4 then, 2.1.0 now; gone: 1 then, None now"
+
+
+def test_resume_keeps_complete_parts(tmp_path: Path) -> None:
+    add(StudyFolder.start(tmp_path / "out", run()), 3, status="ok")
+    again = StudyFolder.start(tmp_path / "out", run(), resume=True)
+    assert (again.has(part_key(3)), again.has(part_key(4))) == (True, False)
+    assert [row["cell"] for row in again.rows()] == [3]
+
+
+def test_a_part_without_its_row_is_not_complete(tmp_path: Path) -> None:
+    folder = StudyFolder.start(tmp_path / "out", run())
+    add(folder, 3, status="ok")
+    next((tmp_path / "out").glob(".parts/*.json")).unlink()
+    assert not StudyFolder.start(tmp_path / "out", run(), resume=True).has(part_key(3))
+
+
+def test_overwrite_removes_the_study_and_nothing_else(tmp_path: Path) -> None:
+    finished(tmp_path / "out")
+    (tmp_path / "out" / "notes.txt").write_text("mine")
+    old = figures_folder(tmp_path / "out") / "cell_00000.png"
+    old.write_bytes(b"old")
+    folder = StudyFolder.start(tmp_path / "out", run(layers=5), overwrite=True)
+    assert folder.rows() == []
+    assert (tmp_path / "out" / "notes.txt").read_text() == "mine"
+    assert not old.exists()
+    assert not (tmp_path / "out" / "cells.parquet").exists()
+
+
+def test_left_over_temporary_files_of_a_killed_run_go_and_other_files_stay(tmp_path: Path) -> None:
+    StudyFolder.start(tmp_path / "out", run())
+    left_over = tmp_path / "out" / "maps" / ".cell_00000.4711.tmp.npz"
+    theirs = [tmp_path / "out" / ".editor.tmp.txt", tmp_path / "out" / "mine" / ".a.1.tmp.txt"]
+    theirs[1].parent.mkdir()
+    for path in (left_over, *theirs):
+        path.write_text("half")
+    StudyFolder.start(tmp_path / "out", run(), resume=True)
+    assert not left_over.exists()
+    assert [path.read_text() for path in theirs] == ["half", "half"]
+
+
+def test_a_file_is_no_output_folder(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("mine")
+    with pytest.raises(StudyError, match="is a file: pass a folder"):
+        StudyFolder.start(tmp_path / "out", run(), overwrite=True)
+    with pytest.raises(StudyError, match="cannot be written: Not a directory"):
+        StudyFolder.start(tmp_path / "out" / "below", run())
+    assert (tmp_path / "out").read_text() == "mine"
+
+
+def test_open_study_says_why_not(tmp_path: Path) -> None:
+    with pytest.raises(ReadError, match=r"study .*nowhere does not exist: check the path"):
+        cd.open_study(tmp_path / "nowhere")
+    with pytest.raises(ReadError, match=r"is no study: it has no readable provenance\.json"):
+        cd.open_study(tmp_path)
+    StudyFolder.start(tmp_path / "half", run())
+    with pytest.raises(ReadError, match="is not complete: run the same command again with --resume"):
+        cd.open_study(tmp_path / "half")
+    finished(tmp_path / "out")
+    (tmp_path / "out" / "cells.parquet").write_bytes(b"PAR1 damaged")
+    with pytest.raises(ReadError, match="is damaged: "):
+        cd.open_study(tmp_path / "out")
+    (tmp_path / "out" / "cells.parquet").unlink()
+    with pytest.raises(ReadError, match="is damaged: "):
+        cd.open_study(tmp_path / "out")
+    (tmp_path / "out" / "provenance.json").write_bytes(b"\xff\xfe{")
+    with pytest.raises(ReadError, match="is no study"):
+        cd.open_study(tmp_path / "out")
+
+
+def test_a_map_that_is_not_there_has_a_reason(tmp_path: Path) -> None:
+    finished(tmp_path / "out")
+    study = cd.open_study(tmp_path / "out")
+    with pytest.raises(ReadError, match=r"cell 1 of .* has no map: empty"):
+        study.map(1)
+
+
+def test_a_cell_that_is_not_there(tmp_path: Path) -> None:
+    finished(tmp_path / "out")
+    study = cd.open_study(tmp_path / "out")
+    with pytest.raises(ReadError, match=r"has no cell 9: it has the cells 0 to 1"):
+        study.map(9)
