@@ -7,7 +7,7 @@ from . import simulate as simulate
 
 __version__: str
 
-# Files
+# Files and their scale
 from .analysis.activity import sample_movie as sample_movie
 from .analysis.consistency import centroid_displacement as centroid_displacement
 from .analysis.consistency import consecutive_correlation as consecutive_correlation
@@ -61,6 +61,7 @@ from .runs.compare_windows.comparison import open_comparison as open_comparison
 # Runs: what the commands do
 from .runs.correlate.correlate_run import correlate_study as correlate_study
 from .runs.shapes.shape_tables import open_shapes as open_shapes
+from .scale import Scale as Scale
 from .store.study import Study as Study
 
 # Results of runs

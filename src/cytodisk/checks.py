@@ -1,4 +1,4 @@
-"""One checker for each kind of argument; each raises `ParameterError` that names it, what came and what to do."""
+"""One checker for each kind of argument; the error names it, what came and what to do."""
 
 from __future__ import annotations
 

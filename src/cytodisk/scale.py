@@ -1,4 +1,4 @@
-"""`Scale`: µm per pixel and seconds per frame, or unknown; converts lengths, areas and velocities, and names their units."""
+"""`Scale`: µm per pixel and seconds per frame, or unknown; it converts, and names the units."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
 
-Number = TypeVar("Number", bound=Any)
+Number = TypeVar("Number", float, FloatArray)
+"""A number or an array of numbers."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +109,8 @@ class Scale:
 
     def velocity(self, pixels_per_frame: Number) -> Number:
         """A velocity in px/frame → in `velocity_unit`."""
-        return pixels_per_frame * ((self.pixel_size_um or 1) / (self.frame_interval_s or 1))
+        factor = self.length(1.0) / self.time(1.0)
+        return pixels_per_frame * factor
 
     def time(self, frames: Number) -> Number:
         """A time in frames → in `time_unit`."""

@@ -10,9 +10,9 @@ from PIL import Image
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError, SignalError
+from cytodisk.pages import movie_pages as pages
 from cytodisk.pages.edge_page import fastest_frame
 from cytodisk.pages.movie_pages import write_movie_figures
-from cytodisk.plot import movie as pages
 from cytodisk.plot.layer_lines import draw_by_layer
 from cytodisk.plot.mean_velocity import draw_mean_velocity
 from cytodisk.runs.movie.movie_inputs import open_movie

@@ -22,5 +22,5 @@ def test_names_are_listed_and_described() -> None:
 
 
 def test_other_names_are_refused() -> None:
-    with pytest.raises(AttributeError, match=r"module 'cytodisk.plot' has no attribute 'draw_nothing'"):
+    with pytest.raises(AttributeError, match="draw_nothing"):
         _ = plot.draw_nothing

@@ -51,7 +51,7 @@ def test_measures_are_those_of_the_movie(comparison: cd.Comparison, files: tuple
         expected = cd.centroid_displacement(movie, activity).mean("sector")
         np.testing.assert_allclose(moved.reindex(range(5)), expected, rtol=1e-6)
         complete = rows.pivot_table(index="time", columns="layer", values="completeness")
-        held = (activity["area"] > 0).mean("sector").sel(time=[0, 1, 3, 4])
+        held = (activity["area"] > 0).mean("sector").sel(frame=[0, 1, 3, 4])
         np.testing.assert_allclose(complete, held)
 
 

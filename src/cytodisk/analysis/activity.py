@@ -125,7 +125,7 @@ def activity_dataset(
     times = first_time + np.arange(len(status))
     layers, sectors = tables["area"].shape[1:]
     coords: dict[str, Any] = {
-        "time": ("time", times, {"units": "frame"}),
+        "frame": ("time", times),
         "channel": channels,
         "layer": np.arange(layers),
         "sector": np.arange(sectors),
@@ -134,7 +134,7 @@ def activity_dataset(
         coords["time_s"] = ("time", times * frame_interval_s, {"units": "s"})
     attrs = {"pixel_size_um": pixel_size_um, "frame_interval_s": frame_interval_s}
     known = {name: value for name, value in attrs.items() if value is not None}
-    return with_places(xr.Dataset(data, coords, attrs=known))
+    return with_places(xr.Dataset(data, coords, attrs=known).set_xindex("frame"))
 
 
 def with_places(activity: xr.Dataset) -> xr.Dataset:

@@ -66,7 +66,7 @@ def centroid_displacement(movie: DiskMovie, activity: xr.Dataset) -> xr.DataArra
     for time, record in enumerate(movie.records[1:]):
         if record.boundary is not None and record.boundary.restarted:
             steps[time] = np.nan  # windows before and after have nothing to do with each other
-    coords = {name: activity[name] for name in ("time", "layer", "sector")}
+    coords = {name: activity[name] for name in ("frame", "layer", "sector")}
     units = "px" if movie.pixel_size_um is None else "µm"
     return xr.DataArray(
         steps, coords, ("time", "layer", "sector"), name="centroid_displacement", attrs={"units": units}

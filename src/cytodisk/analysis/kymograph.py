@@ -264,11 +264,15 @@ def _kymograph(
 ) -> xr.DataArray:
     """Values of shape (T, [C,] D) with their coordinates, as (time, along[, channel])."""
     times = np.arange(len(rows))
-    known: dict[str, Any] = {"time": ("time", times, {"units": "frame"})}
+    known: dict[str, Any] = {"frame": ("time", times)}
     if frame_interval_s is not None:
         known["time_s"] = ("time", times * frame_interval_s, {"units": "s"})
     if channels is None:
-        return xr.DataArray(rows, known | coords, ("time", along), attrs={"units": "a.u."} | attrs)
+        return xr.DataArray(
+            rows, known | coords, ("time", along), attrs={"units": "a.u."} | attrs
+        ).set_xindex("frame")
     known["channel"] = channels
     values = np.moveaxis(rows, 1, 2)
-    return xr.DataArray(values, known | coords, ("time", along, "channel"), attrs={"units": "a.u."} | attrs)
+    return xr.DataArray(
+        values, known | coords, ("time", along, "channel"), attrs={"units": "a.u."} | attrs
+    ).set_xindex("frame")

@@ -12,7 +12,7 @@ _EVEN = 1e-6  # of a step: what seconds that come from a file's metadata may be 
 
 
 def frame_numbers(array: xr.DataArray, name: str) -> IntArray:
-    """Number of each frame of an array: its coordinate time, or 0, 1, … without one.
+    """Number of each frame of an array: its coordinate frame, or 0, 1, … without one.
 
     Parameters
     ----------
@@ -29,12 +29,12 @@ def frame_numbers(array: xr.DataArray, name: str) -> IntArray:
     ParameterError
         The numbers do not follow each other without a gap.
     """
-    if "time" not in array.coords:
+    if "frame" not in array.coords:
         return np.arange(array.sizes["time"])
-    numbers = array["time"].to_numpy()
+    numbers = array["frame"].to_numpy()
     if numbers.dtype.kind not in "biuf" or (np.diff(numbers) != 1).any() or (numbers % 1 != 0).any():
         raise ParameterError(
-            f"{name} must hold frames that follow each other, its time is {_shortened(numbers)}: "
+            f"{name} must hold frames that follow each other, its coordinate frame is {_shortened(numbers)}: "
             "reindex it to all frames, NaN where one is not there"
         )
     return np.asarray(numbers.astype(np.int64))

@@ -108,7 +108,7 @@ def _say_remarks(console: "Console", mapped: "pd.DataFrame", of_folder: bool) ->
         console.print(f"{count(len(remarks))} with remarks: column 'notes' of cells.parquet")
     doubtful = mapped[mapped["doubts"] != ""]
     for _, row in doubtful.head(_MOST_LINES).iterrows():
-        place = row["source"] if of_folder else f"frame {row['time']}"
+        place = row["source"] if of_folder else f"frame {row['frame']}"
         console.print(f"look at cell {row['cell']} ({place}): {row['doubts']}")
     if len(doubtful) > _MOST_LINES:
         console.print(f"… and at {len(doubtful) - _MOST_LINES} more: column 'doubts' of cells.parquet")
@@ -116,7 +116,7 @@ def _say_remarks(console: "Console", mapped: "pd.DataFrame", of_folder: bool) ->
 
 def _say_lost(lost: "pd.DataFrame") -> None:
     for _, row in lost.head(_MOST_LINES).iterrows():
-        print(f"cell {row['cell']} (frame {row['time']}) {row['status']}: {row['reason']}", file=sys.stderr)
+        print(f"cell {row['cell']} (frame {row['frame']}) {row['status']}: {row['reason']}", file=sys.stderr)
     if len(lost) > _MOST_LINES:
         print(f"… and {len(lost) - _MOST_LINES} more: column 'reason' of cells.parquet", file=sys.stderr)
 

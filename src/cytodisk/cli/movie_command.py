@@ -185,7 +185,7 @@ def finish_movie(console: "Console", study: "Study") -> None:
     for status in ("refused", "missing", "unreadable"):
         lost = frames[frames["status"] == status]
         for _, row in lost.head(10).iterrows():
-            print(f"cell {row['cell']}, frame {row['time']} {status}: {row['reason']}", file=sys.stderr)
+            print(f"cell {row['cell']}, frame {row['frame']} {status}: {row['reason']}", file=sys.stderr)
         if len(lost) > 10:
             print(f"… and {len(lost) - 10} more {status}: column 'reason' of cells.parquet", file=sys.stderr)
     console.print(f"results: {study.path}")
@@ -215,7 +215,7 @@ def _say_measures(console: "Console", study: "Study", mapped: Any) -> None:
     ):
         marked = mapped[mapped[name] != ""]
         for _, row in marked.head(10).iterrows():
-            console.print(f"cell {row['cell']}, frame {row['time']}: {words}: {row[name]}")
+            console.print(f"cell {row['cell']}, frame {row['frame']}: {words}: {row[name]}")
         if len(marked) > 10:
             console.print(f"… and {len(marked) - 10} more frames: column '{name}' of cells.parquet")
     border = mapped.groupby("cell")["touches_border"].sum()

@@ -197,9 +197,10 @@ def _pairs(movie: DiskMovie) -> Any:
 
 
 def _labelled(movie: DiskMovie, values: Any, last: str, frame: str) -> xr.DataArray:
-    coords: dict[str, Any] = {"time": np.arange(len(movie)), last: np.arange(values.shape[1])}
+    coords: dict[str, Any] = {"frame": ("time", np.arange(len(movie))), last: np.arange(values.shape[1])}
     if movie.frame_interval_s is not None:
         coords["time_s"] = ("time", np.arange(len(movie)) * movie.frame_interval_s)
     units = velocity_unit(movie.pixel_size_um, movie.frame_interval_s)
     name = "edge_velocity" if last == "sector" else "boundary_velocity"
-    return xr.DataArray(values, coords, ("time", last), name=name, attrs={"units": units, "frame": frame})
+    array = xr.DataArray(values, coords, ("time", last), name=name, attrs={"units": units, "frame": frame})
+    return array.set_xindex("frame")

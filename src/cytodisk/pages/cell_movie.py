@@ -51,7 +51,7 @@ class CellMovie:
     @property
     def first(self) -> int:
         """Number of the cell's first frame."""
-        return int(self.activity["time"][0])
+        return int(self.activity["frame"][0])
 
     @property
     def frames(self) -> int:

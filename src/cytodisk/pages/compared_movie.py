@@ -124,7 +124,7 @@ def draw_displacement(
     -------
     list of Line2D
     """
-    first, last = int(consistency["time"].min()), int(consistency["time"].max())
+    first, last = int(consistency["frame"].min()), int(consistency["frame"].max())
     time = time_axis(ax, last - first + 1, interval_s, first)
     lines = []
     for method in methods:
@@ -171,7 +171,7 @@ def _draw_maps(
 
 def _draw_map(ax: Axes, values: xr.DataArray, limits: tuple[float, float], interval_s: float | None) -> Any:
     frames, sectors = values.shape
-    time_axis(ax, frames, interval_s, int(values["time"][0]))
+    time_axis(ax, frames, interval_s, int(values["frame"][0]))
     ticks = MaxNLocator(5, steps=TICK_STEPS, integer=interval_s is None, prune="upper")
     ax.xaxis.set_major_locator(ticks)  # the last number would run into the next map's first
     extent = (*ax.get_xlim(), -0.5, sectors - 0.5)

@@ -112,7 +112,7 @@ def consistency_measures(movie: CellMovie) -> list[Measure]:
 
 def _by_frame(movie: CellMovie, rows: pd.DataFrame, name: str) -> FloatArray:
     """A column of the table by frame and layer; of several channels the first, as geometry has none."""
-    wide = rows.pivot_table(index="time", columns="layer", values=name, dropna=False, aggfunc="first")
+    wide = rows.pivot_table(index="frame", columns="layer", values=name, dropna=False, aggfunc="first")
     times, layers = range(movie.first, movie.first + movie.frames), range(movie.grid.layers)
     return wide.reindex(index=times, columns=layers).to_numpy(dtype=np.float64)
 

@@ -108,7 +108,7 @@ def _measure_cell(task: CellTask, settings: CellSettings) -> Rows:
     started = clock.perf_counter()
     found, parameters = task.found, settings.parameters
     row: dict[str, Any] = {"cell": found.cell, "source": found.source}
-    row |= {"time": found.frame, "label": found.label}
+    row |= {"frame": found.frame, "label": found.label}
     fault = found.fault or task.fault
     if fault is None:
         try:
@@ -280,7 +280,7 @@ def window_columns(
     cell, time, time_s = place
     return {
         "cell": np.full(rows, cell),
-        "time": np.full(rows, time),
+        "frame": np.full(rows, time),
         "time_s": [time_s] * rows,
         "channel": [name for name in channels for _ in range(n_windows)],
         "layer": layer,

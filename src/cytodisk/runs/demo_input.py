@@ -126,7 +126,7 @@ def _signal_words(study: Study, truth: SimulatedMovie) -> str:
     """Sums over windows against counts in the mask, which must agree but for rounding."""
     windows = study.windows
     products = windows["mean"] * windows["n_pixels"]
-    found = products.groupby([windows["channel"], windows["time"]]).sum()
+    found = products.groupby([windows["channel"], windows["frame"]]).sum()
     off = []
     counts = _signal(truth)
     for number, channel in enumerate(counts["channel"].to_numpy()):

@@ -202,9 +202,8 @@ def _unit_rows(weights: FloatArray) -> FloatArray:
 
 def _labelled(activity: FloatArray, velocity: FloatArray) -> tuple[xr.DataArray, xr.DataArray]:
     dims = ("time", "layer", "sector")
-    coords = {name: np.arange(size) for name, size in zip(dims, activity.shape, strict=True)}
-    of_edge = {name: coords[name] for name in ("time", "sector")}
-    return (
-        xr.DataArray(activity, coords, dims, name="activity"),
-        xr.DataArray(velocity, of_edge, ("time", "sector"), name="velocity", attrs={"units": "px/frame"}),
-    )
+    frames, layers, sectors = (np.arange(size) for size in activity.shape)
+    of_edge = {"frame": ("time", frames), "sector": sectors}
+    series = xr.DataArray(activity, of_edge | {"layer": layers}, dims, name="activity")
+    edge = xr.DataArray(velocity, of_edge, ("time", "sector"), name="velocity", attrs={"units": "px/frame"})
+    return series.set_xindex("frame"), edge.set_xindex("frame")

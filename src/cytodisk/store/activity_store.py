@@ -147,7 +147,7 @@ class CellActivity:
             data[name] = ("time", np.array([frame[place] for frame in self._frames], dtype=object))
         times = np.array([frame[0] for frame in self._frames])
         coords: dict[str, Any] = {
-            "time": ("time", times, {"units": "frame"}),
+            "frame": ("time", times),
             "layer": np.arange(layers),
             "sector": np.arange(sectors),
         }
@@ -196,4 +196,4 @@ def open_activity(path: Path, cell: int) -> xr.Dataset:
         found: xr.Dataset = xr.open_zarr(path, group=group_name(cell), chunks=None, **_ZARR)
     except (OSError, KeyError, ValueError) as error:
         raise ReadError(f"{path} has no activity of cell {cell}: {error}") from error
-    return with_places(found)
+    return with_places(found.set_xindex("frame"))

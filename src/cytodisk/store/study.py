@@ -53,7 +53,7 @@ class Study:
     def __repr__(self) -> str:
         what = f"{len(self.cells)} cells"
         if self.is_movie:
-            what = f"{self.cells['cell'].nunique()} cells in {self.cells['time'].nunique()} frames"
+            what = f"{self.cells['cell'].nunique()} cells in {self.cells['frame'].nunique()} frames"
         return f"<Study {self.path}: {what}>"
 
     @cached_property
@@ -131,7 +131,7 @@ class Study:
         key = part_key(cell, time)
         rows = self._rows_of(cell)
         if time is not None:
-            rows = rows[rows["time"] == time]
+            rows = rows[rows["frame"] == time]
             if rows.empty:
                 raise ReadError(f"cell {cell} of {self.path} is not in frame {time}")
         path = self._map_path(key)
@@ -182,7 +182,7 @@ class Study:
         rows = self._rows_of(cell)
         if not self.is_movie:
             raise ReadError(f"study {self.path} is not that of a movie: use map({cell})")
-        at = {int(row["time"]): row for _, row in rows.iterrows()}
+        at = {int(row["frame"]): row for _, row in rows.iterrows()}
         last = max(at)
         records = [self._record(cell, time, at.get(time)) for time in range(last + 1)]
         height, width = self.provenance["image_shape"]

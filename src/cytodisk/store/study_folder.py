@@ -303,7 +303,7 @@ class StudyFolder:
 
     def rows(self) -> list[dict[str, Any]]:
         """The rows of all complete parts, in the order of cells, then time."""
-        return sorted(self.read_rows(self._complete()), key=lambda row: (row["cell"], row["time"]))
+        return sorted(self.read_rows(self._complete()), key=lambda row: (row["cell"], row["frame"]))
 
     def part_table(self, key: str, table: str) -> Any:
         """A part's rows for a table, as an Arrow table."""

@@ -99,7 +99,9 @@ def paired(a: xr.DataArray, b: xr.DataArray) -> Pair:
     sizes = dict(a.sizes) | dict(b.sizes)
     series_a = a.expand_dims({dim: sizes[dim] for dim in own if dim not in a.dims})
     series_b = b.expand_dims({dim: sizes[dim] for dim in own if dim not in b.dims})
-    coords = {str(name): values for name, values in (a.coords | b.coords).items() if name != "time"}
+    coords = {
+        str(name): values for name, values in (a.coords | b.coords).items() if "time" not in values.dims
+    }
     return Pair(
         series_a.transpose("time", *own, *others).to_numpy(),
         series_b.transpose("time", *own).to_numpy(),
@@ -137,7 +139,7 @@ def _named(values: Any, name: Literal["a", "b"]) -> xr.DataArray:
 
 def _interval(series: xr.DataArray, name: str) -> float | None:
     """Seconds between frames; the frames must be evenly spaced."""
-    for coordinate in ("time", "time_s"):
+    for coordinate in ("frame", "time_s"):
         if coordinate in series.coords and series.sizes["time"] > 2:
             steps = np.diff(series[coordinate].to_numpy().astype(np.float64))
             if steps.min() <= 0.0:

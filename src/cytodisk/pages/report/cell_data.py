@@ -64,7 +64,7 @@ class CellData:
     @cached_property
     def frames(self) -> list[int]:
         """Numbers of the shown frames."""
-        return [int(time) for time in self.activity["time"].to_numpy()]
+        return [int(time) for time in self.activity["frame"].to_numpy()]
 
     @cached_property
     def channels(self) -> list[str]:

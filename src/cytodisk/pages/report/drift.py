@@ -59,7 +59,7 @@ def mean_by_frame(windows: pd.DataFrame) -> pd.Series[float]:
     """
     known = windows[windows["mean"].notna()]
     pixels = known["n_pixels"]
-    keys = [known["cell"], known["channel"], known["time"]]
+    keys = [known["cell"], known["channel"], known["frame"]]
     return (known["mean"] * pixels).groupby(keys).sum() / pixels.groupby(keys).sum()
 
 
@@ -110,7 +110,7 @@ def signal_drifts(study: Study) -> list[Drift]:
 def _drifts(windows: pd.DataFrame) -> Iterator[Drift]:
     means = mean_by_frame(windows).rename("mean").reset_index()
     for (cell, channel), rows in means.groupby(["cell", "channel"]):
-        time, mean = (np.asarray(rows[name], dtype=np.float64) for name in ("time", "mean"))
+        time, mean = (np.asarray(rows[name], dtype=np.float64) for name in ("frame", "mean"))
         change = relative_trend(time, mean)
         if abs(change) > LARGEST_CHANGE:
             yield Drift(int(str(cell)), str(channel), change)

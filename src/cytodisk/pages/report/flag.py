@@ -56,7 +56,7 @@ class Flag:
 
 
 def places_of(rows: pd.DataFrame, note: Callable[[Any], str] | None = None) -> tuple[Place, ...]:
-    times = rows["time"] if "time" in rows else [None] * len(rows)
+    times = rows["frame"] if "frame" in rows else [None] * len(rows)
     return tuple(
         Place(int(row["cell"]), None if time is None else int(time), note(row) if note else "")
         for (_, row), time in zip(rows.iterrows(), times, strict=True)

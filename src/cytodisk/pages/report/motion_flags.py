@@ -76,7 +76,7 @@ def area_jumps(study: Study) -> Iterator[Flag]:
         return
     places: list[Place] = []
     for cell, rows in mapped_rows(study).groupby("cell"):
-        time, area = rows["time"].to_numpy(), np.log(rows["area"].to_numpy(dtype=np.float64))
+        time, area = rows["frame"].to_numpy(), np.log(rows["area"].to_numpy(dtype=np.float64))
         step = np.where(np.diff(time) == 1, np.diff(area), np.nan)
         bar = max(float(np.log1p(LARGEST_AREA_STEP)), AREA_STEP_SPREADS * _spread(step))
         at = np.flatnonzero(np.abs(step) > bar)

@@ -125,7 +125,7 @@ def misfit(study: Study, source: FrameSource) -> str:
         return f"has images of {height} × {width} pixels, the study's masks have {mask_height} × {mask_width}"
     activity = study.activity(int(study.cells["cell"].iloc[0]))
     channels = activity.sizes["channel"] if "mean" in activity else 0
-    last = int(study.cells["time"].max())
+    last = int(study.cells["frame"].max())
     if len(source.channels) != channels or source.n_frames <= last:
         return (
             f"has {source.n_frames} frames of {len(source.channels)} channels, the study's has {channels} "

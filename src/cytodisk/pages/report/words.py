@@ -83,7 +83,7 @@ def _facts(cell: CellData) -> Iterator[tuple[str, str]]:
     ok = int((study.cells["status"] == "ok").sum())
     pixel, interval = cell.pixel_size_um, cell.interval_s
     yield "cells", str(study.cells["cell"].nunique())
-    yield "frames", str(study.cells["time"].nunique())
+    yield "frames", str(study.cells["frame"].nunique())
     yield "mapped", f"{ok} of {len(study.cells)}"
     yield "pixel", f"{pixel:.4g} µm" if pixel else "size unknown"
     yield "interval", f"{interval:.4g} s" if interval else "unknown"
@@ -139,7 +139,7 @@ def _other_cells(study: Study) -> tuple[list[str], list[dict[str, Any]]]:
     if study.cells["cell"].nunique() < 2:
         return [], []
     counts = pd.crosstab(study.cells["cell"], study.cells["status"])
-    times = study.cells.groupby("cell")["time"].agg(["min", "max"])
+    times = study.cells.groupby("cell")["frame"].agg(["min", "max"])
     rows = [
         {
             "cell": int(str(cell)),

@@ -167,7 +167,7 @@ def compare_cell(task: CompareTask) -> Rows:
         row = {
             "cell": task.found.cell,
             "source": task.found.source,
-            "time": task.found.frame,
+            "frame": task.found.frame,
             "label": task.found.label,
             "method": method,
             "frames": 1,

@@ -183,11 +183,11 @@ def _consistency(
     interval = followed.movie.frame_interval_s
     columns: list[dict[str, Any]] = []
     for found in layers:
-        time, count = int(found["time"][0]), len(found["layer"])
+        time, count = int(found["frame"][0]), len(found["layer"])
         for number, channel in enumerate(activity["channel"].to_numpy()):
             columns.append(
                 {
-                    **{name: found[name] for name in ("cell", "method", "time", "layer", "completeness")},
+                    **{name: found[name] for name in ("cell", "method", "frame", "layer", "completeness")},
                     "time_s": [None if interval is None else time * interval] * count,
                     "channel": [str(channel) or None] * count,
                     "correlation": correlation[time - followed.first, number],

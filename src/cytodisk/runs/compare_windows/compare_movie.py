@@ -172,7 +172,7 @@ def _compare(
     row: dict[str, Any] = {
         "cell": track.cell,
         "source": inputs.masks.path.name,
-        "time": track.first,
+        "frame": track.first,
         "label": track.label,
         "method": part.method,
         "frames": usable(masks),
@@ -189,7 +189,7 @@ def _compare(
     activity = measured.activity
     with replacing(folder / "maps" / f"activity_{part_key(track.cell)}_{part.method}.npz") as temporary:
         channels = np.array(activity["channel"].to_numpy(), dtype=str)
-        arrays: dict[str, Any] = {name: activity[name].to_numpy() for name in ("mean", "area", "time")}
+        arrays: dict[str, Any] = {name: activity[name].to_numpy() for name in ("mean", "area", "frame")}
         np.savez_compressed(temporary, channel=channels, **arrays)
     reasons = [(track.first + time, record.reason) for time, record in enumerate(movie.records)]
     faults = "; ".join(f"frame {time}: {reason}" for time, reason in reasons if reason)

@@ -106,7 +106,7 @@ def movie_summary(consistency: pd.DataFrame, methods: tuple[str, ...]) -> pd.Dat
     ----------
     u-Unwrap, Fig. 4C and D.
     """
-    frame = ["cell", "time"]
+    frame = ["cell", "frame"]
     rows = []
     for method in methods:
         own = consistency[consistency["method"] == method]

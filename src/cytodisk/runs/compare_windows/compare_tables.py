@@ -19,7 +19,7 @@ from cytodisk.windows.on_cell import WindowsOnCell
 _CELLS: Columns = (
     ("cell", pa.int64(), ""),
     ("source", pa.string(), ""),
-    ("time", pa.int64(), "frame"),
+    ("frame", pa.int64(), ""),
     ("label", pa.int64(), ""),
     ("method", pa.string(), ""),
     ("status", pa.string(), ""),
@@ -54,7 +54,7 @@ BY_LAYER = (
 
 _LAYERS: Columns = (
     ("cell", pa.int64(), ""),
-    ("time", pa.int64(), "frame"),
+    ("frame", pa.int64(), ""),
     ("method", pa.string(), ""),
     ("layer", pa.int64(), ""),
     *((name, pa.float64(), "px²" if name == "area" else "1") for name in BY_LAYER),
@@ -113,7 +113,7 @@ def layer_columns(cell: int, time: int, method: str, measures: xr.Dataset) -> di
     count = measures.sizes["layer"]
     return {
         "cell": np.full(count, cell),
-        "time": np.full(count, time),
+        "frame": np.full(count, time),
         "method": [method] * count,
         "layer": np.arange(count),
         **{name: measures[name].to_numpy().astype(np.float64) for name in BY_LAYER},

@@ -114,9 +114,10 @@ class Comparison:
         try:
             with np.load(path) as file:
                 _, _, layers, sectors = file["mean"].shape
-                coords = {"time": file["time"], "channel": file["channel"]}
+                coords = {"frame": ("time", file["frame"]), "channel": file["channel"]}
                 coords |= {"layer": np.arange(layers), "sector": np.arange(sectors)}
-                return xr.DataArray(file["mean"], coords, ("time", "channel", "layer", "sector"))
+                values = xr.DataArray(file["mean"], coords, ("time", "channel", "layer", "sector"))
+                return values.set_xindex("frame")
         except OSError as error:
             raise ReadError(f"cell {cell} has no activity by {method} in comparison {self.path}") from error
 

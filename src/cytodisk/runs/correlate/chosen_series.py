@@ -33,10 +33,10 @@ def chosen_series(activity: xr.Dataset, settings: CorrelationSettings) -> xr.Dat
     activity = _without(activity, settings.without_frames)
     if settings.frames is not None:
         first, last = settings.frames
-        there = activity["time"].to_numpy()
+        there = activity["frame"].to_numpy()
         if last < there[0] or first > there[-1]:
             raise ParameterError(f"frames {first}:{last} are not in the movie: it has {there[0]}:{there[-1]}")
-        activity = _without_steps(activity.sel(time=slice(first, last)), [min(last, int(there[-1]))])
+        activity = _without_steps(activity.sel(frame=slice(first, last)), [min(last, int(there[-1]))])
     if settings.sectors is not None:
         activity = activity.isel(sector=chosen_sectors(settings, activity.sizes["sector"]))
     return activity
@@ -62,20 +62,20 @@ def chosen_sectors(settings: CorrelationSettings, count: int) -> list[int]:
 
 
 def _without(activity: xr.Dataset, frames: tuple[int, ...]) -> xr.Dataset:
-    missing = sorted(set(frames) - set(activity["time"].to_numpy().tolist()))
+    missing = sorted(set(frames) - set(activity["frame"].to_numpy().tolist()))
     if missing:
-        there = activity["time"].to_numpy()
+        there = activity["frame"].to_numpy()
         raise ParameterError(f"without_frames has {missing[0]}: the movie has {there[0]}:{there[-1]}")
     if not frames:
         return activity
-    left, mean = ~activity["time"].isin(list(frames)), activity["mean"]
+    left, mean = ~activity["frame"].isin(list(frames)), activity["mean"]
     means = activity.assign({"mean": mean.where(left).assign_attrs(mean.attrs)})
     return _without_steps(means, [*frames, *(frame - 1 for frame in frames)])
 
 
 def _without_steps(activity: xr.Dataset, frames: list[int]) -> xr.Dataset:
     """NaN for the steps of the edge from some frames to the next."""
-    left = ~activity["time"].isin(frames)
+    left = ~activity["frame"].isin(frames)
     named = [name for name in EDGE_VARIABLES if name in activity and name != "edge_length"]
     return activity.assign(
         {name: activity[name].where(left).assign_attrs(activity[name].attrs) for name in named}

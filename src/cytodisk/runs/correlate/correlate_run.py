@@ -147,7 +147,7 @@ def _correlate_cell(
     row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "jitter": jitter}
     row["surrogates"] = correlations.attrs["surrogates"]
     row["pair_surrogates"] = tables["pairs"].attrs["surrogates"] if options.pairs else 0
-    row["restarts"] = _restarts(study, cell, activity["time"].to_numpy())
+    row["restarts"] = _restarts(study, cell, activity["frame"].to_numpy())
     row |= {f"drifting_{name}": correlations.attrs[f"drifting_{side}"] for name, side in _SIDES}
     row |= {"no_events_because": "", "event_threshold": np.nan, "event_noise": np.nan}
     if with_ in VELOCITIES:
@@ -172,7 +172,7 @@ def _other(activity: xr.Dataset, with_: str, options: CorrelationSettings) -> xr
 
 def _restarts(study: Study, cell: int, times: IntArray) -> int:
     """How often tracking started anew within frames: a sector may then be another place of the cell."""
-    rows = study.cells[(study.cells["cell"] == cell) & study.cells["time"].isin(times[1:])]
+    rows = study.cells[(study.cells["cell"] == cell) & study.cells["frame"].isin(times[1:])]
     return int((rows["restarted"].fillna("") != "").sum())
 
 

@@ -103,7 +103,7 @@ def _jump(task: FrameTask) -> str:
 def frame_row(place: tuple[int, int, float | None], label: int) -> dict[str, Any]:
     """Start of a frame's row: cell, frame, its time in seconds, label."""
     cell, time, time_s = place
-    return {"cell": cell, "time": time, "time_s": time_s, "label": label}
+    return {"cell": cell, "frame": time, "time_s": time_s, "label": label}
 
 
 def unmapped_row(
@@ -159,7 +159,7 @@ def edge_columns(
     states = np.full(sectors, status, dtype=object)
     columns: dict[str, Any] = {
         "cell": np.full(sectors, cell),
-        "time": np.full(sectors, time),
+        "frame": np.full(sectors, time),
         "time_s": [time_s] * sectors,
         "sector": np.arange(sectors),
     }

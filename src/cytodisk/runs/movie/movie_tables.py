@@ -37,7 +37,7 @@ def finish_tables(
     channels : sequence of str
         Of the signal; empty if there is none.
     """
-    rows = {(row["cell"], row["time"]): row for row in folder.rows()}
+    rows = {(row["cell"], row["frame"]): row for row in folder.rows()}
     target = folder.path / ACTIVITY
     with ActivityStore.replacing(target) as store:
         for track in tracks:
@@ -133,7 +133,7 @@ def _add_consistency(
     rows = len(channels) * layers
     columns = {
         "cell": np.full(rows, cell),
-        "time": np.full(rows, time),
+        "frame": np.full(rows, time),
         "time_s": [scale.seconds(time)] * rows,
         "channel": [name for name in channels for _ in range(layers)],
         "layer": np.tile(np.arange(layers), len(channels)),

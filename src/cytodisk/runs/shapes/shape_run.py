@@ -189,7 +189,7 @@ def measure_shapes(cells: Sequence[SourceCell], pixel_size_um: float | None) -> 
     """
     rows = []
     for found in cells:
-        place = {"cell": found.cell, "source": found.source, "time": found.frame, "label": found.label}
+        place = {"cell": found.cell, "source": found.source, "frame": found.frame, "label": found.label}
         if found.fault is None:
             measured = shape_row(found.mask, pixel_size_um)
         else:

@@ -24,7 +24,7 @@ SCORES = ("complexity", "umap_1", "umap_2")
 _CELL: Columns = (
     ("cell", pa.int64(), ""),
     ("source", pa.string(), ""),
-    ("time", pa.int64(), "frame"),
+    ("frame", pa.int64(), ""),
     ("label", pa.int64(), ""),
     ("status", pa.string(), ""),
     ("reason", pa.string(), ""),
@@ -55,7 +55,7 @@ def shape_table(
         As `shape_features` returns it, with "source", and "complexity", "umap_1" and "umap_2" before the
         features: NaN where cells cannot be scored, see `why_unscored`.
     """
-    table = feature_table([_known_columns(row) for row in rows], pixel_size_um)
+    table = feature_table(list(rows), pixel_size_um)
     attrs, first = table.attrs, table.columns.get_loc(GROUPS[0].features[0].name)
     if not why_unscored(table):
         score = complexity_score(table, seed=seed, n_neighbors=n_neighbors, min_dist=min_dist)
@@ -65,11 +65,6 @@ def shape_table(
     joined = pd.concat([table.iloc[:, :first], score[list(SCORES)], table.iloc[:, first:]], axis=1)
     joined.attrs = attrs | {"units": dict.fromkeys(SCORES, "1") | attrs["units"]}
     return joined
-
-
-def _known_columns(row: dict[str, Any]) -> dict[str, Any]:
-    """A row with its frame by the name that shapes have for it."""
-    return {("frame" if name == "time" else name): value for name, value in row.items()}
 
 
 def write_shapes(table: pd.DataFrame, folder: Path) -> None:
