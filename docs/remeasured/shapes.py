@@ -33,7 +33,7 @@ def again(out: Path) -> dict[str, bool]:
 
 def representatives(table: pd.DataFrame) -> list[int]:
     """Five cells along the score, of those whose mask is surely that of one cell."""
-    sure = table[(table["status"] == "ok") & (table["doubts"] == "")]
+    sure = table[(table["status"] == "ok") & (table["qc_flags"] == "")]
     score = sure["complexity"].to_numpy()
     places = [np.abs(score - np.quantile(score, share)).argmin() for share in QUANTILES]
     return [int(sure["cell"].iloc[place]) for place in places]

@@ -152,10 +152,10 @@ def test_doubtful_masks_are_said_to_be() -> None:
     holed = good.copy()
     holed[10:13, 10:15] = False
     for mask, words in ((two, "more than one cell"), (holed, "touching cells"), (~good, "inverted")):
-        assert any(words in doubt for doubt in clean_mask(mask)[1].doubts)
+        assert any(words in doubt for doubt in clean_mask(mask)[1].qc_flags)
     speck = good.copy()
     speck[30, 30] = True
-    assert clean_mask(speck)[1].doubts == ()
+    assert clean_mask(speck)[1].qc_flags == ()
 
 
 def test_a_ragged_list_is_a_mask_error() -> None:

@@ -116,7 +116,7 @@ def test_inputs_are_merged_with_their_columns_in_front(quiet: Path) -> None:
     assert inputs["status"].tolist() == ["ok"] * 4 + ["refused"]
     assert "nothing could be mapped" in inputs["reason"].iloc[-1]
     assert inputs["mapped"].tolist() == [4, 4, 4, 2, 0]
-    assert inputs["doubts"].tolist() == [0, 0, 0, 1, 0]
+    assert inputs["qc_flags"].tolist() == [0, 0, 0, 1, 0]
     assert inputs["length_unit"].tolist() == ["px", "px", "px", "µm", "px"]
     assert inputs["velocity_unit"].tolist() == ["px/frame"] * 3 + ["", "px/frame"]
     assert read_table(quiet / "edge.parquet").attrs["units"]["velocity"] == "px/frame"
@@ -164,9 +164,9 @@ def test_killed_and_resumed_by_two_workers_it_is_the_same_to_the_last_bit(
     summary = run_batch(read_batch(files / "study.toml"), out, workers=2, resume=True)
     assert not list(out.glob("rows/.*"))
     assert summary.statuses == {"ok": 4, "refused": 1}
-    units, doubts = summary.remarks
+    units, qc_flags = summary.remarks
     assert units.startswith("inputs have different units")
-    assert doubts.startswith("1 input has cells with doubts")
+    assert qc_flags.startswith("1 input has cells with QC flags")
     for name in TABLES:
         assert (out / f"{name}.parquet").read_bytes() == (quiet / f"{name}.parquet").read_bytes(), name
 

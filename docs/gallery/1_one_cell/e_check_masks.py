@@ -22,7 +22,7 @@ mask[row - 8 : row + 8, column : column + 20] = False
 
 cleaned, report = cd.clean_mask(mask)
 print("notes: ", *report.notes, sep="\n  ")
-print("doubts:", *report.doubts, sep="\n  ")
+print("QC flags:", *report.qc_flags, sep="\n  ")
 
 # %%
 # What came, and what is mapped.

@@ -106,12 +106,12 @@ def _say_remarks(console: "Console", mapped: "pd.DataFrame", of_folder: bool) ->
     remarks = mapped[mapped["notes"] != ""]
     if len(remarks):
         console.print(f"{count(len(remarks))} with remarks: column 'notes' of cells.parquet")
-    doubtful = mapped[mapped["doubts"] != ""]
+    doubtful = mapped[mapped["qc_flags"] != ""]
     for _, row in doubtful.head(_MOST_LINES).iterrows():
         place = row["source"] if of_folder else f"frame {row['frame']}"
-        console.print(f"look at cell {row['cell']} ({place}): {row['doubts']}")
+        console.print(f"look at cell {row['cell']} ({place}): {row['qc_flags']}")
     if len(doubtful) > _MOST_LINES:
-        console.print(f"… and at {len(doubtful) - _MOST_LINES} more: column 'doubts' of cells.parquet")
+        console.print(f"… and at {len(doubtful) - _MOST_LINES} more: column 'qc_flags' of cells.parquet")
 
 
 def _say_lost(lost: "pd.DataFrame") -> None:
@@ -156,17 +156,17 @@ def say_checked(console: "Console", inputs: "MapInputs", cells: Iterable["Checke
     print("frame\tlabel\tusable\tremarks")
     for checked in cells:
         found, report = checked.found, checked.report
-        doubts, notes = (report.doubts, report.notes) if report is not None else ((), ())
+        qc_flags, notes = (report.qc_flags, report.notes) if report is not None else ((), ())
         is_cell = found.label != 0
         looked_at += is_cell
         unusable += is_cell and bool(checked.reason)
         if not is_cell:
             without[checked.status] += 1
-        doubtful += bool(doubts)
+        doubtful += bool(qc_flags)
         on_border += report is not None and report.touches_border
         reason = without_name(checked.reason, found.source) if inputs.is_folder else checked.reason
-        remarks = reason or "; ".join([*doubts, *notes])
-        usable = "no" if checked.reason else "doubtful" if doubts else "yes"
+        remarks = reason or "; ".join([*qc_flags, *notes])
+        usable = "no" if checked.reason else "doubtful" if qc_flags else "yes"
         place = f"{found.cell}\t{found.source}" if inputs.is_folder else f"{found.cell}"
         print(f"{place}\t{found.frame}\t{found.label}\t{usable}\t{remarks}")
         if checked.reason:

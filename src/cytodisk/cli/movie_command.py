@@ -211,7 +211,7 @@ def _say_measures(console: "Console", study: "Study", mapped: Any) -> None:
     )
     for name, words in (
         ("restarted", "tracking started anew"),
-        ("doubts", "look at the mask"),
+        ("qc_flags", "look at the mask"),
     ):
         marked = mapped[mapped[name] != ""]
         for _, row in marked.head(10).iterrows():

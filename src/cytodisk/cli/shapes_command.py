@@ -130,11 +130,11 @@ def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:
 
 def _say_doubts(console: "Console", measured: "pd.DataFrame") -> None:
     from cytodisk.analysis.shape.curvature_features import RESOLVED_PX
-    from cytodisk.analysis.shape.features import split_doubts
+    from cytodisk.analysis.shape.features import split_qc_flags
 
-    small, others = split_doubts(measured["doubts"])
+    small, others = split_qc_flags(measured["qc_flags"])
     if doubtful := int((others != "").sum()):
-        console.print(f"perhaps not one whole cell: {doubtful}, column 'doubts' of shapes.parquet")
+        console.print(f"perhaps not one whole cell: {doubtful}, column 'qc_flags' of shapes.parquet")
     if small.any():
         console.print(
             f"equivalent diameter below {RESOLVED_PX:.0f} px: {small.sum()} of {count(len(measured))}; their "

@@ -65,16 +65,16 @@ class MaskReport:
         return tuple(notes)
 
     @property
-    def doubts(self) -> tuple[str, ...]:
+    def qc_flags(self) -> tuple[str, ...]:
         """What speaks against this being the mask of one cell, in words; a user should look at it."""
-        doubts = []
+        qc_flags = []
         if self.dropped_px > _DOUBTFUL_DROPPED * self.area_px:
-            doubts.append("perhaps more than one cell: a large fragment was dropped")
+            qc_flags.append("perhaps more than one cell: a large fragment was dropped")
         if self.filled_px > _DOUBTFUL_FILLED * self.area_px:
-            doubts.append("perhaps several touching cells: what was a hole is measured as cell")
+            qc_flags.append("perhaps several touching cells: what was a hole is measured as cell")
         if self.border_share > _DOUBTFUL_BORDER:
-            doubts.append("perhaps inverted or cut off: most of its edge is the image border")
-        return tuple(doubts)
+            qc_flags.append("perhaps inverted or cut off: most of its edge is the image border")
+        return tuple(qc_flags)
 
 
 def _count(number: int, noun: str) -> str:

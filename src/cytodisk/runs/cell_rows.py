@@ -200,7 +200,7 @@ def cell_columns(
     missing = int((~np.isfinite(signal.to_numpy()[:, disk.mask])).sum()) if signal is not None else 0
     return {
         "notes": "; ".join(_notes(disk, missing)),
-        "doubts": "; ".join(report.doubts),
+        "qc_flags": "; ".join(report.qc_flags),
         "area": report.area_px * pixel**2,
         "perimeter": float(edge_lengths(smooth).sum()) * pixel,
         "centroid_y": float(centre[0]),

@@ -18,7 +18,7 @@ CELL_COLUMNS: Columns = (
     ("status", pa.string(), ""),
     ("reason", pa.string(), ""),
     ("notes", pa.string(), ""),
-    ("doubts", pa.string(), ""),
+    ("qc_flags", pa.string(), ""),
     ("area", pa.float64(), "length²"),
     ("perimeter", pa.float64(), "length"),
     ("centroid_y", pa.float64(), "px"),

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import cytodisk as cd
 from cytodisk.analysis.shape.distortion_features import FINE_MESH
-from cytodisk.analysis.shape.features import FEATURES, GROUPS, SCALE_FREE, split_doubts
+from cytodisk.analysis.shape.features import FEATURES, GROUPS, SCALE_FREE, split_qc_flags
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import MaskError, ParameterError
 from cytodisk.simulate import random_smooth
@@ -120,19 +120,19 @@ def test_the_same_shape_drawn_larger_has_nearly_the_same_scale_free_features(
 
 def test_curvature_and_roughness_of_a_cell_are_doubtful_below_75_px() -> None:
     table = cd.shape_features([star(5, 7, 0.45), ellipse(37, 37), ellipse(38, 38)], pixel_size_um=0.1)
-    small, others = split_doubts(table["doubts"])
+    small, others = split_qc_flags(table["qc_flags"])
     assert small.tolist() == [True, True, False]
     assert others.tolist() == ["", "", ""]
     diameter = 10 * table["equivalent_diameter"][0]
-    assert table["doubts"][0].startswith("too small for curvature and roughness")
-    assert f"D = {diameter:.3g} px, below 75 px" in table["doubts"][0]
+    assert table["qc_flags"][0].startswith("too small for curvature and roughness")
+    assert f"D = {diameter:.3g} px, below 75 px" in table["qc_flags"][0]
     assert (table["tips"][0], numbers(star(5, 70, 0.45))["tips"]) == (0, 5)  # so the doubt is well founded
 
 
-def test_doubts_of_size_stand_beside_others() -> None:
+def test_flags_of_size_stand_beside_others() -> None:
     inverted = np.ones((30, 30), dtype=bool)
     inverted[0, 0] = False
-    small, others = split_doubts(cd.shape_features(inverted)["doubts"])
+    small, others = split_qc_flags(cd.shape_features(inverted)["qc_flags"])
     assert small.tolist() == [True]
     assert others.tolist() == ["perhaps inverted or cut off: most of its edge is the image border"]
 

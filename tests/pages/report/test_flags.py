@@ -29,7 +29,7 @@ def made(frames: int = 20, n_cells: int = 1, **provenance: object) -> MadeStudy:
     """Cells without any fault: areas, velocities and signals that waver a little."""
     rng = np.random.default_rng(0)
     number, time = np.divmod(np.arange(n_cells * frames), frames)
-    cells = pd.DataFrame({"cell": number, "time": time, "status": "ok", "reason": "", "doubts": ""})
+    cells = pd.DataFrame({"cell": number, "time": time, "status": "ok", "reason": "", "qc_flags": ""})
     cells = cells.assign(area=100 + rng.normal(0, 0.5, len(cells)), touches_border=False, border_share=0.0)
     cells = cells.assign(nan_px=0, area_distortion=0.02, restarted="", tracking_residual=0.01)
     cells["order_violations"] = 0
@@ -61,7 +61,7 @@ def test_scales_may_be_unknown() -> None:
 @pytest.mark.parametrize(
     ("column", "value", "name", "note"),
     [
-        ("doubts", "a large fragment was dropped", "masks in doubt", "a large fragment was dropped"),
+        ("qc_flags", "a large fragment was dropped", "masks in doubt", "a large fragment was dropped"),
         ("restarted", "the cell jumped", "tracking restarts", "the cell jumped"),
         ("tracking_residual", 0.6, "tracking residual", "0.6 µm"),
         ("order_violations", 3, "order violations", "3 points"),
@@ -104,7 +104,7 @@ def test_frames_without_a_map(status: str) -> None:
     study.cells.loc[7, ["status", "reason"]] = [status, "the mask is empty"]
     study.cells.loc[7, ["area", "tracking_residual", "nan_px", "border_share"]] = np.nan
     study.cells["touches_border"] = study.cells["touches_border"].astype(object)
-    study.cells.loc[7, ["restarted", "doubts", "touches_border"]] = None
+    study.cells.loc[7, ["restarted", "qc_flags", "touches_border"]] = None
     flag = only(study)
     assert flag.name == f"{status} frames"
     assert flag.what == f"1 frame {status}"
@@ -160,7 +160,7 @@ def test_bleaching() -> None:
 def test_warnings_that_no_other_flag_tells() -> None:
     study = made(warnings=["cell 0, frame 4: odd", "the disk is nearly full"])
     assert only(study).what == "2 warnings of the run: cell 0, frame 4: odd; the disk is nearly full"
-    study.cells.loc[4, "doubts"] = "odd"
+    study.cells.loc[4, "qc_flags"] = "odd"
     assert [flag.name for flag in red_flags(study)] == ["masks in doubt", "warnings"]
     assert red_flags(study)[1].what == "1 warning of the run: the disk is nearly full"
 
@@ -171,7 +171,7 @@ def test_single_masks() -> None:
             "cell": [0, 1, 2],
             "status": ["ok", "refused", "ok"],
             "reason": ["", "two cells", ""],
-            "doubts": ["", "", "mostly on the border"],
+            "qc_flags": ["", "", "mostly on the border"],
             "area_distortion": [0.01, np.nan, 0.5],
         }
     )

@@ -56,7 +56,7 @@ def shape_features(masks: Any, *, pixel_size_um: float | None = None) -> pd.Data
     DataFrame
         A row a cell: "cell" (its running number), "frame" (its place in the stack or list), "label", "status"
         ("ok" or "refused"), "reason" (why there are no numbers), "notes" (what cleaning changed, what was
-        measured in another way), "doubts" (what speaks against one whole cell, or that it is too small),
+        measured in another way), "qc_flags" (what speaks against one whole cell, or that it is too small),
         "touches_border", then the features, NaN for a refused cell. `attrs["units"]` and
         `attrs["description"]` are dicts by column, `attrs["scale_free"]` is the list of features that refer
         to the disk of the same area.
@@ -73,7 +73,7 @@ def shape_features(masks: Any, *, pixel_size_um: float | None = None) -> pd.Data
     Scale-free features stay nearly the same when the same shape is drawn larger, if its equivalent diameter
     D = √(4 area / π) is 75 px or more. The outline is smoothed over 3 px at least, against the steps of the
     pixels, so that below 75 px curvature, tips and bays, and below 60 px roughness, depend on the
-    resolution: a star of 10 px has few tips or none. A cell below 75 px has a word in "doubts". Shares of
+    resolution: a star of 10 px has few tips or none. A cell below 75 px has a word in "qc_flags". Shares of
     thin parts, small percentiles of depth and high harmonics drift too, less and less up to about 120 px.
     Compare small cells with those of their size.
 
@@ -104,12 +104,12 @@ def shape_row(mask: Any, pixel_size_um: float | None = None) -> dict[str, Any]:
     dict
         By column of `shape_features`; without features if the cell cannot be measured.
     """
-    row: dict[str, Any] = {"status": "ok", "reason": "", "notes": "", "doubts": "", "touches_border": False}
+    row: dict[str, Any] = {"status": "ok", "reason": "", "notes": "", "qc_flags": "", "touches_border": False}
     try:
         solid, report = clean_mask(mask)
         row |= {
             "notes": "; ".join(report.notes),
-            "doubts": "; ".join(report.doubts),
+            "qc_flags": "; ".join(report.qc_flags),
             "touches_border": report.touches_border,
         }
         shape = crop_shape(solid)
@@ -117,25 +117,25 @@ def shape_row(mask: Any, pixel_size_um: float | None = None) -> dict[str, Any]:
         for group in GROUPS:
             values |= group.measure(shape)
         row["notes"] = "; ".join([*report.notes, *shape.notes])
-        row["doubts"] = "; ".join([*report.doubts, *_doubts_of_size(shape)])
+        row["qc_flags"] = "; ".join([*report.qc_flags, *_flags_of_size(shape)])
     except CytodiskError as error:
         return row | {"status": "refused", "reason": str(error)}
     pixel = 1.0 if pixel_size_um is None else float(pixel_size_um)
     return row | {feature.name: values[feature.name] * _scale(feature, pixel) for feature in FEATURES}
 
 
-def _doubts_of_size(shape: CellShape) -> list[str]:
+def _flags_of_size(shape: CellShape) -> list[str]:
     if shape.diameter >= RESOLVED_PX:
         return []
     return [f"{TOO_SMALL}: D = {shape.diameter:.3g} px, below {RESOLVED_PX:.0f} px"]
 
 
-def split_doubts(doubts: pd.Series[str]) -> tuple[pd.Series[bool], pd.Series[str]]:
-    """Which cells are too small for curvature and roughness, and the other doubts of each.
+def split_qc_flags(qc_flags: pd.Series[str]) -> tuple[pd.Series[bool], pd.Series[str]]:
+    """Which cells are too small for curvature and roughness, and the other QC flags of each.
 
     Parameters
     ----------
-    doubts : Series of str
+    qc_flags : Series of str
         The column of `shape_features`.
 
     Returns
@@ -143,8 +143,8 @@ def split_doubts(doubts: pd.Series[str]) -> tuple[pd.Series[bool], pd.Series[str
     small : Series of bool
     others : Series of str
     """
-    small = doubts.str.contains(TOO_SMALL, regex=False)
-    return small, doubts.str.replace(f"(; )?{TOO_SMALL}.*", "", regex=True)  # it stands last
+    small = qc_flags.str.contains(TOO_SMALL, regex=False)
+    return small, qc_flags.str.replace(f"(; )?{TOO_SMALL}.*", "", regex=True)  # it stands last
 
 
 def feature_table(rows: Sequence[dict[str, Any]], pixel_size_um: float | None) -> pd.DataFrame:

@@ -35,16 +35,16 @@ def without_map(study: Study) -> Iterator[Flag]:
 
 
 def doubts(study: Study) -> Iterator[Flag]:
-    if "doubts" not in study.cells:
+    if "qc_flags" not in study.cells:
         return
-    rows = study.cells[words_in(study.cells["doubts"]) != ""]
+    rows = study.cells[words_in(study.cells["qc_flags"]) != ""]
     if len(rows):
         yield Flag(
             "masks in doubt",
             f"{frames_of(study, len(rows))} may not be one whole cell",
             "Cleaning the mask changed much, or the cell is not where it was.",
             "Look at the mask; correct the segmentation or leave it out.",
-            places_of(rows, lambda row: str(row["doubts"])),
+            places_of(rows, lambda row: str(row["qc_flags"])),
         )
 
 

@@ -58,7 +58,7 @@ def _facts(study: Study) -> dict[str, Any]:
         "cells": int(rows.loc[rows["label"] != 0, "cell"].nunique()),
         "frames": len(rows),
         "mapped": mapped,
-        "doubts": int((rows["doubts"].fillna("") != "").sum()),
+        "qc_flags": int((rows["qc_flags"].fillna("") != "").sum()),
         "pixel_size_um": provenance["pixel_size_um"],
         "frame_interval_s": provenance["frame_interval_s"],
         "length_unit": provenance["length_unit"],

@@ -16,7 +16,7 @@ INPUT_COLUMNS: Columns = (
     ("cells", pa.int64(), ""),
     ("frames", pa.int64(), ""),
     ("mapped", pa.int64(), ""),
-    ("doubts", pa.int64(), ""),
+    ("qc_flags", pa.int64(), ""),
     ("pixel_size_um", pa.float64(), "µm"),
     ("frame_interval_s", pa.float64(), "s"),
     ("length_unit", pa.string(), ""),

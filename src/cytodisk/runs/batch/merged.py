@@ -33,7 +33,7 @@ class _Done:
 
     item: BatchInput
     units: tuple[str, str]
-    doubts: int
+    qc_flags: int
 
 
 def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None]) -> list[str]:
@@ -84,11 +84,11 @@ def _remarks(done: Sequence[_Done]) -> Iterator[str]:
             "inputs have different units: the columns length_unit and velocity_unit say which row has which; "
             "give pixel_size_um and frame_interval_s to all inputs"
         )
-    doubtful = sum(one.doubts > 0 for one in done)
+    doubtful = sum(one.qc_flags > 0 for one in done)
     if doubtful:
         have = "1 input has" if doubtful == 1 else f"{doubtful} inputs have"
         yield (
-            f"{have} cells with doubts: column doubts of inputs.csv counts them, that of cells.parquet "
+            f"{have} cells with QC flags: column qc_flags of inputs.csv counts them, that of cells.parquet "
             "says what they are"
         )
 
@@ -137,7 +137,7 @@ def _input_rows(
             raise StudyError(f"input {item.name} has not been done: run the same command again with --resume")
         saw(row)
         if row.complete:
-            done.append(_Done(item, (row.length_unit, row.velocity_unit), row.doubts))
+            done.append(_Done(item, (row.length_unit, row.velocity_unit), row.qc_flags))
         yield _values(batch, item, own) | _columns_of(row) | _paths(batch, item)
 
 

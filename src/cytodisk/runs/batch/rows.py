@@ -36,8 +36,8 @@ class InputRow:
         Whether its study is there; so it may be for a refused input too, without any map.
     cells, frames, mapped : int
         Cells; for a movie frames of all cells, else the same; and how many of them have a map.
-    doubts : int
-        Cells (of a movie frames of all cells) whose mask is doubtful.
+    qc_flags : int
+        Cells (of a movie frames of all cells) whose mask has a QC flag.
     pixel_size_um, frame_interval_s : float or None
     length_unit, velocity_unit : str
         Units of its tables.
@@ -59,7 +59,7 @@ class InputRow:
     cells: int = 0
     frames: int = 0
     mapped: int = 0
-    doubts: int = 0
+    qc_flags: int = 0
     pixel_size_um: float | None = None
     frame_interval_s: float | None = None
     length_unit: str = ""

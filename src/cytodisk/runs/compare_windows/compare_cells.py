@@ -142,7 +142,7 @@ def compare_opened_cells(
         warnings = [
             f"cell {row['cell']}, {row['method']}: {words}"
             for row in folder.read_rows(keys)
-            if (words := row["reason"] or row.get("doubts"))
+            if (words := row["reason"] or row.get("qc_flags"))
         ]
         finish_run(folder, keys, warnings)
         write_summaries(folder.path)
@@ -183,7 +183,7 @@ def compare_cell(task: CompareTask) -> Rows:
         seconds = clock.perf_counter() - started
         _, report = clean_mask(task.found.mask)
         row |= windows_row(windows, disk) | {"status": "ok", "reason": "", "mapped": 1, "seconds": seconds}
-        row |= {"notes": "; ".join(report.notes), "doubts": "; ".join(report.doubts)}
+        row |= {"notes": "; ".join(report.notes), "qc_flags": "; ".join(report.qc_flags)}
         measures = measures_by_layer(windows)
         rows.append((row, {"layers": layer_columns(task.found.cell, task.found.frame, method, measures)}))
         parts = PARTS if report.area_px <= _SMALL_PX else 1

@@ -25,7 +25,7 @@ _CELLS: Columns = (
     ("status", pa.string(), ""),
     ("reason", pa.string(), ""),
     ("notes", pa.string(), ""),
-    ("doubts", pa.string(), ""),
+    ("qc_flags", pa.string(), ""),
     ("frames", pa.int64(), ""),
     ("mapped", pa.int64(), ""),
     ("area_px", pa.float64(), "px²"),

@@ -102,7 +102,7 @@ def run_map(
 
 
 def _warning(row: dict[str, Any], of_many: bool) -> str:
-    words = row["reason"] or row.get("doubts")
+    words = row["reason"] or row.get("qc_flags")
     if not words:
         return ""
     if not of_many:

@@ -86,7 +86,7 @@ def measure_frame(task: FrameTask) -> FrameRows:
     columns = window_columns(place, windows, task.signal, task.parameters.nan, scale.pixel_size_um)
     row = frame_row(place, task.label) | cell_columns(frame.disk, windows, task.signal, scale.pixel_size_um)
     row |= _track_columns(frame, scale)
-    row["doubts"] = "; ".join(filter(None, [row["doubts"], _jump(task)]))
+    row["qc_flags"] = "; ".join(filter(None, [row["qc_flags"], _jump(task)]))
     save_frame(task.map_path, frame)
     edge = None if task.before is None else _edge_before(task, task.before)
     row |= {"status": "ok", "reason": "", "seconds": task.seconds + clock.perf_counter() - started}

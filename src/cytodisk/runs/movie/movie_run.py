@@ -227,6 +227,6 @@ def _signal_at(signal: FrameFile | None, time: int) -> Any:
 
 
 def _warning(row: dict[str, Any]) -> str:
-    remarks = [row.get(name) for name in ("reason", "doubts", "restarted")]
+    remarks = [row.get(name) for name in ("reason", "qc_flags", "restarted")]
     words = "; ".join(str(remark) for remark in remarks if remark)
     return f"cell {row['cell']}, frame {row['frame']}: {words}" if words else ""

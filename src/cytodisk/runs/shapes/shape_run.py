@@ -12,7 +12,7 @@ import pandas as pd
 from pydantic import BaseModel, ConfigDict, Field
 
 from cytodisk.analysis.shape.complexity import load_umap, why_unscored
-from cytodisk.analysis.shape.features import TOO_SMALL, shape_row, split_doubts
+from cytodisk.analysis.shape.features import TOO_SMALL, shape_row, split_qc_flags
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import ReadError
 from cytodisk.geometry.mask import clean_mask
@@ -194,22 +194,22 @@ def measure_shapes(cells: Sequence[SourceCell], pixel_size_um: float | None) -> 
             measured = shape_row(found.mask, pixel_size_um)
         else:
             status = "unreadable" if isinstance(found.fault, ReadError) else "refused"
-            measured = {"status": status, "reason": str(found.fault), "notes": "", "doubts": ""}
+            measured = {"status": status, "reason": str(found.fault), "notes": "", "qc_flags": ""}
             measured["touches_border"] = False
         rows.append(place | measured)
     return rows
 
 
 def _warnings(table: pd.DataFrame) -> list[str]:
-    small, doubts = split_doubts(table["doubts"])
-    words = table["reason"].where(table["reason"] != "", doubts)
+    small, qc_flags = split_qc_flags(table["qc_flags"])
+    words = table["reason"].where(table["reason"] != "", qc_flags)
     warnings = [
         f"cell {cell} of {source}: {text}"
         for cell, source, text in zip(table["cell"], table["source"], words, strict=True)
         if text
     ]
     if small.any():
-        warnings.append(f"{small.sum()} of {len(table)} cells are {TOO_SMALL}: see their doubts")
+        warnings.append(f"{small.sum()} of {len(table)} cells are {TOO_SMALL}: see their QC flags")
     if reason := why_unscored(table):
         warnings.append(f"no complexity: {reason}")
     return warnings

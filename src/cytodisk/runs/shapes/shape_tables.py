@@ -29,7 +29,7 @@ _CELL: Columns = (
     ("status", pa.string(), ""),
     ("reason", pa.string(), ""),
     ("notes", pa.string(), ""),
-    ("doubts", pa.string(), ""),
+    ("qc_flags", pa.string(), ""),
     ("touches_border", pa.bool_(), ""),
 )
 SHAPE_TABLES = Tables(_CELL, {})
