@@ -65,7 +65,7 @@ def summary(name: str, comparison: Comparison, method: str) -> dict[str, Any]:
     rows = rows[(rows["method"] == method) & (rows["channel"] == channel_of(name))]
     layers = comparison.by_layer[comparison.by_layer["method"] == method]
     correlation = rows.groupby("layer")["correlation"].mean().reindex(range(LAYERS))
-    moved = rows.groupby("time")["centroid_displacement"].mean().dropna()
+    moved = rows.groupby("frame")["centroid_displacement"].mean().dropna()
     return {
         "movie": name,
         "method": method,

@@ -75,13 +75,13 @@ def test_sectors_that_are_empty_in_either_frame_are_left_out() -> None:
 
 def test_coordinates_go_on_without_the_sector() -> None:
     activity = table(np.ones((2, 3, 4))).assign_coords(
-        time=[5, 6],
+        frame=("time", [5, 6]),
         layer=[0, 1, 2],
         sector=np.arange(4),
         time_s=("time", [0.5, 0.6]),
         angle=("sector", np.ones(4)),
     )
-    assert set(consecutive_correlation(activity).coords) == {"time", "layer", "time_s"}
+    assert set(consecutive_correlation(activity).coords) == {"frame", "layer", "time_s"}
 
 
 @pytest.mark.parametrize(

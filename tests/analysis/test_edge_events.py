@@ -14,12 +14,12 @@ NAN = np.nan
 def velocity_of(values: Any, units: str = "px/frame", **coords: Any) -> xr.DataArray:
     table = np.asarray(values, dtype=np.float64)
     table = table[:, None] if table.ndim == 1 else table
-    known = {"time": np.arange(len(table)), "sector": np.arange(table.shape[1])}
+    known = {"frame": ("time", np.arange(len(table))), "sector": np.arange(table.shape[1])}
     return xr.DataArray(table, known | coords, ("time", "sector"), attrs={"units": units})
 
 
 def in_time(values: xr.DataArray, interval_s: float) -> xr.DataArray:
-    return values.assign_coords(time_s=("time", values.time.to_numpy() * interval_s))
+    return values.assign_coords(time_s=("time", values["frame"].to_numpy() * interval_s))
 
 
 def test_two_pulses_have_the_numbers_that_they_were_made_with() -> None:
@@ -242,7 +242,7 @@ def test_area_is_in_the_time_of_the_velocity(units: str, interval: float, area: 
 
 
 def test_uneven_times_and_later_frames() -> None:
-    velocity = velocity_of([0, 1, 1, 0], "µm/s", time=np.arange(7, 11))
+    velocity = velocity_of([0, 1, 1, 0], "µm/s", frame=("time", np.arange(7, 11)))
     velocity = velocity.assign_coords(time_s=("time", [0.0, 1.0, 3.0, 10.0]))
     length = xr.full_like(velocity, 2.0).assign_attrs(units="µm")
     (event,) = edge_events(velocity, threshold=0.5, edge_length=length).to_dict("records")
@@ -292,7 +292,7 @@ LENGTH = xr.zeros_like(GOOD).assign_attrs(units="µm")
         (GOOD[:, :0], {}, "velocity is empty"),
         (GOOD.assign_attrs(units=""), {}, "velocity.attrs has no 'units'"),
         (GOOD.where(GOOD != 0, np.inf), {}, "finite numbers, or NaN"),
-        (GOOD.isel(time=[0, 1, 3, 4]), {}, r"follow each other, its time is 0, 1, 3, 4: reindex"),
+        (GOOD.isel(time=[0, 1, 3, 4]), {}, r"follow each other, its frame is 0, 1, 3, 4"),
         (GOOD, {"min_frames": 0}, "min_frames must be a whole number of at least 1, got 0"),
         (GOOD, {"min_frames": 2.5}, "min_frames"),
         (GOOD, {"threshold": -1}, "threshold must be a number of at least 0, got -1"),
@@ -304,7 +304,11 @@ LENGTH = xr.zeros_like(GOOD).assign_attrs(units="µm")
         (GOOD, {"protruded_area": AREA, "retracted_area": LENGTH}, "in µm², retracted_area in µm"),
         (GOOD, {"edge_length": LENGTH}, "no seconds: give it the coordinate time_s"),
         (GOOD, {"edge_length": LENGTH.isel(time=slice(4))}, "edge_length must be .*got .'time': 4"),
-        (GOOD, {"edge_length": LENGTH.assign_coords(time=np.arange(1, 6))}, "numbers of their times"),
+        (
+            GOOD,
+            {"edge_length": LENGTH.assign_coords(frame=("time", np.arange(1, 6)))},
+            "numbers of their frames",
+        ),
         (GOOD, {"edge_length": 3.0}, "got float"),
         (GOOD, {"edge_length": LENGTH.assign_attrs(units="px")}, "µm/s, edge_length in px"),
         (GOOD, {"edge_length": LENGTH.assign_attrs(units="")}, "edge_length.attrs has no 'units'"),

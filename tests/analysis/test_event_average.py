@@ -15,7 +15,7 @@ NAN = np.nan
 
 def by_sector(values: Any, units: str = "px/frame") -> xr.DataArray:
     table = np.asarray(values, dtype=np.float64)
-    coords = {"time": np.arange(len(table)), "sector": np.arange(table.shape[1])}
+    coords = {"frame": ("time", np.arange(len(table))), "sector": np.arange(table.shape[1])}
     return xr.DataArray(table, coords, ("time", "sector"), attrs={"units": units})
 
 
@@ -61,7 +61,7 @@ def test_layers_channels_and_seconds() -> None:
     values = random.normal(size=(20, 2, 3, 8))
     activity = xr.DataArray(
         values,
-        {"time": np.arange(20), "channel": ["a", "b"], "time_s": ("time", 1.5 * np.arange(20))},
+        {"frame": ("time", np.arange(20)), "channel": ["a", "b"], "time_s": ("time", 1.5 * np.arange(20))},
         ("time", "channel", "layer", "sector"),
     )
     average = average_around(activity, events_of(velocity), before=2, after=1)

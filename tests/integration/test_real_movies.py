@@ -49,8 +49,8 @@ def assert_whole(study: cd.Study) -> None:
     assert (windows["area"] > 0).all()
     n_channels = windows["channel"].nunique() or 1
     assert len(windows) == len(mapped) * n_channels * GRID.layers * GRID.sectors
-    areas = windows.groupby(["cell", "time"])["area"].sum() / n_channels
-    known = mapped.set_index(["cell", "time"])["area"]
+    areas = windows.groupby(["cell", "frame"])["area"].sum() / n_channels
+    known = mapped.set_index(["cell", "frame"])["area"]
     pd.testing.assert_series_equal(areas, known, check_names=False, rtol=1e-9)
     edge = study.edge
     fine = edge["status"] == "ok"
@@ -73,7 +73,7 @@ def test_melanoma(data_dir: Path, tmp_path: Path) -> None:
     study = run_movie(open_movie(masks, signal, GRID), tmp_path / "out")
     assert study.cells["status"].tolist() == ["ok"] * 6
     assert_whole(study)
-    assert study.consistency.loc[study.consistency["time"] < 5, "correlation"].median() > 0.8
+    assert study.consistency.loc[study.consistency["frame"] < 5, "correlation"].median() > 0.8
 
 
 def test_dictyostelium(data_dir: Path, tmp_path: Path) -> None:
@@ -87,7 +87,7 @@ def test_dictyostelium(data_dir: Path, tmp_path: Path) -> None:
     assert study.edge.attrs["units"]["velocity"] == "px/s"
     values = tifffile.imread(signal)
     windows = study.windows
-    sums = (windows["mean"] * windows["n_pixels"]).groupby(windows["time"]).sum()
+    sums = (windows["mean"] * windows["n_pixels"]).groupby(windows["frame"]).sum()
     for time in range(15):
         inside = study.map(0, time).mask
         assert sums[time] == pytest.approx(values[time][inside].sum(dtype=float), rel=1e-10)
@@ -114,5 +114,5 @@ def test_a_field_of_labels(data_dir: Path, tmp_path: Path) -> None:
         rows = study.cells[study.cells["cell"] == cell]
         present = np.flatnonzero((values == label).any(axis=(1, 2)))
         assert set(rows["label"]) == {label}
-        assert rows["time"].tolist() == list(range(present[0], present[-1] + 1))
+        assert rows["frame"].tolist() == list(range(present[0], present[-1] + 1))
     assert_whole(study)

@@ -111,7 +111,7 @@ def test_displacement_is_the_mean_over_layers_through_time() -> None:
     rows = pd.DataFrame(
         {
             "method": ["edge"] * 4 + ["newton"] * 4,
-            "time": [0, 0, 2, 2] * 2,
+            "frame": [0, 0, 2, 2] * 2,
             "layer": [0, 1] * 4,
             "centroid_displacement": [1.0, 3.0, 5.0, np.nan, 0.5, 0.5, 1.0, 2.0],
         }

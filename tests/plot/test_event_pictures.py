@@ -22,7 +22,11 @@ def velocity() -> xr.DataArray:
     values[3:6, 5] = 1.0
     values[:2, 2] = 1.0
     values[7:9, 3] = -1.0
-    coords = {"time": np.arange(20, 30), "sector": np.arange(6), "time_s": ("time", 2.0 * np.arange(20, 30))}
+    coords = {
+        "frame": ("time", np.arange(20, 30)),
+        "sector": np.arange(6),
+        "time_s": ("time", 2.0 * np.arange(20, 30)),
+    }
     return xr.DataArray(values, coords, ("time", "sector"), attrs={"units": "µm/s"})
 
 
@@ -78,7 +82,7 @@ def test_known_onsets_are_marked(ax: Axes, velocity: xr.DataArray, events: pd.Da
 
 def test_many_patches_leave_thin_onsets_of_protrusions(ax: Axes) -> None:
     values = np.where(np.arange(40)[:, None] % 4 < 2, 1.0, -1.0) * np.where(np.arange(16) % 2, 1.0, -1.0)
-    coords = {"time": np.arange(40), "sector": np.arange(16)}
+    coords = {"frame": ("time", np.arange(40)), "sector": np.arange(16)}
     velocity = xr.DataArray(values, coords, ("time", "sector"), attrs={"units": "px/frame"})
     events = edge_events(velocity, threshold=0.5)
     assert events["patch"].nunique() > 150
@@ -114,7 +118,7 @@ def test_events_of_another_velocity_are_refused(
 def average_of(velocity: xr.DataArray, events: pd.DataFrame, layers: int = 6, **options: Any) -> xr.Dataset:
     values = np.arange(10.0)[:, None, None] + 100.0 * np.arange(layers)[:, None] + np.zeros(6)
     activity = xr.DataArray(
-        values, {"time": velocity["time"], "time_s": velocity["time_s"]}, ("time", "layer", "sector")
+        values, {"frame": velocity["frame"], "time_s": velocity["time_s"]}, ("time", "layer", "sector")
     )
     return average_around(activity, events, before=2, after=3, **options)
 

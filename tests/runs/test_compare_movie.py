@@ -44,13 +44,13 @@ def test_measures_are_those_of_the_movie(comparison: cd.Comparison, files: tuple
         np.testing.assert_allclose(comparison.activity(0, method), activity["mean"], rtol=1e-9)
         rows = comparison.consistency
         rows = rows[(rows["method"] == method) & (rows["channel"] == "edge")]
-        wide = rows.pivot_table(index="time", columns="layer", values="correlation", dropna=False)
+        wide = rows.pivot_table(index="frame", columns="layer", values="correlation", dropna=False)
         expected = cd.consecutive_correlation(activity["mean"].sel(channel="edge"))
         np.testing.assert_allclose(wide.reindex(range(5)), expected, rtol=1e-6)
-        moved = rows.pivot_table(index="time", columns="layer", values="centroid_displacement", dropna=False)
+        moved = rows.pivot_table(index="frame", columns="layer", values="centroid_displacement", dropna=False)
         expected = cd.centroid_displacement(movie, activity).mean("sector")
         np.testing.assert_allclose(moved.reindex(range(5)), expected, rtol=1e-6)
-        complete = rows.pivot_table(index="time", columns="layer", values="completeness")
+        complete = rows.pivot_table(index="frame", columns="layer", values="completeness")
         held = (activity["area"] > 0).mean("sector").sel(frame=[0, 1, 3, 4])
         np.testing.assert_allclose(complete, held)
 
@@ -69,7 +69,7 @@ def test_medians_over_frames_stand_by_method_channel_and_layer(comparison: cd.Co
         assert found.loc[0.0, name] == pytest.approx(first.median(), rel=1e-4)
         assert found.loc[0.0, f"{name}_q75"] == pytest.approx(first.quantile(0.75), rel=1e-4)
         in_all = found.loc[found.index.isna(), name].item()
-        assert in_all == pytest.approx(rows.groupby("time")[name].mean().median(), rel=1e-4)
+        assert in_all == pytest.approx(rows.groupby("frame")[name].mean().median(), rel=1e-4)
     assert comparison.through_time.attrs["units"]["centroid_displacement"] == "px"
     told = pd.read_csv(comparison.path / "comparison_columns.csv")
     assert list(told.loc[told["table"] == "comparison_movie.csv", "name"]) == list(table.columns)
@@ -88,7 +88,7 @@ def test_a_row_sums_up_the_frames(comparison: cd.Comparison) -> None:
     layers = comparison.layers[comparison.layers["method"] == "edge"]
     assert edge["empty_windows"] == pytest.approx(12 * (1 - layers["completeness"]).sum())
     assert edge["depth_px"] == 5.0
-    assert set(comparison.layers["time"]) == {0, 1, 3, 4}
+    assert set(comparison.layers["frame"]) == {0, 1, 3, 4}
 
 
 def test_edge_windows_are_as_deep_as_the_first_frame(files: tuple[Path, Path], tmp_path: Path) -> None:

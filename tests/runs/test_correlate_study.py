@@ -197,10 +197,10 @@ def test_some_frames_and_sectors(study: cd.Study) -> None:
     found = correlate_study(study, "edge", name="part", **settings)
     assert sorted(found.windows["sector"].unique()) == [0, 1, 2, 10, 11]
     activity = study.activity(0).load()
-    signal = activity["mean"].sel(channel="edge", sector=[0, 1, 2, 10, 11], time=slice(4, 30)).copy()
-    velocity = activity["velocity"].sel(sector=[0, 1, 2, 10, 11], time=slice(4, 30)).copy()
-    signal.loc[{"time": 12}] = np.nan
-    velocity.loc[{"time": [11, 12, 30]}] = np.nan
+    signal = activity["mean"].sel(channel="edge", sector=[0, 1, 2, 10, 11], frame=slice(4, 30)).copy()
+    velocity = activity["velocity"].sel(sector=[0, 1, 2, 10, 11], frame=slice(4, 30)).copy()
+    signal.loc[{"frame": 12}] = np.nan
+    velocity.loc[{"frame": [11, 12, 30]}] = np.nan
     expected = cd.peak_correlation(cd.cross_correlate(signal, velocity, 3, surrogates=49))
     table = found.windows.set_index(["layer", "sector"])["correlation"].unstack("sector").to_numpy()
     np.testing.assert_array_equal(table, expected["correlation"].transpose("layer", "sector"))

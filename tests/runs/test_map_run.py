@@ -167,7 +167,7 @@ def test_a_label_image_gives_a_cell_a_label_with_one_signal(tmp_path: Path) -> N
     tifffile.imwrite(tmp_path / "labels.tif", labels)
     tifffile.imwrite(tmp_path / "signal.tif", signal)
     study = run_map(open_inputs(tmp_path / "labels.tif", tmp_path / "signal.tif", SMALL), tmp_path / "out")
-    assert study.cells[["time", "label", "area_px"]].to_numpy().tolist() == [[0, 4, 169], [0, 9, 324]]
+    assert study.cells[["frame", "label", "area_px"]].to_numpy().tolist() == [[0, 4, 169], [0, 9, 324]]
     expected = study.windows["centroid_y"] + 2.0 * study.windows["centroid_x"]
     # Whole pixels have the signal, parts of pixels the centre: they differ by less than a tenth of a pixel.
     np.testing.assert_allclose(study.windows["mean"], expected, rtol=0, atol=0.3)

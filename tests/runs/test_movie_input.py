@@ -127,8 +127,8 @@ def test_an_empty_frame_is_refused_and_the_movie_goes_on(tmp_path: Path) -> None
     study = ran(tmp_path, values, COUNTS)
     assert study.cells["status"].tolist() == ["ok"] * 3 + ["refused"] + ["ok"] * 2
     assert "is empty: no pixel belongs to the cell" in study.cells["reason"][3]
-    assert 3 not in set(study.windows["time"])
-    assert study.edge.loc[study.edge["time"] == 4, "velocity"].notna().all()
+    assert 3 not in set(study.windows["frame"])
+    assert study.edge.loc[study.edge["frame"] == 4, "velocity"].notna().all()
     with pytest.raises(ReadError, match=r"has no map: .*is empty"):
         study.map(0, 3)
 
@@ -138,7 +138,7 @@ def test_the_first_frames_may_be_empty(tmp_path: Path) -> None:
     values[:2] = 0
     study = ran(tmp_path, values)
     assert study.cells["status"].tolist() == ["refused"] * 2 + ["ok"] * 4
-    assert set(study.edge["time"]) == {2, 3, 4, 5}
+    assert set(study.edge["frame"]) == {2, 3, 4, 5}
     assert study.movie(0).transforms[2] is not None
 
 
@@ -147,10 +147,10 @@ def test_a_cell_that_leaves_has_no_velocity_in_its_last_frame(tmp_path: Path) ->
     values[4:] = 0
     study = ran(tmp_path, values)
     assert study.cells["status"].tolist() == ["ok"] * 4 + ["refused"] * 2
-    last = study.edge[study.edge["time"] == 3]
+    last = study.edge[study.edge["frame"] == 3]
     assert last["velocity"].isna().all()
     assert last["status"].str.startswith("the next frame has no map: ").all()
-    assert study.activity(0)["time"].size == FRAMES
+    assert study.activity(0)["frame"].size == FRAMES
 
 
 def test_a_frame_in_two_pieces_is_mapped_with_notes(tmp_path: Path) -> None:
@@ -170,7 +170,7 @@ def test_nan_in_the_signal_is_counted_in_its_frame(tmp_path: Path) -> None:
     study = ran(tmp_path, MASKS, counts)
     assert study.cells["nan_px"].tolist() == [0, 0, 1, 0, 0, 0]
     lost = study.windows[study.windows["status"] == "NaN in signal"]
-    assert set(zip(lost["time"], lost["channel"], strict=True)) == {(2, "1")}
+    assert set(zip(lost["frame"], lost["channel"], strict=True)) == {(2, "1")}
     assert study.windows["mean"].isna().sum() == len(lost)
     assert study.windows["n_nan"].sum() == pytest.approx(1.0)
 
@@ -198,7 +198,7 @@ def test_a_damaged_frame_loses_that_frame_alone(tmp_path: Path, kind: str, time:
     expected[time] = "unreadable"
     assert study.cells["status"].tolist() == expected
     assert f"{kind}.tif: frame {time} cannot be read as an image" in study.cells["reason"][time]
-    assert set(study.windows["time"]) == set(range(FRAMES)) - {time}
+    assert set(study.windows["frame"]) == set(range(FRAMES)) - {time}
     assert study.windows["mean"].notna().all()
     assert len(study.provenance["warnings"]) == 1
 
@@ -304,7 +304,7 @@ def test_a_cell_of_a_few_pixels_has_no_empty_window(tmp_path: Path, side: int) -
     assert study.cells["status"].tolist() == ["ok"] * FRAMES
     assert (study.windows["area"] > 0).all()
     assert study.windows["mean"].notna().all()
-    velocity = study.edge.loc[study.edge["time"] < FRAMES - 1, "velocity"]
+    velocity = study.edge.loc[study.edge["frame"] < FRAMES - 1, "velocity"]
     np.testing.assert_allclose(velocity, 0.0, atol=1e-5)
 
 

@@ -51,7 +51,7 @@ def rows_of(table: pd.DataFrame, cell: int) -> pd.DataFrame:
 
 
 def test_each_cell_has_rows_from_its_first_frame_to_its_last(study: cd.Study) -> None:
-    times = {cell: rows_of(study.cells, cell)["time"].tolist() for cell in range(3)}
+    times = {cell: rows_of(study.cells, cell)["frame"].tolist() for cell in range(3)}
     assert times == {MOVER: list(range(FRAMES)), GUEST: [2, 3, 4], BORDER: list(range(FRAMES))}
     assert study.cells["label"].tolist() == [3] * FRAMES + [5] * 3 + [9] * FRAMES
     ok = study.cells[study.cells["status"] == "ok"]
@@ -66,11 +66,11 @@ def test_a_missing_label_is_a_gap_with_its_reason(study: cd.Study) -> None:
     assert rows["status"].tolist() == ["ok"] * 3 + ["missing"] + ["ok"] * 3
     assert rows["reason"][LOST] == "label 3 is not in frame 3"
     edge = rows_of(study.edge, MOVER)
-    assert LOST not in set(edge["time"])
-    before = edge[edge["time"] == LOST - 1]
+    assert LOST not in set(edge["frame"])
+    before = edge[edge["frame"] == LOST - 1]
     assert set(before["status"]) == {"the next frame has no map: label 3 is not in frame 3"}
     assert before["velocity"].isna().all()
-    after = edge[edge["time"] == LOST + 1]
+    after = edge[edge["frame"] == LOST + 1]
     assert after["velocity"].notna().all()
     assert study.provenance["warnings"] == ["cell 0, frame 3: label 3 is not in frame 3"]
 
@@ -87,9 +87,9 @@ def test_tracking_goes_on_after_the_gap(study: cd.Study) -> None:
 
 def test_a_cell_that_leaves_ends_there(study: cd.Study) -> None:
     edge = rows_of(study.edge, GUEST)
-    assert set(edge.loc[edge["time"] == LEAVES, "status"]) == {"last frame"}
-    assert edge.loc[edge["time"] < LEAVES, "velocity"].notna().all()
-    assert study.activity(GUEST)["time"].to_numpy().tolist() == [2, 3, 4]
+    assert set(edge.loc[edge["frame"] == LEAVES, "status"]) == {"last frame"}
+    assert edge.loc[edge["frame"] < LEAVES, "velocity"].notna().all()
+    assert study.activity(GUEST)["frame"].to_numpy().tolist() == [2, 3, 4]
 
 
 def test_frames_before_a_cell_came_are_missing_in_its_movie(study: cd.Study) -> None:
@@ -103,14 +103,14 @@ def test_frames_before_a_cell_came_are_missing_in_its_movie(study: cd.Study) -> 
 def test_the_border_is_flagged_and_its_sectors_have_no_velocity(study: cd.Study) -> None:
     assert study.cells.groupby("cell")["touches_border"].sum().tolist() == [0, 0, FRAMES]
     edge = rows_of(study.edge, BORDER)
-    edge = edge[edge["time"] < FRAMES - 1]
+    edge = edge[edge["frame"] < FRAMES - 1]
     on_border = edge["status"] == "on the image's border"
     for time in range(FRAMES - 1):
-        assert 1 <= on_border[edge["time"] == time].sum() <= SECTORS // 2
+        assert 1 <= on_border[edge["frame"] == time].sum() <= SECTORS // 2
     assert set(edge.loc[~on_border, "status"]) == {"ok"}
     assert edge.loc[on_border, "velocity"].isna().all()
     assert edge.loc[~on_border, MEASURES].notna().all(axis=None)
-    whole = edge.loc[~on_border].groupby("time")["velocity"].median()
+    whole = edge.loc[~on_border].groupby("frame")["velocity"].median()
     assert whole.to_numpy() == pytest.approx(0.5, abs=0.25)  # the disk grows by 0.5 px a frame
 
 
@@ -140,7 +140,7 @@ def test_linked_labels_give_the_same_cells(study: cd.Study, tmp_path: Path) -> N
     for cell in range(3):
         start = rows_of(study.cells, cell).iloc[0]
         same = linked.cells["centroid_y"].sub(start["centroid_y"]).abs() < 1e-9
-        (found,) = linked.cells.loc[same & (linked.cells["time"] == start["time"]), "cell"]
+        (found,) = linked.cells.loc[same & (linked.cells["frame"] == start["frame"]), "cell"]
         numbers = (study, cell), (linked, found)
         for name in ("windows", "edge", "consistency"):
             own = ["cell", "status"] if name == "edge" else ["cell"]
@@ -155,7 +155,7 @@ def test_a_damaged_frame_is_lost_for_the_cells_that_are_around_it(tmp_path: Path
     damage(path, 5)
     cells = run_movie(open_movie(path, None, SMALL), tmp_path / "out").cells
     lost = cells[cells["status"] == "unreadable"]
-    assert lost[["cell", "time"]].to_numpy().tolist() == [[MOVER, 5], [BORDER, 5]]
+    assert lost[["cell", "frame"]].to_numpy().tolist() == [[MOVER, 5], [BORDER, 5]]
     assert lost["reason"].str.contains("frame 5 cannot be read as an image").all()
     assert rows_of(cells, GUEST)["status"].tolist() == ["ok"] * 3
 

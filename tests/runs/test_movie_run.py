@@ -54,12 +54,12 @@ def sampled(study: cd.Study, truth: SimulatedMovie) -> xr.Dataset:
 
 
 def table(frame: pd.DataFrame, name: str, time: int) -> np.ndarray:
-    return frame.loc[frame["time"] == time, name].to_numpy()
+    return frame.loc[frame["frame"] == time, name].to_numpy()
 
 
 def test_every_frame_has_a_row(study: cd.Study, truth: SimulatedMovie) -> None:
     cells = study.cells
-    assert cells["time"].tolist() == list(range(FRAMES))
+    assert cells["frame"].tolist() == list(range(FRAMES))
     assert_array_equal(cells["time_s"], INTERVAL_S * np.arange(FRAMES))
     assert_array_equal(cells["status"] == "ok", truth.present)
     assert "is empty: no pixel belongs to the cell" in cells["reason"][GAP]
@@ -78,8 +78,8 @@ def test_tables_have_a_row_for_all_there_is(study: cd.Study) -> None:
         "consistency": (study.consistency, 2 * LAYERS),
     }
     for name, (rows, per_frame) in sizes.items():
-        assert rows["time"].tolist() == np.repeat(MAPPED, per_frame).tolist(), name
-        assert_array_equal(rows["time_s"], INTERVAL_S * rows["time"])
+        assert rows["frame"].tolist() == np.repeat(MAPPED, per_frame).tolist(), name
+        assert_array_equal(rows["time_s"], INTERVAL_S * rows["frame"])
         assert (rows["cell"] == 0).all()
     assert study.windows["channel"].unique().tolist() == CHANNELS
     assert set(study.windows["status"]) == {"ok"}
@@ -104,13 +104,13 @@ def test_columns_and_units_are_those_of_the_tables(study: cd.Study) -> None:
     assert units["edge.edge_length"] == units["cells.tracking_residual"] == "µm"
     assert units["consistency.centroid_displacement"] == "µm"
     assert units["cells.registration_angle"] == "°"
-    assert (units["cells.time"], units["cells.time_s"], units["windows.n_pixels"]) == ("frame", "s", "px²")
+    assert (units["cells.frame"], units["cells.time_s"], units["windows.n_pixels"]) == ("frame", "s", "px²")
 
 
 def test_windows_hold_the_whole_intensity_of_every_frame(study: cd.Study, truth: SimulatedMovie) -> None:
     windows = study.windows
-    sums = (windows["mean"] * windows["n_pixels"]).groupby([windows["time"], windows["channel"]]).sum()
-    areas = windows["area"].groupby([windows["time"], windows["channel"]]).sum()
+    sums = (windows["mean"] * windows["n_pixels"]).groupby([windows["frame"], windows["channel"]]).sum()
+    areas = windows["area"].groupby([windows["frame"], windows["channel"]]).sum()
     for time in MAPPED:
         mask = truth.masks[time]
         for channel in CHANNELS:
@@ -123,10 +123,10 @@ def test_frames_without_a_next_one_have_no_velocity_and_say_why(study: cd.Study)
     edge = study.edge
     reason = study.cells["reason"][GAP]
     for time, status in ((FRAMES - 1, "last frame"), (GAP - 1, f"the next frame has no map: {reason}")):
-        rows = edge[edge["time"] == time]
+        rows = edge[edge["frame"] == time]
         assert set(rows["status"]) == {status}
         assert rows[[*MEASURES, "edge_length"]].isna().all(axis=None)
-    others = edge[~edge["time"].isin([GAP - 1, FRAMES - 1])]
+    others = edge[~edge["frame"].isin([GAP - 1, FRAMES - 1])]
     assert set(others["status"]) == {"ok"}
     assert others[[*MEASURES, "edge_length"]].notna().all(axis=None)
     assert (others["velocity_error"] > 0).all()
@@ -163,7 +163,7 @@ def test_consistency_is_that_of_the_sampled_movie(study: cd.Study, sampled: xr.D
 
 def test_activity_is_that_of_the_tables(study: cd.Study, sampled: xr.Dataset) -> None:
     activity = study.activity(0)
-    assert activity["time"].to_numpy().tolist() == list(range(FRAMES))
+    assert activity["frame"].to_numpy().tolist() == list(range(FRAMES))
     assert activity["channel"].to_numpy().tolist() == CHANNELS
     for time in MAPPED:
         for name in STATISTICS:

@@ -56,7 +56,8 @@ def test_every_frame_reads_back_as_it_was_written(tmp_path: Path, frames: int) -
     times = range(3, 3 + frames)
     write(tmp_path / "a.zarr", times)
     found = open_activity(tmp_path / "a.zarr", 0)
-    assert_array_equal(found["time"], times)
+    assert_array_equal(found["frame"], times)
+    assert found["frame"].attrs["units"] == "frame"
     assert_array_equal(found["time_s"], 5.0 * np.array(times))
     assert found["channel"].to_numpy().tolist() == ["Rac1", "RhoA"]
     assert (found["layer"].size, found["sector"].size) == (2, 3)
@@ -131,7 +132,6 @@ def test_units_follow_what_is_known(
         assert units[name] == f"{length}²"
     assert units["edge_length"] == length
     assert (units["mean"], units["n_pixels"], units["centroid_y"]) == ("a.u.", "px²", "px")
-    assert found["time"].attrs["units"] == "frame"
     assert ("time_s" in found.coords) == (scale[1] is not None)
 
 
@@ -143,7 +143,7 @@ def test_cells_are_groups_of_their_own(tmp_path: Path) -> None:
                 group.append(time, frame_arrays(10 * cell + time, 1), "ok", "")
             group.close()
     first, second = (open_activity(tmp_path / "a.zarr", cell) for cell in (0, 12))
-    assert (first["time"].to_numpy().tolist(), second["time"].to_numpy().tolist()) == ([0, 1], [5, 6, 7])
+    assert (first["frame"].to_numpy().tolist(), second["frame"].to_numpy().tolist()) == ([0, 1], [5, 6, 7])
     assert_array_equal(second["mean"][1], frame_arrays(126, 1)["mean"])
     with pytest.raises(ReadError, match=r"a\.zarr has no activity of cell 1"):
         open_activity(tmp_path / "a.zarr", 1)
@@ -174,7 +174,7 @@ def test_a_store_that_is_not_finished_does_not_take_the_place_of_another(
     if before:
         assert_array_equal(open_activity(target, 0)["mean"][3], frame_arrays(3)["mean"])
     write(target, range(2))
-    assert open_activity(target, 0)["time"].size == 2
+    assert open_activity(target, 0)["frame"].size == 2
 
 
 def test_a_store_in_no_folder_is_an_error_of_the_study(tmp_path: Path) -> None:

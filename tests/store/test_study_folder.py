@@ -18,13 +18,13 @@ def run(length_unit: str = "px", **settings: object) -> dict[str, object]:
 
 def windows_of(cell: int) -> dict[str, object]:
     columns: dict[str, object] = {name: np.array([0.5 * cell, 1.0]) for name, _, _ in WINDOW_COLUMNS}
-    whole = {"cell": np.array([cell, cell]), "time": [0, 0], "layer": [0, 0], "sector": [0, 1]}
+    whole = {"cell": np.array([cell, cell]), "frame": [0, 0], "layer": [0, 0], "sector": [0, 1]}
     return columns | whole | {"channel": ["a", "a"], "status": ["ok", "ok"]}
 
 
 def add(folder: StudyFolder, cell: int, **values: object) -> None:
     tables = {"windows": windows_of(cell)} if values["status"] == "ok" else {}
-    folder.add(part_key(cell), {"cell": cell, "time": 0} | values, tables)
+    folder.add(part_key(cell), {"cell": cell, "frame": 0} | values, tables)
 
 
 def finished(path: Path, length_unit: str = "px") -> StudyFolder:
@@ -61,7 +61,7 @@ def test_units_stand_in_the_tables_metadata(tmp_path: Path, unit: str) -> None:
         assert found["area"] == f"{unit}²"
     study = cd.open_study(tmp_path / "out")
     assert study.cells.attrs["units"]["perimeter"] == unit
-    assert study.windows.attrs["units"]["time"] == "frame"
+    assert study.windows.attrs["units"]["frame"] == "frame"
 
 
 def test_parts_come_in_the_order_of_cells_whatever_the_order_of_adding(tmp_path: Path) -> None:

@@ -51,7 +51,9 @@ print(*sorted(file.name for file in (folder / "out").iterdir()), sep="\n")
 # %%
 # Read it back. Tables are pandas; units stand beside them.
 study = cd.open_study(folder / "out")
-print("cells:", study.cells["cell"].nunique(), "frames:", study.cells["time"].nunique())
+print(
+    "cells:", study.cells["cell"].nunique(), "frames:", study.cells["frame"].nunique()
+)
 shown = ["time", "area", "area_distortion", "certificate_valid", "status"]
 print(study.cells[shown].head())
 print(study.edge.attrs["units"]["velocity"], "and", study.cells.attrs["units"]["area"])

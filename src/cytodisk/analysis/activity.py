@@ -125,7 +125,7 @@ def activity_dataset(
     times = first_time + np.arange(len(status))
     layers, sectors = tables["area"].shape[1:]
     coords: dict[str, Any] = {
-        "frame": ("time", times),
+        "frame": ("time", times, {"units": "frame"}),
         "channel": channels,
         "layer": np.arange(layers),
         "sector": np.arange(sectors),

@@ -77,10 +77,10 @@ def _fitting(array: Any, name: str, velocity: xr.DataArray) -> tuple[FloatArray,
             f"{name} must be a DataArray of the frames and sectors of velocity, {dict(velocity.sizes)}, "
             f"got {came}"
         )
-    for dim in ("time", "sector"):
-        both = dim in array.coords and dim in velocity.coords
-        if both and not np.array_equal(array[dim].to_numpy(), velocity[dim].to_numpy()):
-            raise ParameterError(f"{name} and velocity differ in the numbers of their {dim}s: pass the same")
+    for what in ("frame", "time", "sector"):
+        both = what in array.coords and what in velocity.coords
+        if both and not np.array_equal(array[what].to_numpy(), velocity[what].to_numpy()):
+            raise ParameterError(f"{name} and velocity differ in the numbers of their {what}s: pass the same")
     if not array.attrs.get("units"):
         raise ParameterError(f"{name}.attrs has no 'units': set it, as in {name}.assign_attrs(units='µm')")
     return array.transpose("time", "sector").to_numpy().astype(np.float64), str(array.attrs["units"])

@@ -264,7 +264,7 @@ def _kymograph(
 ) -> xr.DataArray:
     """Values of shape (T, [C,] D) with their coordinates, as (time, along[, channel])."""
     times = np.arange(len(rows))
-    known: dict[str, Any] = {"frame": ("time", times)}
+    known: dict[str, Any] = {"frame": ("time", times, {"units": "frame"})}
     if frame_interval_s is not None:
         known["time_s"] = ("time", times * frame_interval_s, {"units": "s"})
     if channels is None:

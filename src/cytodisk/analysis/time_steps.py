@@ -12,7 +12,7 @@ _EVEN = 1e-6  # of a step: what seconds that come from a file's metadata may be 
 
 
 def frame_numbers(array: xr.DataArray, name: str) -> IntArray:
-    """Number of each frame of an array: its coordinate frame, or 0, 1, … without one.
+    """Number of each frame of an array: its coordinate frame (or time), or 0, 1, … without one.
 
     Parameters
     ----------
@@ -29,12 +29,13 @@ def frame_numbers(array: xr.DataArray, name: str) -> IntArray:
     ParameterError
         The numbers do not follow each other without a gap.
     """
-    if "frame" not in array.coords:
+    known = next((coordinate for coordinate in ("frame", "time") if coordinate in array.coords), None)
+    if known is None:
         return np.arange(array.sizes["time"])
-    numbers = array["frame"].to_numpy()
+    numbers = array[known].to_numpy()
     if numbers.dtype.kind not in "biuf" or (np.diff(numbers) != 1).any() or (numbers % 1 != 0).any():
         raise ParameterError(
-            f"{name} must hold frames that follow each other, its coordinate frame is {_shortened(numbers)}: "
+            f"{name} must hold frames that follow each other, its {known} is {_shortened(numbers)}: "
             "reindex it to all frames, NaN where one is not there"
         )
     return np.asarray(numbers.astype(np.int64))

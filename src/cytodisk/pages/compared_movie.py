@@ -129,7 +129,7 @@ def draw_displacement(
     lines = []
     for method in methods:
         rows = consistency[consistency["method"] == method]
-        moved = rows.groupby("time")["centroid_displacement"].mean().reindex(range(first, last + 1))
+        moved = rows.groupby("frame")["centroid_displacement"].mean().reindex(range(first, last + 1))
         values = moved.to_numpy()
         # Only values that a line does not show get a mark: between gaps, or of a movie of two frames.
         style = METHOD_STYLES[method] | {"markevery": stands_alone(values)}

@@ -147,7 +147,7 @@ class CellActivity:
             data[name] = ("time", np.array([frame[place] for frame in self._frames], dtype=object))
         times = np.array([frame[0] for frame in self._frames])
         coords: dict[str, Any] = {
-            "frame": ("time", times),
+            "frame": ("time", times, {"units": "frame"}),
             "layer": np.arange(layers),
             "sector": np.arange(sectors),
         }

@@ -12,7 +12,7 @@ Columns: TypeAlias = tuple[tuple[str, pa.DataType, str], ...]
 # (name, type, unit); "length²", "length" and "velocity" become the units that the run has.
 CELL_COLUMNS: Columns = (
     ("cell", pa.int64(), ""),
-    ("frame", pa.int64(), ""),
+    ("frame", pa.int64(), "frame"),
     ("time_s", pa.float64(), "s"),
     ("label", pa.int64(), ""),
     ("status", pa.string(), ""),
@@ -62,7 +62,7 @@ TRACK_COLUMNS: Columns = (
 
 EDGE_COLUMNS: Columns = (
     ("cell", pa.int64(), ""),
-    ("frame", pa.int64(), ""),
+    ("frame", pa.int64(), "frame"),
     ("time_s", pa.float64(), "s"),
     ("sector", pa.int64(), ""),
     ("velocity", pa.float64(), "velocity"),
@@ -76,7 +76,7 @@ EDGE_COLUMNS: Columns = (
 
 CONSISTENCY_COLUMNS: Columns = (
     ("cell", pa.int64(), ""),
-    ("frame", pa.int64(), ""),
+    ("frame", pa.int64(), "frame"),
     ("time_s", pa.float64(), "s"),
     ("channel", pa.string(), ""),
     ("layer", pa.int64(), ""),
@@ -87,7 +87,7 @@ CONSISTENCY_COLUMNS: Columns = (
 
 WINDOW_COLUMNS: Columns = (
     ("cell", pa.int64(), ""),
-    ("frame", pa.int64(), ""),
+    ("frame", pa.int64(), "frame"),
     ("time_s", pa.float64(), "s"),
     ("channel", pa.string(), ""),
     ("layer", pa.int64(), ""),

@@ -42,7 +42,7 @@ def test_mean_counts_windows_by_their_pixels_and_leaves_unknown_ones_out() -> No
         {
             "cell": 0,
             "channel": "VASP",
-            "time": [0, 0, 1, 1],
+            "frame": [0, 0, 1, 1],
             "mean": [1.0, 5.0, 3.0, np.nan],
             "n_pixels": [3.0, 1.0, 2.0, 9.0],
         }

@@ -29,13 +29,13 @@ def made(frames: int = 20, n_cells: int = 1, **provenance: object) -> MadeStudy:
     """Cells without any fault: areas, velocities and signals that waver a little."""
     rng = np.random.default_rng(0)
     number, time = np.divmod(np.arange(n_cells * frames), frames)
-    cells = pd.DataFrame({"cell": number, "time": time, "status": "ok", "reason": "", "qc_flags": ""})
+    cells = pd.DataFrame({"cell": number, "frame": time, "status": "ok", "reason": "", "qc_flags": ""})
     cells = cells.assign(area=100 + rng.normal(0, 0.5, len(cells)), touches_border=False, border_share=0.0)
     cells = cells.assign(nan_px=0, area_distortion=0.02, restarted="", tracking_residual=0.01)
     cells["order_violations"] = 0
-    edge = cells[["cell", "time"]].merge(pd.DataFrame({"sector": range(12)}), how="cross")
-    edge["velocity"] = np.where(edge["time"] == frames - 1, np.nan, rng.normal(0, 0.05, len(edge)))
-    windows = cells[["cell", "time"]].merge(pd.DataFrame({"channel": ["VASP", "actin"]}), how="cross")
+    edge = cells[["cell", "frame"]].merge(pd.DataFrame({"sector": range(12)}), how="cross")
+    edge["velocity"] = np.where(edge["frame"] == frames - 1, np.nan, rng.normal(0, 0.05, len(edge)))
+    windows = cells[["cell", "frame"]].merge(pd.DataFrame({"channel": ["VASP", "actin"]}), how="cross")
     windows = windows.assign(mean=200 + rng.normal(0, 1, len(windows)), n_pixels=10.0)
     return MadeStudy(cells, edge, windows, **provenance)
 
@@ -132,7 +132,7 @@ def test_a_change_of_area_across_a_gap_is_no_jump() -> None:
 
 def test_velocity_outliers() -> None:
     study = made()
-    study.edge.loc[(study.edge["time"] == 6) & (study.edge["sector"] == 9), "velocity"] = -2.0
+    study.edge.loc[(study.edge["frame"] == 6) & (study.edge["sector"] == 9), "velocity"] = -2.0
     flag = only(study)
     assert (flag.name, where(flag)) == ("velocity outliers", [(0, 6)])
     assert flag.places[0].note == "up to −2 µm/s in sector 9"
@@ -148,7 +148,7 @@ def test_a_slow_edge_is_no_outlier() -> None:
 
 def test_bleaching() -> None:
     study = made()
-    fading = np.where(study.windows["channel"] == "VASP", 1 - 0.3 * study.windows["time"] / 19, 1.0)
+    fading = np.where(study.windows["channel"] == "VASP", 1 - 0.3 * study.windows["frame"] / 19, 1.0)
     study.windows["mean"] *= fading
     flag = only(study)
     assert flag.name == "signal drift"

@@ -48,7 +48,7 @@ def test_default_path_and_progress_and_the_same_page_again(study: Study, tmp_pat
 
 
 def test_study_of_single_masks_is_refused(study: Study) -> None:
-    single = Study(study.path, study.cells.drop(columns="time"), study.provenance | {"run": "map"})
+    single = Study(study.path, study.cells.drop(columns="frame"), study.provenance | {"run": "map"})
     with pytest.raises(StudyError, match="has no time: the report shows movies"):
         write_report(single)
 

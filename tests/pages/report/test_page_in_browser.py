@@ -262,7 +262,7 @@ def test_flags_take_a_line_and_print_in_full(page: Page, browser: webdriver.Chro
 def test_a_flag_of_a_sector_pins_it(browser: webdriver.Chrome, study: Study, tmp_path: Path) -> None:
     """The edge leaps in one place."""
     edge = study.edge.copy()
-    edge.loc[(edge["time"] == 3) & (edge["sector"] == 7), "velocity"] = 50.0
+    edge.loc[(edge["frame"] == 3) & (edge["sector"] == 7), "velocity"] = 50.0
     leaping = Study(study.path, study.cells, study.provenance)
     leaping.__dict__["edge"] = edge
     page = Page(browser, write_report(leaping, tmp_path / "report.html"))

@@ -139,7 +139,7 @@ def _named(values: Any, name: Literal["a", "b"]) -> xr.DataArray:
 
 def _interval(series: xr.DataArray, name: str) -> float | None:
     """Seconds between frames; the frames must be evenly spaced."""
-    for coordinate in ("frame", "time_s"):
+    for coordinate in ("frame", "time", "time_s"):
         if coordinate in series.coords and series.sizes["time"] > 2:
             steps = np.diff(series[coordinate].to_numpy().astype(np.float64))
             if steps.min() <= 0.0:

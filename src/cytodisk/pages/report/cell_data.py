@@ -155,7 +155,7 @@ class CellData:
         yield area | {"whole_mean": None} | _limits(self.whole["area"].to_numpy())
 
     def _quality(self) -> dict[str, Any]:
-        rows = self.study.cells[self.study.cells["cell"] == self.cell].set_index("time")
+        rows = self.study.cells[self.study.cells["cell"] == self.cell].set_index("frame")
         rows = rows.reindex(self.frames)
         return {name: pack_floats(rows[name]) for name in _QUALITY}
 

@@ -102,7 +102,7 @@ def fast_edge(study: Study) -> Iterator[Flag]:
     for cell, rows in edge.groupby("cell"):
         speed = rows["velocity"].abs()
         bar = max(SMALLEST_FAST_STEP_PX * pixel, VELOCITY_SPREADS * _spread(rows["velocity"].to_numpy()))
-        for time, fast in rows[speed > bar].groupby("time"):
+        for time, fast in rows[speed > bar].groupby("frame"):
             top = fast.iloc[int(np.abs(fast["velocity"].to_numpy()).argmax())]
             sector = int(top["sector"])
             note = f"up to {top['velocity']:+.2g} {unit} in sector {sector}".replace("-", "−")

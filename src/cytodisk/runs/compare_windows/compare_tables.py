@@ -19,7 +19,7 @@ from cytodisk.windows.on_cell import WindowsOnCell
 _CELLS: Columns = (
     ("cell", pa.int64(), ""),
     ("source", pa.string(), ""),
-    ("frame", pa.int64(), ""),
+    ("frame", pa.int64(), "frame"),
     ("label", pa.int64(), ""),
     ("method", pa.string(), ""),
     ("status", pa.string(), ""),
@@ -54,7 +54,7 @@ BY_LAYER = (
 
 _LAYERS: Columns = (
     ("cell", pa.int64(), ""),
-    ("frame", pa.int64(), ""),
+    ("frame", pa.int64(), "frame"),
     ("method", pa.string(), ""),
     ("layer", pa.int64(), ""),
     *((name, pa.float64(), "px²" if name == "area" else "1") for name in BY_LAYER),

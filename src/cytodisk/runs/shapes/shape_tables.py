@@ -24,7 +24,7 @@ SCORES = ("complexity", "umap_1", "umap_2")
 _CELL: Columns = (
     ("cell", pa.int64(), ""),
     ("source", pa.string(), ""),
-    ("frame", pa.int64(), ""),
+    ("frame", pa.int64(), "frame"),
     ("label", pa.int64(), ""),
     ("status", pa.string(), ""),
     ("reason", pa.string(), ""),
