@@ -57,7 +57,7 @@ def test_each_cell_has_rows_from_its_first_frame_to_its_last(study: cd.Study) ->
     ok = study.cells[study.cells["status"] == "ok"]
     assert ok["certificate_valid"].all()
     assert (ok["empty_windows"] == 0).all()
-    assert_array_equal(ok["area_px"], [(LABELS[row.time] == row.label).sum() for row in ok.itertuples()])
+    assert_array_equal(ok["area_px"], [(LABELS[row.frame] == row.label).sum() for row in ok.itertuples()])
     assert len(study.windows) == len(ok) * 4 * SECTORS
 
 
