@@ -60,7 +60,7 @@ def test_tables_have_their_dims_coordinates_and_units(case: Case) -> None:
         "status": None,
         "reason": None,
     }
-    np.testing.assert_array_equal(activity.time, np.arange(9))
+    np.testing.assert_array_equal(activity["frame"], np.arange(9))
     np.testing.assert_allclose(activity.time_s, 5.0 * np.arange(9))
     assert activity.time_s.attrs["units"] == "s"
     assert activity.attrs == {"pixel_size_um": 0.16, "frame_interval_s": 5.0}

@@ -44,7 +44,7 @@ def assert_whole(study: cd.Study) -> None:
     """What must hold for any movie."""
     mapped = assert_each_frame_is_mapped_or_has_a_reason(study.cells)
     for row in mapped.itertuples():
-        assert study.map(row.cell, row.time).certificate.valid
+        assert study.map(row.cell, row.frame).certificate.valid
     windows = study.windows
     assert (windows["area"] > 0).all()
     n_channels = windows["channel"].nunique() or 1
