@@ -95,7 +95,7 @@ def test_columns_and_units_are_those_of_the_tables(study: cd.Study) -> None:
     units = {}
     for name, columns in wanted.items():
         schema = pq.read_schema(study.path / f"{name}.parquet")
-        assert schema.names == [column for column, _, _ in columns]
+        assert schema.names == [column.name for column in columns]
         found = {field.name: field.metadata[b"unit"].decode() for field in schema}
         assert getattr(study, name).attrs["units"] == found
         units |= {f"{name}.{column}": unit for column, unit in found.items()}

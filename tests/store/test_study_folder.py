@@ -17,7 +17,7 @@ def run(length_unit: str = "px", **settings: object) -> dict[str, object]:
 
 
 def windows_of(cell: int) -> dict[str, object]:
-    columns: dict[str, object] = {name: np.array([0.5 * cell, 1.0]) for name, _, _ in WINDOW_COLUMNS}
+    columns: dict[str, object] = {column.name: np.array([0.5 * cell, 1.0]) for column in WINDOW_COLUMNS}
     whole = {"cell": np.array([cell, cell]), "frame": [0, 0], "layer": [0, 0], "sector": [0, 1]}
     return columns | whole | {"channel": ["a", "a"], "status": ["ok", "ok"]}
 
@@ -57,7 +57,7 @@ def test_units_stand_in_the_tables_metadata(tmp_path: Path, unit: str) -> None:
     for name, columns in (("cells.parquet", SOURCE_COLUMNS), ("windows.parquet", WINDOW_COLUMNS)):
         schema = pq.read_schema(tmp_path / "out" / name)
         found = {field.name: field.metadata[b"unit"].decode() for field in schema}
-        assert found == {column: kind.replace("length", unit) for column, _, kind in columns}
+        assert found == {column.name: column.unit.replace("length", unit) for column in columns}
         assert found["area"] == f"{unit}²"
     study = cd.open_study(tmp_path / "out")
     assert study.cells.attrs["units"]["perimeter"] == unit

@@ -1,108 +1,218 @@
 """The tables of a study: their columns, types and units."""
 
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-Columns: TypeAlias = tuple[tuple[str, pa.DataType, str], ...]
 
-# (name, type, unit); "length²", "length" and "velocity" become the units that the run has.
+class Column(NamedTuple):
+    """A column of a table.
+
+    Attributes
+    ----------
+    name : str
+    kind : pyarrow.DataType
+    unit : str
+        "length²", "length" and "velocity" become the units that the run has.
+    meaning : str
+        What a user reads about it, without a full stop.
+    """
+
+    name: str
+    kind: pa.DataType
+    unit: str
+    meaning: str
+
+
+Columns: TypeAlias = tuple[Column, ...]
+
+CELL = Column("cell", pa.int64(), "", "number of the cell in this run, from 0")
+SOURCE = Column("source", pa.string(), "", "name of the mask file that the cell comes from")
+FRAME = Column("frame", pa.int64(), "frame", "number of the frame, from 0")
+TIME_S = Column("time_s", pa.float64(), "s", "time of the frame; empty if the frame interval is unknown")
+LABEL = Column("label", pa.int64(), "", "value of the cell in its label image; 0 for a file without a cell")
+CHANNEL = Column("channel", pa.string(), "", "name of the channel of the signal")
+LAYER = Column("layer", pa.int64(), "", "layer of the window: 0 is at the cell's edge, numbers grow inwards")
+SECTOR = Column(
+    "sector", pa.int64(), "", "sector of the window: 0 points along +x of the image, numbers grow towards +y"
+)
+STATUS = Column(
+    "status",
+    pa.string(),
+    "",
+    "ok if there is a map; else refused, unreadable, no cell, no image, or missing (not in this frame)",
+)
+REASON = Column("reason", pa.string(), "", "why there is no map; empty if there is one")
+NOTES = Column("notes", pa.string(), "", "each change that cleaning made to the mask")
+QC_FLAGS = Column(
+    "qc_flags",
+    pa.string(),
+    "",
+    "what speaks against the mask being one whole cell, such as a large fragment that was dropped",
+)
+TOUCHES_BORDER = Column("touches_border", pa.bool_(), "", "whether the cell touches the border of the image")
+SECONDS = Column("seconds", pa.float64(), "s", "computing time of this row; it differs from run to run")
+_CENTROID_Y, _CENTROID_X = (
+    Column(f"centroid_{axis}", pa.float64(), "px", f"{axis} of the centroid in the image") for axis in "yx"
+)
+
 CELL_COLUMNS: Columns = (
-    ("cell", pa.int64(), ""),
-    ("frame", pa.int64(), "frame"),
-    ("time_s", pa.float64(), "s"),
-    ("label", pa.int64(), ""),
-    ("status", pa.string(), ""),
-    ("reason", pa.string(), ""),
-    ("notes", pa.string(), ""),
-    ("qc_flags", pa.string(), ""),
-    ("area", pa.float64(), "length²"),
-    ("perimeter", pa.float64(), "length"),
-    ("centroid_y", pa.float64(), "px"),
-    ("centroid_x", pa.float64(), "px"),
-    ("area_px", pa.int64(), "px²"),
-    ("components", pa.int64(), ""),
-    ("dropped_px", pa.int64(), "px²"),
-    ("holes", pa.int64(), ""),
-    ("filled_px", pa.int64(), "px²"),
-    ("touches_border", pa.bool_(), ""),
-    ("border_share", pa.float64(), "1"),
-    ("nan_px", pa.int64(), "px²"),
-    ("certificate_valid", pa.bool_(), ""),
-    ("flipped", pa.int64(), ""),
-    ("vertices", pa.int64(), ""),
-    ("triangles", pa.int64(), ""),
-    ("area_distortion", pa.float64(), "1"),
-    ("area_ratio_p1", pa.float64(), "1"),
-    ("area_ratio_p99", pa.float64(), "1"),
-    ("angle_distortion", pa.float64(), "1"),
-    ("angle_distortion_p95", pa.float64(), "1"),
-    ("empty_windows", pa.int64(), ""),
-    ("relaxation_start", pa.string(), ""),
-    ("steps", pa.int64(), ""),
-    ("converged", pa.bool_(), ""),
-    ("seconds", pa.float64(), "s"),
+    CELL,
+    FRAME,
+    TIME_S,
+    LABEL,
+    STATUS,
+    REASON,
+    NOTES,
+    QC_FLAGS,
+    Column("area", pa.float64(), "length²", "area of the cell"),
+    Column("perimeter", pa.float64(), "length", "length of the cell's outline"),
+    _CENTROID_Y,
+    _CENTROID_X,
+    Column("area_px", pa.int64(), "px²", "area of the cleaned mask in pixels"),
+    Column("components", pa.int64(), "", "number of separate pieces in the mask as it came"),
+    Column("dropped_px", pa.int64(), "px²", "area of the pieces that cleaning dropped"),
+    Column("holes", pa.int64(), "", "number of holes in the mask as it came"),
+    Column("filled_px", pa.int64(), "px²", "area of the holes that cleaning filled"),
+    TOUCHES_BORDER,
+    Column("border_share", pa.float64(), "1", "share of the outline that lies on the border of the image"),
+    Column(
+        "nan_px", pa.int64(), "px²", "pixels of the mask that were not a number; they count as background"
+    ),
+    Column("certificate_valid", pa.bool_(), "", "whether the map is proven to be one to one"),
+    Column("flipped", pa.int64(), "", "number of triangles that the map turns over; 0 in a valid map"),
+    Column("vertices", pa.int64(), "", "number of vertices of the mesh"),
+    Column("triangles", pa.int64(), "", "number of triangles of the mesh"),
+    Column(
+        "area_distortion",
+        pa.float64(),
+        "1",
+        "mean of |ln λ| over the cell, where λ is a triangle's share of the disk over its share of the cell; "
+        "0.03 is about 3 % off",
+    ),
+    Column("area_ratio_p1", pa.float64(), "1", "1st percentile of λ (see area_distortion)"),
+    Column("area_ratio_p99", pa.float64(), "1", "99th percentile of λ (see area_distortion)"),
+    Column(
+        "angle_distortion",
+        pa.float64(),
+        "1",
+        "median over triangles of the largest over the smallest stretch; 1 keeps angles",
+    ),
+    Column("angle_distortion_p95", pa.float64(), "1", "95th percentile of the same ratio"),
+    Column("empty_windows", pa.int64(), "", "number of windows that hold no part of the cell"),
+    Column("relaxation_start", pa.string(), "", "map that the relaxation started from"),
+    Column("steps", pa.int64(), "", "number of steps of the relaxation"),
+    Column("converged", pa.bool_(), "", "whether the relaxation reached its end"),
+    SECONDS,
 )
 
-# A map's cells, which may come from many files.
-SOURCE_COLUMNS: Columns = (CELL_COLUMNS[0], ("source", pa.string(), ""), *CELL_COLUMNS[1:])
+SOURCE_COLUMNS: Columns = (CELL, SOURCE, *CELL_COLUMNS[1:])
+"""Columns of a map's cells, which may come from many files."""
 
-# What a movie's cells have in addition: how the frame was tracked and registered.
 TRACK_COLUMNS: Columns = (
-    ("restarted", pa.string(), ""),
-    ("tracking_residual", pa.float64(), "length"),
-    ("order_violations", pa.int64(), ""),
-    ("registration_angle", pa.float64(), "°"),
-    ("registration_shift_y", pa.float64(), "px"),
-    ("registration_shift_x", pa.float64(), "px"),
+    Column("restarted", pa.string(), "", "why tracking started anew in this frame; empty if it went on"),
+    Column(
+        "tracking_residual",
+        pa.float64(),
+        "length",
+        "mean distance between where boundary points start and where they end, if they are tracked to the "
+        "next frame and back",
+    ),
+    Column(
+        "order_violations",
+        pa.int64(),
+        "",
+        "number of boundary points that the tracker put out of order; 0 with the tracker matching",
+    ),
+    Column(
+        "registration_angle", pa.float64(), "°", "turn about pixel (0, 0) that takes the frame to the first"
+    ),
+    Column("registration_shift_y", pa.float64(), "px", "shift along y after that turn"),
+    Column("registration_shift_x", pa.float64(), "px", "shift along x after that turn"),
 )
+"""What a movie's cells have in addition: how the frame was tracked and registered."""
 
 EDGE_COLUMNS: Columns = (
-    ("cell", pa.int64(), ""),
-    ("frame", pa.int64(), "frame"),
-    ("time_s", pa.float64(), "s"),
-    ("sector", pa.int64(), ""),
-    ("velocity", pa.float64(), "velocity"),
-    ("velocity_cell_frame", pa.float64(), "velocity"),
-    ("velocity_error", pa.float64(), "velocity"),
-    ("protruded_area", pa.float64(), "length²"),
-    ("retracted_area", pa.float64(), "length²"),
-    ("edge_length", pa.float64(), "length"),
-    ("status", pa.string(), ""),
+    CELL,
+    FRAME,
+    TIME_S,
+    SECTOR,
+    Column(
+        "velocity",
+        pa.float64(),
+        "velocity",
+        "outward velocity of the edge over the substrate from this frame to the next, protrusion positive; "
+        "the last frame has none, nor has an edge that the image's border cuts off",
+    ),
+    Column(
+        "velocity_cell_frame",
+        pa.float64(),
+        "velocity",
+        "the same after the cell's rigid motion is removed: change of shape alone",
+    ),
+    Column(
+        "velocity_error",
+        pa.float64(),
+        "velocity",
+        "standard deviation of velocity if the mask's edge is uncertain by jitter_px; it knows nothing of "
+        "masks that are wrong",
+    ),
+    Column("protruded_area", pa.float64(), "length²", "area won in this sector from this frame to the next"),
+    Column("retracted_area", pa.float64(), "length²", "area lost in this sector from this frame to the next"),
+    Column("edge_length", pa.float64(), "length", "length of the edge in this sector"),
+    Column("status", pa.string(), "", "ok, or why the sector has no velocity"),
 )
 
 CONSISTENCY_COLUMNS: Columns = (
-    ("cell", pa.int64(), ""),
-    ("frame", pa.int64(), "frame"),
-    ("time_s", pa.float64(), "s"),
-    ("channel", pa.string(), ""),
-    ("layer", pa.int64(), ""),
-    ("correlation", pa.float64(), "1"),
-    ("centroid_displacement", pa.float64(), "length"),
-    ("completeness", pa.float64(), "1"),
+    CELL,
+    FRAME,
+    TIME_S,
+    CHANNEL,
+    LAYER,
+    Column(
+        "correlation",
+        pa.float64(),
+        "1",
+        "Pearson correlation of the layer's window means with those in the next frame",
+    ),
+    Column(
+        "centroid_displacement",
+        pa.float64(),
+        "length",
+        "mean distance that the centroids of the layer's windows move to the next frame",
+    ),
+    Column("completeness", pa.float64(), "1", "share of the layer's windows that hold pixels"),
 )
 
 WINDOW_COLUMNS: Columns = (
-    ("cell", pa.int64(), ""),
-    ("frame", pa.int64(), "frame"),
-    ("time_s", pa.float64(), "s"),
-    ("channel", pa.string(), ""),
-    ("layer", pa.int64(), ""),
-    ("sector", pa.int64(), ""),
-    ("mean", pa.float64(), "a.u."),
-    ("sd", pa.float64(), "a.u."),
-    ("min", pa.float64(), "a.u."),
-    ("max", pa.float64(), "a.u."),
-    ("n_pixels", pa.float64(), "px²"),
-    ("n_nan", pa.float64(), "px²"),
-    ("area", pa.float64(), "length²"),
-    ("centroid_y", pa.float64(), "px"),
-    ("centroid_x", pa.float64(), "px"),
-    ("eccentricity", pa.float64(), "1"),
-    ("status", pa.string(), ""),
+    CELL,
+    FRAME,
+    TIME_S,
+    CHANNEL,
+    LAYER,
+    SECTOR,
+    Column("mean", pa.float64(), "a.u.", "mean of the signal in the window"),
+    Column("sd", pa.float64(), "a.u.", "standard deviation of the signal over the window's pixels"),
+    Column("min", pa.float64(), "a.u.", "smallest value of the signal in the window"),
+    Column("max", pa.float64(), "a.u.", "largest value of the signal in the window"),
+    Column(
+        "n_pixels",
+        pa.float64(),
+        "px²",
+        "number of pixels in the window, as the sum of their shares, so it need not be whole; times mean, it "
+        "is the window's total intensity",
+    ),
+    Column("n_nan", pa.float64(), "px²", "number of pixels in the window without a value, counted likewise"),
+    Column("area", pa.float64(), "length²", "area of the window in the cell"),
+    _CENTROID_Y,
+    _CENTROID_X,
+    Column(
+        "eccentricity", pa.float64(), "1", "form of the window in the cell: 0 is round, near 1 is a sliver"
+    ),
+    Column("status", pa.string(), "", "ok; NaN in signal; or no signal, if the run had no image"),
 )
 
 
@@ -111,7 +221,7 @@ def schema(columns: Columns, length_unit: str, velocity_unit: str = "") -> Any:
 
     Parameters
     ----------
-    columns : tuple of (name, type, unit)
+    columns : tuple of Column
     length_unit : {"µm", "px"}
     velocity_unit : str
         Such as "µm/s".
@@ -122,8 +232,10 @@ def schema(columns: Columns, length_unit: str, velocity_unit: str = "") -> Any:
     """
     return pa.schema(
         [
-            pa.field(name, kind, metadata={"unit": _unit(unit, length_unit, velocity_unit)})
-            for name, kind, unit in columns
+            pa.field(
+                column.name, column.kind, metadata={"unit": _unit(column.unit, length_unit, velocity_unit)}
+            )
+            for column in columns
         ]
     )
 

@@ -28,7 +28,7 @@ from cytodisk.store.tables import (
 _TABLES = (SOURCE_COLUMNS, TRACK_COLUMNS, WINDOW_COLUMNS, EDGE_COLUMNS, CONSISTENCY_COLUMNS)
 _WHOLE = r"[+-]?(0|[1-9][0-9]*)"
 _NUMBER = _WHOLE + r"(\.[0-9]*)?([eE][+-]?[0-9]+)?"
-_TAKEN = {*KEYS, *OWN_COLUMNS, *(name for columns in _TABLES for name, _, _ in columns)}
+_TAKEN = {*KEYS, *OWN_COLUMNS, *(column.name for columns in _TABLES for column in columns)}
 
 
 @dataclass(frozen=True)

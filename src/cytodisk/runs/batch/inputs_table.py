@@ -4,22 +4,30 @@ from __future__ import annotations
 
 import pyarrow as pa
 
-from cytodisk.store.tables import Columns
+from cytodisk.store.tables import Column, Columns
 
-# After the column "input" and those that the user gives.
+INPUT = Column("input", pa.string(), "", "name of the input in the batch file")
 INPUT_COLUMNS: Columns = (
-    ("kind", pa.string(), ""),
-    ("masks", pa.string(), ""),
-    ("signal", pa.string(), ""),
-    ("status", pa.string(), ""),
-    ("reason", pa.string(), ""),
-    ("cells", pa.int64(), ""),
-    ("frames", pa.int64(), ""),
-    ("mapped", pa.int64(), ""),
-    ("qc_flags", pa.int64(), ""),
-    ("pixel_size_um", pa.float64(), "µm"),
-    ("frame_interval_s", pa.float64(), "s"),
-    ("length_unit", pa.string(), ""),
-    ("velocity_unit", pa.string(), ""),
+    Column("kind", pa.string(), "", "movie or map"),
+    Column("masks", pa.string(), "", "file of the masks"),
+    Column("signal", pa.string(), "", "file of the signal; empty if there is none"),
+    Column(
+        "status",
+        pa.string(),
+        "",
+        "ok; refused (you can mend it); failed (unexpected); crashed, killed, timed out or out of memory",
+    ),
+    Column("reason", pa.string(), "", "why the input has no result; empty if it has one"),
+    Column("cells", pa.int64(), "", "number of cells"),
+    Column("frames", pa.int64(), "", "number of frames of all cells of a movie; of a map the same as cells"),
+    Column("mapped", pa.int64(), "", "number of those that have a map"),
+    Column("qc_flags", pa.int64(), "", "number of those whose mask has a QC flag"),
+    Column("pixel_size_um", pa.float64(), "µm", "side of a pixel; empty if unknown"),
+    Column("frame_interval_s", pa.float64(), "s", "time between frames; empty if unknown"),
+    Column("length_unit", pa.string(), "", "unit of lengths in this row: µm or px"),
+    Column("velocity_unit", pa.string(), "", "unit of velocities in this row, such as µm/s"),
 )
-OWN_COLUMNS = ("input", *(name for name, _, _ in INPUT_COLUMNS))
+"""Columns after `INPUT` and those that the user gives."""
+
+UNITS = INPUT_COLUMNS[-2:]
+OWN_COLUMNS = (INPUT.name, *(column.name for column in INPUT_COLUMNS))

@@ -14,11 +14,11 @@ import pyarrow.parquet as pq
 from cytodisk.errors import StudyError
 from cytodisk.runs.batch.batch_file import Batch
 from cytodisk.runs.batch.inputs import BatchInput, Value
-from cytodisk.runs.batch.inputs_table import INPUT_COLUMNS
+from cytodisk.runs.batch.inputs_table import INPUT, INPUT_COLUMNS, UNITS
 from cytodisk.runs.batch.rows import InputRow, read_row, row_key, study_key
 from cytodisk.store.merging import merge_tables, write_rows
 from cytodisk.store.study_folder import MAP_TABLES, MOVIE_TABLES
-from cytodisk.store.tables import Columns, schema
+from cytodisk.store.tables import Column, Columns, schema
 from cytodisk.store.targets import Store
 
 _OF_MAPS = ("cells", *MAP_TABLES.others)
@@ -96,14 +96,14 @@ def _remarks(done: Sequence[_Done]) -> Iterator[str]:
 def _own_columns(batch: Batch) -> Columns:
     """The input's name, and the columns that the user gives."""
     types = [_type([item.columns[k] for item in batch.inputs]) for k in range(len(batch.columns))]
-    own = tuple((name, kind, "") for name, kind in zip(batch.columns, types, strict=True))
-    return (("input", pa.string(), ""), *own)
+    own = (Column(name, kind, "", "your own") for name, kind in zip(batch.columns, types, strict=True))
+    return (INPUT, *own)
 
 
 def _unit_columns(columns: Columns) -> Columns:
     """Columns for the units of each row, of those quantities that a table has."""
-    units = " ".join(unit for _, _, unit in columns)
-    return tuple((f"{what}_unit", pa.string(), "") for what in ("length", "velocity") if what in units)
+    units = " ".join(column.unit for column in columns)
+    return tuple(column for column in UNITS if column.name.removesuffix("_unit") in units)
 
 
 def _type(values: Sequence[Value]) -> Any:
@@ -142,7 +142,8 @@ def _input_rows(
 
 
 def _columns_of(row: InputRow) -> dict[str, Any]:
-    return {name: getattr(row, name) for name, _, _ in INPUT_COLUMNS if name not in ("masks", "signal")}
+    names = (column.name for column in INPUT_COLUMNS)
+    return {name: getattr(row, name) for name in names if name not in ("masks", "signal")}
 
 
 def _paths(batch: Batch, item: BatchInput) -> dict[str, str | None]:
@@ -181,7 +182,7 @@ def _tables(batch: Batch) -> dict[str, Columns]:
     for tables in kept:
         for name, columns in {"cells": tables.cells, **tables.others}.items():
             known = merged.setdefault(name, {})
-            known |= {column[0]: column for column in columns if column[0] not in (*known, *_TIMES)}
+            known |= {column.name: column for column in columns if column.name not in (*known, *_TIMES)}
     return {name: tuple(columns.values()) for name, columns in merged.items()}
 
 

@@ -11,56 +11,69 @@ import xarray as xr
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import CytodiskError, MaskError, ReadError
 from cytodisk.store.study_folder import Tables
-from cytodisk.store.tables import CONSISTENCY_COLUMNS, Columns
+from cytodisk.store.tables import (
+    CELL,
+    CONSISTENCY_COLUMNS,
+    FRAME,
+    LABEL,
+    LAYER,
+    NOTES,
+    QC_FLAGS,
+    REASON,
+    SECONDS,
+    SOURCE,
+    Column,
+    Columns,
+)
 from cytodisk.windows.edge_windows import EdgeWindows
 from cytodisk.windows.on_cell import WindowsOnCell
 
-# A row a cell and method; in a movie "frames" are many, and what is counted is summed over them.
+_METHOD = Column(
+    "method",
+    pa.string(),
+    "",
+    "how windows are made: newton (the default map), harmonic, advection (of the paper), edge or rings",
+)
+# One row for each cell and method; counts are sums over the frames of a movie.
 _CELLS: Columns = (
-    ("cell", pa.int64(), ""),
-    ("source", pa.string(), ""),
-    ("frame", pa.int64(), "frame"),
-    ("label", pa.int64(), ""),
-    ("method", pa.string(), ""),
-    ("status", pa.string(), ""),
-    ("reason", pa.string(), ""),
-    ("notes", pa.string(), ""),
-    ("qc_flags", pa.string(), ""),
-    ("frames", pa.int64(), ""),
-    ("mapped", pa.int64(), ""),
-    ("area_px", pa.float64(), "px²"),
-    ("certificate_valid", pa.bool_(), ""),
-    ("invalid_maps", pa.int64(), ""),
-    ("flipped", pa.int64(), ""),
-    ("area_distortion", pa.float64(), "1"),
-    ("angle_distortion", pa.float64(), "1"),
-    ("coverage", pa.float64(), "1"),
-    ("lost_px", pa.float64(), "px²"),
-    ("empty_windows", pa.int64(), ""),
-    ("depth_px", pa.float64(), "px"),
-    ("seconds", pa.float64(), "s"),
+    CELL,
+    SOURCE,
+    FRAME,
+    LABEL,
+    _METHOD,
+    Column("status", pa.string(), "", "ok; refused or unreadable (the mask); no map (the method gave none)"),
+    REASON,
+    NOTES,
+    QC_FLAGS,
+    Column("frames", pa.int64(), "", "number of frames; 1 for a cell that is not followed"),
+    Column("mapped", pa.int64(), "", "number of those frames that have windows"),
+    Column("area_px", pa.float64(), "px²", "area of the cell, in a movie over all frames"),
+    Column("certificate_valid", pa.bool_(), "", "whether the map is proven to be one to one"),
+    Column("invalid_maps", pa.int64(), "", "number of maps that are not one to one"),
+    Column("flipped", pa.int64(), "", "number of triangles that the map turns over"),
+    Column("area_distortion", pa.float64(), "1", "mean of |ln λ| over the cell, as in the cells of a map"),
+    Column("angle_distortion", pa.float64(), "1", "median of the largest over the smallest stretch"),
+    Column("coverage", pa.float64(), "1", "share of the cell's area that lies in windows"),
+    Column("lost_px", pa.float64(), "px²", "area of the cell that lies in no window"),
+    Column("empty_windows", pa.int64(), "", "number of windows that hold no part of the cell"),
+    Column("depth_px", pa.float64(), "px", "depth of an edge-based layer; empty for other methods"),
+    SECONDS,
 )
 
-BY_LAYER = (
-    "completeness",
-    "area",
-    "area_cv",
-    "eccentricity",
-    "eccentricity_cv",
-    "pieces",
-    "one_piece",
-    "layer_pieces",
+_BY_LAYER: Columns = (
+    Column("completeness", pa.float64(), "1", "share of the layer's windows that hold a part of the cell"),
+    Column("area", pa.float64(), "px²", "mean area of the layer's windows"),
+    Column("area_cv", pa.float64(), "1", "coefficient of variation of their area"),
+    Column("eccentricity", pa.float64(), "1", "mean eccentricity of the layer's windows: 0 round, 1 a line"),
+    Column("eccentricity_cv", pa.float64(), "1", "coefficient of variation of their eccentricity"),
+    Column("pieces", pa.float64(), "1", "mean number of separate pieces of a window"),
+    Column("one_piece", pa.float64(), "1", "share of the windows that are in one piece"),
+    Column("layer_pieces", pa.float64(), "1", "number of separate pieces of the layer as a whole"),
 )
+BY_LAYER = tuple(column.name for column in _BY_LAYER)
 
-_LAYERS: Columns = (
-    ("cell", pa.int64(), ""),
-    ("frame", pa.int64(), "frame"),
-    ("method", pa.string(), ""),
-    ("layer", pa.int64(), ""),
-    *((name, pa.float64(), "px²" if name == "area" else "1") for name in BY_LAYER),
-)
-
-_CONSISTENCY: Columns = (CONSISTENCY_COLUMNS[0], ("method", pa.string(), ""), *CONSISTENCY_COLUMNS[1:])
+_LAYERS: Columns = (CELL, FRAME, _METHOD, LAYER, *_BY_LAYER)
+_CONSISTENCY: Columns = (CELL, _METHOD, *CONSISTENCY_COLUMNS[1:])
 
 COMPARED_CELLS = Tables(_CELLS, {"layers": _LAYERS})
 COMPARED_MOVIE = Tables(_CELLS, {"layers": _LAYERS, "consistency": _CONSISTENCY})

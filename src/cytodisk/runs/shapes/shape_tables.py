@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import pyarrow as pa
 
 from cytodisk.analysis.shape.complexity import complexity_score, why_unscored
 from cytodisk.analysis.shape.features import FEATURES, GROUPS, SCALE_FREE, feature_table
@@ -17,21 +16,24 @@ from cytodisk.errors import ReadError
 from cytodisk.files import replacing
 from cytodisk.store.provenance_file import read_provenance
 from cytodisk.store.study_folder import Tables
-from cytodisk.store.tables import Columns, read_table, write_table
+from cytodisk.store.tables import (
+    CELL,
+    FRAME,
+    LABEL,
+    NOTES,
+    QC_FLAGS,
+    REASON,
+    SOURCE,
+    STATUS,
+    TOUCHES_BORDER,
+    Columns,
+    read_table,
+    write_table,
+)
 
 SHAPES, SHAPES_CSV, FEATURES_CSV = "shapes.parquet", "shapes.csv", "features.csv"
 SCORES = ("complexity", "umap_1", "umap_2")
-_CELL: Columns = (
-    ("cell", pa.int64(), ""),
-    ("source", pa.string(), ""),
-    ("frame", pa.int64(), "frame"),
-    ("label", pa.int64(), ""),
-    ("status", pa.string(), ""),
-    ("reason", pa.string(), ""),
-    ("notes", pa.string(), ""),
-    ("qc_flags", pa.string(), ""),
-    ("touches_border", pa.bool_(), ""),
-)
+_CELL: Columns = (CELL, SOURCE, FRAME, LABEL, STATUS, REASON, NOTES, QC_FLAGS, TOUCHES_BORDER)
 SHAPE_TABLES = Tables(_CELL, {})
 """What a study has beside `shapes.parquet`: its table of cells, without features."""
 
