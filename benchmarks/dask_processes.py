@@ -10,6 +10,7 @@ import time
 from collections.abc import Mapping
 from pathlib import Path
 
+_START_S = 120.0
 _COMMON = ("--no-dashboard", "--dashboard-address", "127.0.0.1:0")
 
 
@@ -33,7 +34,7 @@ class DaskProcesses:
     def __exit__(self, *_: object) -> None:
         for process in self._processes:
             process.kill()
-            process.wait()
+            process.wait(timeout=60)
 
     def scheduler(self) -> subprocess.Popen[bytes]:
         """Start the scheduler, always at the same address."""
@@ -50,9 +51,12 @@ class DaskProcesses:
     def wait_for_workers(self) -> None:
         """Wait until the scheduler knows all workers that were started."""
         logs = list(self.folder.glob("*_worker.log"))
+        end = time.monotonic() + _START_S
         while not all("Registered to:" in log.read_text(errors="replace") for log in logs):
             if any(process.poll() is not None for process in self._processes):
                 raise RuntimeError("".join(log.read_text(errors="replace") for log in logs))
+            if time.monotonic() > end:
+                raise TimeoutError(f"no worker after {_START_S:g} s, see {self.folder}")
             time.sleep(0.05)
 
     def _start(

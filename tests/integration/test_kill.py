@@ -1,8 +1,7 @@
+"""Runs that are killed go on where they were."""
+
 import os
-import signal
-import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -10,13 +9,17 @@ import pandas as pd
 import pytest
 import tifffile
 import xarray as xr
+from deadlines import kill_after_parts, run_to_the_end
 
 import cytodisk as cd
 
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX"),
+]
 N_CELLS = 10
 
 
-@pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")
 def test_a_killed_run_is_resumed_to_the_same_results(tmp_path: Path) -> None:
     cells = [cd.simulate.migrating(seed, size=0.7) for seed in range(N_CELLS)]
     shape = np.max([cell.shape for cell in cells], axis=0)
@@ -31,20 +34,11 @@ def test_a_killed_run_is_resumed_to_the_same_results(tmp_path: Path) -> None:
         return [sys.executable, "-m", "cytodisk", "map", *files, *flags]
 
     out = tmp_path / "out"
-    killed = subprocess.Popen(command(out, 2), start_new_session=True)
-    try:
-        while len(list(out.glob(".parts/*.json"))) < 3 and killed.poll() is None:
-            time.sleep(0.002)
-    finally:
-        os.killpg(killed.pid, signal.SIGKILL)
-        killed.wait()
-    assert killed.returncode == -signal.SIGKILL
-    done = len(list(out.glob(".parts/*.json")))
-    assert 3 <= done < N_CELLS
+    assert 3 <= kill_after_parts(command(out, 2), out, 3) < N_CELLS
     assert not (out / "windows.parquet").exists()
 
-    subprocess.run(command(out, 2, "--resume"), check=True)
-    subprocess.run(command(tmp_path / "whole", 1), check=True)
+    run_to_the_end(command(out, 2, "--resume"))
+    run_to_the_end(command(tmp_path / "whole", 1))
     resumed, whole = cd.open_study(out), cd.open_study(tmp_path / "whole")
     assert resumed.cells["status"].tolist() == ["ok"] * N_CELLS
     pd.testing.assert_frame_equal(
@@ -75,25 +69,16 @@ def movie_files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     tifffile.imwrite(folder / "masks.tif", truth.masks.astype(np.uint8), photometric="minisblack")
     metadata = {"axes": "TCYX", "PhysicalSizeX": 0.16, "PhysicalSizeY": 0.16}
     tifffile.imwrite(folder / "signal.ome.tif", truth.signal.to_numpy(), metadata=metadata)
-    subprocess.run(movie_command(folder, folder / "whole", 1), check=True)
+    run_to_the_end(movie_command(folder, folder / "whole", 1))
     return folder
 
 
-@pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")
 def test_a_killed_movie_is_resumed_to_the_same_results(movie_files: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    killed = subprocess.Popen(movie_command(movie_files, out, 2), start_new_session=True)
-    try:
-        while len(list(out.glob(".parts/*.json"))) < 10 and killed.poll() is None:
-            time.sleep(0.002)
-    finally:
-        os.killpg(killed.pid, signal.SIGKILL)
-        killed.wait()
-    assert killed.returncode == -signal.SIGKILL
-    assert 10 <= len(list(out.glob(".parts/*.json"))) < N_FRAMES
+    assert 10 <= kill_after_parts(movie_command(movie_files, out, 2), out, 10) < N_FRAMES
     assert not (out / "windows.parquet").exists()
 
-    subprocess.run(movie_command(movie_files, out, 1, "--resume"), check=True)
+    run_to_the_end(movie_command(movie_files, out, 1, "--resume"))
     resumed, whole = cd.open_study(out), cd.open_study(movie_files / "whole")
     assert resumed.cells["status"].tolist().count("refused") == 3
     assert resumed.cells["status"].tolist().count("ok") == N_FRAMES - 3

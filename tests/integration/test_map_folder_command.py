@@ -1,8 +1,5 @@
 import os
-import signal
-import subprocess
 import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +9,7 @@ import pandas as pd
 import pytest
 import tifffile
 from command_line import Run, assert_refused
+from deadlines import kill_after_parts, run_to_the_end
 
 import cytodisk as cd
 from cytodisk.cli.console import console_for
@@ -98,6 +96,7 @@ def test_maps_that_are_not_one_to_one_are_not_called_so(
     assert "12 mapped, 10 of them one to one\n" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")
 def test_a_killed_run_over_a_folder_goes_on_to_the_same_tables(tmp_path: Path) -> None:
     (tmp_path / "in").mkdir()
@@ -109,17 +108,9 @@ def test_a_killed_run_over_a_folder_goes_on_to_the_same_tables(tmp_path: Path) -
         return [sys.executable, "-m", "cytodisk", "map", str(tmp_path / "in"), "-o", str(out), *flags]
 
     out = tmp_path / "out"
-    killed = subprocess.Popen(command(out, 2), start_new_session=True)
-    try:
-        while len(list(out.glob(".parts/*.json"))) < 2 and killed.poll() is None:
-            time.sleep(0.002)
-    finally:
-        os.killpg(killed.pid, signal.SIGKILL)
-        killed.wait()
-    assert killed.returncode == -signal.SIGKILL
-    assert 2 <= len(list(out.glob(".parts/*.json"))) < 8  # of 8 and 2 cells an image
-    subprocess.run(command(out, 2, "--resume"), check=True)
-    subprocess.run(command(tmp_path / "whole", 1), check=True)
+    assert 2 <= kill_after_parts(command(out, 2), out, 2) < 8  # of 8 and 2 cells an image
+    run_to_the_end(command(out, 2, "--resume"))
+    run_to_the_end(command(tmp_path / "whole", 1))
     resumed, whole = cd.open_study(out), cd.open_study(tmp_path / "whole")
     assert len(whole.cells) == 40
     pd.testing.assert_frame_equal(

@@ -17,6 +17,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import tifffile
+from deadlines import wait_until
 
 import cytodisk as cd
 from cytodisk.errors import MaskError, OtherRunError, ParameterError, ReadError, StudyError
@@ -98,13 +99,6 @@ def children() -> list[int]:
     return [int(pid) for pid, parent, what in rows if int(parent) in parents and "batch.child" in what]
 
 
-def wait_for(happened: Callable[[], object]) -> None:
-    deadline = time.monotonic() + 60
-    while not happened():
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
-
-
 def rows_done(out: Path) -> int:
     return len(list(out.glob("rows/[!.]*.json")))
 
@@ -143,6 +137,7 @@ def test_inputs_are_merged_with_their_columns_in_front(quiet: Path) -> None:
     assert pd.read_csv(quiet / "inputs.csv")["input"].tolist() == names
 
 
+@pytest.mark.slow
 def test_killed_and_resumed_by_two_workers_it_is_the_same_to_the_last_bit(
     files: Path, quiet: Path, tmp_path: Path
 ) -> None:
@@ -150,14 +145,14 @@ def test_killed_and_resumed_by_two_workers_it_is_the_same_to_the_last_bit(
     command = [sys.executable, "-m", "cytodisk", "batch", str(files / "study.toml"), "-o", str(out)]
     run = subprocess.Popen([*command, "--workers", "2", "-q"])
     try:
-        wait_for(lambda: list(out.glob("inputs/*/.parts/*.json")))
+        wait_until(lambda: any(out.glob("inputs/*/.parts/*.json")), "a frame was done")
         for child in children():
             os.kill(child, signal.SIGKILL)
-        wait_for(lambda: rows_done(out))
+        wait_until(lambda: rows_done(out) > 0, "an input was done")
     finally:
         run.kill()
-        run.wait()
-    wait_for(lambda: not children())
+        run.wait(timeout=60)
+    wait_until(lambda: not children(), "the processes of the run were gone")
     assert 1 <= rows_done(out) < 5
     assert not (out / "cells.parquet").exists()
     (out / "rows" / ".movie_0.77.tmp.json").touch()  # as a kill in the middle of writing leaves it
@@ -171,6 +166,7 @@ def test_killed_and_resumed_by_two_workers_it_is_the_same_to_the_last_bit(
         assert (out / f"{name}.parquet").read_bytes() == (quiet / f"{name}.parquet").read_bytes(), name
 
 
+@pytest.mark.slow
 def test_an_input_that_hangs_or_crashes_has_a_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("crashes.tif", "hangs.tif"):
         os.mkfifo(tmp_path / name)  # whoever reads it waits for ever
@@ -203,7 +199,7 @@ def test_a_full_disk_stops_the_run_and_marks_no_input_as_failed(files: Path, tmp
     out = tmp_path / "out"
     command = [sys.executable, "-m", "cytodisk", "batch", str(files / "study.toml"), "-o", str(out)]
     limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (12_000, 12_000))  # less than a map
-    run = subprocess.run(command, preexec_fn=limit, capture_output=True, text=True, check=False)
+    run = subprocess.run(command, preexec_fn=limit, capture_output=True, text=True, check=False, timeout=200)
     assert run.returncode == 2
     assert "cannot write" in run.stderr
     assert "what was done is kept" in run.stderr

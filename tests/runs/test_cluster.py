@@ -15,6 +15,7 @@ from cytodisk.errors import StudyError
 from cytodisk.runs.batch.batch_file import read_batch
 from cytodisk.runs.batch.batch_run import run_batch
 
+pytestmark = pytest.mark.slow
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 IMAGES = 6
 TABLES = ("cells.parquet", "windows.parquet", "edge.parquet", "consistency.parquet", "inputs.parquet")
@@ -100,7 +101,7 @@ def test_a_worker_that_is_killed_changes_nothing_in_the_tables(
         progress=after(2, workers[0].kill),
         tell=lambda words: None,
     )
-    assert workers[0].wait() == -9
+    assert workers[0].wait(timeout=60) == -9
     assert summary.statuses == {"ok": IMAGES + 1}
     assert merged(tmp_path / "out") == quiet
 
@@ -112,7 +113,7 @@ def test_a_run_whose_scheduler_was_lost_is_resumed_to_the_same_tables(
     run = {"out": tmp_path / "out", "scheduler": cluster.address, "tell": lambda words: None}
     with pytest.raises(StudyError, match=r"scheduler tcp://.* was lost: what was done is kept.*--resume"):
         run_batch(read_batch(study), **run, progress=after(2, scheduler.kill))
-    scheduler.wait()
+    scheduler.wait(timeout=60)
     done = len(list((tmp_path / "out" / "rows").glob("[!.]*.json")))
     assert 2 <= done <= IMAGES
     cluster.scheduler(), cluster.worker()

@@ -220,4 +220,5 @@ def test_what_speaks_otherwise_is_no_scheduler() -> None:
         address = f"tcp://127.0.0.1:{other.getsockname()[1]}"
         with pytest.raises(StudyError, match="is no Dask scheduler"), cluster.connected(address):
             pass
-        talks.join()
+        talks.join(timeout=30)
+        assert not talks.is_alive()

@@ -236,6 +236,7 @@ def test_the_depth_decides_the_layers(files: tuple[Path, Path], tmp_path: Path) 
     assert half.grid.layers == pytest.approx(2 * inputs.grid.layers, abs=1)
 
 
+@pytest.mark.slow
 def test_results_do_not_depend_on_workers(files: tuple[Path, Path], study: cd.Study, tmp_path: Path) -> None:
     assert_same_movie(study, run_movie(open_movie(*files, SMALL), tmp_path / "two", workers=2))
 

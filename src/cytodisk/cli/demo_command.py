@@ -12,6 +12,7 @@ from cytodisk.cli.console import Quiet, console_for, progress_bar
 from cytodisk.cli.correlate_command import NOTHING_CHANGED, draw_correlation, write_page
 from cytodisk.cli.correlation_words import say_correlation
 from cytodisk.cli.movie_command import draw_movie, finish_movie, say_movie
+from cytodisk.errors import MissingPartError
 from cytodisk.runs.versions import NOT_INSTALLED, PACKAGES, PARTS, installed
 
 _AGAIN = "run the same command again"
@@ -81,7 +82,10 @@ def demo_command(
             found = correlate_study(study, "edge", "velocity", progress=progress)
         drawings.append(beside.submit(_draw_correlation, study.path))
         say_correlation(console, found)
-        write_page(console, quiet, study)
+        try:
+            write_page(console, quiet, study)
+        except MissingPartError as missing:
+            console.print(f"no report: {missing}")
         with progress_bar(quiet, "drawings", total=len(drawings), again=_AGAIN) as progress:
             for number, drawing in enumerate(drawings):
                 drawing.result()

@@ -23,6 +23,7 @@ PACKAGES = (
 PARTS = {
     "report": ("bokeh", "jinja2"),
     "link": ("laptrack",),
+    "demons": ("SimpleITK",),
     "umap": ("umap-learn",),
     "cluster": ("distributed", "fsspec"),
 }

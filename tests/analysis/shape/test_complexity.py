@@ -32,6 +32,7 @@ def two_features(monkeypatch: pytest.MonkeyPatch) -> None:
     )
 
 
+@pytest.mark.slow
 def test_umap_orders_cells_from_plain_to_spiky_ones(
     features: pd.DataFrame, monkeypatch: pytest.MonkeyPatch
 ) -> None:

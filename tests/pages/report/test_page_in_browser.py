@@ -15,6 +15,8 @@ from cytodisk.pages.report.page import write_report
 from cytodisk.store.correlation_store import write_correlation
 from cytodisk.store.study import Study
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def page(browser: webdriver.Chrome, written: Path) -> Page:
