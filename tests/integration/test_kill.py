@@ -9,9 +9,9 @@ import pandas as pd
 import pytest
 import tifffile
 import xarray as xr
-from deadlines import kill_after_parts, run_to_the_end
 
 import cytodisk as cd
+from deadlines import kill_after_parts, run_to_the_end
 
 pytestmark = [
     pytest.mark.slow,

@@ -9,11 +9,11 @@ import pandas as pd
 import pytest
 import tifffile
 from command_line import Run, assert_refused
-from deadlines import kill_after_parts, run_to_the_end
 
 import cytodisk as cd
 from cytodisk.cli.console import console_for
 from cytodisk.cli.map_totals import finish_map, percent
+from deadlines import kill_after_parts, run_to_the_end
 
 GRID = ("--layers", "3", "--sectors", "8", "--edge-length", "2", "--figures", "0")
 

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cytodisk.errors import ParameterError
+import cytodisk as cd
+from cytodisk.errors import MissingPartError, ParameterError
 from cytodisk.geometry.locate import nearest_on_outline
 from cytodisk.geometry.polygon import edge_lengths
 from cytodisk.motion.contour import Contour
@@ -179,3 +180,9 @@ def test_bad_outlines_are_named() -> None:
 def test_importing_the_module_leaves_the_registration_library_alone() -> None:
     program = "import sys, cytodisk.motion.demons; sys.exit('SimpleITK' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
+
+
+def test_without_simple_itk_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "SimpleITK", None)
+    with pytest.raises(MissingPartError, match=r"pip install .*\[demons\]"):
+        cd.map_movie(cd.simulate.movie("bulging", frames=2, radius_px=10.0).masks, tracker="demons")

@@ -5,8 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -17,7 +15,6 @@ import numpy as np
 import pandas as pd
 import pytest
 import tifffile
-from deadlines import wait_until
 
 import cytodisk as cd
 from cytodisk.errors import MaskError, OtherRunError, ParameterError, ReadError, StudyError
@@ -31,6 +28,7 @@ from cytodisk.runs.parameters import MovieParameters
 from cytodisk.store.study_folder import alone_in
 from cytodisk.store.tables import read_table
 from cytodisk.store.targets import FolderStore
+from deadlines import wait_until
 
 resource = pytest.importorskip("resource", reason="limits, signals and named pipes are POSIX")
 TABLES = ("cells", "windows", "edge", "consistency", "inputs")

@@ -1,6 +1,7 @@
 """A run over the shapes of many cells: what it writes, and that nothing that was measured is lost."""
 
 import json
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -196,3 +197,15 @@ def test_masks_for_pictures_are_those_of_the_cells(folder: Path, tmp_path: Path)
 def test_workers_must_be_positive(folder: Path, tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="workers"):
         run(folder, tmp_path / "out", workers=0)
+
+
+def test_without_umap_there_are_features_and_words_on_the_score(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "umap", None)
+    table = run(folder, tmp_path / "out")
+    assert table["complexity"].isna().all()
+    measured = table["status"] == "ok"
+    assert table.loc[measured, "circularity"].notna().all()
+    provenance = json.loads((tmp_path / "out" / "provenance.json").read_text(encoding="utf-8"))
+    assert any("pip install" in words for words in provenance["warnings"])

@@ -11,7 +11,7 @@ from scipy.interpolate import make_interp_spline
 from skimage.draw import polygon2mask
 
 from cytodisk.arrays import BoolArray, FloatArray
-from cytodisk.errors import ParameterError
+from cytodisk.errors import MissingPartError, ParameterError
 from cytodisk.geometry.polygon import edge_lengths
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.snake import edge_map, gradient_vector_flow, sample_field, settle
@@ -183,14 +183,24 @@ def space_evenly(points_yx: FloatArray) -> FloatArray:
     return np.asarray(spline(np.interp(wanted, arc, parameter)), dtype=np.float64)
 
 
+def _simple_itk() -> Any:
+    """The package, whose functions have no types."""
+    try:
+        import SimpleITK
+    except ImportError as error:
+        raise MissingPartError(
+            'tracker "demons" needs SimpleITK, which is not installed: in the clone of cytodisk type '
+            ".venv/bin/pip install -c constraints.txt -e '.[demons]'"
+        ) from error
+    return SimpleITK
+
+
 def _displacement(fixed: BoolArray, moving: BoolArray, parameters: DemonsParameters) -> FloatArray:
     """Displacement (row, column) in pixels that takes each pixel of one mask to its place in the other.
 
-    Shape (2, H, W). An import here keeps that of the package fast.
+    Shape (2, H, W).
     """
-    import SimpleITK
-
-    sitk: Any = SimpleITK  # its functions have no types
+    sitk = _simple_itk()
     demons = sitk.SymmetricForcesDemonsRegistrationFilter()
     # The sums over threads depend on their number.
     demons.SetNumberOfThreads(1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,10 @@ from cytodisk.errors import MissingPartError, ParameterError
 
 LEAST_CELLS = 10
 _LEAST_FEATURES = 2  # that vary: a plane has two axes
+_WITHOUT_UMAP = (
+    "the complexity score needs umap-learn, which is not installed: in the clone of cytodisk type "
+    ".venv/bin/pip install -c constraints.txt -e '.[umap]'"
+)
 _NORMAL_QUARTILES = 1.349  # between the quartiles of a normal distribution with standard deviation 1
 
 
@@ -80,7 +85,7 @@ def complexity_score(
     if not number or not 0 <= min_dist <= 1:
         raise ParameterError(f"min_dist must be a number from 0 to 1, got {min_dist!r}")
     if reason := why_unscored(features):
-        raise ParameterError(reason)
+        raise (MissingPartError if reason == _WITHOUT_UMAP else ParameterError)(reason)
     names, values = _measured(features)
     known = np.isfinite(values).all(axis=1)
     comparable = standardised(values[known])
@@ -138,7 +143,7 @@ def why_unscored(features: pd.DataFrame) -> str:
             "features has the same circularity in every cell, which tells the plain end of the axis from the "
             "complex one: pass cells of different shapes"
         )
-    return ""
+    return _WITHOUT_UMAP if find_spec("umap") is None else ""
 
 
 def _measured(features: pd.DataFrame) -> tuple[list[str], FloatArray]:
@@ -228,10 +233,7 @@ def load_umap() -> Any:
             warnings.simplefilter("ignore", ImportWarning)  # that TensorFlow, which is not used, is missing
             import umap
     except ImportError as error:
-        raise MissingPartError(
-            "the complexity score needs umap-learn, which is not installed: in the clone of cytodisk type "
-            ".venv/bin/pip install -c constraints.txt -e '.[umap]'"
-        ) from error
+        raise MissingPartError(_WITHOUT_UMAP) from error
     return umap
 
 

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 import pandas as pd
 from pydantic import BaseModel, ConfigDict, Field
 
-from cytodisk.analysis.shape.complexity import load_umap, why_unscored
+from cytodisk.analysis.shape.complexity import why_unscored
 from cytodisk.analysis.shape.features import TOO_SMALL, shape_row, split_qc_flags
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import ReadError
@@ -101,7 +101,8 @@ def run_shapes(
     Returns
     -------
     DataFrame
-        The content of `shapes.parquet`. A cell that could not be measured has a row with the reason.
+        The content of `shapes.parquet`. A cell that could not be measured has a row with the reason. Without
+        umap-learn the features are there and the complexity is NaN.
 
     Raises
     ------
@@ -109,11 +110,8 @@ def run_shapes(
         `workers` is below 1, or both `resume` and `overwrite` are set.
     StudyError
         The folder cannot be used.
-    MissingPartError
-        umap-learn is not installed; nothing was done.
     """
     check_options(workers, resume, overwrite)
-    load_umap()  # before the work, not after it
     parameters = ShapeParameters() if parameters is None else parameters
     provenance = _describe(inputs, parameters)
     with alone_in(out):
