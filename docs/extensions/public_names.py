@@ -1,10 +1,9 @@
-"""Sphinx extension: write the pages of the Python reference from the package's own lists of names.
+"""Sphinx extension: write the pages of the Python reference from the package's stubs.
 
-A public name appears on the page of the folder of `src/cytodisk` that it comes from, so that the reference
-cannot miss one.
+A stub lists the public names in groups, each under a comment. The comment becomes the heading of a table, so the
+reference shows every name, in the order of the stub.
 """
 
-import inspect
 import re
 from pathlib import Path
 from typing import Any
@@ -15,19 +14,12 @@ from sphinx.errors import ExtensionError
 import cytodisk
 from cytodisk import simulate
 
-PAGES = {
-    "geometry": ("Masks", "What a mask needs before it can be mapped, and what was changed."),
-    "disk": ("Maps", "From a mask to the disk and back, with the proof that comes with every map."),
-    "windows": ("Windows and sampling", "Divide a cell into windows, and measure a signal in each."),
-    "motion": ("Movies", "Follow a cell through time: maps in correspondence, velocity of the edge."),
-    "analysis": ("Analysis", "Signals through time, what they correlate with, episodes of the edge, shapes."),
-    "study": ("Work on a whole study", "What the command line does, from Python."),
-    "io": ("Files and studies", "Read images and masks, and the tables and maps of a run."),
-    "report": ("Report", "One page with all views of a cell, red flags first."),
-}
-PLOT_WORDS = "Functions that draw take Axes and return artists: put a picture together as you need it."
+PACKAGE = Path(cytodisk.__file__).parent
+NAMES_WORDS = "``import cytodisk as cd`` gives you all of these names, such as ``cd.map_to_disk``."
+PLOT_WORDS = "These functions take Axes and return artists, so you can put your own figure together."
+PAGES_WORDS = "These functions write whole figures to files."
 SIMULATE_WORDS = "Cells, signals and movies with known answers, for the demo, these pages and tests."
-ERRORS_WORDS = "Every fault of an input ends in one of these; the message says what came and what to do."
+ERRORS_WORDS = "A wrong input ends in one of these errors. Its message says what came and what to do."
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
@@ -38,32 +30,37 @@ def setup(app: Sphinx) -> dict[str, Any]:
 def write_pages(app: Sphinx, _config: Any) -> None:
     folder = Path(app.srcdir) / "reference" / "python"
     folder.mkdir(parents=True, exist_ok=True)
-    by_page: dict[str, list[str]] = {page: [] for page in PAGES}
-    for name, home in cytodisk._HOME.items():
-        page = home.split(".")[0]
-        if page not in by_page:
-            raise ExtensionError(f"cytodisk.{name} comes from {page}/: give that a page in {__file__}")
-        by_page[page].append(name)
-    for page, names in by_page.items():
-        title, words = PAGES[page]
-        write(folder / f"{page}.rst", [*heading(title, "="), words, "", *table("cytodisk", names)])
-    write(folder / "plot.rst", plot_page())
-    write(folder / "simulate.rst", simulate_page())
-    write(folder / "errors.rst", errors_page())
+    pages = {
+        "names": names_page("cytodisk", PACKAGE, "Functions and classes", NAMES_WORDS),
+        "plot": names_page("cytodisk.plot", PACKAGE / "plot", "Pictures", PLOT_WORDS),
+        "pages": names_page("cytodisk.pages", PACKAGE / "pages", "Figures in files", PAGES_WORDS),
+        "simulate": simulate_page(),
+        "errors": errors_page(),
+    }
+    for name, lines in pages.items():
+        write(folder / f"{name}.rst", lines)
 
 
-def plot_page() -> list[str]:
-    """A table for each paragraph of the module's docstring, "Windows: draw_windows, …", with its names."""
-    left = set(cytodisk.plot.__all__)
-    lines = [*heading("Pictures", "="), PLOT_WORDS, ""]
-    for paragraph in inspect.cleandoc(cytodisk.plot.__doc__ or "").split("\n\n")[1:]:
-        title, _, words = paragraph.replace("\n", " ").partition(":")
-        names = sorted(left & set(re.findall(r"\w+", words)), key=str.lower)
-        left -= set(names)
-        lines += [*heading(title, "-"), *table("cytodisk.plot", names)]
-    if left:
-        raise ExtensionError(f"the docstring of cytodisk.plot does not name {', '.join(sorted(left))}")
+def names_page(module: str, folder: Path, title: str, words: str) -> list[str]:
+    """A page with a table for each group of a stub."""
+    lines = [*heading(title, "="), words, ""]
+    for group, names in groups(folder / "__init__.pyi").items():
+        lines += [*heading(group, "-"), *table(module, names)]
     return lines
+
+
+def groups(stub: Path) -> dict[str, list[str]]:
+    """Public names of a stub by the comment above them."""
+    found: dict[str, list[str]] = {}
+    title = ""
+    for line in stub.read_text(encoding="utf-8").splitlines():
+        if line.startswith("# ") and not line.startswith("# ruff"):
+            title = line.removeprefix("# ")
+        elif name := re.fullmatch(r"from \.\S+ import \w+ as (\w+)", line):
+            if not title:
+                raise ExtensionError(f"{stub}: {name[1]} stands under no comment that names its group")
+            found.setdefault(title, []).append(name[1])
+    return found
 
 
 def simulate_page() -> list[str]:
@@ -72,7 +69,7 @@ def simulate_page() -> list[str]:
     kinds = [name for name in simulate.__all__ if isinstance(getattr(simulate, name), tuple)]
     lists = [f"``{name}``\n    {', '.join(getattr(simulate, name))}\n" for name in kinds]
     start = [*heading("Simulated cells and movies", "="), SIMULATE_WORDS, ""]
-    return [*start, *table("cytodisk.simulate", names), *lists]
+    return [*start, *table("cytodisk.simulate", sorted(names, key=str.lower)), *lists]
 
 
 def errors_page() -> list[str]:
@@ -87,7 +84,7 @@ def heading(text: str, underline: str) -> list[str]:
 
 def table(module: str, names: list[str]) -> list[str]:
     """Table of names with their first sentences, and a page for each."""
-    rows = [f"   {name}" for name in sorted(names, key=str.lower)]
+    rows = [f"   {name}" for name in names]
     return [f".. currentmodule:: {module}", "", ".. autosummary::", "   :toctree: generated", "", *rows, ""]
 
 

@@ -48,7 +48,7 @@ numpydoc_xref_ignore = "all"  # but for our own classes
 DEFAULT_LINKS.clear()  # of other projects, whose lists of names are not at hand without a network
 numpydoc_xref_aliases = {
     name: f"{module.__name__}.{name}"
-    for module in (cytodisk, cytodisk.errors, cytodisk.simulate, cytodisk.plot)
+    for module in (cytodisk, cytodisk.errors, cytodisk.simulate, cytodisk.plot, cytodisk.pages)
     for name in dir(module)
     if isinstance(getattr(module, name), type)
 }

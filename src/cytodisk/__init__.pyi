@@ -1,4 +1,6 @@
-"""The public names, by what a user does."""
+"""The public names, by what a user does; the reference shows these groups."""
+
+# ruff: noqa: I001 - groups, not the alphabet
 
 from . import errors as errors
 from . import pages as pages
@@ -8,74 +10,74 @@ from . import simulate as simulate
 __version__: str
 
 # Files and their scale
-from .analysis.activity import sample_movie as sample_movie
-from .analysis.consistency import centroid_displacement as centroid_displacement
-from .analysis.consistency import consecutive_correlation as consecutive_correlation
-from .analysis.correlation.cross_correlation import correlation_by_layer as correlation_by_layer
-
-# Signals and the edge
-from .analysis.correlation.cross_correlation import cross_correlate as cross_correlate
-from .analysis.correlation.jitter_mark import jitter_step as jitter_step
-from .analysis.correlation.peaks import peak_correlation as peak_correlation
-from .analysis.correlation.prepared_series import prepare_series as prepare_series
-from .analysis.event_average import average_around as average_around
-from .analysis.events import edge_events as edge_events
-from .analysis.kymograph import boundary_kymograph as boundary_kymograph
-from .analysis.kymograph import line_kymograph as line_kymograph
-from .analysis.pairs.pair_correlation import correlate_pairs as correlate_pairs
-from .analysis.pairs.window_distances import window_distances as window_distances
-from .analysis.shape.complexity import complexity_score as complexity_score
-
-# Shapes
-from .analysis.shape.features import shape_features as shape_features
-from .analysis.window_measures import measures_by_layer as measures_by_layer
-from .analysis.window_measures import window_measures as window_measures
-from .disk.certificate import Certificate as Certificate
-from .disk.certificate import certify as certify
-from .disk.disk_map import DiskMap as DiskMap
-from .disk.disk_map import load_map as load_map
-from .disk.distortion import Distortion as Distortion
-from .disk.mapping import map_to_disk as map_to_disk
-from .geometry.mask import MaskReport as MaskReport
+from .images.frames import read_image as read_image
+from .scale import Scale as Scale
 
 # One cell: mask, map, proof
 from .geometry.mask import clean_mask as clean_mask
-from .images.frames import read_image as read_image
-from .motion.demons import DemonsParameters as DemonsParameters
-from .motion.disk_movie import DiskMovie as DiskMovie
+from .geometry.mask import MaskReport as MaskReport
+from .disk.mapping import map_to_disk as map_to_disk
+from .disk.disk_map import DiskMap as DiskMap
+from .disk.disk_map import load_map as load_map
+from .disk.certificate import certify as certify
+from .disk.certificate import Certificate as Certificate
+from .disk.distortion import Distortion as Distortion
 
-# Movies
+# Windows, and the signal in them
+from .windows.grid import polar_windows as polar_windows
+from .windows.grid import PolarGrid as PolarGrid
+from .windows.cell_windows import CellWindows as CellWindows
+from .windows.sample import sample as sample
+from .windows.edge_windows import edge_windows as edge_windows
+from .windows.edge_windows import EdgeGrid as EdgeGrid
+from .windows.edge_windows import EdgeWindows as EdgeWindows
+from .windows.ring_windows import ring_windows as ring_windows
+from .windows.ring_windows import RingGrid as RingGrid
+from .windows.ring_windows import RingWindows as RingWindows
+from .windows.on_cell import WindowsOnCell as WindowsOnCell
+from .analysis.window_measures import window_measures as window_measures
+from .analysis.window_measures import measures_by_layer as measures_by_layer
+
+# Movies and the edge
 from .motion.map_movie import map_movie as map_movie
+from .motion.disk_movie import DiskMovie as DiskMovie
+from .motion.demons import DemonsParameters as DemonsParameters
+from .analysis.activity import sample_movie as sample_movie
+from .motion.velocity import edge_velocity as edge_velocity
 from .motion.velocity import boundary_velocity as boundary_velocity
 from .motion.velocity import edge_changes as edge_changes
-from .motion.velocity import edge_velocity as edge_velocity
-from .pages.report.flags import red_flags as red_flags
-from .pages.report.page import write_report as write_report
+from .analysis.consistency import consecutive_correlation as consecutive_correlation
+from .analysis.consistency import centroid_displacement as centroid_displacement
+from .analysis.kymograph import boundary_kymograph as boundary_kymograph
+from .analysis.kymograph import line_kymograph as line_kymograph
+
+# Correlations and events
+from .analysis.correlation.cross_correlation import cross_correlate as cross_correlate
+from .analysis.correlation.peaks import peak_correlation as peak_correlation
+from .analysis.correlation.cross_correlation import correlation_by_layer as correlation_by_layer
+from .analysis.pairs.pair_correlation import correlate_pairs as correlate_pairs
+from .analysis.pairs.window_distances import window_distances as window_distances
+from .analysis.correlation.prepared_series import prepare_series as prepare_series
+from .analysis.correlation.jitter_mark import jitter_step as jitter_step
+from .analysis.events import edge_events as edge_events
+from .analysis.event_average import average_around as average_around
+
+# Shapes
+from .analysis.shape.features import shape_features as shape_features
+from .analysis.shape.complexity import complexity_score as complexity_score
+
+# Runs: what the commands do
 from .runs.compare_windows.compare_cells import compare_cells as compare_cells
 from .runs.compare_windows.compare_movie import compare_movie as compare_movie
 from .runs.compare_windows.compare_parameters import CompareMovieParameters as CompareMovieParameters
 from .runs.compare_windows.compare_parameters import CompareParameters as CompareParameters
-from .runs.compare_windows.comparison import Comparison as Comparison
-from .runs.compare_windows.comparison import open_comparison as open_comparison
-
-# Runs: what the commands do
 from .runs.correlate.correlate_run import correlate_study as correlate_study
-from .runs.shapes.shape_tables import open_shapes as open_shapes
-from .scale import Scale as Scale
-from .store.study import Study as Study
 
 # Results of runs
 from .store.study import open_study as open_study
-from .windows.cell_windows import CellWindows as CellWindows
-from .windows.edge_windows import EdgeGrid as EdgeGrid
-from .windows.edge_windows import EdgeWindows as EdgeWindows
-from .windows.edge_windows import edge_windows as edge_windows
-from .windows.grid import PolarGrid as PolarGrid
-
-# Windows, and the signal in them
-from .windows.grid import polar_windows as polar_windows
-from .windows.on_cell import WindowsOnCell as WindowsOnCell
-from .windows.ring_windows import RingGrid as RingGrid
-from .windows.ring_windows import RingWindows as RingWindows
-from .windows.ring_windows import ring_windows as ring_windows
-from .windows.sample import sample as sample
+from .store.study import Study as Study
+from .runs.compare_windows.comparison import open_comparison as open_comparison
+from .runs.compare_windows.comparison import Comparison as Comparison
+from .runs.shapes.shape_tables import open_shapes as open_shapes
+from .pages.report.flags import red_flags as red_flags
+from .pages.report.page import write_report as write_report

@@ -1,9 +1,14 @@
-from .animation import write_animation as write_animation
+# ruff: noqa: I001 - groups, not the alphabet
+
+# Figures of a study
 from .cell_pages import write_cell_figures as write_cell_figures
-from .compared_cells import write_compared_cells as write_compared_cells
-from .compared_layers import write_comparison as write_comparison
-from .compared_movie import write_compared_movie as write_compared_movie
-from .correlation_files import write_correlation_figures as write_correlation_figures
 from .movie_pages import write_movie_figures as write_movie_figures
-from .overview import write_overview as write_overview
+from .correlation_files import write_correlation_figures as write_correlation_figures
 from .shape_pages import write_shape_figures as write_shape_figures
+from .overview import write_overview as write_overview
+from .animation import write_animation as write_animation
+
+# Figures of a comparison
+from .compared_layers import write_comparison as write_comparison
+from .compared_cells import write_compared_cells as write_compared_cells
+from .compared_movie import write_compared_movie as write_compared_movie
