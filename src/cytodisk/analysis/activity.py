@@ -63,6 +63,20 @@ def sample_movie(
     ------
     SignalError
         The signals do not fit the movie.
+
+    See Also
+    --------
+    sample : One frame, or one cell.
+    edge_velocity : The motion of the edge by the same frames and sectors.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=3, radius_px=15.0)
+    >>> movie = cd.map_movie(truth.masks)
+    >>> activity = cd.sample_movie(movie, cd.polar_windows(layers=2, sectors=6), truth.signal)
+    >>> dict(activity["mean"].sizes)
+    {'time': 3, 'channel': 2, 'layer': 2, 'sector': 6}
     """
     frames, channels = parse_signals(signals, len(movie), movie.image_shape)
     shape = (len(movie), len(channels), grid.layers, grid.sectors)

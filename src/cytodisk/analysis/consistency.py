@@ -27,9 +27,23 @@ def consecutive_correlation(activity: xr.DataArray) -> xr.DataArray:
         Of frame t with t + 1, over the sectors that have a signal in both, stored at t: the last is NaN, as
         is a pair with fewer than three such sectors, or in which a signal does not vary.
 
+    See Also
+    --------
+    centroid_displacement : How far the windows move.
+
     References
     ----------
     u-Unwrap, section 3, Fig. 4C.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import xarray as xr
+    >>> import cytodisk as cd
+    >>> frame = np.array([1.0, 4.0, 2.0, 3.0])
+    >>> activity = xr.DataArray([[frame], [2 * frame], [-frame]], dims=("time", "layer", "sector"))
+    >>> cd.consecutive_correlation(activity).to_numpy().round(6).T
+    array([[ 1., -1., nan]])
     """
     values = activity.transpose("time", ..., "sector").to_numpy()
     out = np.full(values.shape[:-1], np.nan)
@@ -57,9 +71,23 @@ def centroid_displacement(movie: DiskMovie, activity: xr.Dataset) -> xr.DataArra
         t: the last is NaN, and so is a step at which tracking started anew, or the window was empty before or
         after. Its mean over windows is the paper's measure.
 
+    See Also
+    --------
+    consecutive_correlation : How alike the signal of consecutive frames is.
+
     References
     ----------
     u-Unwrap, section 3, Fig. 4D.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("still", frames=3, radius_px=15.0)
+    >>> movie = cd.map_movie(truth.masks)
+    >>> activity = cd.sample_movie(movie, cd.polar_windows(layers=2, sectors=6), truth.signal)
+    >>> moved = cd.centroid_displacement(movie, activity)
+    >>> moved.shape, moved.attrs["units"]
+    ((3, 2, 6), 'px')
     """
     centroids = np.stack([activity["centroid_y"].to_numpy(), activity["centroid_x"].to_numpy()], axis=-1)
     steps = displacement_between(movie.registered(centroids)) * (movie.pixel_size_um or 1.0)

@@ -74,6 +74,11 @@ def average_around(
     ParameterError
         The arguments do not fit each other, or one is out of its range.
 
+    See Also
+    --------
+    edge_events : Finds the events.
+    cross_correlate : All frames instead of those around events.
+
     Notes
     -----
     Episodes of a patch are one event that many sectors saw, and not independent. The band therefore draws
@@ -90,6 +95,18 @@ def average_around(
     ----------
     .. [1] Hesterberg, "What teachers should know about the bootstrap", 2015, section 5.3,
        doi:10.1080/00031305.2015.1089789
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import xarray as xr
+    >>> import cytodisk as cd
+    >>> velocity = xr.DataArray(np.zeros((12, 4)), dims=("time", "sector"), attrs={"units": "px/frame"})
+    >>> velocity[4:7, 1] = 1.0
+    >>> signal = velocity.shift(time=1, fill_value=0.0)  # a frame later
+    >>> around = cd.average_around(signal, cd.edge_events(velocity, threshold=0.5), before=1, after=3)
+    >>> around["mean"].to_numpy()
+    array([0., 0., 1., 1., 1.])
     """
     _check_options(before, after, kind, at, normalise, bootstrap, seed, confidence)
     before, after, bootstrap, seed = (int(number) for number in (before, after, bootstrap, seed))

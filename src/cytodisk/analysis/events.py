@@ -74,6 +74,11 @@ def edge_events(
         The velocity is not by time and sector, has no unit or skips frames; another array does not fit it;
         a number is out of its range; or the noise cannot be told from so few frames.
 
+    See Also
+    --------
+    average_around : The signal around the events.
+    edge_velocity : Measures the velocity.
+
     Notes
     -----
     Sectors that are numbered 0 … S - 1 are a whole edge, the last beside the first. In a selection of
@@ -83,6 +88,19 @@ def edge_events(
     ----------
     Machacek and Danuser, "Morphodynamic profiling of protrusion phenotypes", 2006,
     doi:10.1529/biophysj.105.070383, for edge velocity as a map whose patches are events.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import xarray as xr
+    >>> import cytodisk as cd
+    >>> velocity = np.zeros((8, 4))
+    >>> velocity[2:5, 1] = 1.0  # sector 1 goes out for three steps
+    >>> velocity = xr.DataArray(velocity, dims=("time", "sector"), attrs={"units": "px/frame"})
+    >>> events = cd.edge_events(velocity, threshold=0.5)
+    >>> events[["sector", "kind", "onset", "end"]]
+       sector        kind  onset  end
+    0       1  protrusion      2    5
     """
     values = _parse(velocity)
     min_frames = whole_number("min_frames", min_frames, 1)

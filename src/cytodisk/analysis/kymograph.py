@@ -48,9 +48,23 @@ def line_kymograph(signals: Any, line_yx: Any, *, width_px: int = 1, spacing_px:
     ParameterError
         The line is none, or leaves the image, or a number is out of its range.
 
+    See Also
+    --------
+    boundary_kymograph : Along the edge instead of a line.
+
     References
     ----------
     u-Unwrap, Fig. 1C.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import cytodisk as cd
+    >>> image = np.broadcast_to(np.arange(8.0), (2, 6, 8))  # two frames, brighter to the right
+    >>> kymograph = cd.line_kymograph(image, [(3, 1), (3, 5)])
+    >>> kymograph.to_numpy()
+    array([[1., 2., 3., 4., 5.],
+           [1., 2., 3., 4., 5.]])
     """
     line = _parse_line(line_yx)
     _check_sampling(width_px, spacing_px)
@@ -104,6 +118,20 @@ def boundary_kymograph(movie: DiskMovie, signals: Any, depth: float, *, points: 
         The signals do not fit the movie.
     ParameterError
         The movie is none, or the depth or the number of points is out of its range.
+
+    See Also
+    --------
+    line_kymograph : Along a line.
+    sample_movie : Means of windows instead of points.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=3, radius_px=15.0)
+    >>> movie = cd.map_movie(truth.masks)
+    >>> kymograph = cd.boundary_kymograph(movie, truth.signal, 2.0, points=90)
+    >>> kymograph.dims, kymograph.shape
+    (('time', 'point', 'channel'), (3, 90, 2))
     """
     if not isinstance(movie, DiskMovie):
         raise ParameterError(

@@ -65,6 +65,20 @@ def certify(
     -------
     Certificate
         Never raises for a bad map: it says what is wrong.
+
+    See Also
+    --------
+    map_to_disk : Makes a map, which has its certificate.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> disk = cd.map_to_disk(cd.simulate.disk(10))
+    >>> mirrored = disk.vertices_uv[:, ::-1]
+    >>> cd.certify(disk.vertices_yx, disk.vertices_uv, disk.triangles, disk.boundary).valid
+    True
+    >>> cd.certify(disk.vertices_yx, mirrored, disk.triangles, disk.boundary).valid
+    False
     """
     malformed = _malformed(vertices_yx, vertices_uv, triangles, boundary)
     if malformed:

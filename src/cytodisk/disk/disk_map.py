@@ -287,6 +287,19 @@ def load_map(path: str | os.PathLike[str]) -> DiskMap:
     ------
     ReadError
         The file is missing, damaged, or not a map.
+
+    See Also
+    --------
+    DiskMap.save : Writes the file.
+    open_study : The maps of a whole run.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> cd.map_to_disk(cd.simulate.disk(10)).save("cell.npz")
+    >>> disk = cd.load_map("cell.npz")
+    >>> disk.certificate.valid
+    True
     """
     try:
         if not zipfile.is_zipfile(path) and Path(path).is_file():

@@ -68,9 +68,24 @@ def map_to_disk(
         No valid map was found; never an invalid map instead. "advection" raises it only if the harmonic map
         it starts from is not valid.
 
+    See Also
+    --------
+    map_movie : The cell of a movie, with the same place in all frames.
+    certify : The proof alone.
+    load_map : Read a map from a file.
+
     References
     ----------
     u-Unwrap, section 3 (ii) and appendix A.2.1.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> disk = cd.map_to_disk(cd.simulate.star(arms=3, body_radius=12, arm_length=20))
+    >>> disk.certificate.valid
+    True
+    >>> disk.to_cell([[0.0, 0.0]]).round(1)  # the cell's point at the disk's centre, (row, column)
+    array([[38.6, 27.4]])
     """
     check_map_parameters(method, shape_weight, edge_length)
     align = parse_align(align)

@@ -182,9 +182,22 @@ def clean_mask(
     ParameterError
         An unknown policy.
 
+    See Also
+    --------
+    map_to_disk : Cleans its mask in the same way.
+
     References
     ----------
     u-Unwrap, section 2: a map exists for any shape without holes, which filling makes sure of.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.disk(10)
+    >>> mask[1, 1] = True  # a speck
+    >>> cleaned, report = cd.clean_mask(mask)
+    >>> report.dropped_px, int(mask.sum() - cleaned.sum())
+    (1, 1)
     """
     _check_policies(holes, fragments, border)
     raw = parse_mask(mask)

@@ -179,6 +179,21 @@ def read_image(path: str | os.PathLike[str], *, unnamed: str = "C") -> xr.DataAr
     ------
     ReadError
         The file is missing, is not an image, is damaged, or has axes that cannot be used.
+
+    See Also
+    --------
+    open_study : Read what a run wrote.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("still", frames=2, radius_px=10.0)
+    >>> metadata = {"axes": "TYX", "PhysicalSizeX": 0.16, "PhysicalSizeY": 0.16}
+    >>> tifffile.imwrite("masks.ome.tif", truth.masks.astype("uint8"), metadata=metadata)
+    >>> masks = cd.read_image("masks.ome.tif")
+    >>> masks.dims, masks.attrs["pixel_size_um"]
+    (('time', 'y', 'x'), 0.16)
     """
     file = open_frames(path, unnamed=unnamed)
     stack = np.stack([file.frame(number) for number in range(file.n_frames)])

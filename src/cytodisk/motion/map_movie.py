@@ -165,9 +165,23 @@ def map_movie(
     StudyError
         The folder cannot be written, or holds maps already.
 
+    See Also
+    --------
+    map_to_disk : One cell, or one frame.
+    sample_movie : The signal in the windows of each frame.
+    edge_velocity : How the edge moves.
+
     References
     ----------
     u-Unwrap, section 3 (i), appendix A.1 and A.2.2.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("bulging", frames=4, radius_px=15.0)
+    >>> movie = cd.map_movie(truth.masks, pixel_size_um=0.16, frame_interval_s=5.0)
+    >>> len(movie), all(disk.certificate.valid for disk in movie)
+    (4, True)
     """
     settings = MovieSettings(
         TrackingSettings(

@@ -42,9 +42,25 @@ def edge_velocity(movie: DiskMovie, sectors: int = 60, *, frame: Frame = "lab") 
     ParameterError
         An unknown frame.
 
+    See Also
+    --------
+    boundary_velocity : By tracked point of the edge instead of by sector.
+    edge_changes : With the error of the velocity, and areas won and lost.
+    edge_events : Protrusions and retractions.
+
     References
     ----------
     u-Unwrap, section 3 and Fig. S5.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=4, radius_px=15.0, speed_px=0.5)
+    >>> velocity = cd.edge_velocity(cd.map_movie(truth.masks), sectors=8)
+    >>> velocity.dims, velocity.attrs["units"]
+    (('time', 'sector'), 'px/frame')
+    >>> 0.5 < velocity.mean().item() < 0.7
+    True
     """
     _check(sectors, frame)
     values = np.full((len(movie), sectors), np.nan)
@@ -72,6 +88,18 @@ def boundary_velocity(movie: DiskMovie, *, frame: Frame = "lab") -> xr.DataArray
     ------
     ParameterError
         An unknown frame.
+
+    See Also
+    --------
+    edge_velocity : The mean of each sector.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=4, radius_px=15.0, speed_px=0.5)
+    >>> velocity = cd.boundary_velocity(cd.map_movie(truth.masks))
+    >>> velocity.dims, 0.5 < velocity.mean().item() < 0.7
+    (('time', 'point'), True)
     """
     _check(1, frame)
     values = np.full((len(movie), movie.n_points), np.nan)
@@ -116,6 +144,19 @@ def edge_changes(
     ------
     WindowError, ParameterError
         An argument is out of its range.
+
+    See Also
+    --------
+    edge_velocity : The velocity alone, faster.
+    edge_events : Takes these areas, too.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=4, radius_px=15.0)
+    >>> changes = cd.edge_changes(cd.map_movie(truth.masks), sectors=8)
+    >>> bool((changes["protruded_area"].sum("sector") > changes["retracted_area"].sum("sector"))[0])
+    True
     """
     _check(sectors, frame)
     check_jitter(jitter_px, repeats, seed)

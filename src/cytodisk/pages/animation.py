@@ -73,6 +73,21 @@ def write_animation(
         A signal has another shape than its mask.
     StudyError
         The file cannot be written.
+
+    See Also
+    --------
+    write_movie_figures : All pictures of a movie in a study.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=3, radius_px=12.0)
+    >>> movie = cd.map_movie(truth.masks)
+    >>> grid, signal = cd.polar_windows(layers=3, sectors=8), truth.signal.sel(channel="edge")
+    >>> frames = [(grid.on(movie[t]), signal[t], t) for t in range(3)]
+    >>> height, width = truth.masks.shape[1:]
+    >>> cd.pages.write_animation("cell.gif", frames, extent_yx=(0, height, 0, width)).name
+    'cell.gif'
     """
     target = Path(path)
     _check(target, fps)

@@ -79,6 +79,15 @@ def write_cell_figures(
         The name cannot be a file's, or the pixel size is not a positive number.
     StudyError
         The folder cannot be written.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> import cytodisk as cd
+    >>> windows = cd.polar_windows(layers=3, sectors=8).on(cd.map_to_disk(cd.simulate.disk(12)))
+    >>> files = cd.pages.write_cell_figures(Path("."), "cell", windows, None, None)
+    >>> [file.name for file in files]
+    ['cell.png']
     """
     if not name or Path(name).name != name:
         raise ParameterError(f"name must be a file name without folders, got {name!r}: pass the cell's name")

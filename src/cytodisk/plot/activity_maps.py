@@ -68,6 +68,21 @@ def draw_activity_map(
     ------
     ParameterError
         The values are no table of numbers, or the interval is not a positive number.
+
+    See Also
+    --------
+    draw_layers : Some layers under each other.
+    draw_velocity_map : Velocity, with 0 white.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import numpy as np
+    >>> import cytodisk as cd
+    >>> figure, ax = plt.subplots()
+    >>> image = cd.plot.draw_activity_map(ax, np.random.default_rng(0).random((20, 8)))
+    >>> image.get_array().shape
+    (8, 20)
     """
     table = _table(values, "values", ("time", "sector"))
     drawn = _draw_map(ax, table, (first_frame, frame_interval_s), SIGNAL_COLOURS, limits or _limits(table))
@@ -108,9 +123,25 @@ def draw_velocity_map(
     ParameterError
         The velocity is no table of numbers, or the interval is not a positive number.
 
+    See Also
+    --------
+    draw_mean_velocity : The mean over sectors.
+    draw_events : With the events on the map.
+
     References
     ----------
     u-Unwrap, Fig. S5.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=4, radius_px=12.0)
+    >>> velocity = cd.edge_velocity(cd.map_movie(truth.masks), sectors=8)
+    >>> figure, ax = plt.subplots()
+    >>> image = cd.plot.draw_velocity_map(ax, velocity)
+    >>> image.get_array().shape
+    (8, 4)
     """
     return _draw_velocity(ax, velocity, (first_frame, frame_interval_s), f"edge velocity ({unit})")
 
@@ -155,6 +186,20 @@ def draw_layers(
     ------
     ParameterError
         The arrays do not fit each other or the axes, or the interval is not a positive number.
+
+    See Also
+    --------
+    draw_activity_map : One layer.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import numpy as np
+    >>> import cytodisk as cd
+    >>> figure, axes = plt.subplots(2, 1)
+    >>> images = cd.plot.draw_layers(axes, np.random.default_rng(0).random((20, 2, 8)))
+    >>> len(images)
+    2
     """
     table = _table(values, "values", ("time", "layer", "sector"))
     layers = shown_layers(table.shape[1])

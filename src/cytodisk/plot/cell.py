@@ -50,6 +50,19 @@ def frame_cell(ax: Axes, disk: DiskMap, *, pixel_size_um: float | None = None) -
     ------
     ParameterError
         The pixel size is not a positive number.
+
+    See Also
+    --------
+    scale_bar : The bar alone.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> disk = cd.map_to_disk(cd.simulate.disk(12))
+    >>> figure, ax = plt.subplots()
+    >>> outline = cd.plot.draw_outline(ax, disk)
+    >>> cd.plot.frame_cell(ax, disk)
     """
     low, high = disk.outline_yx.min(axis=0), disk.outline_yx.max(axis=0)
     margin = _MARGIN * float((high - low).max())
@@ -74,6 +87,19 @@ def draw_outline(ax: Axes, disk: DiskMap, *, color: str = LINE_COLOUR, linewidth
     Returns
     -------
     Polygon
+
+    See Also
+    --------
+    draw_cell : With the signal below.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> figure, ax = plt.subplots()
+    >>> outline = cd.plot.draw_outline(ax, cd.map_to_disk(cd.simulate.disk(12)))
+    >>> outline.get_xy().shape[1]
+    2
     """
     outline = Polygon(disk.outline_yx[:, ::-1], fill=False, edgecolor=color, linewidth=linewidth, zorder=3)
     ax.add_artist(outline)  # add_patch would measure all its points, for limits that the callers set
@@ -113,6 +139,19 @@ def draw_cell(
         The image has another shape than the mask.
     ParameterError
         The pixel size is not a positive number, or there is no such colour map.
+
+    See Also
+    --------
+    draw_disk_image : The same on the disk.
+    draw_outline : The outline alone.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.disk(12)
+    >>> figure, ax = plt.subplots()
+    >>> image = cd.plot.draw_cell(ax, cd.simulate.ring_signal(mask), cd.map_to_disk(mask))
     """
     values = np.asarray(image)
     if values.shape != disk.mask.shape:
@@ -159,6 +198,23 @@ def draw_windows(
     ------
     WindowError
         `windows` have no outlines: only polar windows have.
+
+    See Also
+    --------
+    draw_disk_windows : The windows on the disk.
+    draw_window_means : Filled with the colours of values.
+    draw_window_labels : Windows of any kind, by pixel.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> disk = cd.map_to_disk(cd.simulate.disk(12))
+    >>> windows = cd.polar_windows(layers=3, sectors=8).on(disk)
+    >>> figure, ax = plt.subplots()
+    >>> polygons = cd.plot.draw_windows(ax, windows, color="black")
+    >>> len(polygons.get_paths())
+    24
     """
     style = {"edgecolors": color, "linewidths": linewidth, "alpha": alpha}
     polygons = [polygon[:, ::-1] for polygon in _with_outlines(windows).polygons()]
@@ -199,6 +255,20 @@ def draw_window_means(
         `values` has another shape than the windows, or `windows` have no outlines: only polar ones have.
     ParameterError
         The pixel size is not a positive number, or there is no such colour map.
+
+    See Also
+    --------
+    draw_disk_means : The same on the disk.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.disk(12)
+    >>> windows = cd.polar_windows(layers=3, sectors=8).on(cd.map_to_disk(mask))
+    >>> means = cd.sample(windows, cd.simulate.ring_signal(mask))["mean"]
+    >>> figure, ax = plt.subplots()
+    >>> polygons = cd.plot.draw_window_means(ax, windows, means)
     """
     table = window_values(values, windows.areas.shape)
     polygons = [polygon[:, ::-1] for polygon in _with_outlines(windows).polygons()]
@@ -245,6 +315,18 @@ def draw_mesh(
     ------
     ParameterError
         An array has the wrong shape.
+
+    See Also
+    --------
+    draw_disk_mesh : The mesh on the disk.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> disk = cd.map_to_disk(cd.simulate.disk(8))
+    >>> figure, ax = plt.subplots()
+    >>> edges = cd.plot.draw_mesh(ax, disk.vertices_yx, disk.triangles)
     """
     points, corners = np.asarray(points_yx, dtype=np.float64), np.asarray(triangles)
     for name, array, last in (("points_yx", points, 2), ("triangles", corners, 3)):
@@ -282,6 +364,16 @@ def draw_area_distortion(
     ------
     ParameterError
         The pixel size or the limit is not a positive number.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> disk = cd.map_to_disk(cd.simulate.ellipse((8, 16)))
+    >>> figure, ax = plt.subplots()
+    >>> triangles = cd.plot.draw_area_distortion(ax, disk)
+    >>> triangles.get_label()
+    'disk area / cell area, log2'
     """
     if limit is not None and not 0 < limit < np.inf:
         raise ParameterError(f"limit must be a positive number, got {limit!r}: pass None to have it chosen")

@@ -67,9 +67,25 @@ def draw_correlation_curves(
     ParameterError
         A table lacks columns or the cell, or the axes are not as many as the layers shown.
 
+    See Also
+    --------
+    curve_key : Says what lines and bands are.
+    draw_peaks_on_cell : Peaks by window.
+
     References
     ----------
     u-Unwrap, Fig. 5D-F.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> windows = [[True] * 4]
+    >>> signal, velocity = cd.simulate.coupled_series("white", 0, 80, 1, 4, lag_frames=3, windows=windows)
+    >>> correlations = cd.cross_correlate(signal, velocity, max_lag=5, surrogates=99)
+    >>> table = cd.correlation_by_layer(correlations).to_dataframe().reset_index().assign(cell=0)
+    >>> figure, ax = plt.subplots()
+    >>> lines = cd.plot.draw_correlation_curves([ax], table)
     """
     curves = rows_of_cell(by_layer, cell, _CURVES, "by_layer")
     marks = None if peaks is None else rows_of_cell(peaks, cell, _PEAKS, "peaks")
@@ -101,6 +117,17 @@ def curve_key(*, peaks: bool = True, chance: bool = True) -> list[Any]:
     Returns
     -------
     list of Artist
+
+    See Also
+    --------
+    draw_correlation_curves : Draws the curves.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> figure, ax = plt.subplots()
+    >>> legend = figure.legend(handles=cd.plot.curve_key())
     """
     dark = tuple(layer_colours([0])[0])
     band = (*dark[:3], _BAND_OPACITY)
@@ -160,9 +187,21 @@ def draw_map_pair(
     ParameterError
         The maps differ in shape, are no tables of numbers, or the axes are not two.
 
+    See Also
+    --------
+    draw_activity_map : One map.
+
     References
     ----------
     u-Unwrap, Fig. 5B and C.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> signal, velocity = cd.simulate.independent_series("smooth", 0, 40, 1, 8)
+    >>> figure, axes = plt.subplots(1, 2)
+    >>> images = cd.plot.draw_map_pair(axes, signal.sel(layer=0), velocity)
     """
     if len(axes) != 2:
         raise ParameterError(f"axes must be two, got {len(axes)}")

@@ -98,6 +98,18 @@ def draw_disk_image(
         The signal has another shape than the mask.
     ParameterError
         `size` is below 1, or there is no such colour map.
+
+    See Also
+    --------
+    draw_cell : The same in the cell.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.disk(12)
+    >>> figure, ax = plt.subplots()
+    >>> image = cd.plot.draw_disk_image(ax, cd.map_to_disk(mask), cd.simulate.ring_signal(mask), size=64)
     """
     image = disk.image(signal, size)
     low, high = limits or signal_limits(signal, disk.mask)
@@ -133,6 +145,19 @@ def draw_disk_windows(
     -------
     PolyCollection
         One polygon a window, by window number.
+
+    See Also
+    --------
+    draw_windows : The windows in the cell.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> figure, ax = plt.subplots()
+    >>> polygons = cd.plot.draw_disk_windows(ax, cd.polar_windows(layers=3, sectors=8))
+    >>> len(polygons.get_paths())
+    24
     """
     style = {"edgecolors": color, "linewidths": linewidth}
     drawn = add_windows(ax, disk_polygons(grid), grid.layers, grid.sectors, by_layer=by_layer, style=style)
@@ -174,6 +199,19 @@ def draw_disk_means(
         `values` has another shape than the grid.
     ParameterError
         There is no such colour map.
+
+    See Also
+    --------
+    draw_window_means : The same in the cell.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import numpy as np
+    >>> import cytodisk as cd
+    >>> figure, ax = plt.subplots()
+    >>> values = np.arange(24.0).reshape(3, 8)
+    >>> polygons = cd.plot.draw_disk_means(ax, cd.polar_windows(layers=3, sectors=8), values)
     """
     table = window_values(values, (grid.layers, grid.sectors))
     drawn = add_filled_windows(ax, disk_polygons(grid), table, cmap, limits)
@@ -197,6 +235,17 @@ def draw_disk_mesh(
     Returns
     -------
     LineCollection
+
+    See Also
+    --------
+    draw_mesh : The mesh in the cell.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> figure, ax = plt.subplots()
+    >>> edges = cd.plot.draw_disk_mesh(ax, cd.map_to_disk(cd.simulate.disk(8)))
     """
     lines = draw_mesh(ax, disk.vertices_uv[:, ::-1], disk.triangles, color=color, linewidth=linewidth)
     frame_disk(ax)

@@ -74,9 +74,25 @@ def draw_velocity_arrows(
     ParameterError
         The arrays do not fit each other, or an option is out of its range.
 
+    See Also
+    --------
+    draw_tracks : Through the whole movie.
+
     References
     ----------
     u-Unwrap, Fig. S5.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> movie = cd.map_movie(cd.simulate.movie("growing", frames=2, radius_px=12.0).masks)
+    >>> here, there = movie.points_yx
+    >>> normals = movie.normals_yx[0]
+    >>> along = ((there - here) * normals).sum(axis=1)
+    >>> figure, ax = plt.subplots()
+    >>> outlines = movie[0].outline_yx, movie[1].outline_yx
+    >>> arrows = cd.plot.draw_velocity_arrows(ax, here, there, normals, along, *outlines)
     """
     points = np.asarray(points_yx, dtype=np.float64)
     distance = np.asarray(displacement_px, dtype=np.float64)
@@ -133,6 +149,20 @@ def draw_tracks(
     ------
     ParameterError
         The points have another shape, or a number is out of its range.
+
+    See Also
+    --------
+    draw_velocity_arrows : From a frame to the next.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> movie = cd.map_movie(cd.simulate.movie("bulging", frames=4, radius_px=12.0).masks)
+    >>> figure, ax = plt.subplots()
+    >>> outlines = cd.plot.draw_tracks(ax, movie.points_yx)
+    >>> len(outlines.get_paths())
+    4
     """
     points = np.asarray(points_yx, dtype=np.float64)
     if points.ndim != 3 or points.shape[-1] != 2 or not points.size:
@@ -187,6 +217,20 @@ def draw_area_change(
     ------
     ParameterError
         The areas are not as many, or the interval is not a positive number.
+
+    See Also
+    --------
+    draw_mean_velocity : Velocity through time.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=4, radius_px=12.0)
+    >>> changes = cd.edge_changes(cd.map_movie(truth.masks), sectors=8)
+    >>> figure, ax = plt.subplots()
+    >>> total = changes.sum("sector", keep_attrs=True)
+    >>> won, lost = cd.plot.draw_area_change(ax, total["protruded_area"], total["retracted_area"])
     """
     won, lost = np.asarray(protruded, dtype=np.float64), -np.abs(np.asarray(retracted, dtype=np.float64))
     if won.ndim != 1 or won.shape != lost.shape or not won.size:

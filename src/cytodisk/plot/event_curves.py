@@ -52,6 +52,20 @@ def draw_events(ax: Axes, velocity: xr.DataArray, events: pd.DataFrame) -> LineC
     ------
     ParameterError
         The velocity is not by time and sector, or the events are not of its frames and sectors.
+
+    See Also
+    --------
+    draw_velocity_map : The map alone.
+    draw_event_average : The signal around the events.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> _, velocity = cd.simulate.independent_series("smooth", 0, 30, 1, 8)
+    >>> velocity.attrs["units"] = "px/frame"
+    >>> figure, ax = plt.subplots()
+    >>> lines = cd.plot.draw_events(ax, velocity, cd.edge_events(velocity, threshold=0.5))
     """
     if not isinstance(velocity, xr.DataArray) or set(velocity.dims) != {"time", "sector"}:
         came = velocity.dims if isinstance(velocity, xr.DataArray) else type(velocity).__name__
@@ -96,6 +110,24 @@ def draw_event_average(ax: Axes, average: xr.Dataset, *, label: str = "mean") ->
     ------
     ParameterError
         It is no average, or has other dims.
+
+    See Also
+    --------
+    band_key : Says what the bands are.
+    draw_events : Where the events are.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> signal, velocity = cd.simulate.independent_series("smooth", 0, 60, 2, 8)
+    >>> velocity.attrs["units"] = "px/frame"
+    >>> events = cd.edge_events(velocity, threshold=0.5)
+    >>> average = cd.average_around(signal, events, before=3, after=5)
+    >>> figure, ax = plt.subplots()
+    >>> lines = cd.plot.draw_event_average(ax, average)
+    >>> len(lines)
+    2
     """
     table = _parse_average(average)
     delays, unit = _delays(average)
@@ -142,6 +174,21 @@ def band_key(average: xr.Dataset) -> list[Any]:
     ------
     ParameterError
         It is no average, or has other dims.
+
+    See Also
+    --------
+    draw_event_average : Draws the bands.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> signal, velocity = cd.simulate.independent_series("smooth", 0, 60, 2, 8)
+    >>> velocity.attrs["units"] = "px/frame"
+    >>> average = cd.average_around(signal, cd.edge_events(velocity, threshold=0.5), before=3, after=5)
+    >>> figure, ax = plt.subplots()
+    >>> lines = cd.plot.draw_event_average(ax, average)
+    >>> legend = ax.legend(handles=[*lines, *cd.plot.band_key(average)])
     """
     table = _parse_average(average)
     layers = shown_layers(table.sizes["layer"])

@@ -46,6 +46,21 @@ def draw_line_kymograph(
     ------
     ParameterError
         It has other dims, or distances that are not evenly spaced.
+
+    See Also
+    --------
+    draw_boundary_kymograph : Along the edge.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import numpy as np
+    >>> import cytodisk as cd
+    >>> kymograph = cd.line_kymograph(np.random.default_rng(0).random((10, 6, 8)), [(3, 1), (3, 6)])
+    >>> figure, ax = plt.subplots()
+    >>> image = cd.plot.draw_line_kymograph(ax, kymograph)
+    >>> image.get_array().shape
+    (6, 10)
     """
     table = _parse(kymograph, "distance")
     distance = kymograph["distance"].to_numpy().astype(np.float64)
@@ -88,6 +103,21 @@ def draw_boundary_kymograph(
     ------
     ParameterError
         It has other dims.
+
+    See Also
+    --------
+    draw_line_kymograph : Along a line.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=4, radius_px=12.0)
+    >>> kymograph = cd.boundary_kymograph(cd.map_movie(truth.masks), truth.signal, 2.0, points=90)
+    >>> figure, ax = plt.subplots()
+    >>> image = cd.plot.draw_boundary_kymograph(ax, kymograph.isel(channel=0))
+    >>> image.get_array().shape
+    (90, 4)
     """
     table = _parse(kymograph, "point")
     depth, unit = kymograph.attrs.get("depth"), kymograph.attrs.get("depth_units", "px")

@@ -55,6 +55,16 @@ def draw_by_layer(
     References
     ----------
     u-Unwrap, Fig. 4C and D.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import numpy as np
+    >>> import cytodisk as cd
+    >>> figure, ax = plt.subplots()
+    >>> lines = cd.plot.draw_by_layer(ax, np.random.default_rng(0).random((20, 4)), [0, 3], "correlation")
+    >>> len(lines)
+    2
     """
     table = np.asarray(values, dtype=np.float64)
     if table.ndim != 2 or not len(table) or not all(0 <= layer < table.shape[1] for layer in layers):

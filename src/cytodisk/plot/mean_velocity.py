@@ -44,6 +44,22 @@ def draw_mean_velocity(
     ------
     ParameterError
         The velocity is no table, or the interval is not a positive number.
+
+    See Also
+    --------
+    draw_velocity_map : By sector.
+    draw_area_change : Areas won and lost.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=4, radius_px=12.0)
+    >>> velocity = cd.edge_velocity(cd.map_movie(truth.masks), sectors=8)
+    >>> figure, ax = plt.subplots()
+    >>> line = cd.plot.draw_mean_velocity(ax, velocity)
+    >>> len(line.get_xdata())
+    4
     """
     table = np.asarray(velocity, dtype=np.float64)
     if table.ndim != 2 or not table.size:

@@ -73,9 +73,23 @@ def draw_pairs(
         The table lacks columns, the cell or the kind of distance, the axes are not two, or the limit is not
         a positive number.
 
+    See Also
+    --------
+    draw_correlation_curves : Each window with its own partner.
+
     References
     ----------
     u-Unwrap, Fig. S4.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> signal, velocity = cd.simulate.independent_series("white", 0, 60, 2, 6)
+    >>> pairs = cd.correlate_pairs(signal, signal, max_lag=4)
+    >>> table = pairs.to_dataframe().reset_index().assign(cell=0, along="straight")
+    >>> figure, axes = plt.subplots(2, 1)
+    >>> lines, image = cd.plot.draw_pairs(axes, table)
     """
     if len(axes) != 2:
         raise ParameterError(f"axes must be two, got {len(axes)}: for the lines and for the image")

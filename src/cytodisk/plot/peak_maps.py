@@ -166,6 +166,22 @@ def draw_peaks_on_disk(
         `shown` is unknown, or the limit is not a positive number.
     WindowError
         The peaks are of another grid.
+
+    See Also
+    --------
+    draw_peaks_on_cell : The same in the cell.
+    peak_key : Says what is pale, framed and grey.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> signal, velocity = cd.simulate.independent_series("ar1", 0, 60, 3, 8)
+    >>> correlations = cd.cross_correlate(signal, velocity, max_lag=5, surrogates=99)
+    >>> table = cd.peak_correlation(correlations).to_dataframe().reset_index().assign(cell=0)
+    >>> grid = cd.polar_windows(layers=3, sectors=8)
+    >>> figure, ax = plt.subplots()
+    >>> polygons = cd.plot.draw_peaks_on_disk(ax, cd.plot.PeakMap.of(table, grid), grid)
     """
     values, colours, limits = peaks.picture(shown, limit)
     drawn = draw_disk_means(ax, grid, values, cmap=colours, limits=limits, number_sectors=True)
@@ -208,9 +224,26 @@ def draw_peaks_on_cell(
     WindowError
         The peaks are of another grid.
 
+    See Also
+    --------
+    draw_peaks_on_disk : The same on the disk.
+    peak_key : Says what is pale, framed and grey.
+
     References
     ----------
     u-Unwrap, Fig. 5G.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> signal, velocity = cd.simulate.independent_series("ar1", 0, 60, 3, 8)
+    >>> correlations = cd.cross_correlate(signal, velocity, max_lag=5, surrogates=99)
+    >>> table = cd.peak_correlation(correlations).to_dataframe().reset_index().assign(cell=0)
+    >>> grid = cd.polar_windows(layers=3, sectors=8)
+    >>> windows = grid.on(cd.map_to_disk(cd.simulate.disk(12)))
+    >>> figure, ax = plt.subplots()
+    >>> polygons = cd.plot.draw_peaks_on_cell(ax, cd.plot.PeakMap.of(table, grid), windows, "lag")
     """
     values, colours, limits = peaks.picture(shown, limit)
     drawn = draw_window_means(ax, windows, values, cmap=colours, limits=limits, pixel_size_um=pixel_size_um)
@@ -229,6 +262,20 @@ def peak_key(peaks: PeakMap) -> list[Any]:
     Returns
     -------
     list of Artist
+
+    See Also
+    --------
+    draw_peaks_on_cell, draw_peaks_on_disk : Draw the peaks.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> signal, velocity = cd.simulate.independent_series("ar1", 0, 60, 3, 8)
+    >>> correlations = cd.cross_correlate(signal, velocity, max_lag=5, surrogates=99)
+    >>> table = cd.peak_correlation(correlations).to_dataframe().reset_index().assign(cell=0)
+    >>> peaks = cd.plot.PeakMap.of(table, cd.polar_windows(layers=3, sectors=8))
+    >>> legend = plt.figure().legend(handles=cd.plot.peak_key(peaks))
     """
     handles: list[Any] = []
     pale, known = int(peaks.pale.sum()), int(np.isfinite(peaks.correlation).sum())

@@ -51,6 +51,24 @@ def shape_landscape(
     ------
     ParameterError
         No cell has a complexity.
+
+    See Also
+    --------
+    shape_examples : Cells by their outlines.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import numpy as np
+    >>> import pandas as pd
+    >>> import cytodisk as cd
+    >>> plane = np.random.default_rng(0).normal(size=(12, 2)) * [3, 1]
+    >>> score = pd.DataFrame(plane, columns=["umap_1", "umap_2"])
+    >>> score = score.assign(cell=range(12), complexity=plane[:, 0])  # as complexity_score returns it
+    >>> figure, ax = plt.subplots()
+    >>> dots, outlines = cd.plot.shape_landscape(ax, score)
+    >>> len(dots.get_offsets())
+    12
     """
     known = known_scores(score)
     colours: dict[str, Any] = {"cmap": SIGNAL_COLOURS, "norm": colour_range(known)}

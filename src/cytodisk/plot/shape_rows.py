@@ -54,6 +54,23 @@ def shape_examples(
     ------
     ParameterError
         There are no cells to draw, or one has no complexity.
+
+    See Also
+    --------
+    shape_landscape : All cells in their plane.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import pandas as pd
+    >>> import cytodisk as cd
+    >>> masks = {cell: cd.simulate.random_smooth(cell, radius=12) for cell in range(4)}
+    >>> score = pd.DataFrame({"cell": range(4), "complexity": [0.1, 0.4, 0.7, 0.9]})
+    >>> score = score.assign(umap_1=0.0, umap_2=0.0)  # as complexity_score returns it
+    >>> figure, ax = plt.subplots()
+    >>> outlines = cd.plot.shape_examples(ax, score, masks, [[0, 1], [2, 3]])
+    >>> len(outlines.get_paths())
+    4
     """
     known = known_scores(score).set_index("cell")["complexity"]
     cells = [cell for row in rows for cell in row]

@@ -80,6 +80,21 @@ def draw_strip(
         There is no frame, or not one of everything a frame; or the pixel size is not a positive number.
     SignalError
         An image has another shape than its mask.
+
+    See Also
+    --------
+    draw_sectors : One frame.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> movie = cd.map_movie(cd.simulate.movie("growing", frames=3, radius_px=12.0).masks)
+    >>> grid = cd.polar_windows(layers=3, sectors=8)
+    >>> figure, axes = plt.subplots(1, 2)
+    >>> drawn = cd.plot.draw_strip(axes, [grid.on(movie[0]), grid.on(movie[2])], ["frame 0", "frame 2"])
+    >>> len(drawn)
+    2
     """
     images = _images(windows, signal)
     counts = {"axes": len(axes), "titles": len(titles), "signal": len(images)}
@@ -113,6 +128,18 @@ def draw_sectors(ax: Axes, windows: CellWindows, *, over_signal: bool = False) -
     -------
     PolyCollection
         One polygon a window, by window number.
+
+    See Also
+    --------
+    draw_strip : Frames of a movie beside each other.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> windows = cd.polar_windows(layers=3, sectors=8).on(cd.map_to_disk(cd.simulate.disk(12)))
+    >>> figure, ax = plt.subplots()
+    >>> polygons = cd.plot.draw_sectors(ax, windows)
     """
     sectors = windows.grid.sectors
     faces = np.zeros((windows.grid.n_windows, 4))

@@ -72,7 +72,17 @@ class _PlainNumbers(ScalarFormatter):
 
 @contextmanager
 def paper_style() -> Iterator[None]:
-    """Apply `PAPER` to what is made inside the block."""
+    """Apply `PAPER` to what is made inside the block.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> with cd.plot.paper_style():
+    ...     figure, ax = plt.subplots(figsize=(3.35, 2))
+    ...     _ = ax.set_title("sizes of a printed page")
+    ...
+    """
     with mpl.rc_context(PAPER):
         yield
 
@@ -167,6 +177,20 @@ def scale_bar(ax: Axes, pixel_size_um: float | None = None) -> tuple[Line2D, Tex
     ------
     ParameterError
         The pixel size is not a positive number.
+
+    See Also
+    --------
+    frame_cell : Fits axes to a cell and draws the bar.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> figure, ax = plt.subplots()
+    >>> _ = ax.imshow(cd.simulate.disk(40))
+    >>> line, text = cd.plot.scale_bar(ax)
+    >>> text.get_text()
+    '20 px'
     """
     if pixel_size_um is not None and not 0 < pixel_size_um < np.inf:
         raise ParameterError(
@@ -218,6 +242,14 @@ def colour_bar(
     Returns
     -------
     Colorbar
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> figure, ax = plt.subplots()
+    >>> drawn = ax.imshow([[0, 1], [2, 3]])
+    >>> bar = cd.plot.colour_bar(drawn, ax, "signal")
     """
     bar = into.figure.colorbar(mappable, cax=into, extend=extend, extendfrac=0.04)
     bar.set_label(f"{label} ({unit})" if unit else label, parse_math=False)

@@ -36,6 +36,18 @@ def draw_window_labels(ax: Axes, windows: WindowsOnCell) -> AxesImage:
     ------
     WindowError
         `windows` are not windows on a cell.
+
+    See Also
+    --------
+    draw_windows : Outlines of polar windows.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> windows = cd.edge_windows(cd.simulate.disk(15), layers=3, sectors=8)
+    >>> figure, ax = plt.subplots()
+    >>> image = cd.plot.draw_window_labels(ax, windows)
     """
     if not isinstance(windows, WindowsOnCell):
         raise WindowError(f"windows must be those on a cell, got {type(windows).__name__}: use grid.on(disk)")

@@ -26,6 +26,18 @@ def disk(radius: float = 60.0, margin: int = 8) -> BoolArray:
     ------
     ParameterError
         A number is out of its range.
+
+    See Also
+    --------
+    ellipse, star, dumbbell : Other plain shapes.
+    random_smooth : A cell with a smooth outline.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.disk(radius=10)
+    >>> mask.shape, int(mask.sum())  # about 100 π pixels
+    ((37, 37), 317)
     """
     check_at_least("radius", radius, 0.5)
     return ellipse((radius, radius), margin=margin)
@@ -54,6 +66,17 @@ def ellipse(
     ------
     ParameterError
         A number is out of its range.
+
+    See Also
+    --------
+    disk, star, dumbbell : Other plain shapes.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.ellipse((10, 20), angle=30.0)
+    >>> int(mask.sum())  # about 200 π pixels
+    633
     """
     if np.shape(semi_axes) != (2,):
         raise ParameterError(f"semi_axes must be two numbers (along y, along x), got {semi_axes!r}")
@@ -99,6 +122,18 @@ def star(
     ------
     ParameterError
         A number is out of its range.
+
+    See Also
+    --------
+    disk, ellipse, dumbbell : Other plain shapes.
+    random_spiky : Spikes of random length.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.star(arms=3, body_radius=12, arm_length=20)
+    >>> cd.clean_mask(mask)[1].components
+    1
     """
     check_at_least("arms", arms, 1)
     check_at_least("body_radius", body_radius, 1)
@@ -137,6 +172,17 @@ def dumbbell(
     ------
     ParameterError
         A number is out of its range.
+
+    See Also
+    --------
+    disk, ellipse, star : Other plain shapes.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.dumbbell(radius=12, neck_width=3)
+    >>> cd.clean_mask(mask)[1].components  # the neck holds the two disks together
+    1
     """
     check_at_least("radius", radius, 1)
     check_at_least("neck_length", neck_length, 0)

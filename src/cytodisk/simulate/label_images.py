@@ -32,6 +32,17 @@ def label_image(cells: int = 50, seed: int = 0) -> np.ndarray[Any, np.dtype[np.u
     ------
     ParameterError
         `cells` is below 1.
+
+    See Also
+    --------
+    movie : One cell through time.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> labels = cd.simulate.label_image(cells=5, seed=0)
+    >>> int(labels.max())
+    5
     """
     check_at_least("cells", cells, 1)
     random = np.random.default_rng([7, seed])

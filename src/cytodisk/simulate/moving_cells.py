@@ -134,6 +134,18 @@ def movie(
     ------
     ParameterError
         An unknown kind, a number out of its range, or a protrusion for a kind that has none.
+
+    See Also
+    --------
+    cell_with_signal : One frame.
+    coupled_series : Series of windows, without a cell.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("migrating", frames=3, radius_px=15.0)
+    >>> len(truth.masks), truth.signal.dims
+    (3, ('time', 'channel', 'y', 'x'))
     """
     _check(seed, frames, radius_px, lag_frames, coupled, pixel_size_um, frame_interval_s, margin)
     habits = _habits(kind, speed_px, turn_deg, protrusion_px, jitter_px, dropped)

@@ -56,10 +56,21 @@ def independent_series(
     ParameterError
         An unknown kind or a number out of its range.
 
+    See Also
+    --------
+    coupled_series : Series that do hang together.
+
     Notes
     -----
     Each series is a moving average of white noise with the impulse response of its kind, 400 frames long. So
     it is stationary without a burn-in, and its autocorrelation is that of the response.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> activity, velocity = cd.simulate.independent_series("ar1", 0, frames=50, layers=2, sectors=6)
+    >>> activity.shape, velocity.shape
+    ((50, 2, 6), (50, 6))
     """
     _check(kind, seed, frames, layers, sectors, correlation_length)
     velocity = _velocity(kind, seed, frames, sectors, correlation_length)
@@ -105,6 +116,18 @@ def coupled_series(
     ------
     ParameterError
         An unknown kind, a number out of its range, or windows of another shape.
+
+    See Also
+    --------
+    independent_series : Series that have nothing to do with each other.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> windows = [[True] * 6, [False] * 6]  # the outer layer follows the edge
+    >>> activity, velocity = cd.simulate.coupled_series("ar1", 0, 50, 2, 6, lag_frames=3, windows=windows)
+    >>> activity.shape, velocity.shape
+    ((50, 2, 6), (50, 6))
     """
     _check(kind, seed, frames, layers, sectors, correlation_length)
     check_whole("lag_frames", lag_frames, -frames)

@@ -48,6 +48,17 @@ def branching(
     ------
     ParameterError
         A number is out of its range.
+
+    See Also
+    --------
+    random_smooth, random_spiky, migrating : Other cells.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.branching(0, soma_radius=8, processes=3, process_length=30)
+    >>> cd.clean_mask(mask)[1].components
+    1
     """
     check_at_least("soma_radius", soma_radius, 1)
     check_at_least("processes", processes, 0)
@@ -101,6 +112,17 @@ def random_smooth(
     ------
     ParameterError
         A number is out of its range.
+
+    See Also
+    --------
+    random_spiky, branching, migrating : Other cells.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> first, again = cd.simulate.random_smooth(1, radius=15), cd.simulate.random_smooth(1, radius=15)
+    >>> bool((first == again).all())  # the seed decides
+    True
     """
     check_at_least("radius", radius, 1)
     check_at_least("roughness", roughness, 0)
@@ -148,6 +170,17 @@ def random_spiky(
     ------
     ParameterError
         A number is out of its range.
+
+    See Also
+    --------
+    random_smooth, branching, migrating : Other cells.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.random_spiky(0, radius=12, spikes=5, spike_length=15)
+    >>> cd.clean_mask(mask)[1].components
+    1
     """
     check_at_least("radius", radius, 1)
     check_at_least("spikes", spikes, 0)
@@ -193,6 +226,18 @@ def migrating(seed: int = 0, *, size: float = 1.0, margin: int = 8) -> BoolArray
     ------
     ParameterError
         A number is out of its range.
+
+    See Also
+    --------
+    random_smooth, random_spiky, branching : Other cells.
+    movie : A cell that moves.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.migrating(0, size=0.3)
+    >>> cd.map_to_disk(mask).certificate.valid
+    True
     """
     check_at_least("size", size, 0.1)
     check_at_least("margin", margin, 0)

@@ -31,6 +31,17 @@ def random_mask(kind: str, seed: int) -> BoolArray:
     ------
     ParameterError
         An unknown kind.
+
+    See Also
+    --------
+    random_smooth : A mask in one piece without holes.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.random_mask(cd.simulate.KINDS[0], seed=0)
+    >>> mask.ndim, mask.dtype.name
+    (2, 'bool')
     """
     if kind not in _MAKERS:
         raise ParameterError(f"kind must be one of {', '.join(KINDS)}, got {kind!r}")

@@ -37,6 +37,17 @@ def linear_signal(
     ------
     ParameterError
         `shape` or `gradient_yx` is not a pair.
+
+    See Also
+    --------
+    ring_signal : Bright at the edge.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> cd.simulate.linear_signal((2, 4), gradient_yx=(0.0, 1.0), offset=5.0)
+    array([[5., 6., 7., 8.],
+           [5., 6., 7., 8.]])
     """
     if np.shape(shape) != (2,) or min(shape) < 1:
         raise ParameterError(f"shape must be two positive numbers (rows, columns), got {shape!r}")
@@ -69,6 +80,19 @@ def ring_signal(
     ------
     ParameterError
         `mask` is not 2D or `decay_px` is not above 0.
+
+    See Also
+    --------
+    linear_signal : Brighter along one direction.
+    cell_with_signal : A cell with two channels.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.disk(10)
+    >>> signal = cd.simulate.ring_signal(mask, peak=10.0, decay_px=3.0)
+    >>> bool(signal[mask].max() > 8.0), float(signal[18, 18].round(2))  # at the edge, and in the middle
+    (True, 0.41)
     """
     check_at_least("decay_px", decay_px, 1e-6)
     return np.asarray(background + peak * np.where(mask, np.exp(-depth(mask) / decay_px), 0.0))
@@ -133,6 +157,17 @@ def cell_with_signal(seed: int = 0) -> SimulatedCell:
     ------
     ParameterError
         `seed` is not a number of at least 0.
+
+    See Also
+    --------
+    movie : The same through time.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> cell = cd.simulate.cell_with_signal(0)
+    >>> cell.signal.dims, cell.signal["channel"].to_numpy().tolist()
+    (('channel', 'y', 'x'), ['edge', 'perinuclear'])
     """
     check_at_least("seed", seed, 0)
     mask = migrating(seed)

@@ -218,6 +218,11 @@ def edge_windows(
     WindowError
         A count is not a positive whole number, or the depth is not above 0.
 
+    See Also
+    --------
+    polar_windows : Windows of equal area by the map onto the disk.
+    ring_windows : Rings and wedges, as CellProfiler's.
+
     Notes
     -----
     u-Register also moves the sides of windows like springs to make them more regular; here they are where
@@ -227,6 +232,15 @@ def edge_windows(
     ----------
     Machacek et al., "Coordination of Rho GTPase activities during cell protrusion", Nature 461 (2009),
     doi:10.1038/nature08242. u-Unwrap, sections 2 and 4.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> windows = cd.edge_windows(cd.simulate.disk(20), layers=4, sectors=8, depth_px=5)
+    >>> windows.n_empty
+    0
+    >>> windows.areas.round()[:, 0]  # by layer: rings of the same depth shrink inwards
+    array([71., 48., 29.,  9.])
     """
     check_counts(layers, sectors)
     edge = CellEdge.of(cell)

@@ -30,6 +30,16 @@ class PolarGrid:
     ----------
     layers, sectors : int
     spacing : {"area", "radius"}
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import cytodisk as cd
+    >>> grid = cd.polar_windows(layers=2, sectors=4)
+    >>> grid.n_windows, grid.radii.round(2)
+    (8, array([1.  , 0.71, 0.  ]))
+    >>> grid.window_of(np.array([[0.9, 0.1]]))  # at the edge, just past angle 0
+    array([0])
     """
 
     layers: int
@@ -125,9 +135,23 @@ def polar_windows(layers: int = 10, sectors: int = 60, spacing: Spacing = "area"
     WindowError
         A count is not a positive whole number, or the spacing is unknown.
 
+    See Also
+    --------
+    edge_windows : Windows by distance from the edge, as the field's.
+    ring_windows : Rings and wedges, as CellProfiler's.
+    sample : The signal in each window.
+
     References
     ----------
     u-Unwrap, section 3, "Windowing the cell using the disk parameterization".
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> grid = cd.polar_windows(layers=3, sectors=8)
+    >>> windows = grid.on(cd.map_to_disk(cd.simulate.dumbbell(radius=12)))
+    >>> windows.n_empty, round(windows.coverage, 6)
+    (0, 1.0)
     """
     check_counts(layers, sectors)
     if spacing not in ("area", "radius"):

@@ -122,10 +122,23 @@ def ring_windows(cell: Any, layers: int = 10, sectors: int = 8) -> RingWindows:
     WindowError
         A count is not a positive whole number.
 
+    See Also
+    --------
+    polar_windows : Windows of equal area by the map onto the disk.
+    edge_windows : Windows by distance from the edge, as the field's.
+
     References
     ----------
     Carpenter et al., "CellProfiler", Genome Biology 7:R100 (2006), doi:10.1186/gb-2006-7-10-r100:
     MeasureObjectIntensityDistribution, in which layers are counted from the centre.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.star(arms=3, body_radius=12, arm_length=20)
+    >>> windows = cd.ring_windows(mask, layers=3, sectors=8)
+    >>> round(windows.coverage, 6)
+    1.0
     """
     grid = RingGrid(layers, sectors)
     return RingWindows(grid, CellEdge.of(cell))

@@ -47,6 +47,20 @@ def sample(
         The signal does not fit the mask or is not numeric.
     ParameterError
         A quantile is outside 0 to 1, or `nan` is unknown.
+
+    See Also
+    --------
+    sample_movie : All frames of a movie.
+    window_measures : Area and form of the windows themselves.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.disk(20)
+    >>> windows = cd.polar_windows(layers=3, sectors=8).on(cd.map_to_disk(mask))
+    >>> signal = cd.simulate.ring_signal(mask, peak=100.0)  # bright at the edge
+    >>> cd.sample(windows, signal)["mean"].mean("sector").round(1).to_numpy()
+    array([76.5, 39.8, 14.9])
     """
     _check(quantiles, nan)
     values, channels = _parse_signal(signal, windows.mask.shape)

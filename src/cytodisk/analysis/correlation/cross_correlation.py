@@ -99,9 +99,24 @@ def cross_correlate(
     StationarityWarning
         The level of more than a quarter of the series drifts, so that correlations may be spurious.
 
+    See Also
+    --------
+    peak_correlation : The peak of each window with its p and q.
+    correlation_by_layer : Means over sectors.
+    correlate_pairs : All windows with all others, by distance.
+
     References
     ----------
     u-Unwrap, section 4.3, Fig. 5.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> windows = [[True] * 4]
+    >>> signal, velocity = cd.simulate.coupled_series("white", 0, 80, 1, 4, lag_frames=3, windows=windows)
+    >>> correlations = cd.cross_correlate(signal, velocity, max_lag=5)
+    >>> correlations["correlation"].mean("sector").idxmax("lag").item()  # the edge moves before the signal
+    -3.0
     """
     first, second, interval_s = named_series(a, b)
     lags = lags_within(max_lag, min_pairs, first.sizes["time"])
@@ -153,6 +168,22 @@ def correlation_by_layer(correlations: xr.Dataset) -> xr.Dataset:
     ------
     ParameterError
         There are no sectors.
+
+    See Also
+    --------
+    cross_correlate : Makes the correlations.
+    peak_correlation : The peak of each window.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> windows = [[True] * 4]
+    >>> signal, velocity = cd.simulate.coupled_series("white", 0, 80, 1, 4, lag_frames=3, windows=windows)
+    >>> correlations = cd.cross_correlate(signal, velocity, max_lag=5, surrogates=99)
+    >>> layers = cd.correlation_by_layer(correlations)
+    >>> found = layers.sel(layer=0, lag=-3)  # where the simulation has it
+    >>> bool(found["correlation"] > found["threshold"])
+    True
     """
     curves = correlations.get("correlation") if isinstance(correlations, xr.Dataset) else None
     if curves is None or _SECTOR not in curves.dims:

@@ -38,12 +38,24 @@ def jitter_step(by_layer: xr.Dataset) -> xr.DataArray:
     ParameterError
         There are fewer than six lags to both sides.
 
+    See Also
+    --------
+    cross_correlate : Its `skip_lags` leaves out the lags that jitter makes.
+
     Notes
     -----
     Where the outline of frame t lies too far in by ε, velocity is too high by ε from t to t + 1 and too low
     from t - 1 to t; and the windows of frame t, which follow the outline, lie too far in, where the signal
     differs. So jitter of masks correlates with itself: by as much at lag 0 as at lag -1 with the other sign,
     and at no other lag. No surrogate knows of that. `benchmarks/correlation.py` prints how large it is.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> signal, velocity = cd.simulate.independent_series("smooth", 0, 60, 2, 6)
+    >>> correlations = cd.cross_correlate(signal, velocity, max_lag=8)
+    >>> cd.jitter_step(cd.correlation_by_layer(correlations)).to_numpy()  # no mark of jitter
+    array([0., 0.])
     """
     curve = by_layer["correlation"].transpose("lag", ...)
     lags = curve["lag"].to_numpy()

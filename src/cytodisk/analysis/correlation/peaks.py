@@ -41,10 +41,25 @@ def peak_correlation(correlations: xr.Dataset, *, rule: Rule = "nearest") -> xr.
     ParameterError
         `correlations` has no lags, or the rule is unknown.
 
+    See Also
+    --------
+    cross_correlate : Makes the correlations.
+    correlation_by_layer : Means over sectors.
+
     References
     ----------
     u-Unwrap, section 4.3, Fig. 5G; Westfall & Young (1993), maximum over lags; Benjamini & Hochberg (1995),
     doi:10.1111/j.2517-6161.1995.tb02031.x.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> windows = [[True] * 4]
+    >>> signal, velocity = cd.simulate.coupled_series("white", 0, 80, 1, 4, lag_frames=3, windows=windows)
+    >>> correlations = cd.cross_correlate(signal, velocity, max_lag=5, surrogates=99)
+    >>> peaks = cd.peak_correlation(correlations)
+    >>> peaks["lag"].to_numpy(), peaks["q"].to_numpy()
+    (array([[-3., -3., -3., -3.]]), array([[0.01, 0.01, 0.01, 0.01]]))
     """
     if not isinstance(correlations, xr.Dataset) or "lag" not in correlations.coords:
         raise ParameterError("correlations must be the Dataset that cross_correlate returns")

@@ -65,9 +65,23 @@ def prepare_series(
     ParameterError
         `detrend` is unknown, the frames of the median are too few, or there are no values by time.
 
+    See Also
+    --------
+    cross_correlate : Prepares both series in the same way.
+
     Notes
     -----
     What rounding leaves of a straight line, or of its differences, is made one constant: it would correlate.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import cytodisk as cd
+    >>> bleaching = np.array([4.0, 3.0, 2.0, 1.0])
+    >>> cd.prepare_series(bleaching, detrend="linear").round(6) + 0.0
+    array([0., 0., 0., 0.])
+    >>> cd.prepare_series(bleaching, difference=True)
+    array([nan, -1., -1., -1.])
     """
     check_detrend(detrend, detrend_frames)
     frames = None if detrend_frames is None else int(detrend_frames)

@@ -83,6 +83,11 @@ def correlate_pairs(
     StationarityWarning
         As for `cross_correlate`.
 
+    See Also
+    --------
+    cross_correlate : Each window with its own partner only.
+    window_distances : Distances in µm or px instead of steps of windows.
+
     References
     ----------
     u-Unwrap, section 4.3, Fig. S4.
@@ -91,6 +96,14 @@ def correlate_pairs(
     -----
     Correlations are matrix products of 256 windows with all others at one lag, so memory is bounded by
     that and does not grow with the number of lags.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> signal, _ = cd.simulate.independent_series("white", 0, 60, 2, 6)
+    >>> pairs = cd.correlate_pairs(signal, signal, max_lag=2)
+    >>> round(pairs["correlation"].sel(distance=0, lag=0).item(), 6)  # each window with itself
+    1.0
     """
     first, second, interval_s = named_series(a, b)
     for name, series in (("a", first), ("b", second)):

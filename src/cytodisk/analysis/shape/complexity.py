@@ -62,6 +62,10 @@ def complexity_score(
     MissingPartError
         umap-learn is not installed.
 
+    See Also
+    --------
+    shape_features : Measures the features.
+
     Notes
     -----
     The median of each feature is taken away, what is left is divided by the spread between quartiles and
@@ -79,6 +83,16 @@ def complexity_score(
     u-Unwrap, appendix B. McInnes, Healy and Melville, "UMAP", 2018, arXiv:1802.03426. Kobak and Linderman,
     "Initialization is critical for preserving global data structure in both t-SNE and UMAP", 2021,
     doi:10.1038/s41587-020-00809-z.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> cells = [cd.simulate.random_smooth(seed, radius=12) for seed in range(10)]
+    >>> score = cd.complexity_score(cd.shape_features(cells))
+    >>> list(score.columns)
+    ['cell', 'status', 'complexity', 'umap_1', 'umap_2']
+    >>> bool(score["complexity"].notna().all())
+    True
     """
     seed, n_neighbors = whole_number("seed", seed, 0), whole_number("n_neighbors", n_neighbors, 2)
     number = isinstance(min_dist, int | float | np.integer | np.floating) and not isinstance(min_dist, bool)

@@ -68,6 +68,10 @@ def shape_features(masks: Any, *, pixel_size_um: float | None = None) -> pd.Data
     ParameterError
         The pixel size is not a positive number.
 
+    See Also
+    --------
+    complexity_score : One number a cell, from plain to complex.
+
     Notes
     -----
     Scale-free features stay nearly the same when the same shape is drawn larger, if its equivalent diameter
@@ -83,6 +87,16 @@ def shape_features(masks: Any, *, pixel_size_um: float | None = None) -> pd.Data
     References
     ----------
     u-Unwrap, appendix B, describes shapes by features of another package; these are our own.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> masks = [cd.simulate.disk(20), cd.simulate.ellipse((10, 40))]
+    >>> features = cd.shape_features(masks, pixel_size_um=0.5)
+    >>> features["circularity"].round(1).tolist()
+    [1.0, 0.5]
+    >>> features.attrs["units"]["area"]
+    'µm²'
     """
     check_pixel_size(pixel_size_um)
     rows = []

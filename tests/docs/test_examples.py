@@ -1,0 +1,62 @@
+"""Every public function has an example, and it shows what comes."""
+
+import doctest
+import inspect
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import matplotlib.pyplot as plt
+import pytest
+
+import cytodisk as cd
+
+FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
+SLOW = {"complexity_score"}  # UMAP is compiled
+STILL_WITHOUT = (
+    "compare_",
+    "run_",
+    "correlate_study",
+    "open_",
+    "red_flags",
+    "qc_flags",
+    "write_report",
+    "write_c",
+    "write_movie",
+    "write_overview",
+    "write_shape",
+)
+SPACES: tuple[ModuleType, ...] = (cd, cd.plot, cd.pages, cd.simulate)
+
+
+def public() -> Iterator[Any]:
+    """All public functions and classes, by the name that a user types."""
+    for space in SPACES:
+        for name in space.__all__:
+            value = getattr(space, name)
+            if name.startswith(STILL_WITHOUT):
+                continue
+            if inspect.isroutine(value) or inspect.isclass(value):
+                marks = [pytest.mark.slow] if name in SLOW else []
+                yield pytest.param(value, id=f"{space.__name__}.{name}", marks=marks)
+
+
+def examples(value: Callable[..., Any]) -> list[doctest.DocTest]:
+    """Those of a function, or of a class and its methods."""
+    found = doctest.DocTestFinder().find(inspect.unwrap(value), value.__name__, globs={})
+    return [test for test in found if test.examples]
+
+
+@pytest.mark.parametrize("value", list(public()))
+def test_examples_show_what_comes(
+    value: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # for what they write
+    found = examples(value)
+    assert found or inspect.isclass(value), f"{value.__name__} has no example: write one in its docstring"
+    said: list[str] = []
+    for test in found:
+        doctest.DocTestRunner(optionflags=FLAGS).run(test, out=said.append)
+    plt.close("all")
+    assert not said, "".join(said)
