@@ -1,7 +1,7 @@
 """Sphinx extension: write the pages of the Python reference from the package's stubs.
 
-A stub lists the public names in groups, each under a comment. The comment becomes the heading of a table, so the
-reference shows every name, in the order of the stub.
+A stub lists the public names in groups, each under a comment. The comment becomes the heading of a table, so
+the reference shows every name, in the order of the stub.
 """
 
 import re

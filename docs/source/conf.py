@@ -29,6 +29,7 @@ extensions = [
     "command_line",
     "mathml",
     "public_names",
+    "table_columns",
 ]
 templates_path = ["_templates"]
 exclude_patterns = ["gallery/**/*.ipynb", "gallery/**/*.py", "paper_remeasured/**"]

@@ -11,6 +11,7 @@ from movie_files import write_masks, write_movie
 import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError, StudyError
 from cytodisk.runs.correlate.correlate_run import correlate_study
+from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_run import run_movie
 from cytodisk.runs.parameters import MovieParameters
@@ -49,6 +50,17 @@ def test_tables_are_those_of_the_functions(study: cd.Study) -> None:
     np.testing.assert_array_equal(found.layers["threshold"], mean["threshold"])
     assert found.windows.attrs["units"]["lag_s"] == "s"
     np.testing.assert_allclose(found.windows["lag_s"], 5.0 * found.windows["lag"])
+
+
+def test_every_column_is_explained(study: cd.Study) -> None:
+    found = correlate_study(study, "edge", max_lag=6, **FEW)
+    signals = correlate_study(study, "edge", "material", max_lag=6, pairs=True, **FEW)
+    assert signals.pairs is not None
+    tables = {"pairs": signals.pairs} | {
+        name: getattr(found, name) for name in CORRELATION_TABLES if name != "pairs"
+    }
+    for name, columns in CORRELATION_TABLES.items():
+        assert set(tables[name].columns) == {column.name for column in columns}, name
 
 
 def test_the_lag_that_was_simulated_is_found(study: cd.Study) -> None:

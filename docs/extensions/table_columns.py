@@ -1,0 +1,88 @@
+"""Sphinx extension: write `reference/tables.rst`, all columns of all tables, from the package's own lists."""
+
+from pathlib import Path
+from typing import Any
+
+from public_names import heading, write
+from sphinx.application import Sphinx
+
+from cytodisk.analysis.shape.features import GROUPS
+from cytodisk.runs.batch.inputs_table import INPUT, INPUT_COLUMNS
+from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS, COMPARED_MOVIE
+from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
+from cytodisk.runs.shapes.shape_tables import SHAPE_TABLES
+from cytodisk.store.study_folder import MAP_TABLES, MOVIE_TABLES, Tables
+from cytodisk.store.tables import Columns
+
+WORDS = """Tables are Parquet files. ``cytodisk.open_study`` reads them. Each table has the units of its columns
+in ``attrs["units"]``; the file has them in its metadata. Lengths, areas and velocities are in µm and seconds if
+the scale is known, else in pixels and frames. A column without a unit is a count, a name or a choice."""
+UNITS = {"length": "µm", "length²": "µm²", "velocity": "µm/s", "1": "1 (a ratio)"}
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    app.connect("config-inited", write_page)
+    return {"parallel_read_safe": True}
+
+
+def write_page(app: Sphinx, _config: Any) -> None:
+    lines = [*heading("Columns of every table", "="), WORDS, ""]
+    lines += run(
+        "Maps and movies", "cytodisk map`` and ``cytodisk movie", tables_of(MAP_TABLES, MOVIE_TABLES)
+    )
+    lines += run(
+        "Correlations",
+        "cytodisk correlate",
+        {f"correlation/SIGNAL~WITH/{name}": columns for name, columns in CORRELATION_TABLES.items()},
+    )
+    lines += run("Shapes", "cytodisk shapes", {"shapes": SHAPE_TABLES.cells})
+    lines += ["The features follow; ``features.csv`` lists them, too.", "", *features()]
+    compared = tables_of(COMPARED_CELLS, COMPARED_MOVIE)
+    lines += run("Comparisons of windows", "cytodisk compare-windows", compared)
+    lines += ["``comparison_columns.csv`` explains the columns of the summaries, which are CSV files.", ""]
+    lines += run("Many inputs", "cytodisk batch", {"inputs": (INPUT, *INPUT_COLUMNS)})
+    lines += [
+        "In the merged tables ``input``, your own columns and the units come before the columns above.",
+        "",
+    ]
+    write(Path(app.srcdir) / "reference" / "tables.rst", lines)
+
+
+def tables_of(*kinds: Tables) -> dict[str, Columns]:
+    """Columns of the tables that runs of these kinds write, all that any of them has."""
+    found: dict[str, Columns] = {}
+    for kind in kinds:
+        for name, columns in {"cells": kind.cells, **kind.others}.items():
+            known = found.get(name, ())
+            found[name] = (*known, *(column for column in columns if column not in known))
+    return found
+
+
+def run(title: str, command: str, tables: dict[str, Columns]) -> list[str]:
+    """Section of a command: each of its tables."""
+    lines = [*heading(title, "-"), f"Written by ``{command}``.", ""]
+    for name, columns in tables.items():
+        rows = [
+            (f"``{column.name}``", UNITS.get(column.unit, column.unit), column.meaning) for column in columns
+        ]
+        lines += [*heading(f"{name}.parquet", "~"), *list_table(rows)]
+    return lines
+
+
+def features() -> list[str]:
+    """Shape features, group by group."""
+    return list_table(
+        [(feature.name, feature.unit, feature.description) for group in GROUPS for feature in group.features]
+    )
+
+
+def list_table(rows: list[tuple[str, str, str]]) -> list[str]:
+    lines = [".. list-table::", "   :header-rows: 1", "   :class: small", "   :widths: 26 12 62", ""]
+    for name, unit, meaning in [("Column", "Unit", "Meaning"), *rows]:
+        first = name if name == "Column" else f"``{name}``"
+        lines += [
+            f"   * - {first}",
+            f"     - {UNITS.get(unit, unit)}",
+            f"     - {meaning}".replace("|", "\\|"),
+        ]
+    return [*lines, ""]
