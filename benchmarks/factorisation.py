@@ -14,6 +14,7 @@ from cytodisk import simulate
 from cytodisk.arrays import BoolArray
 from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.mapping import mesh_cell
+from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.geometry.mesh import Mesh
 from speed import _DEFAULT_DATA, median_seconds, restart_with_one_thread
 
@@ -40,7 +41,7 @@ def fill(system: BlockSystem, mesh: Mesh) -> sparse.csc_matrix:
 
 def compare(name: str, mask: BoolArray, repeats: int) -> None:
     """Print both times for one mask, after checking that the solutions agree."""
-    mesh = mesh_cell(mask).mesh
+    mesh = mesh_cell(mask, MappingParameters()).mesh
     system = BlockSystem(mesh)
     upper = fill(system, mesh)
     right = np.random.default_rng(1).normal(size=(len(system.vertex), 2))

@@ -14,10 +14,11 @@ import cytodisk as cd
 from cytodisk.arrays import BoolArray
 from cytodisk.motion.mapped_frame import MovieSettings, map_frame
 from cytodisk.runs.map.map_inputs import open_inputs
+from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_run import run_map
 from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import run_movie
-from cytodisk.runs.parameters import MapParameters, MovieParameters
 from scale import write_folder
 
 _REPEAT_BELOW_S = 0.3

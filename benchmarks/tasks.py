@@ -23,7 +23,7 @@ from cytodisk.runs.batch.inputs import BatchInput
 from cytodisk.runs.batch.on_worker import begin_run
 from cytodisk.runs.batch.rows import ROWS, InputRow, read_row, write_row
 from cytodisk.runs.batch.task import BatchTask, TaskResult, open_store
-from cytodisk.runs.parameters import MovieParameters
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from dask_processes import DaskProcesses
 from million import Costs, measure_costs, predictions, write_page
 

@@ -26,6 +26,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 
@@ -39,12 +40,15 @@ from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.edge import sector_of
 from cytodisk.motion.map_movie import map_movie
 from cytodisk.motion.matching import SMOOTHNESS_PX2, carry, first_guess, match
-from cytodisk.motion.tracking import TRACKERS, TrackedBoundary, Tracker, TrackingSettings, follow
+from cytodisk.motion.tracking import TrackedBoundary, follow
+from cytodisk.motion.demons_parameters import DemonsParameters
+from cytodisk.motion.tracking_parameters import Tracker, TrackingSettings
 from cytodisk.motion.velocity import edge_velocity
 from cytodisk.simulate import MOVIE_KINDS, SimulatedMovie
 from cytodisk.simulate.movie_kinds import MovieKind
 from cytodisk.windows.grid import PolarGrid, polar_windows
 
+TRACKERS: tuple[Tracker, ...] = get_args(Tracker)
 HORIZONS = (1, 10, 50)
 GRIDS = {"5×24": polar_windows(5, 24), "10×60": polar_windows(10, 60)}
 _SECTORS = 60
@@ -131,7 +135,7 @@ def seconds_of_step(here: Contour, there: Contour, s: FloatArray, tracker: Track
     """Time of the tracker alone between two registered outlines."""
     start = time.perf_counter()
     if tracker == "demons":
-        propagate(here, there, here.at(s))
+        propagate(here, there, here.at(s), DemonsParameters())
     else:
         match(here, there, s, first_guess(here, there, s, SMOOTHNESS_PX2), SMOOTHNESS_PX2)
     return time.perf_counter() - start

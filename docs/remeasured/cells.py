@@ -9,7 +9,7 @@ import pandas as pd
 from cytodisk.pages.compared_cells import write_compared_cells
 from cytodisk.pages.compared_layers import write_comparison
 from cytodisk.runs.compare_windows.compare_cells import compare_cells
-from cytodisk.runs.compare_windows.compare_parameters import TITLES, CompareParameters, WindowMethod
+from cytodisk.runs.compare_windows.compare_parameters import TITLES, CompareWindowsParameters, WindowMethod
 from cytodisk.runs.compare_windows.comparison import Comparison
 from remeasured import shapes
 
@@ -28,7 +28,7 @@ def measure(masks: Path, work: Path, workers: int) -> dict[str, Comparison]:
     for name, (layers, sectors, methods) in GRIDS.items():
         print(f"osteosarcoma, {name}: {', '.join(methods)}", flush=True)
         out = work / f"cells_{name}"
-        parameters = CompareParameters(layers=layers, sectors=sectors, methods=methods)
+        parameters = CompareWindowsParameters(layers=layers, sectors=sectors, methods=methods)
         found[name] = compare_cells(masks, out, parameters, workers=workers, **shapes.again(out))
     return found
 

@@ -13,6 +13,7 @@ from cytodisk.disk.advection import advect
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.disk.mapping import mesh_cell
+from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.geometry.mesh import triangle_areas
 
 MASKS = ("example", "disk60", "ellipse5to1", "star5", "dumbbell3px", "neuron")
@@ -32,7 +33,7 @@ def free_flips(folder: Path) -> dict[str, int]:
     """Triangles that the paper's relaxation turns over on two masks, if flips may do so in the cell."""
     turned = {"disk": 0, "cell": 0}
     for name in FREE:
-        cell = mesh_cell(tifffile.imread(folder / f"{name}.tif"), method="advection")
+        cell = mesh_cell(tifffile.imread(folder / f"{name}.tif"), MappingParameters(method="advection"))
         angles = boundary_angles(cell.outline)
         start, _ = harmonic_map(cell.mesh, np.column_stack([np.cos(angles), np.sin(angles)]))
         free = advect(cell.mesh, start, whole_cell=False)

@@ -10,7 +10,8 @@ from scipy.stats import spearmanr
 
 import cytodisk as cd
 from cytodisk.pages.shape_pages import cells_to_draw, write_shape_figures
-from cytodisk.runs.shapes.shape_run import ShapeParameters, cleaned_masks, open_shape_inputs, run_shapes
+from cytodisk.runs.shapes.shape_parameters import ShapeParameters
+from cytodisk.runs.shapes.shape_run import cleaned_masks, open_shape_inputs, run_shapes
 
 QUANTILES = (0.01, 0.3, 0.6, 0.85, 0.99)
 SEEDS = (1, 2, 3, 4, 5)

@@ -41,7 +41,7 @@ from .analysis.window_measures import measures_by_layer as measures_by_layer
 # Movies and the edge
 from .motion.map_movie import map_movie as map_movie
 from .motion.disk_movie import DiskMovie as DiskMovie
-from .motion.demons import DemonsParameters as DemonsParameters
+from .motion.demons_parameters import DemonsParameters as DemonsParameters
 from .analysis.activity import sample_movie as sample_movie
 from .motion.velocity import edge_velocity as edge_velocity
 from .motion.velocity import boundary_velocity as boundary_velocity
@@ -70,7 +70,7 @@ from .analysis.shape.complexity import complexity_score as complexity_score
 from .runs.compare_windows.compare_cells import compare_cells as compare_cells
 from .runs.compare_windows.compare_movie import compare_movie as compare_movie
 from .runs.compare_windows.compare_parameters import CompareMovieParameters as CompareMovieParameters
-from .runs.compare_windows.compare_parameters import CompareParameters as CompareParameters
+from .runs.compare_windows.compare_parameters import CompareWindowsParameters as CompareWindowsParameters
 from .runs.correlate.correlate_run import correlate_study as correlate_study
 
 # Results of runs

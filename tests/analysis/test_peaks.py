@@ -1,5 +1,5 @@
 import warnings
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -10,8 +10,9 @@ from hypothesis.extra.numpy import arrays
 from scipy.stats import false_discovery_control
 from statsmodels.stats.multitest import multipletests
 
+from cytodisk.analysis.correlation.correlation_parameters import Rule
 from cytodisk.analysis.correlation.cross_correlation import cross_correlate
-from cytodisk.analysis.correlation.peaks import RULES, false_discovery, find_peak, p_value, peak_correlation
+from cytodisk.analysis.correlation.peaks import false_discovery, find_peak, p_value, peak_correlation
 from cytodisk.errors import ParameterError
 
 NAN = np.nan
@@ -52,7 +53,7 @@ def test_many_curves_at_once() -> None:
 
 
 def test_no_value_at_all() -> None:
-    for rule in RULES:
+    for rule in get_args(Rule):
         for threshold in (None, np.array(NAN), np.array(0.3)):
             _, value = find_peak(np.full(7, NAN), LAGS, rule, threshold)
             assert np.isnan(value)
@@ -163,7 +164,7 @@ def test_dims_in_another_order() -> None:
     random = np.random.default_rng(0)
     a, b = random.normal(size=(2, 40, 3, 4))
     found = cross_correlate(a, b[:, 0], 4, surrogates=19)
-    for rule in RULES:
+    for rule in get_args(Rule):
         expected = peak_correlation(found, rule=rule)
         turned = peak_correlation(found.transpose("lag", "sector", "surrogate", "layer"), rule=rule)
         xr.testing.assert_allclose(turned.transpose("layer", "sector"), expected)

@@ -13,6 +13,7 @@ from cytodisk.disk.disk_map import DiskMap, load_map
 from cytodisk.disk.distortion import distortion_of
 from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.disk.mapping import map_to_disk, mesh_cell
+from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.disk.poisson import TOLERANCE, PoissonSolver
 from cytodisk.geometry.half_edges import half_edges
 from cytodisk.geometry.mesh import triangle_areas
@@ -32,7 +33,7 @@ def star() -> DiskMap:
     "mask", [simulate.disk(40.0), simulate.ellipse((12.0, 30.0))], ids=["disk", "ellipse"]
 )
 def test_it_lowers_the_area_error_of_its_start(mask: np.ndarray) -> None:
-    cell = mesh_cell(mask, method="advection")
+    cell = mesh_cell(mask, MappingParameters(method="advection"))
     disk = map_to_disk(mask, method="advection")
     circle = disk.vertices_uv[disk.boundary]
     start, _ = harmonic_map(cell.mesh, circle)
@@ -75,7 +76,7 @@ def test_the_other_methods_stay_valid_where_it_is_not(star: DiskMap, method: str
 
 
 def test_the_flipped_mesh_is_a_triangulation_of_the_cell(star: DiskMap) -> None:
-    before = mesh_cell(star.mask, 1.5, "advection").mesh
+    before = mesh_cell(star.mask, MappingParameters(edge_length=1.5, method="advection")).mesh
     areas = triangle_areas(star.vertices_yx, star.triangles)
     assert not np.array_equal(star.triangles, before.triangles)
     assert areas.min() > 0
@@ -134,7 +135,7 @@ def test_a_movie_takes_it() -> None:
 
 def tangled(seed: int) -> tuple[FloatArray, FloatArray, IntArray, int]:
     """A small mesh with some triangles turned over in the disk, one of them without area."""
-    mesh = mesh_cell(simulate.disk(5.0), 1.5, "advection").mesh
+    mesh = mesh_cell(simulate.disk(5.0), MappingParameters(edge_length=1.5, method="advection")).mesh
     angle = 2.0 * np.pi * np.arange(mesh.n_boundary) / mesh.n_boundary
     uv, _ = harmonic_map(mesh, np.column_stack([np.cos(angle), np.sin(angle)]))
     uv[mesh.n_boundary :] += 0.05 * np.random.default_rng(seed).standard_normal(uv[mesh.n_boundary :].shape)
@@ -190,7 +191,7 @@ def test_kernels_agree_with_their_plain_twins() -> None:
 
 
 def test_the_gradient_of_a_linear_field_is_constant() -> None:
-    mesh = mesh_cell(simulate.disk(5.0), 1.5, "advection").mesh
+    mesh = mesh_cell(simulate.disk(5.0), MappingParameters(edge_length=1.5, method="advection")).mesh
     uv = np.ascontiguousarray(mesh.vertices_yx[:, ::-1])
     areas = kernels.signed_areas(uv, mesh.triangles)
     _, sizes = kernels.edge_cotangents(uv, mesh.triangles, areas)
@@ -214,7 +215,7 @@ def test_the_solver_solves_one_system_after_another() -> None:
 
 def test_small_triangles_grow() -> None:
     _, _, triangles, n_boundary = tangled(0)
-    mesh = mesh_cell(simulate.disk(5.0), 1.5, "advection").mesh
+    mesh = mesh_cell(simulate.disk(5.0), MappingParameters(edge_length=1.5, method="advection")).mesh
     angle = 2.0 * np.pi * np.arange(n_boundary) / n_boundary
     uv, _ = harmonic_map(mesh, np.column_stack([np.cos(angle), np.sin(angle)]))
     squeezed = uv * (0.3 + 0.7 * np.hypot(*uv.T) ** 2)[:, None]  # small in the middle, the boundary as it is
@@ -229,7 +230,7 @@ def test_small_triangles_grow() -> None:
 
 
 def test_flips_that_may_break_the_cell_mend_the_disk(star: DiskMap) -> None:
-    cell = mesh_cell(star.mask, 1.5, "advection")
+    cell = mesh_cell(star.mask, MappingParameters(edge_length=1.5, method="advection"))
     start, _ = harmonic_map(cell.mesh, star.vertices_uv[star.boundary])
     free = advect(cell.mesh, start, whole_cell=False)
     turned_in_disk = (triangle_areas(free.vertices_uv[:, ::-1], free.triangles) <= 0).sum()

@@ -9,6 +9,7 @@ from cytodisk.disk.certificate import certify
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.disk.mapping import mesh_cell
+from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.disk.newton import Relaxed, relax
 from cytodisk.geometry.mesh import Mesh, hat_gradients, triangle_areas
 
@@ -18,7 +19,7 @@ INERTIAS = (0.0, 0.1, 1.0, 10.0, 1000.0)
 
 @cache
 def start(kind: str = "smooth") -> tuple[Mesh, np.ndarray]:
-    cell = mesh_cell(simulate.random_mask(kind, 3), 1.5)
+    cell = mesh_cell(simulate.random_mask(kind, 3), MappingParameters(edge_length=1.5))
     angles = boundary_angles(cell.outline)
     return cell.mesh, harmonic_map(cell.mesh, np.column_stack([np.cos(angles), np.sin(angles)]))[0]
 

@@ -8,15 +8,16 @@ from cytodisk import simulate
 from cytodisk.disk.certificate import certify
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.mapping import CellMesh, map_mesh, mesh_cell
+from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.disk.untangle import untangled
 from cytodisk.geometry.mesh import Mesh, triangle_areas
 
 
 @cache
 def valid_map(kind: str = "smooth") -> tuple[CellMesh, np.ndarray]:
-    cell = mesh_cell(simulate.random_mask(kind, 3), 1.5)
+    cell = mesh_cell(simulate.random_mask(kind, 3), MappingParameters(edge_length=1.5))
     angles = boundary_angles(cell.outline)
-    return cell, map_mesh(cell, angles).vertices_uv
+    return cell, map_mesh(cell, angles, MappingParameters()).vertices_uv
 
 
 def flipped(mesh: Mesh, uv: np.ndarray) -> np.ndarray:
@@ -109,7 +110,9 @@ def test_a_boundary_that_runs_backwards_is_hopeless() -> None:
 @pytest.mark.parametrize("spoil", [lambda uv: -uv, lambda uv: np.full_like(uv, 5.0), lambda uv: uv[::-1]])
 def test_a_map_starts_from_any_anchor(spoil: Callable[[np.ndarray], np.ndarray]) -> None:
     cell, uv = valid_map()
-    disk = map_mesh(cell, boundary_angles(cell.outline), anchor_uv=spoil(uv), inertia=1.0)
+    disk = map_mesh(
+        cell, boundary_angles(cell.outline), MappingParameters(), anchor_uv=spoil(uv), inertia=1.0
+    )
     assert disk.converged
     assert disk.certificate.valid
 
@@ -117,6 +120,6 @@ def test_a_map_starts_from_any_anchor(spoil: Callable[[np.ndarray], np.ndarray])
 def test_an_anchor_that_cannot_be_mended_is_no_start(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cytodisk.disk.mapping.untangled", lambda mesh, uv: None)
     cell, uv = valid_map()
-    disk = map_mesh(cell, boundary_angles(cell.outline), anchor_uv=uv, inertia=1.0)
+    disk = map_mesh(cell, boundary_angles(cell.outline), MappingParameters(), anchor_uv=uv, inertia=1.0)
     assert disk.start in ("cotangent", "uniform")
     assert disk.certificate.valid

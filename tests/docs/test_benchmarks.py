@@ -13,8 +13,8 @@ import cytodisk as cd
 from cytodisk.disk import mapping
 from cytodisk.geometry import outline
 from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import run_movie
-from cytodisk.runs.parameters import MovieParameters
 
 ROOT = Path(__file__).parents[2]
 

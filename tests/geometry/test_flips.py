@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from cytodisk import simulate
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.mapping import mesh_cell
+from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.geometry.flips import flip_to_delaunay, triangle_neighbours
 from cytodisk.geometry.half_edges import half_edges
 from cytodisk.geometry.mesh import triangle_areas, triangle_edges
@@ -72,7 +73,7 @@ def test_a_flip_turns_a_triangle_back() -> None:
 @settings(max_examples=15, deadline=None)
 @given(seed=st.integers(0, 999), shear=st.floats(0.0, 3.0), noise=st.floats(0.0, 0.3))
 def test_flips_keep_a_triangulation_and_end_delaunay(seed: int, shear: float, noise: float) -> None:
-    mesh = mesh_cell(simulate.disk(9.0), 1.2, "advection").mesh
+    mesh = mesh_cell(simulate.disk(9.0), MappingParameters(edge_length=1.2, method="advection")).mesh
     xy, n = np.ascontiguousarray(mesh.vertices_yx[:, ::-1]), mesh.n_boundary
     uv = xy @ np.array([[1.0, 0.0], [shear, 1.0]])
     moved = uv + noise * np.random.default_rng(seed).standard_normal(uv.shape)
@@ -91,5 +92,5 @@ def test_flips_keep_a_triangulation_and_end_delaunay(seed: int, shear: float, no
 
 @pytest.mark.parametrize("kind", ["spiky", "smooth"])
 def test_neighbours_agree_with_their_plain_twin(kind: str) -> None:
-    triangles = mesh_cell(simulate.random_mask(kind, 3), 2.0).mesh.triangles
+    triangles = mesh_cell(simulate.random_mask(kind, 3), MappingParameters(edge_length=2.0)).mesh.triangles
     np.testing.assert_array_equal(triangle_neighbours(triangles), plain_neighbours(triangles))

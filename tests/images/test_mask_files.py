@@ -7,9 +7,10 @@ import tifffile
 from numpy.testing import assert_array_equal
 
 from cytodisk.errors import MaskError, ParameterError
+from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile, open_frames
 from cytodisk.images.mask_files import MaskSource, SourceCell, read_source_cells
-from cytodisk.images.mask_kinds import Kind, understood_as
+from cytodisk.images.mask_kinds import understood_as
 
 ONE = np.zeros((20, 30), dtype=np.uint8)
 ONE[5:15, 5:12] = 1

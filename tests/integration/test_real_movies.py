@@ -9,8 +9,8 @@ import tifffile
 
 import cytodisk as cd
 from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import run_movie
-from cytodisk.runs.parameters import MovieParameters
 
 GRID = MovieParameters(layers=8, sectors=36)
 STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")

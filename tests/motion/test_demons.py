@@ -11,7 +11,8 @@ from cytodisk.errors import MissingPartError, ParameterError
 from cytodisk.geometry.locate import nearest_on_outline
 from cytodisk.geometry.polygon import edge_lengths
 from cytodisk.motion.contour import Contour
-from cytodisk.motion.demons import DemonsParameters, propagate, space_evenly
+from cytodisk.motion.demons import propagate, space_evenly
+from cytodisk.motion.demons_parameters import DemonsParameters
 
 LOOSE = DemonsParameters(redistribute=False)
 # A stiffer field and more iterations carry the motion of the lobes' flanks to their tips.
@@ -85,7 +86,7 @@ def test_points_come_onto_the_boundary_in_their_number_and_order(n: int) -> None
 def test_redistribution_spaces_evenly_and_keeps_point_0() -> None:
     here, there = lobed(), lobed(turn=0.4)
     points = evenly(here)
-    loose, even = (propagate(here, there, points, replace(LOOSE, redistribute=r)) for r in (False, True))
+    loose, even = (propagate(here, there, points, LOOSE.changed(redistribute=r)) for r in (False, True))
     spacing = edge_lengths(even)
     assert np.abs(spacing / spacing.mean() - 1.0).max() < 0.02
     assert np.ptp(edge_lengths(loose)) > 5.0 * np.ptp(spacing)
@@ -95,7 +96,7 @@ def test_redistribution_spaces_evenly_and_keeps_point_0() -> None:
 
 def test_the_result_is_the_same_every_time() -> None:
     here, there = lobed(), lobed(turn=0.2)
-    first, second = (propagate(here, there, evenly(here)) for _ in range(2))
+    first, second = (propagate(here, there, evenly(here), DemonsParameters()) for _ in range(2))
     np.testing.assert_array_equal(first, second)
 
 
@@ -152,7 +153,7 @@ def test_a_boundary_that_fell_together_is_named() -> None:
 )
 def test_bad_parameters_are_named(name: str, value: object) -> None:
     with pytest.raises(ParameterError, match=f"{name} must be .*, got {value!r}"):
-        replace(DemonsParameters(), **{name: value})
+        DemonsParameters(**{name: value})
 
 
 @pytest.mark.parametrize(
@@ -166,15 +167,15 @@ def test_bad_parameters_are_named(name: str, value: object) -> None:
 )
 def test_bad_points_are_named(points: np.ndarray, message: str) -> None:
     with pytest.raises(ParameterError, match=f"points_yx must .*{message}"):
-        propagate(lobed(), lobed(), points)
+        propagate(lobed(), lobed(), points, LOOSE)
 
 
 def test_bad_outlines_are_named() -> None:
     speck = contour(60.5 + 0.01 * circle(8))
     with pytest.raises(ParameterError, match="there must enclose a pixel centre"):
-        propagate(lobed(), speck, evenly(lobed()))
+        propagate(lobed(), speck, evenly(lobed()), LOOSE)
     with pytest.raises(ParameterError, match="finite points"):
-        propagate(lobed(), replace(lobed(), points_yx=np.full((8, 2), np.inf)), evenly(lobed()))
+        propagate(lobed(), replace(lobed(), points_yx=np.full((8, 2), np.inf)), evenly(lobed()), LOOSE)
 
 
 def test_importing_the_module_leaves_the_registration_library_alone() -> None:

@@ -159,5 +159,5 @@ def test_a_turning_ellipse_never_flips() -> None:
 
 def test_without_registration_every_transform_is_the_identity() -> None:
     shown = simulate.movie("turning", 3, frames=4, signals=False)
-    movie = map_movie(shown.masks, register=False, edge_length=3.0, method="harmonic")
+    movie = map_movie(shown.masks, registration=False, edge_length=3.0, method="harmonic")
     assert movie.transforms == [IDENTITY] * 4

@@ -114,7 +114,7 @@ def test_arguments_of_the_error_bar_are_checked(name: str, value: object) -> Non
 def test_parameters_of_demons_reach_it() -> None:
     frames = [drop(0.0), np.roll(drop(0.0), 2, axis=1)]
     found = [
-        map_movie(frames, tracker="demons", register=False, demons=demons, **QUICK).points_yx[1]
+        map_movie(frames, tracker="demons", registration=False, demons=demons, **QUICK).points_yx[1]
         for demons in (None, cd.DemonsParameters(), cd.DemonsParameters(redistribute=False))
     ]
     np.testing.assert_array_equal(found[0], found[1])

@@ -7,9 +7,11 @@ from hypothesis import strategies as st
 from cytodisk import map_to_disk, simulate
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.mapping import mesh_cell
+from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.temporal import carried_inside, tracked_angles
-from cytodisk.motion.tracking import TrackedBoundary, TrackingSettings, first_boundary, follow, point_angles
+from cytodisk.motion.tracking import TrackedBoundary, first_boundary, follow, point_angles
+from cytodisk.motion.tracking_parameters import TrackingSettings
 
 
 def uneven(n: int, seed: int, length: float, evenness: float) -> np.ndarray:
@@ -55,7 +57,7 @@ def test_a_shift_by_whole_pixels_carries_the_map_exactly() -> None:
     mask = np.pad(simulate.random_smooth(3, radius=25.0), 10)
     previous = map_to_disk(mask)
     last = Contour.of_outline(previous.outline_yx)
-    cell = mesh_cell(np.roll(mask, (4, -3), axis=(0, 1)))
+    cell = mesh_cell(np.roll(mask, (4, -3), axis=(0, 1)), MappingParameters())
     contour = Contour.of_outline(cell.outline + cell.corner)
     s = evenly(last, 256)
     found = carried_inside(cell, contour, s, previous, last, s)
@@ -67,7 +69,7 @@ def test_a_shift_by_whole_pixels_carries_the_map_exactly() -> None:
 def test_a_rigid_motion_carries_the_map(degrees: float) -> None:
     shift = np.array([2.4, -1.3])
     masks = masks_of([lobed(40.0), moved(lobed(40.0), degrees, shift)], (121, 121))
-    previous, cell = map_to_disk(masks[0]), mesh_cell(masks[1])
+    previous, cell = map_to_disk(masks[0]), mesh_cell(masks[1], MappingParameters())
     last = Contour.of_outline(previous.outline_yx)
     boundary: TrackedBoundary = first_boundary(0, last, boundary_angles(last.outline_yx))
     contour = Contour.of_outline(cell.outline + cell.corner)
@@ -83,7 +85,7 @@ def test_a_rigid_motion_carries_the_map(degrees: float) -> None:
 
 def test_the_carried_inside_of_a_grown_cell_is_the_same_disk() -> None:
     masks = masks_of([lobed(36.0), CENTRE + (lobed(36.0) - CENTRE) * 1.08], (121, 121))
-    previous, cell = map_to_disk(masks[0]), mesh_cell(masks[1])
+    previous, cell = map_to_disk(masks[0]), mesh_cell(masks[1], MappingParameters())
     last = Contour.of_outline(previous.outline_yx)
     boundary = first_boundary(0, last, boundary_angles(last.outline_yx))
     contour = Contour.of_outline(cell.outline + cell.corner)

@@ -1,5 +1,4 @@
 import re
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +11,8 @@ from cytodisk.errors import ParameterError
 from cytodisk.geometry.locate import nearest_on_outline
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.registration import IDENTITY
-from cytodisk.motion.tracking import TrackedBoundary, TrackingSettings, first_boundary, follow, point_angles
+from cytodisk.motion.tracking import TrackedBoundary, first_boundary, follow, point_angles
+from cytodisk.motion.tracking_parameters import TrackingSettings
 
 LOOSE = TrackingSettings(tension=0.0)
 DEMONS = TrackingSettings(tracker="demons")
@@ -48,13 +48,13 @@ def followed(contours: list[Contour], settings: TrackingSettings = LOOSE) -> lis
 )
 def test_bad_settings_are_named(name: str, value: object) -> None:
     with pytest.raises(ParameterError, match=f"{name} must be .*got {re.escape(repr(value))}"):
-        replace(TrackingSettings(), **{name: value})
+        TrackingSettings(**{name: value})
 
 
 @pytest.mark.parametrize("name", ["tension", "smoothness_px2"])
 def test_settings_that_are_no_numbers_are_named(name: str) -> None:
     with pytest.raises(ParameterError, match=f"{name} must be .*got 'much'"):
-        replace(TrackingSettings(), **{name: "much"})
+        TrackingSettings(**{name: "much"})
 
 
 @pytest.mark.parametrize("n", [1, 7, 256])
@@ -83,7 +83,7 @@ def test_the_first_points_have_their_angles_on_the_disk() -> None:
 
 @given(smooth_curves(0.1), smooth_curves(0.1), st.sampled_from([0.0, 0.01, 0.5, 1.0]), st.booleans())
 def test_order_is_strict(first: np.ndarray, second: np.ndarray, tension: float, register: bool) -> None:
-    settings = TrackingSettings(tension=tension, register=register)
+    settings = TrackingSettings(tension=tension, registration=register)
     here, there = followed([exact(first), exact(second)], settings)
     assert len(there.s) == len(here.s)
     assert runs_once(there.s, there.contour.length)
@@ -105,7 +105,7 @@ def test_a_rigidly_moving_cell_keeps_its_points() -> None:
 def test_full_tension_gives_equidistant_points(tension: float) -> None:
     front = wavy([0.1, 0.0, 0.05], [0.0, 0.0, 1.0])
     grown = CENTRE + (front - CENTRE) * np.where(front[:, 1:] > CENTRE[1], 1.3, 1.0)
-    _, there = followed([exact(front), exact(grown)], replace(LOOSE, tension=tension))
+    _, there = followed([exact(front), exact(grown)], LOOSE.changed(tension=tension))
     gaps = np.diff(there.s, append=there.s[0] + there.contour.length)
     if tension == 1.0:
         np.testing.assert_allclose(gaps, there.contour.length / len(gaps), rtol=1e-9)
@@ -115,7 +115,7 @@ def test_full_tension_gives_equidistant_points(tension: float) -> None:
 
 def test_tension_leaves_the_mean_place() -> None:
     contours = [exact(lobed()), exact(moved(lobed(49.0), 2.0, (0.0, 1.0)))]
-    loose, even = (followed(contours, replace(LOOSE, tension=tension))[1] for tension in (0.0, 1.0))
+    loose, even = (followed(contours, LOOSE.changed(tension=tension))[1] for tension in (0.0, 1.0))
     assert even.s.mean() == pytest.approx(loose.s.mean(), abs=1e-6)
 
 
@@ -142,7 +142,7 @@ def test_a_cell_that_becomes_another_starts_anew(settings: TrackingSettings) -> 
 
 def test_what_lies_apart_starts_anew_unless_registered() -> None:
     contours = [exact(lobed()), exact(moved(lobed(), 0.0, (200.0, 0.0)))]
-    apart = followed(contours, replace(LOOSE, register=False))[1]
+    apart = followed(contours, LOOSE.changed(registration=False))[1]
     assert re.search(r"overlap by 0% only", apart.restarted)
     assert followed(contours)[1].restarted == ""
 

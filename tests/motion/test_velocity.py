@@ -18,7 +18,7 @@ QUICK = {"method": "harmonic", "edge_length": 4.0}
 
 def translating_disk(step: tuple[float, float], register: bool = True) -> DiskMovie:
     outlines = [circle(45.0, 800) + np.array(step) * time for time in range(21)]
-    return map_movie(masks_of(outlines, (131, 141)), register=register, **QUICK)
+    return map_movie(masks_of(outlines, (131, 141)), registration=register, **QUICK)
 
 
 @pytest.fixture(scope="module")
@@ -204,7 +204,7 @@ def test_boundary_on_the_border_is_left_out(growth: float) -> None:
 
 def test_points_that_come_onto_the_border_are_left_out_already_before() -> None:
     outlines = [circle(20.0, centre=np.array([23.0 - 2.0 * time, 40.0])) for time in range(5)]
-    movie = map_movie(masks_of(outlines, (60, 80)), register=False, **QUICK)
+    movie = map_movie(masks_of(outlines, (60, 80)), registration=False, **QUICK)
     border = movie.on_border
     assert (border[1:] & ~border[:-1]).any()
     np.testing.assert_array_equal(np.isnan(boundary_velocity(movie)[:-1]), border[:-1] | border[1:])
@@ -275,7 +275,7 @@ def test_the_error_grows_with_the_jitter_and_is_0_without(small: np.ndarray) -> 
 
 def test_the_error_is_that_of_repeated_segmentation() -> None:
     shown = simulate.movie("still", 2, frames=25, jitter_px=0.5, signals=False)
-    movie = map_movie(shown.masks, register=False, **QUICK)
+    movie = map_movie(shown.masks, registration=False, **QUICK)
     changes = edge_changes(movie, 40, jitter_px=0.5, repeats=8)
     scatter = changes.velocity[:-1].std()
     assert 0.5 < float(changes.velocity_error[:-1].mean() / scatter) < 1.6

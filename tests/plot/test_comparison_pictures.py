@@ -29,7 +29,7 @@ def comparison(tmp_path_factory: pytest.TempPathFactory) -> cd.Comparison:
     stack[0, :, :45] = cd.simulate.disk(14)
     stack[1] = cd.simulate.dumbbell(14, neck_width=3)
     tifffile.imwrite(folder / "masks.tif", stack, photometric="minisblack", metadata={"axes": "TYX"})
-    grid = cd.CompareParameters(methods=METHODS, layers=3, sectors=8)
+    grid = cd.CompareWindowsParameters(methods=METHODS, layers=3, sectors=8)
     return cd.compare_cells(folder / "masks.tif", folder / "out", grid)
 
 

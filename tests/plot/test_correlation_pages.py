@@ -17,8 +17,8 @@ from cytodisk.errors import ParameterError, ReadError, StudyError
 from cytodisk.pages.correlation_files import write_correlation_figures
 from cytodisk.runs.correlate.correlate_run import correlate_study
 from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import run_movie
-from cytodisk.runs.parameters import MovieParameters
 from cytodisk.simulate import movie
 from cytodisk.store.correlation_store import Correlation
 

@@ -16,8 +16,8 @@ from cytodisk.pages.movie_pages import write_movie_figures
 from cytodisk.plot.layer_lines import draw_by_layer
 from cytodisk.plot.mean_velocity import draw_mean_velocity
 from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import run_movie
-from cytodisk.runs.parameters import MovieParameters
 from cytodisk.store.study import Study
 
 FRAMES, GAP, SHAPE = 8, 3, (50, 150)

@@ -9,7 +9,7 @@ import tifffile
 import xarray as xr
 
 import cytodisk as cd
-from cytodisk.runs.parameters import MovieParameters
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.simulate.moving_cells import SimulatedMovie
 
 LAYERS, SECTORS = 4, 12

@@ -8,7 +8,8 @@ import pytest
 
 from cytodisk.errors import ParameterError
 from cytodisk.runs.batch.batch_file import Batch, read_batch
-from cytodisk.runs.parameters import MapParameters, MovieParameters
+from cytodisk.runs.map.map_parameters import MapParameters
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 
 LABELS = "[[inputs]]\nmasks = 'labels'\nkind = 'map'\n"
 

@@ -24,7 +24,7 @@ from cytodisk.runs.batch.batch_run import BatchSummary, run_batch
 from cytodisk.runs.batch.child_process import ChildProcess
 from cytodisk.runs.batch.grouping import expected_seconds, make_tasks
 from cytodisk.runs.batch.inputs import BatchInput
-from cytodisk.runs.parameters import MovieParameters
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.store.study_folder import alone_in
 from cytodisk.store.tables import read_table
 from cytodisk.store.targets import FolderStore

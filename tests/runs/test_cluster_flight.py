@@ -28,7 +28,7 @@ from cytodisk.runs.batch.on_worker import (
 )
 from cytodisk.runs.batch.rows import read_row
 from cytodisk.runs.batch.task import BatchTask, open_store
-from cytodisk.runs.parameters import MapParameters
+from cytodisk.runs.map.map_parameters import MapParameters
 
 THREADS = 2
 HANGS = "hangs"

@@ -13,10 +13,10 @@ from cytodisk.errors import MapError, ParameterError, ReadError, StudyError
 from cytodisk.runs.compare_windows import compare_cells as module
 from cytodisk.runs.compare_windows.compare_summaries import layer_summary, method_summary
 from cytodisk.runs.compare_windows.comparison_words import where_worse
-from cytodisk.runs.parameters import parameters_from
+from cytodisk.runs.parameters_file import parameters_from
 
 METHODS = ("newton", "harmonic", "edge", "rings")
-GRID = cd.CompareParameters(methods=METHODS, layers=4, sectors=12)
+GRID = cd.CompareWindowsParameters(methods=METHODS, layers=4, sectors=12)
 
 
 @pytest.fixture(scope="module")
@@ -181,7 +181,7 @@ def test_folders_and_label_images_are_compared_too(tmp_path: Path) -> None:
     folder.mkdir()
     tifffile.imwrite(folder / "a_masks.tif", labels)
     (folder / "b_masks.tif").write_bytes(b"no image")
-    grid = cd.CompareParameters(methods=("edge",), layers=2, sectors=6, depth_px=3.0)
+    grid = cd.CompareWindowsParameters(methods=("edge",), layers=2, sectors=6, depth_px=3.0)
     found = cd.compare_cells(folder, tmp_path / "out", grid).cells
     assert list(found["label"]) == [4, 5, 0]
     assert list(found["status"]) == ["ok", "ok", "unreadable"]
@@ -193,19 +193,19 @@ def test_folders_and_label_images_are_compared_too(tmp_path: Path) -> None:
     [
         ({"methods": ()}, "name at least one method"),
         ({"methods": ("edge", "edge")}, "each once"),
-        ({"methods": ("voronoi",)}, "methods: Input should be 'newton'"),
-        ({"method": "newton"}, "a comparison has several: pass methods"),
-        ({"depth_px": 0}, "depth_px: Input should be greater than 0"),
+        ({"methods": ("voronoi",)}, "methods must be several of newton"),
+        ({"method": "newton"}, "did you mean methods"),
+        ({"depth_px": 0}, "depth_px must be a number above 0"),
     ],
 )
 def test_parameters_that_make_no_sense_are_refused(values: dict[str, Any], words: str) -> None:
     with pytest.raises(ParameterError, match=words):
-        parameters_from(values, None, cd.CompareParameters)
+        parameters_from(values, None, cd.CompareWindowsParameters)
 
 
 def test_the_parameters_of_a_comparison_can_be_fed_back(comparison: cd.Comparison) -> None:
     path = comparison.path / "parameters.toml"
-    assert parameters_from({}, path, cd.CompareParameters) == GRID
+    assert parameters_from({}, path, cd.CompareWindowsParameters) == GRID
 
 
 def test_a_map_study_is_no_comparison(tmp_path: Path) -> None:

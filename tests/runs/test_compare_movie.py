@@ -9,7 +9,7 @@ import tifffile
 import cytodisk as cd
 from cytodisk.errors import MapError, ParameterError, SignalError
 from cytodisk.runs.compare_windows import compare_movie as module
-from cytodisk.runs.parameters import parameters_from
+from cytodisk.runs.parameters_file import parameters_from
 
 METHODS = ("newton", "harmonic", "edge")
 GRID = cd.CompareMovieParameters(methods=METHODS, layers=4, sectors=12, depth_px=5.0)
@@ -160,7 +160,7 @@ def test_inputs_that_do_not_fit_are_refused(files: tuple[Path, Path], tmp_path: 
     tifffile.imwrite(short, image, photometric="minisblack", metadata={"axes": "TYX"})
     with pytest.raises(SignalError, match="2 frames"):
         cd.compare_movie(files[0], tmp_path / "out", GRID, signal=short)
-    with pytest.raises(ParameterError, match="pass methods"):
+    with pytest.raises(ParameterError, match="did you mean methods"):
         parameters_from({"method": "harmonic"}, None, cd.CompareMovieParameters)
-    with pytest.raises(ParameterError, match="depth_um: a comparison has the same number of layers for all"):
-        parameters_from({"depth_um": 1.0}, None, cd.CompareMovieParameters)
+    with pytest.raises(ParameterError, match="depth_px and depth_um exclude each other"):
+        parameters_from({"depth_px": 1.0, "depth_um": 1.0}, None, cd.CompareMovieParameters)

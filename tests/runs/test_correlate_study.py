@@ -13,8 +13,8 @@ from cytodisk.errors import ParameterError, ReadError, StudyError
 from cytodisk.runs.correlate.correlate_run import correlate_study
 from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import run_movie
-from cytodisk.runs.parameters import MovieParameters
 from cytodisk.simulate import movie
 from cytodisk.store.correlation_store import list_correlations, write_correlation
 
@@ -133,7 +133,7 @@ def test_episodes_and_averages_stand_beside(study: cd.Study) -> None:
         ({"rule": "best"}, "rule must be one of nearest, largest, got 'best'"),
         ({"null": "shuffle"}, "null must be one of phase, shift, got 'shuffle'"),
         ({"surrogates": -1}, "surrogates must be a whole number of at least 0, got -1"),
-        ({"lag": 3}, "settings have no 'lag'"),
+        ({"lag": 3}, "no parameter 'lag'"),
         ({"detrend": "spline"}, "detrend must be one of none, linear, median, got 'spline'"),
     ],
 )
@@ -228,9 +228,9 @@ def test_some_frames_and_sectors(study: cd.Study) -> None:
         ({"sectors": (0, 12)}, "sectors 0:12 are not on the edge: it has 0:11"),
         ({"sectors": (5, 4)}, "sectors 5:4 are the whole edge, or two swapped"),
         ({"sectors": (3,)}, "sectors must be the first and the last"),
-        ({"sectors": (1.5, 7)}, "sectors must be a whole number of at least 0, got 1.5"),
+        ({"sectors": (1.5, 7)}, "sectors must be the first and the last, .*got 1.5"),
         ({"without_frames": 17}, "without_frames must be whole numbers"),
-        ({"name": 5}, "name must be a text of at most 60 letters"),
+        ({"name": 5}, "name must be a text, got 5"),
         ({"name": "n" * 300}, "name must be a text of at most 60 letters"),
         ({"surrogates": 5}, "surrogates must be 0, or at least 19"),
         ({"max_lag": "x"}, "max_lag must be a whole number of at least 0, got 'x'"),

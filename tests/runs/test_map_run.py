@@ -10,8 +10,9 @@ from numpy.testing import assert_array_equal
 import cytodisk as cd
 from cytodisk.errors import MaskError, ParameterError, ReadError, SignalError, StudyError
 from cytodisk.runs.map.map_inputs import MapInputs, open_inputs
+from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_run import check_cells, run_map
-from cytodisk.runs.parameters import MapParameters, parameters_from
+from cytodisk.runs.parameters_file import parameters_from
 from cytodisk.store.study_folder import alone_in, part_key
 
 WriteStack = Callable[[int], tuple[Path, Path]]
@@ -190,7 +191,7 @@ def test_nan_in_the_signal_is_counted(tmp_path: Path) -> None:
     assert touched.any()
     assert (study.windows["mean"].isna() == touched).all()
     assert (study.windows["status"] == np.where(touched, "NaN in signal", "ok")).all()
-    omitting = parameters_from({"layers": 3, "sectors": 8, "nan": "omit"})
+    omitting = parameters_from({"layers": 3, "sectors": 8, "nan": "omit"}, None, MapParameters)
     windows = run_map(open_inputs(*paths, omitting), tmp_path / "omit").windows
     np.testing.assert_allclose(windows["mean"].dropna(), 1.0)
     assert windows["mean"].isna().sum() < touched.sum()
@@ -213,7 +214,7 @@ def test_a_signal_that_does_not_fit_is_refused(write_stack: WriteStack, tmp_path
 def test_a_stack_is_no_single_mask(write_stack: WriteStack) -> None:
     masks, _ = write_stack(2)
     with pytest.raises(MaskError, match="is a stack of 2 frames where one image is needed"):
-        open_inputs(masks, None, parameters_from({"kind": "mask"}))
+        open_inputs(masks, None, parameters_from({"kind": "mask"}, None, MapParameters))
 
 
 def test_workers_must_be_positive(write_stack: WriteStack, tmp_path: Path) -> None:
@@ -272,7 +273,7 @@ def test_a_files_own_scale_stays_out_of_the_parameters(write_stack: WriteStack, 
         tifffile.imwrite(tmp_path / f"{name}.ome.tif", tifffile.imread(masks)[0], metadata=metadata)
     fine = tmp_path / "fine.ome.tif"
     study = run_map(open_inputs(tmp_path / "coarse.ome.tif", None, SMALL), tmp_path / "out")
-    again = parameters_from({}, tmp_path / "out" / "parameters.toml")
+    again = parameters_from({}, tmp_path / "out" / "parameters.toml", MapParameters)
     assert study.provenance["pixel_size_um"] == pytest.approx(0.3)
     assert open_inputs(fine, None, again).pixel_size_um == pytest.approx(0.1)
     with pytest.raises(SignalError, match="pixel sizes differ"):

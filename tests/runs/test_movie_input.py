@@ -14,8 +14,9 @@ from cytodisk.images.frames import open_frames
 from cytodisk.images.tracks import read_frame
 from cytodisk.runs.map.map_inputs import open_inputs
 from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import run_movie
-from cytodisk.runs.parameters import MovieParameters, parameters_from
+from cytodisk.runs.parameters_file import parameters_from
 
 FRAMES, SHAPE = 6, (44, 52)
 
@@ -206,21 +207,22 @@ def test_a_damaged_frame_loses_that_frame_alone(tmp_path: Path, kind: str, time:
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        ({"frame_interval_s": 0.0}, "frame_interval_s: Input should be greater than 0, got 0.0"),
-        ({"frame_interval_s": -5.0}, "frame_interval_s: Input should be greater than 0, got -5.0"),
-        ({"frame_interval_s": float("nan")}, "frame_interval_s: .*got nan"),
-        ({"pixel_size_um": 0.0}, "pixel_size_um: Input should be greater than 0, got 0.0"),
-        ({"depth_um": -1.0}, "depth_um: Input should be greater than 0, got -1.0"),
-        ({"tracker": "snake"}, "tracker: Input should be 'matching' or 'demons', got 'snake'"),
-        ({"tension": 1.5}, "tension: Input should be less than or equal to 1, got 1.5"),
-        ({"renew_every": 0}, "renew_every: Input should be greater than or equal to 1, got 0"),
-        ({"kind": "mask"}, "kind: Input should be 'auto', 'stack' or 'labels', got 'mask'"),
-        ({"speed": 3}, "speed: Extra inputs are not permitted, got 3"),
+        ({"frame_interval_s": 0.0}, "frame_interval_s must be a number above 0, got 0.0"),
+        ({"frame_interval_s": -5.0}, "frame_interval_s must be a number above 0, got -5.0"),
+        ({"frame_interval_s": float("nan")}, "frame_interval_s must .*got nan"),
+        ({"pixel_size_um": 0.0}, "pixel_size_um must be a number above 0, got 0.0"),
+        ({"depth_um": -1.0}, "depth_um must be a number above 0, got -1.0"),
+        ({"tracker": "snake"}, "tracker must be one of matching, demons, got 'snake'"),
+        ({"tension": 1.5}, "tension must be a number from 0 to 1, got 1.5"),
+        ({"renew_every": 0}, "renew_every must be a whole number of at least 1, got 0"),
+        ({"kind": "mask"}, "kind must be one of auto, stack, labels, got 'mask'"),
+        ({"layers": 3, "depth_um": 1.0}, "layers and depth_um exclude each other"),
+        ({"speed": 3}, "no parameter 'speed'"),
     ],
 )
 def test_parameters_out_of_range(values: dict[str, Any], words: str) -> None:
     with pytest.raises(ParameterError, match=words):
-        parameters_from(values, of=MovieParameters)
+        parameters_from(values, None, MovieParameters)
 
 
 def test_a_depth_needs_a_pixel_size(masks: Path) -> None:

@@ -16,8 +16,8 @@ from cytodisk.analysis.shape.features import FEATURES
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError, ReadError, StudyError
 from cytodisk.runs.shapes import shape_run
+from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 from cytodisk.runs.shapes.shape_run import (
-    ShapeParameters,
     cleaned_masks,
     open_shape_inputs,
     run_shapes,

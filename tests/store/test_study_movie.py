@@ -10,10 +10,11 @@ from numpy.testing import assert_array_equal
 import cytodisk as cd
 from cytodisk.errors import MapError, ReadError
 from cytodisk.runs.map.map_inputs import open_inputs
+from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_run import run_map
 from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import run_movie
-from cytodisk.runs.parameters import MapParameters, MovieParameters
 
 FRAMES, EMPTY = 4, 2
 

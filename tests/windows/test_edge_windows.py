@@ -182,7 +182,7 @@ def test_a_grid_has_one_depth_for_all_cells() -> None:
 
 @pytest.mark.parametrize("depth", [0.0, -1.0, np.inf, np.nan, "3", True])
 def test_a_depth_that_is_no_number_above_0_is_refused(depth: object) -> None:
-    with pytest.raises(WindowError, match="depth_px must be a number of pixels above 0, got"):
+    with pytest.raises(WindowError, match="depth_px must be a number above 0, got"):
         cd.edge_windows(cd.simulate.disk(5), 2, 3, depth)  # type: ignore[arg-type]
 
 

@@ -19,7 +19,7 @@ movie = cd.map_movie(
     truth.masks,
     pixel_size_um=truth.pixel_size_um,
     frame_interval_s=truth.frame_interval_s,
-    register=False,  # waves that run around a cell look like a rotation
+    registration=False,  # waves that run around a cell look like a rotation
 )
 grid = cd.polar_windows(layers=4, sectors=32)
 signal = cd.sample_movie(movie, grid, truth.signal)["mean"].sel(channel="edge")

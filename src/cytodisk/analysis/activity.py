@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import xarray as xr
@@ -12,6 +12,8 @@ from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import SignalError
 from cytodisk.motion.disk_movie import DiskMovie
+from cytodisk.taking import takes
+from cytodisk.windows.grid_parameters import SampleParameters
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.sample import sample
 
@@ -28,13 +30,14 @@ class Grid(Protocol):
     def on(self, disk: DiskMap, /) -> WindowsOnCell: ...
 
 
+@takes(SampleParameters)
 def sample_movie(
     movie: DiskMovie,
     grid: Grid,
     signals: Any,
     *,
-    nan: Literal["propagate", "omit"] = "propagate",
     progress: Callable[[int, int], None] | None = None,
+    **settings: Any,
 ) -> xr.Dataset:
     """Statistics of a signal in every window of every frame, frame by frame.
 
@@ -46,10 +49,10 @@ def sample_movie(
     signals : array_like of shape (T, H, W) or (T, C, H, W), DataArray or sequence
         As many frames as the movie; a DataArray has the dims time, (channel,) y, x. A sequence may read its
         frames, (H, W) or (C, H, W), when asked for them.
-    nan : {"propagate", "omit"}
-        As for `sample`.
     progress : callable, optional
         Called with (frames done, frames in all).
+    **settings
+        See `SampleParameters`.
 
     Returns
     -------
@@ -85,7 +88,7 @@ def sample_movie(
     for time, record in enumerate(movie.records):
         if record.boundary is not None:
             windows = grid.on(movie[time])
-            data = sample(windows, _frame(frames[time], time, len(channels), movie.image_shape), nan=nan)
+            data = sample(windows, _frame(frames[time], time, len(channels), movie.image_shape), **settings)
             for name in STATISTICS:
                 tables[name][time] = data[name].to_numpy()
             area[time] = windows.areas

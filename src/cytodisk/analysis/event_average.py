@@ -11,9 +11,9 @@ from scipy.special import ndtr
 from scipy.stats import t as student
 
 from cytodisk.analysis.events import KINDS, Kind
-from cytodisk.analysis.parameters import whole_number
 from cytodisk.analysis.time_steps import frame_interval, frame_numbers
 from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.checks import whole_number
 from cytodisk.errors import ParameterError
 
 Moment: TypeAlias = Literal["onset", "peak", "end"]

@@ -12,9 +12,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from cytodisk.analysis.edge_area import area_by_step
-from cytodisk.analysis.parameters import whole_number
 from cytodisk.analysis.time_steps import frame_numbers, frame_seconds
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.checks import whole_number
 from cytodisk.errors import ParameterError
 
 Kind: TypeAlias = Literal["protrusion", "retraction"]

@@ -11,8 +11,8 @@ import xarray as xr
 
 from cytodisk.analysis.activity import parse_signals
 from cytodisk.analysis.boundary_depth import places_at_depth
-from cytodisk.analysis.parameters import whole_number
 from cytodisk.arrays import AnyArray, BoolArray, FloatArray
+from cytodisk.checks import whole_number
 from cytodisk.errors import ParameterError, SignalError
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.tracking import point_angles

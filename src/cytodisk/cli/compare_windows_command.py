@@ -31,10 +31,13 @@ from cytodisk.runs.channel_names import shown_name
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from cytodisk.runs.compare_windows.compare_parameters import CompareMovieParameters, CompareParameters
+    from cytodisk.runs.compare_windows.compare_parameters import (
+        CompareMovieParameters,
+        CompareWindowsParameters,
+    )
     from cytodisk.runs.compare_windows.comparison import Comparison
 
-AnyCompared = TypeVar("AnyCompared", "CompareParameters", "CompareMovieParameters")
+AnyCompared = TypeVar("AnyCompared", "CompareWindowsParameters", "CompareMovieParameters")
 
 COMPARE_HELP = """Compare windows of several methods on your own masks: how many are empty, how regular.
 
@@ -96,8 +99,11 @@ def compare_command(
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
-    from cytodisk.runs.compare_windows.compare_parameters import CompareMovieParameters, CompareParameters
-    from cytodisk.runs.parameters import parameters_from
+    from cytodisk.runs.compare_windows.compare_parameters import (
+        CompareMovieParameters,
+        CompareWindowsParameters,
+    )
+    from cytodisk.runs.parameters_file import parameters_from
 
     given: dict[str, Any] = {
         "methods": None if methods is None else tuple(part.strip() for part in methods.split(",")),
@@ -123,7 +129,7 @@ def compare_command(
     else:
         if signal is not None:
             raise ParameterError("signal is sampled in movies only: pass --movie too, or leave --signal out")
-        settings = parameters_from(given, parameters, CompareParameters)
+        settings = parameters_from(given, parameters, CompareWindowsParameters)
         found = _run_cells(console, masks, out, settings, depth_um, again | {"workers": workers})
     if not found.cells["mapped"].sum():
         fail(f"no cell could be used: {'; '.join(found.cells['reason'].head(1)) or 'there is none'}")
@@ -140,7 +146,7 @@ def _run_cells(
     console: "Console",
     masks: Path,
     out: Path,
-    settings: "CompareParameters",
+    settings: "CompareWindowsParameters",
     depth_um: float | None,
     options: dict[str, Any],
 ) -> "Comparison":

@@ -53,8 +53,8 @@ def demo_command(
     from cytodisk.runs.correlate.correlate_run import correlate_study
     from cytodisk.runs.demo_input import compare_with_truth, write_demo_input
     from cytodisk.runs.movie.movie_inputs import open_movie
+    from cytodisk.runs.movie.movie_parameters import MovieParameters
     from cytodisk.runs.movie.movie_run import run_movie
-    from cytodisk.runs.parameters import MovieParameters
     from cytodisk.runs.workers import worker_pool
 
     console = console_for(quiet)
@@ -102,7 +102,7 @@ def _load_drawing() -> None:
 
 def _draw_movie(masks: Path, signal: Path, study: Path) -> None:
     from cytodisk.runs.movie.movie_inputs import open_movie
-    from cytodisk.runs.parameters import MovieParameters
+    from cytodisk.runs.movie.movie_parameters import MovieParameters
     from cytodisk.store.study import open_study
 
     draw_movie(True, open_study(study), open_movie(masks, signal, MovieParameters()), 1)

@@ -93,8 +93,9 @@ def map_command(
 ) -> None:
     from cytodisk.pages.cell_pages import write_cell_figures
     from cytodisk.runs.map.map_inputs import open_inputs
+    from cytodisk.runs.map.map_parameters import MapParameters
     from cytodisk.runs.map.map_run import run_map
-    from cytodisk.runs.parameters import parameters_from
+    from cytodisk.runs.parameters_file import parameters_from
 
     given = {
         "kind": kind,
@@ -110,7 +111,7 @@ def map_command(
         "pixel_size_um": pixel_size,
     }
     console = console_for(quiet)
-    inputs = open_inputs(masks, signal, parameters_from(given, parameters))
+    inputs = open_inputs(masks, signal, parameters_from(given, parameters, MapParameters))
     say_inputs(console, inputs)
     with progress_bar(quiet, "cells") as progress:
         study = run_map(
@@ -143,11 +144,12 @@ def check_command(
     """
     from cytodisk.cli.map_totals import say_checked
     from cytodisk.runs.map.map_inputs import open_inputs
+    from cytodisk.runs.map.map_parameters import MapParameters
     from cytodisk.runs.map.map_run import check_cells
-    from cytodisk.runs.parameters import parameters_from
+    from cytodisk.runs.parameters_file import parameters_from
 
     given = {"kind": kind, "channels": parse_channels(channels)}
-    inputs = open_inputs(masks, signal, parameters_from(given))
+    inputs = open_inputs(masks, signal, parameters_from(given, None, MapParameters))
     console = console_for(False)
     say_inputs(console, inputs)
     unusable = say_checked(console, inputs, check_cells(inputs))

@@ -115,8 +115,9 @@ def movie_command(
 ) -> None:
     from cytodisk.errors import ParameterError
     from cytodisk.runs.movie.movie_inputs import open_movie
+    from cytodisk.runs.movie.movie_parameters import MovieParameters
     from cytodisk.runs.movie.movie_run import run_movie
-    from cytodisk.runs.parameters import MovieParameters, parameters_from
+    from cytodisk.runs.parameters_file import parameters_from
 
     if layers is not None and depth_um is not None:
         raise ParameterError("layers and depth_um exclude each other: pass --layers or --depth-um")

@@ -66,8 +66,9 @@ def shapes_command(
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
-    from cytodisk.runs.parameters import parameters_from
-    from cytodisk.runs.shapes.shape_run import ShapeParameters, open_shape_inputs, run_shapes
+    from cytodisk.runs.parameters_file import parameters_from
+    from cytodisk.runs.shapes.shape_parameters import ShapeParameters
+    from cytodisk.runs.shapes.shape_run import open_shape_inputs, run_shapes
 
     given = {
         "kind": kind,

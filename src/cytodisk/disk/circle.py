@@ -1,16 +1,15 @@
 """Boundary → circle: each outline point gets its share of arc length as an angle (paper A.2.1 i)."""
 
 import math
-from typing import Any, Literal, TypeAlias
+from typing import Any
 
 import numpy as np
 from numba import njit
 
 from cytodisk.arrays import FloatArray
+from cytodisk.disk.mapping_parameters import Align
 from cytodisk.errors import ParameterError
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
-
-Align: TypeAlias = Literal["upright"] | tuple[float, float] | float
 
 _SMOOTHING_PX = 1.0
 _LEAST_SHARE = 0.1  # of an edge's own length, that smoothing must leave

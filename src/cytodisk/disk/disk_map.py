@@ -19,12 +19,12 @@ from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.certificate import Certificate, certify
 from cytodisk.disk.circle import polygon_radius
 from cytodisk.disk.distortion import Distortion, distortion_of
+from cytodisk.disk.mapping_parameters import Method
 from cytodisk.errors import ParameterError, ReadError, SignalError
 from cytodisk.files import replacing
 from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline
 from cytodisk.geometry.mask import MaskReport
 
-Method: TypeAlias = Literal["newton", "harmonic", "advection"]
 Start: TypeAlias = Literal["cotangent", "uniform", "previous"]
 
 _FORMAT = 2

@@ -9,27 +9,26 @@ import numpy as np
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.disk.advection import advect
 from cytodisk.disk.blocks import BlockSystem
-from cytodisk.disk.circle import Align, boundary_angles, parse_align
-from cytodisk.disk.disk_map import DiskMap, Method, Start
+from cytodisk.disk.circle import boundary_angles
+from cytodisk.disk.disk_map import DiskMap, Start
 from cytodisk.disk.harmonic import harmonic_map
+from cytodisk.disk.mapping_parameters import Align, MappingParameters
 from cytodisk.disk.newton import relax
 from cytodisk.disk.untangle import untangled
-from cytodisk.errors import MapError, ParameterError
+from cytodisk.errors import MapError
 from cytodisk.geometry.mask import MaskReport, clean_mask
 from cytodisk.geometry.mesh import Mesh, mesh_inside
 from cytodisk.geometry.outline import trace_outline
+from cytodisk.taking import takes
 
 # Triangles of nearly one area up to the edge: at this clearance they differ least on the reference masks.
 _ISOTROPIC = {"growth": 0.0, "clearance": 0.5}
 
 
+@takes(MappingParameters)
 def map_to_disk(
     mask: Any,
-    *,
-    method: Method = "newton",
-    shape_weight: float = 0.005,
-    edge_length: float = 0.9,
-    align: Align = "upright",
+    **settings: Any,
 ) -> DiskMap:
     """Map one cell one to one onto the unit disk.
 
@@ -40,18 +39,8 @@ def map_to_disk(
     ----------
     mask : array_like of shape (H, W)
         One cell: boolean, or numbers with one value beside 0.
-    method : {"newton", "harmonic", "advection"}
-        "newton": windows of equal area in the disk come from equal areas of the cell, as nearly as the
-        boundary allows. "harmonic": the paper's map before relaxation; it keeps angles where it can and
-        shrinks protrusions. "advection": the paper's relaxation, for comparison; it can turn triangles over,
-        and then the map's certificate is not valid and says which.
-    shape_weight : float
-        For "newton", how much shape counts against area, > 0: towards 0 equiareal, larger towards conformal.
-    edge_length : float
-        Spacing of mesh vertices at the edge of the cell, in pixels, 0.25 to 10; for "advection" everywhere.
-    align : {"upright"}, (float, float) or float
-        Rotation of the disk: "upright" looks like the cell; a point (row, column) puts the nearest outline
-        point at angle 0; a number turns the upright disk by that many degrees from +u towards +v.
+    **settings
+        See `MappingParameters`.
 
     Returns
     -------
@@ -87,11 +76,10 @@ def map_to_disk(
     >>> disk.to_cell([[0.0, 0.0]]).round(1)  # the cell's point at the disk's centre, (row, column)
     array([[38.6, 27.4]])
     """
-    check_map_parameters(method, shape_weight, edge_length)
-    align = parse_align(align)
-    cell = mesh_cell(mask, edge_length, method)
-    angles = boundary_angles(cell.outline, _relative(align, cell.corner))
-    return map_mesh(cell, angles, method=method, shape_weight=shape_weight)
+    parameters = MappingParameters.of(**settings)
+    cell = mesh_cell(mask, parameters)
+    angles = boundary_angles(cell.outline, _relative(parameters.align, cell.corner))
+    return map_mesh(cell, angles, parameters)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,17 +114,15 @@ class CellMesh:
         return self.mesh.vertices_yx[: self.mesh.n_boundary]
 
 
-def mesh_cell(mask: Any, edge_length: float = 0.9, method: Method = "newton") -> CellMesh:
+def mesh_cell(mask: Any, parameters: MappingParameters) -> CellMesh:
     """Clean a mask and triangulate its inside.
 
     Parameters
     ----------
     mask : array_like of shape (H, W)
         As for `map_to_disk`.
-    edge_length : float
-        Spacing of mesh vertices at the edge, in pixels.
-    method : {"newton", "harmonic", "advection"}
-        What the mesh is for: "advection" needs triangles of one size, the others take larger ones inside.
+    parameters : MappingParameters
+        Method "advection" needs triangles of one size, the others take larger ones inside.
 
     Returns
     -------
@@ -151,17 +137,16 @@ def mesh_cell(mask: Any, edge_length: float = 0.9, method: Method = "newton") ->
     """
     cleaned, report = clean_mask(mask)
     crop, corner = _crop(cleaned)
-    spacing = _ISOTROPIC if method == "advection" else {}
-    mesh = mesh_inside(trace_outline(crop), crop, edge_length=edge_length, **spacing)
-    return CellMesh(cleaned, report, mesh, corner, float(edge_length))
+    spacing = _ISOTROPIC if parameters.method == "advection" else {}
+    mesh = mesh_inside(trace_outline(crop), crop, edge_length=parameters.edge_length, **spacing)
+    return CellMesh(cleaned, report, mesh, corner, parameters.edge_length)
 
 
 def map_mesh(
     cell: CellMesh,
     angles: FloatArray,
+    parameters: MappingParameters,
     *,
-    method: Method = "newton",
-    shape_weight: float = 0.005,
     anchor_uv: FloatArray | None = None,
     inertia: float = 0.0,
 ) -> DiskMap:
@@ -172,8 +157,7 @@ def map_mesh(
     cell : CellMesh
     angles : ndarray of shape (B,) and dtype float
         Angle of each boundary vertex in radians, strictly increasing, all within one turn.
-    method, shape_weight
-        As for `map_to_disk`.
+    parameters : MappingParameters
     anchor_uv : ndarray of shape (V, 2) and dtype float, optional
         Where the vertices would rather be, such as where the last frame of a movie puts them. The
         relaxation starts there if its flipped triangles can be mended, else from the harmonic map; `start`
@@ -191,6 +175,7 @@ def map_mesh(
     MapError
         No valid map was found.
     """
+    method, shape_weight = parameters.method, parameters.shape_weight
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
     uv, start = _start(cell, circle, None if method == "advection" else anchor_uv)
     triangles, steps, converged = cell.mesh.triangles, 0, True
@@ -209,7 +194,7 @@ def map_mesh(
         report=cell.report,
         method=method,
         start=start,
-        shape_weight=float(shape_weight),
+        shape_weight=shape_weight,
         edge_length=cell.edge_length,
         steps=steps,
         converged=converged,
@@ -225,21 +210,6 @@ def _start(cell: CellMesh, circle: FloatArray, anchor_uv: FloatArray | None) -> 
         if uv is not None:
             return uv, "previous"
     return harmonic_map(cell.mesh, circle, cell.system)
-
-
-def check_map_parameters(method: Any, shape_weight: Any, edge_length: Any) -> None:
-    """Raise ParameterError unless the parameters of a map are in their ranges; see `map_to_disk`."""
-    if method not in ("newton", "harmonic", "advection"):
-        raise ParameterError(f"method must be 'newton', 'harmonic' or 'advection', got {method!r}")
-    for name, value in (("shape_weight", shape_weight), ("edge_length", edge_length)):
-        if isinstance(value, bool) or not isinstance(value, int | float | np.number):
-            raise ParameterError(f"{name} must be a number, got {value!r}")
-    if not 0 < shape_weight < np.inf:
-        raise ParameterError(f"shape_weight must be above 0, got {shape_weight!r}: 0.005 is the default")
-    if not 0.25 <= edge_length <= 10:
-        raise ParameterError(
-            f"edge_length must be 0.25 to 10 pixels, got {edge_length!r}: 0.9 is the default"
-        )
 
 
 def _crop(mask: BoolArray) -> tuple[BoolArray, FloatArray]:

@@ -12,8 +12,9 @@ import numpy as np
 from scipy import ndimage
 
 from cytodisk.errors import CytodiskError, EmptyMaskError, MaskError, ReadError, as_data
+from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile, open_frames
-from cytodisk.images.mask_kinds import Kind, understood_as
+from cytodisk.images.mask_kinds import understood_as
 from cytodisk.images.mask_names import mask_names
 
 _MOST_SLOTS = 1_000_000  # labels up to here index a list of boxes; larger ones are renumbered first

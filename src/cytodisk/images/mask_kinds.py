@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, TypeAlias
+from typing import Any
 
 import numpy as np
 from skimage import measure
 
-from cytodisk.errors import MaskError, ParameterError, ReadError
+from cytodisk.errors import MaskError, ReadError
+from cytodisk.images.file_parameters import Kind, KindParameters
 from cytodisk.images.frames import FrameFile
 
-Kind: TypeAlias = Literal["auto", "mask", "stack", "labels"]
 _LEAST_ALIKE = 0.5  # of neighbouring pixels within cells must have one label in a label image
 _MOST_PIECES = 3  # connected pieces a label, on average, in a label image
-KINDS: tuple[Kind, ...] = ("auto", "mask", "stack", "labels")
 
 
 def understood_as(file: FrameFile, kind: Kind = "auto") -> Kind:
@@ -38,8 +37,7 @@ def understood_as(file: FrameFile, kind: Kind = "auto") -> Kind:
     ParameterError
         An unknown kind.
     """
-    if kind not in KINDS:
-        raise ParameterError(f"kind must be one of {', '.join(KINDS)}, got {kind!r}")
+    KindParameters.of(kind=kind)
     if "C" in file.axes:
         raise MaskError(
             f"{file.path} has {len(file.channels)} channels ({', '.join(file.channels)}): "

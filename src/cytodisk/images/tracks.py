@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
+from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile
 from cytodisk.images.linking import link_labels
-from cytodisk.images.mask_kinds import Kind
 
 
 @dataclass(frozen=True)

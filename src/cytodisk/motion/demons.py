@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +12,7 @@ from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import MissingPartError, ParameterError
 from cytodisk.geometry.polygon import edge_lengths
 from cytodisk.motion.contour import Contour
+from cytodisk.motion.demons_parameters import DemonsParameters
 from cytodisk.motion.snake import edge_map, gradient_vector_flow, sample_field, settle
 
 _MARGIN_PX = 10
@@ -21,76 +20,11 @@ _MERGED_PX = 1e-6  # points nearer than this are one point of the spline
 _SAMPLES_PER_POINT = 16  # of the spline, to measure its length
 
 
-def _check_number(name: str, value: float, *, above_zero: bool) -> None:
-    try:
-        good = math.isfinite(value) and (value > 0 if above_zero else value >= 0)
-    except TypeError:
-        good = False
-    if not good:
-        least = "above 0" if above_zero else "at least 0"
-        raise ParameterError(f"{name} must be a finite number {least}, got {value!r}: pass such a number")
-
-
-@dataclass(frozen=True)
-class DemonsParameters:
-    """Parameters of `propagate`; the paper gives those of the snake's step and number of iterations.
-
-    Attributes
-    ----------
-    iterations : int
-        Of the demons registration.
-    sigma : float
-        Standard deviation of the smoothing of the displacement field after each iteration, in pixels.
-    snake_step : float
-        Longest step of the snake, in pixels.
-    snake_iterations : int
-        Steps of the snake.
-    gvf_mu : float
-        Weight of smoothness in the gradient vector flow, above 0 and at most 0.25.
-    gvf_iterations : int
-        Steps of the flow's diffusion, which is its reach from the boundary in pixels.
-    snake_tension, snake_stiffness : float
-        Weights of the snake's internal energy, in square pixels and pixels to the fourth, see
-        `cytodisk.motion.snake.settle`. The defaults smooth over less than a pixel.
-    redistribute : bool
-        Whether the points are spaced evenly along the new boundary.
-
-    Raises
-    ------
-    ParameterError
-        A value is out of its range.
-    """
-
-    iterations: int = 100
-    sigma: float = 1.0
-    snake_step: float = 1.0
-    snake_iterations: int = 100
-    gvf_mu: float = 0.2
-    gvf_iterations: int = 100
-    snake_tension: float = 0.01
-    snake_stiffness: float = 0.1
-    redistribute: bool = True
-
-    def __post_init__(self) -> None:
-        for name in ("iterations", "snake_iterations", "gvf_iterations"):
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 0:
-                raise ParameterError(f"{name} must be a whole number of at least 0, got {value!r}")
-        for name in ("sigma", "snake_step", "gvf_mu"):
-            _check_number(name, getattr(self, name), above_zero=True)
-        for name in ("snake_tension", "snake_stiffness"):
-            _check_number(name, getattr(self, name), above_zero=False)
-        if self.gvf_mu > 0.25:
-            raise ParameterError(f"gvf_mu must be at most 0.25, got {self.gvf_mu!r}: the flow diverges above")
-        if not isinstance(self.redistribute, bool | np.bool_):
-            raise ParameterError(f"redistribute must be True or False, got {self.redistribute!r}")
-
-
 def propagate(
     here: Contour,
     there: Contour,
     points_yx: FloatArray,
-    parameters: DemonsParameters = DemonsParameters(),
+    parameters: DemonsParameters,
 ) -> FloatArray:
     """Positions on the next outline of the boundary points of an outline.
 

@@ -16,6 +16,7 @@ from cytodisk.motion.disk_movie import on_border
 from cytodisk.motion.matching import match
 from cytodisk.motion.registration import IDENTITY, RigidTransform
 from cytodisk.motion.tracking import TrackedBoundary, point_angles
+from cytodisk.motion.tracking_parameters import SMOOTHNESS_PX2, JitterParameters
 
 Frame: TypeAlias = Literal["lab", "cell"]
 FRAMES: tuple[Frame, ...] = ("lab", "cell")
@@ -85,10 +86,7 @@ def edge_motion(
     sectors: int,
     *,
     frame: Frame = "lab",
-    jitter_px: float = 0.5,
-    repeats: int = 8,
-    seed: int = 0,
-    smoothness_px2: float = 64.0,
+    jitter: JitterParameters,
 ) -> EdgeMotion:
     """Motion of the boundary by sector.
 
@@ -100,13 +98,8 @@ def edge_motion(
         Theirs.
     sectors : int
     frame : {"lab", "cell"}
-    jitter_px : float
-        Standard deviation of the position of the masks' edges, in pixels.
-    repeats : int
-        Simulated repetitions for the error.
-    seed : int
-    smoothness_px2 : float
-        Of the matching energy.
+    jitter : JitterParameters
+        For the error.
 
     Returns
     -------
@@ -114,12 +107,12 @@ def edge_motion(
     """
     weights = _sector_weights(here, there, disk_here.mask.shape, sectors)
     displacement = _mean_by_sector(weights, normal_displacement(here, there, frame))
-    random = np.random.default_rng([seed, here.time])
+    random = np.random.default_rng([jitter.seed, here.time])
     draws = [
-        _mean_by_sector(weights, _jittered(here, there, frame, jitter_px, smoothness_px2, random))
-        for _ in range(repeats)
+        _mean_by_sector(weights, _jittered(here, there, frame, jitter.jitter_px, random))
+        for _ in range(jitter.repeats)
     ]
-    error = np.std(draws, axis=0, ddof=1) if repeats > 1 else np.full(sectors, np.nan)
+    error = np.std(draws, axis=0, ddof=1) if jitter.repeats > 1 else np.full(sectors, np.nan)
     start, stop = _common(here, there, frame)
     won = _area_outside(disk_there, stop, disk_here, start, sectors)
     lost = _area_outside(disk_here, start, disk_there, stop, sectors)
@@ -180,7 +173,6 @@ def _jittered(
     there: TrackedBoundary,
     frame: Frame,
     jitter_px: float,
-    smoothness: float,
     random: np.random.Generator,
 ) -> FloatArray:
     """Normal displacement when both edges are drawn with a random error."""
@@ -192,7 +184,7 @@ def _jittered(
         for boundary, shaken in ((here, first), (there, second))
     )
     s_first, s_second = _unwrapped(s_first, first.length), _unwrapped(s_second, second.length)
-    s_second = match(here.alignment.of(first), there.alignment.of(second), s_first, s_second, smoothness)
+    s_second = match(here.alignment.of(first), there.alignment.of(second), s_first, s_second, SMOOTHNESS_PX2)
     again = (
         TrackedBoundary(here.time, first, s_first, start),
         TrackedBoundary(there.time, second, s_second, stop),

@@ -12,14 +12,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cytodisk.disk.circle import Align
-from cytodisk.disk.disk_map import DiskMap, Method, load_map
+from cytodisk.disk.disk_map import DiskMap, load_map
 from cytodisk.errors import CytodiskError, MapError, MaskError, ParameterError, ReadError, StudyError
-from cytodisk.motion.demons import DemonsParameters
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
-from cytodisk.motion.mapped_frame import MappedFrame, MovieSettings, map_frame
-from cytodisk.motion.matching import SMOOTHNESS_PX2
-from cytodisk.motion.tracking import Tracker, TrackingSettings
+from cytodisk.motion.mapped_frame import MappedFrame, map_frame
+from cytodisk.motion.tracking_parameters import MovieMapParameters, MovieSettings
+from cytodisk.taking import takes
 
 _KEPT = 4  # maps that a movie on disk keeps in memory
 
@@ -99,24 +97,13 @@ def map_one(time: int, mask: Any, last: MappedFrame | None, settings: MovieSetti
         return FrameResult(time, None, fault)
 
 
+@takes(MovieMapParameters)
 def map_movie(
     masks: Any,
     *,
-    tracker: Tracker = "matching",
-    register: bool = True,
-    tension: float = 0.01,
-    smoothness_px2: float = SMOOTHNESS_PX2,
-    demons: DemonsParameters | None = None,
-    renew_every: int = 5,
-    method: Method = "newton",
-    shape_weight: float = 0.005,
-    edge_length: float = 0.9,
-    align: Align = "upright",
-    inertia: float = 1.0,
-    frame_interval_s: float | None = None,
-    pixel_size_um: float | None = None,
     folder: str | os.PathLike[str] | None = None,
     progress: Callable[[int, int], None] | None = None,
+    **settings: Any,
 ) -> DiskMovie:
     """Map every frame of a movie of one cell onto the disk, in correspondence through time.
 
@@ -128,29 +115,13 @@ def map_movie(
     ----------
     masks : array_like of shape (T, H, W), DataArray with dims (time, y, x), or sequence of (H, W) arrays
         Masks of one cell. A sequence may read its frames when asked for them.
-    tracker : {"matching", "demons"}
-        "matching": order-preserving elastic matching of outlines. "demons": the paper's pipeline.
-    register : bool
-        Take out rigid motion before tracking (paper, algorithm 1).
-    tension : float
-        For "matching", from 0 (points stay with matter) to 1 (equidistant in each frame).
-    smoothness_px2 : float
-        For "matching", how far displacements are alike along the boundary, in square pixels.
-    demons : DemonsParameters, optional
-        For "demons"; by default the paper's.
-    renew_every : int
-        Frames after which the reference of the registration is renewed.
-    method, shape_weight, edge_length, align
-        As for `map_to_disk`; `align` holds for the first frame.
-    inertia : float
-        How much the inside of a frame stays where the frame before put it, against equal areas; at least 0.
-    frame_interval_s, pixel_size_um : float, optional
-        Seconds a frame and µm a pixel; by default those of a DataArray's attrs, else unknown.
     folder : path-like, optional
         Write the maps there and read them when asked for, so that memory stays bounded; by default they
         stay in memory.
     progress : callable, optional
         Called with (frames done, frames in all).
+    **settings
+        See `MovieMapParameters`; `align` holds for the first frame.
 
     Returns
     -------
@@ -183,23 +154,16 @@ def map_movie(
     >>> len(movie), all(disk.certificate.valid for disk in movie)
     (4, True)
     """
-    settings = MovieSettings(
-        TrackingSettings(
-            tracker, tension, smoothness_px2, register, renew_every, demons or DemonsParameters()
-        ),
-        method,
-        shape_weight,
-        edge_length,
-        align,
-        inertia,
-    )
+    given = MovieMapParameters.of(**settings)
     frames, interval, pixel = parse_masks(masks)
-    interval = parse_scale("frame_interval_s", interval if frame_interval_s is None else frame_interval_s)
-    pixel = parse_scale("pixel_size_um", pixel if pixel_size_um is None else pixel_size_um)
+    interval = parse_scale(
+        "frame_interval_s", interval if given.frame_interval_s is None else given.frame_interval_s
+    )
+    pixel = parse_scale("pixel_size_um", pixel if given.pixel_size_um is None else given.pixel_size_um)
     store: _Memory | _Folder = _Memory() if folder is None else _Folder(Path(folder))
     records: list[FrameRecord] = []
     shape: tuple[int, ...] = ()
-    for result in map_frames(frames, settings):
+    for result in map_frames(frames, given):
         if result.mapped is not None:
             _check_shape(result.mapped.disk.mask.shape, shape, result.time)
             shape = result.mapped.disk.mask.shape

@@ -19,7 +19,6 @@ from cytodisk.motion.contour import Contour
 from cytodisk.motion.cyclic_path import cyclic_path
 from cytodisk.motion.elastic_band import relax_band
 
-SMOOTHNESS_PX2 = 64.0
 _COARSE_SAMPLES = 128
 _FINE_PX = 1.0
 _LEAST_SAMPLES = 16
@@ -62,9 +61,7 @@ def first_guess(here: Contour, there: Contour, s: FloatArray, smoothness: float)
     return carry(s, np.asarray(i * step_here), np.asarray(j * step_there), here.length, there.length)
 
 
-def match(
-    here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoothness: float = SMOOTHNESS_PX2
-) -> FloatArray:
+def match(here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoothness: float) -> FloatArray:
     """Refine a guess of where points of one outline lie on another.
 
     Parameters
@@ -98,7 +95,7 @@ def match(
 
 
 def mean_square_displacement(
-    here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoothness: float = SMOOTHNESS_PX2
+    here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoothness: float
 ) -> float:
     """Mean squared displacement of the matched boundary, in square pixels; arguments as for `match`."""
     grid = _even_grid(here)
@@ -112,7 +109,7 @@ def mean_square_displacement(
 
 
 def rigid_motion(
-    here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoothness: float = SMOOTHNESS_PX2
+    here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoothness: float
 ) -> tuple[float, FloatArray, FloatArray]:
     """Rigid motion that leaves the least of the matching energy.
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any, Literal, TypeAlias, get_args
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -13,63 +12,15 @@ from cytodisk.disk.circle import boundary_angles
 from cytodisk.errors import ParameterError
 from cytodisk.geometry.locate import nearest_on_outline
 from cytodisk.motion.contour import Contour
-from cytodisk.motion.demons import DemonsParameters, propagate
-from cytodisk.motion.matching import SMOOTHNESS_PX2, carry, first_guess, match
+from cytodisk.motion.demons import propagate
+from cytodisk.motion.demons_parameters import DemonsParameters
+from cytodisk.motion.matching import carry, first_guess, match
 from cytodisk.motion.registration import IDENTITY, RigidTransform, believable, first_transform, register
-
-Tracker: TypeAlias = Literal["matching", "demons"]
-TRACKERS: tuple[Tracker, ...] = get_args(Tracker)
+from cytodisk.motion.tracking_parameters import TrackingSettings
 
 _LEAST_POINTS = 256
 _LEAST_OVERLAP = 0.2  # of intersection and union, after registration, below which tracking starts anew
 _LEAST_GAP = 1e-6  # of the mean gap between neighbouring points, so that order is strict
-
-
-@dataclass(frozen=True)
-class TrackingSettings:
-    """How a boundary is followed.
-
-    Attributes
-    ----------
-    tracker : {"matching", "demons"}
-        "matching": `motion.matching`. "demons": the paper's, `motion.demons`.
-    tension : float
-        For "matching", share of the way from where matter went to equidistant points that the points go in
-        each frame: 0 is pure matter, 1 the paper's redistribution.
-    smoothness_px2 : float
-        Of the matching energy, in square pixels.
-    register : bool
-        Take out rigid motion; if not, all transforms are the identity.
-    renew_every : int
-        Frames after which the reference of the registration is replaced by the last registered frame.
-    demons : DemonsParameters
-    """
-
-    tracker: Tracker = "matching"
-    tension: float = 0.01
-    smoothness_px2: float = SMOOTHNESS_PX2
-    register: bool = True
-    renew_every: int = 5
-    demons: DemonsParameters = field(default_factory=DemonsParameters)
-
-    def __post_init__(self) -> None:
-        if self.tracker not in TRACKERS:
-            raise ParameterError(f"tracker must be one of {', '.join(TRACKERS)}, got {self.tracker!r}")
-        if not (is_number(self.tension) and 0.0 <= self.tension <= 1.0):
-            raise ParameterError(f"tension must be 0 to 1, got {self.tension!r}: 0.01 is the default")
-        if not (is_number(self.smoothness_px2) and 0.0 < self.smoothness_px2 < np.inf):
-            raise ParameterError(
-                f"smoothness_px2 must be above 0, got {self.smoothness_px2!r}: "
-                f"{SMOOTHNESS_PX2:g} is the default"
-            )
-        if (
-            isinstance(self.renew_every, bool)
-            or not isinstance(self.renew_every, int | np.integer)
-            or self.renew_every < 1
-        ):
-            raise ParameterError(
-                f"renew_every must be a whole number of at least 1, got {self.renew_every!r}"
-            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,11 +81,6 @@ class TrackedBoundary:
         return np.asarray(0.5 * (gaps + np.roll(gaps, 1)))
 
 
-def is_number(value: Any) -> bool:
-    """Whether a parameter is a number; True and False are none."""
-    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
-
-
 def point_angles(n: int) -> FloatArray:
     """Angle on the disk of each of n tracked points, in radians."""
     return np.asarray(2.0 * np.pi * (np.arange(n) + 0.5) / n)
@@ -189,10 +135,10 @@ def follow(
     """
     here = last.transform.of(last.contour)
     smoothness = settings.smoothness_px2
-    rough = first_transform(contour, here, last.transform.angle) if settings.register else IDENTITY
+    rough = first_transform(contour, here, last.transform.angle) if settings.registration else IDENTITY
     guess = first_guess(here, rough.of(contour), last.s, smoothness)
     transform = alignment = rough
-    if settings.register:
+    if settings.registration:
         fixed = reference.transform.of(reference.contour)
         transform = register(contour, fixed, rough, reference.s, guess, smoothness)
         moved = reference.alignment.after(reference.transform.undone())
@@ -204,7 +150,7 @@ def follow(
         why = f"outlines overlap by {overlap:.0%} only (frames {last.time} and {time})"
         return _restart(time, contour, transform, last, why)
     if settings.tracker == "demons":
-        return _follow_demons(time, contour, last, transform, settings.demons)
+        return _follow_demons(time, contour, last, transform, settings.demons or DemonsParameters())
     here, there = last.alignment.of(last.contour), alignment.of(contour)
     s = match(here, there, last.s, guess, smoothness)
     back = match(there, here, s, last.s, smoothness)

@@ -10,8 +10,8 @@ import xarray as xr
 from cytodisk.errors import ParameterError, WindowError
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.edge import FRAMES, EdgeMotion, Frame, edge_motion, mean_by_sector, normal_displacement
-
-_MOST_JITTER_PX = 10.0  # beyond that a mask says nothing about its edge
+from cytodisk.motion.tracking_parameters import JitterParameters
+from cytodisk.taking import takes
 
 
 def edge_velocity(movie: DiskMovie, sectors: int = 60, *, frame: Frame = "lab") -> xr.DataArray:
@@ -111,14 +111,13 @@ def boundary_velocity(movie: DiskMovie, *, frame: Frame = "lab") -> xr.DataArray
     return labelled.assign_coords(angle=("point", movie.point_angles))
 
 
+@takes(JitterParameters)
 def edge_changes(
     movie: DiskMovie,
     sectors: int = 60,
     *,
     frame: Frame = "lab",
-    jitter_px: float = 0.5,
-    repeats: int = 8,
-    seed: int = 0,
+    **settings: Any,
 ) -> xr.Dataset:
     """Edge velocity with its error bar, and the areas that the cell won and lost, by frame and sector.
 
@@ -127,12 +126,8 @@ def edge_changes(
     movie : DiskMovie
     sectors : int
     frame : {"lab", "cell"}
-    jitter_px : float
-        How uncertain the position of the masks' edges is, in pixels (standard deviation).
-    repeats : int
-        How often both outlines are drawn anew with that error.
-    seed : int
-        Of those draws.
+    **settings
+        See `JitterParameters`.
 
     Returns
     -------
@@ -159,7 +154,7 @@ def edge_changes(
     True
     """
     _check(sectors, frame)
-    check_jitter(jitter_px, repeats, seed)
+    jitter = JitterParameters.of(**settings)
     rows: dict[int, EdgeMotion] = {}
     for time, (here, there) in _pairs(movie):
         rows[time] = edge_motion(
@@ -169,9 +164,7 @@ def edge_changes(
             movie[time + 1],
             sectors,
             frame=frame,
-            jitter_px=jitter_px,
-            repeats=repeats,
-            seed=seed,
+            jitter=jitter,
         )
     pixel = movie.pixel_size_um or 1.0
     unit = "px" if movie.pixel_size_um is None else "µm"
@@ -197,20 +190,6 @@ def edge_changes(
             values[time] = getattr(row, source) * scale
         columns[name] = _labelled(movie, values, "sector", frame).assign_attrs(units=units)
     return xr.Dataset(columns, attrs={"frame": frame})
-
-
-def check_jitter(jitter_px: Any, repeats: Any, seed: Any) -> None:
-    """Raise ParameterError unless the arguments of the error bar make sense."""
-    if not (isinstance(jitter_px, int | float | np.number) and 0 <= jitter_px <= _MOST_JITTER_PX):
-        raise ParameterError(
-            f"jitter_px must be 0 to {_MOST_JITTER_PX:g}, got {jitter_px!r}: 0.5 is the default"
-        )
-    if isinstance(repeats, bool) or not isinstance(repeats, int | np.integer) or repeats < 2:
-        raise ParameterError(
-            f"repeats must be a whole number of at least 2, got {repeats!r}: 8 is the default"
-        )
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise ParameterError(f"seed must be a whole number of at least 0, got {seed!r}: 0 is the default")
 
 
 def velocity_unit(pixel_size_um: float | None, frame_interval_s: float | None) -> str:

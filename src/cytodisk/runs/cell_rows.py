@@ -11,14 +11,14 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.analysis.activity import STATISTICS
-from cytodisk.disk.circle import Align
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_to_disk
+from cytodisk.disk.mapping_parameters import Align
 from cytodisk.errors import CytodiskError, EmptyMaskError, ReadError, SignalError
 from cytodisk.files import replacing
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
 from cytodisk.images.mask_files import SourceCell
-from cytodisk.runs.parameters import MapParameters
+from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.store.study_folder import StudyFolder, figures_folder, part_key
 from cytodisk.windows.cell_windows import CellWindows
 from cytodisk.windows.grid import polar_windows

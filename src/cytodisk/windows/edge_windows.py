@@ -12,11 +12,11 @@ from scipy.ndimage import distance_transform_edt
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.errors import WindowError
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.outline import trace_outline
+from cytodisk.taking import takes
 from cytodisk.windows.edge_parts import depths_and_angles, part_places
-from cytodisk.windows.grid import check_counts
+from cytodisk.windows.grid_parameters import EdgeGridParameters
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.shares import PARTS, strips
 
@@ -47,10 +47,7 @@ class EdgeGrid:
     depth_px: float
 
     def __post_init__(self) -> None:
-        check_counts(self.layers, self.sectors)
-        number = isinstance(self.depth_px, int | float | np.number) and not isinstance(self.depth_px, bool)
-        if not (number and 0 < self.depth_px < np.inf):
-            raise WindowError(f"depth_px must be a number of pixels above 0, got {self.depth_px!r}")
+        EdgeGridParameters(layers=self.layers, sectors=self.sectors, depth_px=self.depth_px)
 
     def on(self, disk: DiskMap) -> EdgeWindows:
         """Lay the grid along the edge of a cell.
@@ -187,9 +184,8 @@ class EdgeWindows(WindowsOnCell):
         return self.grid.depth_px
 
 
-def edge_windows(
-    cell: Any, layers: int = 10, sectors: int = 60, depth_px: float | None = None
-) -> EdgeWindows:
+@takes(EdgeGridParameters)
+def edge_windows(cell: Any, *in_order: Any, **settings: Any) -> EdgeWindows:
     """Edge-based windows of one cell: the field's, to compare with `polar_windows`.
 
     The edge is divided into sectors, of equal length but for a later frame of a movie, and every place in the
@@ -201,15 +197,14 @@ def edge_windows(
     cell : array_like of shape (H, W), or DiskMap
         A mask, which `clean_mask` cleans; its sectors start where those of the upright disk do. Or a map: its
         sectors are those of its polar windows, in a movie those of the tracked edge.
-    layers, sectors : int
-    depth_px : float, optional
-        Thickness of a layer in pixels. By default the cell's greatest depth divided by the layers, so that
-        they cover the cell; else what lies deeper belongs to no window, and `coverage` says how much.
+    **settings
+        See `EdgeGridParameters`.
 
     Returns
     -------
     EdgeWindows
-        Its empty windows are counted in `n_empty`.
+        Its empty windows are counted in `n_empty`. With a `depth_px`, what lies deeper than all layers
+        belongs to no window, and `coverage` says how much that is.
 
     Raises
     ------
@@ -242,7 +237,7 @@ def edge_windows(
     >>> windows.areas.round()[:, 0]  # by layer: rings of the same depth shrink inwards
     array([71., 48., 29.,  9.])
     """
-    check_counts(layers, sectors)
+    grid = EdgeGridParameters.of(*in_order, **settings)
     edge = CellEdge.of(cell)
-    depth = edge.greatest_depth / layers if depth_px is None else depth_px
-    return EdgeWindows(EdgeGrid(int(layers), int(sectors), depth), edge)
+    depth = edge.greatest_depth / grid.layers if grid.depth_px is None else grid.depth_px
+    return EdgeWindows(EdgeGrid(grid.layers, grid.sectors, depth), edge)

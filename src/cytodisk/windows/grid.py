@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import WindowError
+from cytodisk.taking import takes
+from cytodisk.windows.grid_parameters import GridParameters, Spacing
 
 if TYPE_CHECKING:
     from cytodisk.disk.disk_map import DiskMap
     from cytodisk.windows.cell_windows import CellWindows
 
-_MOST_WINDOWS = 10_000_000  # beyond any image, and still within memory
 _MOST_LAYERS = 1000  # that a depth is turned into
-
-Spacing: TypeAlias = Literal["area", "radius"]
 
 
 @dataclass(frozen=True)
@@ -113,18 +112,14 @@ class PolarGrid:
         return CellWindows(self, disk)
 
 
-def polar_windows(layers: int = 10, sectors: int = 60, spacing: Spacing = "area") -> PolarGrid:
+@takes(GridParameters)
+def polar_windows(*in_order: Any, **settings: Any) -> PolarGrid:
     """Grid of windows on the unit disk.
 
     Parameters
     ----------
-    layers : int
-        Rings, at least 1; layer 0 is at the cell's edge.
-    sectors : int
-        Wedges, at least 1.
-    spacing : {"area", "radius"}
-        "area": all windows have the same area of disk, so on an equiareal map of cell. "radius": rings of
-        equal width, as in the paper.
+    **settings
+        See `GridParameters`.
 
     Returns
     -------
@@ -153,19 +148,8 @@ def polar_windows(layers: int = 10, sectors: int = 60, spacing: Spacing = "area"
     >>> windows.n_empty, round(windows.coverage, 6)
     (0, 1.0)
     """
-    check_counts(layers, sectors)
-    if spacing not in ("area", "radius"):
-        raise WindowError(f"spacing must be 'area' or 'radius', got {spacing!r}")
-    return PolarGrid(int(layers), int(sectors), spacing)
-
-
-def check_counts(layers: Any, sectors: Any) -> None:
-    """Raise WindowError unless layers and sectors are whole numbers of at least 1, and not too many."""
-    for name, value in (("layers", layers), ("sectors", sectors)):
-        if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
-            raise WindowError(f"{name} must be a whole number of at least 1, got {value!r}")
-    if layers * sectors > _MOST_WINDOWS:
-        raise WindowError(f"layers × sectors must be at most {_MOST_WINDOWS}, got {layers} × {sectors}")
+    grid = GridParameters.of(*in_order, **settings)
+    return PolarGrid(grid.layers, grid.sectors, grid.spacing)
 
 
 def layers_for_depth(depth: float, area: float, perimeter: float, spacing: Spacing = "area") -> int:

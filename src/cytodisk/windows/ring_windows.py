@@ -11,9 +11,10 @@ from skimage.graph import MCP_Geometric
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
+from cytodisk.taking import takes
 from cytodisk.windows.edge_parts import part_places
 from cytodisk.windows.edge_windows import CellEdge
-from cytodisk.windows.grid import check_counts
+from cytodisk.windows.grid_parameters import CountParameters, RingGridParameters
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.shares import PARTS
 
@@ -36,7 +37,7 @@ class RingGrid:
     sectors: int
 
     def __post_init__(self) -> None:
-        check_counts(self.layers, self.sectors)
+        CountParameters(layers=self.layers, sectors=self.sectors)
 
     def on(self, disk: DiskMap) -> RingWindows:
         """Lay the grid over a cell.
@@ -98,7 +99,8 @@ class RingWindows(WindowsOnCell):
         return self.edge.mask
 
 
-def ring_windows(cell: Any, layers: int = 10, sectors: int = 8) -> RingWindows:
+@takes(RingGridParameters)
+def ring_windows(cell: Any, *in_order: Any, **settings: Any) -> RingWindows:
     """Rings and wedges around the deepest point of one cell, to compare with `polar_windows`.
 
     A place belongs to a ring by d_edge / (d_edge + d_centre), its distance from the edge over the sum of
@@ -108,12 +110,13 @@ def ring_windows(cell: Any, layers: int = 10, sectors: int = 8) -> RingWindows:
     ----------
     cell : array_like of shape (H, W), or DiskMap
         A mask, which `clean_mask` cleans, or a map, of which only the mask is used.
-    layers, sectors : int
-        Layer 0 is at the edge, sector 0 begins at +x and goes towards +y.
+    **settings
+        See `RingGridParameters`.
 
     Returns
     -------
     RingWindows
+        Sector 0 begins at +x and goes towards +y.
 
     Raises
     ------
@@ -140,7 +143,8 @@ def ring_windows(cell: Any, layers: int = 10, sectors: int = 8) -> RingWindows:
     >>> round(windows.coverage, 6)
     1.0
     """
-    grid = RingGrid(layers, sectors)
+    counts = RingGridParameters.of(*in_order, **settings)
+    grid = RingGrid(counts.layers, counts.sectors)
     return RingWindows(grid, CellEdge.of(cell))
 
 

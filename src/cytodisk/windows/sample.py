@@ -1,7 +1,7 @@
 """Signal in windows: mean, spread, extremes and quantiles by one matrix product."""
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -9,15 +9,18 @@ from scipy import sparse
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError, SignalError
+from cytodisk.taking import takes
+from cytodisk.windows.grid_parameters import SampleParameters
 from cytodisk.windows.on_cell import WindowsOnCell
 
 
+@takes(SampleParameters)
 def sample(
     windows: WindowsOnCell,
     signal: Any,
     *,
     quantiles: Sequence[float] = (),
-    nan: Literal["propagate", "omit"] = "propagate",
+    **settings: Any,
 ) -> xr.Dataset:
     """Statistics of a signal in each window, read from the raw pixels.
 
@@ -29,9 +32,8 @@ def sample(
         Of the shape of the mask.
     quantiles : sequence of float
         Weighted quantiles to add, each 0 to 1.
-    nan : {"propagate", "omit"}
-        What a pixel that is NaN, infinite or masked does to its windows: make them NaN, or be left out.
-        Either way it is counted.
+    **settings
+        See `SampleParameters`. Pixels that are left out are counted in `n_nan`.
 
     Returns
     -------
@@ -62,7 +64,8 @@ def sample(
     >>> cd.sample(windows, signal)["mean"].mean("sector").round(1).to_numpy()
     array([76.5, 39.8, 14.9])
     """
-    _check(quantiles, nan)
+    nan = SampleParameters.of(**settings).nan
+    _check_quantiles(quantiles)
     values, channels = _parse_signal(signal, windows.mask.shape)
     weights = windows.weights
     pixels = values.reshape(len(values), -1)[:, np.flatnonzero(windows.mask)]
@@ -88,15 +91,13 @@ def sample(
 _NAMES = ("mean", "sd", "n_pixels", "n_nan", "min", "max")
 
 
-def _check(quantiles: Sequence[float], nan: str) -> None:
+def _check_quantiles(quantiles: Sequence[float]) -> None:
     try:
         inside = all(0 <= q <= 1 for q in quantiles)
     except TypeError:
         inside = False
     if not inside:
         raise ParameterError(f"quantiles must be a sequence of numbers 0 to 1, got {quantiles!r}")
-    if nan not in ("propagate", "omit"):
-        raise ParameterError(f"nan must be 'propagate' or 'omit', got {nan!r}")
 
 
 def _parse_signal(signal: Any, shape: tuple[int, ...]) -> tuple[FloatArray, list[str] | None]:

@@ -14,8 +14,8 @@ from selenium.webdriver.chrome.service import Service
 import cytodisk as cd
 from cytodisk.pages.report.page import write_report
 from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import run_movie
-from cytodisk.runs.parameters import MovieParameters
 from cytodisk.simulate.moving_cells import SimulatedMovie
 from cytodisk.store.correlation_store import write_correlation
 from cytodisk.store.study import Study

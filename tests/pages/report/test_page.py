@@ -18,8 +18,8 @@ from cytodisk.pages.report.flags import red_flags
 from cytodisk.pages.report.page import page_flags, write_report
 from cytodisk.pages.report.signal_file import find_signal
 from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import run_movie
-from cytodisk.runs.parameters import MovieParameters
 from cytodisk.simulate.moving_cells import SimulatedMovie
 from cytodisk.store.study import Study, open_study
 

@@ -3,48 +3,42 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from cytodisk.analysis.correlation.confidence import effective_share, fisher_interval
+from cytodisk.analysis.correlation.correlation_parameters import CrossCorrelationParameters, PrepareParameters
 from cytodisk.analysis.correlation.lagged import LaggedSeries
 from cytodisk.analysis.correlation.pairing import Pair, named_series, paired
 from cytodisk.analysis.correlation.prepared_series import (
     DRIFTING_SHARE,
-    Detrend,
     default_frames,
     drifts,
     kpss,
     prepare_series,
 )
-from cytodisk.analysis.correlation.surrogates import Null, Surrogates, check_null
+from cytodisk.analysis.correlation.surrogates import Surrogates
 from cytodisk.analysis.correlation.surrogates import surrogates as make_surrogates
-from cytodisk.analysis.parameters import whole_number
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.checks import whole_number
 from cytodisk.errors import ParameterError, StationarityWarning
+from cytodisk.taking import takes
 
 ALPHA = 0.05
 _SECTOR = "sector"
 
 
+@takes(CrossCorrelationParameters)
 def cross_correlate(
     a: Any,
     b: Any,
     max_lag: int,
     *,
-    detrend: Detrend = "none",
-    detrend_frames: int | None = None,
-    difference: bool = False,
-    zscore: bool = False,
-    min_pairs: int = 10,
-    skip_lags: Sequence[int] = (),
-    surrogates: int = 0,
-    null: Null = "phase",
-    seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
+    **settings: Any,
 ) -> xr.Dataset:
     """Pearson correlation of `a` with `b` at every lag, for every window, and what chance would give.
 
@@ -58,24 +52,10 @@ def cross_correlate(
         name. Frames are those of `a`.
     max_lag : int
         In frames, to both sides of 0.
-    detrend, detrend_frames, difference, zscore
-        As for `prepare_series`, of both; the moving median takes 4 max_lag + 1 frames without
-        `detrend_frames`.
-    min_pairs : int
-        Lags at which fewer frames have both values are NaN; at least 3.
-    skip_lags : sequence of int
-        Lags that are NaN, for `a` and its surrogates alike, such as those that jitter of the masks may have
-        made, see `jitter_step`.
-    surrogates : int
-        How many surrogates of `b` to compare with; 0 for none. 999 give p-values down to 0.001.
-    null : {"phase", "shift"}
-        Surrogates with random phases, or circularly shifted. Shifts that share no lag are few, at most
-        T / (2 max_lag + 1), so only long movies and short lags let p reach 0.05; attrs `surrogates` says how
-        many there were.
-    seed : int
-        Of the surrogates.
     progress : callable, optional
         Called with (series of `b` done, in all).
+    **settings
+        See `CrossCorrelationParameters`; both series are prepared, see `prepare_series`.
 
     Returns
     -------
@@ -119,30 +99,26 @@ def cross_correlate(
     -3.0
     """
     first, second, interval_s = named_series(a, b)
-    lags = lags_within(max_lag, min_pairs, first.sizes["time"])
-    _check_skipped(skip_lags, lags)
-    surrogates = whole_number("surrogates", surrogates, 0)
-    check_null(null)
-    options: dict[str, Any] = {
-        "detrend": detrend,
-        "detrend_frames": default_frames(detrend, detrend_frames, max_lag),
-        "difference": difference,
-        "zscore": zscore,
-    }
+    how = CrossCorrelationParameters.of(**settings)
+    lags = lags_within(max_lag, how.min_pairs, first.sizes["time"])
+    _check_skipped(how.skip_lags, lags)
+    options = how.part(PrepareParameters).changed(detrend_frames=default_frames(how, max_lag)).model_dump()
     first, second = (series.copy(data=prepare_series(series, **options)) for series in (first, second))
     attrs = {name: value for name, value in options.items() if value is not None}
     attrs |= {
         "max_lag": max_lag,
-        "min_pairs": min_pairs,
-        "skip_lags": [int(lag) for lag in skip_lags],
-        "null": null,
-        "seed": seed,
+        "min_pairs": how.min_pairs,
+        "skip_lags": list(how.skip_lags),
+        "null": how.null,
+        "seed": how.seed,
     }
     attrs |= drifting_shares(first, second)
     pair = paired(first, second)
-    changed = make_surrogates(null, len(pair.a), surrogates, seed, max_lag) if surrogates else None
+    changed = (
+        make_surrogates(how.null, len(pair.a), how.surrogates, how.seed, max_lag) if how.surrogates else None
+    )
     attrs["surrogates"] = changed.count if changed else 0
-    run = _Run(pair, lags, np.isin(lags, skip_lags), min_pairs, attrs["surrogates"])
+    run = _Run(pair, lags, np.isin(lags, how.skip_lags), how.min_pairs, attrs["surrogates"])
     run.correlate(changed, progress)
     order = [str(dim) for dim in (*first.dims, *second.dims) if dim != "time"]
     return run.dataset(list(dict.fromkeys(order)), interval_s).assign_attrs(attrs)
@@ -307,8 +283,6 @@ def lags_within(max_lag: int, min_pairs: int, frames: int) -> IntArray:
 
 
 def _check_skipped(skipped: Sequence[int], lags: IntArray) -> None:
-    if not isinstance(skipped, Iterable):
-        raise ParameterError(f"skip_lags must be a sequence of lags, got {skipped!r}: pass [{skipped!r}]")
     unknown = [lag for lag in skipped if lag not in lags]
     if unknown:
         raise ParameterError(f"skip_lags has {unknown[0]!r}: lags run from {lags[0]} to {lags[-1]}")

@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from cytodisk.analysis.correlation.correlation_parameters import PeakParameters, Rule
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import ParameterError
+from cytodisk.taking import takes
 
-Rule = Literal["nearest", "largest"]
-RULES: tuple[Rule, ...] = get_args(Rule)
 _AT_PEAK = ("n", "n_effective", "low", "high")
 
 
-def peak_correlation(correlations: xr.Dataset, *, rule: Rule = "nearest") -> xr.Dataset:
+@takes(PeakParameters)
+def peak_correlation(correlations: xr.Dataset, **settings: Any) -> xr.Dataset:
     """Peak of the correlation of each window over lags, its lag and its significance.
 
     Parameters
     ----------
     correlations : Dataset
         Of `cross_correlate`, or its mean over sectors, of `correlation_by_layer`.
-    rule : {"nearest", "largest"}
-        "nearest", the paper's: of the most positive and the most negative correlation the one at the smaller
-        |lag|, of two as near the larger. With surrogates, only those count that reach the threshold, if any
-        does: else what chance puts near lag 0 would hide what does not lie there. "largest": the one that is
-        larger in magnitude.
+    **settings
+        See `PeakParameters`.
 
     Returns
     -------
@@ -46,6 +44,12 @@ def peak_correlation(correlations: xr.Dataset, *, rule: Rule = "nearest") -> xr.
     cross_correlate : Makes the correlations.
     correlation_by_layer : Means over sectors.
 
+    Notes
+    -----
+    "nearest", the paper's: of the most positive and the most negative correlation the one at the smaller
+    |lag|, of two as near the larger. With surrogates, only those count that reach the threshold, if any does:
+    else what chance puts near lag 0 would hide what does not lie there.
+
     References
     ----------
     u-Unwrap, section 4.3, Fig. 5G; Westfall & Young (1993), maximum over lags; Benjamini & Hochberg (1995),
@@ -63,7 +67,7 @@ def peak_correlation(correlations: xr.Dataset, *, rule: Rule = "nearest") -> xr.
     """
     if not isinstance(correlations, xr.Dataset) or "lag" not in correlations.coords:
         raise ParameterError("correlations must be the Dataset that cross_correlate returns")
-    check_rule(rule)
+    rule = PeakParameters.of(**settings).rule
     curves = correlations["correlation"].transpose("lag", ...)
     lags = correlations["lag"].to_numpy()
     threshold = correlations["threshold"].to_numpy() if "threshold" in correlations else None
@@ -85,12 +89,6 @@ def peak_correlation(correlations: xr.Dataset, *, rule: Rule = "nearest") -> xr.
         data |= {"p": (dims, p), "q": (dims, false_discovery(p))}
     coords = {name: value for name, value in curves.coords.items() if "lag" not in value.dims}
     return xr.Dataset(data, coords, attrs=correlations.attrs | {"rule": rule})
-
-
-def check_rule(rule: str) -> None:
-    """Raise ParameterError unless there is such a rule."""
-    if rule not in RULES:
-        raise ParameterError(f"rule must be one of {', '.join(RULES)}, got {rule!r}")
 
 
 def find_peak(

@@ -7,17 +7,16 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from scipy.stats import kendalltau
 
-from cytodisk.analysis.parameters import whole_number
+from cytodisk.analysis.correlation.correlation_parameters import DetrendParameters, PrepareParameters
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import ParameterError
-
-Detrend = Literal["none", "linear", "median"]
+from cytodisk.taking import takes
 
 _ROUNDING = 64.0 * np.finfo(np.float64).eps
 """Share of the largest magnitude below which a spread is nothing but rounding."""
@@ -32,13 +31,10 @@ _FEWEST_FOR_KPSS = 50  # values; in 30 a straight line has 0.44
 _ONE_WAY = 0.5  # Kendall's τ of a series that goes one way rather than up and down
 
 
+@takes(PrepareParameters)
 def prepare_series(
     values: Any,
-    *,
-    detrend: Detrend = "none",
-    detrend_frames: int | None = None,
-    difference: bool = False,
-    zscore: bool = False,
+    **settings: Any,
 ) -> FloatArray:
     """Take slow changes out of series, in the order of the arguments.
 
@@ -46,15 +42,8 @@ def prepare_series(
     ----------
     values : array_like of shape (T, …)
         One series a column; NaN stays NaN.
-    detrend : {"none", "linear", "median"}
-        Take out nothing, the straight line of least squares, or the moving median.
-    detrend_frames : int, optional
-        Frames of the moving median, centred and shorter at the ends; at least 3. Without it, T.
-    difference : bool
-        Replace frame t by the change from t - 1 to t; the first is NaN.
-    zscore : bool
-        Subtract each series' mean and divide by its standard deviation; a constant becomes 0. It changes no
-        Pearson correlation.
+    **settings
+        See `PrepareParameters`.
 
     Returns
     -------
@@ -83,36 +72,28 @@ def prepare_series(
     >>> cd.prepare_series(bleaching, difference=True)
     array([nan, -1., -1., -1.])
     """
-    check_detrend(detrend, detrend_frames)
-    frames = None if detrend_frames is None else int(detrend_frames)
+    how = PrepareParameters.of(**settings)
     series = np.array(values, dtype=np.float64)
     if not series.ndim or not series.size:
         raise ParameterError(f"values must have time first and not be empty, got shape {series.shape}")
     columns = series.reshape(len(series), -1)
-    if detrend == "linear":
+    if how.detrend == "linear":
         columns = columns - _lines(columns)
-    elif detrend == "median":
-        columns = columns - _moving_median(columns, frames or len(columns))
-    if difference:
+    elif how.detrend == "median":
+        columns = columns - _moving_median(columns, how.detrend_frames or len(columns))
+    if how.difference:
         columns = np.diff(columns, axis=0, prepend=np.nan)
-    if difference or detrend != "none":
+    if how.difference or how.detrend != "none":
         columns = _without_rounding(columns, series.reshape(columns.shape))
-    if zscore:
+    if how.zscore:
         columns = standardised(columns)
     return np.asarray(columns.reshape(series.shape))
 
 
-def check_detrend(detrend: str, frames: int | None) -> None:
-    """Raise ParameterError unless the way to detrend is known and its frames suffice."""
-    if detrend not in get_args(Detrend):
-        raise ParameterError(f"detrend must be one of {', '.join(get_args(Detrend))}, got {detrend!r}")
-    if frames is not None:
-        whole_number("detrend_frames", frames, 3)
-
-
-def default_frames(detrend: str, frames: int | None, max_lag: int) -> int | None:
+def default_frames(how: DetrendParameters, max_lag: int) -> int | None:
     """Frames of the moving median: those asked for, else 4 max_lag + 1, which keeps what the lags compare."""
-    return 4 * max_lag + 1 if frames is None and detrend == "median" and max_lag else frames
+    missing = how.detrend_frames is None and how.detrend == "median" and max_lag
+    return 4 * max_lag + 1 if missing else how.detrend_frames
 
 
 def standardised(columns: FloatArray) -> FloatArray:

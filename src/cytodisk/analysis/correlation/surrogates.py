@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, Protocol, get_args
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cytodisk.analysis.correlation.correlation_parameters import Null, NullParameters
 from cytodisk.analysis.correlation.prepared_series import interpolated
-from cytodisk.analysis.parameters import whole_number
 from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.checks import whole_number
 from cytodisk.errors import ParameterError
 
-Null = Literal["phase", "shift"]
 _ALL = slice(None)
 
 
@@ -67,9 +67,9 @@ def surrogates(null: Null, frames: int, count: int, seed: int, max_lag: int = 0)
     ParameterError
         An unknown null, no surrogates, a seed below 0, or too few frames to shift.
     """
-    check_null(null)
+    checked = NullParameters.of(null=null, seed=seed)
     count = whole_number("surrogates", count, 1)
-    random = np.random.default_rng(whole_number("seed", seed, 0))
+    random = np.random.default_rng(checked.seed)
     if null == "shift":
         shifts = _shifts(frames, count, max_lag, random)
 
@@ -96,12 +96,6 @@ def _shifts(frames: int, count: int, max_lag: int, random: np.random.Generator) 
         )
     first = least + random.integers((most - least) % apart + 1)
     return np.asarray(random.permutation(np.arange(first, most + 1, apart))[:count])
-
-
-def check_null(null: str) -> None:
-    """Raise ParameterError unless there are such surrogates."""
-    if null not in get_args(Null):
-        raise ParameterError(f"null must be one of {', '.join(get_args(Null))}, got {null!r}")
 
 
 def phase_randomised(series: FloatArray, turns: NDArray[np.complex128]) -> FloatArray:

@@ -9,37 +9,31 @@ import numpy as np
 import xarray as xr
 from scipy.spatial.distance import cdist
 
+from cytodisk.analysis.correlation.correlation_parameters import DetrendParameters, PairParameters
 from cytodisk.analysis.correlation.cross_correlation import ALPHA, drifting_shares, lags_within
 from cytodisk.analysis.correlation.pairing import named_series
-from cytodisk.analysis.correlation.prepared_series import Detrend, default_frames, prepare_series
-from cytodisk.analysis.correlation.surrogates import Null, check_null
+from cytodisk.analysis.correlation.prepared_series import default_frames, prepare_series
 from cytodisk.analysis.correlation.surrogates import surrogates as make_surrogates
 from cytodisk.analysis.pairs.pair_blocks import DistanceBins, distributions
 from cytodisk.analysis.pairs.pair_chance import chance_of_pairs
 from cytodisk.analysis.pairs.window_distances import DISTANCE_DIMS, disk_distances
-from cytodisk.analysis.parameters import whole_number
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
+from cytodisk.taking import takes
 
 _FRAMES_FOR_DISTANCE = 20
 _WINDOW = ("layer", "sector")
 
 
+@takes(PairParameters)
 def correlate_pairs(
     a: Any,
     b: Any,
     max_lag: int,
     *,
     distances: Any = None,
-    bins: int = 20,
-    detrend: Detrend = "none",
-    detrend_frames: int | None = None,
-    difference: bool = False,
-    min_pairs: int = 10,
-    surrogates: int = 0,
-    null: Null = "phase",
-    seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
+    **settings: Any,
 ) -> xr.Dataset:
     """Pearson correlation of all windows of `a` with all windows of `b`, by their distance and the lag.
 
@@ -54,15 +48,11 @@ def correlate_pairs(
         centroids, averaged over up to 20 frames, when `a` or `b` has the coordinates centroid_y and
         centroid_x, as those of `sample_movie`; else that on the unit disk with layers of equal area. The
         attrs `distance` and `units` say which.
-    bins : int
-        Of distances above 0, equally wide; one more, at 0, holds windows paired with themselves, and along
-        the edge all of one sector.
-    detrend, detrend_frames, difference, min_pairs
-        As for `cross_correlate`.
-    surrogates, null, seed
-        As for `correlation_by_layer`, whose means are over many windows, too.
     progress : callable, optional
         Called with (steps done, in all).
+    **settings
+        See `PairParameters`. Surrogates are those of `correlation_by_layer`, whose means are over many
+        windows, too.
 
     Returns
     -------
@@ -109,22 +99,22 @@ def correlate_pairs(
     for name, series in (("a", first), ("b", second)):
         if set(series.dims) != {"time", *_WINDOW}:
             raise ParameterError(f"{name} has the dims {list(series.dims)}: pass (time, layer, sector)")
+    how = PairParameters.of(**settings)
+    min_pairs, surrogates = how.min_pairs, how.surrogates
     lags = lags_within(max_lag, min_pairs, first.sizes["time"])
-    surrogates = whole_number("surrogates", surrogates, 0)
-    check_null(null)
-    frames = default_frames(detrend, detrend_frames, max_lag)
-    options: dict[str, Any] = {"detrend": detrend, "detrend_frames": frames, "difference": difference}
+    frames = default_frames(how, max_lag)
+    options = how.part(DetrendParameters).changed(detrend_frames=frames).model_dump()
     tables = [prepare_series(_flat(series), **options) for series in (first, second)]
     drifting = drifting_shares(*(xr.DataArray(table) for table in tables))
     apart, units, kind = _distances(distances, a, b, (first.sizes["layer"], first.sizes["sector"]))
-    edges = _edges(list(apart.values()), bins)
+    edges = _edges(list(apart.values()), how.bins)
     sorted_pairs = [DistanceBins.of(table, edges) for table in apart.values()]
     steps = _Steps(progress, (1 + surrogates) * lags.size)
     found = distributions(tables[0], tables[1], lags, min_pairs, sorted_pairs, steps)
     dims = ("along", "distance", "lag")
     data: dict[str, Any] = {name: (dims, values) for name, values in found.items()}
     if surrogates:
-        changed = make_surrogates(null, len(tables[1]), surrogates, seed, max_lag)
+        changed = make_surrogates(how.null, len(tables[1]), surrogates, how.seed, max_lag)
         chance = chance_of_pairs(
             tables[0], tables[1], changed.together, changed.count, lags, min_pairs, sorted_pairs, ALPHA, steps
         )
@@ -138,7 +128,7 @@ def correlate_pairs(
     if interval_s is not None:
         coords["lag_s"] = ("lag", lags * interval_s, {"units": "s"})
     count = changed.count if surrogates else 0
-    attrs = {"distance": kind, "units": units, "surrogates": count, "null": null, "seed": seed}
+    attrs = {"distance": kind, "units": units, "surrogates": count, "null": how.null, "seed": how.seed}
     attrs |= {name: value for name, value in options.items() if value is not None}
     out = xr.Dataset(data, coords, attrs | drifting)
     out["n"] = out["n"].astype(np.int64)
@@ -207,9 +197,8 @@ def _scale(series: xr.DataArray) -> tuple[str]:
 
 
 def _edges(tables: list[FloatArray], bins: int) -> FloatArray:
-    count = whole_number("bins", bins, 1)
     longest = max(float(table.max()) for table in tables)
-    return np.linspace(0.0, longest or 1.0, count + 1)
+    return np.linspace(0.0, longest or 1.0, bins + 1)
 
 
 def _centres(edges: FloatArray) -> FloatArray:

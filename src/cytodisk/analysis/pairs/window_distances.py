@@ -10,8 +10,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
-from cytodisk.analysis.parameters import whole_number
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.checks import whole_number
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
 from cytodisk.geometry.locate import TriangleLocator

@@ -10,10 +10,11 @@ import numpy as np
 import pandas as pd
 from scipy.stats import spearmanr
 
-from cytodisk.analysis.parameters import whole_number
 from cytodisk.analysis.shape.features import SCALE_FREE
+from cytodisk.analysis.shape.score_parameters import ScoreParameters
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import MissingPartError, ParameterError
+from cytodisk.taking import takes
 
 LEAST_CELLS = 10
 _LEAST_FEATURES = 2  # that vary: a plane has two axes
@@ -24,9 +25,8 @@ _WITHOUT_UMAP = (
 _NORMAL_QUARTILES = 1.349  # between the quartiles of a normal distribution with standard deviation 1
 
 
-def complexity_score(
-    features: pd.DataFrame, *, seed: int = 0, n_neighbors: int = 15, min_dist: float = 0.1
-) -> pd.DataFrame:
+@takes(ScoreParameters)
+def complexity_score(features: pd.DataFrame, **settings: Any) -> pd.DataFrame:
     """Place cells on an axis from plain to complex shapes.
 
     The scale-free features, made comparable, are laid out in a plane by UMAP; the score is the position along
@@ -38,12 +38,8 @@ def complexity_score(
     features : DataFrame
         As `shape_features` returns it, or several of them put together. `attrs["scale_free"]` names the
         columns that count; without it they are all scale-free features of `shape_features`.
-    seed : int
-        Of UMAP. The same seed gives the same result for the same rows in the same order.
-    n_neighbors : int
-        Of UMAP, at least 2: how many cells count as alike. At most one less than there are cells is used.
-    min_dist : float
-        Of UMAP, 0 to 1: how close together cells may come in the plane.
+    **settings
+        See `ScoreParameters`.
 
     Returns
     -------
@@ -94,16 +90,13 @@ def complexity_score(
     >>> bool(score["complexity"].notna().all())
     True
     """
-    seed, n_neighbors = whole_number("seed", seed, 0), whole_number("n_neighbors", n_neighbors, 2)
-    number = isinstance(min_dist, int | float | np.integer | np.floating) and not isinstance(min_dist, bool)
-    if not number or not 0 <= min_dist <= 1:
-        raise ParameterError(f"min_dist must be a number from 0 to 1, got {min_dist!r}")
+    how = ScoreParameters.of(**settings)
     if reason := why_unscored(features):
         raise (MissingPartError if reason == _WITHOUT_UMAP else ParameterError)(reason)
     names, values = _measured(features)
     known = np.isfinite(values).all(axis=1)
     comparable = standardised(values[known])
-    plane = umap_plane(comparable, seed, min(n_neighbors, int(known.sum()) - 1), float(min_dist))
+    plane = umap_plane(comparable, how.seed, min(how.n_neighbors, int(known.sum()) - 1), how.min_dist)
     axis, share = principal_axis(plane)
     circularity = values[known, names.index("circularity")]
     score = plane @ axis

@@ -13,8 +13,8 @@ from cytodisk.runs.batch.inputs import BatchInput
 from cytodisk.runs.map.map_inputs import open_inputs
 from cytodisk.runs.map.map_run import run_map
 from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import run_movie
-from cytodisk.runs.parameters import MovieParameters
 from cytodisk.store.study import Study
 
 

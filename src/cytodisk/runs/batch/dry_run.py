@@ -10,8 +10,10 @@ from cytodisk.errors import CytodiskError
 from cytodisk.runs.batch.input_rows import SCALE
 from cytodisk.runs.batch.inputs import BatchInput
 from cytodisk.runs.map.map_inputs import open_inputs
+from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_inputs import open_movie_files
-from cytodisk.runs.parameters import MapParameters, MovieParameters, toml_lines
+from cytodisk.runs.movie.movie_parameters import MovieParameters
+from cytodisk.runs.parameters_file import toml_lines
 
 _APART = ("layers", "sectors", *SCALE)  # what has a column of its own
 

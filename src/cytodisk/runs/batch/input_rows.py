@@ -15,7 +15,9 @@ from cytodisk.errors import ParameterError
 from cytodisk.images.mask_names import base_name, image_stem, natural_order
 from cytodisk.runs.batch.faults import Faults
 from cytodisk.runs.batch.inputs import BatchInput, InputKind, Value
-from cytodisk.runs.parameters import MapParameters, MovieParameters, parameters_from
+from cytodisk.runs.map.map_parameters import MapParameters
+from cytodisk.runs.movie.movie_parameters import MovieParameters
+from cytodisk.runs.parameters_file import parameters_from
 
 SCALE = ("pixel_size_um", "frame_interval_s", "channels")  # parameters with a column of their own
 COLUMNS = ("condition", "replicate")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, TypeAlias
 
-from cytodisk.runs.parameters import MapParameters
+from cytodisk.runs.map.map_parameters import MapParameters
 
 InputKind: TypeAlias = Literal["movie", "map"]
 Value: TypeAlias = str | int | float | bool | None

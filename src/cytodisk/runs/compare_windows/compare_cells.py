@@ -17,11 +17,11 @@ from cytodisk.errors import CytodiskError
 from cytodisk.files import replacing
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.images.mask_files import SourceCell, read_source_cells
-from cytodisk.runs.compare_windows.compare_parameters import CompareParameters
+from cytodisk.runs.compare_windows.compare_parameters import CompareWindowsParameters
 from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS, layer_columns, status_of, windows_row
 from cytodisk.runs.compare_windows.comparison import Comparison, open_comparison, write_summaries
 from cytodisk.runs.map.map_inputs import MapInputs, open_inputs
-from cytodisk.runs.parameters import write_parameters
+from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.steps import Progress, check_options, finish_run, silent
 from cytodisk.runs.workers import in_order
@@ -41,14 +41,14 @@ class CompareTask:
     """Everything a worker needs to compare windows on one cell."""
 
     found: SourceCell
-    parameters: CompareParameters
+    parameters: CompareWindowsParameters
     path: Path
 
 
 def compare_cells(
     masks: str | os.PathLike[str],
     out: str | os.PathLike[str],
-    parameters: CompareParameters | None = None,
+    parameters: CompareWindowsParameters | None = None,
     *,
     workers: int = 1,
     resume: bool = False,
@@ -63,7 +63,7 @@ def compare_cells(
         One mask, a stack of masks or a label image, or a folder of those; see `open_mask_files`.
     out : path-like
         Folder for the results.
-    parameters : CompareParameters, optional
+    parameters : CompareWindowsParameters, optional
     workers : int
         Processes; with 1 everything runs in this one.
     resume, overwrite : bool
@@ -87,7 +87,7 @@ def compare_cells(
     ----------
     u-Unwrap, section 4.1 and Fig. 3.
     """
-    parameters = CompareParameters() if parameters is None else parameters
+    parameters = CompareWindowsParameters() if parameters is None else parameters
     inputs = open_inputs(masks, None, parameters)
     options: dict[str, Any] = {"workers": workers, "resume": resume, "overwrite": overwrite}
     return compare_opened_cells(inputs, out, parameters, progress=progress, **options)
@@ -96,7 +96,7 @@ def compare_cells(
 def compare_opened_cells(
     inputs: MapInputs,
     out: str | os.PathLike[str],
-    parameters: CompareParameters,
+    parameters: CompareWindowsParameters,
     *,
     workers: int = 1,
     resume: bool = False,
@@ -209,7 +209,7 @@ def _lay(method: str, task: CompareTask) -> tuple[WindowsOnCell, DiskMap | None]
     else:
         disk = map_to_disk(
             mask,
-            method=method,  # type: ignore[arg-type]
+            method=method,
             shape_weight=parameters.shape_weight,
             edge_length=parameters.edge_length,
             align=parameters.align,

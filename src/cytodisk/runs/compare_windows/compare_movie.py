@@ -23,7 +23,7 @@ from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, CompareMo
 from cytodisk.runs.compare_windows.compare_tables import COMPARED_MOVIE
 from cytodisk.runs.compare_windows.comparison import Comparison, open_comparison, write_summaries
 from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
-from cytodisk.runs.parameters import write_parameters
+from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.steps import check_options, finish_run, silent
 from cytodisk.store.study_folder import PARAMETERS, StudyFolder, alone_in, part_key
@@ -212,7 +212,7 @@ def _map(
         tension=parameters.tension,
         renew_every=parameters.renew_every,
         # Windows that are not on a map need its edge alone, which is the same for all methods.
-        method=method if method in ON_A_MAP else "harmonic",  # type: ignore[arg-type]
+        method=method if method in ON_A_MAP else "harmonic",
         shape_weight=parameters.shape_weight,
         edge_length=parameters.edge_length,
         align=parameters.align,

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import ClassVar, Literal, TypeAlias
 
-from pydantic import BaseModel, Field, field_validator
+from pydantic import field_validator
 
-from cytodisk.runs.parameters import MapParameters, MovieParameters
+from cytodisk.parameters import parameter
+from cytodisk.runs.map.map_parameters import CellParameters
+from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
+from cytodisk.windows.grid_parameters import EdgeGridParameters
 
 WindowMethod: TypeAlias = Literal["newton", "harmonic", "advection", "edge", "rings"]
 
@@ -21,16 +24,22 @@ TITLES = {
 }
 """Names of the methods in figures and on the console."""
 
+_METHODS = (
+    "Kinds of windows that are compared: on cytodisk's map (newton), the map before relaxation (harmonic), "
+    "the paper's map (advection), by distance from the edge (edge), around the deepest point (rings)."
+)
+_WORDS = f"several of {', '.join(TITLES)}"
 
-class _Compared(BaseModel):
+
+class _ComparedParameters(EdgeGridParameters):
+    """What comparisons of cells and of movies share."""
+
+    exclusive: ClassVar[tuple[tuple[str, str], ...]] = (("depth_px", "depth_um"),)
+
     methods: tuple[WindowMethod, ...] = ()
-    depth_px: Annotated[float, Field(gt=0)] | None = None
-    method: Any = Field(default="newton", exclude=True)
-
-    @field_validator("method")
-    @classmethod
-    def _in_the_plural(cls, method: Any) -> Any:
-        raise ValueError("a comparison has several: pass methods")
+    depth_um: float | None = parameter(
+        None, "The thickness of that layer in place of `depth_px`; needs the pixel size.", above=0, unit="µm"
+    )
 
     @field_validator("methods")
     @classmethod
@@ -40,29 +49,15 @@ class _Compared(BaseModel):
         return methods
 
 
-class CompareParameters(_Compared, MapParameters):
-    """What decides the result of `cytodisk compare`, beside the input files.
+class CompareWindowsParameters(_ComparedParameters, CellParameters):
+    """What decides the result of `cytodisk compare-windows`, beside the input files."""
 
-    `methods`: "newton", "harmonic" and "advection" are polar windows on the disk map of this name, see
-    `map_to_disk`; "edge" see `edge_windows`, "rings" see `ring_windows`. `depth_px` is the thickness of a
-    layer of edge-based windows; by default a cell's greatest depth over the layers. The others are those of
-    `cytodisk map`.
-    """
-
-    methods: tuple[WindowMethod, ...] = ("newton", "harmonic", "advection", "edge")
+    methods: tuple[WindowMethod, ...] = parameter(
+        ("newton", "harmonic", "advection", "edge"), _METHODS, words=_WORDS
+    )
 
 
-class CompareMovieParameters(_Compared, MovieParameters):
-    """What decides the result of `cytodisk compare --movie`, beside the input files.
+class CompareMovieParameters(_ComparedParameters, FollowedCellParameters):
+    """What decides the result of `cytodisk compare-windows --movie`, beside the input files."""
 
-    As `CompareParameters`; by default `depth_px` is the greatest depth of a cell's first frame over the
-    layers. The others are those of `cytodisk movie`.
-    """
-
-    methods: tuple[WindowMethod, ...] = ("newton", "harmonic", "edge")
-    depth_um: Any = Field(default=None, exclude=True)
-
-    @field_validator("depth_um")
-    @classmethod
-    def _of_a_movie(cls, depth_um: Any) -> Any:
-        raise ValueError("a comparison has the same number of layers for all: pass layers, and depth_px")
+    methods: tuple[WindowMethod, ...] = parameter(("newton", "harmonic", "edge"), _METHODS, words=_WORDS)

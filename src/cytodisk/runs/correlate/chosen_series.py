@@ -5,18 +5,18 @@ from __future__ import annotations
 import xarray as xr
 
 from cytodisk.errors import ParameterError
-from cytodisk.runs.correlate.correlation_settings import CorrelationSettings
+from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.store.activity_store import EDGE_VARIABLES
 
 
-def chosen_series(activity: xr.Dataset, settings: CorrelationSettings) -> xr.Dataset:
+def chosen_series(activity: xr.Dataset, settings: CorrelateParameters) -> xr.Dataset:
     """Activity of the frames and sectors that settings ask for.
 
     Parameters
     ----------
     activity : Dataset
         Of one cell of a study.
-    settings : CorrelationSettings
+    settings : CorrelateParameters
         Its frames, without_frames and sectors.
 
     Returns
@@ -42,7 +42,7 @@ def chosen_series(activity: xr.Dataset, settings: CorrelationSettings) -> xr.Dat
     return activity
 
 
-def chosen_sectors(settings: CorrelationSettings, count: int) -> list[int]:
+def chosen_sectors(settings: CorrelateParameters, count: int) -> list[int]:
     """Numbers of the sectors that settings ask for, of so many; 50:5 goes on over the last.
 
     Raises

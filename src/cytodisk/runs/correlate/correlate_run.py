@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from cytodisk.analysis.correlation.correlation_parameters import PairCorrelationParameters
 from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer, cross_correlate
 from cytodisk.analysis.correlation.jitter_mark import JITTERED_DIFFERENCES, JITTERED_LAGS, jitter_step
 from cytodisk.analysis.pairs.pair_correlation import correlate_pairs
@@ -19,7 +19,7 @@ from cytodisk.arrays import IntArray
 from cytodisk.errors import ParameterError, StationarityWarning, StudyError
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.correlate.chosen_series import chosen_sectors, chosen_series
-from cytodisk.runs.correlate.correlation_settings import CorrelationSettings
+from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.correlate.correlation_tables import as_table, merged, of_cell, tables_of
 from cytodisk.runs.correlate.event_tables import episode_tables
 from cytodisk.runs.versions import installed
@@ -59,7 +59,7 @@ def correlate_study(
     progress : callable, optional
         Called with (steps done, in all).
     **settings
-        Fields of `CorrelationSettings`: max_lag, against, rule, detrend, difference, surrogates, and others.
+        Fields of `CorrelateParameters`: max_lag, against, rule, detrend, difference, surrogates, and others.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def correlate_study(
         cell could be correlated.
     """
     chosen = _cells(study, cells)
-    options = CorrelationSettings.of(**settings)
+    options = CorrelateParameters.of(**settings)
     names = channels_of(study)
     _check_names(names, signal, with_, options)
     max_lag = options.max_lag if options.max_lag is not None else _usual_lag(study, chosen)
@@ -93,7 +93,7 @@ def correlate_study(
     if not found:
         raise ParameterError(f"no cell of {study.path} can be correlated: {rows[0]['reason']}")
     tables = {name: merged(parts) for name, parts in found.items()} | {"cells": pd.DataFrame(rows)}
-    content: dict[str, Any] = asdict(options) | {"max_lag": max_lag, "cells": chosen if cells else None}
+    content: dict[str, Any] = options.model_dump() | {"max_lag": max_lag, "cells": chosen if cells else None}
     content["surrogates_made"] = max(int(row.get("surrogates", 0)) for row in rows)
     content["pair_surrogates"] = max(int(row.get("pair_surrogates", 0)) for row in rows)
     content["cytodisk"] = installed(("cytodisk",))["cytodisk"]
@@ -125,7 +125,7 @@ def _correlate_cell(
     signal: str,
     with_: str,
     max_lag: int,
-    options: CorrelationSettings,
+    options: CorrelateParameters,
     steps: _Steps,
 ) -> tuple[dict[str, pd.DataFrame], dict[str, Any]]:
     """Tables of one cell, and its row in the table of cells."""
@@ -134,7 +134,7 @@ def _correlate_cell(
     b = _other(activity, with_, options).load()
     if not (np.isfinite(a).any() and np.isfinite(b).any()):
         raise ParameterError(f"cell {cell} has no values of {signal if not np.isfinite(a).any() else with_}")
-    common = options.common()
+    common = dict(options.part(PairCorrelationParameters))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", StationarityWarning)  # the shares are in the table, and are told
         correlations = cross_correlate(
@@ -152,7 +152,7 @@ def _correlate_cell(
     row |= {"no_events_because": "", "event_threshold": np.nan, "event_noise": np.nan}
     if with_ in VELOCITIES:
         try:
-            edge = chosen_series(study.activity(cell), replace(options, sectors=None))
+            edge = chosen_series(study.activity(cell), options.changed(sectors=None))
             episodes = episode_tables(edge, a, with_, max_lag, options)
         except ParameterError as error:
             row["no_events_because"] = str(error)
@@ -162,7 +162,7 @@ def _correlate_cell(
     return tables, row
 
 
-def _other(activity: xr.Dataset, with_: str, options: CorrelationSettings) -> xr.DataArray:
+def _other(activity: xr.Dataset, with_: str, options: CorrelateParameters) -> xr.DataArray:
     """What the signal is correlated with, by sector or by window."""
     if with_ in VELOCITIES:
         return activity[with_]
@@ -176,7 +176,7 @@ def _restarts(study: Study, cell: int, times: IntArray) -> int:
     return int((rows["restarted"].fillna("") != "").sum())
 
 
-def _jitter(a: xr.DataArray, b: xr.DataArray, options: CorrelationSettings) -> float:
+def _jitter(a: xr.DataArray, b: xr.DataArray, options: CorrelateParameters) -> float:
     """Largest mark of jitter in any layer; 0 for none, or where its lags are left out; NaN if unknown."""
     marked = JITTERED_LAGS if not options.difference else JITTERED_DIFFERENCES
     if set(marked) <= set(options.skip_lags):
@@ -196,13 +196,15 @@ def _pairs(
     a: xr.DataArray,
     with_: str,
     max_lag: int,
-    options: CorrelationSettings,
+    options: CorrelateParameters,
     progress: Progress | None,
 ) -> pd.DataFrame:
     parameters = study.provenance["parameters"]
     grid = polar_windows(study.provenance["layers"], parameters["sectors"], parameters["spacing"])
     b = activity["mean"].sel(channel=with_).load()
-    common = options.common() | {"surrogates": min(options.surrogates, _PAIRED_SURROGATES)}
+    common = dict(options.part(PairCorrelationParameters)) | {
+        "surrogates": min(options.surrogates, _PAIRED_SURROGATES)
+    }
     sectors = chosen_sectors(options, grid.sectors)
     distances = window_distances(study.movie(cell), grid).isel(sector=sectors, other_sector=sectors)
     with warnings.catch_warnings():
@@ -223,7 +225,7 @@ def _cells(study: Study, cells: list[int] | None) -> list[int]:
     return sorted({int(cell) for cell in cells}) if cells else there
 
 
-def _check_names(names: list[str], signal: str, with_: str, options: CorrelationSettings) -> None:
+def _check_names(names: list[str], signal: str, with_: str, options: CorrelateParameters) -> None:
     clash = sorted(set(names) & set(VELOCITIES))
     if clash:
         raise ParameterError(

@@ -8,10 +8,10 @@ import xarray as xr
 
 from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer
 from cytodisk.analysis.correlation.peaks import peak_correlation
-from cytodisk.runs.correlate.correlation_settings import CorrelationSettings
+from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 
 
-def tables_of(correlations: xr.Dataset, options: CorrelationSettings) -> dict[str, pd.DataFrame]:
+def tables_of(correlations: xr.Dataset, options: CorrelateParameters) -> dict[str, pd.DataFrame]:
     """Peaks and curves of windows and of layers, as tables windows, layers, curves and layer_curves."""
     by_layer = correlation_by_layer(correlations)
     peaks = peak_correlation(correlations, rule=options.rule)

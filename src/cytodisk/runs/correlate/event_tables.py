@@ -9,11 +9,11 @@ import xarray as xr
 from cytodisk.analysis.correlation.prepared_series import prepare_series
 from cytodisk.analysis.event_average import average_around
 from cytodisk.analysis.events import KINDS, edge_events
-from cytodisk.runs.correlate.correlation_settings import CorrelationSettings
+from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 
 
 def episode_tables(
-    activity: xr.Dataset, signal: xr.DataArray, velocity: str, reach: int, settings: CorrelationSettings
+    activity: xr.Dataset, signal: xr.DataArray, velocity: str, reach: int, settings: CorrelateParameters
 ) -> dict[str, pd.DataFrame]:
     """Episodes of protrusion and retraction, and the signal averaged around their onsets.
 
@@ -27,7 +27,7 @@ def episode_tables(
         Which of its velocities; areas are those of the lab, whose outlines they compare.
     reach : int
         Frames before and after an onset.
-    settings : CorrelationSettings
+    settings : CorrelateParameters
         The signal is detrended by them.
 
     Returns

@@ -13,10 +13,9 @@ from cytodisk.images.frames import FrameFile, open_frames
 from cytodisk.images.mask_files import MaskSource, open_mask_files
 from cytodisk.images.signal_files import pair_images
 from cytodisk.runs.map.folder_inputs import SignalFile, with_common_channels, with_common_scale
-from cytodisk.runs.parameters import MapParameters
+from cytodisk.runs.map.map_parameters import FileParameters
 from cytodisk.runs.pixel_sizes import common_pixel_size
 from cytodisk.runs.steps import name_channels
-from cytodisk.windows.grid import polar_windows
 
 _MOST_UNNAMED = 10  # more planes than that are hardly channels
 _KINDS = {"mask": "one mask", "stack": "a stack of masks", "labels": "a label image, one cell a label"}
@@ -33,8 +32,8 @@ class MapInputs:
     sources : tuple of MaskSource
     signals : dict of str to SignalFile
         By name of the source.
-    parameters : MapParameters
-        As given.
+    parameters : FileParameters
+        As given: those of the run.
     pixel_size_um : float or None
         The given one, or else the files' own, in a folder that of most; None when nobody knows.
     remarks : tuple of str
@@ -44,7 +43,7 @@ class MapInputs:
     masks: Path
     sources: tuple[MaskSource, ...]
     signals: dict[str, SignalFile]
-    parameters: MapParameters
+    parameters: FileParameters
     pixel_size_um: float | None
     remarks: tuple[str, ...] = ()
 
@@ -104,7 +103,7 @@ def _count(number: int, of: str) -> str:
 
 
 def open_inputs(
-    masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: MapParameters
+    masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: FileParameters
 ) -> MapInputs:
     """Open the files of a run and check that they fit.
 
@@ -116,7 +115,8 @@ def open_inputs(
     signal : path-like, optional
         An image with the shape of the masks, with as many frames as they, or one. For a folder of masks a
         folder, or an ending of names; see `pair_images`.
-    parameters : MapParameters
+    parameters : FileParameters
+        Those of the run, which has more.
 
     Returns
     -------
@@ -128,7 +128,6 @@ def open_inputs(
     ReadError, MaskError, SignalError, ParameterError
         A file is missing, damaged, or does not fit.
     """
-    polar_windows(parameters.layers, parameters.sectors, parameters.spacing)  # raises if it makes no sense
     if Path(masks).is_dir():
         return _open_folder(Path(masks), signal, parameters)
     sources = open_mask_files(masks, parameters.kind)
@@ -138,7 +137,7 @@ def open_inputs(
     return MapInputs(Path(masks), sources, {sources[0].name: found}, parameters, pixel_size_um)
 
 
-def _open_folder(masks: Path, signal: str | os.PathLike[str] | None, parameters: MapParameters) -> MapInputs:
+def _open_folder(masks: Path, signal: str | os.PathLike[str] | None, parameters: FileParameters) -> MapInputs:
     sources = open_mask_files(masks, parameters.kind, images=_ending_beside(masks, signal))
     signals, remarks = _open_signals(sources, signal, parameters)
     pixel_size_um = parameters.pixel_size_um
@@ -163,7 +162,7 @@ def _ending_beside(masks: Path, signal: str | os.PathLike[str] | None) -> str:
 
 
 def _open_signal(
-    source: MaskSource, signal: str | os.PathLike[str] | None, parameters: MapParameters
+    source: MaskSource, signal: str | os.PathLike[str] | None, parameters: FileParameters
 ) -> SignalFile:
     found = None if signal is None else _fitting_image(source, Path(signal))
     return SignalFile(name_channels(found, parameters.channels))
@@ -178,7 +177,7 @@ def _fitting_image(source: MaskSource, path: Path) -> FrameFile | None:
 
 
 def _open_signals(
-    sources: Sequence[MaskSource], signal: str | os.PathLike[str] | None, parameters: MapParameters
+    sources: Sequence[MaskSource], signal: str | os.PathLike[str] | None, parameters: FileParameters
 ) -> tuple[dict[str, SignalFile], list[str]]:
     """The image of each mask file by its name, and remarks."""
     if signal is None:

@@ -16,7 +16,8 @@ from cytodisk.images.mask_files import SourceCell, read_source_cells
 from cytodisk.images.mask_names import without_name
 from cytodisk.runs.cell_rows import CellSettings, CellTask, DrawCell, measure_part, status_of
 from cytodisk.runs.map.map_inputs import MapInputs
-from cytodisk.runs.parameters import write_parameters
+from cytodisk.runs.map.map_parameters import MapParameters
+from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.steps import Progress, check_options, finish_run, silent
 from cytodisk.runs.workers import in_order
@@ -85,7 +86,12 @@ def run_map(
         pending = {key for key in parts if not folder.has(key)}
         at_most = 0 if draw is None else sum(parts.values()) if draw_at_most is None else draw_at_most
         settings = CellSettings(
-            inputs.parameters, inputs.pixel_size_um, folder.for_workers(), draw, maps, geojson
+            inputs.parameters.part(MapParameters),
+            inputs.pixel_size_um,
+            folder.for_workers(),
+            draw,
+            maps,
+            geojson,
         )
         report = progress or silent
         done = sum(size for key, size in parts.items() if key not in pending)

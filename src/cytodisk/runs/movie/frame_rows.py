@@ -17,7 +17,7 @@ from cytodisk.motion.frame_file import save_frame
 from cytodisk.motion.map_movie import status_of
 from cytodisk.motion.mapped_frame import MappedFrame
 from cytodisk.runs.cell_rows import cell_columns, window_columns
-from cytodisk.runs.parameters import MovieParameters
+from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.windows.grid import PolarGrid
 
 
@@ -48,7 +48,7 @@ class FrameTask:
     before: MappedFrame | None
     signal: xr.DataArray | None
     grid: PolarGrid
-    parameters: MovieParameters
+    parameters: FollowedCellParameters
     scale: Scale
     map_path: Path
     seconds: float
@@ -189,9 +189,7 @@ def _edge_before(task: FrameTask, before: MappedFrame) -> dict[str, Any]:
         before.disk,
         task.frame.disk,
         sectors,
-        jitter_px=task.parameters.jitter_px,
-        repeats=task.parameters.repeats,
-        seed=task.parameters.seed,
+        jitter=task.parameters,
     )
     shape = before.disk.mask.shape
     in_cell_frame = mean_by_sector(

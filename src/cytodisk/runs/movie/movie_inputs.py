@@ -10,16 +10,18 @@ from cytodisk.errors import CytodiskError, MaskError, ParameterError, SignalErro
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.outline import trace_outline
 from cytodisk.geometry.polygon import edge_lengths, smooth_closed
+from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile, open_frames
-from cytodisk.images.mask_kinds import Kind, understood_as
+from cytodisk.images.mask_kinds import understood_as
 from cytodisk.images.tracks import CellTrack, list_tracks, read_frame
 from cytodisk.runs.map.map_inputs import check_signal
 from cytodisk.runs.movie.frame_rows import Scale
-from cytodisk.runs.parameters import MovieParameters
+from cytodisk.runs.movie.movie_parameters import FollowedCellParameters, MovieParameters
 from cytodisk.runs.pixel_sizes import common_pixel_size
 from cytodisk.runs.steps import name_channels
 from cytodisk.store.study_folder import part_key
 from cytodisk.windows.grid import PolarGrid, first_depth, layers_for_depth, polar_windows
+from cytodisk.windows.grid_parameters import Spacing
 
 
 @dataclass(frozen=True)
@@ -50,23 +52,26 @@ class MovieInputs:
     kind : {"stack", "labels"}
     tracks : tuple of CellTrack
     signal : FrameFile or None
-    parameters : MovieParameters
-        As given.
+    parameters : FollowedCellParameters
+        As given: those of the run.
     grid : PolarGrid
     scale : Scale
         The given one, or else the files' own.
     first_depth_um : float or None
-        Thickness of the first layer in the first frame of the first cell, where `depth_um` was asked for.
+        Thickness of the first layer in the first frame of the first cell, where one was asked for.
+    wanted_depth_um : float or None
+        The thickness that was asked for.
     """
 
     masks: FrameFile
     kind: Kind
     tracks: tuple[CellTrack, ...]
     signal: FrameFile | None
-    parameters: MovieParameters
+    parameters: FollowedCellParameters
     grid: PolarGrid
     scale: Scale
     first_depth_um: float | None = None
+    wanted_depth_um: float | None = None
 
     @property
     def understood(self) -> dict[str, str]:
@@ -82,11 +87,11 @@ class MovieInputs:
             words["signal"] = (
                 f"channels {names}; {self.signal.n_frames} frames ({self.signal.axes}, {self.signal.dtype})"
             )
-        if self.parameters.depth_um is not None:
+        if self.wanted_depth_um is not None:
             words["windows"] = (
                 f"layers {self.grid.layers}, sectors {self.grid.sectors}; the first layer is about "
                 f"{self.first_depth_um:.2g} µm deep in the first frame of the first cell (wanted "
-                f"{self.parameters.depth_um:g} µm)"
+                f"{self.wanted_depth_um:g} µm)"
             )
         return words
 
@@ -102,7 +107,7 @@ class MovieInputs:
 
 
 def open_movie(
-    masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: MovieParameters
+    masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: FollowedCellParameters
 ) -> MovieInputs:
     """Open the files of a run and check that they fit.
 
@@ -128,14 +133,15 @@ def open_movie(
     kind = understood_as(mask_file, parameters.kind)
     tracks = tuple(list_tracks(mask_file, kind, parameters.link))
     layers, depth_um = parameters.layers, None
-    if parameters.depth_um is not None:
-        layers, depth_um = _layers(mask_file, tracks, parameters, scale)
+    wanted = parameters.depth_um if isinstance(parameters, MovieParameters) else None
+    if wanted is not None:
+        layers, depth_um = _layers(mask_file, tracks, wanted, parameters.spacing, scale)
     grid = polar_windows(layers, parameters.sectors, parameters.spacing)
-    return MovieInputs(mask_file, kind, tracks, files.signal, parameters, grid, scale, depth_um)
+    return MovieInputs(mask_file, kind, tracks, files.signal, parameters, grid, scale, depth_um, wanted)
 
 
 def open_movie_files(
-    masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: MovieParameters
+    masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: FollowedCellParameters
 ) -> MovieFiles:
     """Open the files of a run and check what their heads say, without looking at a frame.
 
@@ -211,11 +217,10 @@ def _frame_interval(masks: FrameFile, signal: FrameFile | None) -> float | None:
 
 
 def _layers(
-    masks: FrameFile, tracks: tuple[CellTrack, ...], parameters: MovieParameters, scale: Scale
+    masks: FrameFile, tracks: tuple[CellTrack, ...], depth_um: float, spacing: Spacing, scale: Scale
 ) -> tuple[int, float]:
     """Layers for the wanted depth, and the depth they give, on the first frame that can be used."""
-    depth = parameters.depth_um
-    if scale.pixel_size_um is None or depth is None:
+    if scale.pixel_size_um is None:
         raise ParameterError("depth_um needs a pixel size: pass it as --pixel-size, or layers instead")
     for track, time in _first_frames(tracks):
         try:
@@ -223,8 +228,8 @@ def _layers(
         except CytodiskError:
             continue  # has its row in the run; the next frame serves as well
         perimeter = float(edge_lengths(smooth_closed(trace_outline(mask), 1.0)).sum())
-        cell = report.area_px, perimeter, parameters.spacing
-        layers = layers_for_depth(depth / scale.pixel_size_um, *cell)
+        cell = report.area_px, perimeter, spacing
+        layers = layers_for_depth(depth_um / scale.pixel_size_um, *cell)
         return layers, float(first_depth(layers, *cell)) * scale.pixel_size_um
     raise MaskError(f"no frame of {masks.path} can be used")
 

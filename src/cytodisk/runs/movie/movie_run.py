@@ -14,15 +14,14 @@ import xarray as xr
 from cytodisk.errors import MaskError, ReadError, as_data
 from cytodisk.images.frames import FrameFile
 from cytodisk.images.tracks import CellTrack, read_frame
-from cytodisk.motion.demons import DemonsParameters
 from cytodisk.motion.frame_file import load_frame
 from cytodisk.motion.map_movie import FrameResult, map_one
-from cytodisk.motion.mapped_frame import MappedFrame, MovieSettings
-from cytodisk.motion.tracking import TrackingSettings
+from cytodisk.motion.mapped_frame import MappedFrame
+from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.movie.frame_rows import FrameRows, FrameTask, measure_frame, unmapped_row
 from cytodisk.runs.movie.movie_inputs import MovieInputs
 from cytodisk.runs.movie.movie_tables import finish_tables
-from cytodisk.runs.parameters import MovieParameters, write_parameters
+from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.steps import Progress, check_options, finish_run
 from cytodisk.runs.workers import worker_pool
@@ -90,25 +89,6 @@ def run_movie(
         return open_study(folder.path)
 
 
-def movie_settings(parameters: MovieParameters) -> MovieSettings:
-    """The mapping's part of a run's parameters."""
-    tracking = TrackingSettings(
-        tracker=parameters.tracker,
-        tension=parameters.tension,
-        register=parameters.registration,
-        renew_every=parameters.renew_every,
-        demons=DemonsParameters(),
-    )
-    return MovieSettings(
-        tracking,
-        parameters.method,
-        parameters.shape_weight,
-        parameters.edge_length,
-        parameters.align,
-        parameters.inertia,
-    )
-
-
 class _Run:
     """Frame after frame, all cells of a frame side by side.
 
@@ -124,7 +104,7 @@ class _Run:
         self._pool = pool
         self._queue = queue
         self._progress = progress
-        self._settings = movie_settings(inputs.parameters)
+        self._settings = inputs.parameters.part(MovieSettings)
         self._last: dict[int, MappedFrame] = {}
         self._waiting: deque[tuple[str, str, Future[FrameRows]]] = deque()
         self._done = sum(folder.has(key) for key in inputs.keys)

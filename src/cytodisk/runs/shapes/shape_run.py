@@ -6,20 +6,22 @@ import os
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import islice
-from typing import Annotated, Any, Literal
+from typing import Any
 
 import pandas as pd
-from pydantic import BaseModel, ConfigDict, Field
 
 from cytodisk.analysis.shape.complexity import why_unscored
 from cytodisk.analysis.shape.features import TOO_SMALL, shape_row, split_qc_flags
+from cytodisk.analysis.shape.score_parameters import ScoreParameters
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import ReadError
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.images.mask_files import SourceCell, read_source_cells
 from cytodisk.runs.map.map_inputs import MapInputs, open_inputs
-from cytodisk.runs.parameters import MapParameters, write_parameters
+from cytodisk.runs.map.map_parameters import FileParameters
+from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
+from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 from cytodisk.runs.shapes.shape_tables import SHAPE_TABLES, open_shapes, shape_table, write_shapes
 from cytodisk.runs.steps import Progress, check_options, finish_run, silent
 from cytodisk.runs.versions import installed
@@ -32,21 +34,6 @@ _LAYOUT = (
     "scikit-learn",
     "pynndescent",
 )  # packages that the score depends on beside the others
-
-
-class ShapeParameters(BaseModel):
-    """What decides the result of `cytodisk shapes`, beside the input files.
-
-    See `open_mask_files`, `shape_features` and `complexity_score`.
-    """
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
-    kind: Literal["auto", "mask", "stack", "labels"] = "auto"
-    pixel_size_um: Annotated[float, Field(gt=0)] | None = None
-    seed: Annotated[int, Field(ge=0)] = 0
-    n_neighbors: Annotated[int, Field(ge=2)] = 15
-    min_dist: Annotated[float, Field(ge=0, le=1)] = 0.1
 
 
 def open_shape_inputs(masks: str | os.PathLike[str], parameters: ShapeParameters) -> MapInputs:
@@ -68,8 +55,7 @@ def open_shape_inputs(masks: str | os.PathLike[str], parameters: ShapeParameters
     ReadError, MaskError
         The masks cannot be used at all.
     """
-    of_masks = MapParameters(kind=parameters.kind, pixel_size_um=parameters.pixel_size_um)
-    return open_inputs(masks, None, of_masks)
+    return open_inputs(masks, None, parameters.part(FileParameters))
 
 
 def run_shapes(
@@ -123,9 +109,7 @@ def run_shapes(
         table = shape_table(
             folder.read_rows(keys),
             inputs.pixel_size_um,
-            parameters.seed,
-            parameters.n_neighbors,
-            parameters.min_dist,
+            parameters.part(ScoreParameters),
         )
         write_shapes(table, folder.path)
         finish_run(folder, keys, [*inputs.remarks, *_warnings(table)])

@@ -12,6 +12,7 @@ import pandas as pd
 
 from cytodisk.analysis.shape.complexity import complexity_score, why_unscored
 from cytodisk.analysis.shape.features import FEATURES, GROUPS, SCALE_FREE, feature_table
+from cytodisk.analysis.shape.score_parameters import ScoreParameters
 from cytodisk.errors import ReadError
 from cytodisk.files import replacing
 from cytodisk.store.provenance_file import read_provenance
@@ -39,7 +40,7 @@ SHAPE_TABLES = Tables(_CELL, {})
 
 
 def shape_table(
-    rows: Iterable[dict[str, Any]], pixel_size_um: float | None, seed: int, n_neighbors: int, min_dist: float
+    rows: Iterable[dict[str, Any]], pixel_size_um: float | None, parameters: ScoreParameters
 ) -> pd.DataFrame:
     """The rows of all cells with their complexity.
 
@@ -48,7 +49,7 @@ def shape_table(
     rows : iterable of dict
         As `shape_row` returns them, with cell, source, frame and label before.
     pixel_size_um : float or None
-    seed, n_neighbors, min_dist
+    parameters : ScoreParameters
         See `complexity_score`.
 
     Returns
@@ -60,7 +61,7 @@ def shape_table(
     table = feature_table(list(rows), pixel_size_um)
     attrs, first = table.attrs, table.columns.get_loc(GROUPS[0].features[0].name)
     if not why_unscored(table):
-        score = complexity_score(table, seed=seed, n_neighbors=n_neighbors, min_dist=min_dist)
+        score = complexity_score(table, **dict(parameters))
         attrs |= {name: score.attrs[name] for name in ("axis_share", "first_component")}
     else:
         score = pd.DataFrame(np.nan, table.index, SCORES)

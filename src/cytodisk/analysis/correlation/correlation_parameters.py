@@ -1,0 +1,92 @@
+"""Parameters of `prepare_series`, `cross_correlate`, `correlate_pairs` and `peak_correlation`."""
+
+from typing import Literal, TypeAlias
+
+from cytodisk.parameters import Parameters, parameter
+
+Detrend: TypeAlias = Literal["none", "linear", "median"]
+Null: TypeAlias = Literal["phase", "shift"]
+Rule: TypeAlias = Literal["nearest", "largest"]
+
+
+class DetrendParameters(Parameters):
+    """How slow changes are taken out of series."""
+
+    detrend: Detrend = parameter(
+        "none", 'Slow change to take out: "linear" is a straight line, "median" the moving median.'
+    )
+    detrend_frames: int | None = parameter(
+        None,
+        "Length of the moving median; without it 4 × max_lag + 1.",
+        least=3,
+        unit="frames",
+    )
+    difference: bool = parameter(False, "Use the changes from frame to frame in place of the values.")
+
+
+class PrepareParameters(DetrendParameters):
+    """How series are prepared for correlation."""
+
+    zscore: bool = parameter(
+        False,
+        "Subtract the mean of each series and divide by its standard deviation. It changes no Pearson "
+        "correlation.",
+    )
+
+
+class NullParameters(Parameters):
+    """What chance would give."""
+
+    min_pairs: int = parameter(
+        10, "Fewest frames that must have both values at a lag; lags with fewer are NaN.", least=3
+    )
+    surrogates: int = parameter(
+        0,
+        "Number of surrogate series to compare with; 0 for none. 999 give p-values down to 0.001.",
+        least=0,
+    )
+    null: Null = parameter(
+        "phase",
+        'How surrogates are made: "phase" draws random phases, "shift" shifts series in a circle. Shifts '
+        "that share no lag are few: at most frames / (2 × max_lag + 1).",
+    )
+    seed: int = parameter(0, "Seed of the surrogates.", least=0)
+
+
+class PairCorrelationParameters(NullParameters, DetrendParameters):
+    """What `cross_correlate` and `correlate_pairs` both take."""
+
+
+class PairParameters(PairCorrelationParameters):
+    """What `correlate_pairs` takes."""
+
+    bins: int = parameter(
+        20,
+        "Number of bins of distances above 0. One more, at 0, holds windows paired with themselves, and "
+        "along the edge all windows of one sector.",
+        least=1,
+    )
+
+
+class SkipLagsParameters(Parameters):
+    """Which lags are left out."""
+
+    skip_lags: tuple[int, ...] = parameter(
+        (),
+        "Lags that are left out, such as -1 and 0 where masks jitter.",
+        words="whole numbers, such as -1,0",
+        unit="frames",
+    )
+
+
+class CrossCorrelationParameters(SkipLagsParameters, NullParameters, PrepareParameters):
+    """How series are correlated."""
+
+
+class PeakParameters(Parameters):
+    """Which lag of a correlation is its peak."""
+
+    rule: Rule = parameter(
+        "nearest",
+        '"nearest": the significant peak closest to lag 0. "largest": the peak of largest magnitude.',
+    )

@@ -1,0 +1,48 @@
+"""Parameters of `map_to_disk`."""
+
+from typing import Literal, TypeAlias
+
+from cytodisk.parameters import Parameters, parameter
+
+Method: TypeAlias = Literal["newton", "harmonic", "advection"]
+Align: TypeAlias = Literal["upright"] | tuple[float, float] | float
+
+
+class MethodParameters(Parameters):
+    """How a cell is mapped."""
+
+    method: Method = parameter(
+        "newton",
+        '"newton": windows of equal area, as nearly as the edge allows. "harmonic": the paper\'s map before '
+        'relaxation; it keeps angles and shrinks protrusions. "advection": the paper\'s relaxation, for '
+        "comparison; it can turn triangles over, and the certificate says which.",
+    )
+
+
+class MeshParameters(Parameters):
+    """How a cell is meshed, relaxed and turned, whatever the method."""
+
+    shape_weight: float = parameter(
+        0.005,
+        'For method "newton": how much shape counts against area. Near 0 windows have equal areas; larger '
+        "values keep shapes.",
+        above=0,
+    )
+    edge_length: float = parameter(
+        0.9,
+        'Distance between mesh vertices at the edge of the cell; with method "advection" everywhere.',
+        least=0.25,
+        most=10,
+        unit="px",
+    )
+    align: Align = parameter(
+        "upright",
+        'How the disk is turned. "upright": the disk looks like the cell. A point: the part of the edge '
+        "nearest to it is at angle 0. A number: the upright disk turned by so many degrees from +u towards "
+        "+v.",
+        words="'upright', a point (row, column) or an angle in degrees",
+    )
+
+
+class MappingParameters(MeshParameters, MethodParameters):
+    """How a cell is mapped onto the disk."""

@@ -1,0 +1,86 @@
+"""Parameters of `map_movie` and `edge_changes`."""
+
+from typing import Literal, TypeAlias
+
+from cytodisk.disk.mapping_parameters import MappingParameters, MeshParameters
+from cytodisk.motion.demons_parameters import DemonsParameters
+from cytodisk.parameters import Parameters, parameter
+from cytodisk.scale_parameters import ScaleParameters
+
+Tracker: TypeAlias = Literal["matching", "demons"]
+
+SMOOTHNESS_PX2 = 64.0
+
+
+class TrackingParameters(Parameters):
+    """How the edge of a cell is followed from frame to frame."""
+
+    tracker: Tracker = parameter(
+        "matching",
+        '"matching": elastic matching of the outlines, which keeps the order of points. "demons": the '
+        "paper's tracker.",
+    )
+    tension: float = parameter(
+        0.01,
+        'For tracker "matching": 0 keeps each boundary point on the same piece of membrane, 1 spreads the '
+        "points evenly in each frame.",
+        least=0,
+        most=1,
+    )
+    smoothness_px2: float = parameter(
+        SMOOTHNESS_PX2,
+        'For tracker "matching": how much neighbouring boundary points move alike.',
+        above=0,
+        unit="px²",
+    )
+    registration: bool = parameter(True, "Take out rigid motion of the cell before tracking.")
+    renew_every: int = parameter(
+        5,
+        "Number of frames after which the registration takes a new reference frame.",
+        least=1,
+        unit="frames",
+    )
+
+
+class TrackingSettings(TrackingParameters):
+    """How the edge of a cell is followed, with the paper's tracker in detail."""
+
+    demons: DemonsParameters | None = parameter(
+        None, 'Details of tracker "demons"; without them they are the paper\'s.', words="DemonsParameters"
+    )
+
+
+class FollowingParameters(TrackingParameters, MeshParameters):
+    """How a cell is followed and mapped through time, whatever the method of the map."""
+
+    inertia: float = parameter(
+        1.0,
+        "How much the inside of a frame stays where the frame before had it, against equal areas.",
+        least=0,
+    )
+
+
+class MovieMappingParameters(FollowingParameters, MappingParameters):
+    """How the frames of a movie are mapped."""
+
+
+class MovieSettings(MovieMappingParameters, TrackingSettings):
+    """How the frames of a movie are mapped, with the paper's tracker in detail."""
+
+
+class MovieMapParameters(MovieSettings, ScaleParameters):
+    """What `map_movie` takes."""
+
+
+class JitterParameters(Parameters):
+    """How the error of the edge velocity is estimated."""
+
+    jitter_px: float = parameter(
+        0.5,
+        "Uncertainty of the edge of the masks (standard deviation), for the error of the velocity.",
+        least=0,
+        most=10,
+        unit="px",
+    )
+    repeats: int = parameter(8, "Number of times the edge is shaken for that error.", least=2)
+    seed: int = parameter(0, "Seed of the random numbers.", least=0)

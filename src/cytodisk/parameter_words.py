@@ -1,0 +1,93 @@
+"""What parameters may be, in words: for messages, help texts and docs."""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Collection
+from difflib import get_close_matches
+from functools import cache
+from typing import Any, Literal, Union, get_args, get_origin
+
+from pydantic.fields import FieldInfo
+
+_LONGEST_VALUE = 60  # letters of a refused value that a message repeats
+
+
+def kinds(annotation: Any) -> frozenset[Any]:
+    """The types that an annotation admits; `str` for a `Literal` of texts, `tuple` for any tuple."""
+    found: frozenset[Any] = _kinds(annotation)
+    return found
+
+
+@cache
+def _kinds(annotation: Any) -> frozenset[Any]:
+    if get_origin(annotation) in (Union, types.UnionType):
+        return frozenset().union(*(_kinds(part) for part in get_args(annotation)))
+    if get_origin(annotation) is Literal:
+        return frozenset(type(choice) for choice in get_args(annotation))
+    return frozenset({get_origin(annotation) or annotation})
+
+
+def choices(annotation: Any) -> tuple[str, ...]:
+    """The words that an annotation admits; none if it is no choice."""
+    parts = get_args(annotation) if get_origin(annotation) in (Union, types.UnionType) else (annotation,)
+    return tuple(str(word) for part in parts if get_origin(part) is Literal for word in get_args(part))
+
+
+def unit_of(field: FieldInfo) -> str:
+    """Unit of a parameter; empty if it has none."""
+    return str(_extra(field, "unit"))
+
+
+def range_words(field: FieldInfo) -> str:
+    """What a parameter may be, as "a number above 0"."""
+    if words := _extra(field, "words"):
+        return words
+    wanted = kinds(field.annotation)
+    if words_of_choice := choices(field.annotation):
+        return f"one of {', '.join(words_of_choice)}"
+    if bool in wanted:
+        return "True or False"
+    if str in wanted:
+        return "a text"
+    kind = "a whole number" if int in wanted else "a number"
+    return f"{kind}{limits(field)}"
+
+
+def limits(field: FieldInfo) -> str:
+    """The range of a number, as " above 0" or " from 0 to 1"; empty if there is none."""
+    found = {name: getattr(part, name) for part in field.metadata for name in _LIMITS if hasattr(part, name)}
+    least, above, most = (found.get(name) for name in _LIMITS)
+    if least is not None and most is not None:
+        return f" from {least:g} to {most:g}"
+    if least is not None:
+        return f" of at least {least:g}"
+    words = [f" above {above:g}"] if above is not None else []
+    words += [f" at most {most:g}"] if most is not None else []
+    return " and".join(words)
+
+
+_LIMITS = ("ge", "gt", "le")
+
+
+def value_words(value: Any) -> str:
+    """A value as a user writes it in Python."""
+    return f"{value:g}" if isinstance(value, float) else repr(value)
+
+
+def short_words(value: Any) -> str:
+    """A refused value, as far as a line has room for it."""
+    words = repr(value)
+    return words if len(words) <= _LONGEST_VALUE else f"{words[:_LONGEST_VALUE]}…"
+
+
+def unknown_words(name: str, known: Collection[str]) -> str:
+    """What is wrong with a name that is none."""
+    near = get_close_matches(name, known, 1)
+    hint = f"did you mean {near[0]}? " if near else ""
+    return f"there is no parameter {name!r}: {hint}there are {', '.join(known)}"
+
+
+def _extra(field: FieldInfo, name: str) -> str:
+    extra = field.json_schema_extra
+    return str(extra.get(name, "")) if isinstance(extra, dict) else ""

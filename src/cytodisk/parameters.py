@@ -1,0 +1,167 @@
+"""`Parameters`: what a function or a command can be given, declared once and checked in one place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, Self, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
+from pydantic_core import PydanticCustomError
+
+from cytodisk.errors import CytodiskError, ParameterError
+from cytodisk.parameter_words import kinds, range_words, short_words, unknown_words, value_words
+
+Group = TypeVar("Group", bound="Parameters")
+
+
+def parameter(
+    default: Any,
+    sentence: str,
+    *,
+    above: float | None = None,
+    least: float | None = None,
+    most: float | None = None,
+    unit: str = "",
+    words: str = "",
+) -> Any:
+    """Declare a parameter of a model.
+
+    Parameters
+    ----------
+    default : object
+    sentence : str
+        What it does, for a user; ends with a full stop.
+    above, least, most : float, optional
+        Its range: more than, at least, at most.
+    unit : str
+        Of the number, such as "px".
+    words : str
+        What it may be, as "a point (row, column)", where type and range do not say it.
+    """
+    return Field(
+        default,
+        description=sentence,
+        gt=above,
+        ge=least,
+        le=most,
+        json_schema_extra={"unit": unit, "words": words},
+    )
+
+
+class Parameters(BaseModel):
+    """Parameters of a function or a command, each with its default, range, unit and sentence.
+
+    Numbers of NumPy count as numbers, and 2.0 as 2; True and texts are no numbers.
+
+    Raises
+    ------
+    ParameterError
+        A name is unknown, or a value out of its range.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    fault: ClassVar[type[CytodiskError]] = ParameterError
+    """What a wrong value raises."""
+
+    exclusive: ClassVar[tuple[tuple[str, str], ...]] = ()
+    """Pairs of names of which only one can be given: the other has its default."""
+
+    def __init__(self, **values: Any) -> None:
+        try:
+            super().__init__(**values)
+        except ValidationError as error:
+            raise self.fault(_fault_words(error, type(self), {})) from None
+
+    @classmethod
+    def of(cls, *in_order: Any, **values: Any) -> Self:
+        """Parameters from values; those without a name are in the order of the fields.
+
+        Raises
+        ------
+        ParameterError
+            A name is unknown or given twice, a value is out of its range, or two exclude each other.
+        """
+        names = list(cls.model_fields)
+        if len(in_order) > len(names):
+            raise cls.fault(f"got {len(in_order)} values without names, there are {', '.join(names)}")
+        by_order = dict(zip(names, in_order, strict=False))
+        if twice := sorted(by_order.keys() & values.keys()):
+            raise cls.fault(f"{twice[0]} is given twice, by its position and by its name")
+        return cls.called(by_order | values, {})
+
+    @classmethod
+    def called(cls, values: Mapping[str, Any], names: Mapping[str, str]) -> Self:
+        """Parameters from values, which messages call by other names, such as flags.
+
+        Parameters
+        ----------
+        values : mapping
+        names : mapping of str to str
+            What the user knows a parameter by, where that is not its name.
+
+        Raises
+        ------
+        ParameterError
+            As for `of`.
+        """
+        for pair in cls.exclusive:
+            if all(values.get(name) is not None for name in pair):
+                shown = [names.get(name, name) for name in pair]
+                raise cls.fault(f"{shown[0]} and {shown[1]} exclude each other: pass one of them")
+        if not names:
+            return cls(**values)
+        try:
+            cls.__pydantic_validator__.validate_python(dict(values), self_instance=cls.__new__(cls))
+        except ValidationError as error:
+            raise cls.fault(_fault_words(error, cls, names)) from None
+        return cls(**values)
+
+    @classmethod
+    def chosen(cls, parameters: Self | None, values: Mapping[str, Any]) -> Self:
+        """Given parameters, or the defaults, some of them with other values."""
+        if parameters is None:
+            return cls.of(**values)
+        if not isinstance(parameters, cls):
+            raise cls.fault(f"parameters must be {cls.__name__}, got {type(parameters).__name__}")
+        return parameters.changed(**values)
+
+    def changed(self, **values: Any) -> Self:
+        """These parameters, some of them with other values."""
+        return type(self)(**(dict(self) | values)) if values else self
+
+    def part(self, group: type[Group]) -> Group:
+        """What a group of parameters shares with these."""
+        own = dict(self)
+        return group(**{name: own[name] for name in group.model_fields if name in own})
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _plain(cls, value: Any, info: ValidationInfo) -> Any:
+        """A value as Python's own types; True and "1" are not taken for numbers."""
+        plain = value.tolist() if hasattr(value, "tolist") else value
+        wanted = kinds(cls.model_fields[str(info.field_name)].annotation)
+        if wanted & {int, float, bool} and isinstance(plain, bool | str) and type(plain) not in wanted:
+            raise PydanticCustomError("no_number", "this is no number")
+        return plain
+
+
+def _fault_words(error: ValidationError, model: type[Parameters], names: Mapping[str, str]) -> str:
+    """All faults in one line, each parameter by its name in `names`, if it has one there."""
+    words = []
+    for fault in error.errors(include_url=False):
+        message = str(fault["msg"]).removeprefix("Value error, ")
+        name = str(fault["loc"][0]) if fault["loc"] else ""
+        field = model.model_fields.get(name)
+        if not name:
+            words.append(message)
+        elif field is None:
+            words.append(unknown_words(name, model.model_fields))
+        elif fault["type"] == "value_error":
+            colon = "" if message.startswith("must") else ":"
+            words.append(f"{names.get(name, name)}{colon} {message}, got {short_words(fault['input'])}")
+        else:
+            default = "" if field.default is None else f": {value_words(field.default)} is the default"
+            must = f"must be {range_words(field)}, got {short_words(fault['input'])}{default}"
+            words.append(f"{names.get(name, name)} {must}")
+    return "; ".join(dict.fromkeys(words))

@@ -1,0 +1,28 @@
+"""Parameters of `cytodisk movie`."""
+
+from typing import ClassVar
+
+from cytodisk.images.file_parameters import MovieKindParameters
+from cytodisk.motion.tracking_parameters import FollowingParameters, JitterParameters
+from cytodisk.parameters import parameter
+from cytodisk.runs.map.map_parameters import CellParameters, MapParameters
+from cytodisk.scale_parameters import ScaleParameters
+
+
+class FollowedCellParameters(
+    MovieKindParameters, JitterParameters, FollowingParameters, ScaleParameters, CellParameters
+):
+    """What all runs over movies have, whatever the method of the map."""
+
+
+class MovieParameters(FollowedCellParameters, MapParameters):
+    """What decides the result of `cytodisk movie`, beside the input files."""
+
+    exclusive: ClassVar[tuple[tuple[str, str], ...]] = (("layers", "depth_um"),)
+
+    depth_um: float | None = parameter(
+        None,
+        "Thickness of the first layer in the first frame, in place of a number of layers.",
+        above=0,
+        unit="µm",
+    )

@@ -1,0 +1,9 @@
+"""Parameters of `cytodisk shapes`."""
+
+from cytodisk.analysis.shape.score_parameters import ScoreParameters
+from cytodisk.images.file_parameters import KindParameters
+from cytodisk.scale_parameters import PixelSizeParameters
+
+
+class ShapeParameters(ScoreParameters, PixelSizeParameters, KindParameters):
+    """What decides the result of `cytodisk shapes`, beside the input files."""

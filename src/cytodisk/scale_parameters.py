@@ -1,0 +1,19 @@
+"""Parameters that say how large a pixel is, and how long a frame."""
+
+from cytodisk.parameters import Parameters, parameter
+
+
+class PixelSizeParameters(Parameters):
+    """How large a pixel is."""
+
+    pixel_size_um: float | None = parameter(
+        None, "Side of a pixel; without it that of the file or array counts.", above=0, unit="µm"
+    )
+
+
+class ScaleParameters(PixelSizeParameters):
+    """How large a pixel is, and how long a frame."""
+
+    frame_interval_s: float | None = parameter(
+        None, "Time between frames; without it that of the file or array counts.", above=0, unit="s"
+    )
