@@ -13,7 +13,7 @@ import xarray as xr
 from cytodisk.analysis.activity import STATISTICS
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_to_disk
-from cytodisk.disk.mapping_parameters import Align
+from cytodisk.disk.mapping_parameters import Align, MappingParameters
 from cytodisk.errors import CytodiskError, EmptyMaskError, ReadError, SignalError
 from cytodisk.files import replacing
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
@@ -112,13 +112,9 @@ def _measure_cell(task: CellTask, settings: CellSettings) -> Rows:
     fault = found.fault or task.fault
     if fault is None:
         try:
-            disk = map_to_disk(
-                found.mask,
-                method=parameters.method,
-                shape_weight=parameters.shape_weight,
-                edge_length=parameters.edge_length,
-                align=_in_crop(parameters.align, found.corner),
-            )
+            mapping = dict(parameters.part(MappingParameters))
+            mapping["align"] = _in_crop(parameters.align, found.corner)
+            disk = map_to_disk(found.mask, **mapping)
         except CytodiskError as error:
             fault = error
     if fault is not None:

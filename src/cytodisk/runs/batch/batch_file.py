@@ -25,6 +25,7 @@ from cytodisk.store.tables import (
     WINDOW_COLUMNS,
 )
 
+_SIZES = ("pixel_size_um", "frame_interval_s")
 _TABLES = (SOURCE_COLUMNS, TRACK_COLUMNS, WINDOW_COLUMNS, EDGE_COLUMNS, CONSISTENCY_COLUMNS)
 _WHOLE = r"[+-]?(0|[1-9][0-9]*)"
 _NUMBER = _WHOLE + r"(\.[0-9]*)?([eE][+-]?[0-9]+)?"
@@ -156,6 +157,8 @@ def _rows_of_table(table: Path, columns: tuple[str, ...], faults: Faults) -> lis
                 faults.add(place, f"{given.pop('')!r} stands in a column without a name: name or remove it")
             if "channels" in given:
                 given |= {"channels": [part.strip() for part in re.split("[,;|]", given["channels"])]}
+            for name in (name for name in _SIZES if re.fullmatch(_NUMBER, str(given.get(name)))):
+                given[name] = float(given[name])
             rows.append(FileRow(place, given))
     except csv.Error as error:
         faults.add(f"{table.name} line {reader.line_num}", f"is no CSV: {error}")

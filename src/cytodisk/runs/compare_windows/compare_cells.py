@@ -13,6 +13,7 @@ import numpy as np
 from cytodisk.analysis.window_measures import measures_by_layer
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_to_disk
+from cytodisk.disk.mapping_parameters import MeshParameters
 from cytodisk.errors import CytodiskError
 from cytodisk.files import replacing
 from cytodisk.geometry.mask import clean_mask
@@ -207,13 +208,7 @@ def _lay(method: str, task: CompareTask) -> tuple[WindowsOnCell, DiskMap | None]
     elif method == "rings":
         windows = ring_windows(mask, parameters.layers, parameters.sectors)
     else:
-        disk = map_to_disk(
-            mask,
-            method=method,
-            shape_weight=parameters.shape_weight,
-            edge_length=parameters.edge_length,
-            align=parameters.align,
-        )
+        disk = map_to_disk(mask, method=method, **dict(parameters.part(MeshParameters)))
         windows = polar_windows(parameters.layers, parameters.sectors, parameters.spacing).on(disk)
     _ = windows.weights  # belongs to the time it takes
     return windows, disk

@@ -18,6 +18,7 @@ from cytodisk.files import replacing
 from cytodisk.images.tracks import CellTrack, read_frame
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.map_movie import map_movie
+from cytodisk.motion.tracking_parameters import FollowingParameters
 from cytodisk.runs.compare_windows.compare_frames import FollowedCell, measure_frames, usable
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, CompareMovieParameters
 from cytodisk.runs.compare_windows.compare_tables import COMPARED_MOVIE
@@ -207,18 +208,11 @@ def _map(
 ) -> DiskMovie:
     return map_movie(
         masks,
-        tracker=parameters.tracker,
-        register=parameters.registration,
-        tension=parameters.tension,
-        renew_every=parameters.renew_every,
         # Windows that are not on a map need its edge alone, which is the same for all methods.
         method=method if method in ON_A_MAP else "harmonic",
-        shape_weight=parameters.shape_weight,
-        edge_length=parameters.edge_length,
-        align=parameters.align,
-        inertia=parameters.inertia,
         pixel_size_um=inputs.scale.pixel_size_um,
         frame_interval_s=inputs.scale.frame_interval_s,
         folder=folder,
         progress=report,
+        **dict(parameters.part(FollowingParameters)),
     )
