@@ -19,9 +19,9 @@ import tifffile
 
 import cytodisk as cd
 from cytodisk.runs.batch.batch_file import read_batch
-from cytodisk.runs.batch.grouping import expected_seconds
-from cytodisk.runs.batch.merged import merge_batch
-from cytodisk.runs.batch.task import open_store
+from cytodisk.runs.batch.batch_target import open_store
+from cytodisk.runs.batch.batch_task import expected_seconds
+from cytodisk.runs.batch.merged_tables import merge_batch
 from pages import PAGES, machine_words, write_words
 
 if TYPE_CHECKING:

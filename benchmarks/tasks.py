@@ -17,12 +17,12 @@ from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
 
+from cytodisk.runs.batch.batch_input import BatchInput
+from cytodisk.runs.batch.batch_target import begin_run, open_store
+from cytodisk.runs.batch.batch_task import BatchTask, TaskResult
 from cytodisk.runs.batch.cluster import Flight, connected
 from cytodisk.runs.batch.cluster_workers import Workers
-from cytodisk.runs.batch.inputs import BatchInput
-from cytodisk.runs.batch.on_worker import begin_run
-from cytodisk.runs.batch.rows import ROWS, InputRow, read_row, write_row
-from cytodisk.runs.batch.task import BatchTask, TaskResult, open_store
+from cytodisk.runs.batch.input_row import ROWS, InputRow, read_row, write_row
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from dask_processes import DaskProcesses
 from million import Costs, measure_costs, predictions, write_page

@@ -11,7 +11,7 @@ from command_line import Run, assert_refused
 
 from cytodisk.runs.batch import batch_run
 from cytodisk.runs.batch.batch_run import BatchSummary
-from cytodisk.runs.batch.rows import InputRow
+from cytodisk.runs.batch.input_row import InputRow
 
 
 @pytest.fixture

@@ -16,18 +16,13 @@ from distributed import KilledWorker
 
 from cytodisk.errors import ParameterError, StudyError
 from cytodisk.runs.batch import cluster, cluster_workers
+from cytodisk.runs.batch.batch_input import BatchInput
+from cytodisk.runs.batch.batch_target import begin_run, open_store, what_is_hidden
+from cytodisk.runs.batch.batch_task import BatchTask
 from cytodisk.runs.batch.cluster import PER_THREAD, Flight
+from cytodisk.runs.batch.cluster_tasks import as_seen_by_all, give_up, single_inputs
 from cytodisk.runs.batch.cluster_workers import Workers
-from cytodisk.runs.batch.inputs import BatchInput
-from cytodisk.runs.batch.on_worker import (
-    as_seen_by_all,
-    begin_run,
-    give_up,
-    single_inputs,
-    what_is_hidden,
-)
-from cytodisk.runs.batch.rows import read_row
-from cytodisk.runs.batch.task import BatchTask, open_store
+from cytodisk.runs.batch.input_row import read_row
 from cytodisk.runs.map.map_parameters import MapParameters
 
 THREADS = 2

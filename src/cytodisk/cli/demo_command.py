@@ -16,7 +16,6 @@ from cytodisk.errors import MissingPartError
 from cytodisk.runs.versions import NOT_INSTALLED, PACKAGES, PARTS, installed
 
 _AGAIN = "run the same command again"
-_AND_ONE_THAT_DRAWS = 2  # processes, of which this is one
 
 
 def info_command() -> None:
@@ -52,13 +51,13 @@ def demo_command(
     """
     from cytodisk.runs.correlate.correlate_run import correlate_study
     from cytodisk.runs.demo_input import compare_with_truth, write_demo_input
+    from cytodisk.runs.executor import Executor
     from cytodisk.runs.movie.movie_inputs import open_movie
     from cytodisk.runs.movie.movie_parameters import MovieParameters
     from cytodisk.runs.movie.movie_run import run_movie
-    from cytodisk.runs.workers import worker_pool
 
     console = console_for(quiet)
-    with worker_pool(_AND_ONE_THAT_DRAWS) as beside:
+    with Executor(1, apart=True) as beside:
         beside.submit(_load_drawing)
         truth, masks, signal = write_demo_input(out / "input", seed, overwrite=overwrite)
         console.print(

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from cytodisk.errors import ParameterError
-from cytodisk.runs.batch.faults import Faults
-from cytodisk.runs.batch.input_rows import COLUMNS, KEYS, PARAMETERS_OF, FileRow, RowReader
-from cytodisk.runs.batch.inputs import BatchInput
-from cytodisk.runs.batch.inputs_table import OWN_COLUMNS
+from cytodisk.runs.batch.batch_faults import Faults
+from cytodisk.runs.batch.batch_file_rows import COLUMNS, KEYS, PARAMETERS_OF, FileRow, RowReader
+from cytodisk.runs.batch.batch_input import BatchInput
+from cytodisk.runs.batch.input_columns import OWN_COLUMNS
 from cytodisk.store.tables import (
     CONSISTENCY_COLUMNS,
     EDGE_COLUMNS,

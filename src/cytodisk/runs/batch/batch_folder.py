@@ -11,7 +11,7 @@ from typing import Any
 
 from cytodisk.errors import OtherRunError, StudyError
 from cytodisk.runs.batch.batch_file import Batch
-from cytodisk.runs.batch.rows import ROWS, STUDIES
+from cytodisk.runs.batch.input_row import ROWS, STUDIES
 from cytodisk.runs.versions import NUMERIC, installed
 from cytodisk.store.provenance_file import PROVENANCE, command_of, differences
 from cytodisk.store.targets import Store

@@ -13,13 +13,12 @@ from typing import TypeAlias
 from cytodisk.errors import OtherRunError, ParameterError, WriteError
 from cytodisk.runs.batch.batch_file import Batch
 from cytodisk.runs.batch.batch_folder import describe_batch, make_room, note, now, remove_left_overs
-from cytodisk.runs.batch.grouping import make_tasks
-from cytodisk.runs.batch.inputs import BatchInput
-from cytodisk.runs.batch.local import run_here
-from cytodisk.runs.batch.merged import merge_batch
-from cytodisk.runs.batch.on_worker import begin_run
-from cytodisk.runs.batch.rows import ROWS, InputRow, files_mark, read_row, row_key
-from cytodisk.runs.batch.task import BatchTask, TaskResult, open_store
+from cytodisk.runs.batch.batch_input import BatchInput
+from cytodisk.runs.batch.batch_target import begin_run, open_store
+from cytodisk.runs.batch.batch_task import LARGE_MB, BatchTask, TaskResult, make_tasks, run_task
+from cytodisk.runs.batch.input_row import ROWS, InputRow, files_mark, read_row, row_key
+from cytodisk.runs.batch.merged_tables import merge_batch
+from cytodisk.runs.executor import Executor
 from cytodisk.runs.steps import Progress, check_options, silent
 from cytodisk.store.targets import Store
 from cytodisk.store.url_store import is_url
@@ -129,7 +128,7 @@ def run_batch(
         note(store, provenance)
         if scheduler is None:
             tasks = make_tasks(pending, target, seconds=0, time_limit=time_limit)
-            results = run_here(_started(tasks, target), min(workers, max(1, len(pending))))
+            results = _run_here(_started(tasks, target), min(workers, max(1, len(pending))))
         else:
             tasks = make_tasks(pending, target, seconds=_CLUSTER_TASK_S, time_limit=time_limit)
             results = _on_cluster(tasks, scheduler, target, tell)
@@ -153,6 +152,13 @@ def _take(results: Results, pending: int, total: int, report: Progress) -> None:
         for result in results:
             done += len(result.rows)
             report(done, total)
+
+
+def _run_here(tasks: Iterator[BatchTask], workers: int) -> Results:
+    """Do tasks on this machine, as they come, each input in a process of its own."""
+    with Executor(workers, apart=True, largest_mb=LARGE_MB) as executor:
+        submitted = (executor.submit_thread(run_task, task, executor.processes) for task in tasks)
+        yield from executor.results(submitted, in_order=False)
 
 
 def _started(tasks: Iterator[BatchTask], target: str) -> Iterator[BatchTask]:

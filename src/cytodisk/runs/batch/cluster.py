@@ -17,9 +17,10 @@ from typing import Any, Generic, TypeVar
 from uuid import uuid4
 
 from cytodisk.errors import CytodiskError, MissingPartError, ParameterError, StudyError
+from cytodisk.runs.batch.batch_target import begin_run
+from cytodisk.runs.batch.batch_task import BatchTask, TaskResult, run_task
+from cytodisk.runs.batch.cluster_tasks import as_seen_by_all, give_up, single_inputs
 from cytodisk.runs.batch.cluster_workers import Tell, Workers
-from cytodisk.runs.batch.on_worker import as_seen_by_all, begin_run, give_up, single_inputs
-from cytodisk.runs.batch.task import BatchTask, TaskResult, run_task
 from cytodisk.store.url_store import is_url
 
 Task = TypeVar("Task")

@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any, TypeAlias
 
 from cytodisk.errors import StudyError
-from cytodisk.runs.batch.on_worker import what_is_hidden
+from cytodisk.runs.batch.batch_target import what_is_hidden
 
 Tell: TypeAlias = Callable[[str], None]
 """Called with a message for the user."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cytodisk.errors import CytodiskError
-from cytodisk.runs.batch.input_rows import SCALE
-from cytodisk.runs.batch.inputs import BatchInput
+from cytodisk.runs.batch.batch_file_rows import SCALE
+from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.map.map_inputs import open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_inputs import open_movie_files

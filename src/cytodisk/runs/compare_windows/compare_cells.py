@@ -21,11 +21,11 @@ from cytodisk.images.mask_files import SourceCell, read_source_cells
 from cytodisk.runs.compare_windows.compare_parameters import CompareWindowsParameters
 from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS, layer_columns, status_of, windows_row
 from cytodisk.runs.compare_windows.comparison import Comparison, open_comparison, write_summaries
+from cytodisk.runs.executor import Executor
 from cytodisk.runs.map.map_inputs import MapInputs, open_inputs
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.steps import Progress, check_options, finish_run, silent
-from cytodisk.runs.workers import in_order
 from cytodisk.store.study_folder import PARAMETERS, StudyFolder, alone_in, part_key
 from cytodisk.windows.edge_windows import edge_windows
 from cytodisk.windows.grid import polar_windows
@@ -135,10 +135,11 @@ def compare_opened_cells(
             for found in read_source_cells(inputs.sources)
             if found.cell in pending
         )
-        for rows in in_order(compare_cell, tasks, min(workers, max(1, len(pending)))):
-            folder.add_cells(part_key(rows[0][0]["cell"]), rows)
-            done += 1
-            report(done, len(cells))
+        with Executor(min(workers, max(1, len(pending)))) as executor:
+            for rows in executor.each(compare_cell, tasks):
+                folder.add_cells(part_key(rows[0][0]["cell"]), rows)
+                done += 1
+                report(done, len(cells))
         keys = [part_key(cell) for cell in cells]
         warnings = [
             f"cell {row['cell']}, {row['method']}: {words}"

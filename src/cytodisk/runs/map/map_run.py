@@ -15,12 +15,12 @@ from cytodisk.geometry.mask import MaskReport, clean_mask
 from cytodisk.images.mask_files import SourceCell, read_source_cells
 from cytodisk.images.mask_names import without_name
 from cytodisk.runs.cell_rows import CellSettings, CellTask, DrawCell, measure_part, status_of
+from cytodisk.runs.executor import Executor
 from cytodisk.runs.map.map_inputs import MapInputs
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.steps import Progress, check_options, finish_run, silent
-from cytodisk.runs.workers import in_order
 from cytodisk.store.study import Study, open_study
 from cytodisk.store.study_folder import MAP_TABLES, PARAMETERS, StudyFolder, alone_in, part_key
 
@@ -98,9 +98,10 @@ def run_map(
         report(done, sum(parts.values()))
         tasks = _tasks(inputs, pending, at_most)
         measure = partial(measure_part, settings=settings)
-        for size in in_order(measure, tasks, min(workers, max(1, len(pending)))):
-            done += size
-            report(done, sum(parts.values()))
+        with Executor(min(workers, max(1, len(pending)))) as executor:
+            for size in executor.each(measure, tasks):
+                done += size
+                report(done, sum(parts.values()))
         warnings = [*inputs.remarks]
         warnings += [words for row in folder.read_rows(parts) if (words := _warning(row, inputs.is_folder))]
         finish_run(folder, list(parts), warnings)

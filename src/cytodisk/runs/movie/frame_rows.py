@@ -62,6 +62,16 @@ class FrameRows:
     tables: dict[str, dict[str, Any]]
     edge_before: dict[str, Any] | None
 
+    @property
+    def cell(self) -> int:
+        """Number of the cell."""
+        return int(self.row["cell"])
+
+    @property
+    def frame(self) -> int:
+        """Number of the frame."""
+        return int(self.row["frame"])
+
 
 def measure_frame(task: FrameTask) -> FrameRows:
     """Sample a mapped frame, measure how the edge moved since the one before, and save the map.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import time as clock
-from collections import deque
-from concurrent.futures import Executor, Future
+from collections.abc import Iterator
+from concurrent.futures import Future
 from typing import Any
 
 import numpy as np
@@ -18,13 +18,13 @@ from cytodisk.motion.frame_file import load_frame
 from cytodisk.motion.map_movie import FrameResult, map_one
 from cytodisk.motion.mapped_frame import MappedFrame
 from cytodisk.motion.tracking_parameters import MovieSettings
+from cytodisk.runs.executor import Executor, finished
 from cytodisk.runs.movie.frame_rows import FrameRows, FrameTask, measure_frame, unmapped_row
 from cytodisk.runs.movie.movie_inputs import MovieInputs
 from cytodisk.runs.movie.movie_tables import finish_tables
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
-from cytodisk.runs.steps import Progress, check_options, finish_run
-from cytodisk.runs.workers import worker_pool
+from cytodisk.runs.steps import Progress, check_options, finish_run, silent
 from cytodisk.store.study import Study, open_study
 from cytodisk.store.study_folder import MOVIE_TABLES, PARAMETERS, StudyFolder, alone_in, part_key
 
@@ -80,8 +80,8 @@ def run_movie(
             return open_study(out)
         folder = StudyFolder.start(out, provenance, MOVIE_TABLES, resume=resume, overwrite=overwrite)
         write_parameters(inputs.parameters, folder.path / PARAMETERS)
-        with worker_pool(workers) as pool:
-            _Run(inputs, folder, pool, 2 * workers, progress).all_frames()
+        with Executor(workers) as executor:
+            _Run(inputs, folder, executor, progress).all_frames()
         channels = inputs.signal.channels if inputs.signal else ()
         finish_tables(folder, inputs.tracks, inputs.grid, inputs.scale, channels)
         rows = folder.rows()
@@ -92,38 +92,42 @@ def run_movie(
 class _Run:
     """Frame after frame, all cells of a frame side by side.
 
-    A frame is mapped when the one before is; measuring it runs beside the mapping of the next one. At most
-    `queue` measured frames wait to be written, so memory does not grow with the movie.
+    A frame is mapped when the one before is; measuring it runs beside the mapping of the next one.
     """
 
     def __init__(
-        self, inputs: MovieInputs, folder: StudyFolder, pool: Executor, queue: int, progress: Progress | None
+        self, inputs: MovieInputs, folder: StudyFolder, executor: Executor, progress: Progress | None
     ):
         self._inputs = inputs
         self._folder = folder
-        self._pool = pool
-        self._queue = queue
-        self._progress = progress
+        self._executor = executor
         self._settings = inputs.parameters.part(MovieSettings)
         self._last: dict[int, MappedFrame] = {}
-        self._waiting: deque[tuple[str, str, Future[FrameRows]]] = deque()
-        self._done = sum(folder.has(key) for key in inputs.keys)
+        self._report = progress or silent
 
     def all_frames(self) -> None:
         """Do what is not done yet."""
-        self._report()
+        done, total = sum(self._folder.has(key) for key in self._inputs.keys), self._inputs.n_frames
+        self._report(done, total)
+        for rows in self._executor.results(self._frames()):
+            if rows.edge_before is not None:
+                self._folder.add_table(part_key(rows.cell, rows.frame - 1), "edge", rows.edge_before)
+            self._folder.add(part_key(rows.cell, rows.frame), rows.row, rows.tables)
+            done += 1
+            self._report(done, total)
+
+    def _frames(self) -> Iterator[Future[FrameRows]]:
+        """Frames on their way to be measured."""
         for time in range(self._inputs.masks.n_frames):
             present = [track for track in self._inputs.tracks if time in track.times]
             pending = [track for track in present if not self._folder.has(part_key(track.cell, time))]
             if pending:
-                self._one_time(time, pending)
+                yield from self._one_time(time, pending)
             for track in present:
                 if time == track.last:
                     self._last.pop(track.cell, None)
-        while self._waiting:
-            self._write_next()
 
-    def _one_time(self, time: int, tracks: list[CellTrack]) -> None:
+    def _one_time(self, time: int, tracks: list[CellTrack]) -> Iterator[Future[FrameRows]]:
         frame = read_frame(self._inputs.masks, time)
         signal = _signal_at(self._inputs.signal, time)
         mapping = []
@@ -132,48 +136,32 @@ class _Run:
                 self._resume_from(track, time)
             mask = signal if isinstance(signal, ReadError) else track.mask_in(frame, time)
             last = self._last.get(track.cell)
-            mapping.append((track, self._pool.submit(_map_timed, time, mask, last, self._settings)))
+            mapping.append((track, self._executor.submit(_map_timed, time, mask, last, self._settings)))
         for track, future in mapping:
-            self._take(track, time, *future.result(), signal)
+            yield self._measured(track, time, *future.result(), signal)
 
-    def _take(
+    def _measured(
         self, track: CellTrack, time: int, result: FrameResult, seconds: float, signal: xr.DataArray | None
-    ) -> None:
-        key = part_key(track.cell, time)
+    ) -> Future[FrameRows]:
         if result.mapped is None:
             fault = result.fault or MaskError("no map")
             place = track.cell, time, self._inputs.scale.seconds(time)
-            rows = FrameRows(unmapped_row(place, track.label, fault, seconds), {}, None)
-            future: Future[FrameRows] = Future()
-            future.set_result(rows)
-        else:
-            last = self._last.get(track.cell)
-            task = FrameTask(
-                track.cell,
-                track.label,
-                result.mapped,
-                last if last is not None and last.time == time - 1 else None,
-                signal,
-                self._inputs.grid,
-                self._inputs.parameters,
-                self._inputs.scale,
-                self._folder.map_path(key),
-                seconds,
-            )
-            self._last[track.cell] = result.mapped
-            future = self._pool.submit(measure_frame, task)
-        self._waiting.append((key, part_key(track.cell, time - 1) if time else key, future))
-        while len(self._waiting) > self._queue:
-            self._write_next()
-
-    def _write_next(self) -> None:
-        key, before, future = self._waiting.popleft()
-        rows = future.result()
-        if rows.edge_before is not None:
-            self._folder.add_table(before, "edge", rows.edge_before)
-        self._folder.add(key, rows.row, rows.tables)
-        self._done += 1
-        self._report()
+            return finished(FrameRows(unmapped_row(place, track.label, fault, seconds), {}, None))
+        last = self._last.get(track.cell)
+        task = FrameTask(
+            track.cell,
+            track.label,
+            result.mapped,
+            last if last is not None and last.time == time - 1 else None,
+            signal,
+            self._inputs.grid,
+            self._inputs.parameters,
+            self._inputs.scale,
+            self._folder.map_path(part_key(track.cell, time)),
+            seconds,
+        )
+        self._last[track.cell] = result.mapped
+        return self._executor.submit(measure_frame, task)
 
     def _resume_from(self, track: CellTrack, time: int) -> None:
         """Read the last frame that has a map back, if an earlier run left any."""
@@ -182,10 +170,6 @@ class _Run:
         mapped = {t: path for t, path in paths.items() if path.exists()}
         if mapped:
             self._last[track.cell] = load_frame(mapped[max(mapped)], mapped)
-
-    def _report(self) -> None:
-        if self._progress is not None:
-            self._progress(self._done, self._inputs.n_frames)
 
 
 def _map_timed(

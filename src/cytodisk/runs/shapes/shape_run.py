@@ -17,6 +17,7 @@ from cytodisk.arrays import BoolArray
 from cytodisk.errors import ReadError
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.images.mask_files import SourceCell, read_source_cells
+from cytodisk.runs.executor import Executor
 from cytodisk.runs.map.map_inputs import MapInputs, open_inputs
 from cytodisk.runs.map.map_parameters import FileParameters
 from cytodisk.runs.parameters_file import write_parameters
@@ -25,7 +26,6 @@ from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 from cytodisk.runs.shapes.shape_tables import SHAPE_TABLES, open_shapes, shape_table, write_shapes
 from cytodisk.runs.steps import Progress, check_options, finish_run, silent
 from cytodisk.runs.versions import installed
-from cytodisk.runs.workers import in_order
 from cytodisk.store.study_folder import MAPS, PARAMETERS, StudyFolder, alone_in, part_key
 
 _CELLS_PER_PART = 32  # which go to a worker and into a file together: about a second's work
@@ -138,10 +138,11 @@ def _measure_all(
     report(done, total)
     parts = (part for part in _parts(read_source_cells(inputs.sources)) if _key(part) in pending)
     measure = partial(measure_shapes, pixel_size_um=inputs.pixel_size_um)
-    for rows in in_order(measure, parts, min(workers, max(1, len(pending)))):
-        folder.add_cells(part_key(rows[0]["cell"]), [(row, {}) for row in rows])
-        done += len(rows)
-        report(done, total)
+    with Executor(min(workers, max(1, len(pending)))) as executor:
+        for rows in executor.each(measure, parts):
+            folder.add_cells(part_key(rows[0]["cell"]), [(row, {}) for row in rows])
+            done += len(rows)
+            report(done, total)
     return list(sizes)
 
 

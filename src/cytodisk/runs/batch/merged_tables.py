@@ -13,9 +13,9 @@ import pyarrow.parquet as pq
 
 from cytodisk.errors import StudyError
 from cytodisk.runs.batch.batch_file import Batch
-from cytodisk.runs.batch.inputs import BatchInput, Value
-from cytodisk.runs.batch.inputs_table import INPUT, INPUT_COLUMNS, UNITS
-from cytodisk.runs.batch.rows import InputRow, read_row, row_key, study_key
+from cytodisk.runs.batch.batch_input import BatchInput, Value
+from cytodisk.runs.batch.input_columns import INPUT, INPUT_COLUMNS, UNITS
+from cytodisk.runs.batch.input_row import InputRow, read_row, row_key, study_key
 from cytodisk.store.merging import merge_tables, write_rows
 from cytodisk.store.study_folder import MAP_TABLES, MOVIE_TABLES
 from cytodisk.store.tables import Column, Columns, schema

@@ -1,21 +1,26 @@
-"""One input → its study, and what a row says of it."""
+"""One input → its study, and what a row says of it; this runs in a process of its own."""
 
 from __future__ import annotations
 
+import errno
 import platform
+import traceback
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from cytodisk.errors import OtherRunError
-from cytodisk.runs.batch.inputs import BatchInput
+from cytodisk.errors import CytodiskError, OtherRunError, WriteError
+from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.map.map_inputs import open_inputs
 from cytodisk.runs.map.map_run import run_map
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import run_movie
 from cytodisk.store.study import Study
+
+CANNOT_WRITE = "cannot write"
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def compute_input(item: BatchInput, folder: Path) -> dict[str, Any]:
@@ -30,13 +35,36 @@ def compute_input(item: BatchInput, folder: Path) -> dict[str, Any]:
     Returns
     -------
     dict
-        Fields of `InputRow`.
+        Fields of `InputRow`; with the status "cannot write" the run must stop.
 
     Raises
     ------
-    CytodiskError
-        The input cannot be used, or results cannot be written.
+    MemoryError
+        Memory ran out. Any other fault is told by the fields.
     """
+    try:
+        return {"status": "ok", "reason": "", **_compute(item, folder)}
+    except MemoryError:
+        raise
+    except Exception as error:  # noqa: BLE001  whatever it is costs this input a row, not the run
+        if _cannot_write(error):
+            return {"status": CANNOT_WRITE, "reason": str(error)}
+        if isinstance(error, CytodiskError):
+            return {"status": "refused", "reason": str(error)}
+        reason = f"{type(error).__name__}: {error}".splitlines()[0]
+        return {"status": "failed", "reason": reason, "log": traceback.format_exc()}
+
+
+def _cannot_write(error: BaseException | None) -> bool:
+    """Whether an error comes from a disk that is full, or from results that cannot be written at all."""
+    while error is not None:
+        if isinstance(error, WriteError) or (isinstance(error, OSError) and error.errno in _NO_ROOM):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
+def _compute(item: BatchInput, folder: Path) -> dict[str, Any]:
     run = _run_of(item, folder)
     try:
         return _facts(run(resume=True))

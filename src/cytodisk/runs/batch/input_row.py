@@ -10,7 +10,7 @@ from typing import Any
 
 from cytodisk.errors import StudyError
 from cytodisk.images.mask_names import visible_files
-from cytodisk.runs.batch.inputs import BatchInput
+from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.store.targets import Store
 
 ROWS, STUDIES = "rows", "inputs"

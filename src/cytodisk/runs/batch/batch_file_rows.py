@@ -13,8 +13,8 @@ from typing import Any
 
 from cytodisk.errors import ParameterError
 from cytodisk.images.mask_names import base_name, image_stem, natural_order
-from cytodisk.runs.batch.faults import Faults
-from cytodisk.runs.batch.inputs import BatchInput, InputKind, Value
+from cytodisk.runs.batch.batch_faults import Faults
+from cytodisk.runs.batch.batch_input import BatchInput, InputKind, Value
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.parameters_file import parameters_from

@@ -1,0 +1,67 @@
+"""Tasks of a batch as a cluster does them, and what stands in for one that its workers died of."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from cytodisk.runs.batch.batch_input import BatchInput
+from cytodisk.runs.batch.batch_target import open_store
+from cytodisk.runs.batch.batch_task import BatchTask, TaskResult
+from cytodisk.runs.batch.input_row import InputRow, files_mark, write_row
+
+
+def as_seen_by_all(task: BatchTask, target: str, run: str) -> BatchTask:
+    """A task of a run with full paths, since workers are in other folders.
+
+    Parameters
+    ----------
+    task : BatchTask
+    target : str
+    run : str
+        As `begin_run` returns it.
+
+    Returns
+    -------
+    BatchTask
+    """
+    inputs = (replace(item, masks=item.masks.absolute(), signal=_signal(item)) for item in task.inputs)
+    return replace(task, inputs=tuple(inputs), target=target, run=run)
+
+
+def _signal(item: BatchInput) -> Path | None:
+    """The signal's full path; how names of images go on beside a folder's masks, as "_img", is no path."""
+    if item.signal is None or (item.masks.is_dir() and not item.signal.exists()):
+        return item.signal
+    return item.signal.absolute()
+
+
+def single_inputs(task: BatchTask) -> list[BatchTask]:
+    """Tasks of one input each; none if it has no more than one."""
+    return [replace(task, inputs=(item,)) for item in task.inputs] if len(task.inputs) > 1 else []
+
+
+def give_up(task: BatchTask, reason: str) -> TaskResult:
+    """Write rows for inputs that workers died of.
+
+    Parameters
+    ----------
+    task : BatchTask
+    reason : str
+
+    Returns
+    -------
+    TaskResult
+
+    Raises
+    ------
+    StudyError
+        They cannot be written.
+    """
+    rows = [
+        InputRow(item.name, item.kind, "killed", reason, item.settings, files_mark(item))
+        for item in task.inputs
+    ]
+    for row in rows:
+        write_row(open_store(task.target), row)
+    return TaskResult(tuple(rows))
