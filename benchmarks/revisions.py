@@ -39,7 +39,7 @@ def compare(revisions: Sequence[str], names: Sequence[str], data: Path, rounds: 
         found = with_progress(names, lambda block: _in_turns(block, data, sources, rounds))
     rows = [["what", *revisions, "ratio", "from – to"]]
     for block, (values, missing) in found.items():
-        rows += [[what, *_words(*pair)] for what, pair in values.items()]
+        rows += [[what, *change_in_words(*pair)] for what, pair in values.items()]
         rows += [
             [f"block {block}", *(why or "measured" for why in missing), "", ""] for _ in range(any(missing))
         ]
@@ -63,7 +63,7 @@ def _in_turns(
     return values, missing
 
 
-def _words(before: Sequence[Figure], after: Sequence[Figure]) -> list[str]:
+def change_in_words(before: Sequence[Figure], after: Sequence[Figure]) -> list[str]:
     """Medians of both sides, their ratio and its range."""
     unit = (*before, *after)[0].unit
     sides = [np.array([figure.value for figure in side]) for side in (before, after)]

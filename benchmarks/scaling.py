@@ -30,7 +30,7 @@ from scaling_series import SERIES, Growth
 from speed import THREADS
 
 FILES = PAGES / "scaling"
-_LEAST_MB = 2.0  # that memory must have grown by to be fitted: below, it is what the allocator held anyway
+LEAST_MB = 2.0  # that memory must have grown by to be fitted: below, it is what the allocator held anyway
 _LEAST_POINTS = 3
 
 
@@ -89,7 +89,7 @@ def slope(x: FloatArray, y: FloatArray) -> tuple[float, float]:
 def fit(series: str, growth: Growth, points: Sequence[Mapping[str, float]]) -> Fit | None:
     """How a quantity grows, or None if fewer than two points can be fitted."""
     x, y = (np.array([point[name] for point in points]) for name in (growth.x, growth.y))
-    grown = y >= _LEAST_MB if growth.y == "memory (MB)" else y > 0.0
+    grown = y >= LEAST_MB if growth.y == "memory (MB)" else y > 0.0
     x, y = x[grown], y[grown]
     if len(x) < 2:
         return None

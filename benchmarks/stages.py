@@ -111,15 +111,16 @@ class StageClock:
             return []
         if not isinstance(original, FunctionType):
             raise TypeError(f"{target} is compiled or no function: time the function that calls it")
-        timed = self._timed(key, original)
+        watched = self.timed(key, original)
         holders = [(holder, name)] if outer else list(_references(original))
         for place, alias in holders:
-            setattr(place, alias, timed)
+            setattr(place, alias, watched)
         return [(place, alias, original) for place, alias in holders]
 
-    def _timed(self, key: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    def timed(self, key: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        """The function, whose time is added to the stage of this key."""
         @wraps(function)
-        def timed(*args: Any, **options: Any) -> Any:
+        def watched(*args: Any, **options: Any) -> Any:
             self._inner.append(0.0)
             start = time.process_time()
             try:
@@ -131,7 +132,7 @@ class StageClock:
                 if self._inner:
                     self._inner[-1] += taken
 
-        return timed
+        return watched
 
 
 def _references(function: FunctionType) -> Iterator[tuple[Any, str]]:

@@ -310,7 +310,7 @@ def test_surrogates_of_all_at_once_and_one_by_one_agree(monkeypatch: pytest.Monk
     a[:, 1, 2] = 3.0  # a window that does not vary
     distances = np.abs(np.subtract.outer(np.arange(15.0), np.arange(15.0)))
     fast = correlate_pairs(a, b, 4, distances=distances, bins=6, surrogates=40)
-    monkeypatch.setattr("cytodisk.analysis.pairs.pair_chance._same_gaps", lambda series: False)
+    monkeypatch.setattr("cytodisk.analysis.pairs.pair_chance.same_gaps", lambda series: False)
     slow = correlate_pairs(a, b, 4, distances=distances, bins=6, surrogates=40)
     for name in ("null_low", "null_high", "threshold"):
         np.testing.assert_allclose(fast[name], slow[name], atol=1e-12)

@@ -62,8 +62,8 @@ def test_a_stage_leaves_out_those_inside_it(load: Any, monkeypatch: pytest.Monke
     now = iter(range(100))
     monkeypatch.setattr(stages.time, "process_time", lambda: float(next(now)))
     clock = stages.StageClock([stages.Stage("a", "outer", ("x:y",)), stages.Stage("a", "inner", ("x:z",))])
-    inner = clock._timed("a: inner", lambda: None)
-    clock._timed("a: outer", inner)()
+    inner = clock.timed("a: inner", lambda: None)
+    clock.timed("a: outer", inner)()
     clock.lap()
     # The clock is read at 0 (start), 1 (outer), 2 and 3 (inner), 4 (outer), 5 (lap).
     assert clock.laps[0].by_stage == {"a: outer": 2.0, "a: inner": 1.0}
@@ -78,7 +78,7 @@ def test_exponents_of_exact_powers(load: Any) -> None:
     assert steep.exponent == pytest.approx(1.5)
     assert steep.verdict == "NO"
     memory = scaling.fit("s", series.Growth("memory (MB)", "n", 1.05, ""), points)
-    assert memory.first >= scaling._LEAST_MB / 1e-3
+    assert memory.first >= scaling.LEAST_MB / 1e-3
     assert memory.verdict == "yes"
 
 
@@ -101,8 +101,8 @@ def test_a_block_that_was_not_measured_is_no_success(load: Any, tmp_path: Path) 
 def test_a_comparison_tells_ratios_and_what_is_missing(load: Any) -> None:
     revisions, figure = load("revisions"), load("figure").Figure
     before, after = ([figure("t", value, "s") for value in values] for values in ((2.0, 4.0), (1.0, 3.0)))
-    assert revisions._words(before, after) == ["3 s", "2 s", "0.667", "0.500 – 0.750"]
-    assert revisions._words([], after)[0] == "missing"
+    assert revisions.change_in_words(before, after) == ["3 s", "2 s", "0.667", "0.500 – 0.750"]
+    assert revisions.change_in_words([], after)[0] == "missing"
 
 
 def test_the_older_package_is_that_of_its_revision(load: Any, tmp_path: Path) -> None:

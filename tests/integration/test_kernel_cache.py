@@ -19,10 +19,11 @@ from cytodisk.files import keep_kernels
 LAYERS = ("geometry", "disk", "windows", "motion")
 LOCATE = """
 import numpy as np
+from numba.core.dispatcher import Dispatcher
 from cytodisk.geometry import locate
 square = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]])
 locate.TriangleLocator(square, np.array([[0, 1, 2], [0, 2, 3]]))(np.full((1, 2), 0.4))
-stats = [kernel.stats for kernel in (locate._locate, locate._fill_bins)]
+stats = [kernel.stats for kernel in vars(locate).values() if isinstance(kernel, Dispatcher)]
 print(*(sum(sum(getattr(one, name).values()) for one in stats) for name in ("cache_misses", "cache_hits")))
 """
 
@@ -63,8 +64,12 @@ def test_a_second_process_compiles_nothing(tmp_path: Path) -> None:
         )
         return [int(number) for number in done.stdout.split()]
 
-    assert misses_and_hits() == [2, 0]
-    assert misses_and_hits() == [0, 2]
+    compiled, found = misses_and_hits()
+    assert compiled >= 2
+    assert found == 0
+    compiled, found = misses_and_hits()
+    assert compiled == 0
+    assert found >= 2
 
 
 def test_kernels_without_a_folder_last_for_a_run(monkeypatch: pytest.MonkeyPatch) -> None:

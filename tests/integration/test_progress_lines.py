@@ -10,7 +10,7 @@ def test_a_log_gets_a_line_every_half_minute(
 ) -> None:
     reads = iter([100.0, 100.0, 129.0, 130.0, 159.0, 160.0])
     monkeypatch.setattr(console.clock, "monotonic", lambda: next(reads))
-    lines = console._ProgressLines("frames of 3 methods")
+    lines = console.ProgressLines("frames of 3 methods")
     for done in (6, 20, 24, 30, 36):
         lines.report(done, 36)
     assert capsys.readouterr().err.splitlines() == [
@@ -24,14 +24,14 @@ def test_a_log_gets_a_line_every_half_minute(
     [(1234.5, "1234 inputs/s"), (0.25, "0.25 inputs/s"), (0.05, "3 inputs/min"), (1 / 1800, "2 inputs/h")],
 )
 def test_a_rate_is_said_over_a_time_in_which_something_happens(a_second: float, words: str) -> None:
-    assert console._rate(a_second, "inputs") == words
+    assert console.rate_words(a_second, "inputs") == words
 
 
 @pytest.mark.parametrize("quiet", [False, True])
 def test_quiet_means_no_lines(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], quiet: bool
 ) -> None:
-    monkeypatch.setattr(console, "_SECONDS_A_LINE", 0.0)
+    monkeypatch.setattr(console, "SECONDS_A_LINE", 0.0)
     with console.progress_bar(quiet, "cells") as report:
         report(1, 2)
     lines = capsys.readouterr().err.splitlines()

@@ -18,7 +18,7 @@ def test_tables_stand_one_below_the_other(
     target = tmp_path_factory.mktemp("merged") / "a.parquet"
     parts = [pa.table({"cell": [k] * n, "mean": [0.5] * n}, schema=SCHEMA) for k, n in enumerate(lengths)]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(merging, "_ROWS_AT_ONCE", 20)
+        patch.setattr(merging, "ROWS_AT_ONCE", 20)
         merging.merge_tables(iter(parts), SCHEMA, target)
     merged = pq.read_table(target)
     assert merged["cell"].to_pylist() == [k for k, n in enumerate(lengths) for _ in range(n)]

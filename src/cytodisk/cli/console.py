@@ -47,7 +47,7 @@ Resume = Annotated[bool, typer.Option("--resume", help="Go on with the same run 
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace the study in this folder.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
-_SECONDS_A_LINE = 30.0
+SECONDS_A_LINE = 30.0
 _RATE_OVER_S = 600.0  # what is counted may take minutes each
 RESUME = "run it again with --resume"
 
@@ -124,7 +124,7 @@ def progress_bar(
     )
     console = Console(stderr=True)
     hidden = quiet or not console.is_terminal
-    log = None if quiet or console.is_terminal else _ProgressLines(unit)
+    log = None if quiet or console.is_terminal else ProgressLines(unit)
     with Progress(
         *columns, console=console, disable=hidden, transient=True, speed_estimate_period=_RATE_OVER_S
     ) as bar:
@@ -134,7 +134,7 @@ def progress_bar(
             if log is not None:
                 log.report(done, total)
             speed = bar.tasks[task].speed
-            rate = _rate(speed, unit) if speed else ""
+            rate = rate_words(speed, unit) if speed else ""
             bar.update(task, completed=done, total=total, rate=rate)
 
         try:
@@ -151,7 +151,7 @@ def progress_bar(
             print("this study is complete already: nothing was run again", file=sys.stderr)
 
 
-def _rate(a_second: float, unit: str) -> str:
+def rate_words(a_second: float, unit: str) -> str:
     """As "1.2 cells/s", or with a longer time where that would be a small number."""
     rates = {"s": a_second, "min": 60 * a_second, "h": 3600 * a_second}
     time, rate = next((pair for pair in rates.items() if pair[1] >= 0.1), ("h", rates["h"]))
@@ -166,7 +166,7 @@ def _duration(seconds: float) -> str:
     return f"{seconds:.0f} s"
 
 
-class _ProgressLines:
+class ProgressLines:
     """Progress in plain lines, the first after 30 s, as "cells 24/36, 1.2 cells/s, 10 s left"."""
 
     def __init__(self, unit: str) -> None:
@@ -178,12 +178,12 @@ class _ProgressLines:
         if self.first is None:
             self.first = done
         now = clock.monotonic()
-        if now - self.said < _SECONDS_A_LINE:
+        if now - self.said < SECONDS_A_LINE:
             return
         self.said = now
         rate = (done - self.first) / (now - self.started)
         left = f", {_duration((total - done) / rate)} left" if rate and done < total else ""
-        print(f"{self.unit} {done}/{total}, {_rate(rate, self.unit)}{left}", file=sys.stderr, flush=True)
+        print(f"{self.unit} {done}/{total}, {rate_words(rate, self.unit)}{left}", file=sys.stderr, flush=True)
 
 
 def _is_interrupt(error: BaseException | None) -> bool:

@@ -10,7 +10,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-_ROWS_AT_ONCE = 50_000
+ROWS_AT_ONCE = 50_000
 _PARTS_AT_ONCE = 500  # a table of a few rows takes as much memory as one of hundreds
 _CELLS_AT_ONCE = 1000  # dicts, which take far more room than columns
 
@@ -32,9 +32,9 @@ def merge_tables(parts: Iterable[Any], schema: Any, target: Path) -> None:
         for part in parts:
             waiting.append(part)
             rows += len(part)
-            if rows >= _ROWS_AT_ONCE or len(waiting) == _PARTS_AT_ONCE:
+            if rows >= ROWS_AT_ONCE or len(waiting) == _PARTS_AT_ONCE:
                 waiting = [pa.concat_tables(waiting).combine_chunks()]
-            if rows >= _ROWS_AT_ONCE:
+            if rows >= ROWS_AT_ONCE:
                 writer.write_table(*waiting)
                 waiting, rows = [], 0
         if waiting:

@@ -80,7 +80,7 @@ def chance_of_pairs(
     for first in range(0, count, _AT_ONCE):
         some = slice(first, min(first + _AT_ONCE, count))
         series = np.stack([changed(column, some) for column in b.T], axis=1)  # (T, V, R)
-        if _same_gaps(a) and _same_gaps(series.reshape(len(series), -1)):
+        if same_gaps(a) and same_gaps(series.reshape(len(series), -1)):
             means[some] = _means(a, series, lags, min_pairs, bins, step)
         else:
             for k, one in enumerate(np.moveaxis(series, -1, 0), first):
@@ -134,6 +134,7 @@ def _sum_over(kind: DistanceBins) -> csr_array:
     return csr_array((np.ones(row.size), (row.ravel(), here.ravel())), shape=shape)
 
 
-def _same_gaps(series: FloatArray) -> bool:
+def same_gaps(series: FloatArray) -> bool:
+    """Whether all series miss the same frames."""
     present = np.isfinite(series)
     return bool((present == present[:, :1]).all())
