@@ -119,6 +119,7 @@ class StageClock:
 
     def timed(self, key: str, function: Callable[..., Any]) -> Callable[..., Any]:
         """The function, whose time is added to the stage of this key."""
+
         @wraps(function)
         def watched(*args: Any, **options: Any) -> Any:
             self._inner.append(0.0)

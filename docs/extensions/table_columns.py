@@ -14,9 +14,10 @@ from cytodisk.runs.shapes.shape_tables import SHAPE_TABLES
 from cytodisk.store.study_folder import MAP_TABLES, MOVIE_TABLES, Tables
 from cytodisk.store.tables import Columns
 
-WORDS = """Tables are Parquet files. ``cytodisk.open_study`` reads them. Each table has the units of its columns
-in ``attrs["units"]``; the file has them in its metadata. Lengths, areas and velocities are in µm and seconds if
-the scale is known, else in pixels and frames. A column without a unit is a count, a name or a choice."""
+WORDS = """Tables are Parquet files. ``cytodisk.open_study`` reads them. Each table has the units of its
+columns in ``attrs["units"]``; the file has them in its metadata. Lengths, areas and velocities are
+in µm and seconds if the scale is known, else in pixels and frames. A column without a unit is a
+count, a name or a choice."""
 UNITS = {"length": "µm", "length²": "µm²", "velocity": "µm/s", "1": "1 (a ratio)"}
 
 

@@ -323,13 +323,13 @@ def test_whole_numbers_may_be_floats() -> None:
 
 @pytest.mark.parametrize("count", [0, 3])
 def test_an_unknown_null(count: int) -> None:
-    with pytest.raises(ParameterError, match="null must be one of phase, shift, got 'noise'"):
+    with pytest.raises(ParameterError, match=r"null.*phase, shift.*'noise'"):
         cross_correlate(GOOD, GOOD, 2, surrogates=count, null="noise")  # type: ignore[arg-type]
 
 
 def test_random_walks_are_warned_of() -> None:
     walks, still = noise(22, 100, 20).cumsum(axis=0), noise(23, 100, 20)
-    with pytest.warns(StationarityWarning, match=r"the level of \d+% of the series of a drifts") as caught:
+    with pytest.warns(StationarityWarning, match=r"\d+%.*drifts") as caught:
         found = cross_correlate(walks, still, 5)
     assert len(caught) == 1
     assert caught[0].filename == __file__
@@ -389,9 +389,7 @@ def test_layers_by_brute_force(null: Any, missing: float, b_dims: Any) -> None:
 
 @pytest.mark.parametrize("what", [None, 3, np.zeros((3, 4)), xr.Dataset()])
 def test_what_has_no_layers(what: Any) -> None:
-    with pytest.raises(
-        ParameterError, match="must be the Dataset that cross_correlate returns, with sectors"
-    ):
+    with pytest.raises(ParameterError, match=r"cross_correlate.*sectors"):
         correlation_by_layer(what)
     with pytest.raises(ParameterError, match="with sectors"):
         correlation_by_layer(cross_correlate(GOOD[:, 0], GOOD[:, 1], 2))

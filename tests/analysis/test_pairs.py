@@ -298,7 +298,7 @@ def test_series_that_cannot_be_paired(a: Any, b: Any, message: str) -> None:
 def test_no_frame_with_all_centroids() -> None:
     a = with_centroids(noise(17, 15, LAYERS, SECTORS), None)
     a = a.assign_coords(centroid_y=a["centroid_y"] * NAN)
-    with pytest.raises(ParameterError, match="no frame in which all windows have a centroid: pass distances"):
+    with pytest.raises(ParameterError, match=r"centroid.*pass distances"):
         correlate_pairs(a, a, 2)
 
 

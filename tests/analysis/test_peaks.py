@@ -201,7 +201,7 @@ def test_p_of_a_small_case_by_brute_force() -> None:
     "what", [None, 3, xr.Dataset({"correlation": ("time", np.zeros(3))}), np.zeros((3, 4))]
 )
 def test_what_is_no_correlation(what: Any) -> None:
-    with pytest.raises(ParameterError, match="correlations must be the Dataset that cross_correlate returns"):
+    with pytest.raises(ParameterError, match=r"correlations.*cross_correlate"):
         peak_correlation(what)
 
 

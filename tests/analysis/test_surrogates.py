@@ -100,7 +100,7 @@ def test_shifts_share_no_lag(max_lag: int, more: int, seed: int) -> None:
     assert make.count == len(shifts) >= 1
     around = np.concatenate([[0.0], shifts, [frames]])
     assert (np.diff(around) > 2 * max_lag).all()
-    with pytest.raises(ParameterError, match=f"needs at least {4 * max_lag + 2} frames at max_lag {max_lag}"):
+    with pytest.raises(ParameterError, match=f"{4 * max_lag + 2} frames.*max_lag {max_lag}"):
         surrogates("shift", 4 * max_lag + 1, 5, 0, max_lag)
 
 

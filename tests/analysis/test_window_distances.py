@@ -151,7 +151,7 @@ def test_they_fit_correlate_pairs(u_cell: DiskMap) -> None:
 
 @pytest.mark.parametrize("frames", [0, -1, 1.5, None, "all"])
 def test_frames_that_make_no_sense(frames: Any, round_cell: DiskMap) -> None:
-    with pytest.raises(ParameterError, match="frames must be a whole number of at least 1, got"):
+    with pytest.raises(ParameterError, match=r"frames.*at least 1"):
         window_distances(round_cell, polar_windows(1, 4), frames=frames)
 
 
@@ -160,5 +160,5 @@ def test_a_movie_without_a_map() -> None:
     masks[1] = False
     movie = cd.map_movie(masks)
     movie = replace(movie, records=movie.records[1:])
-    with pytest.raises(WindowError, match="the movie has no frame with a map: there are no distances"):
+    with pytest.raises(WindowError, match="no frame with a map"):
         window_distances(movie, polar_windows(1, 4))

@@ -54,9 +54,7 @@ def test_points_of_any_shape_keep_it(disk: DiskMap) -> None:
 
 
 def test_bad_points_are_refused(disk: DiskMap) -> None:
-    with pytest.raises(
-        ParameterError, match=r"points_yx must have 2 as its last dimension, got shape \(4, 3\)"
-    ):
+    with pytest.raises(ParameterError, match=r"points_yx.*\(4, 3\)"):
         disk.to_disk(np.zeros((4, 3)))
     with pytest.raises(ParameterError, match="points_uv must have 2"):
         disk.to_cell(1.0)
@@ -142,7 +140,7 @@ def test_a_file_that_is_no_archive_is_refused_in_our_own_words(tmp_path: Path) -
     (tmp_path / "a.tif").write_bytes(b"II*" + bytes(100))
     np.save(tmp_path / "a.npy", np.zeros(3))
     for name in ("a.tif", "a.npy"):
-        with pytest.raises(ReadError, match=rf"{name} is not a map that DiskMap.save wrote, or it is"):
+        with pytest.raises(ReadError, match=rf"{name}.*DiskMap\.save"):
             load_map(tmp_path / name)
 
 
@@ -155,9 +153,7 @@ def test_another_array_file_and_another_format_are_refused(disk: DiskMap, tmp_pa
     with pytest.raises(ReadError):
         load_map(tmp_path / "plain.npy")
     np.savez(other, header=np.array(json.dumps({"format": 99})))
-    with pytest.raises(
-        ReadError, match="of format 99, this version reads format 2: make it again, with cytodisk map"
-    ):
+    with pytest.raises(ReadError, match=r"format 99.*format 2.*cytodisk map"):
         load_map(other)
     np.savez(other, header=np.array(json.dumps([1])))
     with pytest.raises(ReadError):

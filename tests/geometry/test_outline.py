@@ -39,7 +39,7 @@ def test_the_outline_is_simple_and_holds_every_pixel_centre_and_no_other(kind: s
 
 
 def test_a_mask_with_a_hole_or_in_pieces_is_refused() -> None:
-    with pytest.raises(MaskError, match="mask has 2 outlines, not one: pass it through clean_mask first"):
+    with pytest.raises(MaskError, match=r"2 outlines.*clean_mask"):
         trace_outline(np.array([[True, False, True]]))
     with pytest.raises(MaskError, match="0 outlines"):
         trace_outline(np.zeros((3, 3), dtype=bool))

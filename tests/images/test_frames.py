@@ -148,7 +148,7 @@ def test_colour_png_has_named_channels(tmp_path: Path) -> None:
 
 def test_a_z_stack_is_refused(tmp_path: Path) -> None:
     tifffile.imwrite(tmp_path / "a.ome.tif", STACK[:, 0], metadata={"axes": "ZYX"})
-    with pytest.raises(ReadError, match=r"is a z-stack .*: project it, or save its axis as time"):
+    with pytest.raises(ReadError, match=r"z-stack.*project"):
         open_frames(tmp_path / "a.ome.tif")
 
 
@@ -162,14 +162,14 @@ def test_separate_images_in_one_file_are_refused(tmp_path: Path) -> None:
     with tifffile.TiffWriter(tmp_path / "a.tif") as writer:
         writer.write(PLANE)
         writer.write(PLANE[:10])
-    with pytest.raises(ReadError, match="holds 2 separate images: save one alone, or all as one stack"):
+    with pytest.raises(ReadError, match="2 separate images"):
         open_frames(tmp_path / "a.tif")
 
 
 def test_pixels_that_are_not_square_are_refused(tmp_path: Path) -> None:
     metadata = {"axes": "YX", "PhysicalSizeX": 0.2, "PhysicalSizeY": 0.3}
     tifffile.imwrite(tmp_path / "a.ome.tif", PLANE, metadata=metadata)
-    with pytest.raises(ReadError, match=r"has pixels of 0.2 × 0.3 µm: resample it to square pixels"):
+    with pytest.raises(ReadError, match=r"0\.2 × 0\.3 µm.*square pixels"):
         open_frames(tmp_path / "a.ome.tif")
 
 
@@ -185,7 +185,7 @@ def test_a_folder_is_no_image(tmp_path: Path) -> None:
 
 def test_an_unknown_format_is_named(tmp_path: Path) -> None:
     (tmp_path / "a.czi").write_bytes(b"ZISRAWFILE")
-    with pytest.raises(ReadError, match=r"a\.czi is no image that can be read .*: convert it to TIFF"):
+    with pytest.raises(ReadError, match=r"a\.czi.*TIFF"):
         open_frames(tmp_path / "a.czi")
 
 

@@ -55,23 +55,23 @@ def test_the_callers_word_counts(tmp_path: Path) -> None:
 @pytest.mark.parametrize("bits", [8, 16])
 def test_a_microscope_picture_is_refused(tmp_path: Path, bits: int) -> None:
     picture = np.random.default_rng(0).integers(0, 2**bits, (40, 50)).astype(f"uint{bits}")
-    with pytest.raises(MaskError, match=r"looks like a picture, not a mask or label image: .* threshold it"):
+    with pytest.raises(MaskError, match=r"picture.*threshold"):
         understood_as(written(tmp_path, picture))
 
 
 def test_a_colour_picture_is_refused(tmp_path: Path) -> None:
     imageio.imwrite(tmp_path / "a.png", np.stack([ONE, ONE, ONE], axis=-1))
-    with pytest.raises(MaskError, match=r"has 3 channels \(red, green, blue\): a mask has one value a pixel"):
+    with pytest.raises(MaskError, match=r"3 channels.*one value a pixel"):
         understood_as(open_frames(tmp_path / "a.png"))
 
 
 def test_a_stack_where_one_image_is_needed(tmp_path: Path) -> None:
-    with pytest.raises(MaskError, match="is a stack of 4 frames where one image is needed: save the frame"):
+    with pytest.raises(MaskError, match="stack of 4 frames"):
         understood_as(written(tmp_path, np.stack([ONE] * 4)), "mask")
 
 
 def test_an_unknown_kind(tmp_path: Path) -> None:
-    with pytest.raises(ParameterError, match="kind must be one of auto, mask, stack, labels, got 'cells'"):
+    with pytest.raises(ParameterError, match=r"kind.*auto, mask, stack, labels.*'cells'"):
         understood_as(written(tmp_path, ONE), "cells")
 
 

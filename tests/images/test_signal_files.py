@@ -69,7 +69,7 @@ def test_what_cannot_be_paired_at_all(tmp_path: Path) -> None:
         pair_images(masks, fill(tmp_path / "images"))
     with pytest.raises(SignalError, match=r"fits no mask file: a_masks\.tif has no image"):
         pair_images(masks, "_img")
-    with pytest.raises(SignalError, match="is one file for a folder of masks: pass a folder of images"):
+    with pytest.raises(SignalError, match="one file for a folder of masks"):
         pair_images(masks, fill(tmp_path / "one", "a.tif") / "a.tif")
-    with pytest.raises(ReadError, match="gone does not exist: pass a folder of images, or how"):
+    with pytest.raises(ReadError, match="gone does not exist"):
         pair_images(masks, "gone")

@@ -103,18 +103,14 @@ def test_a_damaged_frame_is_a_gap_with_its_own_reason(tmp_path: Path, link: bool
 def test_negative_labels_are_refused_with_their_frame(tmp_path: Path, link: bool) -> None:
     values = LATE_EARLY_AND_GAP.astype(np.int16)
     values[2, 0, 0] = -4
-    with pytest.raises(
-        MaskError, match=r"frame 2 has negative labels \(down to -4\): set what is no cell to 0"
-    ):
+    with pytest.raises(MaskError, match=r"frame 2.*negative labels.*-4"):
         list_tracks(written(tmp_path, values), "labels", link=link)
 
 
 @pytest.mark.parametrize("link", [False, True])
 def test_labels_that_are_no_whole_numbers_are_refused(tmp_path: Path, link: bool) -> None:
     file = written(tmp_path, LATE_EARLY_AND_GAP.astype(np.float32))
-    with pytest.raises(
-        MaskError, match="labels must be whole numbers, got dtype float32: save them as uint16"
-    ):
+    with pytest.raises(MaskError, match=r"whole numbers.*float32"):
         list_tracks(file, "labels", link=link)
 
 

@@ -77,7 +77,7 @@ def test_kernels_without_a_folder_last_for_a_run(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setenv("NUMBA_CACHE_DIR", "")
     monkeypatch.setattr(numba.config, "CACHE_DIR", "")
     monkeypatch.setattr(Path, "mkdir", refuse(Path("/")))
-    with pytest.warns(UserWarning, match=r"neither .*cytodisk nor .* can be written.*NUMBA_CACHE_DIR"):
+    with pytest.warns(UserWarning, match="NUMBA_CACHE_DIR"):
         keep_kernels(Path(cytodisk.__file__).parent)
     assert os.environ["NUMBA_CACHE_DIR"] == numba.config.CACHE_DIR
     assert Path(numba.config.CACHE_DIR).is_dir()

@@ -178,7 +178,7 @@ def test_a_store_that_is_not_finished_does_not_take_the_place_of_another(
 
 
 def test_a_store_in_no_folder_is_an_error_of_the_study(tmp_path: Path) -> None:
-    with pytest.raises(StudyError, match=r"cannot write .*a\.zarr: No such file or directory"):
+    with pytest.raises(StudyError, match=r"cannot write .*a\.zarr"):
         write(tmp_path / "nowhere" / "a.zarr", range(1))
 
 

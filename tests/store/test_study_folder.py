@@ -77,7 +77,7 @@ def test_parts_come_in_the_order_of_cells_whatever_the_order_of_adding(tmp_path:
 def test_a_folder_with_something_else_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("years of work")
     for options in ({}, {"resume": True}, {"overwrite": True}):
-        with pytest.raises(StudyError, match="is not empty and holds no study: pass another folder"):
+        with pytest.raises(StudyError, match="not empty and holds no study"):
             StudyFolder.start(tmp_path, run(), **options)
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
 
@@ -91,14 +91,14 @@ def test_a_provenance_of_something_else_is_no_study(tmp_path: Path) -> None:
 
 def test_a_study_is_not_overwritten_unasked(tmp_path: Path) -> None:
     finished(tmp_path / "out")
-    with pytest.raises(StudyError, match="holds a study: pass --resume to go on, --overwrite to replace it"):
+    with pytest.raises(StudyError, match=r"--resume.*--overwrite"):
         StudyFolder.start(tmp_path / "out", run())
     assert len(cd.open_study(tmp_path / "out").cells) == 2
 
 
 def test_resume_names_what_differs_from_another_run(tmp_path: Path) -> None:
     finished(tmp_path / "out")
-    with pytest.raises(StudyError, match=r"holds another run \(layers: 10 then, 5 now\): pass --overwrite"):
+    with pytest.raises(StudyError, match=r"layers: 10 then, 5 now.*--overwrite"):
         StudyFolder.start(tmp_path / "out", run(layers=5), resume=True)
     assert len(cd.open_study(tmp_path / "out").cells) == 2
 
@@ -165,10 +165,10 @@ def test_a_file_is_no_output_folder(tmp_path: Path) -> None:
 def test_open_study_says_why_not(tmp_path: Path) -> None:
     with pytest.raises(ReadError, match=r"study .*nowhere does not exist: check the path"):
         cd.open_study(tmp_path / "nowhere")
-    with pytest.raises(ReadError, match=r"is no study: it has no readable provenance\.json"):
+    with pytest.raises(ReadError, match=r"no study.*provenance\.json"):
         cd.open_study(tmp_path)
     StudyFolder.start(tmp_path / "half", run())
-    with pytest.raises(ReadError, match="is not complete: run the same command again with --resume"):
+    with pytest.raises(ReadError, match=r"not complete.*--resume"):
         cd.open_study(tmp_path / "half")
     finished(tmp_path / "out")
     (tmp_path / "out" / "cells.parquet").write_bytes(b"PAR1 damaged")

@@ -90,9 +90,9 @@ def test_activity_has_a_frame_for_each_of_the_recording(movie_study: cd.Study) -
 
 
 def test_a_frame_without_a_map_has_its_reason(movie_study: cd.Study) -> None:
-    with pytest.raises(ReadError, match=r"cell 0.* has no map: mask of shape \(40, 40\) is empty"):
+    with pytest.raises(ReadError, match=r"cell 0.*no map.*empty"):
         movie_study.map(0, EMPTY)
-    with pytest.raises(MapError, match=r"frame 2 has no map: mask of shape \(40, 40\) is empty"):
+    with pytest.raises(MapError, match=r"frame 2.*no map.*empty"):
         movie_study.movie(0)[EMPTY]
 
 

@@ -28,7 +28,7 @@ def test_a_folder_arrives_whole_in_the_place_of_another(tmp_path: Path) -> None:
 def test_a_place_that_cannot_be_used_is_named(tmp_path: Path) -> None:
     assert is_url("s3://bucket/batch")
     assert not is_url("C:/batch")
-    with pytest.raises(StudyError, match="results cannot go to nowhere://batch: Protocol not known"):
+    with pytest.raises(StudyError, match="nowhere://batch"):
         UrlStore("nowhere://batch")
     with pytest.raises(StudyError, match="would be gone with the process"):
         UrlStore("memory://batch")

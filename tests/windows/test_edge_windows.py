@@ -182,13 +182,13 @@ def test_a_grid_has_one_depth_for_all_cells() -> None:
 
 @pytest.mark.parametrize("depth", [0.0, -1.0, np.inf, np.nan, "3", True])
 def test_a_depth_that_is_no_number_above_0_is_refused(depth: object) -> None:
-    with pytest.raises(WindowError, match="depth_px must be a number above 0, got"):
+    with pytest.raises(WindowError, match=r"depth_px.*above 0"):
         cd.edge_windows(cd.simulate.disk(5), 2, 3, depth)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("windows", [cd.edge_windows, cd.ring_windows])
 def test_a_count_that_is_none_is_refused(windows: object) -> None:
-    with pytest.raises(WindowError, match="layers must be a whole number of at least 1, got 0"):
+    with pytest.raises(WindowError, match=r"layers.*at least 1.*0"):
         windows(cd.simulate.disk(5), 0, 3)  # type: ignore[operator]
 
 

@@ -117,7 +117,7 @@ def test_a_table_of_nullable_numbers_is_scored(features: pd.DataFrame) -> None:
 
 def test_cells_that_are_all_alike_are_an_error(features: pd.DataFrame) -> None:
     same = features.iloc[[3] * 12]
-    with pytest.raises(ParameterError, match=r"12 cells that are all alike \(0 of their features"):
+    with pytest.raises(ParameterError, match=r"12 cells.*all alike"):
         cd.complexity_score(same)
     with pytest.raises(ParameterError, match="1 of their features vary"):
         cd.complexity_score(same.assign(circularity=np.linspace(0.1, 0.9, 12)))
@@ -154,7 +154,7 @@ def test_without_umap_the_error_says_what_to_install(
 ) -> None:
     monkeypatch.setattr(complexity, "umap_plane", umap_plane)
     monkeypatch.setitem(sys.modules, "umap", None)
-    with pytest.raises(MissingPartError, match=r"pip install -c constraints.txt -e '.\[umap\]'"):
+    with pytest.raises(MissingPartError, match=r"pip install.*\[umap\]"):
         cd.complexity_score(features)
 
 
