@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from cytodisk.runs.batch.inputs_table import INPUT, INPUT_COLUMNS
+from cytodisk.runs.batch.input_columns import INPUT, INPUT_COLUMNS
 from public_names import heading, write
 from sphinx.application import Sphinx
 
