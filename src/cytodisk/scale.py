@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-import numpy as np
-
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.checks import is_number
 from cytodisk.errors import ParameterError
 
 Number = TypeVar("Number", float, FloatArray)
@@ -47,10 +46,13 @@ class Scale:
     def __post_init__(self) -> None:
         for name in ("pixel_size_um", "frame_interval_s"):
             value = getattr(self, name)
-            if value is not None and not _is_positive(value):
+            if value is None:
+                continue
+            if not (is_number(value) and value > 0):
                 raise ParameterError(
-                    f"{name} must be a positive number, got {value!r}: pass None when it is not known"
+                    f"{name} must be a number above 0, got {value!r}: leave it out when it is not known"
                 )
+            object.__setattr__(self, name, float(value))
 
     @classmethod
     def of(cls, carrier: Any) -> Scale:
@@ -120,6 +122,20 @@ class Scale:
         """Time of a frame in seconds; None where the interval is unknown."""
         return None if self.frame_interval_s is None else frame * self.frame_interval_s
 
+    def time_coords(self, frames: IntArray) -> dict[str, Any]:
+        """Coordinates of the dim `time` of an array: `frame`, and `time_s` where the interval is known."""
+        coords: dict[str, Any] = {"frame": ("time", frames, {"units": "frame"})}
+        if self.frame_interval_s is not None:
+            coords["time_s"] = ("time", frames * self.frame_interval_s, {"units": "s"})
+        return coords
+
+    def given(self, pixel_size_um: float | None = None, frame_interval_s: float | None = None) -> Scale:
+        """This scale, where a user gave no other one."""
+        return Scale(
+            self.pixel_size_um if pixel_size_um is None else pixel_size_um,
+            self.frame_interval_s if frame_interval_s is None else frame_interval_s,
+        )
+
     def words(self) -> tuple[str, str]:
         """Two sentences for a user: the pixel size and the frame interval, or what their lack means."""
         pixel, interval = self.pixel_size_um, self.frame_interval_s
@@ -131,6 +147,5 @@ class Scale:
         )
 
 
-def _is_positive(value: Any) -> bool:
-    number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-    return bool(number and 0 < value < np.inf)
+UNKNOWN = Scale()
+"""Neither is known: results are in px and frames."""

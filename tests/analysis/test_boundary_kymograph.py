@@ -5,7 +5,7 @@ import pytest
 import shapely
 import xarray as xr
 
-from cytodisk import DiskMovie, map_movie, map_to_disk
+from cytodisk import DiskMovie, Scale, map_movie, map_to_disk
 from cytodisk.analysis.boundary_depth import places_at_depth
 from cytodisk.analysis.kymograph import boundary_kymograph
 from cytodisk.disk.disk_map import DiskMap
@@ -152,7 +152,7 @@ def test_channels_and_times(movie: DiskMovie, signals: xr.DataArray) -> None:
     array = boundary_kymograph(movie, signals.to_numpy(), 1.0, points=8)
     assert array["channel"].to_numpy().tolist() == ["0", "1"]
     assert "time_s" not in array.coords
-    timed = DiskMovie(movie.records, movie.image_shape, 0.5, 4.0, movie.load)
+    timed = DiskMovie(movie.records, movie.image_shape, Scale(0.5, 4.0), movie.load)
     known = boundary_kymograph(timed, signals, 1.0, points=8)
     np.testing.assert_array_equal(known["time_s"], 4.0 * np.arange(FRAMES))
     np.testing.assert_array_equal(known, array)

@@ -63,20 +63,20 @@ def test_ome_units_of_length(tmp_path: Path, unit: str, size: float) -> None:
     scale = {"PhysicalSizeX": size, "PhysicalSizeY": size}
     units = {"PhysicalSizeXUnit": unit, "PhysicalSizeYUnit": unit}
     tifffile.imwrite(tmp_path / "a.ome.tif", PLANE, metadata={"axes": "YX"} | scale | units)
-    assert open_frames(tmp_path / "a.ome.tif").pixel_size_um == pytest.approx(0.2)
+    assert open_frames(tmp_path / "a.ome.tif").scale.pixel_size_um == pytest.approx(0.2)
 
 
 def test_ome_without_a_unit_is_in_micrometres(tmp_path: Path) -> None:
     metadata = {"axes": "YX", "PhysicalSizeX": 0.3, "PhysicalSizeY": 0.3}
     tifffile.imwrite(tmp_path / "a.ome.tif", PLANE, metadata=metadata)
-    assert open_frames(tmp_path / "a.ome.tif").pixel_size_um == pytest.approx(0.3)
+    assert open_frames(tmp_path / "a.ome.tif").scale.pixel_size_um == pytest.approx(0.3)
 
 
 def test_an_unknown_unit_is_no_scale(tmp_path: Path) -> None:
     units = {"PhysicalSizeXUnit": "pixel", "PhysicalSizeYUnit": "pixel"}
     metadata = {"axes": "YX", "PhysicalSizeX": 1.0, "PhysicalSizeY": 1.0} | units
     tifffile.imwrite(tmp_path / "a.ome.tif", PLANE, metadata=metadata)
-    assert open_frames(tmp_path / "a.ome.tif").pixel_size_um is None
+    assert open_frames(tmp_path / "a.ome.tif").scale.pixel_size_um is None
 
 
 def test_channel_names_that_are_not_distinct_are_told_apart(tmp_path: Path) -> None:
@@ -96,8 +96,8 @@ def test_imagej_tiff_with_scale(tmp_path: Path, unit: str) -> None:
     )
     file = open_frames(tmp_path / "a.tif")
     assert (file.axes, file.n_frames, file.image_shape) == ("TCYX", 3, (20, 31))
-    assert file.pixel_size_um == pytest.approx(0.2)
-    assert file.frame_interval_s == pytest.approx(2.5)
+    assert file.scale.pixel_size_um == pytest.approx(0.2)
+    assert file.scale.frame_interval_s == pytest.approx(2.5)
     assert_array_equal(frames_of(file), STACK)
 
 
@@ -248,7 +248,7 @@ def test_planes_that_stand_first_are_what_the_caller_says(tmp_path: Path, unname
 def test_the_greek_letter_is_a_micro_sign_too(tmp_path: Path) -> None:
     metadata = {"axes": "YX", "PhysicalSizeX": 0.2, "PhysicalSizeXUnit": "\u03bcm"}
     tifffile.imwrite(tmp_path / "a.ome.tif", PLANE, metadata=metadata)
-    assert open_frames(tmp_path / "a.ome.tif").pixel_size_um == pytest.approx(0.2)
+    assert open_frames(tmp_path / "a.ome.tif").scale.pixel_size_um == pytest.approx(0.2)
 
 
 def test_a_name_that_is_too_long_is_a_read_error(tmp_path: Path) -> None:

@@ -160,12 +160,12 @@ def test_a_data_array_brings_its_scale_in_any_order_of_dims(masks: np.ndarray) -
     attrs = {"pixel_size_um": 0.2, "frame_interval_s": 5}
     given = xr.DataArray(masks, dims=("time", "y", "x"), attrs=attrs).transpose("x", "time", "y")
     movie = map_movie(given, **QUICK)
-    assert (movie.pixel_size_um, movie.frame_interval_s) == (0.2, 5.0)
+    assert (movie.scale.pixel_size_um, movie.scale.frame_interval_s) == (0.2, 5.0)
     assert_same(movie, map_movie(masks, **QUICK))
     told = map_movie(given, pixel_size_um=0.3, frame_interval_s=2.0, **QUICK)
-    assert (told.pixel_size_um, told.frame_interval_s) == (0.3, 2.0)
+    assert (told.scale.pixel_size_um, told.scale.frame_interval_s) == (0.3, 2.0)
     unknown = map_movie(masks, **QUICK)
-    assert (unknown.pixel_size_um, unknown.frame_interval_s) == (None, None)
+    assert (unknown.scale.pixel_size_um, unknown.scale.frame_interval_s) == (None, None)
 
 
 ONE = simulate.disk(6.0)

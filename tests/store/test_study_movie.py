@@ -64,7 +64,7 @@ def test_a_map_is_that_of_its_frame(movie_study: cd.Study, masks: Path) -> None:
 def test_the_movie_has_the_maps_and_the_scale_of_the_study(movie_study: cd.Study) -> None:
     movie = movie_study.movie(0)
     assert (len(movie), movie.image_shape) == (FRAMES, (40, 40))
-    assert (movie.pixel_size_um, movie.frame_interval_s) == (0.5, 3.0)
+    assert (movie.scale.pixel_size_um, movie.scale.frame_interval_s) == (0.5, 3.0)
     assert movie.status == ["ok", "ok", "refused", "ok"]
     assert_array_equal(movie.mapped, [True, True, False, True])
     for time in (0, 1, 3):

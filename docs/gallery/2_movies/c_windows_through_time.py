@@ -27,8 +27,8 @@ figure, axes = plt.subplots(1, 4, figsize=(6.2, 2.4), layout="constrained")
 cd.plot.draw_strip(
     axes,
     [grid.on(movie[frame]) for frame in frames],
-    [f"{frame * movie.frame_interval_s:g} s" for frame in frames],
-    pixel_size_um=movie.pixel_size_um,
+    [f"{frame * movie.scale.frame_interval_s:g} s" for frame in frames],
+    pixel_size_um=movie.scale.pixel_size_um,
 )
 plt.show()
 
@@ -46,7 +46,11 @@ for ax, values, label in (
     (axes[1], moved.mean("sector"), f"mean displacement\n({moved.attrs['units']})"),
 ):
     lines = cd.plot.draw_by_layer(
-        ax, values.to_numpy(), layers, label, frame_interval_s=movie.frame_interval_s
+        ax,
+        values.to_numpy(),
+        layers,
+        label,
+        frame_interval_s=movie.scale.frame_interval_s,
     )
 axes[1].legend(lines, [f"layer {layer}" for layer in layers], frameon=False)
 plt.show()

@@ -12,6 +12,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import SignalError
 from cytodisk.motion.disk_movie import DiskMovie
+from cytodisk.scale import Scale
 from cytodisk.taking import takes
 from cytodisk.windows.grid_parameters import SampleParameters
 from cytodisk.windows.on_cell import WindowsOnCell
@@ -100,8 +101,7 @@ def sample_movie(
         channels,
         [record.status for record in movie.records],
         [record.reason for record in movie.records],
-        movie.pixel_size_um,
-        movie.frame_interval_s,
+        movie.scale,
     )
 
 
@@ -110,9 +110,8 @@ def activity_dataset(
     channels: list[str],
     status: list[str],
     reasons: list[str],
-    pixel_size_um: float | None,
-    frame_interval_s: float | None,
-    first_time: int = 0,
+    scale: Scale,
+    first_frame: int = 0,
 ) -> xr.Dataset:
     """Tables of a movie as a Dataset with coordinates and units.
 
@@ -122,8 +121,8 @@ def activity_dataset(
         Areas in square pixels; they become µm² where the pixel size is known.
     channels, status, reasons : list of str
         The first by channel, the others by frame.
-    pixel_size_um, frame_interval_s : float or None
-    first_time : int
+    scale : Scale
+    first_frame : int
         Number of the first frame.
 
     Returns
@@ -132,33 +131,34 @@ def activity_dataset(
     """
     dims = {4: ("time", "channel", "layer", "sector"), 3: ("time", "layer", "sector")}
     data: dict[str, Any] = {}
-    unit = "px" if pixel_size_um is None else "µm"
-    units = {"area": f"{unit}²", "centroid_y": "px", "centroid_x": "px", "n_pixels": "px²", "n_nan": "px²"}
+    units = {
+        "area": scale.area_unit,
+        "centroid_y": "px",
+        "centroid_x": "px",
+        "n_pixels": "px²",
+        "n_nan": "px²",
+    }
     for name, values in tables.items():
-        scaled = values * (pixel_size_um or 1.0) ** 2 if name == "area" else values
+        scaled = scale.area(values) if name == "area" else values
         data[name] = (dims[values.ndim], scaled, {"units": units.get(name, "a.u.")})
     data["status"] = ("time", np.array(status, dtype=str))
     data["reason"] = ("time", np.array(reasons, dtype=str))
-    times = first_time + np.arange(len(status))
     layers, sectors = tables["area"].shape[1:]
     coords: dict[str, Any] = {
-        "frame": ("time", times, {"units": "frame"}),
         "channel": channels,
         "layer": np.arange(layers),
         "sector": np.arange(sectors),
     }
-    if frame_interval_s is not None:
-        coords["time_s"] = ("time", times * frame_interval_s, {"units": "s"})
-    attrs = {"pixel_size_um": pixel_size_um, "frame_interval_s": frame_interval_s}
-    known = {name: value for name, value in attrs.items() if value is not None}
-    return with_places(xr.Dataset(data, coords, attrs=known).set_xindex("frame"))
+    coords |= scale.time_coords(first_frame + np.arange(len(status)))
+    return with_places(xr.Dataset(data, coords, attrs=scale.attrs).set_xindex("frame"))
 
 
 def with_places(activity: xr.Dataset) -> xr.Dataset:
-    """The Dataset with the windows' centroids, and the size of a pixel where known, as coordinates."""
-    scale = {name: value for name, value in activity.attrs.items() if name == "pixel_size_um"}
-    for name in ("centroid_y", "centroid_x"):
-        activity[name].attrs |= scale
+    """The Dataset with the windows' centroids as coordinates, and the scale in the attrs of all numbers."""
+    scale = Scale.of(activity)
+    for name in (*activity.data_vars, "centroid_y", "centroid_x"):
+        if activity[name].dtype.kind == "f":
+            activity[name].attrs |= scale.attrs
     return activity.set_coords(["centroid_y", "centroid_x"])
 
 

@@ -90,15 +90,13 @@ def centroid_displacement(movie: DiskMovie, activity: xr.Dataset) -> xr.DataArra
     ((3, 2, 6), 'px')
     """
     centroids = np.stack([activity["centroid_y"].to_numpy(), activity["centroid_x"].to_numpy()], axis=-1)
-    steps = displacement_between(movie.registered(centroids)) * (movie.pixel_size_um or 1.0)
+    steps = movie.scale.length(displacement_between(movie.registered(centroids)))
     for time, record in enumerate(movie.records[1:]):
         if record.boundary is not None and record.boundary.restarted:
             steps[time] = np.nan  # windows before and after have nothing to do with each other
     coords = {name: activity[name] for name in ("frame", "layer", "sector")}
-    units = "px" if movie.pixel_size_um is None else "µm"
-    return xr.DataArray(
-        steps, coords, ("time", "layer", "sector"), name="centroid_displacement", attrs={"units": units}
-    )
+    attrs = {"units": movie.scale.length_unit} | movie.scale.attrs
+    return xr.DataArray(steps, coords, ("time", "layer", "sector"), name="centroid_displacement", attrs=attrs)
 
 
 def correlation_over_sectors(here: FloatArray, there: FloatArray) -> FloatArray:

@@ -16,6 +16,7 @@ from cytodisk.checks import whole_number
 from cytodisk.errors import ParameterError, SignalError
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.tracking import point_angles
+from cytodisk.scale import Scale
 
 _ROUNDING = 1e-9  # of the spacing: a line's end at a whole number of steps is a place
 
@@ -76,14 +77,14 @@ def line_kymograph(signals: Any, line_yx: Any, *, width_px: int = 1, spacing_px:
     band = places[:, None] + offsets[:, None] * normals[:, None]
     _check_inside(band.reshape(-1, 2), shape, width_px)
     rows = [bilinear(frame, band).mean(axis=-1) for frame in _each(frames, channels, shape)]
-    size, interval = (_attribute(signals, name) for name in ("pixel_size_um", "frame_interval_s"))
+    scale = Scale.of(signals)
     coords: dict[str, Any] = {
-        "distance": ("distance", distance * (size or 1.0), {"units": "px" if size is None else "µm"}),
+        "distance": ("distance", scale.length(distance), {"units": scale.length_unit}),
         "y": ("distance", places[:, 0], {"units": "px"}),
         "x": ("distance", places[:, 1], {"units": "px"}),
     }
     attrs = {"width_px": width_px, "spacing_px": float(spacing_px)}
-    return _kymograph(np.array(rows), "distance", channels, coords, interval, attrs).rename("line_kymograph")
+    return _kymograph(np.array(rows), "distance", channels, coords, scale, attrs).rename("line_kymograph")
 
 
 def boundary_kymograph(movie: DiskMovie, signals: Any, depth: float, *, points: int = 360) -> xr.DataArray:
@@ -144,12 +145,12 @@ def boundary_kymograph(movie: DiskMovie, signals: Any, depth: float, *, points: 
     points = whole_number("points", points, 1)
     frames, names = parse_signals(signals, len(movie), movie.image_shape)
     channels = names if np.ndim(frames[0]) == 3 else None
-    angles, size = point_angles(points), movie.pixel_size_um or 1.0
+    angles, scale = point_angles(points), movie.scale
     places = np.full((len(movie), points, 2), np.nan)
     rows = np.full((len(movie), *([] if channels is None else [len(channels)]), points), np.nan)
     for time, frame in enumerate(_each(frames, channels, movie.image_shape)):
         if movie.records[time].has_map:
-            places[time] = places_at_depth(movie[time], angles, depth / size)
+            places[time] = places_at_depth(movie[time], angles, depth / scale.length(1.0))
             rows[time] = bilinear(frame, places[time])
     coords: dict[str, Any] = {
         "point": np.arange(points),
@@ -157,8 +158,8 @@ def boundary_kymograph(movie: DiskMovie, signals: Any, depth: float, *, points: 
         "y": (("time", "point"), places[..., 0], {"units": "px"}),
         "x": (("time", "point"), places[..., 1], {"units": "px"}),
     }
-    attrs = {"depth": float(depth), "depth_units": "px" if movie.pixel_size_um is None else "µm"}
-    named = _kymograph(rows, "point", channels, coords, movie.frame_interval_s, attrs)
+    attrs = {"depth": float(depth), "depth_units": scale.length_unit}
+    named = _kymograph(rows, "point", channels, coords, scale, attrs)
     return named.rename("boundary_kymograph")
 
 
@@ -273,34 +274,19 @@ def _each(frames: Any, channels: list[str] | None, shape: tuple[int, int]) -> It
         yield frame
 
 
-def _attribute(signals: Any, name: str) -> float | None:
-    value = getattr(signals, "attrs", {}).get(name)
-    if value is None:
-        return None
-    if not isinstance(value, int | float | np.number) or not 0 < value < np.inf:
-        raise ParameterError(f"signals.attrs[{name!r}] must be a positive number, got {value!r}")
-    return float(value)
-
-
 def _kymograph(
     rows: FloatArray,
     along: str,
     channels: list[str] | None,
     coords: dict[str, Any],
-    frame_interval_s: float | None,
+    scale: Scale,
     attrs: dict[str, Any],
 ) -> xr.DataArray:
     """Values of shape (T, [C,] D) with their coordinates, as (time, along[, channel])."""
-    times = np.arange(len(rows))
-    known: dict[str, Any] = {"frame": ("time", times, {"units": "frame"})}
-    if frame_interval_s is not None:
-        known["time_s"] = ("time", times * frame_interval_s, {"units": "s"})
-    if channels is None:
-        return xr.DataArray(
-            rows, known | coords, ("time", along), attrs={"units": "a.u."} | attrs
-        ).set_xindex("frame")
-    known["channel"] = channels
-    values = np.moveaxis(rows, 1, 2)
-    return xr.DataArray(
-        values, known | coords, ("time", along, "channel"), attrs={"units": "a.u."} | attrs
-    ).set_xindex("frame")
+    dims: tuple[str, ...] = ("time", along)
+    known = scale.time_coords(np.arange(len(rows)))
+    if channels is not None:
+        rows, dims, known["channel"] = np.moveaxis(rows, 1, 2), (*dims, "channel"), channels
+    return xr.DataArray(rows, known | coords, dims, attrs={"units": "a.u."} | scale.attrs | attrs).set_xindex(
+        "frame"
+    )

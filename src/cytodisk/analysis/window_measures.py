@@ -48,7 +48,7 @@ def window_measures(windows: WindowsOnCell) -> xr.Dataset:
             "layer_pieces": ("layer", windows.layer_pieces, {"units": "1"}),
         },
         {"layer": np.arange(windows.layers), "sector": np.arange(windows.sectors)},
-        attrs={"coverage": windows.coverage},
+        attrs={"coverage": windows.coverage} | windows.scale.attrs,
     )
 
 

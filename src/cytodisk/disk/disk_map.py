@@ -24,6 +24,7 @@ from cytodisk.errors import ParameterError, ReadError, SignalError
 from cytodisk.files import replacing
 from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline
 from cytodisk.geometry.mask import MaskReport
+from cytodisk.scale import UNKNOWN, Scale
 
 Start: TypeAlias = Literal["cotangent", "uniform", "previous"]
 
@@ -62,6 +63,8 @@ class DiskMap:
         Steps of the relaxation, of Newton's method or of the advection.
     converged : bool
         False when Newton's method stopped before its criterion; the map is valid all the same.
+    scale : Scale
+        Of the image: µm per pixel, and in a movie seconds per frame, where they are known.
     """
 
     vertices_yx: FloatArray
@@ -76,6 +79,7 @@ class DiskMap:
     edge_length: float
     steps: int
     converged: bool
+    scale: Scale = UNKNOWN
 
     def __getstate__(self) -> dict[str, Any]:
         """What is computed from the fields is not sent to other processes."""
@@ -241,7 +245,7 @@ class DiskMap:
         facts = {name: getattr(self, name) for name in _FACTS}
         crop, corner = _cropped(self.mask)  # a cell is small in its image
         place = {"corner": corner, "image_shape": list(self.mask.shape)}
-        header = {"format": _FORMAT, "report": asdict(self.report), **place, **facts}
+        header = {"format": _FORMAT, "report": asdict(self.report), **asdict(self.scale), **place, **facts}
         with replacing(path) as temporary:
             np.savez_compressed(
                 temporary,
@@ -316,6 +320,7 @@ def load_map(path: str | os.PathLike[str]) -> DiskMap:
                 report=MaskReport(**header["report"]),
                 **{name: file[name] for name in _ARRAYS},
                 **{name: header[name] for name in _FACTS},
+                scale=Scale(header.get("pixel_size_um"), header.get("frame_interval_s")),
             )
     except FileNotFoundError as error:
         raise ReadError(f"{path} does not exist: pass a file that DiskMap.save wrote") from error

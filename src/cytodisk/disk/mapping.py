@@ -12,20 +12,21 @@ from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.disk_map import DiskMap, Start
 from cytodisk.disk.harmonic import harmonic_map
-from cytodisk.disk.mapping_parameters import Align, MappingParameters
+from cytodisk.disk.mapping_parameters import Align, MappingParameters, MapToDiskParameters
 from cytodisk.disk.newton import relax
 from cytodisk.disk.untangle import untangled
 from cytodisk.errors import MapError
 from cytodisk.geometry.mask import MaskReport, clean_mask
 from cytodisk.geometry.mesh import Mesh, mesh_inside
 from cytodisk.geometry.outline import trace_outline
+from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.taking import takes
 
 # Triangles of nearly one area up to the edge: at this clearance they differ least on the reference masks.
 _ISOTROPIC = {"growth": 0.0, "clearance": 0.5}
 
 
-@takes(MappingParameters)
+@takes(MapToDiskParameters)
 def map_to_disk(
     mask: Any,
     **settings: Any,
@@ -37,10 +38,10 @@ def map_to_disk(
 
     Parameters
     ----------
-    mask : array_like of shape (H, W)
+    mask : array_like of shape (H, W), or DataArray with dims (y, x)
         One cell: boolean, or numbers with one value beside 0.
     **settings
-        See `MappingParameters`.
+        See `MapToDiskParameters`.
 
     Returns
     -------
@@ -76,8 +77,8 @@ def map_to_disk(
     >>> disk.to_cell([[0.0, 0.0]]).round(1)  # the cell's point at the disk's centre, (row, column)
     array([[38.6, 27.4]])
     """
-    parameters = MappingParameters.of(**settings)
-    cell = mesh_cell(mask, parameters)
+    parameters = MapToDiskParameters.of(**settings)
+    cell = mesh_cell(mask, parameters, Scale.of(mask).given(parameters.pixel_size_um))
     angles = boundary_angles(cell.outline, _relative(parameters.align, cell.corner))
     return map_mesh(cell, angles, parameters)
 
@@ -95,6 +96,7 @@ class CellMesh:
     corner : ndarray of shape (2,) and dtype float
         First pixel of the bounding box.
     edge_length : float
+    scale : Scale
     """
 
     mask: BoolArray
@@ -102,6 +104,7 @@ class CellMesh:
     mesh: Mesh
     corner: FloatArray
     edge_length: float
+    scale: Scale
 
     @cached_property
     def system(self) -> BlockSystem:
@@ -114,7 +117,7 @@ class CellMesh:
         return self.mesh.vertices_yx[: self.mesh.n_boundary]
 
 
-def mesh_cell(mask: Any, parameters: MappingParameters) -> CellMesh:
+def mesh_cell(mask: Any, parameters: MappingParameters, scale: Scale = UNKNOWN) -> CellMesh:
     """Clean a mask and triangulate its inside.
 
     Parameters
@@ -123,6 +126,8 @@ def mesh_cell(mask: Any, parameters: MappingParameters) -> CellMesh:
         As for `map_to_disk`.
     parameters : MappingParameters
         Method "advection" needs triangles of one size, the others take larger ones inside.
+    scale : Scale
+        Of the image.
 
     Returns
     -------
@@ -139,7 +144,7 @@ def mesh_cell(mask: Any, parameters: MappingParameters) -> CellMesh:
     crop, corner = _crop(cleaned)
     spacing = _ISOTROPIC if parameters.method == "advection" else {}
     mesh = mesh_inside(trace_outline(crop), crop, edge_length=parameters.edge_length, **spacing)
-    return CellMesh(cleaned, report, mesh, corner, parameters.edge_length)
+    return CellMesh(cleaned, report, mesh, corner, parameters.edge_length, scale)
 
 
 def map_mesh(
@@ -198,6 +203,7 @@ def map_mesh(
         edge_length=cell.edge_length,
         steps=steps,
         converged=converged,
+        scale=cell.scale,
     )
     if method != "advection" and not disk.certificate.valid:
         raise MapError(f"no valid map was found: {'; '.join(disk.certificate.faults)}")

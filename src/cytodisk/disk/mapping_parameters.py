@@ -3,6 +3,7 @@
 from typing import Literal, TypeAlias
 
 from cytodisk.parameters import Parameters, parameter
+from cytodisk.scale_parameters import PixelSizeParameters
 
 Method: TypeAlias = Literal["newton", "harmonic", "advection"]
 Align: TypeAlias = Literal["upright"] | tuple[float, float] | float
@@ -46,3 +47,7 @@ class MeshParameters(Parameters):
 
 class MappingParameters(MeshParameters, MethodParameters):
     """How a cell is mapped onto the disk."""
+
+
+class MapToDiskParameters(MappingParameters, PixelSizeParameters):
+    """What `map_to_disk` takes."""

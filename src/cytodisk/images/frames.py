@@ -7,7 +7,7 @@ import os
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from threading import get_ident
@@ -21,6 +21,7 @@ import xarray as xr
 
 from cytodisk.errors import ReadError
 from cytodisk.images.npy import read_npy
+from cytodisk.scale import UNKNOWN, Scale
 
 _TIFF = (".tif", ".tiff")
 _PICTURES = (".png",)
@@ -55,8 +56,8 @@ class FrameFile:
     dtype : numpy.dtype
     channels : tuple of str
         Names, or "0", "1", … when the file gives none.
-    pixel_size_um, frame_interval_s : float or None
-        From the metadata; None when it does not say.
+    scale : Scale
+        What the metadata says of it.
     """
 
     path: Path
@@ -64,8 +65,7 @@ class FrameFile:
     shape: tuple[int, ...]
     dtype: np.dtype[Any]
     channels: tuple[str, ...]
-    pixel_size_um: float | None
-    frame_interval_s: float | None
+    scale: Scale = UNKNOWN
 
     @property
     def n_frames(self) -> int:
@@ -201,7 +201,7 @@ def read_image(path: str | os.PathLike[str], *, unnamed: str = "C") -> xr.DataAr
         stack,
         dims=("time", "channel", "y", "x"),
         coords={"channel": list(file.channels)},
-        attrs={"pixel_size_um": file.pixel_size_um, "frame_interval_s": file.frame_interval_s},
+        attrs=asdict(file.scale),
     )
     if "T" not in file.axes:
         image = image.isel(time=0)
@@ -282,7 +282,7 @@ def _open_tiff(file: Path, unnamed: str) -> FrameFile:
             )
         series = tiff.series[0]
         axes, shape = _named_axes(file, series.axes, series.shape, unnamed)
-        found = FrameFile(file, axes, shape, np.dtype(series.dtype), (), None, None)
+        found = FrameFile(file, axes, shape, np.dtype(series.dtype), ())
         if tiff.is_ome and tiff.ome_metadata:
             found = _with_ome(found, tiff.ome_metadata)
         elif tiff.is_imagej and tiff.imagej_metadata:
@@ -295,9 +295,9 @@ def _open_picture(file: Path) -> FrameFile:
         properties = imageio.improps(opened, **_PNG)
     shape = tuple(properties.shape)
     if len(shape) == 2:
-        return FrameFile(file, "YX", shape, properties.dtype, ("0",), None, None)
+        return FrameFile(file, "YX", shape, properties.dtype, ("0",))
     names = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha"), 2: ("grey", "alpha")}
-    return FrameFile(file, "YXC", shape, properties.dtype, names[shape[2]], None, None)
+    return FrameFile(file, "YXC", shape, properties.dtype, names[shape[2]])
 
 
 def _open_array(file: Path, unnamed: str) -> FrameFile:
@@ -312,7 +312,7 @@ def _open_array(file: Path, unnamed: str) -> FrameFile:
             "save the masks alone, as TIFF with axes TYX"
         )
     axes = "YX" if array.ndim == 2 else f"{unnamed}YX"
-    return _with_channel_names(FrameFile(file, axes, array.shape, array.dtype, (), None, None))
+    return _with_channel_names(FrameFile(file, axes, array.shape, array.dtype, ()))
 
 
 def _named_axes(file: Path, axes: str, shape: tuple[int, ...], unnamed: str) -> tuple[str, tuple[int, ...]]:
@@ -346,8 +346,7 @@ def _with_ome(found: FrameFile, xml: str) -> FrameFile:
     names = [e.attrib.get("Name", "") for e in pixels if e.tag.endswith("}Channel")]
     return replace(
         found,
-        pixel_size_um=_square(found.path, sizes),
-        frame_interval_s=_positive(float(interval) * seconds) if interval else None,
+        scale=Scale(_square(found.path, sizes), _positive(float(interval) * seconds) if interval else None),
         channels=tuple(names) if names and all(names) else (),
     )
 
@@ -365,8 +364,7 @@ def _with_imagej(found: FrameFile, tiff: tifffile.TiffFile) -> FrameFile:
     seconds = _SECONDS.get(str(metadata.get("tunit", "s")), np.nan)
     return replace(
         found,
-        pixel_size_um=_square(found.path, sizes),
-        frame_interval_s=_positive(float(interval) * seconds) if interval else None,
+        scale=Scale(_square(found.path, sizes), _positive(float(interval) * seconds) if interval else None),
     )
 
 

@@ -14,6 +14,7 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import MapError, ParameterError
 from cytodisk.motion.registration import RigidTransform
 from cytodisk.motion.tracking import TrackedBoundary, point_angles
+from cytodisk.scale import Scale
 
 _BORDER_PX = 0.25  # outlines lie half a pixel outside the first row if they are cut off, inside if not
 
@@ -60,16 +61,15 @@ class DiskMovie(Sequence[DiskMap]):
         One a frame.
     image_shape : (int, int)
         (H, W) of the masks.
-    pixel_size_um, frame_interval_s : float or None
-        None when unknown; then results are in px and frames.
+    scale : Scale
+        µm per pixel and seconds per frame; where unknown, results are in px and frames.
     load : callable
         Gives the map of a frame that has one.
     """
 
     records: tuple[FrameRecord, ...]
     image_shape: tuple[int, int]
-    pixel_size_um: float | None
-    frame_interval_s: float | None
+    scale: Scale
     load: Callable[[int], DiskMap]
 
     def __repr__(self) -> str:

@@ -13,10 +13,11 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.disk.disk_map import DiskMap, load_map
-from cytodisk.errors import CytodiskError, MapError, MaskError, ParameterError, ReadError, StudyError
+from cytodisk.errors import CytodiskError, MapError, MaskError, ReadError, StudyError
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
 from cytodisk.motion.mapped_frame import MappedFrame, map_frame
 from cytodisk.motion.tracking_parameters import MovieMapParameters, MovieSettings
+from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.taking import takes
 
 _KEPT = 4  # maps that a movie on disk keeps in memory
@@ -54,7 +55,9 @@ def status_of(fault: CytodiskError | None) -> str:
     return "unreadable" if isinstance(fault, ReadError) else "refused"
 
 
-def map_frames(masks: Sequence[Any], settings: MovieSettings) -> Iterator[FrameResult]:
+def map_frames(
+    masks: Sequence[Any], settings: MovieSettings, scale: Scale = UNKNOWN
+) -> Iterator[FrameResult]:
     """Map the frames of a movie one by one; each is ready to be used and dropped before the next is read.
 
     Parameters
@@ -62,6 +65,7 @@ def map_frames(masks: Sequence[Any], settings: MovieSettings) -> Iterator[FrameR
     masks : sequence of array_like of shape (H, W)
         Masks of one cell. An entry may be an error of this package instead: the frame then has that fault.
     settings : MovieSettings
+    scale : Scale
 
     Yields
     ------
@@ -70,12 +74,14 @@ def map_frames(masks: Sequence[Any], settings: MovieSettings) -> Iterator[FrameR
     """
     last: MappedFrame | None = None
     for time in range(len(masks)):
-        result = map_one(time, masks[time], last, settings)
+        result = map_one(time, masks[time], last, settings, scale)
         last = result.mapped or last
         yield result
 
 
-def map_one(time: int, mask: Any, last: MappedFrame | None, settings: MovieSettings) -> FrameResult:
+def map_one(
+    time: int, mask: Any, last: MappedFrame | None, settings: MovieSettings, scale: Scale = UNKNOWN
+) -> FrameResult:
     """Map one frame; a fault of its mask becomes part of the result.
 
     Parameters
@@ -84,6 +90,7 @@ def map_one(time: int, mask: Any, last: MappedFrame | None, settings: MovieSetti
     mask : array_like of shape (H, W), or CytodiskError
     last : MappedFrame or None
     settings : MovieSettings
+    scale : Scale
 
     Returns
     -------
@@ -92,7 +99,7 @@ def map_one(time: int, mask: Any, last: MappedFrame | None, settings: MovieSetti
     if isinstance(mask, CytodiskError):
         return FrameResult(time, None, mask)
     try:
-        return FrameResult(time, map_frame(time, mask, last, settings), None)
+        return FrameResult(time, map_frame(time, mask, last, settings, scale), None)
     except (MaskError, MapError) as fault:
         return FrameResult(time, None, fault)
 
@@ -155,15 +162,12 @@ def map_movie(
     (4, True)
     """
     given = MovieMapParameters.of(**settings)
-    frames, interval, pixel = parse_masks(masks)
-    interval = parse_scale(
-        "frame_interval_s", interval if given.frame_interval_s is None else given.frame_interval_s
-    )
-    pixel = parse_scale("pixel_size_um", pixel if given.pixel_size_um is None else given.pixel_size_um)
+    scale = Scale.of(masks).given(given.pixel_size_um, given.frame_interval_s)
+    frames = parse_masks(masks)
     store: _Memory | _Folder = _Memory() if folder is None else _Folder(Path(folder))
     records: list[FrameRecord] = []
     shape: tuple[int, ...] = ()
-    for result in map_frames(frames, given):
+    for result in map_frames(frames, given, scale):
         if result.mapped is not None:
             _check_shape(result.mapped.disk.mask.shape, shape, result.time)
             shape = result.mapped.disk.mask.shape
@@ -173,7 +177,7 @@ def map_movie(
             progress(len(records), len(frames))
     if not shape:
         raise MaskError(f"no frame of {len(records)} could be mapped; frame 0: {records[0].reason}")
-    return DiskMovie(tuple(records), (shape[0], shape[1]), pixel, interval, store.load)
+    return DiskMovie(tuple(records), (shape[0], shape[1]), scale, store.load)
 
 
 def _check_shape(found: tuple[int, ...], before: tuple[int, ...], time: int) -> None:
@@ -183,8 +187,8 @@ def _check_shape(found: tuple[int, ...], before: tuple[int, ...], time: int) -> 
         )
 
 
-def parse_masks(masks: Any) -> tuple[Any, float | None, float | None]:
-    """A sequence of frames with its scale, from whatever a user has.
+def parse_masks(masks: Any) -> Any:
+    """A sequence of frames, from whatever a user has.
 
     Parameters
     ----------
@@ -193,17 +197,14 @@ def parse_masks(masks: Any) -> tuple[Any, float | None, float | None]:
 
     Returns
     -------
-    frames : sequence of array_like of shape (H, W)
-    frame_interval_s, pixel_size_um : float or None
+    sequence of array_like of shape (H, W)
 
     Raises
     ------
     MaskError
         It has not three dimensions or a single frame, or its frames differ in shape.
     """
-    interval = pixel = None
     if isinstance(masks, xr.DataArray):
-        interval, pixel = masks.attrs.get("frame_interval_s"), masks.attrs.get("pixel_size_um")
         if set(masks.dims) != {"time", "y", "x"}:
             raise MaskError(f"masks have the dims {list(masks.dims)}: a movie of one cell has time, y, x")
         masks = masks.transpose("time", "y", "x")
@@ -229,23 +230,7 @@ def parse_masks(masks: Any) -> tuple[Any, float | None, float | None]:
                 f"masks of shape {tuple(masks.shape)} were understood as {frames} frames of {height} × "
                 f"{width} pixels, which looks like time on the last axis: pass numpy.moveaxis(masks, -1, 0)"
             )
-    return (masks.to_numpy() if isinstance(masks, xr.DataArray) else masks), interval, pixel
-
-
-def parse_scale(name: str, value: Any) -> float | None:
-    """A positive number, or None for unknown.
-
-    Raises
-    ------
-    ParameterError
-        It is neither.
-    """
-    if value is None:
-        return None
-    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-    if not (number and 0 < value < np.inf):
-        raise ParameterError(f"{name} must be a number above 0, got {value!r}: leave it out if it is unknown")
-    return float(value)
+    return masks.to_numpy() if isinstance(masks, xr.DataArray) else masks
 
 
 class _Memory:

@@ -17,6 +17,7 @@ from cytodisk.motion.tracking import (
     point_angles,
 )
 from cytodisk.motion.tracking_parameters import MovieSettings
+from cytodisk.scale import UNKNOWN, Scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +42,9 @@ class MappedFrame:
         return self.boundary.time
 
 
-def map_frame(time: int, mask: Any, last: MappedFrame | None, settings: MovieSettings) -> MappedFrame:
+def map_frame(
+    time: int, mask: Any, last: MappedFrame | None, settings: MovieSettings, scale: Scale = UNKNOWN
+) -> MappedFrame:
     """Map a frame of a movie so that it corresponds to the frame before.
 
     Parameters
@@ -53,6 +56,7 @@ def map_frame(time: int, mask: Any, last: MappedFrame | None, settings: MovieSet
     last : MappedFrame or None
         The last frame that could be mapped; None for the first.
     settings : MovieSettings
+    scale : Scale
 
     Returns
     -------
@@ -65,7 +69,7 @@ def map_frame(time: int, mask: Any, last: MappedFrame | None, settings: MovieSet
     MapError
         No valid map was found.
     """
-    cell = mesh_cell(mask, settings)
+    cell = mesh_cell(mask, settings, scale)
     contour = Contour.of_outline(cell.outline + cell.corner)
     if last is None:
         angles = boundary_angles(contour.outline_yx, settings.align)

@@ -67,7 +67,7 @@ def edge_velocity(movie: DiskMovie, sectors: int = 60, *, frame: Frame = "lab") 
     for time, (here, there) in _pairs(movie):
         displacement = normal_displacement(here, there, frame)
         values[time] = mean_by_sector(displacement, here, there, movie.image_shape, sectors)
-    return _labelled(movie, values * _scale(movie), "sector", frame)
+    return _labelled(movie, movie.scale.velocity(values), "sector", frame)
 
 
 def boundary_velocity(movie: DiskMovie, *, frame: Frame = "lab") -> xr.DataArray:
@@ -107,7 +107,7 @@ def boundary_velocity(movie: DiskMovie, *, frame: Frame = "lab") -> xr.DataArray
         values[time] = normal_displacement(here, there, frame)
     border = movie.on_border
     values[:-1][border[:-1] | border[1:]] = np.nan
-    labelled = _labelled(movie, values * _scale(movie), "point", frame)
+    labelled = _labelled(movie, movie.scale.velocity(values), "point", frame)
     return labelled.assign_coords(angle=("point", movie.point_angles))
 
 
@@ -166,39 +166,21 @@ def edge_changes(
             frame=frame,
             jitter=jitter,
         )
-    pixel = movie.pixel_size_um or 1.0
-    unit = "px" if movie.pixel_size_um is None else "µm"
-    scales = {
-        "velocity": (
-            "displacement_px",
-            _scale(movie),
-            velocity_unit(movie.pixel_size_um, movie.frame_interval_s),
-        ),
-        "velocity_error": (
-            "error_px",
-            _scale(movie),
-            velocity_unit(movie.pixel_size_um, movie.frame_interval_s),
-        ),
-        "protruded_area": ("protruded_px2", pixel**2, f"{unit}²"),
-        "retracted_area": ("retracted_px2", pixel**2, f"{unit}²"),
-        "edge_length": ("length_px", pixel, unit),
+    scale = movie.scale
+    scaled = {
+        "velocity": ("displacement_px", scale.velocity, scale.velocity_unit),
+        "velocity_error": ("error_px", scale.velocity, scale.velocity_unit),
+        "protruded_area": ("protruded_px2", scale.area, scale.area_unit),
+        "retracted_area": ("retracted_px2", scale.area, scale.area_unit),
+        "edge_length": ("length_px", scale.length, scale.length_unit),
     }
     columns = {}
-    for name, (source, scale, units) in scales.items():
+    for name, (source, convert, units) in scaled.items():
         values = np.full((len(movie), sectors), np.nan)
         for time, row in rows.items():
-            values[time] = getattr(row, source) * scale
+            values[time] = convert(getattr(row, source))
         columns[name] = _labelled(movie, values, "sector", frame).assign_attrs(units=units)
-    return xr.Dataset(columns, attrs={"frame": frame})
-
-
-def velocity_unit(pixel_size_um: float | None, frame_interval_s: float | None) -> str:
-    """Unit of a velocity, with px and frame where the scale is unknown."""
-    return f"{'px' if pixel_size_um is None else 'µm'}/{'frame' if frame_interval_s is None else 's'}"
-
-
-def _scale(movie: DiskMovie) -> float:
-    return (movie.pixel_size_um or 1.0) / (movie.frame_interval_s or 1.0)
+    return xr.Dataset(columns, attrs={"frame": frame} | scale.attrs)
 
 
 def _check(sectors: Any, frame: Any) -> None:
@@ -217,10 +199,10 @@ def _pairs(movie: DiskMovie) -> Any:
 
 
 def _labelled(movie: DiskMovie, values: Any, last: str, frame: str) -> xr.DataArray:
-    coords: dict[str, Any] = {"frame": ("time", np.arange(len(movie))), last: np.arange(values.shape[1])}
-    if movie.frame_interval_s is not None:
-        coords["time_s"] = ("time", np.arange(len(movie)) * movie.frame_interval_s)
-    units = velocity_unit(movie.pixel_size_um, movie.frame_interval_s)
+    coords: dict[str, Any] = movie.scale.time_coords(np.arange(len(movie))) | {
+        last: np.arange(values.shape[1])
+    }
     name = "edge_velocity" if last == "sector" else "boundary_velocity"
-    array = xr.DataArray(values, coords, ("time", last), name=name, attrs={"units": units, "frame": frame})
+    attrs = {"units": movie.scale.velocity_unit, "frame": frame} | movie.scale.attrs
+    array = xr.DataArray(values, coords, ("time", last), name=name, attrs=attrs)
     return array.set_xindex("frame")

@@ -61,12 +61,12 @@ class CellMovie:
     @property
     def interval_s(self) -> float | None:
         """Seconds between frames; None when unknown."""
-        return self.maps.frame_interval_s
+        return self.maps.scale.frame_interval_s
 
     @property
     def pixel_size_um(self) -> float | None:
         """Micrometres a pixel; None when unknown."""
-        return self.maps.pixel_size_um
+        return self.maps.scale.pixel_size_um
 
     @cached_property
     def mapped(self) -> list[int]:

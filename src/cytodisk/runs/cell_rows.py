@@ -114,7 +114,7 @@ def _measure_cell(task: CellTask, settings: CellSettings) -> Rows:
         try:
             mapping = dict(parameters.part(MappingParameters))
             mapping["align"] = _in_crop(parameters.align, found.corner)
-            disk = map_to_disk(found.mask, **mapping)
+            disk = map_to_disk(found.mask, **mapping, pixel_size_um=settings.pixel_size_um)
         except CytodiskError as error:
             fault = error
     if fault is not None:

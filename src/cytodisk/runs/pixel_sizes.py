@@ -19,7 +19,7 @@ def common_pixel_size(files: Sequence[FrameFile]) -> float | None:
     SignalError
         They differ by more than 1 %.
     """
-    known = {file.path: file.pixel_size_um for file in files if file.pixel_size_um is not None}
+    known = {file.path: file.scale.pixel_size_um for file in files if file.scale.pixel_size_um is not None}
     if not known:
         return None
     first, size = next(iter(known.items()))

@@ -10,8 +10,8 @@ from typing import Any
 from pydantic import BaseModel
 
 from cytodisk.errors import ReadError
-from cytodisk.motion.velocity import velocity_unit
 from cytodisk.runs.versions import NUMERIC, installed
+from cytodisk.scale import Scale
 
 
 def describe_run(
@@ -58,7 +58,7 @@ def describe_run(
         "pixel_size_um": pixel_size_um,
         "frame_interval_s": frame_interval_s,
         "length_unit": "px" if pixel_size_um is None else "µm",
-        "velocity_unit": velocity_unit(pixel_size_um, frame_interval_s),
+        "velocity_unit": Scale(pixel_size_um, frame_interval_s).velocity_unit,
         "versions": installed(),
         "python": platform.python_version(),
         "platform": platform.platform(),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from cytodisk.disk.disk_map import DiskMap, load_map
 from cytodisk.errors import ReadError
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
 from cytodisk.motion.frame_file import load_boundary
+from cytodisk.scale import Scale
 from cytodisk.store.activity_store import open_activity
 from cytodisk.store.correlation_store import Correlation, list_correlations, read_correlation
 from cytodisk.store.provenance_file import PROVENANCE, read_provenance
@@ -55,6 +56,11 @@ class Study:
         if self.is_movie:
             what = f"{self.cells['cell'].nunique()} cells in {self.cells['frame'].nunique()} frames"
         return f"<Study {self.path}: {what}>"
+
+    @property
+    def scale(self) -> Scale:
+        """µm per pixel and seconds per frame of the run; None where unknown."""
+        return Scale(self.provenance.get("pixel_size_um"), self.provenance.get("frame_interval_s"))
 
     @cached_property
     def windows(self) -> pd.DataFrame:
@@ -139,7 +145,7 @@ class Study:
             frame = "" if time is None else f", frame {time},"
             reason = rows["reason"].iloc[0] or "it was not kept (--no-maps)"
             raise ReadError(f"cell {cell}{frame} of {self.path} has no map: {reason}")
-        return load_map(path)
+        return replace(load_map(path), scale=self.scale)
 
     def activity(self, cell: int = 0) -> xr.Dataset:
         """Activity of one cell of a movie, read from disk when asked for.
@@ -189,9 +195,8 @@ class Study:
         return DiskMovie(
             tuple(records),
             (height, width),
-            self.provenance["pixel_size_um"],
-            self.provenance["frame_interval_s"],
-            lambda time: load_map(self._map_path(part_key(cell, time))),
+            self.scale,
+            lambda time: replace(load_map(self._map_path(part_key(cell, time))), scale=self.scale),
         )
 
     def _record(self, cell: int, time: int, row: Any) -> FrameRecord:

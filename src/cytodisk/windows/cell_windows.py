@@ -11,6 +11,7 @@ import numpy as np
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
+from cytodisk.scale import Scale
 from cytodisk.windows.grid import PolarGrid
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.outlines import window_polygons
@@ -50,6 +51,11 @@ class CellWindows(WindowsOnCell):
     def mask(self) -> BoolArray:
         """The cell's mask, shape (H, W) and dtype bool."""
         return self.disk.mask
+
+    @property
+    def scale(self) -> Scale:
+        """Scale of the map."""
+        return self.disk.scale
 
     def polygons(self) -> list[FloatArray]:
         """Outline of each window in the cell, by window number.

@@ -14,6 +14,7 @@ from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.outline import trace_outline
+from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.taking import takes
 from cytodisk.windows.edge_parts import depths_and_angles, part_places
 from cytodisk.windows.grid_parameters import EdgeGridParameters
@@ -96,20 +97,22 @@ class CellEdge:
         (row, column) in pixels.
     angles : ndarray of shape (B,) and dtype float
         In radians, strictly increasing, all within one turn.
+    scale : Scale
     """
 
     mask: BoolArray
     outline_yx: FloatArray
     angles: FloatArray
+    scale: Scale = UNKNOWN
 
     @classmethod
     def of(cls, cell: Any) -> CellEdge:
         """Edge of a mask, whose angles are those of the upright disk, or of a DiskMap, with its own."""
         if isinstance(cell, DiskMap):
-            return cls(cell.mask, cell.outline_yx, cell.boundary_angles)
+            return cls(cell.mask, cell.outline_yx, cell.boundary_angles, cell.scale)
         mask, _ = clean_mask(cell)
         outline = trace_outline(mask)
-        return cls(mask, outline, boundary_angles(outline))
+        return cls(mask, outline, boundary_angles(outline), Scale.of(cell))
 
     def parts_of(self, pixels_yx: IntArray) -> tuple[FloatArray, FloatArray]:
         """Depth and angle of each part of some of the mask's pixels, each (P, 16): `depths_and_angles`.
@@ -177,6 +180,11 @@ class EdgeWindows(WindowsOnCell):
     def mask(self) -> BoolArray:
         """The cell's mask, shape (H, W) and dtype bool."""
         return self.edge.mask
+
+    @property
+    def scale(self) -> Scale:
+        """Scale of the cell's image."""
+        return self.edge.scale
 
     @property
     def depth_px(self) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 from scipy import sparse
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.scale import Scale
 from cytodisk.windows.pieces import pieces_by_window
 from cytodisk.windows.shares import PARTS as PARTS
 from cytodisk.windows.shares import WindowShares, shares_by_strips, strips
@@ -37,6 +38,11 @@ class WindowsOnCell(ABC):
     @abstractmethod
     def mask(self) -> BoolArray:
         """The cell's mask, shape (H, W) and dtype bool."""
+
+    @property
+    @abstractmethod
+    def scale(self) -> Scale:
+        """Scale of the image, as the map or the mask knows it."""
 
     @property
     def layers(self) -> int:

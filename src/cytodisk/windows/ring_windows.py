@@ -11,6 +11,7 @@ from skimage.graph import MCP_Geometric
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
+from cytodisk.scale import Scale
 from cytodisk.taking import takes
 from cytodisk.windows.edge_parts import part_places
 from cytodisk.windows.edge_windows import CellEdge
@@ -97,6 +98,11 @@ class RingWindows(WindowsOnCell):
     def mask(self) -> BoolArray:
         """The cell's mask, shape (H, W) and dtype bool."""
         return self.edge.mask
+
+    @property
+    def scale(self) -> Scale:
+        """Scale of the cell's image."""
+        return self.edge.scale
 
 
 @takes(RingGridParameters)

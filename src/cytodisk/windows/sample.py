@@ -73,22 +73,23 @@ def sample(
     tables = [_statistics(weights, row, tuple(quantiles), nan) for row in pixels]
     dims = ("channel", "layer", "sector")
     data: dict[str, Any] = {
-        name: (dims, np.stack([table[name] for table in tables]).reshape(shape)) for name in _NAMES
+        name: (dims, np.stack([table[name] for table in tables]).reshape(shape), {"units": unit})
+        for name, unit in _UNITS.items()
     }
     if quantiles:
         stacked = np.stack([table["quantile"] for table in tables]).reshape(*shape, len(quantiles))
-        data["quantile"] = ((*dims, "q"), stacked)
-    data["area"] = (("layer", "sector"), windows.areas)
+        data["quantile"] = ((*dims, "q"), stacked, {"units": "a.u."})
+    data["area"] = (("layer", "sector"), windows.areas, {"units": "px²"})
     coords: dict[str, Any] = {"layer": np.arange(shape[1]), "sector": np.arange(shape[2])}
     if quantiles:
         coords["q"] = list(quantiles)
     if channels is not None:
         coords["channel"] = channels
-    dataset = xr.Dataset(data, coords, attrs={"area_unit": "px²"})
+    dataset = xr.Dataset(data, coords, attrs=windows.scale.attrs)
     return dataset.isel(channel=0) if channels is None else dataset
 
 
-_NAMES = ("mean", "sd", "n_pixels", "n_nan", "min", "max")
+_UNITS = {"mean": "a.u.", "sd": "a.u.", "n_pixels": "px²", "n_nan": "px²", "min": "a.u.", "max": "a.u."}
 
 
 def _check_quantiles(quantiles: Sequence[float]) -> None:

@@ -19,6 +19,7 @@ from cytodisk.analysis.pairs.pair_chance import chance_of_pairs
 from cytodisk.analysis.pairs.window_distances import DISTANCE_DIMS, disk_distances
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
+from cytodisk.scale import Scale
 from cytodisk.taking import takes
 
 _FRAMES_FOR_DISTANCE = 20
@@ -157,7 +158,8 @@ def _distances(given: Any, a: Any, b: Any, shape: tuple[int, int]) -> tuple[dict
     if given is None:
         for series in (a, b):
             if {"centroid_y", "centroid_x"} <= set(getattr(series, "coords", ())):
-                return {"straight": _between_centroids(series)}, *_scale(series), "straight"
+                unit = Scale.of(series["centroid_y"]).length_unit
+                return {"straight": _between_centroids(series)}, unit, "straight"
         return {"disk": disk_distances(*shape)}, "disk radius", "straight on the unit disk"
     tables = (
         given.data_vars if isinstance(given, xr.Dataset) else {getattr(given, "name", None) or "given": given}
@@ -182,18 +184,14 @@ def _distances(given: Any, a: Any, b: Any, shape: tuple[int, int]) -> tuple[dict
 
 
 def _between_centroids(series: xr.DataArray) -> FloatArray:
-    """Mean over frames of the distances between centroids, in the unit of `_scale`."""
+    """Mean over frames of the distances between centroids, in the unit of its scale."""
     yx = np.stack([_flat(series[name]) for name in ("centroid_y", "centroid_x")], axis=-1)
     frames = np.flatnonzero(np.isfinite(yx).all(axis=(1, 2)))
     if not frames.size:
         raise ParameterError("a has no frame in which all windows have a centroid: pass distances")
     chosen = frames[np.unique(np.linspace(0, frames.size - 1, _FRAMES_FOR_DISTANCE).round().astype(int))]
-    scale = series["centroid_y"].attrs.get("pixel_size_um") or 1.0
-    return np.asarray(scale * np.mean([cdist(yx[time], yx[time]) for time in chosen], axis=0))
-
-
-def _scale(series: xr.DataArray) -> tuple[str]:
-    return ("µm" if series["centroid_y"].attrs.get("pixel_size_um") else "px",)
+    apart = np.mean([cdist(yx[time], yx[time]) for time in chosen], axis=0)
+    return np.asarray(Scale.of(series["centroid_y"]).length(apart))
 
 
 def _edges(tables: list[FloatArray], bins: int) -> FloatArray:

@@ -39,7 +39,7 @@ def window_distances(cell: DiskMap | DiskMovie, grid: PolarGrid, *, frames: int 
     -------
     Dataset with dims (layer, sector, other_layer, other_sector)
         straight; interior, the shortest way that stays in the cell; edge, the shortest way along the edge
-        between the sectors, whatever the layers. In µm when a movie knows its scale, else px, as attrs
+        between the sectors, whatever the layers. In µm when the cell knows its scale, else px, as attrs
         `units` says.
 
     Raises
@@ -72,7 +72,6 @@ def window_distances(cell: DiskMap | DiskMovie, grid: PolarGrid, *, frames: int 
     """
     frames = whole_number("frames", frames, 1)
     maps: list[DiskMap] = []
-    scale = 1.0
     if isinstance(cell, DiskMap):
         maps = [cell]
     else:
@@ -82,20 +81,20 @@ def window_distances(cell: DiskMap | DiskMovie, grid: PolarGrid, *, frames: int 
         chosen = mapped[
             np.unique(np.linspace(0, mapped.size - 1, min(frames, mapped.size)).round().astype(int))
         ]
-        maps, scale = [cell[int(time)] for time in chosen], cell.pixel_size_um or 1.0
+        maps = [cell[int(time)] for time in chosen]
     tables = [_distances_on(disk, grid) for disk in maps]
-    units = "px" if not isinstance(cell, DiskMovie) or cell.pixel_size_um is None else "µm"
+    attrs = {"units": cell.scale.length_unit} | cell.scale.attrs
     shape = (grid.layers, grid.sectors, grid.layers, grid.sectors)
     data: dict[str, Any] = {
         name: (
             DISTANCE_DIMS,
-            scale * np.mean([table[name] for table in tables], axis=0).reshape(shape),
-            {"units": units},
+            cell.scale.length(np.mean([table[name] for table in tables], axis=0)).reshape(shape),
+            attrs,
         )
         for name in tables[0]
     }
     coords = {dim: np.arange(size) for dim, size in zip(DISTANCE_DIMS, shape, strict=True)}
-    return xr.Dataset(data, coords, attrs={"units": units})
+    return xr.Dataset(data, coords, attrs=attrs)
 
 
 def disk_distances(layers: int, sectors: int) -> FloatArray:

@@ -157,9 +157,8 @@ def _sample_frames(
         channels,
         movie.status,
         [record.reason for record in movie.records],
-        movie.pixel_size_um,
-        movie.frame_interval_s,
-        first_time=followed.first,
+        movie.scale,
+        first_frame=followed.first,
     )
     return activity, frames, layers
 
@@ -180,7 +179,7 @@ def _consistency(
     """Rows of the table of consistency: by frame with a map, channel and layer."""
     correlation = consecutive_correlation(activity["mean"]).to_numpy()
     moved = centroid_displacement(followed.movie, activity).mean("sector").to_numpy()
-    interval = followed.movie.frame_interval_s
+    interval = followed.movie.scale.frame_interval_s
     columns: list[dict[str, Any]] = []
     for found in layers:
         time, count = int(found["frame"][0]), len(found["layer"])

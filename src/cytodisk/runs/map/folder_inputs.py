@@ -125,7 +125,7 @@ def with_common_scale(sources: Sequence[MaskSource], signals: Mapping[str, Signa
 
 def _sizes(source: MaskSource, signal: SignalFile) -> list[float]:
     files = [file for file in (signal.file, source.file) if file is not None]
-    return [file.pixel_size_um for file in files if file.pixel_size_um is not None]
+    return [file.scale.pixel_size_um for file in files if file.scale.pixel_size_um is not None]
 
 
 def _same_scale(source: MaskSource, size: float) -> MaskSource:
@@ -139,7 +139,7 @@ def _same_image_scale(signal: SignalFile, size: float) -> SignalFile:
 
 
 def _difference(file: FrameFile | None, size: float) -> str:
-    own = None if file is None else file.pixel_size_um
+    own = None if file is None else file.scale.pixel_size_um
     if file is None or own is None or alike(size, own):
         return ""
     return (

@@ -18,24 +18,8 @@ from cytodisk.motion.map_movie import status_of
 from cytodisk.motion.mapped_frame import MappedFrame
 from cytodisk.runs.cell_rows import cell_columns, window_columns
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
+from cytodisk.scale import Scale
 from cytodisk.windows.grid import PolarGrid
-
-
-@dataclass(frozen=True)
-class Scale:
-    """µm a pixel and seconds a frame; None when unknown."""
-
-    pixel_size_um: float | None
-    frame_interval_s: float | None
-
-    @property
-    def velocity(self) -> float:
-        """What turns px/frame into the velocity unit."""
-        return (self.pixel_size_um or 1.0) / (self.frame_interval_s or 1.0)
-
-    def seconds(self, time: int) -> float | None:
-        """Time of a frame in seconds."""
-        return None if self.frame_interval_s is None else time * self.frame_interval_s
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +148,7 @@ def edge_columns(
     -------
     dict of str to array
     """
-    pixel, nothing = scale.pixel_size_um or 1.0, np.full(sectors, np.nan)
+    nothing = np.full(sectors, np.nan)
     cell, time, time_s = place
     states = np.full(sectors, status, dtype=object)
     columns: dict[str, Any] = {
@@ -178,12 +162,12 @@ def edge_columns(
         return columns | dict.fromkeys((*names, "edge_length"), nothing) | {"status": states}
     states[np.isnan(motion.displacement_px)] = "on the image's border"
     return columns | {
-        "velocity": motion.displacement_px * scale.velocity,
-        "velocity_cell_frame": in_cell_frame * scale.velocity,
-        "velocity_error": motion.error_px * scale.velocity,
-        "protruded_area": motion.protruded_px2 * pixel**2,
-        "retracted_area": motion.retracted_px2 * pixel**2,
-        "edge_length": motion.length_px * pixel,
+        "velocity": scale.velocity(motion.displacement_px),
+        "velocity_cell_frame": scale.velocity(in_cell_frame),
+        "velocity_error": scale.velocity(motion.error_px),
+        "protruded_area": scale.area(motion.protruded_px2),
+        "retracted_area": scale.area(motion.retracted_px2),
+        "edge_length": scale.length(motion.length_px),
         "status": states,
     }
 
@@ -212,7 +196,7 @@ def _track_columns(frame: MappedFrame, scale: Scale) -> dict[str, Any]:
     boundary, transform = frame.boundary, frame.boundary.transform
     return {
         "restarted": boundary.restarted,
-        "tracking_residual": boundary.residual_px * (scale.pixel_size_um or 1.0),
+        "tracking_residual": scale.length(boundary.residual_px),
         "order_violations": boundary.order_violations,
         "registration_angle": float(np.degrees(transform.angle)),
         "registration_shift_y": transform.shift_y,

@@ -15,10 +15,10 @@ from cytodisk.images.frames import FrameFile, open_frames
 from cytodisk.images.mask_kinds import understood_as
 from cytodisk.images.tracks import CellTrack, list_tracks, read_frame
 from cytodisk.runs.map.map_inputs import check_signal
-from cytodisk.runs.movie.frame_rows import Scale
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters, MovieParameters
 from cytodisk.runs.pixel_sizes import common_pixel_size
 from cytodisk.runs.steps import name_channels
+from cytodisk.scale import Scale
 from cytodisk.store.study_folder import part_key
 from cytodisk.windows.grid import PolarGrid, first_depth, layers_for_depth, polar_windows
 from cytodisk.windows.grid_parameters import Spacing
@@ -206,8 +206,8 @@ def _check_frames(masks: FrameFile, signal: FrameFile) -> None:
 
 
 def _frame_interval(masks: FrameFile, signal: FrameFile | None) -> float | None:
-    known = [file for file in (signal, masks) if file is not None and file.frame_interval_s is not None]
-    intervals = [file.frame_interval_s for file in known if file.frame_interval_s is not None]
+    known = [file for file in (signal, masks) if file is not None and file.scale.frame_interval_s is not None]
+    intervals = [file.scale.frame_interval_s for file in known if file.scale.frame_interval_s is not None]
     if intervals and max(intervals) > 1.01 * min(intervals):
         raise SignalError(
             f"frame intervals differ: {known[0].path} says {intervals[0]:g} s, {known[1].path} "

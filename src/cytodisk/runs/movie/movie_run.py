@@ -25,6 +25,7 @@ from cytodisk.runs.movie.movie_tables import finish_tables
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.steps import Progress, check_options, finish_run, silent
+from cytodisk.scale import Scale
 from cytodisk.store.study import Study, open_study
 from cytodisk.store.study_folder import MOVIE_TABLES, PARAMETERS, StudyFolder, alone_in, part_key
 
@@ -136,7 +137,8 @@ class _Run:
                 self._resume_from(track, time)
             mask = signal if isinstance(signal, ReadError) else track.mask_in(frame, time)
             last = self._last.get(track.cell)
-            mapping.append((track, self._executor.submit(_map_timed, time, mask, last, self._settings)))
+            task = time, mask, last, self._settings, self._inputs.scale
+            mapping.append((track, self._executor.submit(_map_timed, *task)))
         for track, future in mapping:
             yield self._measured(track, time, *future.result(), signal)
 
@@ -173,10 +175,10 @@ class _Run:
 
 
 def _map_timed(
-    time: int, mask: Any, last: MappedFrame | None, settings: MovieSettings
+    time: int, mask: Any, last: MappedFrame | None, settings: MovieSettings, scale: Scale
 ) -> tuple[FrameResult, float]:
     started = clock.perf_counter()
-    return map_one(time, mask, last, settings), clock.perf_counter() - started
+    return map_one(time, mask, last, settings, scale), clock.perf_counter() - started
 
 
 def _signal_at(signal: FrameFile | None, time: int) -> Any:

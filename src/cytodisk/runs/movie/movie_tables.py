@@ -12,7 +12,8 @@ from cytodisk.analysis.activity import STATISTICS
 from cytodisk.analysis.consistency import correlation_over_sectors, displacement_between
 from cytodisk.images.tracks import CellTrack
 from cytodisk.motion.registration import RigidTransform
-from cytodisk.runs.movie.frame_rows import Scale, edge_columns
+from cytodisk.runs.movie.frame_rows import edge_columns
+from cytodisk.scale import Scale
 from cytodisk.store.activity_store import EDGE_VARIABLES, GEOMETRY, ActivityStore
 from cytodisk.store.study_folder import ACTIVITY, StudyFolder, part_key
 from cytodisk.windows.grid import PolarGrid
@@ -127,7 +128,7 @@ def _add_consistency(
     correlation = np.full((len(channels), layers), np.nan)
     if there is not None:
         places = np.stack([_registered(here), _registered(there)])
-        moved = displacement_between(places)[0].mean(axis=-1) * (scale.pixel_size_um or 1.0)
+        moved = scale.length(displacement_between(places)[0].mean(axis=-1))
         if "mean" in here:
             correlation = correlation_over_sectors(here["mean"], there["mean"])
     rows = len(channels) * layers

@@ -1,0 +1,83 @@
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import cytodisk as cd
+from cytodisk import Scale
+from cytodisk.errors import ParameterError
+
+KNOWN = Scale(0.5, 4.0)
+
+
+@pytest.mark.parametrize(
+    ("scale", "units"),
+    [
+        (KNOWN, ("µm", "µm²", "s", "µm/s")),
+        (Scale(0.5), ("µm", "µm²", "frame", "µm/frame")),
+        (Scale(None, 4.0), ("px", "px²", "s", "px/s")),
+        (Scale(), ("px", "px²", "frame", "px/frame")),
+    ],
+)
+def test_units(scale: Scale, units: tuple[str, ...]) -> None:
+    assert (scale.length_unit, scale.area_unit, scale.time_unit, scale.velocity_unit) == units
+
+
+def test_converts_what_is_known() -> None:
+    assert (KNOWN.length(3.0), KNOWN.area(8.0), KNOWN.time(2.0), KNOWN.velocity(2.0)) == (1.5, 2.0, 8.0, 0.25)
+    assert (KNOWN.seconds(3), Scale().seconds(3)) == (12.0, None)
+    np.testing.assert_array_equal(KNOWN.length(np.array([2.0, 4.0])), [1.0, 2.0])
+    values = np.array([1.0, 7.0])
+    for unknown in (Scale().length, Scale().area, Scale().time, Scale().velocity):
+        np.testing.assert_array_equal(unknown(values), values)
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf, True, "0.1"])
+@pytest.mark.parametrize("name", ["pixel_size_um", "frame_interval_s"])
+def test_only_positive_numbers(name: str, value: Any) -> None:
+    with pytest.raises(ParameterError, match=name):
+        Scale(**{name: value})
+
+
+def test_numbers_of_numpy_become_plain() -> None:
+    scale = Scale(np.float32(0.5))
+    assert type(scale.pixel_size_um) is float
+    assert scale == Scale(0.5)
+
+
+def test_of_reads_what_carries_one() -> None:
+    array = xr.DataArray(np.zeros(2), attrs=KNOWN.attrs)
+    assert Scale.of(array) == Scale.of(xr.Dataset(attrs=KNOWN.attrs)) == KNOWN
+    assert Scale.of(xr.DataArray(np.zeros(2), attrs={"pixel_size_um": None})) == Scale()
+    assert Scale.of(np.zeros(2)) == Scale()
+
+
+def test_a_given_value_goes_before_that_of_the_file() -> None:
+    assert KNOWN.given(None, 2.0) == Scale(0.5, 2.0)
+    assert KNOWN.given() == KNOWN
+
+
+def test_time_coords_have_seconds_where_they_are_known() -> None:
+    array = xr.DataArray(np.zeros(2), KNOWN.time_coords(np.array([3, 4])), ("time",))
+    assert array["time_s"].to_numpy().tolist() == [12.0, 16.0]
+    assert list(Scale().time_coords(np.array([3, 4]))) == ["frame"]
+
+
+def test_maps_and_windows_carry_the_scale_of_the_mask() -> None:
+    mask = xr.DataArray(cd.simulate.disk(9.0), dims=("y", "x"), attrs={"pixel_size_um": 0.5})
+    disk = cd.map_to_disk(mask)
+    grid = cd.polar_windows(2, 4)
+    assert disk.scale == cd.edge_windows(mask, 2, 4).scale == Scale(0.5)
+    assert cd.map_to_disk(mask, pixel_size_um=0.2).scale == Scale(0.2)
+    data = cd.sample(grid.on(disk), np.ones(mask.shape))
+    assert Scale.of(data) == Scale(0.5)
+    assert data["area"].attrs["units"] == "px²"
+
+
+def test_movies_carry_it_into_maps_velocity_and_activity() -> None:
+    masks = np.stack([cd.simulate.disk(9.0)] * 3)
+    movie = cd.map_movie(masks, pixel_size_um=0.5, frame_interval_s=4.0)
+    activity = cd.sample_movie(movie, cd.polar_windows(2, 4), masks.astype(float))
+    for carrier in (movie, movie[1], activity, activity["mean"], cd.edge_velocity(movie, 4)):
+        assert Scale.of(carrier) == KNOWN
