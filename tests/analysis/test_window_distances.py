@@ -119,13 +119,13 @@ def test_of_a_movie_the_mean_in_micrometres() -> None:
     assert found.attrs["units"] == found["interior"].attrs["units"] == "µm"
     each = [window_distances(movie[time], grid) for time in (0, 2, 5)]  # evenly spread, rounded to even
     for name in found:
-        expected = 0.5 * np.mean([one[name] for one in each], axis=0)
+        expected = np.mean([one[name] for one in each], axis=0)
         np.testing.assert_allclose(found[name], expected, rtol=1e-12)
     plain = window_distances(cd.map_movie(truth.masks), grid, frames=3)
     assert plain.attrs["units"] == "px"
     np.testing.assert_allclose(plain["edge"], 2.0 * found["edge"])
     np.testing.assert_allclose(
-        window_distances(movie, grid, frames=99)["straight"] / 0.5,
+        window_distances(movie, grid, frames=99)["straight"],
         np.mean([window_distances(movie[time], grid)["straight"] for time in range(6)], axis=0),
     )
 

@@ -145,7 +145,7 @@ def test_units_follow_what_is_known(
         (edge_velocity(movie, 8), edge_velocity(plain, 8)),
         (boundary_velocity(movie), boundary_velocity(plain)),
     ):
-        assert one.attrs == {"units": unit, "frame": "lab"}
+        assert one.attrs == {"units": unit, "frame": "lab"} | movie.scale.attrs
         np.testing.assert_allclose(one, factor * other)
         assert ("time_s" in one.coords) == (interval is not None)
     if interval is not None:

@@ -10,7 +10,7 @@ import numpy as np
 from scipy import sparse
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
-from cytodisk.scale import Scale
+from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.windows.pieces import pieces_by_window
 from cytodisk.windows.shares import PARTS as PARTS
 from cytodisk.windows.shares import WindowShares, shares_by_strips, strips
@@ -40,9 +40,9 @@ class WindowsOnCell(ABC):
         """The cell's mask, shape (H, W) and dtype bool."""
 
     @property
-    @abstractmethod
     def scale(self) -> Scale:
         """Scale of the image, as the map or the mask knows it."""
+        return UNKNOWN
 
     @property
     def layers(self) -> int:
