@@ -2,8 +2,9 @@
 Divide a cell into windows and measure a signal
 ===============================================
 
-Windows are rings and wedges of the disk, carried back into the cell. No window is ever
-empty, and together they are the cell: areas and intensities sum to those of the whole.
+A window is where a ring and a wedge of the disk meet, carried back into the cell. No
+window is ever empty. Together the windows are the cell: their areas and intensities sum
+to those of the cell.
 """
 
 import matplotlib.pyplot as plt
@@ -16,8 +17,8 @@ edge = cell.signal.sel(channel="edge")
 disk = cd.map_to_disk(cell.mask)
 
 # %%
-# A grid is made once and laid on any cell. Layer 0 is at the edge; sector 0 begins at
-# angle 0.
+# You make a grid once and put it on any cell. Layer 0 is at the edge; sector 0 starts
+# at angle 0.
 grid = cd.polar_windows(layers=8, sectors=48)
 windows = grid.on(disk)
 data = cd.sample(windows, cell.signal)
@@ -43,7 +44,7 @@ plt.show()
 # %%
 # Nothing is lost
 # ---------------
-# Each pixel is shared out among windows, so the shares sum to the cell.
+# Each pixel is divided among windows, so the windows sum to the cell.
 total = float((data["mean"] * data["n_pixels"]).sel(channel="edge").sum())
 print("area:", windows.areas.sum(), "px²; of the mask:", cell.mask.sum())
 print(
@@ -58,8 +59,8 @@ print("empty windows:", int((windows.areas == 0).sum()))
 # Equal areas or equal radii
 # --------------------------
 # With ``spacing="area"``, the default, all windows have nearly the same area.
-# ``"radius"`` makes rings of equal width, as the paper does: they are large outside
-# and small inside.
+# ``"radius"`` makes rings of equal width, as the paper does: outer windows are then
+# large and inner windows small.
 figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.6), layout="constrained")
 for ax, spacing in zip(axes, ("area", "radius"), strict=True):
     laid = cd.polar_windows(8, 48, spacing).on(disk)
@@ -71,7 +72,7 @@ plt.show()
 # %%
 # By layer
 # --------
-# The simulated signal is bright at the edge. Layers show how deep that goes.
+# The simulated signal is bright at the edge. The layers show how deep it reaches.
 by_layer = data["mean"].sel(channel="edge").mean("sector")
 figure, ax = plt.subplots(figsize=(4, 2.4), layout="constrained")
 ax.plot(np.arange(8), by_layer, "o-", color="0.15")

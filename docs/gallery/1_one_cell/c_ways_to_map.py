@@ -3,8 +3,8 @@ Harmonic map, equal areas, and between
 ======================================
 
 The harmonic map keeps angles where it can, and so makes thin parts of a cell tiny on
-the disk. The relaxation that follows gives every part its share of area. The paper's
-own relaxation, "advection", is there to compare with.
+the disk. The relaxation that follows gives every part its share of area. You can also
+compare with the paper's own relaxation, "advection".
 """
 
 import matplotlib.pyplot as plt
@@ -16,9 +16,9 @@ methods = ("harmonic", "advection", "newton")
 disks = {method: cd.map_to_disk(mask, method=method) for method in methods}
 
 # %%
-# Above, where a map makes parts of the cell too large (red) or too small (blue) on the
-# disk. Below, windows of equal area on the disk, carried into the cell: the harmonic
-# map leaves the arms to the outermost windows; the others divide them fairly.
+# Top: where a map makes parts of the cell too large (red) or too small (blue) on the
+# disk. Bottom: windows of equal area on the disk, carried into the cell. With the
+# harmonic map the arms lie in the outermost windows; the other maps divide them evenly.
 grid = cd.polar_windows(layers=6, sectors=30)
 figure, axes = plt.subplots(2, 3, figsize=(6.2, 4.2), layout="constrained")
 for column, (method, disk) in enumerate(disks.items()):
@@ -29,8 +29,8 @@ for column, (method, disk) in enumerate(disks.items()):
 plt.show()
 
 # %%
-# How far they keep areas (0 is perfect), and whether they are one to one. Advection can
-# turn triangles over; then its certificate is not valid and says which.
+# The area distortion (0 is perfect), and whether the map is one to one. Advection can
+# turn triangles over. Its certificate is then not valid, and says which triangles.
 for method, disk in disks.items():
     flipped = len(disk.certificate.flipped_in_disk)
     print(
@@ -41,9 +41,9 @@ for method, disk in disks.items():
 # %%
 # A dial between angles and areas
 # -------------------------------
-# ``shape_weight`` says how much shape counts against area. Towards 0 the map keeps
-# areas, towards large values it keeps angles. Area distortion is best at 0, angle
-# distortion at 1.
+# ``shape_weight`` sets how much shape counts against area. A small value keeps areas, a
+# large value keeps angles. An area distortion of 0 and an angle distortion of 1 are
+# perfect.
 for weight in (0.0005, 0.005, 0.05, 0.5):
     found = cd.map_to_disk(mask, shape_weight=weight).distortion
     print(f"shape_weight {weight:<6}: area {found.area:.3f}, angle {found.angle:.2f}")

@@ -2,8 +2,8 @@
 See a signal on the disk
 ========================
 
-On the disk all cells have the same shape, so signals of different cells can be looked
-at side by side, and averaged.
+On the disk all cells have the same shape. You can look at the signals of different
+cells side by side, and average them.
 """
 
 import matplotlib.pyplot as plt
@@ -12,8 +12,8 @@ import numpy as np
 import cytodisk as cd
 
 # %%
-# Four simulated cells of different shape, bright at the edge and brighter on the
-# right.
+# Four simulated cells of different shape. Their signal is bright at the edge, and
+# brighter on the right.
 masks = [
     cd.simulate.migrating(seed=1),
     cd.simulate.random_smooth(seed=2),
@@ -34,8 +34,8 @@ for column, (disk, signal) in enumerate(zip(disks, signals, strict=True)):
 plt.show()
 
 # %%
-# Their mean, pixel by pixel of the disk. ``disk.image`` is an array, NaN outside of
-# the disk.
+# The mean of the four cells at each pixel of the disk. ``disk.image`` gives an array
+# that is NaN outside the disk.
 images = [
     disk.image(signal, size=200) for disk, signal in zip(disks, signals, strict=True)
 ]

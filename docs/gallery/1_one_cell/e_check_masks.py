@@ -2,9 +2,9 @@
 What is wrong with a mask
 =========================
 
-A map needs one piece without holes. Cleaning makes sure of that and counts what it
-changed, so that nothing happens unseen. On the command line, ``cytodisk check
-masks.tif`` prints the same for every mask of a file.
+A map needs one piece without holes. Cleaning makes such a mask and reports each change.
+On the command line, ``cytodisk check masks.tif`` prints the same for every mask of a
+file.
 """
 
 import matplotlib.pyplot as plt
@@ -13,8 +13,8 @@ import numpy as np
 import cytodisk as cd
 
 # %%
-# A cell that was segmented badly: a piece of a neighbour came with it, and a dim
-# nucleus was left out.
+# A badly segmented cell: the mask has a piece of a neighbour, and a hole where the
+# nucleus is dim.
 mask = cd.simulate.migrating(seed=3)
 mask[5:30, 20:50] = True
 row, column = np.argwhere(mask).mean(axis=0).astype(int)
@@ -25,7 +25,7 @@ print("notes: ", *report.notes, sep="\n  ")
 print("QC flags:", *report.qc_flags, sep="\n  ")
 
 # %%
-# What came, and what is mapped.
+# What cleaning changed.
 change = cleaned.astype(int) - mask
 figure, ax = plt.subplots(figsize=(5, 2.8), layout="constrained")
 ax.imshow(mask, cmap="gray", alpha=0.4)
@@ -37,8 +37,8 @@ ax.axis("off")
 plt.show()
 
 # %%
-# If nothing may be changed, say so: then such a mask is an error that says what came
-# and what to do.
+# If cleaning must not change a mask, say so. Such a mask then ends in an error that
+# says what came and what to do.
 try:
     cd.clean_mask(mask, fragments="error")
 except cd.errors.MaskError as error:

@@ -2,8 +2,8 @@
 Take windows to QuPath, Fiji or napari
 ======================================
 
-The outlines of all windows can be written as GeoJSON, with any numbers beside them. The
-command line does it for every cell with ``cytodisk map masks.tif -o out/ --geojson``.
+You can write the outlines of all windows as GeoJSON, with your numbers beside them. The
+command ``cytodisk map masks.tif -o out/ --geojson`` does it for every cell.
 """
 
 import json
@@ -20,14 +20,14 @@ windows = cd.polar_windows(layers=6, sectors=36).on(cd.map_to_disk(cell.mask))
 means = cd.sample(windows, cell.signal)["mean"].sel(channel="edge")
 
 # %%
-# Each window is a polygon with its layer, sector, area, and the numbers that were
+# Each window is a polygon with its layer, sector, area, and the numbers that you
 # passed.
 collection = windows.geojson({"edge": means.to_numpy()})
 first = collection["features"][0]
 print(first["properties"], "and", len(first["geometry"]["coordinates"][0]), "points")
 
 # %%
-# Written and read back, as another program would.
+# Write the file, and read it as another program would.
 with TemporaryDirectory() as folder:
     file = Path(folder) / "windows.geojson"
     file.write_text(json.dumps(collection))

@@ -2,10 +2,10 @@
 Windows on the disk against windows along the edge
 ==================================================
 
-The usual way divides a cell by distance from its edge: bands of equal depth, cut where
-the nearest point of the edge says. Such windows are regular at the edge and run out
-inside. Both kinds, and rings around the middle as CellProfiler makes them, have the
-same interface, so they can be compared on any cell.
+The usual method divides a cell by distance from its edge: bands of equal depth, divided
+by the nearest point of the edge. Such windows are regular at the edge and run out
+inside. You use these windows, windows on the disk, and rings as in CellProfiler in the
+same way, so you can compare them on any cell.
 """
 
 import matplotlib.pyplot as plt
@@ -51,9 +51,9 @@ axes[1].legend(frameon=False)
 plt.show()
 
 # %%
-# ``window_measures`` has the area, the eccentricity and the number of pieces of every
-# window. Pieces are counted on pixels: a window of the disk is in one piece, but
-# where it is thinner than a pixel, the pixels that it has a share of may lie apart.
+# ``window_measures`` gives the area, the eccentricity and the number of pieces of every
+# window. It counts pieces on pixels. A window of the disk is in one piece; but where it
+# is thinner than a pixel, its pixels may not touch.
 for name, windows in kinds.items():
     measures = cd.window_measures(windows)
     pieces = measures["pieces"].to_numpy()

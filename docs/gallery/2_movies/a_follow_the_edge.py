@@ -2,9 +2,9 @@
 Follow the edge of a moving cell
 ================================
 
-Every place of the edge keeps its angle on the disk as the cell moves, so its velocity
-can be read through time. In a simulated movie the true velocity is known, and the two
-can be compared.
+Every point of the edge keeps its angle on the disk as the cell moves, so you can follow
+its velocity over time. In a simulated movie you know the true velocity, and can compare
+the two.
 """
 
 import matplotlib.pyplot as plt
@@ -22,7 +22,7 @@ movie = cd.map_movie(
 print(movie)
 
 # %%
-# The outline through time, with the paths of some of its points.
+# The outline over time, with the paths of some of its points.
 figure, ax = plt.subplots(figsize=(5, 4), layout="constrained")
 cd.plot.draw_tracks(
     ax,
@@ -36,8 +36,8 @@ plt.show()
 # %%
 # Edge velocity
 # -------------
-# In each of 60 sectors, in µm/s: protrusion is positive. Velocity belongs to the step
-# from a frame to the next, so the last frame has none.
+# In each of 60 sectors, in µm/s. Protrusion is positive. Velocity is measured from a
+# frame to the next, so the last frame has none.
 velocity = cd.edge_velocity(movie, sectors=60)
 figure, ax = plt.subplots(figsize=(5, 2.8), layout="constrained")
 cd.plot.draw_velocity_map(ax, velocity, frame_interval_s=movie.scale.frame_interval_s)
@@ -46,8 +46,8 @@ plt.show()
 # %%
 # Against the truth
 # -----------------
-# The simulation knows how far each point of the edge goes. Averaged in the same
-# sectors, that is what a perfect tracker would find.
+# The simulation knows how far each point of the edge moves. The mean in the same
+# sectors is what a perfect tracker would measure.
 true_px = true_edge_velocity(
     movie.records[0].boundary,
     truth.boundary_yx,
@@ -55,21 +55,21 @@ true_px = true_edge_velocity(
     sectors=60,
 )
 true = true_px * truth.pixel_size_um / truth.frame_interval_s
-found, known = velocity.to_numpy()[:-1].ravel(), true[:-1].ravel()
-print(f"correlation with the truth: {np.corrcoef(found, known)[0, 1]:.3f}")
-print(f"typical error: {1000 * np.sqrt(np.mean((found - known) ** 2)):.1f} nm/s")
+measured, known = velocity.to_numpy()[:-1].ravel(), true[:-1].ravel()
+print(f"correlation with the truth: {np.corrcoef(measured, known)[0, 1]:.3f}")
+print(f"typical error: {1000 * np.sqrt(np.mean((measured - known) ** 2)):.1f} nm/s")
 
 figure, ax = plt.subplots(figsize=(3.6, 3.2), layout="constrained")
-ax.plot(known, found, ".", markersize=1.5, color="0.3")
+ax.plot(known, measured, ".", markersize=1.5, color="0.3")
 ax.axline((0, 0), slope=1, color="#D55E00", linewidth=0.8)
-ax.set(xlabel="true velocity (µm/s)", ylabel="found (µm/s)", aspect="equal")
+ax.set(xlabel="true velocity (µm/s)", ylabel="measured (µm/s)", aspect="equal")
 plt.show()
 
 # %%
 # Error bars
 # ----------
-# Masks are uncertain by a fraction of a pixel. ``edge_changes`` says what that does
-# to the velocity of each sector, and how much area was won and lost.
+# The edge of a mask is uncertain by a fraction of a pixel. ``edge_changes`` computes
+# the error of velocity that follows, and the areas won and lost, for each sector.
 changes = cd.edge_changes(movie, sectors=60, jitter_px=0.5)
 sector = 10
 figure, ax = plt.subplots(figsize=(5, 2.4), layout="constrained")
@@ -81,7 +81,7 @@ ax.errorbar(
     markersize=2,
     linewidth=0.7,
     color="#0072B2",
-    label="found, ± its standard deviation",
+    label="measured ± standard deviation",
 )
 ax.plot(changes["time_s"], true[:, sector], color="0.15", linewidth=0.8, label="true")
 ax.set(xlabel="time (s)", ylabel="velocity (µm/s)", title=f"sector {sector}")

@@ -1,9 +1,9 @@
 """
-Activity maps: a signal in every window through time
-====================================================
+Activity maps: a signal in every window over time
+=================================================
 
-Time runs to the right, sectors go up, and each layer has its own map: what a kymograph
-is for a line, this is for the whole cell.
+Time runs to the right, sectors go up, and each layer has its own map. A kymograph shows
+a line; an activity map shows the whole cell.
 """
 
 import matplotlib.pyplot as plt
@@ -20,8 +20,8 @@ activity = cd.sample_movie(movie, cd.polar_windows(layers=4, sectors=60), truth.
 print(activity["mean"].sizes)
 
 # %%
-# Edge velocity above the signal in all layers. The simulated signal is bright where
-# the edge has just moved, and only near the edge.
+# Top: edge velocity. Below: the signal in each layer. The simulated signal is bright
+# where the edge has just moved, and only near the edge.
 velocity = cd.edge_velocity(movie, sectors=60)
 mean = activity["mean"].sel(channel="edge")
 figure, axes = plt.subplots(5, 1, figsize=(5.6, 6.4))
@@ -32,7 +32,7 @@ cd.plot.draw_layers(
 plt.show()
 
 # %%
-# One frame of it, in the cell.
+# One frame, in the cell.
 frame = 20
 windows = cd.polar_windows(layers=4, sectors=60).on(movie[frame])
 figure, axes = plt.subplots(1, 2, figsize=(5.6, 2.8), layout="constrained")

@@ -1,10 +1,10 @@
 """
-Do windows stay in the same place?
-==================================
+Do windows keep their position?
+===============================
 
-The paper asks two things of windows that follow a cell: that the signal in a window is
-like that in the next frame, and that windows do not leap. Both can be measured on any
-movie.
+The paper asks two things of windows that follow a cell. The signal in a window should
+be similar to that in the next frame, and windows should not jump. You can measure both
+on any movie.
 """
 
 import matplotlib.pyplot as plt
@@ -20,8 +20,8 @@ movie = cd.map_movie(
 grid = cd.polar_windows(layers=6, sectors=36)
 
 # %%
-# A cell that changes its whole shape. Colours belong to sectors: the same colour is
-# the same part of the edge.
+# A cell that changes its whole shape. Each colour is a sector: the same colour is the
+# same piece of the edge.
 frames = [0, 8, 16, 23]
 figure, axes = plt.subplots(1, 4, figsize=(6.2, 2.4), layout="constrained")
 cd.plot.draw_strip(
@@ -33,9 +33,8 @@ cd.plot.draw_strip(
 plt.show()
 
 # %%
-# How alike consecutive frames are, by layer, and how far windows move when the rigid
-# motion of the cell is taken out. A window that is lost for a frame would show as a
-# peak.
+# How similar consecutive frames are, by layer, and how far windows move after the rigid
+# motion of the cell is removed. A window that is lost for one frame would make a peak.
 activity = cd.sample_movie(movie, grid, truth.signal)
 alike = cd.consecutive_correlation(activity["mean"].sel(channel="material"))
 moved = cd.centroid_displacement(movie, activity)

@@ -2,8 +2,8 @@
 Kymographs along a line and along the edge
 ==========================================
 
-The classical picture, intensity along a line through time, and the one that follows the
-cell: intensity along the tracked edge, at a depth below it.
+A line kymograph shows intensity along a fixed line over time. An edge kymograph follows
+the cell: it shows intensity along the tracked edge, at a depth below it.
 """
 
 import matplotlib.pyplot as plt
@@ -19,7 +19,7 @@ movie = cd.map_movie(
 signal = truth.signal.sel(channel="edge")
 
 # %%
-# Along a line, three pixels wide, from the middle of the image to its right side.
+# A line, three pixels wide, from the middle of the image to its right side.
 middle = signal.sizes["y"] // 2, signal.sizes["x"] // 2
 end = (middle[0], signal.sizes["x"] - 2)
 line = cd.line_kymograph(signal, [middle, end], width_px=3)
@@ -34,8 +34,8 @@ cd.plot.draw_line_kymograph(axes[1], line)
 plt.show()
 
 # %%
-# Along the tracked edge, half a micrometre deep: the protrusions come and go, and the
-# ordinate stays with them.
+# Along the tracked edge, half a micrometre deep. Protrusions come and go, and each
+# stays at its height in the picture.
 rim = cd.boundary_kymograph(movie, signal, depth=0.5)
 figure, ax = plt.subplots(figsize=(5.6, 2.8), layout="constrained")
 cd.plot.draw_boundary_kymograph(ax, rim)

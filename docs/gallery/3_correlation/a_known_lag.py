@@ -2,8 +2,8 @@
 Find a lag that is known
 ========================
 
-In this simulated movie the signal at the edge follows the edge's motion, four frames
-later, along half of the edge. Does the correlation find where, and when?
+In this simulated movie the signal follows the motion of the edge four frames later,
+along half of the edge. Does the correlation show where, and with which lag?
 """
 
 import warnings
@@ -25,21 +25,20 @@ signal = cd.sample_movie(movie, grid, truth.signal)["mean"].sel(channel="edge")
 velocity = cd.edge_velocity(movie, sectors=32)
 
 # %%
-# Each window's signal with the velocity of its sector, at lags to both sides. At a
-# positive lag velocity follows the signal; here it comes first, so the lag is
-# negative. Surrogates of the velocity, with the same spectrum but random phases, tell
+# Correlate each window's signal with the velocity of its sector, at each lag. Positive
+# lag: the edge moves after the signal. Here the edge moves first, so the lag is
+# negative. Surrogates of the velocity, with the same spectrum and random phases, show
 # what chance gives.
 warnings.simplefilter("ignore", cd.errors.StationarityWarning)
 lags = cd.cross_correlate(signal, velocity, max_lag=15, surrogates=499)
 peaks = cd.peak_correlation(lags)
 significant = peaks["q"] < 0.05
 print("lag of the simulation:", -truth.lag_frames, "frames")
-found = peaks["lag"].where(significant).sel(layer=0).to_series().value_counts()
-print("significant windows of layer 0 by lag:", found.to_dict())
+counts = peaks["lag"].where(significant).sel(layer=0).to_series().value_counts()
+print("significant windows of layer 0 by lag:", counts.to_dict())
 
 # %%
-# The mean over each layer has all its windows to go by: significant where no single
-# window is.
+# The mean of a layer has more power than a single window.
 by_layer = cd.correlation_by_layer(lags)
 figure, ax = plt.subplots(figsize=(5, 2.8), layout="constrained")
 for layer, colour in ((0, "#0072B2"), (2, "#D55E00"), (5, "0.5")):
@@ -62,8 +61,8 @@ ax.legend(frameon=False)
 plt.show()
 
 # %%
-# Where it is: the truth, the peak of each window, and its lag. Windows that are not
-# significant are pale.
+# The truth, the peak of each window, and its lag. Windows that are not significant are
+# pale.
 frame = 30
 table = peaks.to_dataframe().reset_index().assign(cell=0)
 shown = cd.plot.PeakMap.of(table, grid)
@@ -73,7 +72,7 @@ coupled = truth.boundary_yx[frame][truth.coupled > 0.5]
 cd.plot.draw_windows(axes[0], windows, color="0.7")
 axes[0].plot(coupled[:, 1], coupled[:, 0], ".", color="#b2182b", markersize=2)
 cd.plot.frame_cell(axes[0], movie[frame], pixel_size_um=truth.pixel_size_um)
-axes[0].set_title("where it is simulated")
+axes[0].set_title("simulated here")
 for ax, what, unit in ((axes[1], "correlation", None), (axes[2], "lag", "s")):
     drawn = cd.plot.draw_peaks_on_cell(
         ax, shown, windows, what, pixel_size_um=truth.pixel_size_um

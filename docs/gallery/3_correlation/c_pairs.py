@@ -1,10 +1,9 @@
 """
-How far a coupling reaches
-==========================
+How far a correlation reaches
+=============================
 
-Every window of one signal with every window of another, by how far apart they are and
-by the lag: this shows how far what happens at one place goes with what happens
-elsewhere.
+Correlate every window of one signal with every window of another, by their distance and
+by the lag. This shows how far apart two positions still correlate.
 """
 
 import warnings
@@ -19,14 +18,13 @@ movie = cd.map_movie(
     truth.masks,
     pixel_size_um=truth.pixel_size_um,
     frame_interval_s=truth.frame_interval_s,
-    registration=False,  # waves that run around a cell look like a rotation
+    registration=False,  # waves around a cell look like a rotation
 )
 grid = cd.polar_windows(layers=4, sectors=32)
 signal = cd.sample_movie(movie, grid, truth.signal)["mean"].sel(channel="edge")
 
 # %%
-# Distances between windows: straight, through the inside of the cell, or along its
-# edge.
+# Distances between windows: straight, inside the cell, or along its edge.
 distances = cd.window_distances(movie, grid)
 pairs = cd.correlate_pairs(
     signal, signal, max_lag=12, distances=distances["edge"], bins=14
@@ -34,9 +32,9 @@ pairs = cd.correlate_pairs(
 print(pairs)
 
 # %%
-# Waves run around the edge of this cell, in both directions alike when all pairs are
-# taken together. Where two places are a wavelength apart along the edge, about 18 µm,
-# the signal rises and falls at the same time; 40 s later it is the other way round.
+# Waves run around the edge of this cell. Over all pairs, both directions look the same.
+# Two positions that are a wavelength apart along the edge, about 18 µm, rise and fall
+# at the same time; 40 s later it is the opposite.
 figure, ax = plt.subplots(figsize=(5.4, 3), layout="constrained")
 limit = float(abs(pairs["correlation"]).max())
 shown = ax.pcolormesh(

@@ -1,9 +1,9 @@
 """
-Protrusions, and the signal around them
-=======================================
+Protrusion events, and the signal around them
+=============================================
 
-An episode is a run of frames in which a sector of the edge goes out, or in. Averaged
-around their onsets, signals show what comes before and what after.
+An event is a run of frames in which a sector of the edge protrudes, or retracts. The
+mean signal around the onsets shows what comes before and what comes after.
 """
 
 import matplotlib.pyplot as plt
@@ -22,7 +22,7 @@ signal = cd.sample_movie(movie, cd.polar_windows(layers=5, sectors=30), truth.si
 velocity = cd.edge_velocity(movie, sectors=30)
 
 # %%
-# Episodes, one a row. Neighbouring sectors that move in the same step belong to one
+# One row for each event. Events of neighbouring sectors at the same time belong to one
 # patch.
 events = cd.edge_events(velocity)
 print(
@@ -35,9 +35,9 @@ cd.plot.draw_events(ax, velocity, events)
 plt.show()
 
 # %%
-# The mean signal around the onsets of protrusion. The simulated signal follows
-# velocity by four frames (20 s). The band comes from drawing patches anew, for
-# episodes of one patch are not independent.
+# The mean signal around the onsets of protrusion. The simulated signal follows the
+# velocity by four frames (20 s). The band comes from resampling whole patches, because
+# the events of a patch are not independent.
 around = cd.average_around(signal.sel(channel="edge"), events, before=10, after=15)
 figure, ax = plt.subplots(figsize=(6, 2.8), layout="constrained")
 lines = cd.plot.draw_event_average(ax, around, label="mean signal")

@@ -1,10 +1,9 @@
 """
-From files to a study, and back into Python
-===========================================
+From files to a study, and back to Python
+=========================================
 
-Masks and signals are files; one command follows the cell and writes a folder of tables,
-maps and pictures. This example writes the files of a simulated cell first, so that it
-needs nothing.
+You have masks and signals in files. One command follows the cell and writes a folder of
+tables, maps and pictures. This example first writes the files of a simulated cell.
 """
 
 import subprocess
@@ -30,9 +29,9 @@ tifffile.imwrite(
 
 
 # %%
-# The command, as it is typed in a terminal.
+# The command, as you type it in a terminal.
 def cytodisk(command: str) -> None:
-    """Run a command of cytodisk and print what it says."""
+    """Run a command of cytodisk and print its output."""
     done = subprocess.run(
         [sys.executable, "-m", "cytodisk", *command.split()],
         cwd=folder,
@@ -49,17 +48,17 @@ cytodisk(
 print(*sorted(file.name for file in (folder / "out").iterdir()), sep="\n")
 
 # %%
-# Read it back. Tables are pandas; units stand beside them.
+# Read the results. Tables are pandas DataFrames, with their units in ``attrs``.
 study = cd.open_study(folder / "out")
 print(
     "cells:", study.cells["cell"].nunique(), "frames:", study.cells["frame"].nunique()
 )
-shown = ["time", "area", "area_distortion", "certificate_valid", "status"]
+shown = ["frame", "area", "area_distortion", "certificate_valid", "status"]
 print(study.cells[shown].head())
 print(study.edge.attrs["units"]["velocity"], "and", study.cells.attrs["units"]["area"])
 
 # %%
-# One sector of the edge, with its error bars.
+# The velocity of one sector, with its error bars.
 one = study.edge.query("cell == 0 and sector == 10")
 figure, ax = plt.subplots(figsize=(5, 2.4), layout="constrained")
 ax.errorbar(
@@ -92,5 +91,6 @@ cd.plot.draw_window_means(
 plt.show()
 
 # %%
-# Next, ``cytodisk correlate out --signal edge --with velocity`` and ``cytodisk report
-# out``, or :func:`cytodisk.correlate_study` and :func:`cytodisk.write_report`.
+# Next, type ``cytodisk correlate out --signal edge --with velocity`` and ``cytodisk
+# report out``, or call :func:`cytodisk.run_correlate` and
+# :func:`cytodisk.write_report`.

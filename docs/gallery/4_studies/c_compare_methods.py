@@ -1,8 +1,8 @@
 """
-Compare methods on your own cells
+Compare windows on your own cells
 =================================
 
-How many windows are empty, how regular are they, how far does a map keep areas, and is
+How many windows are empty? How regular are they? How far does a map keep areas, and is
 it one to one? One command answers for several methods on the same masks.
 """
 
@@ -33,7 +33,8 @@ folder = Path(mkdtemp())
 tifffile.imwrite(folder / "labels.tif", labels)
 
 command = (
-    "compare labels.tif -o out --layers 8 --sectors 40 --methods newton,harmonic,edge"
+    "compare-windows labels.tif -o out --layers 8 --sectors 40 "
+    "--methods newton,harmonic,edge"
 )
 done = subprocess.run(
     [sys.executable, "-m", "cytodisk", *command.split(), "--quiet"],
@@ -44,13 +45,13 @@ done = subprocess.run(
 )
 
 # %%
-# A row a method, over all cells.
+# One row for each method, over all cells. (Here transposed.)
 by_method = pd.read_csv(folder / "out" / "comparison_methods.csv").set_index("method")
 print(by_method.T.to_string())
 
 # %%
-# A row a method and layer: from the edge inwards, the share of windows that hold any
-# pixel.
+# One row for each method and layer. The picture shows the share of windows that hold a
+# part of the cell, from the edge inwards.
 by_layer = pd.read_csv(folder / "out" / "comparison.csv")
 figure, ax = plt.subplots(figsize=(4.4, 2.6), layout="constrained")
 for (method, table), style in zip(
@@ -64,6 +65,6 @@ ax.legend(frameon=False)
 plt.show()
 
 # %%
-# The command also draws this, and with ``--movie`` compares how well windows stay in
-# place through time.
+# The command draws this, too. With ``--movie`` it compares how well windows keep their
+# position over time.
 print(*sorted(file.name for file in (folder / "out" / "figures").iterdir()), sep="\n")

@@ -2,9 +2,9 @@
 Measure the shape of cells, from plain to complex
 =================================================
 
-Some hundred numbers say what the shape of a cell is: size, form, moments, outline,
-curvature, depth and skeleton. Of many cells together they give an axis from plain to
-complex shapes, as the paper uses it to choose cells. On the command line it is
+About a hundred features describe the shape of a cell: size, form, moments, outline,
+curvature, depth and skeleton. The features of many cells give an axis from plain to
+complex shapes, which the paper uses to choose cells. On the command line, type
 ``cytodisk shapes masks.tif -o out/``.
 """
 
@@ -30,8 +30,8 @@ print("unit of area:", features.attrs["units"]["area"])
 print("scale-free features:", len(features.attrs["scale_free"]))
 
 # %%
-# The features that do not depend on size are laid out in a plane (UMAP). The score is
-# the position along the plane's principal axis, the arrow.
+# UMAP lays the cells out in a plane, by the features that do not depend on size. The
+# score is the position along the plane's principal axis, the arrow.
 score = cd.complexity_score(features, seed=0)
 figure, ax = plt.subplots(figsize=(5, 4), layout="constrained")
 _, outlines = cd.plot.shape_landscape(ax, score, masks)
@@ -39,7 +39,7 @@ figure.colorbar(outlines, label="complexity", shrink=0.7)
 plt.show()
 
 # %%
-# Six cells along the axis. The score belongs to the cells that were scored together.
+# Six cells along the axis. Compare scores only among cells that were scored together.
 ranked = score["complexity"].to_numpy().argsort()
 chosen = ranked[np.linspace(0, len(ranked) - 1, 6).astype(int)]
 figure, ax = plt.subplots(figsize=(6.2, 1.6), layout="constrained")

@@ -1,9 +1,9 @@
 """
-Red flags: what to look at before anything else
-===============================================
+QC flags: look at them first
+============================
 
-A mask that is wrong in one frame can outweigh all others. Red flags find such frames in
-the tables of a study; the report shows them first.
+A mask that is wrong in one frame can outweigh all other frames. QC flags name such
+frames. The report shows them first.
 """
 
 import subprocess
@@ -19,8 +19,8 @@ import tifffile
 import cytodisk as cd
 
 # %%
-# A movie in which frame 8 lost a part of the cell, as happens when a bright
-# neighbour moves the threshold.
+# A movie in which the mask of frame 8 lost a piece of the cell, as happens when a
+# bright neighbour changes the threshold.
 truth = cd.simulate.movie("migrating", seed=1, frames=18)
 masks = truth.masks.copy()
 columns = np.flatnonzero(masks[8].any(axis=0))
@@ -37,21 +37,21 @@ done = subprocess.run(
 )
 
 # %%
-# The gravest first, each with what it means and the frames it is about.
+# The most serious flag comes first. Each has its meaning, a remedy and its frames.
 study = cd.open_study(folder / "out")
-for flag in cd.red_flags(study):
+for flag in cd.qc_flags(study):
     print(flag.what.upper())
     print(*textwrap.wrap(f"{flag.meaning} {flag.advice}", 88), sep="\n")
     for place in flag.places:
         print("   frame", place.time, place.note)
 
 # %%
-# The same in a picture: a leap of the velocity in and out of that frame.
-velocity = study.edge.pivot(index="time", columns="sector", values="velocity")
+# The same in a picture: the velocity jumps before and after that frame.
+velocity = study.edge.pivot(index="frame", columns="sector", values="velocity")
 figure, ax = plt.subplots(figsize=(5.6, 2.8), layout="constrained")
 cd.plot.draw_velocity_map(ax, velocity.to_numpy(), frame_interval_s=5)
 plt.show()
 
 # %%
-# Leave such frames out of a correlation with ``cytodisk correlate out
-# --without-frames 7,8``, or mend the mask.
+# Correct the mask, or leave the frames out of a correlation: ``cytodisk correlate out
+# --without-frames 7,8``.
