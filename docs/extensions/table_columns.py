@@ -3,11 +3,11 @@
 from pathlib import Path
 from typing import Any
 
-from cytodisk.runs.batch.input_columns import INPUT, INPUT_COLUMNS
 from public_names import heading, write
 from sphinx.application import Sphinx
 
 from cytodisk.analysis.shape.features import GROUPS
+from cytodisk.runs.batch.input_columns import INPUT, INPUT_COLUMNS
 from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS, COMPARED_MOVIE
 from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.shapes.shape_tables import SHAPE_TABLES
