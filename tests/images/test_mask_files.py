@@ -6,10 +6,16 @@ import pytest
 import tifffile
 from numpy.testing import assert_array_equal
 
-from cytodisk.errors import MaskError, ParameterError
+from cytodisk.errors import MaskError, ReadError
 from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile, open_frames
-from cytodisk.images.mask_files import MaskSource, SourceCell, read_source_cells
+from cytodisk.images.mask_files import (
+    MaskSource,
+    SourceCell,
+    list_images,
+    open_mask_files,
+    read_source_cells,
+)
 from cytodisk.images.mask_kinds import understood_as
 
 ONE = np.zeros((20, 30), dtype=np.uint8)
@@ -120,3 +126,28 @@ def test_negative_labels_are_a_fault(tmp_path: Path) -> None:
     cells = read_cells(written(tmp_path, values), "labels")
     assert len(cells) == 1
     assert "negative labels (down to -1)" in str(cells[0].fault)
+
+
+def test_a_single_image_is_read_once_and_a_stack_once_more_after_the_look(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    reads: list[int] = []
+    frame = FrameFile.frame
+    monkeypatch.setattr(FrameFile, "frame", lambda file, number: reads.append(number) or frame(file, number))
+    for values, wanted in ((ONE, [0]), (np.stack([ONE, 2 * ONE, ONE]), [0, 1, 2, 0, 1, 2])):
+        reads.clear()
+        sources = open_mask_files(written(tmp_path, values).path)
+        images = list_images(sources)
+        found = [cell for image in images for cell in image.cells()]
+        assert [cell.cell for cell in found] == list(range(len(found)))
+        assert len(found) == sum(image.n_cells for image in images)
+        assert reads == wanted
+
+
+def test_an_image_that_changed_since_it_was_looked_at_is_told(tmp_path: Path) -> None:
+    values = np.zeros((2, 20, 20), dtype=np.uint8)
+    values[:, 2:8, 2:8], values[:, 12:18, 12:18] = 1, 2
+    (source,) = open_mask_files(written(tmp_path, values).path)
+    written(tmp_path, values % 2)
+    with pytest.raises(ReadError, match="changed"):
+        list(list_images([source])[1].cells())

@@ -6,7 +6,9 @@ import tifffile
 from numpy.testing import assert_array_equal
 
 from cytodisk.errors import MaskError, ReadError
+from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile, open_frames
+from cytodisk.images.mask_kinds import look_at
 from cytodisk.images.tracks import CellTrack, MissingLabel, list_tracks, read_frame
 
 SHAPE = 30, 60
@@ -34,6 +36,10 @@ def written(tmp_path: Path, values: np.ndarray, damaged: int | None = None) -> F
     return open_frames(path)
 
 
+def tracks_of(file: FrameFile, kind: Kind, link: bool) -> list[CellTrack]:
+    return list_tracks(file, look_at(file, kind), link)
+
+
 def spans(tracks: list[CellTrack]) -> list[tuple[int, int, int, int]]:
     return [(track.cell, track.label, track.first, track.last) for track in tracks]
 
@@ -43,7 +49,7 @@ LATE_EARLY_AND_GAP = drawn({1: 3}, {1: 3, 2: 7}, {2: 7}, {1: 3})
 
 def test_a_stack_is_one_track_of_all_frames(tmp_path: Path) -> None:
     file = written(tmp_path, drawn({1: 1}, {}, {1: 255}))
-    (track,) = list_tracks(file, "stack", link=False)
+    (track,) = tracks_of(file, "stack", link=False)
     assert spans([track]) == [(0, 1, 0, 2)]
     assert track.times == range(3)
     for time in track.times:
@@ -53,7 +59,7 @@ def test_a_stack_is_one_track_of_all_frames(tmp_path: Path) -> None:
 
 def test_each_label_is_a_track_from_its_first_frame_to_its_last(tmp_path: Path) -> None:
     file = written(tmp_path, LATE_EARLY_AND_GAP)
-    tracks = list_tracks(file, "labels", link=False)
+    tracks = tracks_of(file, "labels", link=False)
     assert spans(tracks) == [(0, 3, 0, 3), (1, 7, 1, 2)]
     assert list(tracks[1].times) == [1, 2]
     mask = tracks[0].mask_in(read_frame(file, 1), 1)
@@ -63,7 +69,7 @@ def test_each_label_is_a_track_from_its_first_frame_to_its_last(tmp_path: Path) 
 
 def test_a_label_that_is_missing_between_has_a_reason(tmp_path: Path) -> None:
     file = written(tmp_path, LATE_EARLY_AND_GAP)
-    track = list_tracks(file, "labels", link=False)[0]
+    track = tracks_of(file, "labels", link=False)[0]
     fault = track.mask_in(read_frame(file, 2), 2)
     assert isinstance(fault, MissingLabel)
     assert str(fault) == "label 3 is not in frame 2"
@@ -71,7 +77,7 @@ def test_a_label_that_is_missing_between_has_a_reason(tmp_path: Path) -> None:
 
 def test_linked_labels_follow_the_cell(tmp_path: Path) -> None:
     file = written(tmp_path, drawn({1: 3, 2: 7}, {1: 7, 2: 3, 3: 1}, {1: 2, 2: 9, 3: 4}, {1: 1, 3: 2}))
-    tracks = list_tracks(file, "labels", link=True)
+    tracks = tracks_of(file, "labels", link=True)
     assert spans(tracks) == [(0, 1, 0, 3), (1, 2, 0, 2), (2, 3, 1, 3)]
     for track, place in zip(tracks, PLACES.values(), strict=True):
         for time in track.times:
@@ -82,7 +88,7 @@ def test_linked_labels_follow_the_cell(tmp_path: Path) -> None:
 
 def test_without_linking_the_same_labels_are_other_tracks(tmp_path: Path) -> None:
     file = written(tmp_path, drawn({1: 3, 2: 7}, {1: 7, 2: 3}))
-    first, second = list_tracks(file, "labels", link=False)
+    first, second = tracks_of(file, "labels", link=False)
     assert first.mask_in(read_frame(file, 1), 1)[PLACES[2]].all()
     assert second.mask_in(read_frame(file, 1), 1)[PLACES[1]].all()
 
@@ -90,7 +96,7 @@ def test_without_linking_the_same_labels_are_other_tracks(tmp_path: Path) -> Non
 @pytest.mark.parametrize("link", [False, True])
 def test_a_damaged_frame_is_a_gap_with_its_own_reason(tmp_path: Path, link: bool) -> None:
     file = written(tmp_path, drawn({1: 3, 2: 7}, {1: 3, 2: 7}, {1: 3, 2: 7}), damaged=1)
-    tracks = list_tracks(file, "labels", link=link)
+    tracks = tracks_of(file, "labels", link=link)
     assert [(track.first, track.last) for track in tracks] == [(0, 2), (0, 2)]
     frame = read_frame(file, 1)
     assert isinstance(frame, ReadError)
@@ -104,17 +110,17 @@ def test_negative_labels_are_refused_with_their_frame(tmp_path: Path, link: bool
     values = LATE_EARLY_AND_GAP.astype(np.int16)
     values[2, 0, 0] = -4
     with pytest.raises(MaskError, match=r"frame 2.*negative labels.*-4"):
-        list_tracks(written(tmp_path, values), "labels", link=link)
+        tracks_of(written(tmp_path, values), "labels", link=link)
 
 
 @pytest.mark.parametrize("link", [False, True])
 def test_labels_that_are_no_whole_numbers_are_refused(tmp_path: Path, link: bool) -> None:
     file = written(tmp_path, LATE_EARLY_AND_GAP.astype(np.float32))
     with pytest.raises(MaskError, match=r"whole numbers.*float32"):
-        list_tracks(file, "labels", link=link)
+        tracks_of(file, "labels", link=link)
 
 
 @pytest.mark.parametrize("link", [False, True])
 def test_a_file_without_any_label_is_refused(tmp_path: Path, link: bool) -> None:
     with pytest.raises(MaskError, match=r"labels\.tif holds no label in any of its 3 frames"):
-        list_tracks(written(tmp_path, drawn({}, {}, {})), "labels", link=link)
+        tracks_of(written(tmp_path, drawn({}, {}, {})), "labels", link=link)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from scipy import ndimage
@@ -14,8 +15,10 @@ from scipy import ndimage
 from cytodisk.errors import CytodiskError, EmptyMaskError, MaskError, ReadError, as_data
 from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile, open_frames
-from cytodisk.images.mask_kinds import understood_as
+from cytodisk.images.mask_kinds import MaskLook, check_labels, look_at
 from cytodisk.images.mask_names import mask_names
+
+Reader: TypeAlias = Callable[[int], np.ndarray[Any, Any]]
 
 _MOST_SLOTS = 1_000_000  # labels up to here index a list of boxes; larger ones are renumbered first
 
@@ -37,6 +40,10 @@ class MaskSource:
         Names of files with masks of the same image, which are left out so that no cell counts twice.
     damaged : tuple of str
         Those of them that should have come first, but cannot be used.
+    look : MaskLook or None
+        What is known of its frames.
+    reader : callable or None
+        Gives a frame that is kept since the look; None to read it from the file.
     """
 
     name: str
@@ -46,6 +53,14 @@ class MaskSource:
     fault: CytodiskError | None = None
     instead_of: tuple[str, ...] = ()
     damaged: tuple[str, ...] = ()
+    look: MaskLook | None = None
+    reader: Reader | None = field(default=None, repr=False, compare=False)
+
+    def read(self, number: int) -> np.ndarray[Any, Any]:
+        """A frame; raises ReadError where it is damaged."""
+        assert self.file is not None  # whoever asks for a frame knows that there is one
+        frame: np.ndarray[Any, Any] = (self.reader or self.file.frame)(number)[0]
+        return frame
 
 
 @dataclass(frozen=True)
@@ -113,7 +128,9 @@ def open_mask_files(
     place = Path(path)
     if not place.is_dir():
         file = open_frames(place, unnamed="T")
-        return (MaskSource(place.name, place, file, understood_as(file, kind)),)
+        reader: Reader = lru_cache(maxsize=1)(file.frame) if file.n_frames == 1 else file.frame
+        look = look_at(file, kind, reader)
+        return (MaskSource(place.name, place, file, look.kind, look=look, reader=reader),)
     return tuple(_source(chosen, others, kind) for chosen, others in mask_names(place, images))
 
 
@@ -135,12 +152,71 @@ def _opened(path: Path, kind: Kind) -> MaskSource:
     source = MaskSource(path.name, path, None, None)
     try:
         file = open_frames(path, unnamed="T")
-        understood = understood_as(file, kind)
+        look = look_at(file, kind)
         if kind != "auto" and file.n_frames == 1:
             file.frame(0)  # raises where the picture itself is damaged; "auto" has read it
-        return replace(source, file=file, kind=understood)
+        return replace(source, file=file, kind=look.kind, look=look)
     except (ReadError, MaskError) as fault:
         return replace(source, fault=as_data(fault))
+
+
+@dataclass(frozen=True)
+class MaskImage:
+    """One frame of a mask file, not read yet.
+
+    Attributes
+    ----------
+    source : MaskSource
+    frame : int
+    first_cell : int
+        Running number of its first cell through all files.
+    n_cells : int
+        How many cells it gives; one, with the fault, where a file or an image holds none.
+    """
+
+    source: MaskSource
+    frame: int
+    first_cell: int
+    n_cells: int
+
+    def cells(self) -> Iterator[SourceCell]:
+        """Read the frame; a damaged one comes as a cell with its fault.
+
+        Raises
+        ------
+        ReadError
+            It holds other cells than at the look at the file.
+        """
+        count = 0
+        for number, found in enumerate(_cells_of(self.source, self.frame)):
+            yield replace(found, cell=self.first_cell + number)
+            count += 1
+        if count != self.n_cells:
+            raise ReadError(f"{self.source.path} has changed since it was opened: run the command again")
+
+
+def list_images(sources: Iterable[MaskSource]) -> list[MaskImage]:
+    """The frames of mask files, with the numbers of their cells; no frame is read.
+
+    Parameters
+    ----------
+    sources : iterable of MaskSource
+        As `open_mask_files` returns them.
+
+    Returns
+    -------
+    list of MaskImage
+        A file that cannot be used counts as one frame, with one cell that has the fault.
+    """
+    images: list[MaskImage] = []
+    cell = 0
+    for source in sources:
+        usable = source.file is not None and source.look is not None
+        for number in range(source.file.n_frames if source.file is not None and usable else 1):
+            count = source.look.cells_in(number) if source.look is not None and usable else 1
+            images.append(MaskImage(source, number, cell, count))
+            cell += count
+    return images
 
 
 def read_source_cells(sources: Iterable[MaskSource]) -> Iterator[SourceCell]:
@@ -156,55 +232,42 @@ def read_source_cells(sources: Iterable[MaskSource]) -> Iterator[SourceCell]:
     """
     cell = 0
     for source in sources:
-        for found in _cells_of(source):
-            yield replace(found, cell=cell)
-            cell += 1
+        for number in range(1 if source.file is None else source.file.n_frames):
+            for found in _cells_of(source, number):
+                yield replace(found, cell=cell)
+                cell += 1
 
 
-def _cells_of(source: MaskSource) -> Iterator[SourceCell]:
+def _cells_of(source: MaskSource, number: int) -> Iterator[SourceCell]:
+    """Cells of a frame, each as cell 0."""
     if source.file is None or source.kind is None:
         yield SourceCell(0, source.name, 0, 0, None, fault=source.fault)
         return
     shape = source.file.image_shape
-    for number in range(source.file.n_frames):
-        nothing = SourceCell(0, source.name, number, 0, None, image_shape=shape)
-        try:
-            frame = source.file.frame(number)[0]
-            _check_size(frame, number, source.kind)
-            if source.kind == "labels":
-                _check_labels(frame, number)
-        except (ReadError, MaskError) as fault:
-            yield replace(nothing, fault=as_data(fault))
-            continue
-        if source.kind == "labels":
-            yield from _labelled(frame, nothing)
-        else:
-            box = ndimage.find_objects(np.asarray(frame != 0).view(np.uint8))
-            rows, columns = with_margin(box[0], shape) if box else (slice(0, None), slice(0, None))
-            corner = rows.start, columns.start
-            # A copy, so that a waiting cell does not hold its whole image.
-            yield replace(
-                nothing, label=_single_label(frame), mask=frame[rows, columns].copy(), corner=corner
-            )
+    nothing = SourceCell(0, source.name, number, 0, None, image_shape=shape)
+    try:
+        frame = source.read(number)
+        _check_frame(frame, number, source.kind)
+    except (ReadError, MaskError) as fault:
+        yield replace(nothing, fault=as_data(fault))
+        return
+    if source.kind == "labels":
+        yield from _labelled(frame, nothing)
+        return
+    box = ndimage.find_objects(np.asarray(frame != 0).view(np.uint8))
+    rows, columns = with_margin(box[0], shape) if box else (slice(0, None), slice(0, None))
+    mask = frame[rows, columns].copy()  # so that a waiting cell does not hold its whole image
+    yield replace(nothing, label=_single_label(frame), mask=mask, corner=(rows.start, columns.start))
 
 
-def _check_labels(frame: np.ndarray[Any, Any], number: int) -> None:
-    if not np.issubdtype(frame.dtype, np.integer):
-        raise MaskError(f"labels must be whole numbers, got dtype {frame.dtype}: save the labels as uint16")
-    if frame.min() < 0:
-        raise MaskError(
-            f"frame {number} has negative labels (down to {frame.min()}): set what is no cell to 0"
-        )
-    if not frame.any():
-        raise EmptyMaskError(f"frame {number} is empty: it holds no label")
-
-
-def _check_size(frame: np.ndarray[Any, Any], number: int, kind: Kind) -> None:
-    """Tables hold labels as 64-bit integers with a sign; the greatest of all may be a plain mask."""
-    largest = int(frame.max(initial=0)) if frame.dtype == np.uint64 else 0
-    plain = kind != "labels" and largest == np.iinfo(np.uint64).max
-    if largest > np.iinfo(np.int64).max and not plain:
-        raise MaskError(f"frame {number} has labels up to {largest}: number the cells from 1")
+def _check_frame(frame: np.ndarray[Any, Any], number: int, kind: Kind) -> None:
+    if kind == "labels":
+        extremes = np.array([frame.min(), frame.max()], dtype=frame.dtype)
+        check_labels(frame.dtype, extremes, number)
+        if not extremes.any():
+            raise EmptyMaskError(f"frame {number} is empty: it holds no label")
+    elif frame.dtype == np.uint64 and frame.max(initial=0) < np.iinfo(np.uint64).max:  # which is a plain mask
+        check_labels(frame.dtype, frame.max(initial=0), number)
 
 
 def _labelled(frame: np.ndarray[Any, Any], nothing: SourceCell) -> Iterator[SourceCell]:

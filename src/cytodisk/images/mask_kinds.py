@@ -2,31 +2,63 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from skimage import measure
 
-from cytodisk.errors import MaskError, ReadError
+from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
 from cytodisk.images.file_parameters import Kind, KindParameters
 from cytodisk.images.frames import FrameFile
 
 _LEAST_ALIKE = 0.5  # of neighbouring pixels within cells must have one label in a label image
+_LARGEST = int(np.iinfo(np.int64).max)  # tables hold labels as 64-bit integers with a sign
 _MOST_PIECES = 3  # connected pieces a label, on average, in a label image
 
 
+@dataclass(frozen=True)
+class MaskLook:
+    """What one look at all frames of a mask file says.
+
+    Attributes
+    ----------
+    kind : {"mask", "stack", "labels"}
+    labels : tuple of (tuple of int, or CytodiskError)
+        For label images, the labels of each frame; the fault of one that cannot be used. Else empty.
+    """
+
+    kind: Kind
+    labels: tuple[tuple[int, ...] | CytodiskError, ...] = ()
+
+    def cells_in(self, number: int) -> int:
+        """How many rows a frame gives: one a cell; one, too, where it holds none, or has a fault."""
+        if self.kind != "labels" or isinstance(found := self.labels[number], CytodiskError):
+            return 1
+        return max(1, len(found))
+
+
 def understood_as(file: FrameFile, kind: Kind = "auto") -> Kind:
-    """What a mask file holds.
+    """What a mask file holds; see `look_at`."""
+    return look_at(file, kind).kind
+
+
+def look_at(file: FrameFile, kind: Kind = "auto", read: Callable[[int], Any] | None = None) -> MaskLook:
+    """What a mask file holds; its frames are read once, unless `kind` says enough.
 
     Parameters
     ----------
     file : FrameFile
     kind : {"auto", "mask", "stack", "labels"}
         "auto" decides: labels if any readable frame holds two integers beside 0; else one mask or a stack.
+    read : callable, optional
+        In the place of `file.frame`, such as to keep what was read.
 
     Returns
     -------
-    {"mask", "stack", "labels"}
+    MaskLook
 
     Raises
     ------
@@ -48,17 +80,55 @@ def understood_as(file: FrameFile, kind: Kind = "auto") -> Kind:
             f"{file.path} is a stack of {file.n_frames} frames where one image is needed: "
             "save the frame alone, or pass kind='stack'"
         )
-    if kind != "auto":
-        return kind
-    labelled = _frames_with_labels(file)
-    if labelled:
-        _refuse_intensities(file, labelled[0])
-        return "labels"
-    return "stack" if file.n_frames > 1 else "mask"
+    if kind in ("mask", "stack"):
+        return MaskLook(kind)
+    labels, several = _labels_of(file, read or file.frame, pictures_refused=kind == "auto")
+    if kind == "labels" or several:
+        return MaskLook("labels", labels)
+    damaged = [found for found in labels if isinstance(found, ReadError)]
+    if len(damaged) == file.n_frames:
+        raise damaged[-1]
+    return MaskLook("stack" if file.n_frames > 1 else "mask")
 
 
-def _refuse_intensities(file: FrameFile, number: int) -> None:
-    frame = file.frame(number)[0]
+def _labels_of(
+    file: FrameFile, read: Callable[[int], Any], pictures_refused: bool
+) -> tuple[tuple[tuple[int, ...] | CytodiskError, ...], bool]:
+    """Labels of each frame, or its fault; and whether any frame holds several values beside 0."""
+    found: list[tuple[int, ...] | CytodiskError] = []
+    several = False
+    for number in range(file.n_frames):
+        try:
+            frame = read(number)[0]
+        except ReadError as fault:
+            found.append(as_data(fault))
+            continue
+        values = np.unique(pd.unique(frame.ravel())) if np.issubdtype(frame.dtype, np.integer) else None
+        if values is not None and (values != 0).sum() > 1:
+            if pictures_refused and not several:
+                _refuse_intensities(file, number, frame)
+            several = True
+        try:
+            check_labels(frame.dtype, values, number)
+            found.append(tuple(values[values != 0].tolist()) if values is not None else ())
+        except MaskError as fault:
+            found.append(fault)
+    return tuple(found), several
+
+
+def check_labels(dtype: Any, values: Any, number: int) -> None:
+    """Raise MaskError unless a frame has labels; `values` are some of it that hold the least and greatest."""
+    if values is None or not np.issubdtype(dtype, np.integer):
+        raise MaskError(f"labels must be whole numbers, got dtype {dtype}: save the labels as uint16")
+    if values.min() < 0:
+        raise MaskError(
+            f"frame {number} has negative labels (down to {values.min()}): set what is no cell to 0"
+        )
+    if int(values.max()) > _LARGEST:
+        raise MaskError(f"frame {number} has labels up to {values.max()}: number the cells from 1")
+
+
+def _refuse_intensities(file: FrameFile, number: int, frame: np.ndarray[Any, Any]) -> None:
     left, right = frame[:, :-1], frame[:, 1:]
     both = (left != 0) & (right != 0)
     alike = (left == right)[both].mean() if both.any() else 1.0
@@ -72,25 +142,3 @@ def _refuse_intensities(file: FrameFile, number: int) -> None:
             f"{values} values of frame {number} lie in "
             f"{pieces} pieces; threshold it, or pass kind='labels' (--kind labels) if it is one"
         )
-
-
-def _frames_with_labels(file: FrameFile) -> list[int]:
-    """Frames that hold more than one value; a damaged one is reported when the cells are read."""
-    found, fault = [], None
-    damaged = 0
-    for number in range(file.n_frames):
-        try:
-            if _has_labels(file.frame(number)):
-                found.append(number)
-        except ReadError as error:
-            fault, damaged = error, damaged + 1
-    if fault is not None and damaged == file.n_frames:
-        raise fault
-    return found
-
-
-def _has_labels(frame: np.ndarray[Any, Any]) -> bool:
-    if not np.issubdtype(frame.dtype, np.integer):
-        return False
-    values = frame[frame != 0]
-    return bool(values.size) and bool(values.min() != values.max())

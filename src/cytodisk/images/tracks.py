@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
-from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile
 from cytodisk.images.linking import link_labels
+from cytodisk.images.mask_kinds import MaskLook
 
 
 @dataclass(frozen=True)
@@ -85,13 +85,14 @@ def read_frame(file: FrameFile, time: int) -> Any:
         return as_data(error)
 
 
-def list_tracks(file: FrameFile, kind: Kind, link: bool) -> list[CellTrack]:
+def list_tracks(file: FrameFile, look: MaskLook, link: bool) -> list[CellTrack]:
     """The cells of a mask movie.
 
     Parameters
     ----------
     file : FrameFile
-    kind : {"stack", "labels"}
+    look : MaskLook
+        At this file.
     link : bool
         Labels are not the same from frame to frame: link them by overlap.
 
@@ -107,12 +108,14 @@ def list_tracks(file: FrameFile, kind: Kind, link: bool) -> list[CellTrack]:
     MissingPartError
         `link` needs a package that is not installed.
     """
-    if kind != "labels":
+    if look.kind != "labels":
         return [CellTrack(0, 1, 0, file.n_frames - 1, None)]
+    faults = {time: found for time, found in enumerate(look.labels) if isinstance(found, CytodiskError)}
+    for fault in faults.values():
+        if not isinstance(fault, ReadError):
+            raise fault
     found: dict[int, dict[int, int]] = {}
-    damaged: list[int] = []
-    frames = _label_frames(file, damaged)
-    tracks = link_labels(frames) if link else _labels_as_tracks(frames)
+    tracks = link_labels(_label_frames(file)) if link else _labels_as_tracks(look)
     for time, in_frame in enumerate(tracks):
         for label, track in in_frame.items():
             found.setdefault(track, {})[time] = label
@@ -122,7 +125,7 @@ def list_tracks(file: FrameFile, kind: Kind, link: bool) -> list[CellTrack]:
         CellTrack(cell, track, min(found[track]), max(found[track]), found[track])
         for cell, track in enumerate(sorted(found))
     ]
-    for time in damaged:
+    for time in faults:
         cells = _with_damaged(cells, time)
     return cells
 
@@ -139,22 +142,14 @@ def _with_damaged(tracks: list[CellTrack], time: int) -> list[CellTrack]:
     ]
 
 
-def _labels_as_tracks(frames: Iterable[Any]) -> list[dict[int, int]]:
-    return [{int(label): int(label) for label in np.unique(frame) if label} for frame in frames]
+def _labels_as_tracks(look: MaskLook) -> list[dict[int, int]]:
+    return [
+        {} if isinstance(found, CytodiskError) else {label: label for label in found} for found in look.labels
+    ]
 
 
-def _label_frames(file: FrameFile, damaged: list[int]) -> Iterator[Any]:
-    """Frames as label images; a damaged one is noted, and counts as empty here."""
+def _label_frames(file: FrameFile) -> Iterator[Any]:
+    """Frames as label images; a damaged one counts as empty here."""
     for time in range(file.n_frames):
         frame = read_frame(file, time)
-        if isinstance(frame, ReadError):
-            damaged.append(time)
-            yield np.zeros(file.image_shape, dtype=np.uint8)
-            continue
-        if not np.issubdtype(frame.dtype, np.integer):
-            raise MaskError(f"labels must be whole numbers, got dtype {frame.dtype}: save them as uint16")
-        if frame.min() < 0:
-            raise MaskError(
-                f"frame {time} has negative labels (down to {frame.min()}): set what is no cell to 0"
-            )
-        yield frame
+        yield np.zeros(file.image_shape, dtype=np.uint8) if isinstance(frame, ReadError) else frame

@@ -12,7 +12,7 @@ from cytodisk.geometry.outline import trace_outline
 from cytodisk.geometry.polygon import edge_lengths, smooth_closed
 from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile, open_frames
-from cytodisk.images.mask_kinds import understood_as
+from cytodisk.images.mask_kinds import look_at
 from cytodisk.images.tracks import CellTrack, list_tracks, read_frame
 from cytodisk.runs.map.map_inputs import check_signal
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters, MovieParameters
@@ -130,14 +130,14 @@ def open_movie(
     """
     files = open_movie_files(masks, signal, parameters)
     mask_file, scale = files.masks, files.scale
-    kind = understood_as(mask_file, parameters.kind)
-    tracks = tuple(list_tracks(mask_file, kind, parameters.link))
+    look = look_at(mask_file, parameters.kind)
+    tracks = tuple(list_tracks(mask_file, look, parameters.link))
     layers, depth_um = parameters.layers, None
     wanted = parameters.depth_um if isinstance(parameters, MovieParameters) else None
     if wanted is not None:
         layers, depth_um = _layers(mask_file, tracks, wanted, parameters.spacing, scale)
     grid = polar_windows(layers, parameters.sectors, parameters.spacing)
-    return MovieInputs(mask_file, kind, tracks, files.signal, parameters, grid, scale, depth_um, wanted)
+    return MovieInputs(mask_file, look.kind, tracks, files.signal, parameters, grid, scale, depth_um, wanted)
 
 
 def open_movie_files(
