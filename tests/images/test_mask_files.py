@@ -6,7 +6,7 @@ import pytest
 import tifffile
 from numpy.testing import assert_array_equal
 
-from cytodisk.errors import MaskError, ReadError
+from cytodisk.errors import MaskError, ParameterError, ReadError
 from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile, open_frames
 from cytodisk.images.mask_files import (
