@@ -22,7 +22,7 @@ def whole_number(name: str, value: Any, least: int) -> int:
     Parameters
     ----------
     name : str
-        Of the parameter, for the message.
+        Name of the parameter, for the message.
     value : object
     least : int
 

@@ -34,7 +34,7 @@ def parameter(
     above, least, most : float, optional
         Its range: more than, at least, at most.
     unit : str
-        Of the number, such as "px".
+        Unit of the number, such as "px".
     words : str
         What it may be, as "a point (row, column)", where type and range do not say it.
     """

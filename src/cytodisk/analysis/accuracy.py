@@ -48,7 +48,7 @@ def true_edge_velocity(
     Parameters
     ----------
     first : TrackedBoundary
-        Of the first frame, which says which material points belong to a sector.
+        Boundary of the first frame, which says which material points belong to a sector.
     boundary_yx : ndarray of shape (T, M, 2) and dtype float
         Material points of the edge through time.
     normal_displacement_px : ndarray of shape (T, M) and dtype float

@@ -22,7 +22,7 @@ def places_at_depth(disk: DiskMap, angles: FloatArray, depth_px: float) -> Float
     ----------
     disk : DiskMap
     angles : ndarray of shape (N,) and dtype float
-        Of the rays on the disk, in radians.
+        Angles of the rays on the disk, in radians.
     depth_px : float
         In pixels.
 

@@ -58,7 +58,7 @@ def average_around(
     bootstrap : int
         How often patches are drawn for the band; 0 for none.
     seed : int
-        Of those draws.
+        Seed of the draws.
     confidence : float
         Share of repeated experiments whose band is to hold the true mean, at one delay.
 

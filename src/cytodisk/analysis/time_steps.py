@@ -18,7 +18,7 @@ def frame_numbers(array: xr.DataArray, name: str) -> IntArray:
     ----------
     array : DataArray with the dim time
     name : str
-        Of the argument, for the error.
+        Name of the argument, for the error.
 
     Returns
     -------

@@ -101,7 +101,7 @@ def polygon_radius(points_uv: FloatArray, angles: FloatArray) -> FloatArray:
     points_uv : ndarray of shape (N, 2) and dtype float
         (u, v).
     angles : ndarray of shape (B,) and dtype float
-        Of the polygon's corners in radians, strictly increasing within one turn.
+        Angles of the polygon's corners in radians, strictly increasing within one turn.
 
     Returns
     -------

@@ -64,7 +64,7 @@ class DiskMap:
     converged : bool
         False when Newton's method stopped before its criterion; the map is valid all the same.
     scale : Scale
-        Of the image: µm per pixel, and in a movie seconds per frame, where they are known.
+        Scale of the image: µm per pixel, and in a movie seconds per frame, where they are known.
     """
 
     vertices_yx: FloatArray

@@ -127,7 +127,7 @@ def mesh_cell(mask: Any, parameters: MappingParameters, scale: Scale = UNKNOWN) 
     parameters : MappingParameters
         Method "advection" needs triangles of one size, the others take larger ones inside.
     scale : Scale
-        Of the image.
+        Scale of the image.
 
     Returns
     -------

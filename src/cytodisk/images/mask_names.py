@@ -59,7 +59,7 @@ def without_name(reason: str, name: str) -> str:
     ----------
     reason : str
     name : str
-        Of the file, without its folder.
+        Name of the file, without its folder.
 
     Returns
     -------

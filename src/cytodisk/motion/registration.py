@@ -112,7 +112,7 @@ def believable(
     reference_s, s : ndarray of shape (N,) and dtype float
         Points on the reference and a guess of the same points on `contour`.
     smoothness : float
-        Of the matching energy, in square pixels.
+        Smoothness of the matching energy, in square pixels.
 
     Returns
     -------
@@ -153,7 +153,7 @@ def register(
     reference_s, moving_s : ndarray of shape (N,) and dtype float
         Points on the reference and a guess of the same points on `moving`, distances along each in pixels.
     smoothness : float
-        Of the matching energy, in square pixels.
+        Smoothness of the matching energy, in square pixels.
 
     Returns
     -------

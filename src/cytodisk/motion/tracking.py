@@ -122,9 +122,9 @@ def follow(
     contour : Contour
         This frame's, in the image's frame.
     last : TrackedBoundary
-        Of the last frame that had one.
+        Boundary of the last frame that had one.
     reference : TrackedBoundary
-        Of the frame that registration refers to.
+        Boundary of the frame that registration refers to.
     settings : TrackingSettings
 
     Returns

@@ -45,15 +45,15 @@ class AnimatedFrames:
     Parameters
     ----------
     grid : PolarGrid
-        Of all frames.
+        Grid of all frames.
     extent_yx : (float, float, float, float)
         Field of view: top, bottom, left and right in pixels.
     pixel_size_um : float or None
         Micrometres a pixel; without it the scale bar is in px.
     limits : (float, float) or None
-        Of the signal's colours; by default percentiles 1 and 99.5 inside the first cell with a signal.
+        Limits of the signal's colours; by default percentiles 1 and 99.5 inside the first cell with a signal.
     label : str
-        Of the colour bar, with its unit.
+        Label of the colour bar, with its unit.
     """
 
     def __init__(

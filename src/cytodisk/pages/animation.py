@@ -53,9 +53,9 @@ def write_animation(
     frame_interval_s : float, optional
         Seconds between frames; without it the time stamp is the frame's number.
     limits : (float, float), optional
-        Of the signal's colours in all frames; by default percentiles 1 and 99.5 inside the first cell.
+        Limits of the signal's colours in all frames; by default percentiles 1 and 99.5 inside the first cell.
     label : str
-        Of the colour bar, with its unit.
+        Label of the colour bar, with its unit.
     progress : callable, optional
         Is called with the number of frames read so far.
 

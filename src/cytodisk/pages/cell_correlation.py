@@ -82,7 +82,7 @@ class CellCorrelation:
 
     @property
     def time(self) -> Any:
-        """Of the time axis."""
+        """Keywords of the time axis."""
         return {"frame_interval_s": self.movie.interval_s, "first_frame": self.movie.first}
 
     @cached_property
@@ -131,7 +131,7 @@ class CellCorrelation:
         Parameters
         ----------
         width_mm : float
-            Of the page: long lines are broken.
+            Width of the page: long lines are broken.
         what : str
         *notes : str
             More to say below it.

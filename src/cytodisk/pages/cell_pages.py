@@ -59,7 +59,7 @@ def write_cell_figures(
     folder : Path
         Exists already.
     name : str
-        Of the cell; the file is `<name>.png`, 180 mm wide at 200 dots per inch.
+        Name of the cell; the file is `<name>.png`, 180 mm wide at 200 dots per inch.
     windows : CellWindows
     signal : DataArray with dims (channel,) y, x, or None
         One frame. The first three channels are drawn.

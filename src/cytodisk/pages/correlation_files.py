@@ -43,7 +43,7 @@ def write_correlation_figures(
     Parameters
     ----------
     study : Study
-        Of a movie.
+        Study of a movie.
     correlation : Correlation
         Of that study, as of `study.correlation`.
     cell : int

@@ -75,7 +75,7 @@ def used_windows(settings: Mapping[str, Any], first: int, frames: int, sectors: 
     first : int
         Number of the cell's first frame.
     frames, sectors : int
-        Of the cell.
+        Numbers of frames and sectors of the cell.
 
     Returns
     -------

@@ -46,7 +46,7 @@ def write_movie_figures(
     Parameters
     ----------
     study : Study
-        Of a movie.
+        Study of a movie.
     cell : int
         Its number in the tables.
     signal : callable, optional

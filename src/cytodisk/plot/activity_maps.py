@@ -55,9 +55,9 @@ def draw_activity_map(
     first_frame : int
         Number of the first frame, where the time axis starts.
     label : str
-        Of the colour bar, with its unit.
+        Label of the colour bar, with its unit.
     limits : (float, float), optional
-        Of the colours; by default percentiles 1 and 99.5 of the values.
+        Limits of the colours; by default percentiles 1 and 99.5 of the values.
 
     Returns
     -------
@@ -110,7 +110,7 @@ def draw_velocity_map(
     first_frame : int
         Number of the first frame, where the time axis starts.
     unit : str
-        Of the velocity.
+        Unit of the velocity.
 
     Returns
     -------
@@ -171,11 +171,11 @@ def draw_layers(
     first_frame : int
         Number of the first frame, where the time axis starts.
     label : str
-        Of the layers' common colour bar, with its unit.
+        Label of the layers' common colour bar, with its unit.
     unit : str
-        Of the velocity.
+        Unit of the velocity.
     limits : (float, float), optional
-        Of the layers' colours; by default percentiles 1 and 99.5 of the values of all layers.
+        Limits of the layers' colours; by default percentiles 1 and 99.5 of the values of all layers.
 
     Returns
     -------

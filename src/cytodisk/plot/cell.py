@@ -127,7 +127,7 @@ def draw_cell(
         Micrometres a pixel; without it the scale bar is in px.
     cmap : str or Colormap
     limits : (float, float), optional
-        Of the colours, in the signal's unit; by default the percentiles 1 and 99.5 inside the cell.
+        Limits of the colours, in the signal's unit; by default the percentiles 1 and 99.5 inside the cell.
 
     Returns
     -------
@@ -183,7 +183,7 @@ def draw_windows(
     by_layer : bool
         Fill each window with the colour of its layer.
     color : str
-        Of the lines.
+        Colour of the lines.
     linewidth : float
         In points.
     alpha : float, optional
@@ -242,7 +242,7 @@ def draw_window_means(
         Micrometres a pixel; without it the scale bar is in px.
     cmap : str or Colormap
     limits : (float, float), optional
-        Of the colours; by default percentiles 1 and 99.5 of the values.
+        Limits of the colours; by default percentiles 1 and 99.5 of the values.
 
     Returns
     -------

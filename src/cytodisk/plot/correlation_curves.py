@@ -170,7 +170,7 @@ def draw_map_pair(
     signal, other : array_like or DataArray of shape (T, S)
         NaN is drawn light grey.
     label, other_label : str
-        Of the colour bars, with units.
+        Labels of the colour bars, with units.
     velocity_unit : str, optional
         Makes the second the edge velocity: red is protrusion, blue retraction.
     frame_interval_s : float, optional

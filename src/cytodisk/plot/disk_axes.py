@@ -42,7 +42,7 @@ def frame_disk(ax: Axes, sectors: int | None = None) -> None:
     ----------
     ax : Axes
     sectors : int, optional
-        Of the windows: labels then give the sector that begins there, or holds the angle, too.
+        Number of sectors of the windows: labels then give the sector that begins there, or holds the angle.
     """
     fit_disk(ax)
     ax.add_patch(Circle((0.0, 0.0), 1.0, fill=False, edgecolor=LINE_COLOUR, linewidth=0.6, zorder=3))
@@ -86,7 +86,7 @@ def draw_disk_image(
         Pixels across the disk.
     cmap : str or Colormap
     limits : (float, float), optional
-        Of the colours, in the signal's unit; by default the percentiles 1 and 99.5 inside the cell.
+        Limits of the colours, in the signal's unit; by default the percentiles 1 and 99.5 inside the cell.
 
     Returns
     -------
@@ -137,7 +137,7 @@ def draw_disk_windows(
     by_layer : bool
         Fill each window with the colour of its layer.
     color : str
-        Of the lines.
+        Colour of the lines.
     linewidth : float
         In points.
 
@@ -184,7 +184,7 @@ def draw_disk_means(
         NaN is drawn light grey.
     cmap : str or Colormap
     limits : (float, float), optional
-        Of the colours; by default percentiles 1 and 99.5 of the values.
+        Limits of the colours; by default percentiles 1 and 99.5 of the values.
     number_sectors : bool
         Write the numbers of the sectors at 0°, 90°, 180° and 270° too.
 

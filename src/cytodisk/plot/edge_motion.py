@@ -206,7 +206,7 @@ def draw_area_change(
     first_frame : int
         Number of the first frame, where time starts.
     unit : str
-        Of the areas.
+        Unit of the areas.
 
     Returns
     -------

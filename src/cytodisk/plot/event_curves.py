@@ -98,7 +98,7 @@ def draw_event_average(ax: Axes, average: xr.Dataset, *, label: str = "mean") ->
     average : Dataset with dims delay, and layer or none
         Of `average_around`; select one channel. Of many layers the four of `shown_layers` are drawn.
     label : str
-        Of the signal; its unit follows.
+        Label of the signal; its unit follows.
 
     Returns
     -------

@@ -33,9 +33,9 @@ def draw_line_kymograph(
     kymograph : DataArray with dims time and distance
         Of `line_kymograph`; select one channel.
     label : str
-        Of the colour bar; the unit follows.
+        Label of the colour bar; the unit follows.
     limits : (float, float), optional
-        Of the colours; by default percentiles 1 and 99.5 of the values.
+        Limits of the colours; by default percentiles 1 and 99.5 of the values.
 
     Returns
     -------
@@ -90,9 +90,9 @@ def draw_boundary_kymograph(
     kymograph : DataArray with dims time and point
         Of `boundary_kymograph`; select one channel. NaN is drawn light grey.
     label : str
-        Of the colour bar; the depth and the unit follow.
+        Label of the colour bar; the depth and the unit follow.
     limits : (float, float), optional
-        Of the colours; by default percentiles 1 and 99.5 of the values.
+        Limits of the colours; by default percentiles 1 and 99.5 of the values.
 
     Returns
     -------

@@ -53,7 +53,7 @@ def rows_of_cell(table: Any, cell: int, columns: set[str], name: str) -> pd.Data
     columns : set of str
         That it must have.
     name : str
-        Of the argument, for the error.
+        Name of the argument, for the error.
 
     Returns
     -------
@@ -82,7 +82,7 @@ def layer_names(layers: Sequence[int], count: int) -> list[str]:
     ----------
     layers : sequence of int
     count : int
-        Of all layers.
+        Number of all layers.
 
     Returns
     -------

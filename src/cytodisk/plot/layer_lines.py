@@ -36,7 +36,7 @@ def draw_by_layer(
     layers : sequence of int
         Those to draw.
     label : str
-        Of the measure, with its unit.
+        Label of the measure, with its unit.
     frame_interval_s : float, optional
         Seconds between frames; without it time is in frames.
     first_frame : int

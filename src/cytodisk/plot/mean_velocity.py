@@ -33,7 +33,7 @@ def draw_mean_velocity(
     first_frame : int
         Number of the first frame, where the time axis starts.
     unit : str
-        Of the velocity.
+        Unit of the velocity.
 
     Returns
     -------

@@ -64,7 +64,7 @@ def draw_pairs(
         are the quartiles over pairs, grey is what the mean stays within, at all distances and lags, in 95 of
         100 surrogates. Distance 0, windows paired with themselves, stands apart on the left.
     image : AxesImage
-        Of all distances above 0, its array of shape (lags, distances). What is beyond the grey of the
+        Picture of all distances above 0, its array of shape (lags, distances). What is beyond the grey of the
         lines has an outline, the gid of which is "beyond chance".
 
     Raises

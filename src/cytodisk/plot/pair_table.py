@@ -106,7 +106,7 @@ class PairTable:
 
     @property
     def label(self) -> str:
-        """Of the axis of distance."""
+        """Label of the axis of distance."""
         return f"{self.title} ({self.distance_unit})" if self.distance_unit else self.title
 
     @property
@@ -117,7 +117,7 @@ class PairTable:
 
     @property
     def width(self) -> float:
-        """Of a bin: the middle of the first above 0 is half of it."""
+        """Width of a bin: the middle of the first above 0 is half of it."""
         return 2.0 * float(self.distance[self.distance > 0][0])
 
     @property

@@ -205,7 +205,7 @@ def draw_peaks_on_cell(
     ax : Axes
     peaks : PeakMap
     windows : CellWindows
-        Of the frame to draw on.
+        Windows of the frame to draw on.
     shown : {"correlation", "lag"}
     limit : float, optional
         Colours go from -limit to limit; by default `peaks.limit(shown)`.

@@ -65,9 +65,9 @@ def draw_strip(
     signal : sequence of array_like of shape (H, W), optional
         One channel, one image a frame.
     cmap : str or Colormap
-        Of the signal.
+        Colours of the signal.
     limits : (float, float), optional
-        Of the signal's colours; by default percentiles 1 and 99.5 inside the cells of all frames.
+        Limits of the signal's colours; by default percentiles 1 and 99.5 inside the cells of all frames.
 
     Returns
     -------

@@ -18,7 +18,7 @@ def time_scale(frames: int, frame_interval_s: float | None) -> tuple[float, str]
     Parameters
     ----------
     frames : int
-        Of the whole movie: a long one is in minutes or hours.
+        Number of frames of the whole movie: a long one is in minutes or hours.
     frame_interval_s : float or None
 
     Returns

@@ -77,7 +77,7 @@ def compare_with_truth(study: Study, truth: SimulatedMovie) -> dict[str, str]:
     Parameters
     ----------
     study : Study
-        Of the files that `write_demo_input` wrote, with its edge signal correlated with velocity.
+        Study of the files that `write_demo_input` wrote, with its edge signal correlated with velocity.
     truth : SimulatedMovie
 
     Returns

@@ -86,7 +86,7 @@ class Processes:
         Parameters
         ----------
         work : callable
-            Of a module that can be imported.
+            Function of a module that can be imported.
         *arguments
             Can be pickled.
         time_limit : float, optional

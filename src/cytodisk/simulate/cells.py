@@ -156,7 +156,7 @@ def dumbbell(
     Parameters
     ----------
     radius : float
-        Of each disk, in pixels, at least 1.
+        Radius of each disk, in pixels, at least 1.
     neck_length : float
         Gap between the disks, in pixels, at least 0.
     neck_width : float

@@ -15,7 +15,7 @@ def coupled_stretch(share: float, random: np.random.Generator) -> FloatArray:
     Parameters
     ----------
     share : float
-        Of the edge, from 0 to 1.
+        Share of the edge, from 0 to 1.
     random : Generator
         Draws where the stretch starts.
 
@@ -46,7 +46,7 @@ def partly_followed(displacement_px: FloatArray, coupled: FloatArray, other: Pla
     coupled : ndarray of shape (N,) and dtype float
         Share of the own velocity in the sum of both.
     other : Plan
-        Of the other cell.
+        Plan of the other cell.
     first : int
         Frame of the first row, 0 or below.
 

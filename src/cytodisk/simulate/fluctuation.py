@@ -26,7 +26,7 @@ class Fluctuation:
     width : float
         Standard deviation of a push along the edge, in radians.
     height : ndarray of shape (K, M) and dtype float
-        Of each cosine, in pixels.
+        Height of each cosine, in pixels.
     frequency, phase : ndarray of shape (K, M) and dtype float
         In radians per frame, and in radians.
 

@@ -116,7 +116,7 @@ def plan_movie(kind: MovieKind, random: np.random.Generator, radius: float, habi
         One of `MOVIE_KINDS`.
     random : Generator
     radius : float
-        Of the disk of the same area as the cell at rest, in pixels.
+        Radius of the disk of the same area as the cell at rest, in pixels.
     habits : Habits
 
     Returns

@@ -28,15 +28,15 @@ class Scene:
     ----------
     plan : Plan
     places_yx : ndarray of shape (T, K, 2) and dtype float
-        Of the pushes, in the cell's frame.
+        Positions of the pushes, in the cell's frame.
     boundary_yx : ndarray of shape (T, N, 2) and dtype float
         True edge, (row, column) in pixels of the image.
     followed_px : ndarray of shape (T, N) and dtype float
         The normal velocity that the edge's signal follows, in pixels per frame.
     shape : (int, int)
-        Of the image.
+        Shape of the image.
     shift : ndarray of shape (2,) and dtype float
-        Of the image's origin against the pose's.
+        Shift of the image's origin against the pose's.
     present : ndarray of shape (T,) and dtype bool
     """
 

@@ -98,11 +98,11 @@ def movie(
     frames : int
         At least 2.
     radius_px : float
-        Of the disk of the same area as the cell at rest, at least 10.
+        Radius of the disk of the same area as the cell at rest, at least 10.
     speed_px : float, optional
-        Of the whole cell in pixels per frame, at least 0; for "growing" of its edge.
+        Speed of the whole cell in pixels per frame, at least 0; for "growing" of its edge.
     turn_deg : float, optional
-        Of the whole cell and its direction in degrees per frame, positive from +x towards +y.
+        Turn of the whole cell and its direction in degrees per frame, positive from +x towards +y.
     protrusion_px : float, optional
         Height of the largest protrusion in pixels, at least 0; only for kinds that have protrusions. For
         "fluctuating" three standard deviations of the edge about its mean place.

@@ -20,7 +20,7 @@ class Paths:
     Attributes
     ----------
     places_yx : ndarray of shape (T, K, 2) and dtype float
-        Of the pushes, in the cell's frame.
+        Positions of the pushes, in the cell's frame.
     boundary_yx : ndarray of shape (T, N, 2) and dtype float
         In pixels of the image, from where the cell's centre is in frame 0.
     interior_yx : ndarray of shape (T, P, 2) and dtype float

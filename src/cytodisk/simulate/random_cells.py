@@ -155,9 +155,10 @@ def random_spiky(
     spikes : int
         At least 0.
     spike_length : float
-        Of the longest spike beyond the body's mean radius, in pixels, at least 0; the shortest is a quarter.
+        Length of the longest spike beyond the body's mean radius, in pixels, at least 0. The shortest has a
+        quarter of it.
     spike_width : float
-        Of the widest spike, in pixels, at least 1; the narrowest is 1 px.
+        Width of the widest spike, in pixels, at least 1; the narrowest is 1 px.
     margin : int
         Pixels of background on every side, at least 0.
 

@@ -15,7 +15,7 @@ def lobed(random: np.random.Generator, radius: float, roughness: float) -> Float
     ----------
     random : Generator
     radius : float
-        Of the disk of the same area, in pixels.
+        Radius of the disk of the same area, in pixels.
     roughness : float
         Height of the largest lobe over the radius.
 

@@ -35,7 +35,7 @@ class Correlation:
     signal, with_ : str
         What was correlated: at a positive lag `with_` follows `signal`.
     name : str
-        Of a variant; empty for none.
+        Name of a variant; empty for none.
     settings : dict
         What was asked for, and the version of cytodisk.
     """
@@ -120,7 +120,7 @@ def write_correlation(
         With units in `attrs`.
     settings : dict
     name : str
-        Of a variant, which stands beside the others.
+        Name of a variant, which stands beside the others.
 
     Returns
     -------

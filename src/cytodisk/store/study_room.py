@@ -23,7 +23,7 @@ def make_room(
     ----------
     folder : Path
     provenance : dict
-        Of the run.
+        Provenance of the run.
     own : sequence of str
         Names, or patterns of names, of what belongs to a study; nothing else is removed.
     resume, overwrite : bool

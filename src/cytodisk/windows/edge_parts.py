@@ -42,7 +42,7 @@ def depths_and_angles(
     outline_yx : ndarray of shape (B, 2) and dtype float
         Closed polygon, (row, column) in pixels.
     angles : ndarray of shape (B,) and dtype float
-        Of the outline's points in radians, increasing within one turn; linear between points.
+        Angles of the outline's points in radians, increasing within one turn; linear between points.
 
     Returns
     -------

@@ -163,7 +163,7 @@ def layers_for_depth(depth: float, area: float, perimeter: float, spacing: Spaci
     depth : float
         Thickness of the first layer, above 0.
     area, perimeter : float
-        Of the cell, in the same unit of length.
+        Area and perimeter of the cell, in the same unit of length.
     spacing : {"area", "radius"}
 
     Returns
@@ -189,7 +189,7 @@ def first_depth(layers: Any, area: float, perimeter: float, spacing: Spacing = "
     ----------
     layers : int, or ndarray of int
     area, perimeter : float
-        Of the cell.
+        Area and perimeter of the cell.
     spacing : {"area", "radius"}
 
     Returns

@@ -294,7 +294,7 @@ def _next_window(
 
 @njit(cache=True)
 def _least_polygon_radius(angles: FloatArray) -> float:
-    """Of the polygon of points on the unit circle, at the middle of its longest side."""
+    """Radius of the polygon of points on the unit circle, at the middle of its longest side."""
     widest = angles[0] + 2.0 * math.pi - angles[-1]
     for n in range(len(angles) - 1):
         widest = max(widest, angles[n + 1] - angles[n])

@@ -29,7 +29,7 @@ def sample(
     windows : WindowsOnCell
         Windows on one cell, polar, edge-based or rings. An empty one has n_pixels 0 and no other statistics.
     signal : array_like of shape (H, W) or (C, H, W), or DataArray with dims (channel,) y, x
-        Of the shape of the mask.
+        Image to measure, of the shape of the mask.
     quantiles : sequence of float
         Weighted quantiles to add, each 0 to 1.
     **settings

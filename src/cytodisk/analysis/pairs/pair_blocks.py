@@ -64,7 +64,7 @@ class DistanceBins:
     number : ndarray of shape (W, V) and dtype int
         Bin of each pair: 0 for windows paired with themselves.
     edges : ndarray of shape (B,) and dtype float
-        Of the bins above 0.
+        Edges of the bins above 0.
     """
 
     number: IntArray

@@ -30,10 +30,10 @@ def window_distances(cell: DiskMap | DiskMovie, grid: PolarGrid, *, frames: int 
     Parameters
     ----------
     cell : DiskMap or DiskMovie
-        Of a movie, the mean over frames that are spread evenly over those with a map.
+        For a movie, the mean over frames that are spread evenly over those with a map.
     grid : PolarGrid
     frames : int
-        Of a movie, at least 1.
+        Number of frames of a movie, at least 1.
 
     Returns
     -------

@@ -256,7 +256,7 @@ def principal_axis(plane: FloatArray) -> tuple[FloatArray, float]:
     axis : ndarray of shape (2,) and dtype float
         Of length 1; its sign is arbitrary.
     share : float
-        Of the variance, 0.5 to 1.
+        Share of the variance, 0.5 to 1.
     """
     variances, vectors = np.linalg.eigh(np.cov(plane.T))
     return np.asarray(vectors[:, -1]), float(variances[-1] / variances.sum())

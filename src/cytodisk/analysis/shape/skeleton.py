@@ -31,7 +31,7 @@ class Skeleton:
     links : ndarray of shape (L, 2) and dtype int
         Pairs of neighbouring pixels.
     lengths : ndarray of shape (L,) and dtype float
-        Of the links: 1, or √2 where only corners meet.
+        Lengths of the links: 1, or √2 where only corners meet.
     """
 
     depth: FloatArray
@@ -40,7 +40,7 @@ class Skeleton:
 
     @property
     def length(self) -> float:
-        """Of all links, in pixels."""
+        """Length of all links, in pixels."""
         return float(self.lengths.sum())
 
     @cached_property

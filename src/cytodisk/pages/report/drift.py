@@ -97,7 +97,7 @@ def signal_drifts(study: Study) -> list[Drift]:
     Parameters
     ----------
     study : Study
-        Of a movie.
+        Study of a movie.
 
     Returns
     -------

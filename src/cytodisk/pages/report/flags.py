@@ -15,7 +15,7 @@ def red_flags(study: Study) -> list[Flag]:
     Parameters
     ----------
     study : Study
-        Of a movie or of single masks. Pixels are not read.
+        Study of a movie or of single masks. Pixels are not read.
 
     Returns
     -------

@@ -47,7 +47,7 @@ def write_report(
     Parameters
     ----------
     study : Study
-        Of a movie.
+        Study of a movie.
     path : path-like, optional
         By default report.html in the study, or report_cell_00003.html for a cell that is not the usual one.
     cell : int, optional
@@ -61,7 +61,7 @@ def write_report(
     Returns
     -------
     Path
-        Of the page.
+        Path of the page.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def page_flags(study: Study, signal: FrameSource | None = None) -> list[Flag]:
     Parameters
     ----------
     study : Study
-        Of a movie.
+        Study of a movie.
     signal : FrameSource, optional
         As for `write_report`.
 

@@ -98,7 +98,7 @@ def shown_signal(study: Study, signal: FrameSource | None = None) -> FoundSignal
     Parameters
     ----------
     study : Study
-        Of a movie.
+        Study of a movie.
     signal : FrameSource, optional
 
     Returns

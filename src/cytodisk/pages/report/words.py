@@ -47,7 +47,7 @@ def page_words(
     flags : sequence of Flag
     found : FoundSignal
     box : Box
-        Of the pictures.
+        Box of the pictures.
     left_out : sequence of str
         What the page leaves out, beside frames and pixels.
 

@@ -51,11 +51,11 @@ class RowReader:
     Attributes
     ----------
     folder : Path
-        Of the batch file; paths are relative to it.
+        Folder of the batch file; paths are relative to it.
     kind : {"movie", "map"}
         Of inputs that say none.
     parameters : dict
-        Of the file.
+        Parameters of the file.
     columns : tuple of str
         Names of the columns that the user gives.
     faults : Faults

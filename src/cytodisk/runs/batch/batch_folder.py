@@ -31,7 +31,7 @@ def make_room(store: Store, provenance: dict[str, Any], target: str, resume: boo
     ----------
     store : Store
     provenance : dict
-        Of the batch.
+        Provenance of the batch.
     target : str
         Name of the folder, for messages.
     resume, overwrite : bool

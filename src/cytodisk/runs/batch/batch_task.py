@@ -36,7 +36,7 @@ class BatchTask:
     Attributes
     ----------
     version : str
-        Of the cytodisk that made the task; a worker of another version refuses it.
+        Version of the cytodisk that made the task; a worker of another version refuses it.
     inputs : tuple of BatchInput
     target : str
         Folder of the batch's results, or the URL of an object store.

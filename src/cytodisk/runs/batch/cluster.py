@@ -51,10 +51,10 @@ def run_on_cluster(
     tasks : iterable of BatchTask
         Gone through as results are taken.
     address : str
-        Of the scheduler, as "tcp://10.0.0.1:8786".
+        Address of the scheduler, as "tcp://10.0.0.1:8786".
     target : str
-        Of all tasks: folder that all workers see, or URL of an object store. Inputs must stand where all
-        workers see them.
+        Where all tasks write: folder that all workers see, or URL of an object store. Inputs must stand where
+        all workers see them.
     tell : callable
     wait_s : float
         How long to wait while there is no worker, in seconds.

@@ -26,7 +26,7 @@ class Workers:
     ----------
     client : distributed.Client
     address : str
-        Of the scheduler.
+        Address of the scheduler.
     tell : callable
     wait_s : float
         How long to wait while there is none.

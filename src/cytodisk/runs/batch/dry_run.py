@@ -25,7 +25,7 @@ class Understood:
     Attributes
     ----------
     frames : int or None
-        Of the mask file; None for images, and where a file cannot be used.
+        Number of frames of the mask file; None for images, and where a file cannot be used.
     pixel_size_um, frame_interval_s : float or None
         As given, or else as the files say.
     channels : str

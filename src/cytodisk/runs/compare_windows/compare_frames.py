@@ -39,7 +39,7 @@ class FollowedCell:
     method : str
     movie : DiskMovie
     signal : FrameFile or None
-        Of the whole file that the masks are from.
+        Signal of the whole file that the masks are from.
     parameters : CompareMovieParameters
     """
 

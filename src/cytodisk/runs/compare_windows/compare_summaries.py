@@ -18,7 +18,7 @@ def layer_summary(cells: pd.DataFrame, layers: pd.DataFrame, methods: tuple[str,
     Parameters
     ----------
     cells, layers : DataFrame
-        Of a comparison.
+        Tables of a comparison.
     methods : tuple of str
 
     Returns
@@ -53,7 +53,7 @@ def method_summary(cells: pd.DataFrame, layers: pd.DataFrame, methods: tuple[str
     Parameters
     ----------
     cells, layers : DataFrame
-        Of a comparison.
+        Tables of a comparison.
     methods : tuple of str
 
     Returns
@@ -92,7 +92,7 @@ def movie_summary(consistency: pd.DataFrame, methods: tuple[str, ...]) -> pd.Dat
     Parameters
     ----------
     consistency : DataFrame
-        Of a comparison.
+        Table of a comparison.
     methods : tuple of str
 
     Returns

@@ -49,7 +49,7 @@ def correlate_study(
     Parameters
     ----------
     study : Study
-        Of a movie.
+        Study of a movie.
     signal : str
         A channel of its tables.
     with_ : str

@@ -22,7 +22,7 @@ def episode_tables(
     activity : Dataset
         Of one cell of a study, with its whole edge: patches of episodes are those of all sectors.
     signal : DataArray with dims (time, layer, sector)
-        Of the same frames; its sectors may be some of them.
+        Signal of the same frames; its sectors may be some of them.
     velocity : str
         Which of its velocities; areas are those of the lab, whose outlines they compare.
     reach : int

@@ -36,7 +36,7 @@ def finish_tables(
     grid : PolarGrid
     scale : Scale
     channels : sequence of str
-        Of the signal; empty if there is none.
+        Channels of the signal; empty if there is none.
     """
     rows = {(row["cell"], row["frame"]): row for row in folder.rows()}
     target = folder.path / ACTIVITY
