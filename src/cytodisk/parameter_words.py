@@ -70,6 +70,63 @@ def limits(field: FieldInfo) -> str:
 _LIMITS = ("ge", "gt", "le")
 
 
+def flag_of(name: str, field: FieldInfo) -> str:
+    """The option of the command line for a parameter, as "--edge-length"."""
+    return f"--{_extra(field, 'flag') or name.replace('_', '-')}"
+
+
+def default_words(field: FieldInfo) -> str:
+    """The default as one types it; empty if there is none."""
+    if isinstance(field.default, bool):
+        return "yes" if field.default else "no"
+    if isinstance(field.default, tuple):
+        return ",".join(str(item) for item in field.default)
+    return "" if field.default is None else str(field.default)
+
+
+def help_words(field: FieldInfo) -> str:
+    """What a parameter does, then its unit, range and default, for the help of its option."""
+    default = default_words(field)
+    notes = [
+        unit_of(field),
+        limits(field).strip().removeprefix("of "),
+        f"default {default}" if default else "",
+    ]
+    said = ", ".join(note for note in notes if note)
+    return f"{field.description} ({said})" if said else str(field.description)
+
+
+def value_of_text(field: FieldInfo, text: str) -> Any:
+    """What was typed for a parameter, such as "10:80" or "30,40", as the value that is meant.
+
+    Parts of a list have commas between, the first and the last of a range a colon. What is no such value
+    stays a text, so that the model can say what is wrong with it.
+    """
+    wanted = kinds(field.annotation)
+    if tuple not in wanted:
+        return text
+    item = tuple_items(field.annotation)
+    parts = text.split(":" if item == (int, int) else ",")
+    values = tuple(part.strip() if str in item or Literal in item else _number(part) for part in parts)
+    return values[0] if len(values) == 1 and wanted & {float, str} else values
+
+
+def _number(text: str) -> Any:
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text.strip()
+
+
+def tuple_items(annotation: Any) -> tuple[Any, ...]:
+    """The types of the items of the tuple that an annotation admits."""
+    parts = get_args(annotation) if get_origin(annotation) in (Union, types.UnionType) else (annotation,)
+    inside = next(get_args(part) for part in parts if get_origin(part) is tuple)
+    return tuple(get_origin(one) or one for one in inside)
+
+
 def value_words(value: Any) -> str:
     """A value as a user writes it in Python."""
     return f"{value:g}" if isinstance(value, float) else repr(value)

@@ -23,6 +23,7 @@ def parameter(
     most: float | None = None,
     unit: str = "",
     words: str = "",
+    flag: str = "",
 ) -> Any:
     """Declare a parameter of a model.
 
@@ -37,6 +38,8 @@ def parameter(
         Unit of the number, such as "px".
     words : str
         What it may be, as "a point (row, column)", where type and range do not say it.
+    flag : str
+        Of the command line, without dashes in front, where it is not the name with dashes.
     """
     return Field(
         default,
@@ -44,7 +47,7 @@ def parameter(
         gt=above,
         ge=least,
         le=most,
-        json_schema_extra={"unit": unit, "words": words},
+        json_schema_extra={"unit": unit, "words": words, "flag": flag},
     )
 
 
@@ -59,7 +62,7 @@ class Parameters(BaseModel):
         A name is unknown, or a value out of its range.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
 
     fault: ClassVar[type[CytodiskError]] = ParameterError
     """What a wrong value raises."""

@@ -7,7 +7,11 @@ class PixelSizeParameters(Parameters):
     """How large a pixel is."""
 
     pixel_size_um: float | None = parameter(
-        None, "Side of a pixel; without it that of the file or array counts.", above=0, unit="µm"
+        None,
+        "Side of a pixel; without it that of the file or array counts.",
+        above=0,
+        unit="µm",
+        flag="pixel-size",
     )
 
 
@@ -15,5 +19,9 @@ class ScaleParameters(PixelSizeParameters):
     """How large a pixel is, and how long a frame."""
 
     frame_interval_s: float | None = parameter(
-        None, "Time between frames; without it that of the file or array counts.", above=0, unit="s"
+        None,
+        "Time between frames; without it that of the file or array counts.",
+        above=0,
+        unit="s",
+        flag="frame-interval",
     )

@@ -1,4 +1,4 @@
-"""`cytodisk compare`, from files to tables, figures and words."""
+"""`cytodisk compare-windows`, from files to tables, figures and words."""
 
 from pathlib import Path
 

@@ -3,7 +3,7 @@
 import typer
 
 from cytodisk.cli.batch_command import BATCH_HELP, batch_command
-from cytodisk.cli.compare_windows_command import COMPARE_HELP, compare_command
+from cytodisk.cli.compare_windows_command import COMPARE_WINDOWS_HELP, compare_windows_command
 from cytodisk.cli.console import fail
 from cytodisk.cli.correlate_command import CORRELATE_HELP, REPORT_HELP, correlate_command, report_command
 from cytodisk.cli.demo_command import demo_command, info_command
@@ -25,7 +25,7 @@ app.command("batch", help=BATCH_HELP)(batch_command)
 app.command("correlate", help=CORRELATE_HELP)(correlate_command)
 app.command("shapes", help=SHAPES_HELP)(shapes_command)
 app.command("report", help=REPORT_HELP)(report_command)
-app.command("compare", help=COMPARE_HELP)(compare_command)
+app.command("compare-windows", help=COMPARE_WINDOWS_HELP)(compare_windows_command)
 app.command("check")(check_command)
 app.command("info")(info_command)
 app.command("demo")(demo_command)

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cytodisk.cli.console import Overwrite, Quiet, Resume, Workers, console_for, count, fail, progress_bar
+from cytodisk.cli.console import console_for, count, fail, progress_bar
+from cytodisk.cli.options import Overwrite, Quiet, Resume, Workers
 
 if TYPE_CHECKING:
     from rich.console import Console

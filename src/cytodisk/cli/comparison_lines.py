@@ -1,4 +1,4 @@
-"""What `cytodisk compare` prints: measures by method, what was lost, and which files say more."""
+"""What `cytodisk compare-windows` prints: measures by method, what was lost, and which files say more."""
 
 import sys
 import textwrap

@@ -4,48 +4,12 @@ import sys
 import time as clock
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING
 
 import typer
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-Masks = Annotated[
-    Path, typer.Argument(help="Mask, stack of masks or label image: TIFF or PNG.", show_default=False)
-]
-MaskFiles = Annotated[
-    Path,
-    typer.Argument(
-        help="Mask, stack of masks or label image (TIFF, PNG, Cellpose's _seg.npy), or a folder of them.",
-        show_default=False,
-    ),
-]
-Signal = Annotated[
-    Path | None, typer.Option(help="Image to sample, of the same height and width: TIFF or PNG.")
-]
-SignalFiles = Annotated[
-    Path | None,
-    typer.Option(
-        help="Image to sample, of the same height and width: TIFF or PNG. For a folder of masks: a folder "
-        "of images with names as theirs, or how those names go on beside the masks, as _img."
-    ),
-]
-Channels = Annotated[
-    str | None,
-    typer.Option(help="Names of the signal's channels, as Rac1,RhoA; overrule the file's own."),
-]
-OutFolder = Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)]
-Kind = Annotated[str | None, typer.Option(help="What MASKS is: auto, mask, stack or labels.")]
-Layers = Annotated[int | None, typer.Option(help="Windows from edge to centre (default 10).")]
-Sectors = Annotated[int | None, typer.Option(help="Windows around the edge (default 60).")]
-PixelSize = Annotated[float | None, typer.Option(help="µm per pixel; overrules the file's own.")]
-ParametersFile = Annotated[Path | None, typer.Option(help="TOML file as in a study; flags overrule it.")]
-Workers = Annotated[int, typer.Option(help="Processes.")]
-Resume = Annotated[bool, typer.Option("--resume", help="Go on with the same run in this folder.")]
-Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace the study in this folder.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 SECONDS_A_LINE = 30.0
 _RATE_OVER_S = 600.0  # what is counted may take minutes each
@@ -59,24 +23,6 @@ def fail(message: str) -> None:
 
 def count(number: int, of: str = "cell") -> str:
     return f"1 {of}" if number == 1 else f"{number} {of}s"
-
-
-def parse_channels(text: str | None) -> tuple[str, ...] | None:
-    return None if text is None else tuple(part.strip() for part in text.split(","))
-
-
-def parse_align(text: str | None) -> Any:
-    from cytodisk.errors import ParameterError
-
-    if text is None or text == "upright":
-        return text
-    try:
-        numbers = [float(part) for part in text.split(",")]
-    except ValueError:
-        numbers = []
-    if len(numbers) not in (1, 2):
-        raise ParameterError(f"align must be upright, an angle in degrees or ROW,COLUMN, got {text!r}")
-    return numbers[0] if len(numbers) == 1 else tuple(numbers)
 
 
 def console_for(quiet: bool) -> "Console":

@@ -5,8 +5,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 
 import typer
 
-from cytodisk.cli.console import Quiet, console_for, progress_bar
+from cytodisk.cli.console import console_for, progress_bar
 from cytodisk.cli.correlation_words import say_correlation, say_replaced
+from cytodisk.cli.options import Figures, Given, MovieStudy, Quiet, with_parameters
+from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -44,65 +46,19 @@ Examples:
   cytodisk report out/ --cell 3
 """
 
-StudyFolder = Annotated[Path, typer.Argument(help="Folder of a movie's study.", show_default=False)]
 
-
+@with_parameters(CorrelateParameters)
 def correlate_command(
-    study: StudyFolder,
+    study: MovieStudy,
+    given: Given,
     signal: Annotated[
-        str | None, typer.Option(help="Channel of the study; not needed if it has but one.")
+        str | None, typer.Option(help="Channel of the study; not needed if there is only one.")
     ] = None,
     with_: Annotated[
         str, typer.Option("--with", help="velocity, velocity_cell_frame or a channel.")
     ] = "velocity",
-    max_lag: Annotated[
-        int | None, typer.Option(help="Longest lag, frames (default a quarter of the movie, at most 20).")
-    ] = None,
-    against: Annotated[
-        str | None,
-        typer.Option(
-            help="Of another signal: the same window, or the edge's of the sector (default window)."
-        ),
-    ] = None,
-    rule: Annotated[
-        str | None,
-        typer.Option(
-            help="Peak: nearest to lag 0 of what chance does not give, or largest (default nearest)."
-        ),
-    ] = None,
-    detrend: Annotated[str | None, typer.Option(help="none, linear or median (default none).")] = None,
-    detrend_frames: Annotated[
-        int | None, typer.Option(help="Frames of the moving median (default 4 × max lag + 1).")
-    ] = None,
-    difference: Annotated[
-        bool | None,
-        typer.Option("--difference", help="Correlate changes between frames.", show_default=False),
-    ] = None,
-    skip_lags: Annotated[
-        str | None, typer.Option(help="Lags that do not count, such as -1,0 where masks jitter.")
-    ] = None,
-    surrogates: Annotated[int | None, typer.Option(help="0 for no significance (default 1999).")] = None,
-    null: Annotated[
-        str | None, typer.Option(help="Surrogates by random phase or circular shift (default phase).")
-    ] = None,
-    min_pairs: Annotated[int | None, typer.Option(help="Fewest frames at a lag (default 10).")] = None,
-    seed: Annotated[int | None, typer.Option(help="Of the surrogates (default 0).")] = None,
-    pairs: Annotated[
-        bool | None,
-        typer.Option("--pairs", help="Also every window with every other, by distance.", show_default=False),
-    ] = None,
-    frames: Annotated[str | None, typer.Option(help="First and last frame that count, as 10:80.")] = None,
-    without_frames: Annotated[
-        str | None, typer.Option(help="Frames that do not count, such as 17,24 where the mask is wrong.")
-    ] = None,
-    sectors: Annotated[
-        str | None, typer.Option(help="First and last sector that count, as 40:55, or 50:5 around 0.")
-    ] = None,
     cell: Annotated[list[int] | None, typer.Option(help="Only this cell; can be given again.")] = None,
-    name: Annotated[
-        str | None, typer.Option(help="Keeps the result beside others of the same signals.")
-    ] = None,
-    figures: Annotated[int, typer.Option(help="Draw this many cells, from the first; -1 for all.")] = 4,
+    figures: Figures = 4,
     formats: Annotated[str, typer.Option("--format", help="Of figures: png, pdf, svg, or several.")] = "png",
     quiet: Quiet = False,
 ) -> None:
@@ -110,38 +66,20 @@ def correlate_command(
     from cytodisk.store.study import open_study
 
     wanted = _formats(formats)
+    settings = given.of(CorrelateParameters)
     there = open_study(study)
-    given = {
-        "max_lag": max_lag,
-        "against": against,
-        "rule": rule,
-        "detrend": detrend,
-        "detrend_frames": detrend_frames,
-        "difference": difference,
-        "surrogates": surrogates,
-        "null": null,
-        "min_pairs": min_pairs,
-        "skip_lags": numbers("skip_lags", skip_lags),
-        "frames": first_and_last("frames", frames),
-        "without_frames": numbers("without_frames", without_frames),
-        "sectors": first_and_last("sectors", sectors),
-        "name": name,
-        "seed": seed,
-        "pairs": pairs,
-    }
-    settings = {name: value for name, value in given.items() if value is not None}
     chosen = signal if signal is not None else _only(channels_of(there))
     console = console_for(quiet)
-    before = earlier_settings(there, chosen, with_, name or "")
+    before = earlier_settings(there, chosen, with_, settings.name)
     with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
-        found = correlate_study(there, chosen, with_, cells=cell, progress=progress, **settings)
+        found = correlate_study(there, chosen, with_, cells=cell, progress=progress, parameters=settings)
     draw_correlation(quiet, there, found, figures, wanted)
     say_correlation(console, found)
     say_replaced(console, before, found.settings)
 
 
 def report_command(
-    study: StudyFolder,
+    study: MovieStudy,
     cell: Annotated[
         int | None, typer.Option(help="The cell to show (default that with the most frames).")
     ] = None,
@@ -201,29 +139,6 @@ def earlier_settings(study: "Study", *names: str) -> dict[str, Any] | None:
     """Settings of a correlation that the next one will replace."""
     there = {(*one, "")[:3] for one in study.correlations}
     return study.correlation(*names).settings if names in there else None
-
-
-def numbers(name: str, text: str | None) -> tuple[int, ...] | None:
-    from cytodisk.errors import ParameterError
-
-    if text is None:
-        return None
-    try:
-        return tuple(int(part) for part in text.split(","))
-    except ValueError:
-        raise ParameterError(f"{name} must be whole numbers with commas between, got {text!r}") from None
-
-
-def first_and_last(name: str, text: str | None) -> tuple[int, int] | None:
-    from cytodisk.errors import ParameterError
-
-    if text is None:
-        return None
-    try:
-        first, last = (int(part) for part in text.split(":"))
-    except ValueError:
-        raise ParameterError(f"{name} must be FIRST:LAST, such as 10:80, got {text!r}") from None
-    return first, last
 
 
 def _formats(text: str) -> tuple["Format", ...]:

@@ -8,10 +8,11 @@ from typing import Annotated
 
 import typer
 
-from cytodisk.cli.console import Quiet, console_for, progress_bar
+from cytodisk.cli.console import console_for, progress_bar
 from cytodisk.cli.correlate_command import NOTHING_CHANGED, draw_correlation, write_page
 from cytodisk.cli.correlation_words import say_correlation
 from cytodisk.cli.movie_command import draw_movie, finish_movie, say_movie
+from cytodisk.cli.options import Quiet
 from cytodisk.errors import MissingPartError
 from cytodisk.runs.versions import NOT_INSTALLED, PACKAGES, PARTS, installed
 

@@ -4,26 +4,21 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cytodisk.cli.console import (
-    Channels,
-    Kind,
-    Layers,
+from cytodisk.cli.console import console_for, progress_bar
+from cytodisk.cli.map_totals import finish_map
+from cytodisk.cli.options import (
+    Figures,
+    Given,
     MaskFiles,
     OutFolder,
     Overwrite,
-    ParametersFile,
-    PixelSize,
     Quiet,
     Resume,
-    Sectors,
     SignalFiles,
     Workers,
-    console_for,
-    parse_align,
-    parse_channels,
-    progress_bar,
+    with_parameters,
 )
-from cytodisk.cli.map_totals import finish_map
+from cytodisk.runs.map.map_parameters import FileParameters, MapParameters
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -50,42 +45,19 @@ damaged (the rest is done all the same).
 """
 
 
+@with_parameters(MapParameters)
 def map_command(
     masks: MaskFiles,
     out: OutFolder,
+    given: Given,
     signal: SignalFiles = None,
-    channels: Channels = None,
-    kind: Kind = None,
-    layers: Layers = None,
-    sectors: Sectors = None,
-    spacing: Annotated[
-        str | None, typer.Option(help="Layers of equal area or radius (default area).")
-    ] = None,
-    method: Annotated[
-        str | None, typer.Option(help="newton (equal area, default), harmonic, or advection (the paper's).")
-    ] = None,
-    shape_weight: Annotated[
-        float | None, typer.Option(help="Shape against area, above 0 (default 0.005).")
-    ] = None,
-    edge_length: Annotated[
-        float | None, typer.Option(help="Mesh spacing at the edge, px (default 0.9).")
-    ] = None,
-    align: Annotated[
-        str | None,
-        typer.Option(help="upright, an angle in degrees, or a point ROW,COLUMN (default upright)."),
-    ] = None,
-    nan: Annotated[
-        str | None, typer.Option(help="Windows with NaN pixels: propagate or omit (default propagate).")
-    ] = None,
-    pixel_size: PixelSize = None,
-    parameters: ParametersFile = None,
     workers: Workers = 1,
-    figures: Annotated[int, typer.Option(help="Draw this many cells, from the first; -1 for all.")] = 8,
+    figures: Figures = 8,
     no_maps: Annotated[
         bool, typer.Option("--no-maps", help="Do not keep the map of each cell: it saves disk space.")
     ] = False,
     geojson: Annotated[
-        bool, typer.Option("--geojson", help="Write window outlines beside the maps.")
+        bool, typer.Option("--geojson", help="Write the outlines of windows beside the maps.")
     ] = False,
     resume: Resume = False,
     overwrite: Overwrite = False,
@@ -93,25 +65,10 @@ def map_command(
 ) -> None:
     from cytodisk.pages.cell_pages import write_cell_figures
     from cytodisk.runs.map.map_inputs import open_inputs
-    from cytodisk.runs.map.map_parameters import MapParameters
     from cytodisk.runs.map.map_run import run_map
-    from cytodisk.runs.parameters_file import parameters_from
 
-    given = {
-        "kind": kind,
-        "channels": parse_channels(channels),
-        "layers": layers,
-        "sectors": sectors,
-        "spacing": spacing,
-        "method": method,
-        "shape_weight": shape_weight,
-        "edge_length": edge_length,
-        "align": parse_align(align),
-        "nan": nan,
-        "pixel_size_um": pixel_size,
-    }
     console = console_for(quiet)
-    inputs = open_inputs(masks, signal, parameters_from(given, parameters, MapParameters))
+    inputs = open_inputs(masks, signal, given.of(MapParameters))
     say_inputs(console, inputs)
     with progress_bar(quiet, "cells") as progress:
         study = run_map(
@@ -129,12 +86,8 @@ def map_command(
     finish_map(console, study, figures, inputs.is_folder)
 
 
-def check_command(
-    masks: MaskFiles,
-    signal: SignalFiles = None,
-    channels: Channels = None,
-    kind: Annotated[str, typer.Option(help="What MASKS is: auto, mask, stack or labels.")] = "auto",
-) -> None:
+@with_parameters(FileParameters, file=False)
+def check_command(masks: MaskFiles, given: Given, signal: SignalFiles = None) -> None:
     """Say what is wrong with masks before a run: a line a cell, or a frame of a stack.
 
     Exit code: 0 when all can be used (an image of a folder may be empty), 1 if any cannot, 2 if the file
@@ -144,12 +97,9 @@ def check_command(
     """
     from cytodisk.cli.map_totals import say_checked
     from cytodisk.runs.map.map_inputs import open_inputs
-    from cytodisk.runs.map.map_parameters import MapParameters
     from cytodisk.runs.map.map_run import check_cells
-    from cytodisk.runs.parameters_file import parameters_from
 
-    given = {"kind": kind, "channels": parse_channels(channels)}
-    inputs = open_inputs(masks, signal, parameters_from(given, None, MapParameters))
+    inputs = open_inputs(masks, signal, given.of(FileParameters))
     console = console_for(False)
     say_inputs(console, inputs)
     unusable = say_checked(console, inputs, check_cells(inputs))

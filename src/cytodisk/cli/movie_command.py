@@ -1,31 +1,22 @@
 """`cytodisk movie`."""
 
 import sys
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
-
-from cytodisk.cli.console import (
-    RESUME,
-    Channels,
-    Layers,
+from cytodisk.cli.console import RESUME, console_for, count, fail, progress_bar
+from cytodisk.cli.options import (
+    Figures,
+    Given,
+    MovieFile,
     OutFolder,
     Overwrite,
-    ParametersFile,
-    PixelSize,
     Quiet,
     Resume,
-    Sectors,
     Signal,
     Workers,
-    console_for,
-    count,
-    fail,
-    parse_align,
-    parse_channels,
-    progress_bar,
+    with_parameters,
 )
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -48,99 +39,24 @@ Examples:
 Exit code: 0 when done (frames without a map have a row with the reason), 2 if nothing could be mapped.
 """
 
-Movie = Annotated[Path, typer.Argument(help="Masks or label images by frame: TIFF.", show_default=False)]
 
-
+@with_parameters(MovieParameters)
 def movie_command(
-    masks: Movie,
+    masks: MovieFile,
     out: OutFolder,
+    given: Given,
     signal: Signal = None,
-    channels: Channels = None,
-    kind: Annotated[
-        str | None, typer.Option(help="What MASKS is: auto, stack (one cell) or labels (a label a cell).")
-    ] = None,
-    link: Annotated[
-        bool | None,
-        typer.Option(
-            "--link", help="Labels differ from frame to frame: link them by overlap.", show_default=False
-        ),
-    ] = None,
-    layers: Layers = None,
-    depth_um: Annotated[
-        float | None, typer.Option(help="Instead of --layers: thickness of the first layer, µm.")
-    ] = None,
-    sectors: Sectors = None,
-    spacing: Annotated[
-        str | None, typer.Option(help="Layers of equal area or radius (default area).")
-    ] = None,
-    tracker: Annotated[str | None, typer.Option(help="matching or demons (default matching).")] = None,
-    tension: Annotated[
-        float | None,
-        typer.Option(help="Boundary points: 0 stay with matter … 1 equidistant (default 0.01)."),
-    ] = None,
-    register: Annotated[
-        bool | None,
-        typer.Option(
-            "--register/--no-register",
-            help="Take out rigid motion before tracking (default yes).",
-            show_default=False,
-        ),
-    ] = None,
-    frame_interval: Annotated[
-        float | None, typer.Option(help="Seconds between frames; overrules the file's own.")
-    ] = None,
-    pixel_size: PixelSize = None,
-    method: Annotated[
-        str | None, typer.Option(help="newton (equal area, default), harmonic, or advection (the paper's).")
-    ] = None,
-    align: Annotated[
-        str | None,
-        typer.Option(
-            help="First frame's disk: upright, an angle in degrees, or ROW,COLUMN (default upright)."
-        ),
-    ] = None,
-    nan: Annotated[
-        str | None, typer.Option(help="Windows with NaN pixels: propagate or omit (default propagate).")
-    ] = None,
-    jitter_px: Annotated[
-        float | None,
-        typer.Option(help="How uncertain the masks' edges are, px, for the velocity's error (default 0.5)."),
-    ] = None,
-    parameters: ParametersFile = None,
     workers: Workers = 1,
-    figures: Annotated[int, typer.Option(help="Draw this many cells, from the first; -1 for all.")] = 4,
+    figures: Figures = 4,
     resume: Resume = False,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
-    from cytodisk.errors import ParameterError
     from cytodisk.runs.movie.movie_inputs import open_movie
-    from cytodisk.runs.movie.movie_parameters import MovieParameters
     from cytodisk.runs.movie.movie_run import run_movie
-    from cytodisk.runs.parameters_file import parameters_from
 
-    if layers is not None and depth_um is not None:
-        raise ParameterError("layers and depth_um exclude each other: pass --layers or --depth-um")
-    given = {
-        "kind": kind,
-        "channels": parse_channels(channels),
-        "link": link,
-        "layers": layers,
-        "depth_um": depth_um,
-        "sectors": sectors,
-        "spacing": spacing,
-        "tracker": tracker,
-        "tension": tension,
-        "registration": register,
-        "frame_interval_s": frame_interval,
-        "pixel_size_um": pixel_size,
-        "method": method,
-        "align": parse_align(align),
-        "nan": nan,
-        "jitter_px": jitter_px,
-    }
     console = console_for(quiet)
-    inputs = open_movie(masks, signal, parameters_from(given, parameters, MovieParameters))
+    inputs = open_movie(masks, signal, given.of(MovieParameters))
     say_movie(console, inputs)
     with progress_bar(quiet, "frames") as progress:
         study = run_movie(inputs, out, workers=workers, resume=resume, overwrite=overwrite, progress=progress)

@@ -1,26 +1,21 @@
 """`cytodisk shapes`."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
-
-from cytodisk.cli.console import (
-    Kind,
+from cytodisk.cli.console import console_for, count, fail, progress_bar
+from cytodisk.cli.map_totals import say_reasons
+from cytodisk.cli.options import (
+    Given,
     MaskFiles,
     OutFolder,
     Overwrite,
-    ParametersFile,
-    PixelSize,
     Quiet,
     Resume,
     Workers,
-    console_for,
-    count,
-    fail,
-    progress_bar,
+    with_parameters,
 )
-from cytodisk.cli.map_totals import say_reasons
+from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -48,36 +43,19 @@ _FAR_FROM_LINE = (
 )
 
 
+@with_parameters(ShapeParameters)
 def shapes_command(
     masks: MaskFiles,
     out: OutFolder,
-    kind: Kind = None,
-    pixel_size: PixelSize = None,
-    seed: Annotated[int | None, typer.Option(help="Of the layout by UMAP (default 0).")] = None,
-    neighbors: Annotated[
-        int | None, typer.Option(help="Of UMAP: how many cells count as alike (default 15).")
-    ] = None,
-    min_dist: Annotated[
-        float | None, typer.Option(help="Of UMAP: how close cells may come, 0 to 1 (default 0.1).")
-    ] = None,
-    parameters: ParametersFile = None,
+    given: Given,
     workers: Workers = 1,
     resume: Resume = False,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
-    from cytodisk.runs.parameters_file import parameters_from
-    from cytodisk.runs.shapes.shape_parameters import ShapeParameters
     from cytodisk.runs.shapes.shape_run import open_shape_inputs, run_shapes
 
-    given = {
-        "kind": kind,
-        "pixel_size_um": pixel_size,
-        "seed": seed,
-        "n_neighbors": neighbors,
-        "min_dist": min_dist,
-    }
-    settings = parameters_from(given, parameters, ShapeParameters)
+    settings = given.of(ShapeParameters)
     console = console_for(quiet)
     inputs = open_shape_inputs(masks, settings)
     console.print(f"masks: {inputs.understood['masks']}")

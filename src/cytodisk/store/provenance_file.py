@@ -30,8 +30,8 @@ _COMMANDS = {
     None: "cytodisk map",
     "movie": "cytodisk movie",
     "shapes": "cytodisk shapes",
-    "comparison": "cytodisk compare",
-    "movie comparison": "cytodisk compare --movie",
+    "comparison": "cytodisk compare-windows",
+    "movie comparison": "cytodisk compare-windows --movie",
 }
 
 

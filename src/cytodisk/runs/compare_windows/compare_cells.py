@@ -1,4 +1,4 @@
-"""Compare windows on the cells of a mask file or folder: `cytodisk compare` and the same from Python."""
+"""Compare windows on the cells of a mask file or folder: `cytodisk compare-windows`."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ from cytodisk.runs.map.map_inputs import MapInputs, open_inputs
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.steps import Progress, check_options, finish_run, silent
+from cytodisk.scale import Scale
 from cytodisk.store.study_folder import PARAMETERS, StudyFolder, alone_in, part_key
 from cytodisk.windows.edge_windows import edge_windows
 from cytodisk.windows.grid import polar_windows
@@ -118,6 +119,7 @@ def compare_opened_cells(
     Comparison
     """
     check_options(workers, resume, overwrite)
+    parameters = parameters.in_pixels(Scale(inputs.pixel_size_um))
     provenance = describe_run(inputs.paths, parameters, inputs.understood, None) | {"run": "comparison"}
     with alone_in(out):
         if resume and StudyFolder.is_complete(out, provenance):

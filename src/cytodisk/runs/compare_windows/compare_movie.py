@@ -1,4 +1,4 @@
-"""Compare windows on cells that are followed through time: `cytodisk compare --movie`."""
+"""Compare windows on cells that are followed through time: `cytodisk compare-windows --movie`."""
 
 from __future__ import annotations
 
@@ -27,6 +27,7 @@ from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.steps import check_options, finish_run, silent
+from cytodisk.scale import Scale
 from cytodisk.store.study_folder import PARAMETERS, StudyFolder, alone_in, part_key
 
 
@@ -112,6 +113,7 @@ def compare_opened_movie(
     Comparison
     """
     check_options(1, resume, overwrite)
+    parameters = parameters.in_pixels(Scale(inputs.scale.pixel_size_um))
     scale = inputs.scale.pixel_size_um, inputs.scale.frame_interval_s
     paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
     provenance = describe_run(paths, parameters, inputs.understood, *scale) | {"run": "movie comparison"}

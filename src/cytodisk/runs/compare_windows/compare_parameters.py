@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal, TypeAlias
+from typing import ClassVar, Literal, Self, TypeAlias
 
 from pydantic import field_validator
 
+from cytodisk.errors import ParameterError
 from cytodisk.parameters import parameter
 from cytodisk.runs.map.map_parameters import CellParameters
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
+from cytodisk.scale import Scale
 from cytodisk.windows.grid_parameters import EdgeGridParameters
 
 WindowMethod: TypeAlias = Literal["newton", "harmonic", "advection", "edge", "rings"]
@@ -31,7 +33,7 @@ _METHODS = (
 _WORDS = f"several of {', '.join(TITLES)}"
 
 
-class _ComparedParameters(EdgeGridParameters):
+class ComparedParameters(EdgeGridParameters):
     """What comparisons of cells and of movies share."""
 
     exclusive: ClassVar[tuple[tuple[str, str], ...]] = (("depth_px", "depth_um"),)
@@ -48,8 +50,22 @@ class _ComparedParameters(EdgeGridParameters):
             raise ValueError("name at least one method, and each once")
         return methods
 
+    def in_pixels(self, scale: Scale) -> Self:
+        """The same with `depth_px` for a `depth_um`.
 
-class CompareWindowsParameters(_ComparedParameters, CellParameters):
+        Raises
+        ------
+        ParameterError
+            There is a depth in µm, and no pixel size.
+        """
+        if self.depth_um is None:
+            return self
+        if scale.pixel_size_um is None:
+            raise ParameterError("depth_um needs a pixel size: pass it as --pixel-size, or pass --depth-px")
+        return self.changed(depth_px=self.depth_um / scale.pixel_size_um, depth_um=None)
+
+
+class CompareWindowsParameters(ComparedParameters, CellParameters):
     """What decides the result of `cytodisk compare-windows`, beside the input files."""
 
     methods: tuple[WindowMethod, ...] = parameter(
@@ -57,7 +73,7 @@ class CompareWindowsParameters(_ComparedParameters, CellParameters):
     )
 
 
-class CompareMovieParameters(_ComparedParameters, FollowedCellParameters):
+class CompareMovieParameters(ComparedParameters, FollowedCellParameters):
     """What decides the result of `cytodisk compare-windows --movie`, beside the input files."""
 
     methods: tuple[WindowMethod, ...] = parameter(("newton", "harmonic", "edge"), _METHODS, words=_WORDS)

@@ -123,7 +123,7 @@ class Comparison:
 
 
 def open_comparison(path: str | os.PathLike[str]) -> Comparison:
-    """Read what `cytodisk compare` wrote.
+    """Read what `cytodisk compare-windows` wrote.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def open_comparison(path: str | os.PathLike[str]) -> Comparison:
     folder = Path(path)
     provenance = read_provenance(folder)
     if provenance is None or "comparison" not in str(provenance.get("run")):
-        raise ReadError(f"{folder} holds no comparison: pass a folder that cytodisk compare wrote")
+        raise ReadError(f"{folder} holds no comparison: pass a folder that cytodisk compare-windows wrote")
     if provenance.get("status") != "complete":
         raise ReadError(f"comparison {folder} is not complete: run the same command again with --resume")
     return Comparison(folder, read_table(folder / CELLS), read_table(folder / "layers.parquet"), provenance)

@@ -42,6 +42,7 @@ def correlate_study(
     *,
     cells: list[int] | None = None,
     progress: Progress | None = None,
+    parameters: CorrelateParameters | None = None,
     **settings: Any,
 ) -> Correlation:
     """Correlate a signal with edge velocity or another signal in all cells of a study, and write the tables.
@@ -75,7 +76,7 @@ def correlate_study(
         cell could be correlated.
     """
     chosen = _cells(study, cells)
-    options = CorrelateParameters.of(**settings)
+    options = CorrelateParameters.chosen(parameters, settings)
     names = channels_of(study)
     _check_names(names, signal, with_, options)
     max_lag = options.max_lag if options.max_lag is not None else _usual_lag(study, chosen)

@@ -41,11 +41,11 @@ class FileParameters(PixelSizeParameters, ChannelParameters, KindParameters):
     """How the files of a run are read."""
 
 
-class CellParameters(SampleParameters, GridParameters, MeshParameters, FileParameters):
+class CellParameters(MeshParameters, SampleParameters, GridParameters, FileParameters):
     """What all runs over cells have, whatever the method of the map."""
 
     fault: ClassVar[type[CytodiskError]] = ParameterError
 
 
-class MapParameters(CellParameters, MethodParameters):
+class MapParameters(MethodParameters, CellParameters):
     """What decides the result of `cytodisk map`, beside the input files."""

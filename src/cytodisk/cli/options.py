@@ -1,0 +1,138 @@
+"""Options of the command line: those of parameters from their models, and those that commands share."""
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from pydantic.fields import FieldInfo
+
+from cytodisk.parameter_words import choices, flag_of, help_words, kinds, tuple_items, value_of_text
+from cytodisk.parameters import Group, Parameters
+
+MaskFiles = Annotated[
+    Path,
+    typer.Argument(
+        help="Mask, stack of masks or label image (TIFF, PNG, Cellpose's _seg.npy), or a folder of them.",
+        show_default=False,
+    ),
+]
+MovieFile = Annotated[Path, typer.Argument(help="Masks or label images by frame: TIFF.", show_default=False)]
+MovieStudy = Annotated[Path, typer.Argument(help="Folder of a movie's study.", show_default=False)]
+Signal = Annotated[
+    Path | None, typer.Option(help="Image to sample, of the same height and width: TIFF or PNG.")
+]
+SignalFiles = Annotated[
+    Path | None,
+    typer.Option(
+        help="Image to sample, of the same height and width: TIFF or PNG. For a folder of masks: a folder "
+        "of images with the same names, or the ending of their names, such as _img."
+    ),
+]
+OutFolder = Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)]
+ParametersFile = Annotated[
+    Path | None, typer.Option(help="TOML file with parameters, as in every study. Flags overrule it.")
+]
+Workers = Annotated[int, typer.Option(help="Number of processes.")]
+Figures = Annotated[int, typer.Option(help="Number of cells to draw, from the first; -1 for all.")]
+Resume = Annotated[bool, typer.Option("--resume", help="Go on with the same run in this folder.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace the study in this folder.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+
+
+@dataclass(frozen=True)
+class Given:
+    """Parameters as they were given on the command line.
+
+    Attributes
+    ----------
+    values : dict
+        By name, only those with a flag.
+    file : Path or None
+        That of `--parameters`.
+    flags : dict of str to str
+        By name.
+    """
+
+    values: dict[str, Any]
+    file: Path | None
+    flags: dict[str, str]
+
+    def of(self, model: type[Group]) -> Group:
+        """The parameters that a command works with; errors name the flags."""
+        from cytodisk.runs.parameters_file import parameters_from
+
+        return parameters_from(self.values, self.file, model, self.flags)
+
+    def beyond(self, model: type[Parameters]) -> list[str]:
+        """Flags of parameters that a model does not have."""
+        return [self.flags[name] for name in self.values if name not in model.model_fields]
+
+
+def with_parameters(
+    *models: type[Parameters], file: bool = True
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Give a command an option for every field of its models, in the place of its parameter `given`.
+
+    Parameters
+    ----------
+    *models : type of Parameters
+        Of a field that several have, the first counts.
+    file : bool
+        Whether there is `--parameters`, too.
+
+    Returns
+    -------
+    callable
+        A decorator. The command gets what was given as `given`, a `Given`.
+    """
+    fields = {name: field for model in reversed(models) for name, field in model.model_fields.items()}
+    flags = {name: flag_of(name, field) for name, field in fields.items()}
+
+    def show(command: Callable[..., None]) -> Callable[..., None]:
+        def run(**values: Any) -> None:
+            texts = {name: values.pop(name) for name in fields}
+            given = {
+                name: value_of_text(fields[name], value) if isinstance(value, str) else value
+                for name, value in texts.items()
+                if value is not None
+            }
+            path = values.pop("parameters", None)
+            command(**values, given=Given(given, path, flags))
+
+        shown: list[inspect.Parameter] = []
+        for one in inspect.signature(command).parameters.values():
+            if one.name != "given":
+                shown.append(one.replace(kind=inspect.Parameter.KEYWORD_ONLY))
+                continue
+            shown += [_option(name, field) for name, field in fields.items()]
+            if file:
+                shown.append(_keyword("parameters", ParametersFile))
+        run.__signature__ = inspect.Signature(shown)  # type: ignore[attr-defined]
+        run.__annotations__ = {one.name: one.annotation for one in shown}
+        run.__doc__, run.__name__ = command.__doc__, command.__name__
+        return run
+
+    return show
+
+
+def _option(name: str, field: FieldInfo) -> inspect.Parameter:
+    """The option of one field: its flag, and its help with range and default."""
+    wanted, flag = kinds(field.annotation), flag_of(name, field)
+    kind: Any = str
+    if bool in wanted:
+        kind, flag = bool, f"{flag}/--no-{flag.removeprefix('--')}"
+    elif not wanted & {str, tuple}:
+        kind = int if int in wanted else float
+    words = choices(field.annotation)
+    metavar = "|".join(words) if words and tuple not in wanted else None
+    if tuple in wanted and not words:
+        metavar = "FIRST:LAST" if tuple_items(field.annotation) == (int, int) else "A,B,…"
+    option = typer.Option(flag, help=help_words(field), metavar=metavar, show_default=False)
+    return _keyword(name, Annotated[kind | None, option])
+
+
+def _keyword(name: str, annotation: Any) -> inspect.Parameter:
+    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=annotation)
