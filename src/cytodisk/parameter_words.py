@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import types
 from collections.abc import Collection
 from difflib import get_close_matches
@@ -10,6 +11,7 @@ from typing import Any, Literal, Union, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
+_NUMBER = r"[+-]?[0-9.]+([eE][+-]?[0-9]+)?"
 _LONGEST_VALUE = 60  # letters of a refused value that a message repeats
 
 
@@ -106,18 +108,13 @@ def value_of_text(field: FieldInfo, text: str) -> Any:
     if tuple not in wanted:
         return text
     item = tuple_items(field.annotation)
-    parts = text.split(":" if item == (int, int) else ",")
-    values = tuple(part.strip() if str in item or Literal in item else _number(part) for part in parts)
-    return values[0] if len(values) == 1 and wanted & {float, str} else values
-
-
-def _number(text: str) -> Any:
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            continue
-    return text.strip()
+    parts = [part.strip() for part in text.split(":" if item == (int, int) else ",")]
+    if item[0] not in (int, float):
+        return tuple(parts)
+    if (item == (int, int) and len(parts) != 2) or not all(re.fullmatch(_NUMBER, part) for part in parts):
+        return text
+    values = tuple(float(part) if item[0] is float else int(float(part)) for part in parts)
+    return values[0] if len(values) == 1 and float in wanted else values
 
 
 def tuple_items(annotation: Any) -> tuple[Any, ...]:

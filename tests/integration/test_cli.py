@@ -66,7 +66,7 @@ def test_a_point_to_align_to(run: Run, mask: Path, tmp_path: Path) -> None:
     disk = cd.open_study(tmp_path / "out").map(0)
     assert disk.to_disk([[20.0, 39.0]])[0, 1] == pytest.approx(0.0, abs=0.05)
     refused = run("map", mask, "-o", tmp_path / "other", "--align", "left")
-    assert_refused(refused, "align must be upright, an angle in degrees or ROW,COLUMN, got 'left'")
+    assert_refused(refused, "--align must be 'upright', a point", "got 'left'")
 
 
 def test_figures_are_drawn(run: Run, mask: Path, tmp_path: Path) -> None:
@@ -145,7 +145,7 @@ def test_a_signal_of_another_shape(run: Run, mask: Path, tmp_path: Path) -> None
 @pytest.mark.parametrize("name", ["layers", "sectors"])
 def test_counts_below_1(run: Run, mask: Path, tmp_path: Path, name: str, value: str) -> None:
     result = run("map", mask, "-o", tmp_path / "out", f"--{name}", value)
-    assert_refused(result, f"{name}: Input should be greater than or equal to 1, got {value}")
+    assert_refused(result, f"--{name} must be a whole number of at least 1, got {value}")
     assert not (tmp_path / "out").exists()
 
 

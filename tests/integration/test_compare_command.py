@@ -23,7 +23,7 @@ def masks(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_masks_become_tables_figures_and_words(run: Run, masks: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    command = ("compare", masks, "-o", out, "--methods", "newton,edge", *GRID)
+    command = ("compare-windows", masks, "-o", out, "--methods", "newton,edge", *GRID)
     code, said, error = run(*command)
     assert code == 0
     table = [line.split() for line in said.splitlines()]
@@ -64,7 +64,17 @@ def test_a_movie_is_compared_through_time(run: Run, tmp_path: Path) -> None:
     masks = write(tmp_path / "masks.tif", shown.masks.astype(np.uint8), metadata={"axes": "TYX"})
     names = {"axes": "TCYX", "Channel": {"Name": ["material", "edge"]}}
     signal = write(tmp_path / "signal.ome.tif", shown.signal.to_numpy(), metadata=names)
-    command = ("compare", masks, "--movie", "--signal", signal, "-o", tmp_path / "out", "--depth-px", "3")
+    command = (
+        "compare-windows",
+        masks,
+        "--movie",
+        "--signal",
+        signal,
+        "-o",
+        tmp_path / "out",
+        "--depth-px",
+        "3",
+    )
     code, said, _ = run(*command, "--methods", "newton,edge", *GRID, "--frame-interval", "5")
     assert code == 0
     assert "edge-based" in said
@@ -87,14 +97,14 @@ def test_a_movie_is_compared_through_time(run: Run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (("--signal", "signal.tif"), "signal is sampled in movies only: pass --movie too"),
-        (("--frame-interval", "5"), "frame_interval is that of a movie: pass --movie too"),
-        (("--methods", "edge,voronoi"), "methods: Input should be 'newton'"),
-        (("--layers", "0"), "layers"),
-        (("--depth-px", "-1"), "depth_px"),
-        (("--depth-um", "1"), "depth_um needs a pixel size: pass it as --pixel-size, or --depth-px instead"),
-        (("--depth-um", "0", "--pixel-size", "1"), "depth_um must be a positive number, got 0"),
-        (("--depth-um", "1", "--depth-px", "2"), "depth_px and depth_um exclude each other"),
+        (("--signal", "signal.tif"), "--signal: only with --movie"),
+        (("--frame-interval", "5"), "--frame-interval: only with --movie"),
+        (("--methods", "edge,voronoi"), "--methods must be several of newton"),
+        (("--layers", "0"), "--layers must be"),
+        (("--depth-px", "-1"), "--depth-px must be a number above 0"),
+        (("--depth-um", "1"), "depth_um needs a pixel size: pass it as --pixel-size, or pass --depth-px"),
+        (("--depth-um", "0", "--pixel-size", "1"), "--depth-um must be a number above 0, got 0"),
+        (("--depth-um", "1", "--depth-px", "2"), "--depth-px and --depth-um exclude each other"),
         (("--cells", "1,two"), "cells must be numbers of cells as 3,17,20, got '1,two'"),
         (("--cells", "1,2,3,4,5,6"), "cells: got 6: name one to 5"),
         (("--cells", "1", "--movie"), "cells chooses what cells.png shows"),
@@ -103,12 +113,12 @@ def test_a_movie_is_compared_through_time(run: Run, tmp_path: Path) -> None:
 def test_what_makes_no_sense_is_refused(
     run: Run, masks: Path, tmp_path: Path, options: tuple[str, ...], words: str
 ) -> None:
-    assert_refused(run("compare", masks, "-o", tmp_path / "out", *options), words)
+    assert_refused(run("compare-windows", masks, "-o", tmp_path / "out", *options), words)
 
 
 def test_masks_without_any_cell_end_in_an_error(run: Run, tmp_path: Path) -> None:
     masks = write(tmp_path / "masks.tif", np.zeros((2, 20, 20), dtype=np.uint8), metadata={"axes": "TYX"})
-    result = run("compare", masks, "-o", tmp_path / "out", "--methods", "edge,newton")
+    result = run("compare-windows", masks, "-o", tmp_path / "out", "--methods", "edge,newton")
     assert_refused(result, "no cell could be used: mask of shape (20, 20) is empty")
 
 
@@ -117,7 +127,9 @@ def test_a_damaged_file_of_a_folder_is_told_once_and_ends_in_2(run: Run, tmp_pat
     folder.mkdir()
     write(folder / "a_masks.tif", cd.simulate.disk(12).astype(np.uint8))
     (folder / "b_masks.tif").write_bytes(b"no image")
-    code, said, error = run("compare", folder, "-o", tmp_path / "out", "--methods", "newton,edge", *GRID)
+    code, said, error = run(
+        "compare-windows", folder, "-o", tmp_path / "out", "--methods", "newton,edge", *GRID
+    )
     assert code == 2
     assert ["mapped", "1/1", "1/1"] in [line.split()[:3] for line in said.splitlines()]
     assert error.count("b_masks.tif") == 1

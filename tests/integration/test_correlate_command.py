@@ -78,10 +78,10 @@ def test_lags_may_be_left_out(run: Run, study: Path) -> None:
         (("--signal", "edge", "--with", "speed"), "with 'speed' is not in the study"),
         (("--signal", "edge", "--max-lag", "25"), "max_lag 25 leaves 5 pairs of 30 frames"),
         (("--signal", "edge", "--format", "jpg"), "format must be png, pdf, svg"),
-        (("--signal", "edge", "--skip-lags", "a"), "skip_lags must be whole numbers"),
+        (("--signal", "edge", "--skip-lags", "a"), "--skip-lags must be whole numbers"),
         (("--signal", "edge", "--skip-lags", "90"), "skip_lags has 90"),
         (("--signal", "edge", "--cell", "4"), "has no cell 4"),
-        (("--signal", "edge", "--rule", "first"), "rule must be one of nearest, largest"),
+        (("--signal", "edge", "--rule", "first"), "--rule must be one of nearest, largest"),
     ],
 )
 def test_faults_end_in_words(run: Run, study: Path, arguments: tuple[str, ...], words: str) -> None:
@@ -142,8 +142,8 @@ def test_what_is_replaced_is_told_and_a_name_keeps_both(run: Run, study: Path) -
     names = cd.open_study(study).correlations
     assert ("edge", "velocity", "raw") in names
     for arguments, words in (
-        (("--frames", "5"), "frames must be FIRST:LAST, such as 10:80, got '5'"),
-        (("--without-frames", "3:4"), "without_frames must be whole numbers with commas between"),
+        (("--frames", "5"), "--frames must be the first and the last, such as 10:80, got '5'"),
+        (("--without-frames", "3:4"), "--without-frames must be whole numbers, such as 17,24, got '3:4'"),
         (("--surrogates", "5"), "at least 19"),
     ):
         assert_refused(run(*command, *arguments), words)

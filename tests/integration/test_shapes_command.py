@@ -67,7 +67,7 @@ def test_the_parameters_of_a_study_can_be_fed_back(run: Run, labels: Path, tmp_p
     assert code == 0
     assert (tmp_path / "two/parameters.toml").read_text() == again.read_text()
     assert (tmp_path / "two/shapes.csv").read_bytes() == (tmp_path / "one/shapes.csv").read_bytes()
-    assert_refused(run("shapes", labels, "-o", tmp_path / "three", "--neighbors", 1), "n_neighbors")
+    assert_refused(run("shapes", labels, "-o", tmp_path / "three", "--neighbors", 1), "--neighbors must be")
 
 
 def test_few_cells_are_measured_without_a_score(run: Run, tmp_path: Path) -> None:

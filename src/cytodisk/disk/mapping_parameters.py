@@ -39,8 +39,8 @@ class MeshParameters(Parameters):
     align: Align = parameter(
         "upright",
         'How the disk is turned. "upright": the disk looks like the cell. A point (row, column), such as '
-        "30,40: the part of the edge nearest to it is at angle 0. A number: the upright disk turned by so many "
-        "degrees from +u towards +v.",
+        "30,40: the part of the edge nearest to it is at angle 0. A number: the upright disk turned by so "
+        "many degrees from +u towards +v.",
         words="'upright', a point (row, column) or an angle in degrees",
     )
 

@@ -13,5 +13,6 @@ class ScoreParameters(Parameters):
         15,
         "Number of cells that UMAP takes for alike; at most one less than there are cells is used.",
         least=2,
+        flag="neighbors",
     )
     min_dist: float = parameter(0.1, "How close together UMAP may put cells in the plane.", least=0, most=1)
