@@ -29,6 +29,7 @@ extensions = [
     "command_line",
     "mathml",
     "public_names",
+    "parameter_tables",
     "table_columns",
 ]
 templates_path = ["_templates"]

@@ -1,0 +1,59 @@
+"""Sphinx extension: write `reference/parameters.rst`, the parameters of each command, from their models."""
+
+from pathlib import Path
+from typing import Any
+
+from public_names import heading, write
+from sphinx.application import Sphinx
+
+from cytodisk.parameter_words import flag_of, range_words, unit_of, value_words
+from cytodisk.parameters import Parameters
+from cytodisk.runs.compare_windows.compare_parameters import CompareMovieParameters, CompareWindowsParameters
+from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
+from cytodisk.runs.map.map_parameters import MapParameters
+from cytodisk.runs.movie.movie_parameters import MovieParameters
+from cytodisk.runs.shapes.shape_parameters import ShapeParameters
+
+MODELS: dict[str, type[Parameters]] = {
+    "cytodisk map": MapParameters,
+    "cytodisk movie": MovieParameters,
+    "cytodisk correlate": CorrelateParameters,
+    "cytodisk shapes": ShapeParameters,
+    "cytodisk compare-windows": CompareWindowsParameters,
+    "cytodisk compare-windows --movie": CompareMovieParameters,
+}
+WORDS = """A parameter has one name: the keyword in Python, the key in ``parameters.toml`` and the flag on the command
+line, with dashes. ``--parameters out/parameters.toml`` reads a file; flags overrule it. What a parameter does and
+what it may be is the same everywhere."""
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    app.connect("config-inited", write_page)
+    return {"parallel_read_safe": True}
+
+
+def write_page(app: Sphinx, _config: Any) -> None:
+    lines = [*heading("Parameters", "="), WORDS, ""]
+    for command, model in MODELS.items():
+        lines += [*heading(command, "-"), *model_table(model)]
+    write(Path(app.srcdir) / "reference" / "parameters.rst", lines)
+
+
+def model_table(model: type[Parameters]) -> list[str]:
+    """A row for each field: name and flag, default, what it may be, what it does."""
+    lines = [".. list-table::", "   :header-rows: 1", "   :class: small", "   :widths: 22 12 22 44", ""]
+    lines += ["   * - Name, flag", "     - Default", "     - May be", "     - What it does"]
+    for name, field in model.model_fields.items():
+        unit = unit_of(field)
+        default = "" if field.default in (None, (), "") else f"``{value_words(field.default)}``"
+        allowed = range_words(field) + (f", in {unit}" if unit else "")
+        lines += [f"   * - | ``{name}``", f"       | ``{flag_of(name, field)}``", f"     - {default}"]
+        lines += [f"     - {plain(allowed)}", f"     - {plain(field.description or '')}"]
+    return [*lines, ""]
+
+
+def plain(text: str) -> str:
+    """Text in which reStructuredText finds no markup."""
+    for character in "\\*`|_":
+        text = text.replace(character, "\\" + character)
+    return text
