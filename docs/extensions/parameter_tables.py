@@ -22,9 +22,8 @@ MODELS: dict[str, type[Parameters]] = {
     "cytodisk compare-windows": CompareWindowsParameters,
     "cytodisk compare-windows --movie": CompareMovieParameters,
 }
-WORDS = """A parameter has one name: the keyword in Python, the key in ``parameters.toml`` and the flag on the command
-line, with dashes. ``--parameters out/parameters.toml`` reads a file; flags overrule it. What a parameter does and
-what it may be is the same everywhere."""
+WORDS = """A parameter has one name: the keyword in Python, the key in ``parameters.toml`` and, with dashes,
+the flag on the command line. ``--parameters out/parameters.toml`` reads a file; flags overrule it."""
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
