@@ -1,8 +1,15 @@
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
+
+from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.disk.disk_map import DiskMap
+from cytodisk.disk.mapping import map_to_disk
+from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.grid import polar_windows
 
 _COMMON = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 settings.register_profile("here", max_examples=30, **_COMMON)
@@ -18,3 +25,26 @@ def data_dir() -> Path:
     if not folder.is_dir():
         pytest.skip(f"real data is absent: set CYTODISK_DATA to its folder (looked at {folder})")
     return folder
+
+
+@pytest.fixture(scope="session")
+def mask() -> BoolArray:
+    """An ellipse of 61 × 31 pixels, off the centre of its image."""
+    y, x = np.mgrid[:50, :90]
+    return np.asarray(((y - 22) / 15.5) ** 2 + ((x - 50) / 30.5) ** 2 <= 1)
+
+
+@pytest.fixture(scope="session")
+def disk(mask: BoolArray) -> DiskMap:
+    return map_to_disk(mask)
+
+
+@pytest.fixture(scope="session")
+def windows(disk: DiskMap) -> CellWindows:
+    return polar_windows(3, 8).on(disk)
+
+
+@pytest.fixture(scope="session")
+def image(mask: BoolArray) -> FloatArray:
+    """Brighter to the right: 10 counts a column."""
+    return np.broadcast_to(10.0 * np.arange(mask.shape[1]), mask.shape).copy()

@@ -8,9 +8,11 @@ from matplotlib.figure import Figure
 import cytodisk as cd
 from cytodisk.errors import StationarityWarning
 from cytodisk.files import replacing
-from cytodisk.plot.cell import draw_windows, frame_cell
-from cytodisk.plot.peak_maps import PeakMap, draw_peaks_on_cell
+from cytodisk.plot.cell_axes import frame_cell
+from cytodisk.plot.correlation_peaks import PeakMap
+from cytodisk.plot.peak_maps import draw_peaks_on_cell
 from cytodisk.plot.style import colour_bar, paper_style
+from cytodisk.plot.window_polygons import draw_windows
 
 WIDTH_PX, HEIGHT_PX, DPI = 1400, 420, 200
 SECTORS = 60
@@ -40,10 +42,10 @@ def main() -> None:
         draw_windows(axes[0], windows, color="0.8", linewidth=0.3)
         coupled = truth.boundary_yx[FRAME][truth.coupled > 0.5]
         axes[0].plot(coupled[:, 1], coupled[:, 0], ".", color="#b2182b", markersize=2)
-        frame_cell(axes[0], movie[FRAME], pixel_size_um=pixel)
-        shown = draw_peaks_on_cell(axes[1], peaks, windows, pixel_size_um=pixel)
+        frame_cell(axes[0], movie[FRAME])
+        shown = draw_peaks_on_cell(axes[1], peaks, windows)
         colour_bar(shown, figure.add_axes((0.565, 0.3, 0.008, 0.4)), "peak correlation")
-        lag = draw_peaks_on_cell(axes[2], peaks, windows, "lag", pixel_size_um=pixel)
+        lag = draw_peaks_on_cell(axes[2], peaks, windows, "lag")
         colour_bar(lag, figure.add_axes((0.905, 0.3, 0.008, 0.4)), "lag", "s")
         with replacing(Path(__file__).with_name("correlation.png")) as temporary:
             figure.savefig(temporary, dpi=DPI, pil_kwargs={"optimize": True})

@@ -17,11 +17,12 @@ SECTORS = 60
 def main() -> None:
     """Write the picture next to this file."""
     truth = cd.simulate.movie("migrating", seed=0, frames=40)
-    interval, pixel = truth.frame_interval_s, truth.pixel_size_um
-    movie = cd.map_movie(truth.masks, pixel_size_um=pixel, frame_interval_s=interval)
+    movie = cd.map_movie(
+        truth.masks, pixel_size_um=truth.pixel_size_um, frame_interval_s=truth.frame_interval_s
+    )
     velocity = cd.edge_velocity(movie, SECTORS)
     activity = cd.sample_movie(movie, cd.polar_windows(10, SECTORS), truth.signal)
-    edge = activity["mean"].sel(channel="edge", layer=0).to_numpy()
+    edge = activity["mean"].sel(channel="edge", layer=0)
     with paper_style():
         figure = Figure(figsize=(WIDTH_PX / DPI, HEIGHT_PX / DPI))
         headings = ("a cell crawls", "edge velocity", "signal in the outermost windows")
@@ -29,9 +30,9 @@ def main() -> None:
         for left, width, heading in zip((0.0, 0.355, 0.71), (0.235, 0.19, 0.19), headings, strict=True):
             axes.append(figure.add_axes((left, 0.19, width, 0.68)))
             figure.text(left + width / 2, 0.93, heading, ha="center", fontsize=8)
-        draw_tracks(axes[0], movie.points_yx, every=2, frame_interval_s=interval, pixel_size_um=pixel)
-        draw_velocity_map(axes[1], velocity.to_numpy(), frame_interval_s=interval, unit="µm/s")
-        draw_activity_map(axes[2], edge, frame_interval_s=interval)
+        draw_tracks(axes[0], movie.points_yx, every=2, scale=movie.scale)
+        draw_velocity_map(axes[1], velocity)
+        draw_activity_map(axes[2], edge)
         axes[1].set_ylabel("sector")
         axes[2].set_ylabel("")
         with replacing(Path(__file__).with_name("movie.png")) as temporary:

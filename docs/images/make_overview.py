@@ -6,9 +6,11 @@ from matplotlib.figure import Figure
 
 from cytodisk.disk.mapping import map_to_disk
 from cytodisk.files import replacing
-from cytodisk.plot.cell import draw_cell, draw_window_means, draw_windows
+from cytodisk.plot.cell_axes import draw_cell
 from cytodisk.plot.disk_axes import draw_disk_image, draw_disk_means
 from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, paper_style, signal_limits
+from cytodisk.plot.window_polygons import draw_window_means, draw_windows
+from cytodisk.scale import Scale
 from cytodisk.simulate import cell_with_signal
 from cytodisk.windows.grid import polar_windows
 from cytodisk.windows.sample import sample
@@ -19,7 +21,7 @@ WIDTH_PX, HEIGHT_PX, DPI = 1400, 400, 200
 def main() -> None:
     """Write the picture next to this file."""
     cell = cell_with_signal(seed=0)
-    image, scale = cell.signal.sel(channel="edge"), cell.signal.attrs["pixel_size_um"]
+    image, scale = cell.signal.sel(channel="edge"), Scale.of(cell.signal)
     disk = map_to_disk(cell.mask)
     windows = polar_windows(layers=8, sectors=48).on(disk)
     means = sample(windows, image)["mean"]
@@ -31,11 +33,11 @@ def main() -> None:
         for left, heading in zip((0.01, 0.245, 0.475, 0.705), headings, strict=True):
             axes.append(figure.add_axes((left, 0.07, 0.2, 0.8)))
             figure.text(left + 0.1, 0.92, heading, ha="center", fontsize=8)
-        drawn = draw_cell(axes[0], image, disk, pixel_size_um=scale, cmap=SIGNAL_COLOURS, limits=limits)
+        drawn = draw_cell(axes[0], image, disk, scale=scale, cmap=SIGNAL_COLOURS, limits=limits)
         draw_windows(axes[0], windows, linewidth=0.2, alpha=0.7)
         draw_disk_image(axes[1], disk, image, limits=limits)
         draw_disk_means(axes[2], windows.grid, means, limits=limits)
-        draw_window_means(axes[3], windows, means, pixel_size_um=scale, limits=limits)
+        draw_window_means(axes[3], windows, means, scale=scale, limits=limits)
         bar = figure.add_axes((0.925, 0.2, 0.01, 0.54))
         colour_bar(drawn, bar, "signal at the edge", "a.u.", extend="both")
         with replacing(Path(__file__).with_name("overview.png")) as temporary:

@@ -8,8 +8,8 @@ import numpy as np
 import tifffile
 
 import cytodisk as cd
-from cytodisk.pages.compared_cells import draw_labels
 from cytodisk.plot.style import DPI, PAPER
+from cytodisk.plot.window_labels import draw_label_image
 from cytodisk.runs.compare_windows.compare_parameters import TITLES
 from cytodisk.windows.edge_windows import EdgeGrid
 from remeasured.movies import LAYERS, MOVIES, SECTORS
@@ -40,7 +40,9 @@ def write(found: dict[str, Any], files: Path) -> dict[str, Any]:
             axes[0, column].set_title(f"frame {time}")
             for row, method in enumerate(("newton", "edge")):
                 labels = frame[method][rows, columns]
-                draw_labels(axes[row, column], labels, frame["mask"][rows, columns], (LAYERS, SECTORS))
+                ax, mask = axes[row, column], frame["mask"][rows, columns]
+                draw_label_image(ax, labels, mask, (LAYERS, SECTORS))
+                ax.set_axis_off()
         for row, method in enumerate(("newton", "edge")):
             axes[row, 0].text(
                 -0.06,

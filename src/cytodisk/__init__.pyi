@@ -79,5 +79,5 @@ from .store.study import Study as Study
 from .runs.compare_windows.comparison import open_comparison as open_comparison
 from .runs.compare_windows.comparison import Comparison as Comparison
 from .runs.shapes.shape_tables import open_shapes as open_shapes
-from .pages.report.flags import red_flags as red_flags
+from .runs.qc_flags.study_flags import qc_flags as qc_flags
 from .pages.report.page import write_report as write_report

@@ -54,6 +54,19 @@ def number_between(name: str, value: Any, low: float, high: float = np.inf) -> f
     return float(value)
 
 
+def positive_number(name: str, value: Any) -> float:
+    """A parameter as a number above 0.
+
+    Raises
+    ------
+    ParameterError
+        It is not a number, or not above 0.
+    """
+    if not (is_number(value) and value > 0):
+        raise ParameterError(f"{name} must be a positive number, got {value!r}")
+    return float(value)
+
+
 def one_of(name: str, value: Any, choices: Collection[str]) -> str:
     """A parameter that is one of a few words.
 

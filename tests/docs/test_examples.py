@@ -19,7 +19,6 @@ STILL_WITHOUT = (
     "run_",
     "correlate_study",
     "open_",
-    "red_flags",
     "qc_flags",
     "write_report",
     "write_c",

@@ -1,3 +1,5 @@
+from typing import Any
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -14,6 +16,7 @@ from cytodisk.analysis.correlation.peaks import peak_correlation
 from cytodisk.errors import ParameterError
 from cytodisk.plot.correlation_curves import PEAK_NAME, curve_key, draw_correlation_curves, draw_map_pair
 from cytodisk.plot.lag_axis import sides
+from cytodisk.scale import Scale
 
 LAGS = np.arange(-3, 4)
 
@@ -159,11 +162,11 @@ def test_maps_have_one_time_axis() -> None:
     axes = [figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2)]
     signal = np.arange(20.0).reshape(5, 4)
     velocity = signal - 10.0
-    time = {"frame_interval_s": 3.0, "first_frame": 2}
-    left, right = draw_map_pair(axes, signal, velocity, label="Rac1 (a.u.)", velocity_unit="µm/s", **time)
+    options: Any = {"label": "Rac1", "by_velocity": True, "scale": Scale(0.5, 3.0)}
+    left, right = draw_map_pair(axes, signal, velocity, **options)
     np.testing.assert_array_equal(left.get_array(), signal.T)
     np.testing.assert_array_equal(right.get_array(), velocity.T)
-    assert axes[0].get_xlim() == axes[1].get_xlim() == (4.5, 19.5)
+    assert axes[0].get_xlim() == axes[1].get_xlim() == (-1.5, 13.5)
     assert axes[0].get_ylim() == axes[1].get_ylim()
     assert right.norm.vmin == -right.norm.vmax
     assert [ax.child_axes[0].get_ylabel() for ax in axes] == ["Rac1 (a.u.)", "edge velocity (µm/s)"]

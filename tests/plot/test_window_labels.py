@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 import cytodisk as cd
 from cytodisk.errors import WindowError
+from cytodisk.plot.window_labels import window_colours
 
 
 def axes() -> Any:
@@ -35,3 +36,13 @@ def test_a_grid_without_a_cell_is_refused() -> None:
         cd.plot.draw_window_labels(axes(), cd.polar_windows(2, 4))
     with pytest.raises(WindowError, match="pass map_to_disk"):
         cd.polar_windows(2, 4).on(cd.simulate.disk(10))
+
+
+def test_layers_have_colours_and_every_other_sector_is_paler() -> None:
+    labels = np.array([[0, 1, 2, 3, 8, -1]])
+    colours = window_colours(labels, (3, 4))[0]
+    np.testing.assert_array_equal(colours[0], colours[2])
+    np.testing.assert_array_equal(colours[1], colours[3])
+    assert (colours[1] > colours[0]).all()
+    assert colours[4].sum() > colours[0].sum()  # the centre is lighter than the edge
+    np.testing.assert_array_equal(colours[5], [1.0, 1.0, 1.0])

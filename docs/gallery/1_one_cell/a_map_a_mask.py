@@ -27,7 +27,7 @@ figure, axes = plt.subplots(
     1, 2, figsize=(6.2, 2.6), width_ratios=(1.5, 1), layout="constrained"
 )
 cd.plot.draw_mesh(axes[0], disk.vertices_yx, disk.triangles)
-cd.plot.frame_cell(axes[0], disk, pixel_size_um=0.16)
+cd.plot.frame_cell(axes[0], disk, scale=cd.Scale(0.16))
 cd.plot.draw_disk_mesh(axes[1], disk)
 axes[0].set_title("the cell")
 axes[1].set_title("its disk")
@@ -55,7 +55,7 @@ print(
 # λ is a triangle's share of the disk over its share of the cell. The area distortion
 # is the mean of \|ln λ\|: 0.03 is about 3 % off.
 figure, ax = plt.subplots(figsize=(6.2, 3.2), layout="constrained")
-filled = cd.plot.draw_area_distortion(ax, disk, pixel_size_um=0.16)
+filled = cd.plot.draw_area_distortion(ax, disk, scale=cd.Scale(0.16))
 figure.colorbar(filled, ax=ax, label="log₂ λ", shrink=0.7)
 print(f"area distortion: {disk.distortion.area:.3f}")
 print(f"angle distortion: {disk.distortion.angle:.2f}")

@@ -29,11 +29,11 @@ print(data)
 figure, axes = plt.subplots(
     1, 3, figsize=(6.2, 2.2), width_ratios=(1.5, 1, 1.5), layout="constrained"
 )
-cd.plot.draw_cell(axes[0], edge, disk, pixel_size_um=0.16, cmap="viridis")
+cd.plot.draw_cell(axes[0], edge, disk, scale=cd.Scale(0.16), cmap="viridis")
 cd.plot.draw_windows(axes[0], windows)
 cd.plot.draw_disk_means(axes[1], grid, data["mean"].sel(channel="edge"))
 cd.plot.draw_window_means(
-    axes[2], windows, data["mean"].sel(channel="edge"), pixel_size_um=0.16
+    axes[2], windows, data["mean"].sel(channel="edge"), scale=cd.Scale(0.16)
 )
 for ax, title in zip(
     axes, ("signal and windows", "means on the disk", "means in the cell"), strict=True
@@ -65,7 +65,7 @@ figure, axes = plt.subplots(1, 2, figsize=(6.2, 2.6), layout="constrained")
 for ax, spacing in zip(axes, ("area", "radius"), strict=True):
     laid = cd.polar_windows(8, 48, spacing).on(disk)
     cd.plot.draw_windows(ax, laid, by_layer=True)
-    cd.plot.frame_cell(ax, disk, pixel_size_um=0.16)
+    cd.plot.frame_cell(ax, disk, scale=cd.Scale(0.16))
     ax.set_title(f"{spacing}: {laid.areas.min():.0f} to {laid.areas.max():.0f} px²")
 plt.show()
 

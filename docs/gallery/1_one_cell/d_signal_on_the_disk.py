@@ -29,7 +29,9 @@ disks = [cd.map_to_disk(mask) for mask in masks]
 
 figure, axes = plt.subplots(2, 4, figsize=(6.2, 3.2), layout="constrained")
 for column, (disk, signal) in enumerate(zip(disks, signals, strict=True)):
-    cd.plot.draw_cell(axes[0, column], signal, disk, cmap="viridis", pixel_size_um=0.16)
+    cd.plot.draw_cell(
+        axes[0, column], signal, disk, cmap="viridis", scale=cd.Scale(0.16)
+    )
     cd.plot.draw_disk_image(axes[1, column], disk, signal)
 plt.show()
 

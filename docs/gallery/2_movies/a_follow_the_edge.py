@@ -28,8 +28,7 @@ cd.plot.draw_tracks(
     ax,
     movie.points_yx,
     every=2,
-    frame_interval_s=movie.scale.frame_interval_s,
-    pixel_size_um=movie.scale.pixel_size_um,
+    scale=movie.scale,
 )
 plt.show()
 
@@ -40,7 +39,7 @@ plt.show()
 # frame to the next, so the last frame has none.
 velocity = cd.edge_velocity(movie, sectors=60)
 figure, ax = plt.subplots(figsize=(5, 2.8), layout="constrained")
-cd.plot.draw_velocity_map(ax, velocity, frame_interval_s=movie.scale.frame_interval_s)
+cd.plot.draw_velocity_map(ax, velocity)
 plt.show()
 
 # %%

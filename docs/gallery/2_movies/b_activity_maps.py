@@ -26,9 +26,7 @@ velocity = cd.edge_velocity(movie, sectors=60)
 mean = activity["mean"].sel(channel="edge")
 figure, axes = plt.subplots(5, 1, figsize=(5.6, 6.4))
 figure.subplots_adjust(hspace=0.35, top=0.96, bottom=0.08, right=0.84)
-cd.plot.draw_layers(
-    axes, mean.to_numpy(), velocity, frame_interval_s=movie.scale.frame_interval_s
-)
+cd.plot.draw_layers(axes, mean, velocity)
 plt.show()
 
 # %%
@@ -42,7 +40,5 @@ cd.plot.draw_cell(
     movie[frame],
     cmap="viridis",
 )
-cd.plot.draw_window_means(
-    axes[1], windows, mean.isel(time=frame), pixel_size_um=movie.scale.pixel_size_um
-)
+cd.plot.draw_window_means(axes[1], windows, mean.isel(time=frame))
 plt.show()

@@ -28,7 +28,6 @@ cd.plot.draw_strip(
     axes,
     [grid.on(movie[frame]) for frame in frames],
     [f"{frame * movie.scale.frame_interval_s:g} s" for frame in frames],
-    pixel_size_um=movie.scale.pixel_size_um,
 )
 plt.show()
 
@@ -42,14 +41,8 @@ layers = [0, 2, 4]
 figure, axes = plt.subplots(2, 1, figsize=(5, 4), sharex=True, layout="constrained")
 for ax, values, label in (
     (axes[0], alike, "correlation with the\nnext frame"),
-    (axes[1], moved.mean("sector"), f"mean displacement\n({moved.attrs['units']})"),
+    (axes[1], moved.mean("sector", keep_attrs=True), "mean displacement\n"),
 ):
-    lines = cd.plot.draw_by_layer(
-        ax,
-        values.to_numpy(),
-        layers,
-        label,
-        frame_interval_s=movie.scale.frame_interval_s,
-    )
+    lines = cd.plot.draw_by_layer(ax, values, layers, label, scale=movie.scale)
 axes[1].legend(lines, [f"layer {layer}" for layer in layers], frameon=False)
 plt.show()

@@ -71,12 +71,10 @@ figure, axes = plt.subplots(1, 3, figsize=(6.4, 2.6), layout="constrained")
 coupled = truth.boundary_yx[frame][truth.coupled > 0.5]
 cd.plot.draw_windows(axes[0], windows, color="0.7")
 axes[0].plot(coupled[:, 1], coupled[:, 0], ".", color="#b2182b", markersize=2)
-cd.plot.frame_cell(axes[0], movie[frame], pixel_size_um=truth.pixel_size_um)
+cd.plot.frame_cell(axes[0], movie[frame])
 axes[0].set_title("simulated here")
 for ax, what, unit in ((axes[1], "correlation", None), (axes[2], "lag", "s")):
-    drawn = cd.plot.draw_peaks_on_cell(
-        ax, shown, windows, what, pixel_size_um=truth.pixel_size_um
-    )
+    drawn = cd.plot.draw_peaks_on_cell(ax, shown, windows, what)
     figure.colorbar(
         drawn, ax=ax, label=what if unit is None else f"{what} ({unit})", shrink=0.6
     )

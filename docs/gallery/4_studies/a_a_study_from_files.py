@@ -86,7 +86,6 @@ cd.plot.draw_window_means(
     ax,
     cd.polar_windows(layers=10, sectors=40).on(disk),
     activity["mean"].sel(channel="edge").isel(time=12),
-    pixel_size_um=0.16,
 )
 plt.show()
 

@@ -47,9 +47,9 @@ for flag in cd.qc_flags(study):
 
 # %%
 # The same in a picture: the velocity jumps before and after that frame.
-velocity = study.edge.pivot(index="frame", columns="sector", values="velocity")
+velocity = study.activity(0)["velocity"]
 figure, ax = plt.subplots(figsize=(5.6, 2.8), layout="constrained")
-cd.plot.draw_velocity_map(ax, velocity.to_numpy(), frame_interval_s=5)
+cd.plot.draw_velocity_map(ax, velocity)
 plt.show()
 
 # %%

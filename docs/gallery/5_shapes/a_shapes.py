@@ -23,7 +23,7 @@ masks = [
     for seed, step in enumerate(steps)
 ]
 
-features = cd.shape_features(masks, pixel_size_um=0.16)
+features = cd.shape_features(masks, scale=cd.Scale(0.16))
 shown = ["area", "circularity", "solidity", "aspect_ratio"]
 print(features.loc[::13, shown].round(2))
 print("unit of area:", features.attrs["units"]["area"])
@@ -34,7 +34,7 @@ print("scale-free features:", len(features.attrs["scale_free"]))
 # score is the position along the plane's principal axis, the arrow.
 score = cd.complexity_score(features, seed=0)
 figure, ax = plt.subplots(figsize=(5, 4), layout="constrained")
-_, outlines = cd.plot.shape_landscape(ax, score, masks)
+_, outlines = cd.plot.draw_shape_landscape(ax, score, masks)
 figure.colorbar(outlines, label="complexity", shrink=0.7)
 plt.show()
 
@@ -43,5 +43,5 @@ plt.show()
 ranked = score["complexity"].to_numpy().argsort()
 chosen = ranked[np.linspace(0, len(ranked) - 1, 6).astype(int)]
 figure, ax = plt.subplots(figsize=(6.2, 1.6), layout="constrained")
-cd.plot.shape_examples(ax, score, masks, [chosen.tolist()], pixel_size_um=0.16)
+cd.plot.draw_shape_examples(ax, score, masks, [chosen.tolist()], scale=cd.Scale(0.16))
 plt.show()

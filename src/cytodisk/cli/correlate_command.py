@@ -35,7 +35,7 @@ Examples:
 Exit code: 0 when done (a cell that cannot be correlated has a row with the reason), 2 if none could be.
 """
 
-REPORT_HELP = """Write one HTML page that shows a study: red flags, windows, activity, velocity, correlation.
+REPORT_HELP = """Write one HTML page that shows a study: QC flags, windows, activity, velocity, correlation.
 
 The page holds all it needs: it opens in any browser, without a network, and can be sent as one file.
 
@@ -113,9 +113,9 @@ def write_page(
         page = write_report(study, out, cell=cell, signal=image, progress=progress)
     flags = page_flags(study, image)
     for flag in flags:
-        console.print(f"red flag: {flag.what}")
+        console.print(f"QC flag: {flag.what}")
     if not flags:
-        console.print("no red flags")
+        console.print("no QC flags")
     console.print(f"report: {page} ({page.stat().st_size / 1e6:.1f} MB), open it in a browser")
 
 

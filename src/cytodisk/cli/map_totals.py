@@ -24,7 +24,7 @@ _EMPTY = {"no cell": "empty", "no image": "without an image", "unreadable": "dam
 
 def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool) -> None:
     """Draw the overview and say what came out; exit code 2 if that is nothing, or an input is damaged."""
-    from cytodisk.pages.cell_pages import write_overview
+    from cytodisk.pages.overview import write_overview
     from cytodisk.store.study_folder import figures_folder
 
     rows = study.cells

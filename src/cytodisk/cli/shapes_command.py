@@ -74,11 +74,12 @@ def shapes_command(
 def _draw(inputs: "MapInputs", table: "pd.DataFrame", out: Path) -> None:
     from cytodisk.pages.shape_pages import cells_to_draw, write_shape_figures
     from cytodisk.runs.shapes.shape_run import cleaned_masks
+    from cytodisk.scale import Scale
     from cytodisk.store.study_folder import figures_folder
 
     if table["complexity"].notna().any():
         masks = cleaned_masks(inputs, cells_to_draw(table))
-        write_shape_figures(figures_folder(out), table, masks, inputs.pixel_size_um)
+        write_shape_figures(figures_folder(out), table, masks, Scale(inputs.pixel_size_um))
 
 
 def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:

@@ -1,6 +1,9 @@
-"""Whole figures written to files, and the report.
+"""Whole figures written to files, and the report: functions return the paths of what they wrote.
 
-Functions that write take a study and return the paths of what they wrote.
+Studies: write_cell_figures and write_overview of masks, write_movie_figures, write_correlation_figures,
+write_shape_figures; write_animation, a cell beside its disk through time; write_report, one HTML page.
+
+Comparisons of windows: write_comparison, write_compared_cells, write_compared_movie.
 """
 
 import lazy_loader

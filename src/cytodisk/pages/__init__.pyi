@@ -7,6 +7,7 @@ from .correlation_files import write_correlation_figures as write_correlation_fi
 from .shape_pages import write_shape_figures as write_shape_figures
 from .overview import write_overview as write_overview
 from .animation import write_animation as write_animation
+from .report.page import write_report as write_report
 
 # Figures of a comparison
 from .compared_layers import write_comparison as write_comparison

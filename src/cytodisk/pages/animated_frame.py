@@ -11,23 +11,23 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Colormap, Normalize
 from PIL import Image
 
-from cytodisk.arrays import FloatArray
-from cytodisk.errors import ParameterError, SignalError
+from cytodisk.arrays import AnyArray, FloatArray
+from cytodisk.errors import ParameterError
 from cytodisk.pages.sheet import Sheet
+from cytodisk.plot.cell_axes import fitting_image
 from cytodisk.plot.disk_axes import disk_polygons, fit_disk, frame_disk
-from cytodisk.plot.strip import (
+from cytodisk.plot.field_of_view import Extent, frame_field
+from cytodisk.plot.sector_marks import (
     EDGE_WIDTH,
-    ON_WHITE,
-    OVER_SIGNAL,
-    Extent,
     draw_edge,
-    frame_field,
     mark_point,
     note_sector,
     sector_arcs,
     sector_colours,
+    sector_style,
 )
 from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, colour_map, paper_style, scale_bar, signal_limits
+from cytodisk.scale import Scale
 from cytodisk.windows.cell_windows import CellWindows
 from cytodisk.windows.grid import PolarGrid
 
@@ -48,8 +48,8 @@ class AnimatedFrames:
         Grid of all frames.
     extent_yx : (float, float, float, float)
         Field of view: top, bottom, left and right in pixels.
-    pixel_size_um : float or None
-        Micrometres a pixel; without it the scale bar is in px.
+    scale : Scale
+        Without a pixel size the scale bar is in px.
     limits : (float, float) or None
         Limits of the signal's colours; by default percentiles 1 and 99.5 inside the first cell with a signal.
     label : str
@@ -60,11 +60,11 @@ class AnimatedFrames:
         self,
         grid: PolarGrid,
         extent_yx: Extent,
-        pixel_size_um: float | None,
+        scale: Scale,
         limits: tuple[float, float] | None,
         label: str,
     ) -> None:
-        self._grid, self._extent, self._pixel_size_um = grid, extent_yx, pixel_size_um
+        self._grid, self._extent, self._scale = grid, extent_yx, scale
         self._limits, self._label = limits, label
         self._colours, self._palette = _signal_colours(), _palette()
         self._has_bar = False
@@ -77,17 +77,13 @@ class AnimatedFrames:
         Raises
         ------
         ParameterError
-            The windows have another grid, or the pixel size is not a positive number.
+            The windows have another grid.
         SignalError
             The signal has another shape than the mask.
         """
         if windows.grid != self._grid:
             raise ParameterError(f"frames have the grids {self._grid} and {windows.grid}: pass one for all")
-        image = None if signal is None else np.asarray(signal)
-        if image is not None and image.shape != windows.mask.shape:
-            raise SignalError(
-                f"signal has shape {image.shape}, the mask {windows.mask.shape}: pass one channel a frame"
-            )
+        image = None if signal is None else fitting_image(signal, windows.mask, "signal")
         with paper_style():
             self._moving.clear(stamp)
             if image is not None:
@@ -97,7 +93,7 @@ class AnimatedFrames:
             picture.alpha_composite(self._laid_over(over_signal=image is not None))
         return picture.convert("RGB").quantize(palette=self._palette, dither=Image.Dither.NONE)
 
-    def _draw_signal(self, windows: CellWindows, image: FloatArray) -> None:
+    def _draw_signal(self, windows: CellWindows, image: AnyArray) -> None:
         self._limits = self._limits or signal_limits(image, windows.mask)
         self._has_bar = True
         low, high = self._limits
@@ -112,7 +108,7 @@ class AnimatedFrames:
         kind = over_signal, self._has_bar
         if kind not in self._fixed:
             scene = _Scene(self._extent)
-            scale_bar(scene.cell, self._pixel_size_um)
+            scale_bar(scene.cell, self._scale)
             note_sector(scene.cell)
             _draw_disk(scene.disk, self._grid, over_signal=over_signal)
             if self._has_bar:
@@ -167,7 +163,7 @@ def _draw_cell(ax: Axes, windows: CellWindows, *, over_signal: bool) -> None:
         filled = [polygon[:, ::-1] for polygon in outermost]
         ax.add_collection(PolyCollection(filled, facecolors=sector_colours(grid.sectors)), autolim=False)
     lines = [line[:, ::-1] for line in (*rings[: grid.layers - 1], *spokes)]
-    colour = (OVER_SIGNAL if over_signal else ON_WHITE)["edgecolors"]
+    colour = sector_style(grid, over_signal=over_signal)["edgecolors"]
     ax.add_collection(LineCollection(lines, colors=colour, linewidths=_SIDE_WIDTH), autolim=False)
     draw_edge(ax, windows, over_signal=over_signal)
 
@@ -189,15 +185,13 @@ def _in_cell(windows: CellWindows, radius: FloatArray, angle: FloatArray) -> Flo
 
 
 def _draw_disk(ax: Axes, grid: PolarGrid, *, over_signal: bool) -> None:
-    colours = sector_colours(grid.sectors)
-    faces = np.zeros((grid.n_windows, 4))
-    if not over_signal:
-        faces[: grid.sectors] = colours
-    lines = OVER_SIGNAL if over_signal else ON_WHITE
-    ax.add_collection(PolyCollection(disk_polygons(grid), facecolors=faces, **lines), autolim=False)
+    style = sector_style(grid, over_signal=over_signal)
+    ax.add_collection(PolyCollection(disk_polygons(grid), **style), autolim=False)
     frame_disk(ax)
     if over_signal:
-        edge = LineCollection(_arcs(grid), colors=colours, linewidths=EDGE_WIDTH, zorder=4)
+        edge = LineCollection(
+            _arcs(grid), colors=sector_colours(grid.sectors), linewidths=EDGE_WIDTH, zorder=4
+        )
         ax.add_collection(edge, autolim=False)
     middle = 0.5 * grid.angles[1]
     mark_point(ax, float(np.sin(middle)), float(np.cos(middle)))

@@ -12,7 +12,10 @@ from PIL import Image
 from cytodisk.errors import ParameterError, StudyError
 from cytodisk.files import replacing
 from cytodisk.pages.animated_frame import AnimatedFrames
-from cytodisk.plot.strip import Extent, time_stamp
+from cytodisk.plot.field_of_view import Extent
+from cytodisk.plot.time_axis import time_stamp
+from cytodisk.plot.units import scale_for
+from cytodisk.scale import Scale
 from cytodisk.windows.cell_windows import CellWindows
 
 MOST_FRAMES = 150
@@ -26,8 +29,7 @@ def write_animation(
     *,
     extent_yx: Extent,
     fps: float = 8,
-    pixel_size_um: float | None = None,
-    frame_interval_s: float | None = None,
+    scale: Scale | None = None,
     limits: tuple[float, float] | None = None,
     label: str = "signal (a.u.)",
     progress: Callable[[int], None] | None = None,
@@ -48,10 +50,8 @@ def write_animation(
         Field of view: top, bottom, left and right in pixels, such as `field_of_view` gives.
     fps : float
         Frames shown per second.
-    pixel_size_um : float, optional
-        Micrometres a pixel; without it the scale bar is in px.
-    frame_interval_s : float, optional
-        Seconds between frames; without it the time stamp is the frame's number.
+    scale : Scale, optional
+        By default that of the windows. Unknown, the scale bar is in px and the stamp the frame's number.
     limits : (float, float), optional
         Limits of the signal's colours in all frames; by default percentiles 1 and 99.5 inside the first cell.
     label : str
@@ -95,8 +95,9 @@ def write_animation(
     stage, every = None, 1
     for number, (windows, signal, index) in enumerate(frames):
         if number % every == 0:
-            stage = stage or AnimatedFrames(windows.grid, extent_yx, pixel_size_um, limits, label)
-            images.append(stage.draw(windows, signal, time_stamp(index, frame_interval_s)))
+            known = scale_for(windows, scale)
+            stage = stage or AnimatedFrames(windows.grid, extent_yx, known, limits, label)
+            images.append(stage.draw(windows, signal, time_stamp(index, known)))
         if len(images) > MOST_FRAMES:
             images, every = images[::2], 2 * every
         if progress is not None:

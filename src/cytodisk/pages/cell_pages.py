@@ -2,36 +2,24 @@
 
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import Normalize
 
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError
-from cytodisk.files import replacing
-from cytodisk.pages.overview import write_overview
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.cell import (
-    DISTORTION_LABEL,
-    distortion_limit,
-    draw_area_distortion,
-    draw_cell,
-    draw_mesh,
-    draw_outline,
-    draw_window_means,
-    draw_windows,
-    frame_cell,
-)
+from cytodisk.plot.area_distortion import DISTORTION_LABEL, draw_area_distortion, draw_area_spread
+from cytodisk.plot.cell_axes import draw_cell, draw_mesh, draw_outline, frame_cell
 from cytodisk.plot.disk_axes import draw_disk_image, draw_disk_means, draw_disk_mesh, draw_disk_windows
-from cytodisk.plot.style import DIVERGING_COLOURS, DPI, SIGNAL_COLOURS, colour_bar, paper_style, signal_limits
+from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, paper_style, signal_limits
+from cytodisk.plot.units import scale_for
+from cytodisk.plot.window_polygons import draw_window_means, draw_windows
+from cytodisk.scale import Scale
 from cytodisk.windows.cell_windows import CellWindows
 from cytodisk.windows.sample import sample
-
-__all__ = ["write_cell_figures", "write_overview"]
 
 _MOST_CHANNELS = 3
 _LONGEST_NAME = 80
@@ -48,7 +36,7 @@ def write_cell_figures(
     name: str,
     windows: CellWindows,
     signal: xr.DataArray | None,
-    pixel_size_um: float | None,
+    scale: Scale | None = None,
 ) -> list[Path]:
     """Write the page of one cell: signal and means in cell and disk by channel, mesh and area distortion.
 
@@ -63,8 +51,8 @@ def write_cell_figures(
     windows : CellWindows
     signal : DataArray with dims (channel,) y, x, or None
         One frame. The first three channels are drawn.
-    pixel_size_um : float or None
-        Micrometres a pixel; None when not known, then scale bars are in px.
+    scale : Scale, optional
+        By default that of the windows; without a pixel size scale bars are in px.
 
     Returns
     -------
@@ -76,7 +64,7 @@ def write_cell_figures(
     SignalError
         The signal does not fit the mask.
     ParameterError
-        The name cannot be a file's, or the pixel size is not a positive number.
+        The name cannot be a file's.
     StudyError
         The folder cannot be written.
 
@@ -92,19 +80,16 @@ def write_cell_figures(
     if not name or Path(name).name != name:
         raise ParameterError(f"name must be a file name without folders, got {name!r}: pass the cell's name")
     path = Path(folder) / f"{name}.png"
+    known = scale_for(windows, scale)
     with paper_style():
         if signal is None:
-            sheet = _sheet_without_signal(name, windows, pixel_size_um)
+            sheet = _sheet_without_signal(name, windows, known)
         else:
-            sheet = _sheet_with_signal(name, windows, signal, pixel_size_um)
-        with replacing(path) as temporary:
-            sheet.figure.savefig(temporary, dpi=DPI)
-    return [path]
+            sheet = _sheet_with_signal(name, windows, signal, known)
+        return [sheet.save(path)]
 
 
-def _sheet_with_signal(
-    name: str, windows: CellWindows, signal: xr.DataArray, pixel_size_um: float | None
-) -> Sheet:
+def _sheet_with_signal(name: str, windows: CellWindows, signal: xr.DataArray, scale: Scale) -> Sheet:
     images = signal.transpose("channel", ...) if "channel" in signal.dims else signal.expand_dims("channel")
     means = np.asarray(sample(windows, images)["mean"])
     names = _channel_names(images)
@@ -113,11 +98,11 @@ def _sheet_with_signal(
     row = _HEADING + height + _BELOW
     sheet = Sheet(_TOP + (shown + 1) * row + 2.0)
     left_out = f"channels 1–{shown} of {len(means)}" if len(means) > shown else ""
-    _write_heading(sheet, name, windows, pixel_size_um, left_out)
+    _write_heading(sheet, name, windows, scale, left_out)
     for k in range(shown):
         top = _TOP + k * row + _HEADING
-        _draw_channel(sheet, top, height, windows, np.asarray(images[k]), means[k], names[k], pixel_size_um)
-    _draw_map_row(sheet, _TOP + shown * row + _HEADING, height, windows.disk, pixel_size_um)
+        _draw_channel(sheet, top, height, windows, np.asarray(images[k]), means[k], names[k], scale)
+    _draw_map_row(sheet, _TOP + shown * row + _HEADING, height, windows.disk, scale)
     return sheet
 
 
@@ -136,7 +121,7 @@ def _draw_channel(
     image: FloatArray,
     means: FloatArray,
     channel: str,
-    pixel_size_um: float | None,
+    scale: Scale,
 ) -> None:
     """The signal in cell and disk in the same colours, then the means, whose range is narrower."""
     sheet.text(
@@ -153,41 +138,37 @@ def _draw_channel(
     headings = ("signal and windows", "signal on the disk")
     cell, wheel = _row_of_axes(sheet, top, height, _PANEL, headings)
     limits = signal_limits(image, windows.mask)
-    drawn = draw_cell(
-        cell, image, windows.disk, pixel_size_um=pixel_size_um, cmap=SIGNAL_COLOURS, limits=limits
-    )
+    drawn = draw_cell(cell, image, windows.disk, scale=scale, cmap=SIGNAL_COLOURS, limits=limits)
     draw_windows(cell, windows, linewidth=0.15, alpha=0.6)
     draw_disk_image(wheel, windows.disk, image, limits=limits)
     bar = _bar_axes(sheet, top, height, second - _BAR)
     colour_bar(drawn, bar, _shortened(channel, _LONGEST_CHANNEL), "a.u.", extend="both")
     headings = ("window means", "window means on the disk")
     cell, wheel = _row_of_axes(sheet, top, height, _PANEL, headings, left=second)
-    filled = draw_window_means(cell, windows, means, pixel_size_um=pixel_size_um)
+    filled = draw_window_means(cell, windows, means, scale=scale)
     draw_disk_means(wheel, windows.grid, means)
     bar = _bar_axes(sheet, top, height, second + _PAIR - _BAR)
     colour_bar(filled, bar, f"mean {_shortened(channel, _LONGEST_CHANNEL)}", "a.u.", extend="both")
 
 
-def _draw_map_row(
-    sheet: Sheet, top: float, height: float, disk: DiskMap, pixel_size_um: float | None
-) -> None:
+def _draw_map_row(sheet: Sheet, top: float, height: float, disk: DiskMap, scale: Scale) -> None:
     second = _LEFT + _PAIR
     mesh, wheel = _row_of_axes(sheet, top, height, _PANEL, ("mesh in the cell", "mesh on the disk"))
     spread, area = _row_of_axes(sheet, top, height, _PANEL, ("", "area distortion"), left=second)
-    _draw_meshes(mesh, wheel, disk, pixel_size_um)
+    _draw_meshes(mesh, wheel, disk, scale)
     _inset(spread, sheet, 4.0, 9.0, min(height, _PANEL))
     draw_area_spread(spread, disk)
-    drawn = draw_area_distortion(area, disk, pixel_size_um=pixel_size_um)
+    drawn = draw_area_distortion(area, disk, scale=scale)
     bar = _bar_axes(sheet, top, height, second + _PAIR - _BAR)
     colour_bar(drawn, bar, DISTORTION_LABEL, extend="both")
 
 
-def _sheet_without_signal(name: str, windows: CellWindows, pixel_size_um: float | None) -> Sheet:
+def _sheet_without_signal(name: str, windows: CellWindows, scale: Scale) -> Sheet:
     """Two rows of three: cell, disk, area distortion."""
     disk, height = windows.disk, _panel_height(windows.disk, _WIDE_PANEL)
     row = _HEADING + height + _BELOW
     sheet = Sheet(_TOP + 2 * row + 2.0)
-    _write_heading(sheet, name, windows, pixel_size_um, "")
+    _write_heading(sheet, name, windows, scale, "")
     first, second = _TOP + _HEADING, _TOP + row + _HEADING
     third = _LEFT + 2 * (_WIDE_PANEL + _GAP) + 17.0
     cell, wheel = _row_of_axes(sheet, first, height, _WIDE_PANEL, ("windows by layer", "windows on the disk"))
@@ -198,11 +179,11 @@ def _sheet_without_signal(name: str, windows: CellWindows, pixel_size_um: float 
     (spread,) = _row_of_axes(sheet, second, height, _WIDE_PANEL, ("",), left=third)
     draw_windows(cell, windows, by_layer=True, linewidth=0.15)
     draw_outline(cell, disk)
-    frame_cell(cell, disk, pixel_size_um=pixel_size_um)
+    frame_cell(cell, disk, scale=scale)
     layers = draw_disk_windows(wheel, windows.grid, by_layer=True, color="white", linewidth=0.15)
     _draw_layer_bar(layers, _bar_axes(sheet, first, height, _LEFT + 2 * (_WIDE_PANEL + _GAP)), windows)
-    _draw_meshes(mesh, disk_mesh, disk, pixel_size_um)
-    drawn = draw_area_distortion(area, disk, pixel_size_um=pixel_size_um)
+    _draw_meshes(mesh, disk_mesh, disk, scale)
+    drawn = draw_area_distortion(area, disk, scale=scale)
     bar = _bar_axes(sheet, first, height, third + _WIDE_PANEL + 1.0)
     colour_bar(drawn, bar, DISTORTION_LABEL, extend="both")
     _inset(spread, sheet, 9.0, 9.0, min(height, _WIDE_PANEL))
@@ -210,28 +191,10 @@ def _sheet_without_signal(name: str, windows: CellWindows, pixel_size_um: float 
     return sheet
 
 
-def draw_area_spread(ax: Axes, disk: DiskMap) -> None:
-    """Draw how much of the cell's area has which log2 λ, in the colours of `draw_area_distortion`.
-
-    Parameters
-    ----------
-    ax : Axes
-    disk : DiskMap
-    """
-    top = distortion_limit(disk.distortion)
-    edges = np.linspace(-top, top, 32)
-    ratio = np.clip(np.log2(disk.distortion.triangle_area_ratio), -top, top)
-    share, _ = np.histogram(ratio, edges, weights=100.0 * disk.distortion.area_share)
-    middle = 0.5 * (edges[:-1] + edges[1:])
-    colours = mpl.colormaps[DIVERGING_COLOURS](Normalize(-top, top)(middle))
-    ax.bar(middle, share, np.diff(edges), color=colours, edgecolor="0.4", linewidth=0.25)
-    ax.set(xlim=(-top, top), xlabel=DISTORTION_LABEL, ylabel="cell's area (%)")
-
-
-def _draw_meshes(cell: Axes, wheel: Axes, disk: DiskMap, pixel_size_um: float | None) -> None:
+def _draw_meshes(cell: Axes, wheel: Axes, disk: DiskMap, scale: Scale) -> None:
     draw_mesh(cell, disk.vertices_yx, disk.triangles)
     draw_outline(cell, disk, linewidth=0.4)
-    frame_cell(cell, disk, pixel_size_um=pixel_size_um)
+    frame_cell(cell, disk, scale=scale)
     draw_disk_mesh(wheel, disk)
 
 
@@ -270,12 +233,9 @@ def _inset(ax: Axes, sheet: Sheet, left: float, bottom: float, height: float) ->
     ax.set_position((box.x0 + x, box.y1 - tall, box.width - x - 1.0 / sheet.width_mm, tall))
 
 
-def _write_heading(
-    sheet: Sheet, name: str, windows: CellWindows, pixel_size_um: float | None, more: str
-) -> None:
-    pixels = float(windows.mask.sum())
-    size, unit = (pixels, "px²") if pixel_size_um is None else (pixels * pixel_size_um**2, "µm²")
-    area = f"{size:,.0f} {unit}" if size >= 100 else f"{size:.3g} {unit}"
+def _write_heading(sheet: Sheet, name: str, windows: CellWindows, scale: Scale, more: str) -> None:
+    size = scale.area(float(windows.mask.sum()))
+    area = (f"{size:,.0f}" if size >= 100 else f"{size:.3g}") + f" {scale.area_unit}"
     grid = f"{windows.grid.layers} layers × {windows.grid.sectors} sectors"
     distortion = windows.disk.distortion
     facts = [area, grid, f"area distortion {distortion.area:.3f}", f"angle distortion {distortion.angle:.3g}"]

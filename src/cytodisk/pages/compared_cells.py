@@ -6,18 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
-from matplotlib.image import AxesImage
 
 from cytodisk.errors import ParameterError
-from cytodisk.files import replacing
 from cytodisk.pages.compared_layers import spread_over
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.outline_sides import outline_sides
-from cytodisk.plot.style import DOUBLE_COLUMN_MM, LINE_COLOUR, paper_style
-from cytodisk.plot.window_labels import window_colours
+from cytodisk.plot.field_of_view import frame_field
+from cytodisk.plot.style import DOUBLE_COLUMN_MM, paper_style
+from cytodisk.plot.window_labels import draw_label_image
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
 from cytodisk.store.study_folder import figures_folder
@@ -75,7 +73,7 @@ def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = N
             for row, method in enumerate(comparison.methods):
                 top = _TOP + row * (size + _WORDS + _GAP)
                 ax = sheet.axes(left, top, size, size)
-                draw_labels(ax, labels.get(method), labels["mask"], _grid(comparison))
+                _draw_labels(ax, labels.get(method), labels["mask"], _grid(comparison))
                 sheet.text(left, top + size + _WORDS - 1.2, _outcome(comparison, cell, method), color="0.35")
         for row, method in enumerate(comparison.methods):
             middle = _TOP + row * (size + _WORDS + _GAP) + size / 2
@@ -83,9 +81,7 @@ def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = N
         sheet.text(_LEFT, 4.0, _title(comparison, chosen, cells is None), size=7.5)
         for line, words in enumerate(_KEY):
             sheet.text(_LEFT, sheet.height_mm - 5.0 + 3.5 * line, words, color="0.35")
-        with replacing(path) as temporary:
-            sheet.figure.savefig(temporary, dpi=_DPI)
-    return path
+        return sheet.save(path, _DPI)
 
 
 def chosen_cells(comparison: Comparison) -> list[int]:
@@ -148,33 +144,12 @@ def _title(comparison: Comparison, chosen: Sequence[int], by_order: bool) -> str
     return f"{len(chosen)} of {number} cells, from the smallest to the largest {measure}"
 
 
-def draw_labels(ax: Axes, labels: Any, mask: Any, grid: tuple[int, int]) -> AxesImage | None:
-    """Draw which pixel is in which window, with the outline of the cell.
-
-    Parameters
-    ----------
-    ax : Axes
-    labels : ndarray of shape (H, W) and dtype int, or None
-        layer · sectors + sector, -1 for none. None if there are no windows: the cell is left white.
-    mask : ndarray of shape (H, W) and dtype bool
-    grid : (int, int)
-        Layers and sectors.
-
-    Returns
-    -------
-    AxesImage or None
-    """
-    height, width = mask.shape
-    drawn = None
-    if labels is not None:
-        extent = (0.0, width, height, 0.0)
-        drawn = ax.imshow(window_colours(labels, grid), extent=extent, interpolation="nearest")
-    ax.add_collection(LineCollection(list(outline_sides(mask)), colors=LINE_COLOUR, linewidths=0.25))
-    side = max(height, width) / 2 + 1
-    ax.set(xlim=(width / 2 - side, width / 2 + side), ylim=(height / 2 + side, height / 2 - side))
-    ax.set_aspect("equal")
-    ax.set_axis_off()
-    return drawn
+def _draw_labels(ax: Axes, labels: Any, mask: Any, grid: tuple[int, int]) -> None:
+    """Windows of a cell in the middle of square axes; white where it has none."""
+    draw_label_image(ax, labels, mask, grid)
+    middle, side = 0.5 * np.array(mask.shape) - 0.5, 0.5 * max(mask.shape) + 1
+    (top, left), (bottom, right) = (middle - side).tolist(), (middle + side).tolist()
+    frame_field(ax, (top, bottom, left, right))
 
 
 def _grid(comparison: Comparison) -> tuple[int, int]:

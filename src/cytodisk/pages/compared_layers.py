@@ -12,9 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from cytodisk.files import replacing
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.style import DPI, paper_style
+from cytodisk.plot.style import paper_style
 from cytodisk.plot.time_axis import TICK_STEPS
 from cytodisk.runs.compare_windows.compare_parameters import TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
@@ -73,9 +72,7 @@ def write_comparison(comparison: Comparison) -> Path:
             f"other lines: median over {what}; bands: their quartiles"
         )
         sheet.text(_LEFT, sheet.height_mm - 1.5, words, color="0.35")
-        with replacing(path) as temporary:
-            sheet.figure.savefig(temporary, dpi=DPI)
-    return path
+        return sheet.save(path)
 
 
 def draw_measure_by_layer(
@@ -129,10 +126,7 @@ def write_method_key(sheet: Sheet, methods: Sequence[str], left: float, top: flo
         In millimetres from the sheet's upper left corner.
     """
     handles = [Line2D([], [], label=TITLES[method], **METHOD_STYLES[method]) for method in methods]
-    place = left / sheet.width_mm, 1.0 - top / sheet.height_mm
-    options: dict[str, Any] = {"loc": "upper left", "borderpad": 0.0, "frameon": False}
-    options |= {"ncols": len(handles), "handlelength": 2.6}
-    sheet.figure.legend(handles=handles, bbox_to_anchor=place, **options)
+    sheet.key(left, top, handles, len(handles), handlelength=2.6)
 
 
 def spread_over(values: Any, count: int) -> list[int]:

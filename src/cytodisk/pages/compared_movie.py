@@ -5,32 +5,31 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from cytodisk.files import replacing
 from cytodisk.pages.compared_layers import METHOD_STYLES, draw_measure_by_layer, write_method_key
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.activity_maps import shown_layers
+from cytodisk.plot.layer_looks import shown_layers
 from cytodisk.plot.style import (
     DOUBLE_COLUMN_MM,
-    DPI,
     SIGNAL_COLOURS,
     colour_bar,
-    colour_map,
     paper_style,
     signal_limits,
 )
-from cytodisk.plot.time_axis import TICK_STEPS, stands_alone, time_axis
+from cytodisk.plot.time_axis import TICK_STEPS, FrameTimes, stands_alone
+from cytodisk.plot.time_raster import draw_time_raster
 from cytodisk.runs.channel_names import file_names, shown_name
 from cytodisk.runs.compare_windows.compare_parameters import TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
+from cytodisk.scale import Scale
 from cytodisk.store.study_folder import figures_folder
 
 _LEFT, _TOP, _GAP, _BAR = 14.0, 11.0, 3.0, 16.0  # mm
@@ -75,13 +74,11 @@ def write_compared_movie(comparison: Comparison, cell: int, channel: str | None 
         sheet = Sheet(maps + 12.0 + _PANEL + 15.0)
         if channel is not None:
             signals = {method: comparison.activity(cell, method).isel(channel=number) for method in methods}
-            _draw_maps(sheet, signals, layers, comparison.provenance["frame_interval_s"], shown_name(channel))
+            _draw_maps(sheet, signals, layers, comparison.scale, shown_name(channel))
         write_method_key(sheet, methods, _LEFT, maps + 2.0)
         _draw_measures(sheet, comparison, cell, channel, methods, maps + 12.0)
         sheet.text(_LEFT, sheet.height_mm - 1.5, _KEY, color="0.35")
-        with replacing(path) as temporary:
-            sheet.figure.savefig(temporary, dpi=DPI)
-    return path
+        return sheet.save(path)
 
 
 def consistency_by_layer(consistency: pd.DataFrame, name: str) -> pd.DataFrame:
@@ -106,7 +103,7 @@ def consistency_by_layer(consistency: pd.DataFrame, name: str) -> pd.DataFrame:
 
 
 def draw_displacement(
-    ax: Axes, consistency: pd.DataFrame, methods: Sequence[str], unit: str, interval_s: float | None = None
+    ax: Axes, consistency: pd.DataFrame, methods: Sequence[str], scale: Scale
 ) -> list[Line2D]:
     """Draw how far window centroids move from frame to frame, mean over layers, a line a method.
 
@@ -116,16 +113,15 @@ def draw_displacement(
     consistency : DataFrame
         Rows of one cell and channel.
     methods : sequence of str
-    unit : str
-    interval_s : float, optional
-        Seconds between frames.
+    scale : Scale
+        Of the displacements and of time.
 
     Returns
     -------
     list of Line2D
     """
     first, last = int(consistency["frame"].min()), int(consistency["frame"].max())
-    time = time_axis(ax, last - first + 1, interval_s, first)
+    time = FrameTimes(first, last - first + 1, scale.frame_interval_s).set_axis(ax)
     lines = []
     for method in methods:
         rows = consistency[consistency["method"] == method]
@@ -134,28 +130,23 @@ def draw_displacement(
         # Only values that a line does not show get a mark: between gaps, or of a movie of two frames.
         style = METHOD_STYLES[method] | {"markevery": stands_alone(values)}
         lines += ax.plot(time, values, label=TITLES[method], **style)
-    ax.set(ylabel=f"centroid_displacement ({unit})")
+    ax.set(ylabel=f"centroid_displacement ({scale.length_unit})")
     ax.set_ylim(bottom=0.0)
     ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
     return lines
 
 
 def _draw_maps(
-    sheet: Sheet,
-    signals: dict[str, xr.DataArray],
-    layers: Sequence[int],
-    interval_s: float | None,
-    channel: str,
+    sheet: Sheet, signals: dict[str, xr.DataArray], layers: Sequence[int], scale: Scale, channel: str
 ) -> None:
     """Activity maps, a column a method and a row a layer, which has the same colours for all methods."""
     width = (DOUBLE_COLUMN_MM - _LEFT - _BAR - _GAP * (len(signals) - 1)) / len(signals)
     for row, layer in enumerate(layers):
         top = _TOP + row * (_MAP + _MAP_GAP)
-        together = np.stack([values.sel(layer=layer) for values in signals.values()])
-        limits = signal_limits(together, np.ones(together.shape, dtype=bool))
+        limits = signal_limits(np.stack([values.sel(layer=layer) for values in signals.values()]))
         for column, (method, values) in enumerate(signals.items()):
             ax = sheet.axes(_LEFT + column * (width + _GAP), top, width, _MAP)
-            drawn = _draw_map(ax, values.sel(layer=layer), limits, interval_s)
+            drawn = _draw_map(ax, values.sel(layer=layer), limits, scale)
             if column:
                 ax.set_yticklabels([])
             else:
@@ -169,15 +160,11 @@ def _draw_maps(
     sheet.text(_LEFT, 3.0, f"{channel}, mean of each window; grey: the window is empty")
 
 
-def _draw_map(ax: Axes, values: xr.DataArray, limits: tuple[float, float], interval_s: float | None) -> Any:
-    frames, sectors = values.shape
-    time_axis(ax, frames, interval_s, int(values["frame"][0]))
-    ticks = MaxNLocator(5, steps=TICK_STEPS, integer=interval_s is None, prune="upper")
+def _draw_map(ax: Axes, values: xr.DataArray, limits: tuple[float, float], scale: Scale) -> AxesImage:
+    times, span = FrameTimes.of(values, "values", scale), (-0.5, values.sizes["sector"] - 0.5)
+    drawn = draw_time_raster(ax, values.to_numpy(), times, span, limits, SIGNAL_COLOURS, "nearest")
+    ticks = MaxNLocator(5, steps=TICK_STEPS, integer=times.interval_s is None, prune="upper")
     ax.xaxis.set_major_locator(ticks)  # the last number would run into the next map's first
-    extent = (*ax.get_xlim(), -0.5, sectors - 0.5)
-    options: dict[str, Any] = {"aspect": "auto", "origin": "lower", "interpolation": "nearest"}
-    drawn = ax.imshow(values.to_numpy().T, colour_map(SIGNAL_COLOURS), extent=extent, **options)
-    drawn.set_clim(*limits)
     ax.yaxis.set_major_locator(MaxNLocator(3, integer=True))
     return drawn
 
@@ -199,7 +186,7 @@ def _draw_measures(
     draw_measure_by_layer(axes[0], consistency_by_layer(rows, name), name, label, methods)
     axes[0].set_title(title, loc="left")
     axes[0].yaxis.label.set_parse_math(False)
-    draw_displacement(axes[1], rows, methods, unit, comparison.provenance["frame_interval_s"])
+    draw_displacement(axes[1], rows, methods, comparison.scale)
     axes[1].set_title("motion of windows a frame", loc="left")
     found = consistency_by_layer(rows, "completeness")
     draw_measure_by_layer(axes[2], found, "completeness", "completeness", methods)

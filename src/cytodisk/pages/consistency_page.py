@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 from matplotlib.lines import Line2D
 
-from cytodisk.arrays import FloatArray
-from cytodisk.pages.cell_movie import HEADING_MM, LEFT_MM, CellMovie
+from cytodisk.pages.drawn_movie import HEADING_MM, LEFT_MM, DrawnMovie
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.activity_maps import shown_layers
-from cytodisk.plot.layer_lines import draw_by_layer, layer_colours
+from cytodisk.plot.layer_lines import draw_by_layer
+from cytodisk.plot.layer_looks import layer_colours, layer_names, shown_layers
 from cytodisk.plot.style import DOUBLE_COLUMN_MM
 
 _MOST_CORRELATIONS = 2
@@ -27,24 +27,24 @@ class Measure:
     ----------
     title, label : str
         The label with its unit.
-    values : ndarray of shape (T, L)
+    values : DataArray with dims time and layer
     low, high : float or None
         Ends of its axis where they are known.
     """
 
     title: str
     label: str
-    values: FloatArray
+    values: xr.DataArray
     low: float | None = None
     high: float | None = None
 
 
-def consistency_sheet(movie: CellMovie) -> Sheet | None:
+def consistency_sheet(movie: DrawnMovie) -> Sheet | None:
     """Correlation of consecutive frames, displacement of windows, and completeness where it is not whole.
 
     Parameters
     ----------
-    movie : CellMovie
+    movie : DrawnMovie
 
     Returns
     -------
@@ -64,26 +64,19 @@ def consistency_sheet(movie: CellMovie) -> Sheet | None:
         row, column = divmod(number, columns)
         left = LEFT_MM + _AXIS - 2.0 + column * (width + _AXIS)
         ax = sheet.axes(left, top + row * _ROW, width, _PANEL)
-        draw_by_layer(
-            ax,
-            measure.values,
-            layers,
-            measure.label,
-            frame_interval_s=movie.interval_s,
-            first_frame=movie.first,
-        )
+        draw_by_layer(ax, measure.values, layers, measure.label, scale=movie.scale)
         ax.set_ylim(measure.low, measure.high)
         ax.set_title(measure.title, loc="left", parse_math=False)
     _write_key(sheet, layers, movie.grid.layers)
     return sheet
 
 
-def consistency_measures(movie: CellMovie) -> list[Measure]:
+def consistency_measures(movie: DrawnMovie) -> list[Measure]:
     """Measures of a cell that have numbers.
 
     Parameters
     ----------
-    movie : CellMovie
+    movie : DrawnMovie
 
     Returns
     -------
@@ -100,30 +93,28 @@ def consistency_measures(movie: CellMovie) -> list[Measure]:
         title = f"correlation of {movie.shown_name(number)}"
         values = _by_frame(movie, rows[rows["channel"] == name], "correlation")
         # Correlations that are all near 1 should look so.
-        low = _HIGH_CORRELATION if np.nanmin(values, initial=1.0) > _HIGH_CORRELATION else None
+        low = _HIGH_CORRELATION if np.nanmin(values.to_numpy(), initial=1.0) > _HIGH_CORRELATION else None
         found.append(Measure(title, "correlation with next frame", values, low, 1.0))
-    moved = _by_frame(movie, rows, "centroid_displacement")
-    found.append(Measure("mean displacement of centroids", f"displacement ({unit})", moved, low=0.0))
+    moved = _by_frame(movie, rows, "centroid_displacement").assign_attrs(units=unit)
+    found.append(Measure("mean displacement of centroids", "displacement", moved, low=0.0))
     complete = _by_frame(movie, rows, "completeness")
-    if np.nanmin(complete, initial=1.0) < 1.0:
+    if np.nanmin(complete.to_numpy(), initial=1.0) < 1.0:
         found.append(Measure("completeness", "share of windows with pixels", complete))
     return [measure for measure in found if np.isfinite(measure.values).any()]
 
 
-def _by_frame(movie: CellMovie, rows: pd.DataFrame, name: str) -> FloatArray:
+def _by_frame(movie: DrawnMovie, rows: pd.DataFrame, name: str) -> xr.DataArray:
     """A column of the table by frame and layer; of several channels the first, as geometry has none."""
     wide = rows.pivot_table(index="frame", columns="layer", values=name, dropna=False, aggfunc="first")
-    times, layers = range(movie.first, movie.first + movie.frames), range(movie.grid.layers)
-    return wide.reindex(index=times, columns=layers).to_numpy(dtype=np.float64)
+    frames, layers = range(movie.first, movie.first + movie.frames), range(movie.grid.layers)
+    values = wide.reindex(index=frames, columns=layers).to_numpy(dtype=np.float64)
+    return xr.DataArray(values, {"frame": ("time", list(frames))}, ("time", "layer"))
 
 
 def _write_key(sheet: Sheet, layers: Sequence[int], count: int) -> None:
-    places = {count - 1: " (centre)", 0: " (edge)"}
+    colours, names = layer_colours(layers), layer_names(layers, count)
     handles = [
-        Line2D([], [], color=colour, linewidth=1.5, label=f"layer {layer}{places.get(layer, '')}")
-        for layer, colour in zip(layers, layer_colours(layers), strict=True)
+        Line2D([], [], color=colour, linewidth=1.5, label=name)
+        for colour, name in zip(colours, names, strict=True)
     ]
-    across, up = LEFT_MM / sheet.width_mm, 1.0 - (HEADING_MM - 1.5) / sheet.height_mm
-    sheet.figure.legend(
-        handles=handles, ncols=4, frameon=False, loc="upper left", bbox_to_anchor=(across, up), borderpad=0.0
-    )
+    sheet.key(LEFT_MM, HEADING_MM - 1.5, handles, columns=4)

@@ -7,19 +7,18 @@ from pathlib import Path
 from typing import Any
 
 from cytodisk.errors import ParameterError
-from cytodisk.files import replacing
-from cytodisk.pages.cell_correlation import CellCorrelation
-from cytodisk.pages.cell_movie import CellMovie
 from cytodisk.pages.correlation_pages import curves_page, events_page, maps_page, pairs_page, peaks_page
+from cytodisk.pages.drawn_correlation import DrawnCorrelation
+from cytodisk.pages.drawn_movie import DrawnMovie
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.style import DPI, paper_style
+from cytodisk.plot.style import paper_style
 from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.study import Study
 from cytodisk.store.study_folder import figures_folder, part_key
 
 FORMATS = ("png", "pdf", "svg")
 
-_PAGES: dict[str, Callable[[CellCorrelation], Sheet | None]] = {
+_PAGES: dict[str, Callable[[DrawnCorrelation], Sheet | None]] = {
     "curves": curves_page,
     "maps": maps_page,
     "peaks": peaks_page,
@@ -77,7 +76,7 @@ def write_correlation_figures(
     """
     chosen = _formats(formats)
     _check_cell(correlation, cell)
-    one = CellCorrelation(CellMovie.of(study, cell), correlation)
+    one = DrawnCorrelation(DrawnMovie(study, cell), correlation)
     folder = figures_folder(correlation.path)
     report = progress or (lambda done, whole: None)
     paths = []
@@ -110,9 +109,5 @@ def _check_cell(correlation: Correlation, cell: int) -> None:
 
 
 def _save(sheet: Sheet, folder: Path, name: str, formats: Sequence[str]) -> list[Path]:
-    """Write a page in each format, whole or not at all."""
-    paths = [folder / f"{name}.{kind}" for kind in formats]
-    for path, kind in zip(paths, formats, strict=True):
-        with replacing(path) as temporary:
-            sheet.figure.savefig(temporary, dpi=DPI, format=kind, metadata=_DATELESS[kind])
-    return paths
+    """Write a page in each format."""
+    return [sheet.save(folder / f"{name}.{kind}", format=kind, metadata=_DATELESS[kind]) for kind in formats]

@@ -9,31 +9,34 @@ import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 
-from cytodisk.pages.cell_correlation import CellCorrelation, broken_lines
-from cytodisk.pages.cell_movie import LEFT_MM
-from cytodisk.pages.correlation_words import detrending
+from cytodisk.pages.drawn_correlation import DrawnCorrelation, broken_lines
+from cytodisk.pages.drawn_movie import LEFT_MM
+from cytodisk.pages.settings_words import detrending
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.activity_maps import bar_beside, shown_layers
 from cytodisk.plot.correlation_curves import curve_key, draw_correlation_curves, draw_map_pair
+from cytodisk.plot.correlation_peaks import PeakMap, Shown
 from cytodisk.plot.event_curves import band_key, draw_event_average, draw_events
 from cytodisk.plot.lag_axis import sides
+from cytodisk.plot.layer_looks import shown_layers
 from cytodisk.plot.pair_curves import draw_pairs
 from cytodisk.plot.pair_table import PairTable, drawn_kinds
-from cytodisk.plot.peak_maps import PeakMap, Shown, draw_peaks_on_cell, draw_peaks_on_disk, peak_key
-from cytodisk.plot.strip import time_stamp
+from cytodisk.plot.peak_maps import draw_peaks_on_cell, draw_peaks_on_disk, peak_key
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM, colour_bar
+from cytodisk.plot.time_axis import time_stamp
+from cytodisk.plot.time_raster import bar_beside, cut_off
 
 _CURVE, _CURVE_GAP, _CURVE_LEFT = 17.0, 5.5, 14.0  # mm
 _PANEL, _PANEL_GAP, _TALLEST = 29.5, 4.0, 1.45  # mm, mm, height over width
 _MAP_LEFT, _MAP, _MAP_HEIGHT, _MAP_BAR = 14.0, 62.0, 48.0, 18.0  # mm
-_EPISODES, _AVERAGE_LEFT, _AVERAGE = 80.0, 124.0, 53.0  # mm
+_EVENTS, _AVERAGE_LEFT, _AVERAGE = 80.0, 124.0, 53.0  # mm
 _PAIR_LEFT, _PAIR_GAP, _PAIR_LINES, _PAIR_IMAGE, _PAIR_BAR = 14.0, 5.0, 30.0, 34.0, 18.0  # mm
 _KEY, _KEY_POINTS = 10.0, 31.0  # height of the key above the average in mm, and of what stands on it
 _KEY_LEFT = -0.05  # of the axes of the average: its key is wider than they are
+_KEY_STYLE: Any = {"borderaxespad": 0.0, "handlelength": 1.6, "columnspacing": 1.2, "labelspacing": 0.3}
 _LINE = 3.6  # mm
 
 
-def curves_page(one: CellCorrelation) -> Sheet | None:
+def curves_page(one: DrawnCorrelation) -> Sheet | None:
     """Mean correlation against lag by layer; None when no window has a correlation."""
     curves = one.rows(one.correlation.layer_curves)
     if curves.empty or not curves["correlation"].notna().any():
@@ -57,11 +60,11 @@ def curves_page(one: CellCorrelation) -> Sheet | None:
         with_=one.first_names[1],
     )
     chance = "threshold" in curves and bool(curves["threshold"].notna().any())
-    _write_key(sheet, curve_key(chance=chance), head - 2.0, columns=2)
+    sheet.key(LEFT_MM, head - 2.0, curve_key(chance=chance), 2, **_KEY_STYLE)
     return sheet
 
 
-def maps_page(one: CellCorrelation) -> Sheet:
+def maps_page(one: DrawnCorrelation) -> Sheet:
     """The signal in the outermost layer, and what it was correlated with, by time and sector."""
     heading = one.heading(DOUBLE_COLUMN_MM, f"{one.signal_name} and {one.with_words}", *_map_notes(one))
     head = heading.height_mm
@@ -70,25 +73,24 @@ def maps_page(one: CellCorrelation) -> Sheet:
     lefts = (_MAP_LEFT, _MAP_LEFT + _MAP + _MAP_BAR + 3.0)
     axes = [sheet.axes(left, head + 3.0, _MAP, _MAP_HEIGHT) for left in lefts]
     other = one.correlation.with_
-    unit = one.movie.unit(other) if one.by_velocity else None
     title = f"{one.with_words}: protrusion red, retraction blue"
-    if unit is None:
-        title = f"{one.movie.shown_name(_place(one))}, layer 0 (edge)"
+    if not one.by_velocity:
+        title = f"{one.movie.shown_name(one.movie.channels.index(other))}, layer 0 (edge)"
     draw_map_pair(
         axes,
         one.activity(one.correlation.signal),
         one.velocity if one.by_velocity else one.activity(other),
-        label=f"mean {one.signal_name} (a.u.)",
-        other_label=f"mean {one.with_name} (a.u.)",
-        velocity_unit=unit,
-        **one.time,
+        label=f"mean {one.signal_name}",
+        other_label=f"mean {one.with_name}",
+        by_velocity=one.by_velocity,
+        scale=one.movie.scale,
     )
     for ax, name in zip(axes, (f"{one.signal_name}, layer 0 (edge)", title), strict=True):
         ax.set_title(name, loc="left", y=1.0, pad=2.5, parse_math=False)
     return sheet
 
 
-def peaks_page(one: CellCorrelation) -> Sheet | None:
+def peaks_page(one: DrawnCorrelation) -> Sheet | None:
     """Peak correlation and its lag, on the disk and on the cell; None when no window has one."""
     peaks, movie = one.peaks, one.movie
     if not movie.mapped or not np.isfinite(peaks.correlation).any():
@@ -105,24 +107,24 @@ def peaks_page(one: CellCorrelation) -> Sheet | None:
     sheet = Sheet(head + 2 * row + 7.5 + 4.0 * key_rows, SINGLE_COLUMN_MM)
     heading.write(sheet)
     lefts = (LEFT_MM, LEFT_MM + _PANEL + _PANEL_GAP)
-    stamp = f"on the cell, {time_stamp(time, movie.interval_s)}"
+    stamp = f"on the cell, {time_stamp(time, movie.scale)}"
     for left, words in zip(lefts, ("on the disk", stamp), strict=True):
         sheet.text(left + 0.5 * _PANEL, head, words, ha="center")
     for number, (shown, label) in enumerate(_shown(peaks)):
         top = head + 4.0 + number * row
         disk, cell = (sheet.axes(left, top, _PANEL, height) for left in lefts)
         drawn = draw_peaks_on_disk(disk, peaks, movie.grid, shown)
-        draw_peaks_on_cell(cell, peaks, windows, shown, pixel_size_um=movie.pixel_size_um)
+        draw_peaks_on_cell(cell, peaks, windows, shown, scale=movie.scale)
         bar = sheet.axes(lefts[1] + _PANEL + 3.0, top + 0.1 * height, 2.2, 0.8 * height)
-        colour_bar(drawn, bar, label, extend=_extend(peaks, shown))
+        colour_bar(drawn, bar, label, extend=_cut_off(peaks, shown))
     foot = head + 2 * row + 3.0
     sheet.text(LEFT_MM, foot + 2.0, "lag: " + sides(*one.first_names))
     if key:
-        _write_key(sheet, key, foot + 3.5, columns=2)
+        sheet.key(LEFT_MM, foot + 3.5, key, 2, **_KEY_STYLE)
     return sheet
 
 
-def pairs_page(one: CellCorrelation) -> Sheet | None:
+def pairs_page(one: DrawnCorrelation) -> Sheet | None:
     """Correlation of all pairs of windows by distance and lag; None when pairs were not asked for."""
     pairs = one.correlation.pairs
     kinds = [] if pairs is None else drawn_kinds(pairs, one.cell)
@@ -155,28 +157,26 @@ def pairs_page(one: CellCorrelation) -> Sheet | None:
     return sheet
 
 
-def events_page(one: CellCorrelation) -> Sheet | None:
-    """Episodes of the edge, and the signal around onsets of protrusion; None when there are none."""
+def events_page(one: DrawnCorrelation) -> Sheet | None:
+    """Events of the edge, and the signal around onsets of protrusion; None when there are none."""
     events, averages = one.used_events(), one.rows(one.correlation.event_averages)
     if events.empty or averages.empty:
         return None
-    what = f"episodes of the edge, and {one.signal_name} around onsets of protrusion"
+    what = f"events of the edge, and {one.signal_name} around onsets of protrusion"
     heading = one.heading(DOUBLE_COLUMN_MM, what, *_event_notes(one))
     head = heading.height_mm
     sheet = Sheet(head + 4.0 + _MAP_HEIGHT + 9.0)
     heading.write(sheet)
-    ax = sheet.axes(_MAP_LEFT, head + 3.0, _EPISODES, _MAP_HEIGHT)
+    ax = sheet.axes(_MAP_LEFT, head + 3.0, _EVENTS, _MAP_HEIGHT)
     outlines = draw_events(ax, one.velocity, events)
-    words = (
-        "episodes outlined, onsets bold" if len(outlines.get_segments()) else "onsets of protrusion marked"
-    )
+    words = "events outlined, onsets bold" if len(outlines.get_segments()) else "onsets of protrusion marked"
     ax.set_title(words, loc="left", y=1.0, pad=2.5)
     around = sheet.axes(_AVERAGE_LEFT, head + 3.0 + _KEY, _AVERAGE, _MAP_HEIGHT - _KEY)
     _draw_average(around, one, averages)
     return sheet
 
 
-def _draw_average(ax: Axes, one: CellCorrelation, averages: pd.DataFrame) -> None:
+def _draw_average(ax: Axes, one: DrawnCorrelation, averages: pd.DataFrame) -> None:
     """The signal around onsets, its key above the axes, where no line can run through it."""
     average = _average(averages, "protrusion")
     if not np.isfinite(average["mean"]).any():
@@ -198,7 +198,7 @@ def _draw_average(ax: Axes, one: CellCorrelation, averages: pd.DataFrame) -> Non
     ax.set_title(count, loc="left", pad=_KEY_POINTS, fontsize=7.0, color="0.3")
 
 
-def _event_notes(one: CellCorrelation) -> list[str]:
+def _event_notes(one: DrawnCorrelation) -> list[str]:
     settings = one.correlation.settings
     notes = [] if detrending(settings) else ["averages not detrended"]
     notes += ["averages of values, not of differences"] if settings.get("difference") else []
@@ -218,22 +218,17 @@ def _average(table: pd.DataFrame, kind: str) -> xr.Dataset:
     return average.assign_attrs(kind=kind, at="onset", normalise="mean", confidence=0.95)
 
 
-def _place(one: CellCorrelation) -> int:
-    return one.movie.channels.index(one.correlation.with_)
-
-
 def _shown(peaks: PeakMap) -> list[tuple[Shown, str]]:
     """The two rows of the page of peaks, with the labels of their colours."""
     return [("correlation", "peak correlation"), ("lag", f"lag of the peak ({peaks.lag_unit.unit})")]
 
 
-def _extend(peaks: PeakMap, shown: Shown) -> str:
-    values, _, (low, high) = peaks.picture(shown, None)
-    below, above = bool((values < low).any()), bool((values > high).any())
-    return "both" if below and above else "min" if below else "max" if above else "neither"
+def _cut_off(peaks: PeakMap, shown: Shown) -> str:
+    values, _, limits = peaks.picture(shown, None)
+    return cut_off(values, limits)
 
 
-def _map_notes(one: CellCorrelation) -> list[str]:
+def _map_notes(one: DrawnCorrelation) -> list[str]:
     """What the maps show other than what was correlated."""
     settings = one.correlation.settings
     changed = settings.get("detrend", "none") != "none" or settings.get("difference")
@@ -258,19 +253,3 @@ def _share_pairs(columns: list[list[Any]]) -> None:
             image.set_ylabel("")
             lines.tick_params(labelleft=False)
             image.tick_params(labelleft=False)
-
-
-def _write_key(sheet: Sheet, handles: list[Any], top: float, columns: int) -> None:
-    place = (LEFT_MM / sheet.width_mm, 1.0 - top / sheet.height_mm)
-    sheet.figure.legend(
-        handles=handles,
-        ncols=columns,
-        frameon=False,
-        loc="upper left",
-        bbox_to_anchor=place,
-        borderpad=0.0,
-        borderaxespad=0.0,
-        handlelength=1.6,
-        columnspacing=1.2,
-        labelspacing=0.3,
-    )

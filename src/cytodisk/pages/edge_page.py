@@ -1,19 +1,16 @@
 """The page of how a cell's edge moves."""
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
 from cytodisk.arrays import FloatArray
-from cytodisk.motion.disk_movie import on_border
-from cytodisk.motion.edge import normal_displacement
-from cytodisk.pages.cell_movie import HEADING_MM, CellMovie
+from cytodisk.pages.drawn_movie import HEADING_MM, DrawnMovie
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.edge_motion import draw_area_change, draw_tracks, draw_velocity_arrows
+from cytodisk.plot.edge_arrows import draw_velocity_arrows
+from cytodisk.plot.edge_motion import draw_area_change, draw_tracks
 from cytodisk.plot.mean_velocity import draw_mean_velocity
-from cytodisk.plot.strip import time_stamp
 from cytodisk.plot.style import nice_length
+from cytodisk.plot.time_axis import time_stamp
 
 _ARROWS, _TRACKS = 80.0, 66.0  # mm, width of the panels
 _TALL, _LINES, _LINE_LEFT, _LINE_WIDTH = 72.0, 28.0, 17.0, 156.0  # mm
@@ -22,12 +19,12 @@ _OUTLINES_SHOWN = 20
 _USUAL_ARROW, _LONGEST_ARROW = 0.12, 0.25  # of the cell: percentile 95, and the longest
 
 
-def edge_sheet(movie: CellMovie) -> Sheet:
+def edge_sheet(movie: DrawnMovie) -> Sheet:
     """Arrows of the fastest frame and tracks above; area change and edge velocity through time below.
 
     Parameters
     ----------
-    movie : CellMovie
+    movie : DrawnMovie
         With at least one map.
 
     Returns
@@ -37,11 +34,11 @@ def edge_sheet(movie: CellMovie) -> Sheet:
     top = HEADING_MM + 12.0
     first = top + _TALL + 14.0
     second = first + _LINES + 9.0
-    velocity = _table(movie.activity["velocity"])
+    velocity = movie.activity["velocity"].transpose("time", "sector").load()
     moves = bool(np.isfinite(velocity).any())
     sheet = Sheet(second + _LINES + 11.0 if moves else top + _TALL + 9.0)
     movie.write_heading(sheet, "motion of the edge")
-    _draw_arrows(sheet, top, movie, velocity)
+    _draw_arrows(sheet, top, movie, velocity.to_numpy())
     _draw_tracks(sheet, top, movie)
     if moves:
         _draw_changes(sheet, first, second, movie, velocity)
@@ -69,7 +66,7 @@ def fastest_frame(velocity: FloatArray) -> int | None:
     return int((size.sum(axis=1) / np.maximum(known.sum(axis=1), 1)).argmax())
 
 
-def _draw_arrows(sheet: Sheet, top: float, movie: CellMovie, velocity: FloatArray) -> None:
+def _draw_arrows(sheet: Sheet, top: float, movie: DrawnMovie, velocity: FloatArray) -> None:
     fastest = fastest_frame(velocity)
     if fastest is None:
         sheet.text(8.0, top + 0.5 * _TALL, "no two frames in a row to compare", color="0.3")
@@ -78,53 +75,44 @@ def _draw_arrows(sheet: Sheet, top: float, movie: CellMovie, velocity: FloatArra
     here, there = (movie.maps.records[number].boundary for number in (time, time + 1))
     if here is None or there is None:
         return
-    distance = normal_displacement(here, there)
-    for boundary in (here, there):
-        distance[on_border(boundary.outline_points_yx, movie.maps.image_shape)] = np.nan
+    step = there.points_yx - here.points_yx
     ax = sheet.axes(4.0, top, _ARROWS, _TALL)
     ax.set_anchor("NW")
     draw_velocity_arrows(
         ax,
-        here.points_yx,
-        there.points_yx,
-        here.normals_yx,
-        distance,
-        here.contour.outline_yx,
-        there.contour.outline_yx,
-        pixel_size_um=movie.pixel_size_um,
-        every=max(1, len(distance) // _POINTS_SHOWN),
-        stretch=_stretch(there.points_yx - here.points_yx, here.contour.outline_yx),
+        movie.maps,
+        time,
+        every=max(1, len(step) // _POINTS_SHOWN),
+        stretch=_stretch(step, here.contour.outline_yx),
+        scale=movie.scale,
     )
-    stamp = time_stamp(time, movie.interval_s)
-    stamp += "" if movie.interval_s is None else f" (frame {time})"
+    stamp = time_stamp(time, movie.scale)
+    stamp += "" if movie.scale.frame_interval_s is None else f" (frame {time})"
     sheet.text(4.0, HEADING_MM + 3.0, f"largest mean speed: {stamp} and the next", fontsize=7.5)
 
 
-def _draw_tracks(sheet: Sheet, top: float, movie: CellMovie) -> None:
+def _draw_tracks(sheet: Sheet, top: float, movie: DrawnMovie) -> None:
     ax = sheet.axes(94.0, top, _TRACKS, _TALL)
     ax.set_anchor("NW")
     every = -(-movie.frames // _OUTLINES_SHOWN)
-    draw_tracks(
-        ax,
-        movie.points_yx,
-        every=every,
-        frame_interval_s=movie.interval_s,
-        first_frame=movie.first,
-        pixel_size_um=movie.pixel_size_um,
-    )
+    draw_tracks(ax, movie.points_yx, every=every, first_frame=movie.first, scale=movie.scale)
     which = "every frame" if every == 1 else f"every {every} frames"
     sheet.text(94.0, HEADING_MM + 3.0, f"outlines {which}, paths of points from the dot on", fontsize=7.5)
 
 
-def _draw_changes(sheet: Sheet, first: float, second: float, movie: CellMovie, velocity: FloatArray) -> None:
+def _draw_changes(
+    sheet: Sheet, first: float, second: float, movie: DrawnMovie, velocity: xr.DataArray
+) -> None:
     changes = sheet.axes(_LINE_LEFT, first, _LINE_WIDTH, _LINES)
-    won, lost = (_sum(_table(movie.activity[name])) for name in ("protruded_area", "retracted_area"))
-    scale: Any = {"frame_interval_s": movie.interval_s, "first_frame": movie.first}
-    draw_area_change(changes, won, lost, unit=movie.unit("protruded_area"), **scale)
+    won, lost = (
+        movie.activity[name].sum("sector", min_count=1, keep_attrs=True)
+        for name in ("protruded_area", "retracted_area")
+    )
+    draw_area_change(changes, won, lost, scale=movie.scale)
     changes.set_xlabel("")
     changes.tick_params(labelbottom=False)
     speeds = sheet.axes(_LINE_LEFT, second, _LINE_WIDTH, _LINES)
-    draw_mean_velocity(speeds, velocity, unit=movie.unit("velocity"), **scale)
+    draw_mean_velocity(speeds, velocity, scale=movie.scale)
 
 
 def _stretch(step_yx: FloatArray, outline_yx: FloatArray) -> float:
@@ -135,12 +123,3 @@ def _stretch(step_yx: FloatArray, outline_yx: FloatArray) -> float:
     size = float(np.ptp(outline_yx, axis=0).max())
     usual = _USUAL_ARROW * size / max(float(np.percentile(length, 95)), 1e-9)
     return nice_length(max(1.0, min(usual, _LONGEST_ARROW * size / float(length.max()))))
-
-
-def _table(values: xr.DataArray) -> FloatArray:
-    return np.asarray(values.transpose("time", "sector").to_numpy(), dtype=np.float64)
-
-
-def _sum(table: FloatArray) -> FloatArray:
-    """Sum over sectors; NaN where none has a number."""
-    return np.where(np.isfinite(table).any(axis=1), np.nansum(table, axis=1), np.nan)

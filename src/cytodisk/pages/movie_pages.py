@@ -9,13 +9,17 @@ import numpy as np
 
 from cytodisk.arrays import FloatArray
 from cytodisk.pages.animation import write_animation
-from cytodisk.pages.cell_movie import HEADING_MM, LEFT_MM, CellMovie
 from cytodisk.pages.consistency_page import consistency_sheet
+from cytodisk.pages.drawn_movie import HEADING_MM, LEFT_MM, DrawnMovie
 from cytodisk.pages.edge_page import edge_sheet
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.activity_maps import bar_beside, draw_layers, draw_velocity_map, shown_layers
-from cytodisk.plot.strip import draw_strip, field_of_view, time_stamp
+from cytodisk.plot.activity_maps import draw_layers, draw_velocity_map
+from cytodisk.plot.field_of_view import field_of_view
+from cytodisk.plot.frame_strip import draw_strip
+from cytodisk.plot.layer_looks import shown_layers
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, colour_bar, paper_style, signal_limits
+from cytodisk.plot.time_axis import time_stamp
+from cytodisk.plot.time_raster import bar_beside
 from cytodisk.runs.channel_names import file_names
 from cytodisk.store.study import Study
 
@@ -72,7 +76,7 @@ def write_movie_figures(
     StudyError
         The folder cannot be written.
     """
-    movie = CellMovie.of(study, cell)
+    movie = DrawnMovie(study, cell)
     if not movie.mapped:
         return []
     pages = _pages(movie, signal)
@@ -91,7 +95,7 @@ def write_movie_figures(
     return paths
 
 
-def _pages(movie: CellMovie, signal: SignalAt | None) -> list[tuple[str, Callable[[], Sheet | None]]]:
+def _pages(movie: DrawnMovie, signal: SignalAt | None) -> list[tuple[str, Callable[[], Sheet | None]]]:
     """Name of each page, and what draws it."""
     pages: list[tuple[str, Callable[[], Sheet | None]]] = []
     if not movie.channels:
@@ -104,16 +108,16 @@ def _pages(movie: CellMovie, signal: SignalAt | None) -> list[tuple[str, Callabl
     return pages
 
 
-def _velocity_sheet(movie: CellMovie) -> Sheet:
+def _velocity_sheet(movie: DrawnMovie) -> Sheet:
     sheet = Sheet(HEADING_MM + 6.0 + 2 * _VELOCITY + 12.0)
     movie.write_heading(sheet, "edge velocity")
     ax = sheet.axes(_MAP_LEFT, HEADING_MM + 6.0, _MAP_WIDTH, 2 * _VELOCITY)
-    draw_velocity_map(ax, movie.activity["velocity"], unit=movie.unit("velocity"), **_time(movie))
+    draw_velocity_map(ax, movie.activity["velocity"], scale=movie.scale)
     ax.set_title("edge velocity: protrusion red, retraction blue", loc="left", y=1.0, pad=2.5)
     return sheet
 
 
-def _activity_sheet(movie: CellMovie, channel: int) -> Sheet:
+def _activity_sheet(movie: DrawnMovie, channel: int) -> Sheet:
     layers = len(shown_layers(movie.grid.layers))
     first = HEADING_MM + 5.0
     below = first + _VELOCITY + _MAP_GAP
@@ -125,14 +129,13 @@ def _activity_sheet(movie: CellMovie, channel: int) -> Sheet:
         [sheet.axes(_MAP_LEFT, first, _MAP_WIDTH, _VELOCITY), *maps],
         movie.activity["mean"][:, channel],
         movie.activity["velocity"],
-        label=f"mean {name} (a.u.)",
-        unit=movie.unit("velocity"),
-        **_time(movie),
+        label=f"mean {name}",
+        scale=movie.scale,
     )
     return sheet
 
 
-def _strip_sheet(movie: CellMovie, signal: SignalAt | None) -> Sheet:
+def _strip_sheet(movie: DrawnMovie, signal: SignalAt | None) -> Sheet:
     times = _spread(movie.mapped, _STRIP_FRAMES)
     images = [_background(signal, time) for time in times]
     shown = [image for image in images if image is not None]
@@ -153,7 +156,7 @@ def _strip_sheet(movie: CellMovie, signal: SignalAt | None) -> Sheet:
         for k in range(len(times))
     ]
     windows = [movie.windows(time) for time in times]
-    stamps = [time_stamp(time, movie.interval_s) for time in times]
+    stamps = [time_stamp(time, movie.scale) for time in times]
     # A frame without its image stays blank below its windows, as its neighbours keep their colours.
     missing = np.full(movie.maps.image_shape, np.nan)
     draw_strip(
@@ -161,7 +164,7 @@ def _strip_sheet(movie: CellMovie, signal: SignalAt | None) -> Sheet:
         windows,
         stamps,
         extent_yx=extent,
-        pixel_size_um=movie.pixel_size_um,
+        scale=movie.scale,
         signal=[missing if image is None else image for image in images] if shown else None,
     )
     if shown:
@@ -171,7 +174,7 @@ def _strip_sheet(movie: CellMovie, signal: SignalAt | None) -> Sheet:
 
 
 def _animate(
-    movie: CellMovie, signal: SignalAt | None, times: list[int], progress: Callable[[int], None]
+    movie: DrawnMovie, signal: SignalAt | None, times: list[int], progress: Callable[[int], None]
 ) -> Path:
     def frames() -> Iterator[tuple[Any, FloatArray | None, int]]:
         for time in times:
@@ -181,15 +184,14 @@ def _animate(
         movie.path(".gif"),
         frames(),
         extent_yx=field_of_view([movie.points_yx]),
-        pixel_size_um=movie.pixel_size_um,
-        frame_interval_s=movie.interval_s,
+        scale=movie.scale,
         limits=_limits(movie, signal),
         label=f"{movie.shown_name()} (a.u.)",
         progress=progress,
     )
 
 
-def _limits(movie: CellMovie, signal: SignalAt | None) -> tuple[float, float] | None:
+def _limits(movie: DrawnMovie, signal: SignalAt | None) -> tuple[float, float] | None:
     """Colours that suit first, middle and last frame alike."""
     inside = []
     for time in _spread(movie.mapped, 3):
@@ -198,8 +200,7 @@ def _limits(movie: CellMovie, signal: SignalAt | None) -> tuple[float, float] | 
             inside.append(image[movie.maps[time].mask])
     if not inside:
         return None
-    values = np.concatenate(inside)
-    return signal_limits(values, np.ones(values.shape, dtype=bool))
+    return signal_limits(np.concatenate(inside))
 
 
 def _background(signal: SignalAt | None, time: int) -> FloatArray | None:
@@ -209,10 +210,6 @@ def _background(signal: SignalAt | None, time: int) -> FloatArray | None:
         return None
     values = np.asarray(image, dtype=np.float64)
     return values if values.ndim == 2 else values[0]
-
-
-def _time(movie: CellMovie) -> Any:
-    return {"frame_interval_s": movie.interval_s, "first_frame": movie.first}
 
 
 def _spread(times: list[int], most: int) -> list[int]:

@@ -11,10 +11,10 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodF
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError
-from cytodisk.files import replacing
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.cell import DISTORTION_LABEL, distortion_limit, draw_area_distortion
-from cytodisk.plot.style import DPI, STATUS_COLOURS, colour_bar, paper_style
+from cytodisk.plot.area_distortion import DISTORTION_LABEL, distortion_limit, draw_area_distortion
+from cytodisk.plot.style import STATUS_COLOURS, colour_bar, paper_style
+from cytodisk.scale import Scale
 
 _NEEDED = ("status", "area", "area_distortion")
 _MOST_BINS = 30
@@ -56,10 +56,10 @@ def write_overview(path: Path, cells: pd.DataFrame, masks: Callable[[int], DiskM
         raise ParameterError(f"cells lacks the columns {missing}: pass the table of cells of a study")
     if cells.empty:
         raise ParameterError("cells has no rows: pass the table of at least one cell")
-    distortion = pd.to_numeric(cells["area_distortion"], errors="coerce").to_numpy(
-        np.float64, na_value=np.nan
+    distortion, area = (
+        pd.to_numeric(cells[name], errors="coerce").to_numpy(np.float64, na_value=np.nan)
+        for name in ("area_distortion", "area")
     )
-    area = pd.to_numeric(cells["area"], errors="coerce").to_numpy(np.float64, na_value=np.nan)
     mapped = (cells["status"] == "ok").to_numpy() & np.isfinite(distortion)
     chosen = _spread_out(distortion, mapped) if masks is not None else np.empty(0, dtype=np.int64)
     with paper_style():
@@ -71,10 +71,8 @@ def write_overview(path: Path, cells: pd.DataFrame, masks: Callable[[int], DiskM
         _draw_against_area(sheet.axes(127.0, 8.0, 48.0, 38.0), area[mapped], distortion[mapped], unit)
         if masks is not None and len(chosen):
             disks = [masks(int(row)) for row in chosen]
-            _draw_cells(sheet, 63.0, disks, cells.attrs.get("pixel_size_um"))
-        with replacing(path) as temporary:
-            sheet.figure.savefig(temporary, dpi=DPI)
-    return Path(path)
+            _draw_cells(sheet, 63.0, disks, Scale.of(cells))
+        return sheet.save(Path(path))
 
 
 def _draw_status(ax: Axes, status: pd.Series, without: int) -> None:
@@ -129,7 +127,7 @@ def _draw_against_area(ax: Axes, area: FloatArray, distortion: FloatArray, unit:
     ax.set(xlabel=f"area ({unit})", ylabel=_DISTORTION)
 
 
-def _draw_cells(sheet: Sheet, top: float, disks: list[DiskMap], pixel_size_um: float | None) -> None:
+def _draw_cells(sheet: Sheet, top: float, disks: list[DiskMap], scale: Scale) -> None:
     """Thumbnails in the same colours."""
     limit = min(max(distortion_limit(disk.distortion) for disk in disks), _THUMBNAIL_LIMIT)
     sheet.text(
@@ -137,9 +135,7 @@ def _draw_cells(sheet: Sheet, top: float, disks: list[DiskMap], pixel_size_um: f
     )
     for k, disk in enumerate(disks):
         left = 5.0 + 26.0 * k
-        drawn = draw_area_distortion(
-            sheet.axes(left, top, 24.0, 24.0), disk, pixel_size_um=pixel_size_um, limit=limit
-        )
+        drawn = draw_area_distortion(sheet.axes(left, top, 24.0, 24.0), disk, scale=scale, limit=limit)
         sheet.text(left + 12.0, top + 31.5, f"{disk.distortion.area:.3f}", ha="center")
     colour_bar(drawn, sheet.axes(162.0, top, 2.2, 28.0), DISTORTION_LABEL, extend="both")
 

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from cytodisk.arrays import BoolArray
-from cytodisk.files import replacing
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.shape_plane import known_scores, plane_limits, shape_landscape, spread_cells
-from cytodisk.plot.shape_rows import cells_along, least_median_most, shape_examples
-from cytodisk.plot.style import DPI, colour_bar, paper_style
+from cytodisk.plot.shape_plane import draw_shape_landscape, known_scores, plane_limits, spread_cells
+from cytodisk.plot.shape_rows import cells_along, draw_shape_examples, least_median_most
+from cytodisk.plot.style import colour_bar, paper_style
+from cytodisk.scale import Scale
 
 _ALONG = 7  # example cells beside the landscape
 _WIDE, _FLATTEST = 108.0, 0.6  # of the landscape in mm; least height over width, for the examples beside it
@@ -39,7 +38,7 @@ def cells_to_draw(score: pd.DataFrame) -> list[int]:
 
 
 def write_shape_figures(
-    folder: Path, score: pd.DataFrame, masks: Mapping[int, BoolArray], pixel_size_um: float | None = None
+    folder: Path, score: pd.DataFrame, masks: Mapping[int, BoolArray], scale: Scale | None = None
 ) -> list[Path]:
     """Draw the landscape of shapes and the least, median and most complex cells.
 
@@ -51,7 +50,8 @@ def write_shape_figures(
         As `complexity_score` returns it.
     masks : mapping of int to ndarray of shape (h, w) and dtype bool
         Masks of the cells that `cells_to_draw` names.
-    pixel_size_um : float, optional
+    scale : Scale, optional
+        Without a pixel size the scale bar is in px.
 
     Returns
     -------
@@ -60,12 +60,12 @@ def write_shape_figures(
     with paper_style():
         pages = {
             "complexity": _landscape_page(score, masks),
-            "extremes": _extremes_page(score, masks, pixel_size_um),
+            "extremes": _extremes_page(score, masks, scale),
         }
-        return [_save(page, folder / f"{name}.png") for name, page in pages.items()]
+        return [page.save(folder / f"{name}.png") for name, page in pages.items()]
 
 
-def _landscape_page(score: pd.DataFrame, masks: Mapping[int, BoolArray]) -> Figure:
+def _landscape_page(score: pd.DataFrame, masks: Mapping[int, BoolArray]) -> Sheet:
     known = known_scores(score)
     low, high = plane_limits(known)
     width, height = high - low
@@ -74,13 +74,13 @@ def _landscape_page(score: pd.DataFrame, masks: Mapping[int, BoolArray]) -> Figu
     title = f"{len(known)} shapes, alike ones close together; arrow: principal axis"
     sheet.text(6.0, 6.0, title, fontsize=7.5)
     ax = sheet.axes(6.0, 9.0, _WIDE, tall)
-    dots, _ = shape_landscape(ax, score, masks)
+    dots, _ = draw_shape_landscape(ax, score, masks)
     spare = max(0.0, float(width * tall / _WIDE - height))
     ax.set_ylim(low[1] - 0.5 * spare, high[1] + 0.5 * spare)
     sheet.text(121.0, 6.0, "at even steps of rank", fontsize=7.5)
     along = cells_along(score, _ALONG)[::-1]
     strip = sheet.axes(121.0, 9.0, 24.0, tall)
-    drawn = shape_examples(strip, score, masks, [[cell] for cell in along], one_scale=False)
+    drawn = draw_shape_examples(strip, score, masks, [[cell] for cell in along], one_scale=False)
     values = known.set_index("cell")["complexity"]
     for cell, path in zip(along, drawn.get_paths(), strict=True):
         strip.annotate(
@@ -91,21 +91,19 @@ def _landscape_page(score: pd.DataFrame, masks: Mapping[int, BoolArray]) -> Figu
             va="center",
         )
     colour_bar(dots, sheet.axes(159.0, 9.0, 2.5, min(45.0, tall)), "complexity")
-    return sheet.figure
+    return sheet
 
 
-def _extremes_page(
-    score: pd.DataFrame, masks: Mapping[int, BoolArray], pixel_size_um: float | None
-) -> Figure:
+def _extremes_page(score: pd.DataFrame, masks: Mapping[int, BoolArray], scale: Scale | None) -> Sheet:
     rows = least_median_most(score)
     trial = Figure().add_subplot()
-    shape_examples(trial, score, masks, rows)
+    draw_shape_examples(trial, score, masks, rows)
     right, bottom = trial.get_xlim()[1], trial.get_ylim()[0]
     tall = min(_EXTREMES_WIDE * bottom / right, _EXTREMES_TALL)
     sheet = Sheet(tall + 18.0)
     sheet.text(6.0, 6.0, "Least, median and most complex cells, at one scale", fontsize=7.5)
     ax = sheet.axes(18.0, 9.0, tall * right / bottom, tall)
-    drawn = shape_examples(ax, score, masks, rows, pixel_size_um=pixel_size_um)
+    drawn = draw_shape_examples(ax, score, masks, rows, scale=scale)
     for name, path in zip(_ROWS, drawn.get_paths()[:: len(rows[0])], strict=True):
         ax.annotate(
             name,
@@ -116,11 +114,4 @@ def _extremes_page(
             va="center",
         )
     colour_bar(drawn, sheet.axes(162.0, 9.0, 2.5, 40.0), "complexity")
-    return sheet.figure
-
-
-def _save(page: Figure, path: Path) -> Path:
-    with replacing(path) as temporary:
-        options: dict[str, Any] = {"dpi": DPI}
-        page.savefig(temporary, **options)
-    return path
+    return sheet

@@ -1,12 +1,17 @@
 """A page on which axes and text are placed in millimetres."""
 
+from __future__ import annotations
+
+from pathlib import Path
 from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.text import Text
 
-from cytodisk.plot.style import DOUBLE_COLUMN_MM, MM_PER_INCH
+from cytodisk.files import replacing
+from cytodisk.plot.style import DOUBLE_COLUMN_MM, DPI, MM_PER_INCH
 
 
 class Sheet:
@@ -37,3 +42,21 @@ class Sheet:
         """Text at a place counted from the page's upper left corner, in millimetres; a dollar sign is one."""
         options: dict[str, Any] = {"va": "baseline", "parse_math": False} | style
         return self.figure.text(left / self.width_mm, 1.0 - top / self.height_mm, words, **options)
+
+    def key(self, left: float, top: float, handles: list[Any], columns: int, **style: Any) -> Legend:
+        """A legend at a place counted from the page's upper left corner, in millimetres."""
+        place = left / self.width_mm, 1.0 - top / self.height_mm
+        options: dict[str, Any] = {"loc": "upper left", "frameon": False, "borderpad": 0.0, "ncols": columns}
+        return self.figure.legend(handles=handles, bbox_to_anchor=place, **options | style)
+
+    def save(self, path: Path, dpi: int = DPI, **options: Any) -> Path:
+        """Write the page whole or not at all.
+
+        Raises
+        ------
+        WriteError
+            The folder does not exist or cannot be written.
+        """
+        with replacing(path) as temporary:
+            self.figure.savefig(temporary, dpi=dpi, **options)
+        return path

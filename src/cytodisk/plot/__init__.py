@@ -1,23 +1,21 @@
 """Matplotlib pictures of cells, their disks and their windows; functions take Axes and return artists.
 
-A mask and its disk: draw_cell, draw_outline, draw_mesh, draw_area_distortion; draw_disk_image,
-draw_disk_mesh.
+Units and times come from what is drawn: arrays, maps and movies carry them. For plain numbers pass a `Scale`.
+
+A mask and its disk: draw_cell, draw_outline, draw_mesh; draw_area_distortion and draw_area_spread;
+draw_disk_image, draw_disk_mesh.
 
 Windows: draw_windows, draw_window_means, draw_window_labels, draw_sectors, draw_strip on the cell;
 draw_disk_windows, draw_disk_means on the disk; frame_cell fits axes to a cell.
 
 Movies: draw_activity_map, draw_velocity_map, draw_layers by frame and sector; draw_line_kymograph and
 draw_boundary_kymograph; draw_velocity_arrows, draw_tracks, draw_area_change and draw_mean_velocity of the
-edge; draw_by_layer for lines of layers; write_animation.
+edge; draw_by_layer for lines of layers.
 
 Correlations: draw_correlation_curves with curve_key, draw_map_pair, draw_pairs; PeakMap for
 draw_peaks_on_cell and draw_peaks_on_disk with peak_key; draw_events, draw_event_average with band_key.
 
-Shapes: shape_landscape, the plane of the complexity score; shape_examples, cells by their outlines.
-
-Whole pages into the folder of a study: write_cell_figures, write_movie_figures, write_correlation_figures,
-write_shape_figures, write_overview; of a comparison of windows: write_comparison, write_compared_cells,
-write_compared_movie.
+Shapes: draw_shape_landscape, the plane of the complexity score; draw_shape_examples, cells by their outlines.
 
 Looks: paper_style for the sizes of a printed page, colour_bar, scale_bar.
 """

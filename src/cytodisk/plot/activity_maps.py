@@ -1,47 +1,39 @@
 """Draw a movie's windows by frame and sector: activity maps of layers and the map of edge velocity.
 
-Time goes to the right, sectors upwards; a frame is centred on its time and a sector on its number.
+Time goes to the right, sectors upwards; a frame is centred on its time and a sector on its number. A
+DataArray brings its unit and its times; of plain numbers a `Scale` tells them.
 """
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 from matplotlib.ticker import MaxNLocator
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
-from cytodisk.plot.style import (
-    DIVERGING_COLOURS,
-    MM_PER_INCH,
-    SIGNAL_COLOURS,
-    colour_bar,
-    colour_map,
-    signal_limits,
-)
-from cytodisk.plot.time_axis import TICK_STEPS, time_axis
+from cytodisk.plot.layer_looks import layer_names, shown_layers
+from cytodisk.plot.number_tables import number_table
+from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS, colour_bar, signal_limits
+from cytodisk.plot.time_axis import TICK_STEPS, FrameTimes
+from cytodisk.plot.time_raster import bar_beside, cut_off, draw_time_raster
+from cytodisk.plot.units import unit_of, velocity_label
+from cytodisk.scale import Scale
 
 SECTOR_LABEL = "sector (0 at +x, towards +y)"
 
-_MOST_LAYERS = 4
 _VELOCITY_PERCENTILES, _MOST_OVER_USUAL = (75.0, 99.0), 3.0
-_BAR_WIDTH_MM, _BAR_GAP_MM = 2.0, 1.5
-
-Extend = Literal["neither", "both", "min", "max"]
-TimeAxis = tuple[int, float | None]  # number of the first frame, seconds between frames
 
 
 def draw_activity_map(
     ax: Axes,
     values: Any,
     *,
-    frame_interval_s: float | None = None,
-    first_frame: int = 0,
-    label: str = "mean (a.u.)",
+    label: str = "mean",
     limits: tuple[float, float] | None = None,
+    scale: Scale | None = None,
 ) -> AxesImage:
     """Draw a signal by frame and sector in one layer, with a colour bar to the right of the axes.
 
@@ -50,14 +42,12 @@ def draw_activity_map(
     ax : Axes
     values : array_like or DataArray of shape (T, S)
         NaN is drawn light grey.
-    frame_interval_s : float, optional
-        Seconds between frames; without it time is in frames.
-    first_frame : int
-        Number of the first frame, where the time axis starts.
     label : str
-        Label of the colour bar, with its unit.
+        Label of the colour bar; the unit follows, "a.u." of values that do not say theirs.
     limits : (float, float), optional
         Limits of the colours; by default percentiles 1 and 99.5 of the values.
+    scale : Scale, optional
+        Of plain numbers: the time between frames. Unknown, time is in frames.
 
     Returns
     -------
@@ -67,7 +57,7 @@ def draw_activity_map(
     Raises
     ------
     ParameterError
-        The values are no table of numbers, or the interval is not a positive number.
+        The values are no table of numbers, or their frames are not at even steps.
 
     See Also
     --------
@@ -84,33 +74,24 @@ def draw_activity_map(
     >>> image.get_array().shape
     (8, 20)
     """
-    table = _table(values, "values", ("time", "sector"))
-    drawn = _draw_map(ax, table, (first_frame, frame_interval_s), SIGNAL_COLOURS, limits or _limits(table))
-    colour_bar(drawn, bar_beside(ax), label, extend=_extend(table, drawn))
+    table = number_table(values, "values", ("time", "sector"))
+    limits = limits or signal_limits(table)
+    drawn = _draw_map(ax, table, FrameTimes.of(values, "values", scale), SIGNAL_COLOURS, limits)
+    colour_bar(drawn, bar_beside(ax), label, unit_of(values, "a.u."), extend=cut_off(table, limits))
     return drawn
 
 
-def draw_velocity_map(
-    ax: Axes,
-    velocity: Any,
-    *,
-    frame_interval_s: float | None = None,
-    first_frame: int = 0,
-    unit: str = "µm/s",
-) -> AxesImage:
+def draw_velocity_map(ax: Axes, velocity: Any, *, scale: Scale | None = None) -> AxesImage:
     """Draw edge velocity by frame and sector: protrusion red, retraction blue, white at 0.
 
     Parameters
     ----------
     ax : Axes
     velocity : array_like or DataArray of shape (T, S)
-        Positive outwards; NaN, as in the last frame, is drawn light grey.
-    frame_interval_s : float, optional
-        Seconds between frames; without it time is in frames.
-    first_frame : int
-        Number of the first frame, where the time axis starts.
-    unit : str
-        Unit of the velocity.
+        Positive outwards; NaN, as in the last frame, is drawn light grey. A DataArray, such as
+        `edge_velocity` returns, brings its unit and its times.
+    scale : Scale, optional
+        Of plain numbers: their unit and the time between frames. Unknown, they are in px/frame and frames.
 
     Returns
     -------
@@ -121,7 +102,7 @@ def draw_velocity_map(
     Raises
     ------
     ParameterError
-        The velocity is no table of numbers, or the interval is not a positive number.
+        The velocity is no table of numbers, or its frames are not at even steps.
 
     See Also
     --------
@@ -143,7 +124,13 @@ def draw_velocity_map(
     >>> image.get_array().shape
     (8, 4)
     """
-    return _draw_velocity(ax, velocity, (first_frame, frame_interval_s), f"edge velocity ({unit})")
+    table = number_table(velocity, "velocity", ("time", "sector"))
+    top = top_speed(table)
+    times = FrameTimes.of(velocity, "velocity", scale)
+    drawn = _draw_map(ax, table, times, DIVERGING_COLOURS, (-top, top))
+    words = velocity_label(velocity, scale)
+    colour_bar(drawn, bar_beside(ax), words, extend=cut_off(table, (-top, top)))
+    return drawn
 
 
 def draw_layers(
@@ -151,11 +138,9 @@ def draw_layers(
     values: Any,
     velocity: Any = None,
     *,
-    frame_interval_s: float | None = None,
-    first_frame: int = 0,
-    label: str = "mean (a.u.)",
-    unit: str = "µm/s",
+    label: str = "mean",
     limits: tuple[float, float] | None = None,
+    scale: Scale | None = None,
 ) -> list[AxesImage]:
     """Draw activity maps of layers under each other, with the same colours and one time axis.
 
@@ -166,16 +151,13 @@ def draw_layers(
     values : array_like or DataArray of shape (T, L, S)
     velocity : array_like or DataArray of shape (T, S), optional
         Positive outwards.
-    frame_interval_s : float, optional
-        Seconds between frames; without it time is in frames.
-    first_frame : int
-        Number of the first frame, where the time axis starts.
     label : str
-        Label of the layers' common colour bar, with its unit.
-    unit : str
-        Unit of the velocity.
+        Label of the layers' common colour bar; the unit follows, "a.u." of values that do not say theirs.
     limits : (float, float), optional
         Limits of the layers' colours; by default percentiles 1 and 99.5 of the values of all layers.
+    scale : Scale, optional
+        Of plain numbers: the unit of velocity and the time between frames. Unknown, they are in px/frame and
+        frames.
 
     Returns
     -------
@@ -185,7 +167,7 @@ def draw_layers(
     Raises
     ------
     ParameterError
-        The arrays do not fit each other or the axes, or the interval is not a positive number.
+        The arrays do not fit each other or the axes, or frames are not at even steps.
 
     See Also
     --------
@@ -201,49 +183,41 @@ def draw_layers(
     >>> len(images)
     2
     """
-    table = _table(values, "values", ("time", "layer", "sector"))
+    table = number_table(values, "values", ("time", "layer", "sector"))
     layers = shown_layers(table.shape[1])
     _check_layers(axes, table, velocity, len(layers))
-    maps, drawn, axis = list(axes), [], (first_frame, frame_interval_s)
+    maps, drawn = list(axes), []
     if velocity is not None:
         top = maps.pop(0)
-        drawn.append(_draw_velocity(top, velocity, axis, f"edge velocity ({unit})"))
+        drawn.append(draw_velocity_map(top, velocity, scale=scale))
         _name(top, "edge velocity: protrusion red, retraction blue")
-    common = limits or _limits(table)
-    places = {table.shape[1] - 1: " (centre)", 0: " (edge)"}
-    for ax, layer in zip(maps, layers, strict=True):
-        drawn.append(_draw_map(ax, table[:, layer], axis, SIGNAL_COLOURS, common))
-        _name(ax, f"layer {layer}{places.get(layer, '')}")
-    colour_bar(drawn[-1], bar_beside(*maps), label, extend=_extend(table[:, layers], drawn[-1]))
+    common, times = limits or signal_limits(table), FrameTimes.of(values, "values", scale)
+    for ax, layer, name in zip(maps, layers, layer_names(layers, table.shape[1]), strict=True):
+        drawn.append(_draw_map(ax, table[:, layer], times, SIGNAL_COLOURS, common))
+        _name(ax, name)
+    ends = cut_off(table[:, layers], common)
+    colour_bar(drawn[-1], bar_beside(*maps), label, unit_of(values, "a.u."), extend=ends)
     _share_labels(axes)
     return drawn
 
 
-def shown_layers(layers: int) -> list[int]:
-    """Layers that `draw_layers` shows: all up to four, else the edge's, two between, the centre's.
+def top_speed(velocity: FloatArray) -> float:
+    """Speed at the ends of the colours of a velocity map.
 
     Parameters
     ----------
-    layers : int
-        At least 1.
+    velocity : ndarray of dtype float
 
     Returns
     -------
-    list of int
+    float
+        Percentile 99 of the speeds, at most three times percentile 75; 1 if nothing moves.
     """
-    chosen = np.linspace(0, layers - 1, min(layers, _MOST_LAYERS)).round().astype(int)
-    return [int(layer) for layer in np.unique(chosen)]
-
-
-def _table(values: Any, name: str, dims: tuple[str, ...]) -> FloatArray:
-    if isinstance(values, xr.DataArray) and set(values.dims) == set(dims):
-        values = values.transpose(*dims)
-    array = np.asarray(values)
-    if array.ndim != len(dims) or not array.size or array.dtype.kind not in "biuf":
-        raise ParameterError(
-            f"{name} must hold numbers by {', '.join(dims)}, got shape {array.shape} and dtype {array.dtype}"
-        )
-    return array.astype(np.float64)
+    speed = np.abs(velocity[np.isfinite(velocity)])
+    if not speed.size:
+        return 1.0
+    usual, fast = np.percentile(speed, _VELOCITY_PERCENTILES).tolist()
+    return min(fast, _MOST_OVER_USUAL * usual) or fast or float(speed.max()) or 1.0
 
 
 def _check_layers(axes: Sequence[Axes], table: FloatArray, velocity: Any, maps: int) -> None:
@@ -256,59 +230,13 @@ def _check_layers(axes: Sequence[Axes], table: FloatArray, velocity: Any, maps: 
         )
 
 
-def _limits(table: FloatArray) -> tuple[float, float]:
-    return signal_limits(table, np.isfinite(table))
-
-
-def _draw_velocity(ax: Axes, velocity: Any, axis: TimeAxis, label: str) -> AxesImage:
-    table = _table(velocity, "velocity", ("time", "sector"))
-    speed = np.abs(table[np.isfinite(table)])
-    top = _top_speed(speed) if speed.size else 1.0
-    drawn = _draw_map(ax, table, axis, DIVERGING_COLOURS, (-top, top))
-    colour_bar(drawn, bar_beside(ax), label, extend=_extend(table, drawn))
-    return drawn
-
-
-def _top_speed(speed: FloatArray) -> float:
-    usual, fast = np.percentile(speed, _VELOCITY_PERCENTILES).tolist()
-    return min(fast, _MOST_OVER_USUAL * usual) or fast or 1.0
-
-
 def _draw_map(
-    ax: Axes, table: FloatArray, axis: TimeAxis, cmap: str, limits: tuple[float, float]
+    ax: Axes, table: FloatArray, times: FrameTimes, cmap: str, limits: tuple[float, float]
 ) -> AxesImage:
-    (first, interval), (frames, sectors) = axis, table.shape
-    time_axis(ax, frames, interval, first)
-    left, right = ax.get_xlim()
-    drawn = ax.imshow(
-        np.ma.masked_invalid(table.T),
-        cmap=colour_map(cmap),
-        vmin=limits[0],
-        vmax=limits[1],
-        origin="lower",
-        aspect="auto",
-        extent=(left, right, -0.5, sectors - 0.5),
-    )
+    drawn = draw_time_raster(ax, table, times, (-0.5, table.shape[1] - 0.5), limits, cmap)
     ax.set_ylabel(SECTOR_LABEL)
     ax.yaxis.set_major_locator(MaxNLocator(4, steps=TICK_STEPS, integer=True))
     return drawn
-
-
-def _extend(table: FloatArray, drawn: AxesImage) -> Extend:
-    """At which ends of the colours values are cut off."""
-    low, high = drawn.get_clim()
-    below, above = bool((table < low).any()), bool((table > high).any())
-    return "both" if below and above else "min" if below else "max" if above else "neither"
-
-
-def bar_beside(*axes: Axes) -> Axes:
-    """Axes for a colour bar to the right of one picture, or of several from top to bottom."""
-    first, last = axes[0], axes[-1]
-    box, top = last.get_window_extent(), first.get_window_extent().y1
-    width = box.width / last.figure.dpi * MM_PER_INCH
-    return last.inset_axes(
-        (1.0 + _BAR_GAP_MM / width, 0.0, _BAR_WIDTH_MM / width, (top - box.y0) / box.height)
-    )
 
 
 def _share_labels(axes: Sequence[Axes]) -> None:

@@ -15,11 +15,12 @@ from matplotlib.ticker import MaxNLocator
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
-from cytodisk.plot.activity_maps import draw_activity_map, draw_velocity_map, shown_layers
-from cytodisk.plot.lag_axis import LagUnit, layer_names, rows_of_cell, sides, signed
-from cytodisk.plot.layer_lines import layer_colours
+from cytodisk.plot.activity_maps import draw_activity_map, draw_velocity_map
+from cytodisk.plot.lag_axis import LagUnit, rows_of_cell, sides, signed
+from cytodisk.plot.layer_looks import layer_colours, layer_names, shown_layers
 from cytodisk.plot.style import CHANCE_COLOUR, CHANCE_LINE, LINE_COLOUR
 from cytodisk.plot.time_axis import TICK_STEPS, stands_alone
+from cytodisk.scale import Scale
 
 PEAK_NAME = "peak"
 
@@ -155,11 +156,10 @@ def draw_map_pair(
     signal: Any,
     other: Any,
     *,
-    label: str = "mean (a.u.)",
-    other_label: str = "mean (a.u.)",
-    velocity_unit: str | None = None,
-    frame_interval_s: float | None = None,
-    first_frame: int = 0,
+    label: str = "mean",
+    other_label: str = "mean",
+    by_velocity: bool = False,
+    scale: Scale | None = None,
 ) -> tuple[AxesImage, AxesImage]:
     """Draw the maps of two quantities beside each other, by the same frames and sectors.
 
@@ -170,13 +170,11 @@ def draw_map_pair(
     signal, other : array_like or DataArray of shape (T, S)
         NaN is drawn light grey.
     label, other_label : str
-        Labels of the colour bars, with units.
-    velocity_unit : str, optional
-        Makes the second the edge velocity: red is protrusion, blue retraction.
-    frame_interval_s : float, optional
-        Seconds between frames; without it time is in frames.
-    first_frame : int
-        Number of the first frame, where the time axis starts.
+        Labels of the colour bars; units follow, "a.u." of values that do not say theirs.
+    by_velocity : bool
+        The second is the edge velocity: red is protrusion, blue retraction.
+    scale : Scale, optional
+        Of plain numbers, as for `draw_activity_map` and `draw_velocity_map`.
 
     Returns
     -------
@@ -209,12 +207,11 @@ def draw_map_pair(
         raise ParameterError(
             f"signal has shape {np.shape(signal)}, other {np.shape(other)}: pass the same frames and sectors"
         )
-    time: Any = {"frame_interval_s": frame_interval_s, "first_frame": first_frame}
-    left = draw_activity_map(axes[0], signal, label=label, **time)
-    if velocity_unit is None:
-        right = draw_activity_map(axes[1], other, label=other_label, **time)
+    left = draw_activity_map(axes[0], signal, label=label, scale=scale)
+    if by_velocity:
+        right = draw_velocity_map(axes[1], other, scale=scale)
     else:
-        right = draw_velocity_map(axes[1], other, unit=velocity_unit, **time)
+        right = draw_activity_map(axes[1], other, label=other_label, scale=scale)
     axes[1].set_ylabel("")
     axes[1].tick_params(labelleft=False)
     return left, right

@@ -16,8 +16,9 @@ from matplotlib.patches import Circle
 
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.plot.cell import add_filled_windows, add_windows, draw_mesh, window_values
+from cytodisk.plot.cell_axes import draw_mesh
 from cytodisk.plot.style import LINE_COLOUR, MISSING_COLOUR, SIGNAL_COLOURS, colour_map, signal_limits
+from cytodisk.plot.window_polygons import add_filled_windows, add_windows, window_values
 from cytodisk.windows.grid import PolarGrid
 
 _REACH = 1.26  # of the axes, in radii: room for the angles

@@ -11,13 +11,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from cytodisk.analysis.time_steps import frame_interval, frame_numbers
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import ParameterError
-from cytodisk.plot.activity_maps import draw_velocity_map, shown_layers
-from cytodisk.plot.layer_lines import layer_colours
+from cytodisk.plot.activity_maps import draw_velocity_map
+from cytodisk.plot.layer_looks import layer_colours, layer_names, shown_layers
+from cytodisk.plot.number_tables import named_table
 from cytodisk.plot.style import LINE_COLOUR
-from cytodisk.plot.time_axis import TICK_STEPS, time_scale
+from cytodisk.plot.time_axis import TICK_STEPS, FrameTimes
+from cytodisk.plot.units import unit_of, with_unit
 
 ONSET_NAME = "onset"
 
@@ -67,18 +68,15 @@ def draw_events(ax: Axes, velocity: xr.DataArray, events: pd.DataFrame) -> LineC
     >>> figure, ax = plt.subplots()
     >>> lines = cd.plot.draw_events(ax, velocity, cd.edge_events(velocity, threshold=0.5))
     """
-    if not isinstance(velocity, xr.DataArray) or set(velocity.dims) != {"time", "sector"}:
-        came = velocity.dims if isinstance(velocity, xr.DataArray) else type(velocity).__name__
-        raise ParameterError(f"velocity must be a DataArray with dims time and sector, got {came}")
-    first = int(frame_numbers(velocity, "velocity")[0])
-    interval = frame_interval(velocity)
-    patches = _patch_image(velocity, events, first)
-    unit = velocity.attrs.get("units", "a.u.")
-    draw_velocity_map(ax, velocity, frame_interval_s=interval, first_frame=first, unit=unit)
-    step = time_scale(first + len(patches), interval)[0]
-    scale = np.array([step, 1.0])
+    named_table(velocity, "velocity", ("time", "sector"))
+    times = FrameTimes.of(velocity, "velocity")
+    if times.stride != 1:
+        raise ParameterError("velocity leaves frames out: pass it as it was passed to edge_events")
+    patches = _patch_image(velocity, events, times.first)
+    draw_velocity_map(ax, velocity)
+    scale = np.array([times.per_frame, 1.0])
     many = events["patch"].nunique() > _MOST_OUTLINED
-    outlines = (_sides(patches) + np.array([first - 0.5, -0.5]))[: 0 if many else None]
+    outlines = (_sides(patches) + np.array([times.first - 0.5, -0.5]))[: 0 if many else None]
     onsets = _onset_sides(velocity, events[events["kind"] == "protrusion"] if many else events)
     drawn = LineCollection(outlines * scale, colors=LINE_COLOUR, linewidths=_OUTLINE_WIDTH, capstyle="round")
     width = _THIN_ONSET if many else _ONSET_WIDTH
@@ -140,7 +138,7 @@ def draw_event_average(ax: Axes, average: xr.Dataset, *, label: str = "mean") ->
             ax.fill_between(delays, low, high, color=colour, alpha=_BAND_OPACITY, linewidth=0)
         # The last is solid as the first is: their colours differ most.
         dashes = "-" if layer == layers[-1] else _DASHES[place % len(_DASHES)]
-        name = _layer_name(table, layer)
+        (name,) = layer_names([layer], table.sizes["layer"])
         lines += ax.plot(delays, one["mean"], color=colour, linewidth=0.9, linestyle=dashes, label=name)
     ax.axvline(0.0, color="0.6", linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
     ax.set_xlim(delays[0], delays[-1])
@@ -257,15 +255,11 @@ def _delays(average: xr.Dataset) -> tuple[FloatArray, str]:
     return average[name].to_numpy().astype(np.float64), unit
 
 
-def _layer_name(table: xr.Dataset, layer: int) -> str:
-    last = table.sizes["layer"] - 1
-    return f"layer {layer}" + (" (edge)" if layer == 0 else " (centre)" if layer == last else "")
-
-
 def _signal_label(average: xr.Dataset, label: str) -> str:
-    unit = average["mean"].attrs.get("units", "a.u.")
-    within = {"mean": f" − mean of window ({unit})", "sd": " (sd of window)"}
-    return label + within.get(average.attrs["normalise"], f" ({unit})")
+    if average.attrs["normalise"] == "sd":
+        return f"{label} (sd of window)"
+    label += " − mean of window" if average.attrs["normalise"] == "mean" else ""
+    return with_unit(label, unit_of(average["mean"], "a.u."))
 
 
 def _write_number(ax: Axes, table: xr.Dataset) -> None:

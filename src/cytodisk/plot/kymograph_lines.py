@@ -1,19 +1,18 @@
 """Draw kymographs along a line of the image and along the tracked edge: time to the right."""
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 from matplotlib.ticker import MaxNLocator
 
-from cytodisk.analysis.time_steps import frame_interval, frame_numbers
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
-from cytodisk.plot.activity_maps import Extend, bar_beside
-from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, colour_map, signal_limits
-from cytodisk.plot.time_axis import TICK_STEPS, time_axis
+from cytodisk.plot.number_tables import named_table
+from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, signal_limits
+from cytodisk.plot.time_axis import TICK_STEPS, FrameTimes
+from cytodisk.plot.time_raster import bar_beside, cut_off, draw_time_raster
+from cytodisk.plot.units import unit_of, with_unit
 
 _QUARTER = 90.0  # degrees
 
@@ -62,7 +61,7 @@ def draw_line_kymograph(
     >>> image.get_array().shape
     (6, 10)
     """
-    table = _parse(kymograph, "distance")
+    table = named_table(kymograph, "kymograph", ("time", "distance"))
     distance = kymograph["distance"].to_numpy().astype(np.float64)
     half = 0.5 * (distance[1] - distance[0] if len(distance) > 1 else 1.0)
     if not np.allclose(np.diff(distance), 2.0 * half):
@@ -70,7 +69,7 @@ def draw_line_kymograph(
             "kymograph has distances that are not evenly spaced: pass that of line_kymograph"
         )
     drawn = _draw(ax, kymograph, table, (distance[0] - half, distance[-1] + half), limits, label)
-    ax.set_ylabel(f"distance along the line ({kymograph['distance'].attrs.get('units', 'px')})")
+    ax.set_ylabel(with_unit("distance along the line", unit_of(kymograph["distance"], "px")))
     ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
     return drawn
 
@@ -119,23 +118,13 @@ def draw_boundary_kymograph(
     >>> image.get_array().shape
     (90, 4)
     """
-    table = _parse(kymograph, "point")
+    table = named_table(kymograph, "kymograph", ("time", "point"))
     depth, unit = kymograph.attrs.get("depth"), kymograph.attrs.get("depth_units", "px")
     where = "" if depth is None else f", {depth:g} {unit} deep"
     drawn = _draw(ax, kymograph, table, (0.0, 4.0 * _QUARTER), limits, label + where)
     ax.set_ylabel("angle (°, 0 at +x, towards +y)")
     ax.set_yticks(_QUARTER * np.arange(5))
     return drawn
-
-
-def _parse(kymograph: Any, along: str) -> FloatArray:
-    if not isinstance(kymograph, xr.DataArray) or set(kymograph.dims) != {"time", along}:
-        came = kymograph.dims if isinstance(kymograph, xr.DataArray) else type(kymograph).__name__
-        raise ParameterError(
-            f"kymograph must be a DataArray with dims time and {along}, got {came}: "
-            "of several channels select one, as in kymograph.sel(channel=…)"
-        )
-    return np.asarray(kymograph.transpose("time", along).to_numpy(), dtype=np.float64)
 
 
 def _draw(
@@ -146,21 +135,8 @@ def _draw(
     limits: tuple[float, float] | None,
     label: str,
 ) -> AxesImage:
-    first = int(frame_numbers(kymograph, "kymograph")[0])
-    time_axis(ax, len(table), frame_interval(kymograph), first)
-    low, high = limits or signal_limits(table, np.isfinite(table))
-    drawn = ax.imshow(
-        np.ma.masked_invalid(table.T),
-        cmap=colour_map(SIGNAL_COLOURS),
-        vmin=low,
-        vmax=high,
-        origin="lower",
-        aspect="auto",
-        interpolation="nearest",
-        extent=(*ax.get_xlim(), *span),
-    )
-    below, above = bool((table < low).any()), bool((table > high).any())
-    extend: Extend = "both" if below and above else "min" if below else "max" if above else "neither"
-    unit = kymograph.attrs.get("units", "a.u.")
-    colour_bar(drawn, bar_beside(ax), label, unit, extend=extend)
+    limits = limits or signal_limits(table)
+    times = FrameTimes.of(kymograph, "kymograph")
+    drawn = draw_time_raster(ax, table, times, span, limits, SIGNAL_COLOURS, interpolation="nearest")
+    colour_bar(drawn, bar_beside(ax), label, unit_of(kymograph, "a.u."), extend=cut_off(table, limits))
     return drawn

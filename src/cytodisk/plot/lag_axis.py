@@ -1,8 +1,7 @@
-"""Lags and layers in pictures of correlations: units, names, and the rows of a cell."""
+"""Lags in pictures of correlations: units, words, and the rows of a cell."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -73,23 +72,6 @@ def rows_of_cell(table: Any, cell: int, columns: set[str], name: str) -> pd.Data
     if rows.empty:
         raise ParameterError(f"{name} has no cell {cell}: it has {sorted(set(table['cell']))}")
     return rows
-
-
-def layer_names(layers: Sequence[int], count: int) -> list[str]:
-    """Names of layers, with what the first and last are.
-
-    Parameters
-    ----------
-    layers : sequence of int
-    count : int
-        Number of all layers.
-
-    Returns
-    -------
-    list of str
-    """
-    places = {count - 1: " (centre)", 0: " (edge)"}
-    return [f"layer {layer}{places.get(layer, '')}" for layer in layers]
 
 
 def sides(signal: str, with_: str, *, upright: bool = False) -> str:

@@ -6,34 +6,26 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from cytodisk.errors import ParameterError
-from cytodisk.plot.style import LINE_COLOUR
-from cytodisk.plot.time_axis import stands_alone, time_axis
+from cytodisk.plot.number_tables import number_table
+from cytodisk.plot.style import LINE_COLOUR, key_above
+from cytodisk.plot.time_axis import FrameTimes, stands_alone
+from cytodisk.plot.units import velocity_label
+from cytodisk.scale import Scale
 
 SPREAD = (10, 90)  # percentiles
 
 
-def draw_mean_velocity(
-    ax: Axes,
-    velocity: Any,
-    *,
-    frame_interval_s: float | None = None,
-    first_frame: int = 0,
-    unit: str = "µm/s",
-) -> Line2D:
+def draw_mean_velocity(ax: Axes, velocity: Any, *, scale: Scale | None = None) -> Line2D:
     """Draw edge velocity through time: mean of the sectors, and their percentiles 10 to 90.
 
     Parameters
     ----------
     ax : Axes
-    velocity : array_like of shape (T, S)
-        Positive outwards; NaN is left out, a frame without any number is a gap.
-    frame_interval_s : float, optional
-        Seconds between frames; without it time is in frames.
-    first_frame : int
-        Number of the first frame, where the time axis starts.
-    unit : str
-        Unit of the velocity.
+    velocity : array_like or DataArray of shape (T, S)
+        Positive outwards; NaN is left out, a frame without any number is a gap. A DataArray, such as
+        `edge_velocity` returns, brings its unit and its times.
+    scale : Scale, optional
+        Of plain numbers: their unit and the time between frames. Unknown, they are in px/frame and frames.
 
     Returns
     -------
@@ -43,7 +35,7 @@ def draw_mean_velocity(
     Raises
     ------
     ParameterError
-        The velocity is no table, or the interval is not a positive number.
+        The velocity is no table of numbers.
 
     See Also
     --------
@@ -61,23 +53,20 @@ def draw_mean_velocity(
     >>> len(line.get_xdata())
     4
     """
-    table = np.asarray(velocity, dtype=np.float64)
-    if table.ndim != 2 or not table.size:
-        raise ParameterError(f"velocity must have shape (T, S), got {table.shape}: pass frames by sectors")
-    time = time_axis(ax, len(table), frame_interval_s, first_frame)
+    table = number_table(velocity, "velocity", ("time", "sector"))
+    time = FrameTimes.of(velocity, "velocity", scale).set_axis(ax)
     known = np.isfinite(table).any(axis=1)
     mean, low, high = np.full((3, len(table)), np.nan)
     if known.any():
         mean[known] = np.nanmean(table[known], axis=1)
         low[known], high[known] = np.nanpercentile(table[known], SPREAD, axis=1)
     ax.axhline(0.0, color="0.6", linewidth=0.5)
-    ax.fill_between(
-        time, low, high, color="0.8", linewidth=0, label=f"percentiles {SPREAD[0]}–{SPREAD[1]} of sectors"
-    )
+    words = f"percentiles {SPREAD[0]}–{SPREAD[1]} of sectors"
+    ax.fill_between(time, low, high, color="0.8", linewidth=0, label=words)
     alone = stands_alone(mean)
     ax.vlines(time[alone], low[alone], high[alone], color="0.8", linewidth=2.0)
     ax.plot(time[alone], mean[alone], ".", color=LINE_COLOUR, markersize=3.0)
     (line,) = ax.plot(time, mean, color=LINE_COLOUR, linewidth=1.0, label="mean of sectors")
-    ax.set_ylabel(f"edge velocity ({unit})")
-    ax.legend(frameon=False, ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1)
+    ax.set_ylabel(velocity_label(velocity, scale))
+    key_above(ax)
     return line

@@ -13,6 +13,7 @@ from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from cytodisk.checks import positive_number
 from cytodisk.errors import ParameterError
 from cytodisk.plot.outline_sides import outline_sides
 from cytodisk.plot.pair_table import PairTable
@@ -93,11 +94,10 @@ def draw_pairs(
     """
     if len(axes) != 2:
         raise ParameterError(f"axes must be two, got {len(axes)}: for the lines and for the image")
-    if limit is not None and not 0.0 < limit < np.inf:
-        raise ParameterError(f"limit must be a positive number, got {limit!r}: None chooses it")
     table = PairTable.of(pairs, along=along, cell=cell)
+    top = float(np.nanmax(np.abs(table.correlation))) if limit is None else positive_number("limit", limit)
     lines = _draw_lines(axes[0], table)
-    image = _draw_image(axes[1], table, limit or float(np.nanmax(np.abs(table.correlation))))
+    image = _draw_image(axes[1], table, top)
     for ax in axes:
         _distance_axis(ax, table)
     axes[0].tick_params(labelbottom=False)

@@ -7,131 +7,31 @@ without a correlation are grey.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any
 
 import numpy as np
-import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import Colormap
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 from shapely import Polygon, get_parts, unary_union
 
-from cytodisk.arrays import BoolArray, FloatArray
-from cytodisk.errors import ParameterError
-from cytodisk.plot.cell import draw_window_means
+from cytodisk.arrays import FloatArray
+from cytodisk.plot.correlation_peaks import PeakMap, Shown
 from cytodisk.plot.disk_axes import disk_polygons, draw_disk_means
-from cytodisk.plot.lag_axis import LagUnit, rows_of_cell
-from cytodisk.plot.strip import sector_arcs
-from cytodisk.plot.style import DIVERGING_COLOURS, LINE_COLOUR, MISSING_COLOUR, colour_map
+from cytodisk.plot.sector_marks import sector_arcs
+from cytodisk.plot.style import LINE_COLOUR, MISSING_COLOUR
+from cytodisk.plot.window_polygons import draw_window_means, window_polygons
+from cytodisk.scale import Scale
 from cytodisk.windows.cell_windows import CellWindows
 from cytodisk.windows.grid import PolarGrid
 
 PALE_NAME, OUTLINE_NAME, SECTOR_NAME = "not significant", "significant", "sector"
 
-LAG_COLOURS = "PuOr"
-"""Diverging as those of correlations, for colour-blind eyes too, and not taken for them."""
-
-Shown: TypeAlias = Literal["correlation", "lag"]
-
 _PALE = 0.4  # how far windows that are not significant let the page's white through
 _HATCH, _HATCH_COLOUR = "/////", "0.5"
-_PERCENTILE, _STEP = 99.0, 0.1  # limits of correlations: what 99 % stay within, rounded up
 _NUMBER_AWAY, _NUMBER_SIZE = 7.0, 6.0  # points: of a sector's number from the edge, and its height
 _MOST_VECTOR = 3000  # windows; more become pixels inside vector files
-_COLUMNS = {"cell", "layer", "sector", "correlation", "lag"}
-
-
-@dataclass(frozen=True, eq=False)
-class PeakMap:
-    """Peaks of one cell's windows.
-
-    Attributes
-    ----------
-    correlation, lag : ndarray of shape (layers, sectors) and dtype float
-        NaN where a window has no correlation.
-    significant : ndarray of shape (layers, sectors) and dtype bool, or None
-        Where q is below `alpha`; None when it was not tested.
-    lag_unit : LagUnit
-    alpha : float
-    """
-
-    correlation: FloatArray
-    lag: FloatArray
-    significant: BoolArray | None
-    lag_unit: LagUnit
-    alpha: float
-
-    @classmethod
-    def of(cls, windows: pd.DataFrame, grid: PolarGrid, *, cell: int = 0, alpha: float = 0.05) -> PeakMap:
-        """Peaks as tables by layer and sector.
-
-        Parameters
-        ----------
-        windows : DataFrame
-            `windows` of a study's correlation: cell, layer, sector, correlation, lag; lag_s and q where they
-            are known.
-        grid : PolarGrid
-        cell : int
-        alpha : float
-            Share of false discoveries that is accepted.
-
-        Raises
-        ------
-        ParameterError
-            The table lacks columns or the cell, has windows beyond the grid, or alpha is not in (0, 1).
-        """
-        if not 0.0 < alpha < 1.0:
-            raise ParameterError(f"alpha must be between 0 and 1, got {alpha!r}: 0.05 is the default")
-        rows = rows_of_cell(windows, cell, _COLUMNS, "windows")
-        layer, sector = (rows[name].to_numpy(dtype=np.int64) for name in ("layer", "sector"))
-        if layer.max() >= grid.layers or sector.max() >= grid.sectors:
-            raise ParameterError(
-                f"windows has layer {layer.max()} and sector {sector.max()}, the grid {grid.layers} layers "
-                f"and {grid.sectors} sectors: pass the grid of the study"
-            )
-        unit = LagUnit.of(rows)
-        tables = {}
-        for name in ("correlation", unit.column, "q"):
-            tables[name] = np.full((grid.layers, grid.sectors), np.nan)
-            if name in rows:
-                tables[name][layer, sector] = rows[name].to_numpy(dtype=np.float64)
-        tested = bool(np.isfinite(tables["q"]).any())
-        significant = tables["q"] < alpha if tested else None
-        return cls(tables["correlation"], tables[unit.column], significant, unit, alpha)
-
-    @property
-    def pale(self) -> BoolArray:
-        """Windows with a correlation that is not significant, shape (layers, sectors)."""
-        if self.significant is None:
-            return np.zeros(self.correlation.shape, dtype=bool)
-        return np.isfinite(self.correlation) & ~self.significant
-
-    def limit(self, shown: Shown) -> float:
-        """End of symmetric colours: percentile 99 of |correlation|, up to 1; the largest |lag|."""
-        size = np.abs(self._values(shown))
-        size = size[np.isfinite(size)]
-        if not size.size:
-            return 1.0
-        if shown == "lag":
-            return float(size.max()) or 1.0
-        steps = np.ceil(np.round(float(np.percentile(size, _PERCENTILE)) / _STEP, 6))
-        return float(np.clip(steps * _STEP, _STEP, 1.0))
-
-    def _values(self, shown: Shown) -> FloatArray:
-        if shown not in get_args(Shown):
-            raise ParameterError(f"shown must be 'correlation' or 'lag', got {shown!r}")
-        return self.correlation if shown == "correlation" else self.lag
-
-    def picture(self, shown: Shown, limit: float | None) -> tuple[FloatArray, Colormap, tuple[float, float]]:
-        """Values, colours and limits of a map."""
-        values = self._values(shown)
-        if limit is not None and not 0.0 < limit < np.inf:
-            raise ParameterError(f"limit must be a positive number, got {limit!r}: None chooses it")
-        top = limit or self.limit(shown)
-        return values, colour_map(LAG_COLOURS if shown == "lag" else DIVERGING_COLOURS), (-top, top)
 
 
 def draw_peaks_on_disk(
@@ -196,7 +96,7 @@ def draw_peaks_on_cell(
     shown: Shown = "correlation",
     *,
     limit: float | None = None,
-    pixel_size_um: float | None = None,
+    scale: Scale | None = None,
 ) -> PolyCollection:
     """Draw the correlation at each window's peak, or its lag, on the cell.
 
@@ -209,8 +109,8 @@ def draw_peaks_on_cell(
     shown : {"correlation", "lag"}
     limit : float, optional
         Colours go from -limit to limit; by default `peaks.limit(shown)`.
-    pixel_size_um : float, optional
-        Micrometres a pixel; without it the scale bar is in px.
+    scale : Scale, optional
+        By default that of the windows; without a pixel size the scale bar is in px.
 
     Returns
     -------
@@ -220,7 +120,7 @@ def draw_peaks_on_cell(
     Raises
     ------
     ParameterError
-        `shown` is unknown, or a number is not positive.
+        `shown` is unknown, or the limit is not positive.
     WindowError
         The peaks are of another grid.
 
@@ -246,8 +146,8 @@ def draw_peaks_on_cell(
     >>> polygons = cd.plot.draw_peaks_on_cell(ax, cd.plot.PeakMap.of(table, grid), windows, "lag")
     """
     values, colours, limits = peaks.picture(shown, limit)
-    drawn = draw_window_means(ax, windows, values, cmap=colours, limits=limits, pixel_size_um=pixel_size_um)
-    _fade(ax, [polygon[:, ::-1] for polygon in windows.polygons()], peaks, drawn)
+    drawn = draw_window_means(ax, windows, values, cmap=colours, limits=limits, scale=scale)
+    _fade(ax, window_polygons(windows), peaks, drawn)
     _number_sectors(ax, windows)
     return drawn
 

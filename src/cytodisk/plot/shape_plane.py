@@ -25,7 +25,7 @@ _FILL = 0.95  # of a place that an outline takes
 _MARGIN = 0.06  # of the larger side of the plane
 
 
-def shape_landscape(
+def draw_shape_landscape(
     ax: Axes, score: pd.DataFrame, masks: Masks | None = None, *, places: int = _PLACES
 ) -> tuple[PathCollection, PolyCollection]:
     """Draw cells in the UMAP plane, coloured by complexity, with the principal axis as an arrow.
@@ -54,7 +54,7 @@ def shape_landscape(
 
     See Also
     --------
-    shape_examples : Cells by their outlines.
+    draw_shape_examples : Cells by their outlines.
 
     Examples
     --------
@@ -66,7 +66,7 @@ def shape_landscape(
     >>> score = pd.DataFrame(plane, columns=["umap_1", "umap_2"])
     >>> score = score.assign(cell=range(12), complexity=plane[:, 0])  # as complexity_score returns it
     >>> figure, ax = plt.subplots()
-    >>> dots, outlines = cd.plot.shape_landscape(ax, score)
+    >>> dots, outlines = cd.plot.draw_shape_landscape(ax, score)
     >>> len(dots.get_offsets())
     12
     """

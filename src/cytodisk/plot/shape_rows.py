@@ -16,18 +16,19 @@ from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.outline import trace_outline
 from cytodisk.plot.shape_plane import Masks, colour_range, known_scores
 from cytodisk.plot.style import LINE_COLOUR, SIGNAL_COLOURS, scale_bar
+from cytodisk.scale import Scale
 
 _GAP = 0.12  # of the largest cell, between cells
 
 
-def shape_examples(
+def draw_shape_examples(
     ax: Axes,
     score: pd.DataFrame,
     masks: Masks,
     rows: Sequence[Sequence[int]],
     *,
     one_scale: bool = True,
-    pixel_size_um: float | None = None,
+    scale: Scale | None = None,
 ) -> PolyCollection:
     """Draw rows of cells by their outlines, coloured by complexity.
 
@@ -42,8 +43,8 @@ def shape_examples(
         Cells, from the top row to the bottom one.
     one_scale : bool
         Draw all at one scale, with a scale bar; or each to the same size.
-    pixel_size_um : float, optional
-        Micrometres a pixel; without it the scale bar is in px.
+    scale : Scale, optional
+        Of the masks; without a pixel size the scale bar is in px.
 
     Returns
     -------
@@ -57,7 +58,7 @@ def shape_examples(
 
     See Also
     --------
-    shape_landscape : All cells in their plane.
+    draw_shape_landscape : All cells in their plane.
 
     Examples
     --------
@@ -68,7 +69,7 @@ def shape_examples(
     >>> score = pd.DataFrame({"cell": range(4), "complexity": [0.1, 0.4, 0.7, 0.9]})
     >>> score = score.assign(umap_1=0.0, umap_2=0.0)  # as complexity_score returns it
     >>> figure, ax = plt.subplots()
-    >>> outlines = cd.plot.shape_examples(ax, score, masks, [[0, 1], [2, 3]])
+    >>> outlines = cd.plot.draw_shape_examples(ax, score, masks, [[0, 1], [2, 3]])
     >>> len(outlines.get_paths())
     4
     """
@@ -96,7 +97,7 @@ def shape_examples(
     ax.set_aspect("equal")
     ax.set_axis_off()
     if one_scale:
-        scale_bar(ax, pixel_size_um)
+        scale_bar(ax, scale)
     return drawn
 
 

@@ -17,6 +17,7 @@ from matplotlib.transforms import ScaledTranslation
 
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import ParameterError
+from cytodisk.scale import Scale
 
 SINGLE_COLUMN_MM = 85.0
 DOUBLE_COLUMN_MM = 180.0
@@ -29,6 +30,7 @@ LAYER_COLOURS = "cividis"
 MISSING_COLOUR = "0.85"
 CHANCE_COLOUR, CHANCE_LINE = "0.93", "0.7"  # of the band that chance gives, and of its border
 LINE_COLOUR = "0.15"
+OUTWARD_COLOUR, INWARD_COLOUR = "#B2182B", "#2166AC"  # near the ends of the diverging colours
 STATUS_COLOURS = {"ok": "#0072B2", "refused": "#E69F00", "unreadable": "#999999"}
 
 PAPER: Any = {
@@ -111,20 +113,21 @@ def colour_map(name: str | Colormap) -> Colormap:
     return base.with_extremes(bad=MISSING_COLOUR)
 
 
-def signal_limits(image: Any, mask: BoolArray) -> tuple[float, float]:
-    """Limits of the colours for a signal: its percentiles 1 and 99.5 inside the cell.
+def signal_limits(values: Any, mask: BoolArray | None = None) -> tuple[float, float]:
+    """Limits of the colours for a signal: its percentiles 1 and 99.5, inside the cell if its mask is given.
 
     Parameters
     ----------
-    image : array_like of shape (H, W)
-    mask : ndarray of shape (H, W) and dtype bool
+    values : array_like
+    mask : ndarray of the values' shape and dtype bool, optional
 
     Returns
     -------
     (float, float)
-        In the signal's unit, the second above the first; (0, 1) when no pixel of the cell is finite.
+        In the signal's unit, the second above the first; (0, 1) when none is finite.
     """
-    inside = np.asarray(image, dtype=np.float64)[mask]
+    inside = np.asarray(values, dtype=np.float64)
+    inside = inside if mask is None else inside[mask]
     inside = inside[np.isfinite(inside)]
     if not inside.size:
         return 0.0, 1.0
@@ -159,24 +162,19 @@ def nice_length(longest: float) -> float:
     return float(max(step * power for step in (0.5, 1.0, 2.0, 5.0) if step * power <= longest * (1 + 1e-9)))
 
 
-def scale_bar(ax: Axes, pixel_size_um: float | None = None) -> tuple[Line2D, Text]:
+def scale_bar(ax: Axes, scale: Scale | None = None) -> tuple[Line2D, Text]:
     """Draw a bar of round length below axes whose x is in pixels; a former bar gives way.
 
     Parameters
     ----------
     ax : Axes
         With its limits set.
-    pixel_size_um : float, optional
-        Micrometres a pixel; without it the bar is in px.
+    scale : Scale, optional
+        Without a pixel size the bar is in px.
 
     Returns
     -------
     (Line2D, Text)
-
-    Raises
-    ------
-    ParameterError
-        The pixel size is not a positive number.
 
     See Also
     --------
@@ -192,15 +190,12 @@ def scale_bar(ax: Axes, pixel_size_um: float | None = None) -> tuple[Line2D, Tex
     >>> text.get_text()
     '20 px'
     """
-    if pixel_size_um is not None and not 0 < pixel_size_um < np.inf:
-        raise ParameterError(
-            f"pixel_size_um must be a positive number, got {pixel_size_um!r}: pass None when it is not known"
-        )
     for artist in (*ax.lines, *ax.texts):
         if artist.get_gid() == _BAR_NAME:
             artist.remove()
     left, right = ax.get_xlim()
-    unit, size = ("px", 1.0) if pixel_size_um is None else ("µm", pixel_size_um)
+    scale = scale or Scale()
+    size = scale.length(1.0)
     width, height = abs(right - left), abs(np.subtract(*ax.get_ylim()))
     length = nice_length(size * min(width, _BAR_SHARE * max(width, 0.5 * height)))
     stop = left + np.copysign(length / size, right - left)
@@ -209,7 +204,7 @@ def scale_bar(ax: Axes, pixel_size_um: float | None = None) -> tuple[Line2D, Tex
     (bar,) = ax.plot([left, stop], [0.0, 0.0], color=LINE_COLOUR, linewidth=1.5, transform=across)
     bar.set(clip_on=False, solid_capstyle="butt", gid=_BAR_NAME)
     text = ax.annotate(
-        f"{length:g} {unit}",
+        f"{length:g} {scale.length_unit}",
         (stop, 0.0),
         xycoords=across,
         xytext=(3, 0),
@@ -261,3 +256,8 @@ def colour_bar(
     bar.formatter = numbers
     bar.update_ticks()
     return bar
+
+
+def key_above(ax: Axes) -> None:
+    """Draw a legend of two columns above the axes, where no line can run through it."""
+    ax.legend(frameon=False, ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.1)

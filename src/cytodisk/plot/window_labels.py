@@ -10,11 +10,15 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.image import AxesImage
 
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import WindowError
+from cytodisk.plot.field_of_view import frame_field
 from cytodisk.plot.outline_sides import outline_sides
 from cytodisk.plot.style import LAYER_COLOURS, LINE_COLOUR
 from cytodisk.windows.on_cell import WindowsOnCell
+
+_DARKEST, _LIGHTEST = 0.05, 0.9  # share of the colours that is used
+_PALE = 0.35  # share of white in every other sector
 
 
 def draw_window_labels(ax: Axes, windows: WindowsOnCell) -> AxesImage:
@@ -52,24 +56,33 @@ def draw_window_labels(ax: Axes, windows: WindowsOnCell) -> AxesImage:
     if not isinstance(windows, WindowsOnCell):
         raise WindowError(f"windows must be those on a cell, got {type(windows).__name__}: use grid.on(disk)")
     mask = np.asarray(windows.mask)
-    height, width = mask.shape
-    colours = window_colours(windows.labels, (windows.layers, windows.sectors))
-    extent = (-0.5, width - 0.5, height - 0.5, -0.5)
-    drawn = ax.imshow(colours, extent=extent, interpolation="nearest")
-    sides: Any = list(outline_sides(mask) - 0.5)
-    ax.add_collection(LineCollection(sides, colors=LINE_COLOUR, linewidths=0.25))
+    drawn = draw_label_image(ax, windows.labels, mask, (windows.layers, windows.sectors))
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    ax.set(xlim=(columns[0] - 1.5, columns[-1] + 1.5), ylim=(rows[-1] + 1.5, rows[0] - 1.5))
-    ax.set_aspect("equal")
-    ax.set_axis_off()
+    frame_field(ax, (rows[0] - 1.5, rows[-1] + 1.5, columns[0] - 1.5, columns[-1] + 1.5))
     return drawn
 
 
-_PALE = 0.35  # share of white in every other sector
+def draw_label_image(ax: Axes, labels: Any, mask: BoolArray, grid: tuple[int, int]) -> AxesImage:
+    """Draw which pixel is in which window, with the outline of the cell along the sides of its pixels.
 
+    Parameters
+    ----------
+    ax : Axes
+    labels : ndarray of shape (H, W) and dtype int, or None
+        layer · sectors + sector, -1 for none. None if there are no windows: the cell is left white.
+    mask : ndarray of shape (H, W) and dtype bool
+    grid : (int, int)
+        Layers and sectors.
 
-_DARKEST, _LIGHTEST = 0.05, 0.9  # share of the colours that is used
-_PALE = 0.35  # share of white in every other sector
+    Returns
+    -------
+    AxesImage
+    """
+    numbers = np.full(mask.shape, -1) if labels is None else labels
+    drawn = ax.imshow(window_colours(numbers, grid), interpolation="nearest")
+    sides: Any = list(outline_sides(mask) - 0.5)
+    ax.add_collection(LineCollection(sides, colors=LINE_COLOUR, linewidths=0.25))
+    return drawn
 
 
 def window_colours(labels: Any, grid: tuple[int, int]) -> FloatArray:

@@ -19,12 +19,13 @@ from cytodisk.files import replacing
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
 from cytodisk.images.mask_files import SourceCell
 from cytodisk.runs.map.map_parameters import MapParameters
+from cytodisk.scale import Scale
 from cytodisk.store.study_folder import StudyFolder, figures_folder, part_key
 from cytodisk.windows.cell_windows import CellWindows
 from cytodisk.windows.grid import polar_windows
 from cytodisk.windows.sample import sample
 
-DrawCell: TypeAlias = Callable[[Path, str, CellWindows, xr.DataArray | None, float | None], list[Path]]
+DrawCell: TypeAlias = Callable[[Path, str, CellWindows, xr.DataArray | None, Scale], list[Path]]
 
 _PERIMETER_SMOOTHING_PX = 1.0
 
@@ -135,7 +136,9 @@ def _measure_cell(task: CellTask, settings: CellSettings) -> Rows:
     if task.drawn and settings.draw is not None:
         name = f"cell_{found.cell:05d}"
         image = None if task.image is None else task.image.astype(np.float64)
-        settings.draw(figures_folder(settings.folder.path), name, placed, image, settings.pixel_size_um)
+        settings.draw(
+            figures_folder(settings.folder.path), name, placed, image, Scale(settings.pixel_size_um)
+        )
     return row | {"status": "ok", "reason": "", "seconds": seconds}, {"windows": columns}
 
 

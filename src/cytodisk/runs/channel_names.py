@@ -24,6 +24,25 @@ def shown_name(name: str) -> str:
     return f"channel {name}" if name.isdigit() else name
 
 
+def correlation_name(names: Sequence[str]) -> str:
+    """Words for a correlation.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Signal, what it was correlated with, and the name of a variant if it has one, as an item of
+        `Study.correlations`.
+
+    Returns
+    -------
+    str
+        As "edge with velocity (early frames)".
+    """
+    signal, with_, *variant = names
+    words = f"{shown_name(signal)} with {shown_name(with_)}"
+    return f"{words} ({variant[0]})" if variant and variant[0] else words
+
+
 def file_names(channels: Sequence[str]) -> list[str]:
     """Names of channels that can be part of a file's name.
 

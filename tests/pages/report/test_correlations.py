@@ -5,21 +5,21 @@ import pytest
 from report_study import LAGS, LAYERS, NAMES, SECTORS, correlated
 
 from cytodisk.pages.report import shown_correlations as correlations
-from cytodisk.pages.report.cell_data import CellData
+from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_correlations import pairs_of
 from cytodisk.store.correlation_store import write_correlation
 from cytodisk.store.study import Study
 
 
 @pytest.fixture
-def plain(study: Study, monkeypatch: pytest.MonkeyPatch) -> CellData:
+def plain(study: Study, monkeypatch: pytest.MonkeyPatch) -> ShownCell:
     """A cell with one correlation whose arrays are not packed."""
     write_correlation(study.path, NAMES[1], "velocity", correlated(), {"max_lag": 3})
     monkeypatch.setattr(correlations, "pack_floats", np.asarray)
-    return CellData(study, 0)
+    return ShownCell(study, 0)
 
 
-def test_tables_become_arrays(plain: CellData) -> None:
+def test_tables_become_arrays(plain: ShownCell) -> None:
     (pair,), notes = pairs_of(plain)
     assert notes == []
     assert (pair["signal"], pair["with"], pair["lags"]) == (NAMES[1], "velocity", LAGS.tolist())
@@ -31,7 +31,7 @@ def test_tables_become_arrays(plain: CellData) -> None:
     np.testing.assert_allclose(pair["layers"]["threshold"], 0.25)
 
 
-def test_variants_of_the_same_names_are_told_apart(study: Study, plain: CellData) -> None:
+def test_variants_of_the_same_names_are_told_apart(study: Study, plain: ShownCell) -> None:
     settings = {"detrend": "linear"}
     folder = write_correlation(study.path, NAMES[1], "velocity", correlated(), settings, "steady").path
     pairs, _ = pairs_of(plain)
@@ -41,14 +41,14 @@ def test_variants_of_the_same_names_are_told_apart(study: Study, plain: CellData
     assert [pair["differs"] for pair in pairs] == ["", "“steady”, linear detrending"]
 
 
-def test_those_with_velocity_come_first(study: Study, plain: CellData) -> None:
+def test_those_with_velocity_come_first(study: Study, plain: ShownCell) -> None:
     folder = write_correlation(study.path, NAMES[1], NAMES[0], correlated(), {}).path
     pairs, _ = pairs_of(plain)
     assert [pair["with"] for pair in pairs] == ["velocity", NAMES[0]]
     shutil.rmtree(folder)
 
 
-def test_what_was_not_computed_is_unknown(study: Study, plain: CellData) -> None:
+def test_what_was_not_computed_is_unknown(study: Study, plain: ShownCell) -> None:
     tables = correlated()
     tables["windows"] = tables["windows"].drop(columns=["p", "q", "threshold"])
     tables["layers"] = tables["layers"].drop(columns=["p", "q", "threshold"])
@@ -59,14 +59,14 @@ def test_what_was_not_computed_is_unknown(study: Study, plain: CellData) -> None
     assert np.isfinite(pair["windows"]["correlation"]).all()
 
 
-def test_too_many_curves_are_left_out(plain: CellData, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_many_curves_are_left_out(plain: ShownCell, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(correlations, "MOST_CURVE_NUMBERS", 10)
     (pair,), notes = pairs_of(plain)
     assert pair["curves"] is None
     assert notes == ["correlation curves of single windows (only those of layers are shown)"]
 
 
-def test_cell_that_was_not_correlated(study: Study, plain: CellData) -> None:
+def test_cell_that_was_not_correlated(study: Study, plain: ShownCell) -> None:
     tables = {name: table.assign(cell=7) for name, table in correlated().items()}
     for table in tables.values():
         table.attrs["units"] = dict.fromkeys(table, "")

@@ -4,13 +4,12 @@ import pandas as pd
 import pytest
 
 from cytodisk.pages.report.shown_names import (
-    correlation_name,
     differences,
     file_name,
     labels_of,
-    shown_name,
     without_folders,
 )
+from cytodisk.runs.channel_names import correlation_name, shown_name
 from cytodisk.store.study import Study
 
 

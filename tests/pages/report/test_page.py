@@ -14,12 +14,12 @@ from report_study import FRAMES, GAP, NAMES
 from cytodisk.errors import MissingPartError, ParameterError, SignalError, StudyError
 from cytodisk.images.frames import open_frames
 from cytodisk.pages.report import page
-from cytodisk.pages.report.flags import red_flags
 from cytodisk.pages.report.page import page_flags, write_report
 from cytodisk.pages.report.signal_file import find_signal
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.qc_flags.study_flags import qc_flags
 from cytodisk.simulate.moving_cells import SimulatedMovie
 from cytodisk.store.study import Study, open_study
 
@@ -75,7 +75,7 @@ def test_signal_that_does_not_fit(study: Study, masks: Path) -> None:
 
 
 def test_signal_of_another_size(study: Study, signal: Path, tmp_path: Path) -> None:
-    """Refused if it was given; a red flag and plain masks if it was found."""
+    """Refused if it was given; a QC flag and plain masks if it was found."""
     height, width = study.provenance["image_shape"]
     words = f"has images of {height} × {width} pixels, the study's masks have {height + 2} × {width}"
     other = Study(study.path, study.cells, study.provenance | {"image_shape": [height + 2, width]})
@@ -92,11 +92,11 @@ def test_flags_of_the_page_in_one_list(study: Study, tmp_path: Path) -> None:
     gone = dict(study.provenance["inputs"]["signal"], path=str(tmp_path / "gone.tif"))
     moved = Study(study.path, study.cells, study.provenance | {"inputs": {"signal": gone}})
     flags = page_flags(moved)
-    assert [flag.name for flag in flags] == ["signal not shown", *(flag.name for flag in red_flags(study))]
+    assert [flag.name for flag in flags] == ["signal not shown", *(flag.name for flag in qc_flags(study))]
     assert "cytodisk report study --signal FILE" in flags[0].advice
-    assert page_flags(study) == red_flags(study)
+    assert page_flags(study) == qc_flags(study)
     text = html.unescape(write_report(moved, tmp_path / "report.html").read_text(encoding="utf-8"))
-    assert f"Red flags: {len(flags)}" in text
+    assert f"QC flags: {len(flags)}" in text
     for flag in flags:
         assert flag.what in text
 
@@ -200,3 +200,10 @@ def test_command_to_type_is_quoted(study: Study, tmp_path: Path) -> None:
     shutil.copytree(study.path, fresh, ignore=shutil.ignore_patterns("correlation"))
     text = html.unescape(write_report(open_study(fresh)).read_text(encoding="utf-8"))
     assert f"cytodisk correlate 'my study' --signal {shlex.quote(NAMES[0])} --with velocity" in text
+
+
+def test_flags_of_a_run_name_its_gap_first(study: Study) -> None:
+    first, *others = qc_flags(study)
+    assert first.name in ("refused frames", "missing frames")
+    assert [(place.cell, place.frame) for place in first.places] == [(0, GAP)]
+    assert all(place.frame is None or place.frame < FRAMES for flag in others for place in flag.places)

@@ -4,17 +4,18 @@ from report_study import GAP, LAYERS, SECTORS
 
 import cytodisk as cd
 from cytodisk.pages.report import pictures
-from cytodisk.pages.report.cell_data import CellData, velocity_limit
 from cytodisk.pages.report.pictures import OUTSIDE, Box, Pictures, box_around, resampled, window_labels
+from cytodisk.pages.report.shown_cell import ShownCell
+from cytodisk.plot.activity_maps import top_speed
 from cytodisk.store.study import Study
 
 
 @pytest.fixture(scope="module")
-def cell(study: Study) -> CellData:
-    return CellData(study, 0)
+def cell(study: Study) -> ShownCell:
+    return ShownCell(study, 0)
 
 
-def test_box_holds_the_cell_in_every_frame(cell: CellData) -> None:
+def test_box_holds_the_cell_in_every_frame(cell: ShownCell) -> None:
     box = box_around(cell)
     for time in range(len(cell.maps)):
         if time == GAP:
@@ -26,7 +27,7 @@ def test_box_holds_the_cell_in_every_frame(cell: CellData) -> None:
         assert columns.max() < box.left + box.width
 
 
-def test_labels_are_those_of_the_windows(cell: CellData) -> None:
+def test_labels_are_those_of_the_windows(cell: ShownCell) -> None:
     """At whole pixels a label is the window of the pixel's centre: mostly that of its largest share."""
     box = box_around(cell)
     box = Box(box.top, box.left, box.height, box.width, 1.0)
@@ -38,7 +39,7 @@ def test_labels_are_those_of_the_windows(cell: CellData) -> None:
     assert (found[inside] == expected[inside]).mean() > 0.97
 
 
-def test_finer_labels_agree_with_coarse_ones(cell: CellData) -> None:
+def test_finer_labels_agree_with_coarse_ones(cell: ShownCell) -> None:
     box = box_around(cell)
     coarse = window_labels(cell, Box(box.top, box.left, box.height, box.width, 1.0), 0)
     fine = window_labels(cell, Box(box.top, box.left, box.height, box.width, 3.0), 0)
@@ -61,7 +62,7 @@ def test_enlarged_image_repeats_pixels() -> None:
     np.testing.assert_array_equal(found, image[1:3, 1:4].repeat(2, axis=0).repeat(2, axis=1))
 
 
-def test_long_movies_are_thinned_out(cell: CellData, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_long_movies_are_thinned_out(cell: ShownCell, monkeypatch: pytest.MonkeyPatch) -> None:
     encoder = Pictures(cell, box_around(cell), None)
     assert encoder.every([]) == 1
     sizes = [len(encoder.frame(time, [])["labels"] or "") for time in cell.frames]
@@ -71,7 +72,7 @@ def test_long_movies_are_thinned_out(cell: CellData, monkeypatch: pytest.MonkeyP
     assert thinned.frames == cell.frames[:: encoder.every([])]
 
 
-def test_a_frame_without_a_map_has_no_labels(cell: CellData) -> None:
+def test_a_frame_without_a_map_has_no_labels(cell: ShownCell) -> None:
     assert Pictures(cell, box_around(cell), None).frame(GAP, []) == {"labels": None, "channels": None}
 
 
@@ -85,4 +86,4 @@ def test_a_frame_without_a_map_has_no_labels(cell: CellData) -> None:
     ],
 )
 def test_a_few_faults_do_not_pale_the_velocity(velocity: np.ndarray, limit: float) -> None:
-    assert velocity_limit(velocity) == pytest.approx(limit, rel=1e-2)
+    assert top_speed(velocity) == pytest.approx(limit, rel=1e-2)

@@ -9,5 +9,5 @@ masks = [
 ]
 score = cd.complexity_score(cd.shape_features(masks), seed=0)
 figure, ax = plt.subplots(figsize=(5, 3), layout="constrained")
-_, outlines = cd.plot.shape_landscape(ax, score, masks)
+_, outlines = cd.plot.draw_shape_landscape(ax, score, masks)
 figure.colorbar(outlines, label="complexity", shrink=0.8)

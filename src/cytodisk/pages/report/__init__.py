@@ -1,1 +1,1 @@
-"""One self-contained HTML page of a movie's study, and the red flags that stand first on it."""
+"""One self-contained HTML page of a movie's study, and the QC flags that stand first on it."""

@@ -14,16 +14,17 @@ import numpy as np
 from cytodisk.errors import ParameterError, StudyError
 from cytodisk.files import replacing
 from cytodisk.pages.report.bokeh_parts import bokeh
-from cytodisk.pages.report.cell_data import CellData
 from cytodisk.pages.report.encode import json_for_script
-from cytodisk.pages.report.flag import Flag
-from cytodisk.pages.report.flags import red_flags
-from cytodisk.pages.report.page_figures import LAG_COLOURS, figures_of, library_script, palette
+from cytodisk.pages.report.page_figures import figures_of, library_script, palette
 from cytodisk.pages.report.pictures import MOST_BYTES, OUTSIDE, Pictures, box_around, encode_frames, size_of
+from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_correlations import pairs_of
 from cytodisk.pages.report.signal_file import FoundSignal, FrameSource, shown_signal
 from cytodisk.pages.report.words import MOST_PLACES, page_words
+from cytodisk.plot.correlation_peaks import LAG_COLOURS
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS
+from cytodisk.runs.qc_flags.qc_flag import QCFlag
+from cytodisk.runs.qc_flags.study_flags import qc_flags
 from cytodisk.store.study import Study
 
 REPORT = "report.html"
@@ -40,7 +41,7 @@ def write_report(
     signal: FrameSource | None = None,
     progress: Progress | None = None,
 ) -> Path:
-    """Write a page with the study's red flags and linked views of one of its cells.
+    """Write a page with the study's QC flags and linked views of one of its cells.
 
     The page is one file that needs no network: BokehJS, pictures and numbers are inside.
 
@@ -101,14 +102,14 @@ def _usual_cell(study: Study) -> int:
     return int(cells[counts.argmax()])
 
 
-def _open_cell(study: Study, cell: int) -> CellData:
+def _open_cell(study: Study, cell: int) -> ShownCell:
     rows = study.cells[study.cells["cell"] == cell]
     if rows.empty:
         count = study.cells["cell"].nunique()
         raise ParameterError(f"cell must be a number of the study's {count} cells from 0, got {cell}")
     if not (rows["status"] == "ok").any():
         raise ParameterError(f"cell {cell} has no mapped frame: choose another one, or leave it out")
-    data = CellData(study, cell)
+    data = ShownCell(study, cell)
     if data.grid.n_windows >= OUTSIDE:
         raise ParameterError(
             f"study {study.path} has {data.grid.n_windows} windows a cell, a page holds fewer than "
@@ -117,8 +118,8 @@ def _open_cell(study: Study, cell: int) -> CellData:
     return data.thinned()
 
 
-def page_flags(study: Study, signal: FrameSource | None = None) -> list[Flag]:
-    """The red flags that stand on the page of a study.
+def page_flags(study: Study, signal: FrameSource | None = None) -> list[QCFlag]:
+    """The QC flags that stand on the page of a study.
 
     Parameters
     ----------
@@ -129,8 +130,8 @@ def page_flags(study: Study, signal: FrameSource | None = None) -> list[Flag]:
 
     Returns
     -------
-    list of Flag
-        Those of `red_flags`, and before them one if the signal cannot be shown.
+    list of QCFlag
+        Those of `qc_flags`, and before them one if the signal cannot be shown.
 
     Raises
     ------
@@ -140,11 +141,11 @@ def page_flags(study: Study, signal: FrameSource | None = None) -> list[Flag]:
     return _flags(study, shown_signal(study, signal))
 
 
-def _flags(study: Study, found: FoundSignal) -> list[Flag]:
-    return [*_signal_flags(study, found), *red_flags(study)]
+def _flags(study: Study, found: FoundSignal) -> list[QCFlag]:
+    return [*_signal_flags(study, found), *qc_flags(study)]
 
 
-def _render(cell: CellData, found: FoundSignal, progress: Progress | None) -> str:
+def _render(cell: ShownCell, found: FoundSignal, progress: Progress | None) -> str:
     from jinja2 import Environment, StrictUndefined
 
     box = box_around(cell)
@@ -185,11 +186,11 @@ def _any(pictures: list[dict[str, Any]]) -> bool:
     return any(frame["labels"] for frame in pictures)
 
 
-def _signal_flags(study: Study, found: FoundSignal) -> list[Flag]:
+def _signal_flags(study: Study, found: FoundSignal) -> list[QCFlag]:
     if not found.fault:
         return []
     return [
-        Flag(
+        QCFlag(
             "signal not shown",
             f"the movie's pixels are not on this page: {found.fault}",
             "The cell is drawn as its windows alone; all numbers are those of the run.",

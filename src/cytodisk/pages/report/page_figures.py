@@ -21,14 +21,13 @@ from cytodisk.pages.report.bokeh_parts import (
     source_of,
     title_of,
 )
-from cytodisk.pages.report.cell_data import CellData
 from cytodisk.pages.report.pictures import Box
+from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS, nice_length
+from cytodisk.scale import Scale
 
 if TYPE_CHECKING:
     from bokeh.models import Plot
-
-LAG_COLOURS = "PuOr"
 
 _LEFT, _RIGHT_FRAME = 54, 512  # px: room for the axes of the right column, and width of its frames
 _SQUARE = 262  # px: height of the views on the left
@@ -49,10 +48,10 @@ def library_script() -> str:
     return "\n".join(resources.js_raw)
 
 
-def figures_of(cell: CellData, box: Box, *, correlated: bool) -> dict[str, Any]:
+def figures_of(cell: ShownCell, box: Box, *, correlated: bool) -> dict[str, Any]:
     """All figures as JSON for `Bokeh.embed.embed_item`, by name."""
     plots: dict[str, Plot] = {
-        "cell": _cell(box, cell.pixel_size_um),
+        "cell": _cell(box, cell.scale),
         "disk": _disk(cell, palette(SIGNAL_COLOURS)),
         "activity": _map(cell, palette(SIGNAL_COLOURS), "white", bottom=False),
         "velocity": _map(cell, palette(DIVERGING_COLOURS), "black", bottom=True),
@@ -70,7 +69,7 @@ def figures_of(cell: CellData, box: Box, *, correlated: bool) -> dict[str, Any]:
     return {name: bokeh().embed.json_item(plot) for name, plot in plots.items()}
 
 
-def _cell(box: Box, pixel_size_um: float | None) -> Any:
+def _cell(box: Box, scale: Scale) -> Any:
     top, left = box.top - 0.5, box.left - 0.5
     shrink = min(_SQUARE / box.height, (_SQUARE - 8) / box.width)
     plot = bare_figure(
@@ -81,13 +80,13 @@ def _cell(box: Box, pixel_size_um: float | None) -> Any:
     )
     plot.axis.visible = False
     add_pixels(plot, left, top, box.width, box.height)
-    _scale_bar(plot, box, pixel_size_um)
+    _scale_bar(plot, box, scale)
     add_colour_bar(plot, colour_mapper(palette(SIGNAL_COLOURS)))
     return plot
 
 
-def _scale_bar(plot: Any, box: Box, pixel_size_um: float | None) -> None:
-    unit, size = ("px", 1.0) if pixel_size_um is None else ("µm", pixel_size_um)
+def _scale_bar(plot: Any, box: Box, scale: Scale) -> None:
+    size = scale.length(1.0)
     length = nice_length(0.3 * box.width * size)
     x, y = box.left + 0.04 * box.width, box.top + 0.955 * box.height
     ends = [x, x + length / size], [y, y]
@@ -96,7 +95,7 @@ def _scale_bar(plot: Any, box: Box, pixel_size_um: float | None) -> None:
     plot.text(
         [x + 0.5 * length / size],
         [y - 0.02 * box.height],
-        [f"{length:g} {unit}"],
+        [f"{length:g} {scale.length_unit}"],
         text_color="white",
         text_align="center",
         text_baseline="bottom",
@@ -107,7 +106,7 @@ def _scale_bar(plot: Any, box: Box, pixel_size_um: float | None) -> None:
     )
 
 
-def _disk(cell: CellData, colours: Sequence[str]) -> Any:
+def _disk(cell: ShownCell, colours: Sequence[str]) -> Any:
     """The unit disk, v down as y in the image."""
     plot = bare_figure((-1.16, 1.16), (1.16, -1.16), _SQUARE - 22, _SQUARE - 22)
     plot.axis.visible = False
@@ -130,7 +129,7 @@ def _disk(cell: CellData, colours: Sequence[str]) -> Any:
     return plot
 
 
-def _disk_lines(plot: Any, cell: CellData) -> None:
+def _disk_lines(plot: Any, cell: ShownCell) -> None:
     turn = np.linspace(0, 2 * np.pi, 181)
     plot.line(np.cos(turn), np.sin(turn), line_color="#ffffff", line_width=2.5)
     plot.line(np.cos(turn), np.sin(turn), line_color="#777777", line_width=1)
@@ -156,12 +155,11 @@ def _disk_lines(plot: Any, cell: CellData) -> None:
     )
 
 
-def _time_figure(cell: CellData, y: tuple[float, float], height: int, bottom: bool) -> Any:
-    step, label = cell.time_step
-    half = 0.5 * cell.every
+def _time_figure(cell: ShownCell, y: tuple[float, float], height: int, bottom: bool) -> Any:
+    step, half = cell.times.per_frame, 0.5 * cell.every
     x = (cell.frames[0] - half) * step, (cell.frames[-1] + half) * step
     plot = bare_figure(x, y, _RIGHT_FRAME, height, min_border_left=_LEFT)
-    plot.xaxis.axis_label = label
+    plot.xaxis.axis_label = cell.times.label
     plot.xaxis.visible = bottom
     return plot
 
@@ -175,7 +173,7 @@ def _time_marks(plot: Any) -> None:
     plot.add_layout(span(name="under", line_color="black", line_width=1, line_dash="dotted", **common))
 
 
-def _map(cell: CellData, colours: Sequence[str], guide: str, *, bottom: bool) -> Any:
+def _map(cell: ShownCell, colours: Sequence[str], guide: str, *, bottom: bool) -> Any:
     """Time × sector; `guide` is the colour of the lines along the highlighted sector."""
     sectors = cell.grid.sectors
     plot = _time_figure(cell, (-0.5, sectors - 0.5), _MAP, bottom)
@@ -203,7 +201,7 @@ def _map(cell: CellData, colours: Sequence[str], guide: str, *, bottom: bool) ->
     return plot
 
 
-def _strip(cell: CellData, title: str, *, bottom: bool = False) -> Any:
+def _strip(cell: ShownCell, title: str, *, bottom: bool = False) -> Any:
     """One number against time."""
     plot = _time_figure(cell, (0.0, 1.0), _STRIP, bottom)
     plot.title = title_of(None, title)
@@ -223,9 +221,9 @@ def _strip(cell: CellData, title: str, *, bottom: bool = False) -> Any:
     return plot
 
 
-def _curve(cell: CellData) -> Any:
+def _curve(cell: ShownCell) -> Any:
     """Correlation against lag."""
-    unit = "frame" if cell.interval_s is None else "s"
+    unit = cell.scale.time_unit
     plot = bare_figure((-1.0, 1.0), (-1.0, 1.0), _SQUARE - 20, _SQUARE - 66, min_border_left=_LEFT)
     plot.xaxis.axis_label = f"lag ({unit})"
     plot.yaxis.axis_label = "correlation r"

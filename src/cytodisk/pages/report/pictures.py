@@ -11,8 +11,8 @@ from scipy.ndimage import binary_dilation
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError
-from cytodisk.pages.report.cell_data import CellData
 from cytodisk.pages.report.encode import grey_levels, pack_labels, pack_picture
+from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.signal_file import FrameSource
 
 MOST_BYTES = 10_000_000
@@ -74,12 +74,12 @@ class Box:
         return image[np.ix_(rows, columns)]
 
 
-def box_around(cell: CellData) -> Box:
+def box_around(cell: ShownCell) -> Box:
     """The box that holds the cell in all frames.
 
     Parameters
     ----------
-    cell : CellData
+    cell : ShownCell
         With one mapped frame at least.
 
     Returns
@@ -98,12 +98,12 @@ def box_around(cell: CellData) -> Box:
     return Box(top, left, height, width, min(_FINEST, LONGEST_SIDE / max(height, width)))
 
 
-def window_labels(cell: CellData, box: Box, time: int) -> Any:
+def window_labels(cell: ShownCell, box: Box, time: int) -> Any:
     """Number of the window at each pixel of a picture.
 
     Parameters
     ----------
-    cell : CellData
+    cell : ShownCell
     box : Box
     time : int
         A frame with a map.
@@ -157,13 +157,13 @@ class Pictures:
 
     Attributes
     ----------
-    cell : CellData
+    cell : ShownCell
     box : Box
     source : FrameSource or None
         Without one there are labels alone.
     """
 
-    cell: CellData
+    cell: ShownCell
     box: Box
     source: FrameSource | None
 

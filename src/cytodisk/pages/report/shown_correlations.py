@@ -9,9 +9,10 @@ import numpy as np
 import pandas as pd
 
 from cytodisk.arrays import FloatArray
-from cytodisk.pages.report.cell_data import CellData
 from cytodisk.pages.report.encode import pack_floats
-from cytodisk.pages.report.shown_names import correlation_name, differences, labels_of, shown_name
+from cytodisk.pages.report.shown_cell import ShownCell
+from cytodisk.pages.report.shown_names import differences, labels_of
+from cytodisk.runs.channel_names import correlation_name, shown_name
 from cytodisk.store.correlation_store import Correlation
 
 MOST_CURVE_NUMBERS = 900_000
@@ -22,12 +23,12 @@ _LAYER_PEAK = ("correlation", "lag", "p", "q", "threshold")
 _CURVE = ("correlation", "low", "high")
 
 
-def pairs_of(cell: CellData) -> tuple[list[dict[str, Any]], list[str]]:
+def pairs_of(cell: ShownCell) -> tuple[list[dict[str, Any]], list[str]]:
     """Every correlation of a study for one cell.
 
     Parameters
     ----------
-    cell : CellData
+    cell : ShownCell
 
     Returns
     -------
@@ -58,7 +59,7 @@ def pairs_of(cell: CellData) -> tuple[list[dict[str, Any]], list[str]]:
     return pairs, notes
 
 
-def _pair(cell: CellData, found: Correlation, with_curves: bool) -> dict[str, Any]:
+def _pair(cell: ShownCell, found: Correlation, with_curves: bool) -> dict[str, Any]:
     windows, layers = _of(cell, found.windows), _of(cell, found.layers)
     layer_curves = _of(cell, found.layer_curves)
     curves = _of(cell, found.curves) if with_curves else None
@@ -74,30 +75,30 @@ def _pair(cell: CellData, found: Correlation, with_curves: bool) -> dict[str, An
     }
 
 
-def _curves(cell: CellData, curves: pd.DataFrame, lags: Any) -> Iterator[tuple[str, Any]]:
+def _curves(cell: ShownCell, curves: pd.DataFrame, lags: Any) -> Iterator[tuple[str, Any]]:
     for name in _CURVE:
         yield name, pack_floats(_curve(cell, curves, name, lags))
 
 
-def _of(cell: CellData, table: pd.DataFrame) -> pd.DataFrame:
+def _of(cell: ShownCell, table: pd.DataFrame) -> pd.DataFrame:
     return table[table["cell"] == cell.cell]
 
 
-def _grid(cell: CellData, table: pd.DataFrame, name: str) -> FloatArray:
+def _grid(cell: ShownCell, table: pd.DataFrame, name: str) -> FloatArray:
     values = np.full((cell.grid.layers, cell.grid.sectors), np.nan)
     if name in table:
         values[table["layer"].to_numpy(), table["sector"].to_numpy()] = table[name].to_numpy(dtype=np.float64)
     return values
 
 
-def _layer(cell: CellData, table: pd.DataFrame, name: str) -> FloatArray:
+def _layer(cell: ShownCell, table: pd.DataFrame, name: str) -> FloatArray:
     values = np.full(cell.grid.layers, np.nan)
     if name in table:
         values[table["layer"].to_numpy()] = table[name].to_numpy(dtype=np.float64)
     return values
 
 
-def _curve(cell: CellData, table: pd.DataFrame, name: str, lags: Any) -> FloatArray:
+def _curve(cell: ShownCell, table: pd.DataFrame, name: str, lags: Any) -> FloatArray:
     """By layer, sector if the table has one, and lag."""
     axes = [table["layer"].to_numpy(), np.searchsorted(lags, table["lag"].to_numpy())]
     shape = [cell.grid.layers, len(lags)]

@@ -6,32 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import PureWindowsPath
 from typing import Any
 
-from cytodisk.pages.correlation_words import settings_words
+from cytodisk.pages.settings_words import settings_words
+from cytodisk.runs.channel_names import correlation_name
 from cytodisk.store.study import Study
-
-
-def shown_name(name: str) -> str:
-    """Name of a channel: files without names number them."""
-    return f"channel {name}" if name.isdigit() else name
-
-
-def correlation_name(names: Sequence[str]) -> str:
-    """Words for a correlation.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Signal, what it was correlated with, and the name of a variant if it has one, as an item of
-        `Study.correlations`.
-
-    Returns
-    -------
-    str
-        As "edge with velocity (early frames)".
-    """
-    signal, with_, *variant = names
-    words = f"{shown_name(signal)} with {shown_name(with_)}"
-    return f"{words} ({variant[0]})" if variant and variant[0] else words
 
 
 def labels_of(correlations: Sequence[tuple[Sequence[str], Mapping[str, Any]]]) -> list[str]:

@@ -1,4 +1,4 @@
-"""The words of the page: title, facts, red flags by frame, tables."""
+"""The words of the page: title, facts, QC flags by frame, tables."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ from typing import Any
 
 import pandas as pd
 
-from cytodisk.pages.report.cell_data import CellData
-from cytodisk.pages.report.flag import Flag
 from cytodisk.pages.report.pictures import Box
-from cytodisk.pages.report.shown_names import correlation_name, file_name, without_folders
+from cytodisk.pages.report.shown_cell import ShownCell
+from cytodisk.pages.report.shown_names import file_name, without_folders
 from cytodisk.pages.report.signal_file import FoundSignal
+from cytodisk.runs.channel_names import correlation_name
+from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.store.study import Study
 
 MOST_PLACES = 30
@@ -37,14 +38,14 @@ _FILES = {
 
 
 def page_words(
-    cell: CellData, flags: Sequence[Flag], found: FoundSignal, box: Box, left_out: Sequence[str]
+    cell: ShownCell, flags: Sequence[QCFlag], found: FoundSignal, box: Box, left_out: Sequence[str]
 ) -> dict[str, Any]:
     """All that the template writes as text.
 
     Parameters
     ----------
-    cell : CellData
-    flags : sequence of Flag
+    cell : ShownCell
+    flags : sequence of QCFlag
     found : FoundSignal
     box : Box
         Box of the pictures.
@@ -78,10 +79,10 @@ def _version(study: Study) -> str:
     return str(study.provenance.get("versions", {}).get("cytodisk", "unknown"))
 
 
-def _facts(cell: CellData) -> Iterator[tuple[str, str]]:
+def _facts(cell: ShownCell) -> Iterator[tuple[str, str]]:
     study, grid = cell.study, cell.grid
     ok = int((study.cells["status"] == "ok").sum())
-    pixel, interval = cell.pixel_size_um, cell.interval_s
+    pixel, interval = cell.scale.pixel_size_um, cell.scale.frame_interval_s
     yield "cells", str(study.cells["cell"].nunique())
     yield "frames", str(study.cells["frame"].nunique())
     yield "mapped", f"{ok} of {len(study.cells)}"
@@ -92,37 +93,37 @@ def _facts(cell: CellData) -> Iterator[tuple[str, str]]:
     yield "cytodisk", _version(study)
 
 
-def _flag(flag: Flag, shown: int, study: Study) -> dict[str, Any]:
+def _flag(flag: QCFlag, shown: int, study: Study) -> dict[str, Any]:
     """A flag's places gathered by cell and, where there are few, by what was found."""
     places = tuple(replace(place, note=without_folders(place.note, study)) for place in flag.places)
     flag = replace(flag, what=without_folders(flag.what, study), places=places)
     cells = sorted({place.cell for place in flag.places}, key=lambda cell: (cell != shown, cell))
     groups = [group for cell in cells for group in _groups(flag, cell, shown)]
-    more = sum(max(1, len(group["times"])) for group in groups[_MOST_GROUPS:])
+    more = sum(max(1, len(group["frames"])) for group in groups[_MOST_GROUPS:])
     kept = {"what": flag.what, "meaning": flag.meaning, "advice": flag.advice}
     return kept | {"groups": groups[:_MOST_GROUPS], "more": more}
 
 
-def _groups(flag: Flag, cell: int, shown: int) -> Iterator[dict[str, Any]]:
+def _groups(flag: QCFlag, cell: int, shown: int) -> Iterator[dict[str, Any]]:
     places = [place for place in flag.places if place.cell == cell]
     notes = list(dict.fromkeys(place.note for place in places))
     by_note = len(notes) <= _MOST_GROUPS
     for note in notes if by_note else [""]:
-        times = [
-            {"time": place.time, "note": place.note, "shown": cell == shown, "sector": place.sector}
+        frames = [
+            {"frame": place.frame, "note": place.note, "shown": cell == shown, "sector": place.sector}
             for place in places
-            if place.time is not None and (not by_note or place.note == note)
+            if place.frame is not None and (not by_note or place.note == note)
         ]
-        yield {"cell": None if cell == shown and times else cell, "note": note, "times": times}
+        yield {"cell": None if cell == shown and frames else cell, "note": note, "frames": frames}
 
 
-def _reduced(cell: CellData, found: FoundSignal, box: Box, left_out: Sequence[str]) -> str:
+def _reduced(cell: ShownCell, found: FoundSignal, box: Box, left_out: Sequence[str]) -> str:
     """What the page shows less of than the study holds."""
     words = []
     if cell.every > 1:
         words.append(
-            f"One frame in {cell.every} is shown, {len(cell.frames)} of {cell.whole.sizes['time']}; all are "
-            "in the study, and red flags are from all."
+            f"One frame in {cell.every} is shown, {len(cell.frames)} of {cell.activity.sizes['time']}; all "
+            "are in the study, and QC flags are from all."
         )
     if found.source is not None:
         size = f" and reduced to {box.scale:.0%} of its size" if box.scale < 1 else ""

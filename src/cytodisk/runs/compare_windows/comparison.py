@@ -22,6 +22,7 @@ from cytodisk.runs.compare_windows.compare_columns import (
     units_of,
 )
 from cytodisk.runs.compare_windows.compare_summaries import layer_summary, method_summary, movie_summary
+from cytodisk.scale import Scale
 from cytodisk.store.provenance_file import read_provenance
 from cytodisk.store.study_folder import CELLS, CONSISTENCY, MAPS, part_key
 from cytodisk.store.tables import read_table
@@ -60,6 +61,11 @@ class Comparison:
     def is_movie(self) -> bool:
         """Whether cells were followed through time."""
         return self.provenance.get("run") == "movie comparison"
+
+    @property
+    def scale(self) -> Scale:
+        """µm per pixel and seconds per frame, as far as the run knew them."""
+        return Scale(self.provenance.get("pixel_size_um"), self.provenance.get("frame_interval_s"))
 
     @cached_property
     def consistency(self) -> pd.DataFrame:

@@ -53,7 +53,7 @@ def run_map(
     resume, overwrite : bool
         What to do with a study that is there; see `StudyFolder.start`.
     draw : callable, optional
-        Draws a cell's figures: (folder, name, windows, signal, pixel_size_um) → paths.
+        Draws a cell's figures: (folder, name, windows, signal, scale) → paths.
     draw_at_most : int, optional
         How many cells, from the first, to draw.
     maps : bool

@@ -1,0 +1,85 @@
+"""One cell of a movie's study, opened for drawing, and the heading of its pages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from cytodisk.arrays import FloatArray
+from cytodisk.pages.movie_cell import MovieCell
+from cytodisk.pages.sheet import Sheet
+from cytodisk.runs.channel_names import shown_name
+from cytodisk.store.study_folder import figures_folder, part_key
+from cytodisk.windows.cell_windows import CellWindows
+
+HEADING_MM = 12.0
+LEFT_MM = 4.0
+
+_LONGEST_CHANNEL = 24
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnMovie(MovieCell):
+    """A cell of a movie's study, with what its pages draw."""
+
+    @property
+    def first(self) -> int:
+        """Number of the cell's first frame."""
+        return int(self.activity["frame"][0])
+
+    @property
+    def frames(self) -> int:
+        """Frames from the cell's first to its last."""
+        return self.activity.sizes["time"]
+
+    @cached_property
+    def mapped(self) -> list[int]:
+        """Numbers of the frames with a map."""
+        return [int(time) for time in np.flatnonzero(self.maps.mapped)]
+
+    def shown_name(self, channel: int = 0) -> str:
+        """Name of a channel for headings and labels."""
+        if not self.channels:
+            return "signal"
+        name = self.channels[channel]
+        if name.isdigit():  # a file without names
+            return shown_name(name) if len(self.channels) > 1 else "signal"
+        return name if len(name) <= _LONGEST_CHANNEL else f"{name[: _LONGEST_CHANNEL - 1]}…"
+
+    @cached_property
+    def points_yx(self) -> FloatArray:
+        """Tracked boundary points from the cell's first frame on, shape (frames, N, 2); NaN without map."""
+        return self.maps.points_yx[self.first :]
+
+    def windows(self, time: int) -> CellWindows:
+        """Windows of a mapped frame to draw."""
+        return self.grid.on(self.maps[time])
+
+    def write_heading(self, sheet: Sheet, what: str) -> None:
+        """Name of the cell, its frames, scale, and what the page shows, in two lines."""
+        label = self.activity.attrs.get("label")
+        name = f"cell {self.cell}" + ("" if label is None else f" (label {label})")
+        sheet.text(LEFT_MM, 5.0, f"{name}: {what}", fontsize=8, weight="bold")
+        sheet.text(LEFT_MM, 8.8, " · ".join(self._facts()), color="0.3")
+
+    def save(self, sheet: Sheet, what: str) -> Path:
+        """Write a page whole or not at all."""
+        return sheet.save(self.path(f"_{what}.png"))
+
+    def path(self, ending: str) -> Path:
+        """Where a figure is to stand."""
+        return figures_folder(self.study.path) / f"cell_{part_key(self.cell)}{ending}"
+
+    def _facts(self) -> list[str]:
+        last = self.first + self.frames - 1
+        lost = self.frames - len(self.mapped)
+        which = f"frames {self.first}–{last}" if last > self.first else f"frame {last}"
+        facts = [which + (f", {lost} without a map" if lost else "")]
+        facts.append(f"{self.grid.layers} layers × {self.grid.sectors} sectors")
+        pixel, interval = self.scale.pixel_size_um, self.scale.frame_interval_s
+        facts.append("pixel size unknown" if pixel is None else f"{pixel:.4g} µm/px")
+        facts.append("frame interval unknown" if interval is None else f"{interval:.4g} s/frame")
+        return facts

@@ -1,0 +1,135 @@
+"""One cell of a movie's study as the page shows it: which frames, which numbers, which colours."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.arrays import FloatArray
+from cytodisk.pages.movie_cell import MovieCell
+from cytodisk.pages.report.encode import pack_floats
+from cytodisk.pages.report.shown_names import without_folders
+from cytodisk.plot.activity_maps import top_speed
+from cytodisk.plot.style import signal_limits
+from cytodisk.plot.time_axis import FrameTimes
+from cytodisk.runs.channel_names import shown_name
+
+MOST_ARRAY_BYTES = 5_000_000
+"""Of numbers by frame and window; more frames are thinned out."""
+
+_BY_WINDOW = ("mean", "sd")
+_SHOWN = (*_BY_WINDOW, "n_pixels", "area", "velocity", "velocity_error", "status", "reason")
+_QUALITY = ("area", "tracking_residual", "area_distortion")
+
+
+@dataclass(frozen=True, eq=False)
+class ShownCell(MovieCell):
+    """A cell's tables and maps, and the frames of it that are shown.
+
+    Attributes
+    ----------
+    every : int
+        Every so-manyth frame is shown.
+    """
+
+    every: int = 1
+
+    @cached_property
+    def activity(self) -> xr.Dataset:
+        """Activity in all frames, as far as the page shows it."""
+        whole = self.study.activity(self.cell)
+        return whole[[name for name in _SHOWN if name in whole]].load()
+
+    @cached_property
+    def shown(self) -> xr.Dataset:
+        """Activity in the shown frames."""
+        return self.activity.isel(time=slice(None, None, self.every))
+
+    @cached_property
+    def frames(self) -> list[int]:
+        """Numbers of the shown frames."""
+        return [int(frame) for frame in self.shown["frame"].to_numpy()]
+
+    @cached_property
+    def times(self) -> FrameTimes:
+        """Where the shown frames lie on the axes of time."""
+        interval = self.scale.frame_interval_s
+        return FrameTimes(self.frames[0], len(self.frames), interval, self.every)
+
+    def thinned(self) -> ShownCell:
+        """The same with so many frames that the numbers by window stay below `MOST_ARRAY_BYTES`."""
+        sizes = self.activity.sizes
+        arrays = len(_BY_WINDOW) * len(self.channels) + 1
+        size = 4 * arrays * sizes["time"] * sizes["layer"] * sizes["sector"]
+        return self.every_frames(max(self.every, int(np.ceil(size / MOST_ARRAY_BYTES))))
+
+    def every_frames(self, every: int) -> ShownCell:
+        """The same with every so-manyth frame."""
+        return self if every == self.every else ShownCell(self.study, self.cell, every)
+
+    def as_json(self) -> dict[str, Any]:
+        """What the page's scripts need to know, apart from pictures, labels and correlations."""
+        return {
+            "cell": self.cell,
+            "frames": self.frames,
+            "every": self.every,
+            "reasons": self._reasons(),
+            "interval_s": self.scale.frame_interval_s,
+            "time": {"step": self.times.per_frame, "label": self.times.label},
+            "layers": self.grid.layers,
+            "sectors": self.grid.sectors,
+            "radii": self.grid.radii.tolist(),
+            "units": {name: self.unit(name) for name in ("area", "velocity")},
+            "channels": list(self._channels()),
+            "velocity": pack_floats(self.shown["velocity"]),
+            "velocity_error": pack_floats(self.shown["velocity_error"]),
+            "velocity_limit": top_speed(self.activity["velocity"].to_numpy()),
+            "area": pack_floats(self.shown["area"]),
+            "quality": self._quality(),
+        }
+
+    def _reasons(self) -> list[str]:
+        """Why a shown frame has no map; empty if it has one."""
+        pairs = zip(self.shown["status"].to_numpy(), self.shown["reason"].to_numpy(), strict=True)
+        return [
+            "" if status == "ok" else without_folders(f"{status}: {reason}", self.study)
+            for status, reason in pairs
+        ]
+
+    def _channels(self) -> Iterator[dict[str, Any]]:
+        for number, name in enumerate(self.channels):
+            values = self.shown.isel(channel=number)
+            yield {
+                "name": shown_name(name),
+                "unit": self.unit("mean"),
+                "mean": pack_floats(values["mean"]),
+                "sd": pack_floats(values["sd"]),
+                "whole_mean": pack_floats(_whole_mean(values)),
+                **_limits(self.activity["mean"].isel(channel=number).to_numpy()),
+            }
+        area = {"name": "window area", "unit": self.unit("area"), "mean": None, "sd": None}
+        yield area | {"whole_mean": None} | _limits(self.activity["area"].to_numpy())
+
+    def _quality(self) -> dict[str, Any]:
+        rows = self.study.cells[self.study.cells["cell"] == self.cell].set_index("frame")
+        rows = rows.reindex(self.frames)
+        return {name: pack_floats(rows[name]) for name in _QUALITY}
+
+
+def _limits(values: FloatArray) -> dict[str, Any]:
+    """Ends of the colours, for all layers together and for each; `values` are (T, L, S)."""
+    layers = [signal_limits(layer) for layer in np.moveaxis(values, 1, 0)]
+    return {"limits": signal_limits(values), "layer_limits": layers}
+
+
+def _whole_mean(values: xr.Dataset) -> FloatArray:
+    """Mean over the cell by frame, windows counted by their pixels."""
+    pixels = values["n_pixels"].where(values["mean"].notnull())
+    inside = pixels.sum(("layer", "sector"))
+    total = (values["mean"] * pixels).sum(("layer", "sector"))
+    return np.asarray((total / inside.where(inside > 0)).to_numpy())

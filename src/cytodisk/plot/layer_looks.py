@@ -1,0 +1,62 @@
+"""Which layers a picture shows, their names and their colours."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import matplotlib as mpl
+import numpy as np
+
+from cytodisk.arrays import FloatArray
+from cytodisk.plot.style import LAYER_COLOURS
+
+_MOST_LAYERS = 4
+_LIGHTEST = 0.85  # share of the colours that can be seen on white
+
+
+def shown_layers(layers: int) -> list[int]:
+    """Layers that pictures show: all up to four, else the edge's, two between, the centre's.
+
+    Parameters
+    ----------
+    layers : int
+        At least 1.
+
+    Returns
+    -------
+    list of int
+    """
+    chosen = np.linspace(0, layers - 1, min(layers, _MOST_LAYERS)).round().astype(int)
+    return [int(layer) for layer in np.unique(chosen)]
+
+
+def layer_names(layers: Sequence[int], count: int) -> list[str]:
+    """Names of layers, with what the first and last are.
+
+    Parameters
+    ----------
+    layers : sequence of int
+    count : int
+        Number of all layers.
+
+    Returns
+    -------
+    list of str
+    """
+    places = {count - 1: " (centre)", 0: " (edge)"}
+    return [f"layer {layer}{places.get(layer, '')}" for layer in layers]
+
+
+def layer_colours(layers: Sequence[int]) -> FloatArray:
+    """Colours of lines on white, from dark for the first layer to light for the last.
+
+    Parameters
+    ----------
+    layers : sequence of int
+
+    Returns
+    -------
+    ndarray of shape (N, 4) and dtype float
+        Red, green, blue and opacity.
+    """
+    return np.asarray(mpl.colormaps[LAYER_COLOURS](np.linspace(0.0, _LIGHTEST, len(layers))))

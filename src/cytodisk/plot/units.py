@@ -1,0 +1,62 @@
+"""Units of what is drawn: read from the arrays, or from a scale that the caller passes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import xarray as xr
+
+from cytodisk.scale import Scale
+
+
+def scale_for(carrier: Any, scale: Scale | None = None) -> Scale:
+    """The scale of a picture.
+
+    Parameters
+    ----------
+    carrier : DataArray, map, movie or windows
+        What is drawn; see `Scale.of`.
+    scale : Scale, optional
+        What it holds goes before what the carrier holds.
+
+    Returns
+    -------
+    Scale
+    """
+    carried = Scale.of(carrier)
+    if scale is None:
+        return carried
+    return Scale(
+        carried.pixel_size_um if scale.pixel_size_um is None else scale.pixel_size_um,
+        carried.frame_interval_s if scale.frame_interval_s is None else scale.frame_interval_s,
+    )
+
+
+def unit_of(values: Any, otherwise: str = "") -> str:
+    """Unit of values: their attribute `units`, or `otherwise` where they have none."""
+    return str(getattr(values, "attrs", {}).get("units", otherwise))
+
+
+def with_unit(label: str, unit: str) -> str:
+    """A label with its unit in brackets; the label alone where the unit is empty."""
+    return f"{label} ({unit})" if unit else label
+
+
+def velocity_label(velocity: Any, scale: Scale | None = None) -> str:
+    """Label of edge velocity with its unit.
+
+    Parameters
+    ----------
+    velocity : array_like or DataArray
+    scale : Scale, optional
+        Of values that do not say their unit.
+
+    Returns
+    -------
+    str
+        Of plain numbers without a scale "edge velocity (px/frame)". A DataArray that has lost its unit in a
+        computation, and comes without a scale, has none.
+    """
+    known = scale_for(velocity, scale)
+    lost = isinstance(velocity, xr.DataArray) and known == Scale()
+    return with_unit("edge velocity", unit_of(velocity, "unit unknown" if lost else known.velocity_unit))

@@ -1,0 +1,75 @@
+"""QC flags of a study's correlations: marks of jitter, drift, cells that were left out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pandas as pd
+
+from cytodisk.analysis.correlation.prepared_series import DRIFTING_SHARE
+from cytodisk.runs.channel_names import correlation_name
+from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted
+from cytodisk.store.study import Study
+
+
+def jitter(study: Study) -> Iterator[QCFlag]:
+    """Correlations with velocity that jitter of the masks made part of."""
+    places = [
+        Place(int(row.cell), None, f"{names}: {row.jitter:+.2f} at lag 0".replace("-", "−"))
+        for names, row in _rows(study)
+        if abs(row.jitter) > 0
+    ]
+    if places:
+        yield QCFlag(
+            "jitter",
+            f"masks that jitter show in {counted(len(places), 'correlation')} with velocity",
+            "Noise of the outline moves edge and windows at once: it correlates by itself, at lags −1 and 0, "
+            "with opposite signs.",
+            "Look at the other lags: cytodisk correlate … --skip-lags=-1,0.",
+            tuple(places),
+        )
+
+
+def drifting_series(study: Study) -> Iterator[QCFlag]:
+    """Correlations of series whose level drifts."""
+    places = []
+    for names, row in _rows(study):
+        share = max(row.drifting_signal, row.drifting_with)
+        if share > DRIFTING_SHARE:
+            places.append(Place(int(row.cell), None, f"{names}: {share:.0%} of the series"))
+    if places:
+        yield QCFlag(
+            "drifting series",
+            f"the level of many series drifts in {counted(len(places), 'correlation')}",
+            "Two trends correlate whatever they come from, bleaching too.",
+            "See whether cytodisk correlate … --detrend linear, or --difference, says the same.",
+            tuple(places),
+        )
+
+
+def left_out(study: Study) -> Iterator[QCFlag]:
+    """Cells that could not be correlated."""
+    places = []
+    for names in study.correlations:
+        cells = study.correlation(*names).cells
+        refused = cells[cells["status"] != "ok"]
+        places += [
+            Place(int(cell), None, f"{correlation_name(names)}: {reason}")
+            for cell, reason in zip(refused["cell"], refused["reason"], strict=True)
+        ]
+    if places:
+        yield QCFlag(
+            "not correlated",
+            f"{counted(len(places), 'cell')} could not be correlated",
+            "They are in the tables of windows, but not in those of correlations.",
+            "Pass a smaller --max-lag, or --min-pairs, if the cells are there for few frames.",
+            tuple(places),
+        )
+
+
+def _rows(study: Study) -> Iterator[tuple[str, pd.Series[float]]]:
+    """Correlated cells of all correlations, with the names of what was correlated."""
+    for names in study.correlations:
+        cells = study.correlation(*names).cells
+        for _, row in cells[cells["status"] == "ok"].iterrows():
+            yield correlation_name(names), row

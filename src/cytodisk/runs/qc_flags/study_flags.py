@@ -1,0 +1,65 @@
+"""`qc_flags`: what in a study deserves a second look before its numbers are believed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+from cytodisk.runs.qc_flags import column_flags, correlation_flags, motion_flags
+from cytodisk.runs.qc_flags.qc_flag import QCFlag, counted
+from cytodisk.store.study import Study
+
+
+def qc_flags(study: Study) -> list[QCFlag]:
+    """Look for faults in a study's tables, over all of its cells.
+
+    Parameters
+    ----------
+    study : Study
+        Study of a movie or of single masks. Pixels are not read.
+
+    Returns
+    -------
+    list of QCFlag
+        The gravest first; empty if there are none. A frame may stand in several.
+
+    Notes
+    -----
+    A frame is compared with the other frames of its own cell where cells differ by nature (area, velocity),
+    by the median of absolute values, so that the faults themselves do not raise the bar; the thresholds are
+    the constants of `column_flags`, `motion_flags`, `signal_drift` and `correlation_flags`.
+    """
+    found = [flag for rule in _RULES for flag in rule(study)]
+    return [*found, *_other_warnings(study, found)]
+
+
+def _other_warnings(study: Study, found: Sequence[QCFlag]) -> Iterator[QCFlag]:
+    """Warnings of the run that no other flag tells already."""
+    told = {(place.cell, place.frame) for flag in found for place in flag.places}
+    heads = tuple(f"cell {cell}, frame {frame}:" for cell, frame in told)
+    warnings = [str(words) for words in study.provenance.get("warnings", [])]
+    other = [words for words in warnings if not words.startswith(heads)]
+    if other:
+        yield QCFlag(
+            "warnings",
+            f"{counted(len(other), 'warning')} of the run: " + "; ".join(other[:5]),
+            "The run went on, but something was out of the ordinary.",
+            "Read them all in provenance.json.",
+        )
+
+
+_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
+    column_flags.without_map,
+    column_flags.masks_in_doubt,
+    motion_flags.area_jumps,
+    motion_flags.fast_edge,
+    column_flags.tracking_residual,
+    column_flags.order_violations,
+    column_flags.tracking_restarts,
+    column_flags.image_border,
+    motion_flags.drift,
+    column_flags.distortion,
+    column_flags.nan_pixels,
+    correlation_flags.jitter,
+    correlation_flags.drifting_series,
+    correlation_flags.left_out,
+)
