@@ -79,6 +79,17 @@ def draw_area_spread(ax: Axes, disk: DiskMap) -> None:
     ----------
     ax : Axes
     disk : DiskMap
+
+    See Also
+    --------
+    draw_area_distortion : Where in the cell it is.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> figure, ax = plt.subplots()
+    >>> cd.plot.draw_area_spread(ax, cd.map_to_disk(cd.simulate.disk(12)))
     """
     top = distortion_limit(disk.distortion)
     edges = np.linspace(-top, top, 32)

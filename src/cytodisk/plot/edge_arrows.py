@@ -81,13 +81,9 @@ def draw_velocity_arrows(
     --------
     >>> import matplotlib.pyplot as plt
     >>> import cytodisk as cd
-    >>> movie = cd.map_movie(cd.simulate.movie("growing", frames=2, radius_px=12.0).masks)
-    >>> here, there = movie.points_yx
-    >>> normals = movie.normals_yx[0]
-    >>> along = ((there - here) * normals).sum(axis=1)
+    >>> movie = cd.map_movie(cd.simulate.movie("growing", frames=3, radius_px=12.0).masks)
     >>> figure, ax = plt.subplots()
-    >>> outlines = movie[0].outline_yx, movie[1].outline_yx
-    >>> arrows = cd.plot.draw_velocity_arrows(ax, here, there, normals, along, *outlines)
+    >>> arrows = cd.plot.draw_velocity_arrows(ax, movie, 1, every=8)
     """
     whole_number("every", every, 1)
     one_of("along", along, ("path", "normal"))
