@@ -28,20 +28,20 @@ def setup(app: Sphinx) -> dict[str, Any]:
 
 def write_page(app: Sphinx, _config: Any) -> None:
     lines = [*heading("Columns of every table", "="), WORDS, ""]
-    lines += run(
-        "Maps and movies", "cytodisk map`` and ``cytodisk movie", tables_of(MAP_TABLES, MOVIE_TABLES)
-    )
+    mapped = tables_of(MAP_TABLES, MOVIE_TABLES)
+    lines += run("Maps and movies", "``cytodisk map`` and ``cytodisk movie`` write these tables.", mapped)
     lines += run(
         "Correlations",
-        "cytodisk correlate",
-        {f"correlation/SIGNAL~WITH/{name}": columns for name, columns in CORRELATION_TABLES.items()},
+        "``cytodisk correlate`` writes these tables into ``correlation/SIGNAL~WITH/``.",
+        CORRELATION_TABLES,
     )
-    lines += run("Shapes", "cytodisk shapes", {"shapes": SHAPE_TABLES.cells})
+    lines += run("Shapes", "``cytodisk shapes`` writes this table.", {"shapes": SHAPE_TABLES.cells})
     lines += ["The features follow; ``features.csv`` lists them, too.", "", *features()]
     compared = tables_of(COMPARED_CELLS, COMPARED_MOVIE)
-    lines += run("Comparisons of windows", "cytodisk compare-windows", compared)
+    lines += run("Comparisons of windows", "``cytodisk compare-windows`` writes these tables.", compared)
     lines += ["``comparison_columns.csv`` explains the columns of the summaries, which are CSV files.", ""]
-    lines += run("Many inputs", "cytodisk batch", {"inputs": (INPUT, *INPUT_COLUMNS)})
+    inputs = {"inputs": (INPUT, *INPUT_COLUMNS)}
+    lines += run("Many inputs", "``cytodisk batch`` writes this table, also as CSV.", inputs)
     lines += [
         "In the merged tables ``input``, your own columns and the units come before the columns above.",
         "",
@@ -59,13 +59,11 @@ def tables_of(*kinds: Tables) -> dict[str, Columns]:
     return found
 
 
-def run(title: str, command: str, tables: dict[str, Columns]) -> list[str]:
+def run(title: str, words: str, tables: dict[str, Columns]) -> list[str]:
     """Section of a command: each of its tables."""
-    lines = [*heading(title, "-"), f"Written by ``{command}``.", ""]
+    lines = [*heading(title, "-"), words, ""]
     for name, columns in tables.items():
-        rows = [
-            (f"``{column.name}``", UNITS.get(column.unit, column.unit), column.meaning) for column in columns
-        ]
+        rows = [(column.name, column.unit, column.meaning) for column in columns]
         lines += [*heading(f"{name}.parquet", "~"), *list_table(rows)]
     return lines
 
