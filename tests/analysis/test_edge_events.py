@@ -65,7 +65,7 @@ def test_without_seconds_or_areas() -> None:
 
 
 @pytest.mark.parametrize(("min_frames", "onsets"), [(1, [1, 4, 8]), (2, [4, 8]), (3, [8]), (4, [])])
-def test_short_episodes_are_left_out(min_frames: int, onsets: list[int]) -> None:
+def test_short_events_are_left_out(min_frames: int, onsets: list[int]) -> None:
     velocity = velocity_of([0, 9, 0, 0, 9, 9, 0, 0, 9, 9, 9, 0])
     events = edge_events(velocity, threshold=1.0, min_frames=min_frames)
     assert events["onset"].tolist() == onsets
@@ -93,7 +93,7 @@ def test_what_goes_on_to_the_last_frame_is_not_complete() -> None:
     assert (event["end"], event["end_s"], event["end_known"]) == (3, 6.0, False)
 
 
-def test_a_sine_has_an_episode_each_half_period() -> None:
+def test_a_sine_has_an_event_each_half_period() -> None:
     time = np.arange(60)
     velocity = velocity_of(np.sin(2 * np.pi * (time + 0.5) / 20))
     events = edge_events(velocity, threshold=0.5)
@@ -106,7 +106,7 @@ def test_a_sine_has_an_episode_each_half_period() -> None:
     assert events["complete"].tolist() == [False, True, True, True, True, False]
 
 
-def test_a_constant_velocity_is_one_episode_without_ends() -> None:
+def test_a_constant_velocity_is_one_event_without_ends() -> None:
     velocity = velocity_of(np.full((10, 3), 0.1))
     events = edge_events(velocity)
     assert (events.attrs["noise"], events.attrs["threshold"]) == (0.0, 0.0)
@@ -192,7 +192,7 @@ def test_random_velocities_against_plain_loops(seed: int) -> None:
         assert event["mean_velocity"] == pytest.approx(run.mean())
         assert event["peak_velocity"] == run[np.abs(run).argmax()]
         assert event["peak"] == event["onset"] + np.abs(run).argmax()
-    # Patches are numbered as they come, and are what plain merging of touching episodes gives.
+    # Patches are numbered as they come, and are what plain merging of touching events gives.
     assert pd.unique(events["patch"]).tolist() == list(range(events["patch"].nunique()))
     assert same_groups(events["patch"].to_numpy(), merged(events, 9))
 
@@ -272,7 +272,7 @@ def test_noise_of_positions_is_found_29_percent_too_high() -> None:
     assert noise == pytest.approx(np.sqrt(2.0) * np.sqrt(10.0 / 6.0), rel=0.03)
 
 
-def test_noise_of_positions_alone_makes_hardly_any_episodes() -> None:
+def test_noise_of_positions_alone_makes_hardly_any_events() -> None:
     positions = np.random.default_rng(3).normal(0.0, 1.0, (501, 60))
     events = edge_events(velocity_of(np.diff(positions, axis=0)))
     assert len(events) < 0.002 * 500 * 60

@@ -100,7 +100,7 @@ def test_only_moments_that_are_known() -> None:
     assert back["mean"].to_numpy().tolist() == [-1.0]
 
 
-def test_no_episodes_give_nan() -> None:
+def test_no_events_give_nan() -> None:
     velocity = pulses({})
     average = average_around(velocity, events_of(velocity), before=1, after=2)
     assert np.isnan(average[["mean", "lower", "upper"]].to_array()).all()
@@ -159,7 +159,7 @@ def test_few_patches_have_no_band(patches: int) -> None:
 
 
 def test_the_band_ends_where_patches_become_few() -> None:
-    """Two of six episodes begin too early to be seen three frames before."""
+    """Two of six events begin too early to be seen three frames before."""
     starts = [2, 2, 5, 8, 11, 14]
     velocity = pulses({2 * place: [start] for place, start in enumerate(starts)}, sectors=12)
     average = average_around(velocity, events_of(velocity), before=3, after=1)

@@ -16,7 +16,7 @@ from cytodisk.plot.event_curves import ONSET_NAME, band_key, draw_event_average,
 
 @pytest.fixture
 def velocity() -> xr.DataArray:
-    """An episode of two sectors around sector 0, one that the movie begins with, and one back."""
+    """An event of two sectors around sector 0, one that the movie begins with, and one back."""
     values = np.zeros((10, 6))
     values[2:5, 0] = 1.0
     values[3:6, 5] = 1.0
@@ -152,7 +152,7 @@ def test_layers_against_delay(ax: Axes, velocity: xr.DataArray, events: pd.DataF
     assert list(np.asarray(zero.get_xdata())) == [0.0, 0.0]
     assert ax.get_xlabel() == "delay after onset of protrusion (s)"
     assert ax.get_ylabel() == "Rac1 (a.u.)"
-    assert ax.get_title(loc="right") == "2 episodes in 2 patches"
+    assert ax.get_title(loc="right") == "2 events in 2 patches"
 
 
 def test_labels_say_what_was_done(ax: Axes, velocity: xr.DataArray, events: pd.DataFrame) -> None:
@@ -161,7 +161,7 @@ def test_labels_say_what_was_done(ax: Axes, velocity: xr.DataArray, events: pd.D
     assert ax.get_xlabel() == "delay after end of protrusion (s)"
     draw_event_average(ax, average_of(velocity, events, normalise="mean", kind="retraction"), label="Rac1")
     assert ax.get_ylabel() == "Rac1 − mean of window (a.u.)"
-    assert ax.get_title(loc="right") == "1 episode in 1 patch"
+    assert ax.get_title(loc="right") == "1 event in 1 patch"
 
 
 def test_without_layers_there_is_one_line_and_no_legend(

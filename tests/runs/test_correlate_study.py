@@ -109,7 +109,7 @@ def test_a_signal_against_the_edge_of_its_sector(study: cd.Study) -> None:
     assert "q" not in found.windows
 
 
-def test_episodes_and_averages_stand_beside(study: cd.Study) -> None:
+def test_events_and_averages_stand_beside(study: cd.Study) -> None:
     found = correlate_study(study, "edge", max_lag=5, **FEW)
     assert found.events is not None
     assert set(found.events["kind"]) == {"protrusion", "retraction"}
@@ -318,7 +318,7 @@ def test_a_folder_that_cannot_be_exchanged_stays(study: cd.Study, monkeypatch: p
     pd.testing.assert_frame_equal(study.correlation("edge").windows, before)
 
 
-def test_episodes_of_some_sectors_are_those_of_the_whole_edge(study: cd.Study) -> None:
+def test_events_of_some_sectors_are_those_of_the_whole_edge(study: cd.Study) -> None:
     whole = correlate_study(study, "edge", max_lag=3, surrogates=0).events
     part = correlate_study(study, "edge", max_lag=3, surrogates=0, sectors=(10, 2), name="part").events
     assert whole is not None

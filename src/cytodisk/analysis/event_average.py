@@ -19,7 +19,7 @@ from cytodisk.errors import ParameterError
 Moment: TypeAlias = Literal["onset", "peak", "end"]
 Normalisation: TypeAlias = Literal["none", "mean", "sd"]
 
-# What must be known of an episode for its moment to be known.
+# What must be known of an event for its moment to be known.
 _KNOWN: dict[Moment, str] = {"onset": "onset_known", "peak": "complete", "end": "end_known"}
 _LEAST_PATCHES = 5  # with fewer the band is far too narrow
 _COLUMNS = ("sector", "kind", "patch")
@@ -38,7 +38,7 @@ def average_around(
     seed: int = 0,
     confidence: float = 0.95,
 ) -> xr.Dataset:
-    """Mean of a signal around a moment of the edge's episodes, in the sector of each.
+    """Mean of a signal around a moment of protrusion or retraction events, in the sector of each.
 
     Parameters
     ----------
@@ -50,10 +50,10 @@ def average_around(
         Frames of the window before and after the moment.
     kind : {"protrusion", "retraction"}
     at : {"onset", "peak", "end"}
-        The moment, delay 0. Episodes in which it is not known, at the ends of the movie and beside NaN, are
+        The moment, delay 0. Events in which it is not known, at the ends of the movie and beside NaN, are
         left out; a peak is known where both ends are.
     normalise : {"none", "mean", "sd"}
-        "mean" subtracts from each window of each episode its own mean over the delays that it has; "sd"
+        "mean" subtracts from each window of each event its own mean over the delays that it has; "sd"
         then divides by its standard deviation, and leaves out windows that do not vary.
     bootstrap : int
         How often patches are drawn for the band; 0 for none.
@@ -66,7 +66,7 @@ def average_around(
     -------
     Dataset with the dims of `activity` but time and sector, and delay
         mean; lower and upper, the band (NaN where fewer than five patches have a value); n and n_patches, the
-        episodes and patches that have a value there: NaN and what lies beyond the movie count for nothing.
+        events and patches that have a value there: NaN and what lies beyond the movie count for nothing.
         Coordinates delay, in frames, and delay_s where frames are evenly spaced in known time.
 
     Raises
@@ -81,9 +81,9 @@ def average_around(
 
     Notes
     -----
-    Episodes of a patch are one event that many sectors saw, and not independent. The band therefore draws
+    The events of a patch are one protrusion of the cell, and not independent. The band therefore draws
     whole patches, as many as there are, with replacement, and takes percentiles of the means over the
-    episodes of those drawn. With few patches plain percentiles are too narrow: they are taken further out,
+    events of those drawn. With few patches plain percentiles are too narrow: they are taken further out,
     as far as Student's t with one degree of freedom less than there are patches is from the normal
     distribution [1]_. In simulations of independent, normal patches a band of 95 % held the true mean in
     91 % of experiments with 5 patches, 93 % with 6 and 94 % with 10 or 30; with 4 or fewer in 88 % or less,
@@ -225,7 +225,7 @@ def _by_patch(windows: FloatArray, patch: IntArray) -> tuple[FloatArray, FloatAr
 
 
 def _resampled(sums: FloatArray, counts: FloatArray, bootstrap: int, seed: int) -> FloatArray:
-    """Means over the episodes of patches drawn with replacement, shape (B, D, K)."""
+    """Means over the events of patches drawn with replacement, shape (B, D, K)."""
     patches = len(sums)
     if not patches or not bootstrap:
         return np.full((0, *sums.shape[1:]), np.nan)

@@ -1,4 +1,4 @@
-"""Episodes of protrusion and retraction of a cell's edge."""
+"""Events of protrusion and retraction of a cell's edge."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ def edge_events(
     protruded_area: xr.DataArray | None = None,
     retracted_area: xr.DataArray | None = None,
 ) -> pd.DataFrame:
-    """Episodes in which a sector of the edge goes out, or in, without a break.
+    """Protrusion and retraction events: runs of frames in which a sector of the edge moves one way.
 
-    An episode is a longest run of frames whose velocity has one sign, of at least `min_frames`, whose
-    fastest frame is faster than `threshold`. Velocity 0 belongs to none; NaN breaks an episode.
+    An event is a longest run of frames whose velocity has one sign, of at least `min_frames`, whose
+    fastest frame is faster than `threshold`. Velocity 0 belongs to none; NaN breaks an event.
 
     Parameters
     ----------
@@ -45,10 +45,10 @@ def edge_events(
         As of `edge_velocity`, or `study.activity(cell)["velocity"]`: protrusion positive, stored at t for
         the step from t to t + 1, its unit in attrs `units`; seconds in the coordinate time_s, if known.
     threshold : float, optional
-        Least speed of an episode's fastest frame, in the unit of the velocity. By default twice the noise,
+        Least speed of an event's fastest frame, in the unit of the velocity. By default twice the noise,
         see `velocity_noise`.
     min_frames : int
-        Steps of the shortest episode.
+        Steps of the shortest event.
     edge_length : DataArray with dims time and sector, optional
         Length of the sectors' edge, for the area: velocity × time × length.
     protruded_area, retracted_area : DataArray with dims time and sector, optional
@@ -58,13 +58,13 @@ def edge_events(
     Returns
     -------
     DataFrame
-        One row an episode, by onset and sector. sector; kind ("protrusion", "retraction"); onset, the frame
+        One row for each event, by onset and sector. sector; kind ("protrusion", "retraction"); onset, the frame
         in which it starts to move, end, that in which it has come to rest or turned (the steps of the
-        episode are onset … end - 1), and peak, that of the fastest step; the same in seconds, onset_s, end_s
+        event are onset … end - 1), and peak, that of the fastest step; the same in seconds, onset_s, end_s
         and peak_s (NaN when unknown); duration, from onset to end, in seconds or frames; peak_velocity and
         mean_velocity, negative in a retraction; area, won positive, lost negative (NaN when nothing is
         passed for it); onset_known and end_known, False at the ends of the movie and beside NaN; complete,
-        both known; patch, the number of its connected patch: episodes of one kind in neighbouring sectors
+        both known; patch, the number of its connected patch: events of one kind in neighbouring sectors
         that move in the same step. Units by column are in attrs `units`; attrs hold threshold, noise,
         min_frames and the number of sectors.
 

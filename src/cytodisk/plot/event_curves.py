@@ -1,4 +1,4 @@
-"""Draw episodes of the edge on its velocity map, and the mean of a signal around them."""
+"""Draw events of the edge on its velocity map, and the mean of a signal around them."""
 
 from typing import Any
 
@@ -31,7 +31,7 @@ _DELAY_UNITS = {"frame": "frames", "s": "s"}
 
 
 def draw_events(ax: Axes, velocity: xr.DataArray, events: pd.DataFrame) -> LineCollection:
-    """Draw the map of edge velocity with the outlines of the patches of episodes on it.
+    """Draw the map of edge velocity with the outlines of the patches of events on it.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def draw_events(ax: Axes, velocity: xr.DataArray, events: pd.DataFrame) -> LineC
 
 
 def draw_event_average(ax: Axes, average: xr.Dataset, *, label: str = "mean") -> list[Line2D]:
-    """Draw the mean of a signal around episodes against the delay, with its band, by layer.
+    """Draw the mean of a signal around events against the delay, with its band, by layer.
 
     Parameters
     ----------
@@ -263,8 +263,8 @@ def _signal_label(average: xr.Dataset, label: str) -> str:
 
 
 def _write_number(ax: Axes, table: xr.Dataset) -> None:
-    """How many episodes and patches have a value at delay 0, above the axes."""
+    """How many events and patches have a value at delay 0, above the axes."""
     here = table.sel(delay=0).isel(layer=0)
     count, patches = int(here["n"]), int(here["n_patches"])
-    words = f"{count} episode{'' if count == 1 else 's'} in {patches} patch{'' if patches == 1 else 'es'}"
+    words = f"{count} event{'' if count == 1 else 's'} in {patches} patch{'' if patches == 1 else 'es'}"
     ax.set_title(words, loc="right", fontsize=7.0, color="0.3")

@@ -78,12 +78,12 @@ class Correlation:
 
     @cached_property
     def events(self) -> pd.DataFrame | None:
-        """One row an episode of the edge; None unless `with_` is a velocity."""
+        """One row for each event of the edge; None unless `with_` is a velocity."""
         return self._optional("events")
 
     @cached_property
     def event_averages(self) -> pd.DataFrame | None:
-        """One row a kind of episode, layer and delay: the signal around onsets; None as for `events`."""
+        """One row for each kind of event, layer and delay: the signal around onsets; None as for `events`."""
         return self._optional("event_averages")
 
     def _optional(self, name: str) -> pd.DataFrame | None:

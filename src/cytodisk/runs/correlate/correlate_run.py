@@ -21,7 +21,7 @@ from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.correlate.chosen_series import chosen_sectors, chosen_series
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.correlate.correlation_tables import as_table, merged, of_cell, tables_of
-from cytodisk.runs.correlate.event_tables import episode_tables
+from cytodisk.runs.correlate.event_tables import event_tables
 from cytodisk.runs.versions import installed
 from cytodisk.store.correlation_store import Correlation, write_correlation
 from cytodisk.store.study import Study
@@ -154,12 +154,12 @@ def _correlate_cell(
     if with_ in VELOCITIES:
         try:
             edge = chosen_series(study.activity(cell), options.changed(sectors=None))
-            episodes = episode_tables(edge, a, with_, max_lag, options)
+            events = event_tables(edge, a, with_, max_lag, options)
         except ParameterError as error:
             row["no_events_because"] = str(error)
         else:
-            tables |= episodes
-            row |= {f"event_{name}": episodes["events"].attrs[name] for name in ("threshold", "noise")}
+            tables |= events
+            row |= {f"event_{name}": events["events"].attrs[name] for name in ("threshold", "noise")}
     return tables, row
 
 

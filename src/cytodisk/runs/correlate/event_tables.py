@@ -1,4 +1,4 @@
-"""Episodes of the edge of one cell and the signal around them, as tables."""
+"""Events of the edge of one cell and the signal around them, as tables."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from cytodisk.analysis.events import KINDS, edge_events
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 
 
-def episode_tables(
+def event_tables(
     activity: xr.Dataset, signal: xr.DataArray, velocity: str, reach: int, settings: CorrelateParameters
 ) -> dict[str, pd.DataFrame]:
-    """Episodes of protrusion and retraction, and the signal averaged around their onsets.
+    """Events of protrusion and retraction, and the signal averaged around their onsets.
 
     Parameters
     ----------
     activity : Dataset
-        Of one cell of a study, with its whole edge: patches of episodes are those of all sectors.
+        Of one cell of a study, with its whole edge: patches of events are those of all sectors.
     signal : DataArray with dims (time, layer, sector)
         Signal of the same frames; its sectors may be some of them.
     velocity : str
