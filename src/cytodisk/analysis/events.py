@@ -58,21 +58,14 @@ def edge_events(
     Returns
     -------
     DataFrame
-        One row for each event, by onset and sector, with the columns
-
-        * sector; kind, "protrusion" or "retraction";
-        * onset, the frame in which it starts to move; end, the frame in which it has come to rest or turned;
-          peak, the frame of the fastest step. The steps of the event are onset … end - 1;
-        * onset_s, end_s and peak_s, the same in seconds; NaN when unknown;
-        * duration, from onset to end, in seconds or frames;
-        * peak_velocity and mean_velocity, negative in a retraction;
-        * area, won positive, lost negative; NaN when nothing is passed for it;
-        * onset_known and end_known, False at the ends of the movie and beside NaN; complete, both known;
-        * patch, the number of its connected patch: events of one kind in neighbouring sectors that move in
-          the same step.
-
-        Units by column are in attrs `units`; attrs hold threshold, noise, min_frames and the number of
-        sectors.
+        One row for each event, by onset and sector. The columns are sector; kind, "protrusion" or
+        "retraction"; onset, the frame in which it starts to move, end, the frame in which it has come to rest
+        or turned, and peak, the frame of the fastest step (its steps are onset … end - 1); onset_s, end_s and
+        peak_s in seconds, NaN when unknown; duration, in seconds or frames; peak_velocity and mean_velocity,
+        negative in a retraction; area, won positive, lost negative, NaN when nothing is passed for it;
+        onset_known and end_known, False at the ends of the movie and beside NaN; complete, both known;
+        patch, a number for connected events of one kind in neighbouring sectors that move in the same step.
+        attrs hold `units` by column, threshold, noise, min_frames and the number of sectors.
 
     Raises
     ------
