@@ -109,11 +109,13 @@ def test_a_worker_that_is_killed_changes_nothing_in_the_tables(
 def test_a_run_whose_scheduler_was_lost_is_resumed_to_the_same_tables(
     study: Path, quiet: dict[str, bytes], cluster: Any, tmp_path: Path
 ) -> None:
-    scheduler, _ = cluster.scheduler(), cluster.worker()
+    scheduler, worker = cluster.scheduler(), cluster.worker()
     run = {"out": tmp_path / "out", "scheduler": cluster.address, "tell": lambda words: None}
     with pytest.raises(StudyError, match=r"scheduler tcp://.* was lost: what was done is kept.*--resume"):
         run_batch(read_batch(study), **run, progress=after(2, scheduler.kill))
     scheduler.wait(timeout=60)
+    worker.kill()  # it would end the input that it has
+    worker.wait(timeout=60)
     done = len(list((tmp_path / "out" / "rows").glob("[!.]*.json")))
     assert 2 <= done <= IMAGES
     cluster.scheduler(), cluster.worker()
