@@ -208,7 +208,7 @@ def test_a_full_disk_stops_the_run_and_marks_no_input_as_failed(files: Path, tmp
 def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) -> None:
     batch = read_batch(files / "study.toml")
     before = content(quiet)
-    with pytest.raises(StudyError, match="holds a batch: pass --resume to go on, --overwrite to replace it"):
+    with pytest.raises(StudyError, match=r"--resume.*--overwrite"):
         run_batch(batch, quiet)
     changed = replace(batch.inputs[0], parameters=MovieParameters(layers=3, sectors=6))
     with pytest.raises(OtherRunError, match=r"for movie_0: .*remove .*rows/movie_0\.json"):
@@ -219,7 +219,7 @@ def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) ->
         run_batch(batch, files)
     with pytest.raises(StudyError, match="another run is writing there"), alone_in(quiet):
         run_batch(batch, quiet, resume=True)
-    with pytest.raises(ParameterError, match="time_limit must be a number of seconds above 0, got inf"):
+    with pytest.raises(ParameterError, match=r"time_limit.*above 0.*inf"):
         run_batch(batch, quiet, overwrite=True, time_limit=np.inf)
     with pytest.raises(ParameterError, match="must be an address"):
         run_batch(batch, quiet, overwrite=True, scheduler="nonsense")

@@ -131,7 +131,7 @@ def test_a_worker_that_joins_later_is_looked_at_too(tmp_path: Path, monkeypatch:
     workers = watched(client, tmp_path)
     assert workers.threads() == THREADS
     client.workers["tcp://b:1"] = 1
-    with pytest.raises(StudyError, match=r"worker tcp://b:1 has cytodisk 0\.0\.1, and here is"):
+    with pytest.raises(StudyError, match=r"tcp://b:1.*cytodisk 0\.0\.1"):
         workers.threads()
     client.workers = {"tcp://c:1": 1}
     with pytest.raises(StudyError, match="worker tcp://c:1 has no cytodisk: install"):
@@ -156,7 +156,7 @@ def test_without_workers_it_is_said_what_to_start(tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(cluster_workers, "_LOOK_EVERY_S", 0.01)
     client, told = FakeClient(), []
     client.workers = {}
-    with pytest.raises(StudyError, match="no worker for 0 s: start workers with `dask worker tcp://sched"):
+    with pytest.raises(StudyError, match=r"no worker.*`dask worker tcp://sched"):
         watched(client, tmp_path, told, wait_s=0.05).threads()
     assert told == ["waiting for a worker: `dask worker tcp://scheduler:8786` starts one"]
 

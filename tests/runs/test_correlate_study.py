@@ -146,7 +146,7 @@ def test_what_cannot_be_correlated_is_refused(study: cd.Study, call: dict, messa
 
 def test_a_correlation_that_is_not_there_lists_those_that_are(study: cd.Study) -> None:
     correlate_study(study, "edge", max_lag=3, surrogates=0)
-    with pytest.raises(ReadError, match=r"no correlation of edge with nothing: .*edge with vel"):
+    with pytest.raises(ReadError, match=r"edge with nothing.*edge with vel"):
         study.correlation("edge", "nothing")
 
 
@@ -154,7 +154,7 @@ def test_a_study_without_a_signal(tmp_path: Path) -> None:
     truth = movie("bulging", 0, frames=12, radius_px=14, signals=False)
     masks = write_masks(tmp_path / "masks.tif", truth.masks.astype(np.uint8))
     bare = run_movie(open_movie(masks, None, SMALL), tmp_path / "out")
-    with pytest.raises(StudyError, match="has no signal: run cytodisk movie with --signal"):
+    with pytest.raises(StudyError, match=r"no signal.*--signal"):
         correlate_study(bare, "edge")
 
 
@@ -172,7 +172,7 @@ def test_short_cells_have_a_row_with_the_reason(tmp_path: Path) -> None:
     assert cells["status"].tolist() == ["ok", "refused"]
     assert "fewer than min_pairs 10" in cells.loc[1, "reason"]
     assert set(found.windows["cell"]) == {0}
-    with pytest.raises(ParameterError, match=r"no cell of .* can be correlated: max_lag 5 leaves"):
+    with pytest.raises(ParameterError, match=r"no cell.*max_lag 5"):
         correlate_study(study, "edge", max_lag=5, cells=[1])
 
 

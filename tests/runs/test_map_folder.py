@@ -308,7 +308,7 @@ def test_maps_can_be_left_out(whole: cd.Study, written: Path, tmp_path: Path) ->
     study = run_map(inputs, tmp_path / "out", maps=False)
     assert_same_study(whole, study)
     assert not list((tmp_path / "out" / "maps").iterdir())
-    with pytest.raises(ReadError, match=r"cell 3 of .* has no map: it was not kept \(--no-maps\)"):
+    with pytest.raises(ReadError, match=r"cell 3 .*no map.*--no-maps"):
         study.map(3)
 
 

@@ -201,10 +201,10 @@ def test_a_signal_that_does_not_fit_is_refused(write_stack: WriteStack, tmp_path
     masks, _ = write_stack(4)
     other = tmp_path / "other.tif"
     tifffile.imwrite(other, np.zeros((4, 50, 61), dtype=np.uint8), photometric="minisblack")
-    with pytest.raises(SignalError, match=r"has images of \(50, 61\), the masks of \(50, 60\): they must"):
+    with pytest.raises(SignalError, match=r"\(50, 61\).*\(50, 60\)"):
         open_inputs(masks, other, SMALL)
     tifffile.imwrite(other, np.zeros((3, 50, 60), dtype=np.uint8), photometric="minisblack")
-    with pytest.raises(SignalError, match="has 3 frames, the masks 4: pass as many, or a single image"):
+    with pytest.raises(SignalError, match=r"3 frames.*4"):
         open_inputs(masks, other, SMALL)
     tifffile.imwrite(other, np.zeros((50, 60), dtype=np.complex64))
     with pytest.raises(SignalError, match="has dtype complex64: it must be numbers"):

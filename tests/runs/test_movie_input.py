@@ -78,7 +78,7 @@ def test_a_signal_that_is_no_numbers(tmp_path: Path, masks: Path) -> None:
 
 def test_masks_with_time_on_the_last_axis(tmp_path: Path) -> None:
     path = written(tmp_path / "masks.tif", np.moveaxis(MASKS, 0, -1))
-    with pytest.raises(MaskError, match="44 frames of 52 × 6 pixels, which looks like time on the last axis"):
+    with pytest.raises(MaskError, match=r"44 frames of 52 × 6 pixels.*time"):
         open_movie(path, None, SMALL)
 
 
@@ -91,7 +91,7 @@ def test_masks_that_were_saved_as_channels(tmp_path: Path) -> None:
 
 def test_a_single_frame_is_no_movie(tmp_path: Path) -> None:
     path = written(tmp_path / "mask.tif", MASKS[0])
-    with pytest.raises(MaskError, match="hold one frame: a movie has two at least; use cytodisk map"):
+    with pytest.raises(MaskError, match=r"one frame.*cytodisk map"):
         open_movie(path, None, SMALL)
 
 
@@ -103,7 +103,7 @@ def test_masks_with_time_and_channels(tmp_path: Path) -> None:
 
 def test_a_picture_is_no_movie_of_masks(tmp_path: Path) -> None:
     path = written(tmp_path / "picture.tif", COUNTS[:, 0])
-    with pytest.raises(MaskError, match=r"looks like a picture, not a mask or label image: .*threshold it"):
+    with pytest.raises(MaskError, match=r"picture.*threshold"):
         open_movie(path, None, SMALL)
 
 
@@ -226,9 +226,7 @@ def test_parameters_out_of_range(values: dict[str, Any], words: str) -> None:
 
 
 def test_a_depth_needs_a_pixel_size(masks: Path) -> None:
-    with pytest.raises(
-        ParameterError, match="depth_um needs a pixel size: pass it as --pixel-size, or layers"
-    ):
+    with pytest.raises(ParameterError, match=r"depth_um.*pixel size"):
         open_movie(masks, None, SMALL.model_copy(update={"depth_um": 1.0}))
 
 
@@ -239,7 +237,7 @@ def test_frame_intervals_that_differ(tmp_path: Path) -> None:
         path = tmp_path / f"{name}.ome.tif"
         tifffile.imwrite(path, MASKS, metadata=metadata, photometric="minisblack", ome=True)
         paths.append(path)
-    with pytest.raises(SignalError, match=r"frame intervals differ: .*10 s, .*5 s: pass the right one"):
+    with pytest.raises(SignalError, match=r"frame intervals differ.*10 s.*5 s"):
         open_movie(paths[0], paths[1], SMALL)
     given = SMALL.model_copy(update={"frame_interval_s": 10.0})
     assert open_movie(paths[0], paths[1], given).scale.frame_interval_s == 10.0
@@ -347,7 +345,7 @@ def test_names_that_are_not_those_of_the_channels(masks: Path, named: Any, opene
     )
     with pytest.raises(ParameterError, match=words):
         opened(masks, named("a", "b"), given)
-    with pytest.raises(ParameterError, match=r"channels are named .*, but there is no signal: .* --signal"):
+    with pytest.raises(ParameterError, match=r"channels.*no signal"):
         opened(masks, None, given)
 
 

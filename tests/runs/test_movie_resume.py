@@ -121,6 +121,6 @@ def test_a_study_is_replaced_when_asked_for_alone(
 def test_a_folder_with_something_else_is_left_alone(inputs: MovieInputs, tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("years of work")
     for options in ({}, {"resume": True}, {"overwrite": True}):
-        with pytest.raises(StudyError, match="is not empty and holds no study: pass another folder"):
+        with pytest.raises(StudyError, match="not empty and holds no study"):
             run_movie(inputs, tmp_path, **options)
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]

@@ -122,7 +122,7 @@ def test_a_file_of_another_command_is_called_so(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match=words):
         parameters_from({}, tmp_path / "mine.toml", MapParameters)
     (tmp_path / "provenance.json").write_text('{"fingerprint": {}, "run": "movie"}')
-    with pytest.raises(ParameterError, match=r"tension, tracker.*: it is that of cytodisk movie; use that"):
+    with pytest.raises(ParameterError, match=r"tension, tracker.*cytodisk movie"):
         parameters_from({}, tmp_path / "parameters.toml", MapParameters)
     write_parameters(MapParameters(), tmp_path / "parameters.toml")
     (tmp_path / "provenance.json").write_text('{"fingerprint": {}}')
