@@ -43,7 +43,7 @@ for flag in cd.qc_flags(study):
     print(flag.what.upper())
     print(*textwrap.wrap(f"{flag.meaning} {flag.advice}", 88), sep="\n")
     for place in flag.places:
-        print("   frame", place.time, place.note)
+        print("   frame", place.frame, place.note)
 
 # %%
 # The same in a picture: the velocity jumps before and after that frame.
