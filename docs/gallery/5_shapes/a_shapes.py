@@ -23,7 +23,7 @@ masks = [
     for seed, step in enumerate(steps)
 ]
 
-features = cd.shape_features(masks, scale=cd.Scale(0.16))
+features = cd.shape_features(masks, pixel_size_um=0.16)
 shown = ["area", "circularity", "solidity", "aspect_ratio"]
 print(features.loc[::13, shown].round(2))
 print("unit of area:", features.attrs["units"]["area"])
