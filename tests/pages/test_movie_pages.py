@@ -163,7 +163,7 @@ def test_images_may_be_missing(scaled: Study, images: FloatArray, drawn: list[Fi
 
 
 def test_a_long_movie_is_thinned(bare: Study, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pages, "_MOST_ANIMATED", 1)
+    monkeypatch.setattr(pages, "MOST_ANIMATED", 1)
     paths = write_movie_figures(bare, LATE)
     assert _count(paths[-1]) == 1
 

@@ -172,7 +172,7 @@ def test_an_input_that_hangs_or_crashes_has_a_row(tmp_path: Path, monkeypatch: p
     def crash(process: WorkerProcess, task: bytes, time_limit: float | None) -> object:
         if b"crashes" in task:
             tries.append(task)
-            Timer(0.1, os.kill, (process._process.pid, signal.SIGSEGV)).start()
+            Timer(0.1, os.kill, (process.pid, signal.SIGSEGV)).start()
         return answer(process, task, time_limit)
 
     monkeypatch.setattr(WorkerProcess, "answer", crash)
@@ -244,7 +244,7 @@ def test_resumed_it_does_what_failed_is_new_or_has_changed(files: Path, quiet: P
     changed = replace(others[0], masks=files / "labels.tif")
     summary = BatchSummary("out")
     now = replace(batch, inputs=(moved, changed, *others[2:], last, new))
-    assert batch_run._pending(store, now, summary) == [changed, last, new]
+    assert batch_run.pending_inputs(store, now, summary) == [changed, last, new]
     assert summary.remarks == [
         "files changed since they were done, so they are looked at again: movie_1",
         "not in the batch file any more, so not in the tables, though their results stay: movie_2",

@@ -126,7 +126,7 @@ def test_an_error_of_a_workers_system_is_no_loss_of_the_scheduler(tmp_path: Path
 
 
 def test_a_worker_that_joins_later_is_looked_at_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cluster_workers, "_LOOK_EVERY_S", 0.0)
+    monkeypatch.setattr(cluster_workers, "LOOK_EVERY_S", 0.0)
     client = FakeClient({"tcp://b:1": "0.0.1", "tcp://c:1": PackageNotFoundError("cytodisk")})
     workers = watched(client, tmp_path)
     assert workers.threads() == THREADS
@@ -142,8 +142,8 @@ def test_a_worker_that_joins_later_is_looked_at_too(tmp_path: Path, monkeypatch:
 def test_a_worker_that_does_not_answer_is_not_counted_until_it_does(
     answer: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cluster_workers, "_LOOK_EVERY_S", 0.0)
-    monkeypatch.setattr(cluster_workers, "_ANSWER_S", 0.2)
+    monkeypatch.setattr(cluster_workers, "LOOK_EVERY_S", 0.0)
+    monkeypatch.setattr(cluster_workers, "ANSWER_S", 0.2)
     client = FakeClient({"tcp://b:1": answer})
     client.workers["tcp://b:1"] = 5
     workers = watched(client, tmp_path)
@@ -153,7 +153,7 @@ def test_a_worker_that_does_not_answer_is_not_counted_until_it_does(
 
 
 def test_without_workers_it_is_said_what_to_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cluster_workers, "_LOOK_EVERY_S", 0.01)
+    monkeypatch.setattr(cluster_workers, "LOOK_EVERY_S", 0.01)
     client, told = FakeClient(), []
     client.workers = {}
     with pytest.raises(StudyError, match=r"no worker.*`dask worker tcp://sched"):

@@ -72,8 +72,8 @@ def _stop(*_: object, **__: object) -> None:
     "where",
     [
         "cytodisk.runs.movie.movie_run.finish_tables",
-        "cytodisk.runs.movie.movie_tables._finish_track",
-        "cytodisk.runs.movie.movie_tables._add_consistency",
+        "cytodisk.runs.movie.movie_tables.edge_columns",
+        "cytodisk.runs.movie.movie_tables.displacement_between",
         "cytodisk.store.activity_store.CellActivity.close",
         "cytodisk.store.study_folder.merge_tables",
         "cytodisk.store.merging.pq.ParquetWriter",

@@ -34,7 +34,7 @@ def plane(monkeypatch: pytest.MonkeyPatch) -> None:
         return np.asarray(values[:, :2] - values[:, :2].mean(axis=0))
 
     monkeypatch.setattr(complexity, "umap_plane", two_features)
-    monkeypatch.setattr(shape_run, "_CELLS_PER_PART", 3)
+    monkeypatch.setattr(shape_run, "CELLS_PER_PART", 3)
 
 
 @pytest.fixture

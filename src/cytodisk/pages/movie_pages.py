@@ -26,7 +26,7 @@ from cytodisk.store.study import Study
 SignalAt = Callable[[int], FloatArray | None]
 Progress = Callable[[int, int], None]
 
-_MOST_ANIMATED = 60  # frames; more make long files
+MOST_ANIMATED = 60  # frames; more make long files
 _STRIP_FRAMES, _STRIP_COLUMNS = 6, 3
 _MAP_LEFT, _MAP_WIDTH, _VELOCITY, _MAP, _MAP_GAP = 15.0, 145.0, 34.0, 25.0, 5.5  # mm
 _TALLEST = 1.3  # height of a panel of the strip over its width
@@ -80,7 +80,7 @@ def write_movie_figures(
     if not movie.mapped:
         return []
     pages = _pages(movie, signal)
-    times = _evenly(movie.mapped, _MOST_ANIMATED) if animation else []
+    times = _evenly(movie.mapped, MOST_ANIMATED) if animation else []
     report = progress or (lambda done, whole: None)
     whole, paths = len(pages) + len(times), []
     for done, (what, draw) in enumerate(pages):

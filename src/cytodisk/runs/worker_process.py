@@ -73,6 +73,11 @@ class WorkerProcess:
         )
 
     @property
+    def pid(self) -> int:
+        """Its number in the system."""
+        return self._process.pid
+
+    @property
     def alive(self) -> bool:
         """Whether it can be given a task."""
         return self._process.poll() is None and not self.timed_out

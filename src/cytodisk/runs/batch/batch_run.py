@@ -123,7 +123,7 @@ def run_batch(
         summary = BatchSummary(target)
         pending = list(batch.inputs)
         if resume:
-            pending = _pending(store, batch, summary)
+            pending = pending_inputs(store, batch, summary)
             remove_left_overs(store)
         note(store, provenance)
         if scheduler is None:
@@ -181,7 +181,7 @@ def _reach(scheduler: str) -> None:
         return
 
 
-def _pending(store: Store, batch: Batch, summary: BatchSummary) -> list[BatchInput]:
+def pending_inputs(store: Store, batch: Batch, summary: BatchSummary) -> list[BatchInput]:
     """Inputs that are still to be done; what was done must be what the batch file says now."""
     pending, changed, others = [], [], []
     for item in batch.inputs:

@@ -14,8 +14,8 @@ from cytodisk.runs.batch.batch_target import what_is_hidden
 Tell: TypeAlias = Callable[[str], None]
 """Called with a message for the user."""
 
-_LOOK_EVERY_S = 2.0
-_ANSWER_S = 15.0
+LOOK_EVERY_S = 2.0
+ANSWER_S = 15.0
 _ROUNDING = ("numpy", "scipy", "numba", "qdldl")  # another version may round the last bit otherwise
 
 
@@ -41,7 +41,7 @@ class Workers:
         self._wait_s = wait_s
         self._shared = shared
         self._fitting: dict[str, int] = {}
-        self._looked = -_LOOK_EVERY_S
+        self._looked = -LOOK_EVERY_S
 
     def threads(self) -> int:
         """Threads of all workers; waits until there is one.
@@ -51,7 +51,7 @@ class Workers:
         StudyError
             None comes, or one does not fit.
         """
-        if time.monotonic() - self._looked >= _LOOK_EVERY_S or not self._fitting:
+        if time.monotonic() - self._looked >= LOOK_EVERY_S or not self._fitting:
             self._look()
         return sum(self._fitting.values())
 
@@ -77,7 +77,7 @@ class Workers:
             if not told:
                 self._tell(f"waiting for a worker: `dask worker {self.address}` starts one")
             told = True
-            time.sleep(_LOOK_EVERY_S / 4)
+            time.sleep(LOOK_EVERY_S / 4)
         self._looked = time.monotonic()
 
     def _find(self) -> bool:
@@ -130,7 +130,7 @@ class Workers:
     async def _answer(self, worker: str, question: Any, about: tuple[str, ...]) -> dict[str, Any]:
         """The answer of one worker; each is waited for by itself, since one that hangs would hold up all."""
         try:
-            async with asyncio.timeout(_ANSWER_S):
+            async with asyncio.timeout(ANSWER_S):
                 return dict(await self._client.run(question, *about, workers=[worker], on_error="return"))
         except TimeoutError as error:
             return {worker: error}

@@ -28,7 +28,7 @@ from cytodisk.runs.steps import Progress, check_options, finish_run, silent
 from cytodisk.runs.versions import installed
 from cytodisk.store.study_folder import MAPS, PARAMETERS, StudyFolder, alone_in, part_key
 
-_CELLS_PER_PART = 32  # which go to a worker and into a file together: about a second's work
+CELLS_PER_PART = 32  # which go to a worker and into a file together: about a second's work
 _LAYOUT = (
     "umap-learn",
     "scikit-learn",
@@ -149,7 +149,7 @@ def _measure_all(
 def _parts(cells: Iterable[SourceCell]) -> Iterator[list[SourceCell]]:
     """A few cells at a time: always the same ones, so that a stopped run can go on."""
     rest = iter(cells)
-    while part := list(islice(rest, _CELLS_PER_PART)):
+    while part := list(islice(rest, CELLS_PER_PART)):
         yield part
 
 
