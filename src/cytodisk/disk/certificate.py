@@ -31,6 +31,13 @@ class Certificate:
         Signs that floating point left in doubt and rational arithmetic decided.
     euler_characteristic : int
         1 for a topological disk.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> proof = cd.map_to_disk(cd.simulate.disk(10)).certificate
+    >>> proof.valid, proof.faults, proof.flipped_in_disk
+    (True, (), ())
     """
 
     faults: tuple[str, ...]

@@ -65,6 +65,16 @@ class DiskMap:
         False when Newton's method stopped before its criterion; the map is valid all the same.
     scale : Scale
         Scale of the image: µm per pixel, and in a movie seconds per frame, where they are known.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> disk = cd.map_to_disk(cd.simulate.star(arms=3, body_radius=12, arm_length=20))
+    >>> there = disk.to_disk([[40.0, 30.0]])  # (u, v) of a point of the cell, (row, column)
+    >>> disk.to_cell(there).round(6)
+    array([[40., 30.]])
+    >>> disk.distortion.area < 0.1  # mean |ln λ| of the areas
+    True
     """
 
     vertices_yx: FloatArray

@@ -34,6 +34,17 @@ class MaskReport:
     border_share : float
         Share of the cell's pixel edges that lie on the image border, 0 to 1; above 0 the cell may go
         on outside the image.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> mask = cd.simulate.disk(20)
+    >>> mask[20:25, 20:25] = False
+    >>> _, report = cd.clean_mask(mask)
+    >>> report.holes, report.filled_px
+    (1, 25)
+    >>> report.notes
+    ('1 hole filled (25 px, 2.0%)',)
     """
 
     area_px: int

@@ -65,6 +65,14 @@ class DiskMovie(Sequence[DiskMap]):
         µm per pixel and seconds per frame; where unknown, results are in px and frames.
     load : callable
         Gives the map of a frame that has one.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> movie = cd.map_movie(cd.simulate.movie("growing", frames=3, radius_px=12.0).masks)
+    >>> movie.status, movie[2].certificate.valid
+    (['ok', 'ok', 'ok'], True)
+    >>> same_place = [disk.to_cell([[0.5, 0.0]]) for disk in movie]  # a point of the disk in every frame
     """
 
     records: tuple[FrameRecord, ...]

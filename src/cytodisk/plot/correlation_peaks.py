@@ -37,6 +37,15 @@ class PeakMap:
         Where q is below `alpha`; None when it was not tested.
     lag_unit : LagUnit
     alpha : float
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> signal, velocity = cd.simulate.independent_series("ar1", 0, 60, 3, 8)
+    >>> peaks = cd.peak_correlation(cd.cross_correlate(signal, velocity, max_lag=5))
+    >>> table = peaks.to_dataframe().reset_index().assign(cell=0)
+    >>> cd.plot.PeakMap.of(table, cd.polar_windows(layers=3, sectors=8)).correlation.shape
+    (3, 8)
     """
 
     correlation: FloatArray

@@ -46,6 +46,13 @@ class SimulatedMovie:
     lag_frames : int
         By how many frames channel "edge" follows the edge's velocity, where it does.
     pixel_size_um, frame_interval_s : float
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=3, radius_px=12.0)
+    >>> truth.kind, truth.masks.shape[0], truth.boundary_yx.shape[2]
+    ('growing', 3, 2)
     """
 
     masks: BoolArray

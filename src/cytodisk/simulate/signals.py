@@ -132,6 +132,13 @@ class SimulatedCell:
         What a camera would count, with Poisson noise; attrs `pixel_size_um` and `frame_interval_s`.
     truth : DataArray with dims (channel, y, x) and dtype float
         The expected counts: the signal without noise.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> cell = cd.simulate.cell_with_signal(0)
+    >>> cell.mask.shape == cell.signal.shape[1:]
+    True
     """
 
     mask: BoolArray

@@ -27,6 +27,20 @@ class CellWindows(WindowsOnCell):
     ----------
     grid : PolarGrid
     disk : DiskMap
+
+    See Also
+    --------
+    EdgeWindows : Windows by distance from the edge.
+    RingWindows : Rings and wedges.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> windows = cd.polar_windows(layers=3, sectors=8).on(cd.map_to_disk(cd.simulate.disk(12)))
+    >>> windows.areas.shape, windows.n_empty
+    ((3, 8), 0)
+    >>> len(windows.geojson()["features"])
+    24
     """
 
     grid: PolarGrid

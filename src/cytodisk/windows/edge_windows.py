@@ -41,6 +41,17 @@ class EdgeGrid:
     ------
     WindowError
         A count is not a positive whole number, or the depth is not above 0.
+
+    See Also
+    --------
+    edge_windows : The same in one step.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> windows = cd.EdgeGrid(layers=2, sectors=8, depth_px=5.0).on(cd.simulate.disk(20))
+    >>> windows.layers, windows.sectors
+    (2, 8)
     """
 
     layers: int
@@ -158,6 +169,17 @@ class EdgeWindows(WindowsOnCell):
     ----------
     grid : EdgeGrid
     edge : CellEdge
+
+    See Also
+    --------
+    CellWindows : Windows of a map, none of them empty.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> windows = cd.edge_windows(cd.simulate.disk(20), layers=4, sectors=8, depth_px=8)
+    >>> windows.n_empty  # the cell is not deep enough for the innermost layer
+    8
     """
 
     grid: EdgeGrid

@@ -32,6 +32,17 @@ class RingGrid:
     ------
     WindowError
         A count is not a positive whole number.
+
+    See Also
+    --------
+    ring_windows : The same in one step.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> windows = cd.RingGrid(layers=3, sectors=8).on(cd.simulate.disk(20))
+    >>> windows.layers, windows.sectors
+    (3, 8)
     """
 
     layers: int
@@ -65,6 +76,17 @@ class RingWindows(WindowsOnCell):
     ----------
     grid : RingGrid
     edge : CellEdge
+
+    See Also
+    --------
+    CellWindows : Windows of a map, of equal area.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> windows = cd.ring_windows(cd.simulate.disk(20), layers=3, sectors=8)
+    >>> windows.areas.shape
+    (3, 8)
     """
 
     grid: RingGrid
