@@ -34,7 +34,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
 def write_page(app: Sphinx, _config: Any) -> None:
     lines = [*heading("Parameters", "="), WORDS, ""]
     for command, model in MODELS.items():
-        lines += [*heading(command, "-"), *model_table(model)]
+        lines += [*heading(f"``{command}``", "-"), *model_table(model)]
     write(Path(app.srcdir) / "reference" / "parameters.rst", lines)
 
 
