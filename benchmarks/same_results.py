@@ -30,7 +30,7 @@ import zarr
 
 from differences import compare_pictures, difference
 from make_results import Amount, make_results
-from revisions import package_of
+from revisions import files_of
 
 HERE = Path(__file__).parent
 # Columns and arrays, as they were and as they are.
@@ -200,8 +200,8 @@ def _present_file(file: str) -> str:
 
 def _present_name(name: str, new: Mapping[str, Any]) -> str:
     """The name that a column or array has now; places in a store and units keep what stands before."""
-    start = re.match(r"(unit of |.*/)?", name).end()
-    renamed = name[:start] + RENAMED.get(name[start:], name[start:])
+    last = re.split(r"unit of |/", name)[-1]
+    renamed = name.removesuffix(last) + RENAMED.get(last, last)
     return renamed if name not in new else name
 
 
@@ -220,13 +220,14 @@ def main() -> int:
     chosen = parser.parse_args()
     amount = Amount(chosen.cells, frames=chosen.frames or None)
     if chosen.run:
-        make_results(*chosen.run, chosen.data, amount)
+        source, out = chosen.run
+        make_results(source, out, chosen.data, amount)
         return 0
     if chosen.compare:
         with tempfile.TemporaryDirectory() as name:
             folders = [Path(name) / f"results_{side}" for side in ("old", "new")]
             for revision, out in zip(chosen.compare, folders, strict=True):
-                make_results(package_of(revision, out.with_suffix(".source")), out, chosen.data, amount)
+                make_results(files_of(revision, out.with_suffix(".files")) / "src", out, chosen.data, amount)
             return int(not report(*compare_folders(*folders)))
     if len(chosen.results) != 2:
         parser.error("give two folders of results, or --run, or --compare")

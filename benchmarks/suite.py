@@ -8,21 +8,26 @@ of several and of whole commands by the clock, so other work on the machine shou
 stands the ratio to a factorisation that is the same everywhere. A full run takes less than ten minutes on two
 cores. Ends with status 1 if a yardstick is not met or a block could not be measured.
 
-The comparison runs the same blocks, as they are now, with the package of two revisions in turns (old, new,
-old, new …) and prints the medians, their ratio, and the range of the ratio over rounds. "." stands for the
-files as they are. What a revision cannot do is said to be missing.
+The comparison runs the blocks of two revisions in turns (old, new, old, new …), each with its own files of
+this folder, which know where its package has what. It prints medians, their ratio, the range of the ratio over
+rounds, and the peak memory of each block's largest process; "WORSE" stands where a time, memory or rate is
+worse by more than 5 % in every round, and ends it with status 1. By default it runs the blocks of time and
+memory but the exponents. "." stands for the files as they are. What a revision cannot do is said to be missing.
 """
 
 import argparse
 import json
 import os
+import signal
 import subprocess
 import sys
+import tempfile
+import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import suite_checks
 import suite_costs
@@ -49,6 +54,7 @@ BLOCKS: dict[str, Callable[[Path], Iterator[Figure]]] = {
         suite_checks.false_positives,
     )
 }
+COMPARED = ("map_time", "frame_time", "doubling", "movie", "demo", "cells", "batch")
 
 
 def measure_here(name: str, data: Path) -> dict[str, Any]:
@@ -62,15 +68,16 @@ def measure_here(name: str, data: Path) -> dict[str, Any]:
     return {"figures": figures, "package": cytodisk.__file__}
 
 
-def measure(name: str, data: Path, source: Path | None = None) -> tuple[list[Figure], str]:
+def measure(name: str, data: Path, root: Path | None = None) -> tuple[list[Figure], str]:
     """Figures of a block from a process of its own; if there are none, why.
 
     Parameters
     ----------
     name : str
     data : Path
-    source : Path, optional
-        Folder that holds the package `cytodisk` to be measured; by default the installed one.
+    root : Path, optional
+        Folder that holds `src` and `benchmarks` of the revision to be measured, whose memory is a figure, too;
+        by default the installed package is measured by this file.
 
     Returns
     -------
@@ -79,19 +86,44 @@ def measure(name: str, data: Path, source: Path | None = None) -> tuple[list[Fig
         Empty if the block was measured.
     """
     environment = os.environ | dict.fromkeys(THREADS, "1")
-    if source is not None:
-        environment["PYTHONPATH"] = str(source)
-    command = [sys.executable, __file__, "--block", name, "--data", str(data)]
-    try:
-        run = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=BLOCK_LIMIT_S)
-    except subprocess.TimeoutExpired:
-        return [], f"took more than {BLOCK_LIMIT_S:.0f} s"
+    script = Path(__file__)
+    if root is not None:
+        environment["PYTHONPATH"] = str(root / "src")
+        script = root / "benchmarks" / "suite.py"
+    command = [sys.executable, str(script), "--block", name, "--data", str(data)]
+    run, peak_mb = run_watched(command, environment)
     if run.returncode:
         return [], (run.stderr.strip() or f"ended with {run.returncode}").splitlines()[-1]
     found = json.loads(run.stdout.splitlines()[-1])
-    if source is not None and not Path(found["package"]).is_relative_to(source):
-        raise SystemExit(f"{found['package']} was measured, not the package in {source}")
-    return [Figure(**figure) for figure in found.get("figures", [])], found.get("missing", "")
+    if root is not None and not Path(found["package"]).is_relative_to(root):
+        raise SystemExit(f"{found['package']} was measured, not the package in {root}")
+    figures = [Figure(**figure) for figure in found.get("figures", [])]
+    if root is not None and figures:
+        figures.append(Figure(f"block {name}: peak memory of its largest process", peak_mb, "MB"))
+    return figures, found.get("missing", "")
+
+
+def run_watched(
+    command: Sequence[str], environment: Mapping[str, str]
+) -> tuple[subprocess.CompletedProcess[str], float]:
+    """Run a command, not longer than a block may take; its peak memory in MB, or its largest child's."""
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as errors:
+        process = subprocess.Popen(command, env=environment, stdout=out, stderr=errors, text=True)
+        stop = threading.Timer(BLOCK_LIMIT_S, process.kill)
+        stop.start()
+        _, status, usage = os.wait4(process.pid, 0)
+        stop.cancel()
+        process.returncode = os.waitstatus_to_exitcode(status)
+        said = [_read_all(stream) for stream in (out, errors)]
+    if process.returncode == -signal.SIGKILL:
+        said[1] = f"killed, after {BLOCK_LIMIT_S:.0f} s or for want of memory"
+    done = subprocess.CompletedProcess(command, process.returncode, *said)
+    return done, usage.ru_maxrss / 1024.0
+
+
+def _read_all(stream: IO[str]) -> str:
+    stream.seek(0)
+    return stream.read()
 
 
 def with_progress(names: Sequence[str], work: Callable[[str], Any]) -> dict[str, Any]:
@@ -145,7 +177,7 @@ def main() -> int:
     parser.add_argument("--only", nargs="+", choices=tuple(BLOCKS), metavar="BLOCK", help=", ".join(BLOCKS))
     parser.add_argument("--json", type=Path, help="write the figures to this file, too")
     parser.add_argument("--compare", nargs=2, metavar=("OLD", "NEW"), help="revisions to measure in turns")
-    parser.add_argument("--rounds", type=int, default=3, help="of a comparison (default 3)")
+    parser.add_argument("--rounds", type=int, default=7, help="of a comparison (default 7)")
     parser.add_argument("--block", choices=tuple(BLOCKS), help="measure one block here and print JSON")
     chosen = parser.parse_args()
     if chosen.block:
@@ -153,13 +185,13 @@ def main() -> int:
         return 0
     if not chosen.data.is_dir():
         print(f"{chosen.data} does not exist, so no figures on real data: set CYTODISK_DATA or pass --data")
-    names = chosen.only or list(BLOCKS)
+    names = chosen.only or list(COMPARED if chosen.compare else BLOCKS)
     if chosen.compare:
         from revisions import compare
 
         rows = compare(chosen.compare, names, chosen.data, chosen.rounds)
         print_table(rows)
-        return 0
+        return int(any(row[-1] == "WORSE" for row in rows))
     found = with_progress(names, lambda name: measure(name, chosen.data))
     print_table(table_of(found))
     if chosen.json:

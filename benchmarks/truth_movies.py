@@ -40,9 +40,9 @@ from cytodisk.motion.demons_parameters import DemonsParameters
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.edge import sector_of
 from cytodisk.motion.map_movie import map_movie
-from cytodisk.motion.matching import SMOOTHNESS_PX2, carry, first_guess, match
+from cytodisk.motion.matching import carry, first_guess, match
 from cytodisk.motion.tracking import TrackedBoundary, follow
-from cytodisk.motion.tracking_parameters import Tracker, TrackingSettings
+from cytodisk.motion.tracking_parameters import SMOOTHNESS_PX2, Tracker, TrackingSettings
 from cytodisk.motion.velocity import edge_velocity
 from cytodisk.simulate import MOVIE_KINDS, SimulatedMovie
 from cytodisk.simulate.movie_kinds import MovieKind

@@ -1,5 +1,6 @@
 """What the benchmarks say follows from their numbers, and what they time is there."""
 
+import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -105,9 +106,40 @@ def test_a_comparison_tells_ratios_and_what_is_missing(load: Any) -> None:
     assert revisions.change_in_words([], after)[0] == "missing"
 
 
+@pytest.mark.parametrize(
+    ("unit", "before", "after", "words"),
+    [
+        ("s", (1.0, 2.0), (1.2, 2.2), "WORSE"),
+        ("s", (1.0, 2.0), (1.2, 2.0), ""),
+        ("MB", (100.0, 100.0), (90.0, 80.0), "better"),
+        ("cells/s", (10.0, 10.0), (9.0, 8.0), "WORSE"),
+        ("", (1.0, 1.0), (2.0, 2.0), ""),
+        ("s", (), (1.0,), ""),
+    ],
+)
+def test_worse_is_what_is_worse_in_every_round(
+    load: Any, unit: str, before: tuple[float, ...], after: tuple[float, ...], words: str
+) -> None:
+    figure = load("figure").Figure
+    sides = [[figure("what", value, unit) for value in values] for values in (before, after)]
+    assert load("revisions").verdict(*sides) == words
+
+
+def test_a_command_is_watched_for_its_memory(load: Any) -> None:
+    suite = load("suite")
+    run, peak_mb = suite.run_watched([sys.executable, "-c", "print(len(bytes(60_000_000)))"], os.environ)
+    assert (run.returncode, run.stdout) == (0, "60000000\n")
+    assert 60.0 < peak_mb < 1000.0
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in (ROOT / "benchmarks").glob("*.py")))
+def test_every_benchmark_finds_what_it_imports(load: Any, name: str) -> None:
+    assert vars(load(name))["__doc__"]
+
+
 def test_the_older_package_is_that_of_its_revision(load: Any, tmp_path: Path) -> None:
     with pytest.raises(SystemExit, match="no-such-revision"):
-        load("revisions").package_of("no-such-revision", tmp_path)
+        load("revisions").files_of("no-such-revision", tmp_path)
 
 
 @pytest.mark.parametrize("page", ["where_time_goes", "scaling"])
