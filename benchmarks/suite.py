@@ -9,10 +9,11 @@ stands the ratio to a factorisation that is the same everywhere. A full run take
 cores. Ends with status 1 if a yardstick is not met or a block could not be measured.
 
 The comparison runs the blocks of two revisions in turns (old, new, old, new …), each with its own files of
-this folder, which know where its package has what. It prints medians, their ratio, the range of the ratio over
-rounds, and the peak memory of each block's largest process; "WORSE" stands where a time, memory or rate is
-worse by more than 5 % in every round, and ends it with status 1. By default it runs the blocks of time and
-memory but the exponents. "." stands for the files as they are. What a revision cannot do is said to be missing.
+this folder, which know where its package has what. It prints medians, their ratio, the range of the ratio
+over rounds, and the peak memory of each block's largest process; "WORSE" stands where a time, memory or rate
+is worse by more than 5 % in every round, and ends it with status 1. By default it runs the blocks of time and
+memory but the exponents. "." stands for the files as they are. What a revision cannot do is said to be
+missing.
 """
 
 import argparse
@@ -76,8 +77,8 @@ def measure(name: str, data: Path, root: Path | None = None) -> tuple[list[Figur
     name : str
     data : Path
     root : Path, optional
-        Folder that holds `src` and `benchmarks` of the revision to be measured, whose memory is a figure, too;
-        by default the installed package is measured by this file.
+        Folder that holds `src` and `benchmarks` of the revision to be measured, whose memory is a figure,
+        too; by default the installed package is measured by this file.
 
     Returns
     -------
