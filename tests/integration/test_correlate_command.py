@@ -39,9 +39,7 @@ def test_a_signal_with_velocity(run: Run, study: Path) -> None:
         "correlate", study, "--signal", "edge", "--with", "velocity", *FEW, "--format", "svg,pdf"
     )
     assert code == 0
-    assert (
-        "signal 'edge' with velocity, lags to 8 frames: at a positive lag velocity follows the signal" in said
-    )
+    assert "Positive lag: the edge moves after the signal" in said
     assert "layer  0  +0." in said
     assert "at lag +3, q = " in said
     found = cd.open_study(study).correlation("edge", "velocity")

@@ -21,8 +21,8 @@ Format = Literal["png", "pdf", "svg"]
 
 CORRELATE_HELP = """Correlate a signal with the motion of the edge, or with another signal, window by window.
 
-STUDY is the folder of a movie, as cytodisk movie writes it. At a positive lag what comes second (--with)
-follows the signal. Tables and figures go to STUDY/correlation/SIGNAL~WITH.
+STUDY is the folder that cytodisk movie wrote. Positive lag: the edge moves after the signal. Tables and
+figures go to STUDY/correlation/SIGNAL~WITH.
 
 Examples:
 

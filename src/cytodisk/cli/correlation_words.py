@@ -16,8 +16,8 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
     """Peaks by layer, and how many windows are significant."""
     settings = found.settings
     console.print(
-        f"signal {found.signal!r} with {found.with_}, lags to {settings['max_lag']} frames: "
-        f"at a positive lag {found.with_} follows the signal, at a negative one it comes first"
+        f"signal {found.signal!r} with {found.with_}, lags to {settings['max_lag']} frames. "
+        f"Positive lag: {_what_comes(found.with_)} after the signal; negative lag: before it"
     )
     layers, windows = found.layers, found.windows
     for cell, rows in layers.groupby("cell"):
@@ -30,6 +30,12 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
             console.print(f"cell {row['cell']}{words}")
     _say_power(console, found.cells, windows)
     console.print(f"{count(layers['cell'].nunique())} correlated: {found.path}")
+
+
+def _what_comes(with_: str) -> str:
+    from cytodisk.runs.channel_names import VELOCITIES
+
+    return "the edge moves" if with_ in VELOCITIES else f"{with_} comes"
 
 
 def say_replaced(console: "Console", before: dict[str, Any] | None, now: dict[str, Any]) -> None:

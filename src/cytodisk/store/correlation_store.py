@@ -33,7 +33,7 @@ class Correlation:
     path : Path
         Its folder.
     signal, with_ : str
-        What was correlated: at a positive lag `with_` follows `signal`.
+        What was correlated. Positive lag: `with_` comes after `signal`.
     name : str
         Name of a variant; empty for none.
     settings : dict
