@@ -27,7 +27,7 @@ import cytodisk as cd
 from cytodisk.plot.style import PAPER
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 from pages import PAGES, machine_words, write_words
 from reference_masks import data_folder
 from speed import restart_with_one_thread
@@ -152,7 +152,7 @@ def profile_movie(data: Path) -> Profile:
     inputs = open_movie(masks, signal, MovieParameters(layers=10, sectors=60))
     clock = StageClock(FRAME_STAGES)
     with tempfile.TemporaryDirectory() as out, clock.watching():
-        study = run_movie(inputs, Path(out) / "study", progress=lambda done, total: clock.lap())
+        study = movie_study(inputs, Path(out) / "study", progress=lambda done, total: clock.lap())
         steps = float(study.cells["steps"].median())
     del clock.laps[:_FIRST_LAPS]
     return Profile("melanoma", clock, steps)

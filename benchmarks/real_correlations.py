@@ -16,7 +16,7 @@ import pandas as pd
 from cytodisk.runs.correlate.correlate_run import channels_of, correlate_study
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.study import Study, open_study
 
@@ -31,7 +31,7 @@ def study_of(folder: Path, signal: str, interval: float | None, out: Path, worke
     if (out / "provenance.json").exists():
         return open_study(out)
     inputs = open_movie(folder / "mask.tif", folder / signal, MovieParameters(frame_interval_s=interval))
-    return run_movie(inputs, out, workers=workers)
+    return movie_study(inputs, out, workers=workers)
 
 
 def show(name: str, found: Correlation) -> None:

@@ -15,10 +15,10 @@ from cytodisk.arrays import BoolArray
 from cytodisk.motion.mapped_frame import MovieSettings, map_frame
 from cytodisk.runs.map.map_inputs import open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
-from cytodisk.runs.map.map_run import run_map
+from cytodisk.runs.map.map_run import map_study
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 from scale import write_folder
 
 _REPEAT_BELOW_S = 0.3
@@ -135,7 +135,7 @@ def movie(frames: int) -> dict[str, float]:
 
 
 def _run_movie(files: tuple[Path, Path], out: Path, workers: int) -> None:
-    run_movie(open_movie(*files, MovieParameters()), out, workers=workers, overwrite=True)
+    movie_study(open_movie(*files, MovieParameters()), out, workers=workers, overwrite=True)
 
 
 def cells(number: int) -> dict[str, float]:
@@ -154,7 +154,7 @@ def _write_cells(folder: Path, cells: int) -> Path:
 
 
 def _run_map(images: Path, out: Path, workers: int) -> None:
-    run_map(open_inputs(images, "_img", MapParameters(layers=12)), out, workers=workers, overwrite=True)
+    map_study(open_inputs(images, "_img", MapParameters(layers=12)), out, workers=workers, overwrite=True)
 
 
 def movie_workers(workers: int) -> dict[str, float]:

@@ -8,9 +8,9 @@ import pandas as pd
 
 from cytodisk.pages.compared_cells import write_compared_cells
 from cytodisk.pages.compared_layers import write_comparison
-from cytodisk.runs.compare_windows.compare_cells import compare_cells
 from cytodisk.runs.compare_windows.compare_parameters import TITLES, CompareWindowsParameters, WindowMethod
 from cytodisk.runs.compare_windows.comparison import Comparison
+from cytodisk.runs.compare_windows.run_compare_windows import run_compare_windows
 from remeasured import shapes
 
 GRIDS: dict[str, tuple[int, int, tuple[WindowMethod, ...]]] = {
@@ -29,7 +29,9 @@ def measure(masks: Path, work: Path, workers: int) -> dict[str, Comparison]:
         print(f"osteosarcoma, {name}: {', '.join(methods)}", flush=True)
         out = work / f"cells_{name}"
         parameters = CompareWindowsParameters(layers=layers, sectors=sectors, methods=methods)
-        found[name] = compare_cells(masks, out, parameters, workers=workers, **shapes.again(out))
+        found[name] = run_compare_windows(
+            masks, out, parameters=parameters, workers=workers, **shapes.again(out)
+        )
     return found
 
 

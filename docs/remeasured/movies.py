@@ -7,9 +7,9 @@ from typing import Any
 import pandas as pd
 
 from cytodisk.pages.compared_movie import write_compared_movie
-from cytodisk.runs.compare_windows.compare_movie import compare_movie
 from cytodisk.runs.compare_windows.compare_parameters import TITLES, CompareMovieParameters
 from cytodisk.runs.compare_windows.comparison import Comparison
+from cytodisk.runs.compare_windows.run_compare_windows import run_compare_windows
 from remeasured import shapes
 from remeasured.cells import percent
 
@@ -36,7 +36,9 @@ def measure(data: Path, work: Path) -> dict[str, Comparison]:
         print(name, flush=True)
         out = work / f"movie_{name}"
         parameters = CompareMovieParameters(layers=LAYERS, sectors=SECTORS, **more)
-        found[name] = compare_movie(data / masks, out, parameters, signal=data / signal, **shapes.again(out))
+        found[name] = run_compare_windows(
+            data / masks, out, parameters=parameters, signal=data / signal, **shapes.again(out)
+        )
     return found
 
 

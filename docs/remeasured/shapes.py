@@ -11,7 +11,7 @@ from scipy.stats import spearmanr
 import cytodisk as cd
 from cytodisk.pages.shape_pages import cells_to_draw, write_shape_figures
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
-from cytodisk.runs.shapes.shape_run import cleaned_masks, open_shape_inputs, run_shapes
+from cytodisk.runs.shapes.shape_run import cleaned_masks, open_shape_inputs, shape_study
 
 QUANTILES = (0.01, 0.3, 0.6, 0.85, 0.99)
 SEEDS = (1, 2, 3, 4, 5)
@@ -21,7 +21,7 @@ def measure(masks: Path, work: Path, workers: int) -> dict[str, Any]:
     """The table of shapes, its folder, and the scores by other seeds."""
     out = work / "shapes"
     inputs = open_shape_inputs(masks, ShapeParameters())
-    table = run_shapes(inputs, out, ShapeParameters(), workers=workers, **again(out))
+    table = shape_study(inputs, out, ShapeParameters(), workers=workers, **again(out))
     write_shape_figures(out / "figures", table, cleaned_masks(inputs, cells_to_draw(table)))
     scores = [cd.complexity_score(table, seed=seed) for seed in SEEDS]
     return {"table": table, "path": out, "scores": scores}

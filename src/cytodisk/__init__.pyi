@@ -67,11 +67,21 @@ from .analysis.shape.features import shape_features as shape_features
 from .analysis.shape.complexity import complexity_score as complexity_score
 
 # Runs: what the commands do
-from .runs.compare_windows.compare_cells import compare_cells as compare_cells
-from .runs.compare_windows.compare_movie import compare_movie as compare_movie
-from .runs.compare_windows.compare_parameters import CompareMovieParameters as CompareMovieParameters
+from .runs.map.run_map import run_map as run_map
+from .runs.movie.run_movie import run_movie as run_movie
+from .runs.shapes.run_shapes import run_shapes as run_shapes
+from .runs.correlate.run_correlate import run_correlate as run_correlate
+from .runs.compare_windows.run_compare_windows import run_compare_windows as run_compare_windows
+from .runs.batch.run_batch import run_batch as run_batch
+from .runs.map.map_parameters import MapParameters as MapParameters
+from .runs.movie.movie_parameters import MovieParameters as MovieParameters
+from .runs.shapes.shape_parameters import ShapeParameters as ShapeParameters
+from .runs.correlate.correlate_parameters import CorrelateParameters as CorrelateParameters
 from .runs.compare_windows.compare_parameters import CompareWindowsParameters as CompareWindowsParameters
-from .runs.correlate.correlate_run import correlate_study as correlate_study
+from .runs.compare_windows.compare_parameters import CompareMovieParameters as CompareMovieParameters
+from .runs.run_options import MapOptions as MapOptions
+from .runs.run_options import RunOptions as RunOptions
+from .runs.run_options import BatchOptions as BatchOptions
 
 # Results of runs
 from .store.study import open_study as open_study

@@ -121,7 +121,7 @@ class Parameters(BaseModel):
         return cls(**values)
 
     @classmethod
-    def chosen(cls, parameters: Self | None, values: Mapping[str, Any]) -> Self:
+    def chosen(cls, parameters: Parameters | None, values: Mapping[str, Any]) -> Self:
         """Given parameters, or the defaults, some of them with other values."""
         if parameters is None:
             return cls.of(**values)

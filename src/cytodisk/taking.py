@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 from pydantic.fields import FieldInfo
@@ -19,8 +19,8 @@ _MARK = re.compile(r"^( *)\*\*settings\n(?:\1 +.*\n)*", re.MULTILINE)
 _WIDTH = 100
 
 
-def takes(model: type[Parameters]) -> Callable[[AnyFunction], AnyFunction]:
-    """Show the fields of a model as keywords of a function that takes `**settings`.
+def takes(*models: type[Parameters]) -> Callable[[AnyFunction], AnyFunction]:
+    """Show the fields of models as keywords of a function that takes `**settings`.
 
     The signature names them with their defaults, and their sentences take the place of the entry
     `**settings` in the docstring's section "Parameters". A function that takes `*in_order` too can be given
@@ -28,8 +28,8 @@ def takes(model: type[Parameters]) -> Callable[[AnyFunction], AnyFunction]:
 
     Parameters
     ----------
-    model : type of Parameters
-        The function makes it from its settings, as `model.of(**settings)`, which checks them.
+    *models : type of Parameters
+        The function makes them from its settings, as `model.of(**settings)`, which checks them.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def takes(model: type[Parameters]) -> Callable[[AnyFunction], AnyFunction]:
         kind = inspect.Parameter.POSITIONAL_OR_KEYWORD if by_order else inspect.Parameter.KEYWORD_ONLY
         fields = [
             inspect.Parameter(name, kind, default=field.get_default(), annotation=field.annotation)
-            for name, field in model.model_fields.items()
+            for name, field in fields_of(models).items()
         ]
         before = [one for one in own if one.kind is inspect.Parameter.POSITIONAL_OR_KEYWORD]
         after = [one for one in own if one.kind is inspect.Parameter.KEYWORD_ONLY]
@@ -52,23 +52,31 @@ def takes(model: type[Parameters]) -> Callable[[AnyFunction], AnyFunction]:
             [*before, *fields, *after], return_annotation=returned
         )
         if function.__doc__:
-            function.__doc__ = _MARK.sub(lambda mark: entries(model, mark[1]), function.__doc__)
+            function.__doc__ = _MARK.sub(lambda mark: entries(models, mark[1]), function.__doc__)
         return function
 
     return show
 
 
-def entries(model: type[Parameters], indent: str = "") -> str:
-    """Fields of a model as entries of a numpydoc section.
+def fields_of(models: Sequence[type[Parameters]]) -> dict[str, FieldInfo]:
+    """The fields of models, by name; of a name that several have, the first model's."""
+    found: dict[str, FieldInfo] = {}
+    for model in models:
+        found |= {name: field for name, field in model.model_fields.items() if name not in found}
+    return found
+
+
+def entries(models: Sequence[type[Parameters]], indent: str = "") -> str:
+    """Fields of models as entries of a numpydoc section.
 
     Parameters
     ----------
-    model : type of Parameters
+    models : sequence of type of Parameters
     indent : str
         Spaces before each line.
     """
     lines = []
-    for name, field in model.model_fields.items():
+    for name, field in fields_of(models).items():
         lines.append(f"{name} : {_type_words(field)}")
         lines += textwrap.wrap(sentence(field), _WIDTH, initial_indent="    ", subsequent_indent="    ")
     return textwrap.indent("\n".join(lines) + "\n", indent)

@@ -15,7 +15,7 @@ from cytodisk.disk import mapping
 from cytodisk.geometry import outline
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 
 ROOT = Path(__file__).parents[2]
 
@@ -40,7 +40,7 @@ def clock(load: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     clock = load("stages").StageClock(load("profile_frame").FRAME_STAGES)
     inputs = open_movie(folder / "masks.tif", folder / "signal.tif", MovieParameters(layers=2, sectors=6))
     with clock.watching():
-        run_movie(inputs, folder / "study", progress=lambda done, total: clock.lap())
+        movie_study(inputs, folder / "study", progress=lambda done, total: clock.lap())
     return clock
 
 

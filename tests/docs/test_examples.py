@@ -13,11 +13,8 @@ import pytest
 import cytodisk as cd
 
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
-SLOW = {"complexity_score"}  # UMAP is compiled
+SLOW = {"complexity_score", "run_batch", "run_correlate"}  # UMAP is compiled, processes are started
 STILL_WITHOUT = (
-    "compare_",
-    "run_",
-    "correlate_study",
     "open_",
     "qc_flags",
     "write_report",

@@ -88,7 +88,7 @@ def test_what_failed_is_said(
     failed = [row("a", "refused", "mask is empty"), row("b", "timed out", "took longer")]
     statuses = Counter({"ok": ok, "refused": 1, "timed out": 30})
     summary = BatchSummary("out", statuses, failed, ["a remark"])
-    monkeypatch.setattr(batch_run, "run_batch", lambda *args, **options: summary)
+    monkeypatch.setattr(batch_run, "batch_study", lambda *args, **options: summary)
     exit_code, said, errors = run("batch", study, "-o", "out")
     assert exit_code == code
     assert said.splitlines()[:4] == [

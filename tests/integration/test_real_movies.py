@@ -10,7 +10,7 @@ import tifffile
 import cytodisk as cd
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 
 GRID = MovieParameters(layers=8, sectors=36)
 STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
@@ -70,7 +70,7 @@ def test_melanoma(data_dir: Path, tmp_path: Path) -> None:
     folder = data_dir / "melanoma_vasp_lpd"
     masks = shortened(folder / "mask.tif", tmp_path / "masks.tif", 6)
     signal = shortened(folder / "signal.ome.tif", tmp_path / "signal.ome.tif", 6, "TCYX")
-    study = run_movie(open_movie(masks, signal, GRID), tmp_path / "out")
+    study = movie_study(open_movie(masks, signal, GRID), tmp_path / "out")
     assert study.cells["status"].tolist() == ["ok"] * 6
     assert_whole(study)
     assert study.consistency.loc[study.consistency["frame"] < 5, "correlation"].median() > 0.8
@@ -81,7 +81,7 @@ def test_dictyostelium(data_dir: Path, tmp_path: Path) -> None:
     masks = shortened(folder / "mask.tif", tmp_path / "masks.tif", 15)
     signal = shortened(folder / "rac1.tif", tmp_path / "rac1.tif", 15)
     given = GRID.model_copy(update={"frame_interval_s": 1.29})
-    study = run_movie(open_movie(masks, signal, given), tmp_path / "out")
+    study = movie_study(open_movie(masks, signal, given), tmp_path / "out")
     assert study.cells["status"].tolist() == ["ok"] * 15
     assert_whole(study)
     assert study.edge.attrs["units"]["velocity"] == "px/s"
@@ -98,7 +98,7 @@ def test_dictyostelium(data_dir: Path, tmp_path: Path) -> None:
 )
 def test_tracked_cells(data_dir: Path, tmp_path: Path, name: str) -> None:
     masks = shortened(data_dir / "tracked_cells" / name, tmp_path / "masks.tif", 10)
-    study = run_movie(open_movie(masks, None, GRID), tmp_path / "out")
+    study = movie_study(open_movie(masks, None, GRID), tmp_path / "out")
     assert len(study.cells) == 10
     assert_whole(study)
 
@@ -106,7 +106,7 @@ def test_tracked_cells(data_dir: Path, tmp_path: Path, name: str) -> None:
 def test_a_field_of_labels(data_dir: Path, tmp_path: Path) -> None:
     source = data_dir / "label_movies" / "PhC-C2DH-U373_01_ST_SEG_labels.tif"
     labels = shortened(source, tmp_path / "labels.tif", 6)
-    study = run_movie(open_movie(labels, None, GRID), tmp_path / "out")
+    study = movie_study(open_movie(labels, None, GRID), tmp_path / "out")
     values = tifffile.imread(labels)
     tracks = sorted(set(np.unique(values)) - {0})
     assert len(tracks) > 1

@@ -30,7 +30,7 @@ def comparison(tmp_path_factory: pytest.TempPathFactory) -> cd.Comparison:
     stack[1] = cd.simulate.dumbbell(14, neck_width=3)
     tifffile.imwrite(folder / "masks.tif", stack, photometric="minisblack", metadata={"axes": "TYX"})
     grid = cd.CompareWindowsParameters(methods=METHODS, layers=3, sectors=8)
-    return cd.compare_cells(folder / "masks.tif", folder / "out", grid)
+    return cd.run_compare_windows(folder / "masks.tif", folder / "out", parameters=grid)
 
 
 def test_every_method_has_a_name_a_colour_and_a_mark_of_its_own() -> None:
@@ -125,11 +125,13 @@ def test_pages_stand_in_the_folder(comparison: cd.Comparison, tmp_path: Path) ->
     names = {"axes": "TCYX", "Channel": {"Name": ["material", "edge"]}}
     tifffile.imwrite(tmp_path / "s.ome.tif", shown.signal.to_numpy(), metadata=names, **options)
     grid = cd.CompareMovieParameters(methods=METHODS, layers=3, sectors=8)
-    movie = cd.compare_movie(tmp_path / "m.tif", tmp_path / "out", grid, signal=tmp_path / "s.ome.tif")
+    movie = cd.run_compare_windows(
+        tmp_path / "m.tif", tmp_path / "out", parameters=grid, signal=tmp_path / "s.ome.tif"
+    )
     first = cd.pages.write_compared_movie(movie, 0, "material")
     second = cd.pages.write_compared_movie(movie, 0, "edge")
     assert (first.name, second.name) == ("movie_cell_00000_material.png", "movie_cell_00000_edge.png")
-    silent = cd.compare_movie(tmp_path / "m.tif", tmp_path / "silent", grid)
+    silent = cd.run_compare_windows(tmp_path / "m.tif", tmp_path / "silent", parameters=grid)
     assert cd.pages.write_compared_movie(silent, 0).name == "movie_cell_00000.png"
     for path in (first, second, comparison.path / "figures" / "cells.png"):
         assert path.read_bytes().startswith(b"\x89PNG")

@@ -18,7 +18,7 @@ from cytodisk.pages.correlation_files import write_correlation_figures
 from cytodisk.runs.correlate.correlate_run import correlate_study
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 from cytodisk.simulate import movie
 from cytodisk.store.correlation_store import Correlation
 
@@ -43,7 +43,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> cd.Study:
     metadata |= {"TimeIncrement": 5.0, "TimeIncrementUnit": "s"}
     values = truth.signal.transpose("time", "channel", "y", "x").to_numpy()[:, :2]
     tifffile.imwrite(signal, values, metadata=metadata, photometric="minisblack", ome=True)
-    return run_movie(open_movie(masks, signal, SMALL), folder / "out")
+    return movie_study(open_movie(masks, signal, SMALL), folder / "out")
 
 
 @pytest.fixture(scope="module")

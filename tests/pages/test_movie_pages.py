@@ -15,7 +15,7 @@ from cytodisk.pages.edge_page import fastest_frame
 from cytodisk.pages.movie_pages import write_movie_figures
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 from cytodisk.store.study import Study
 
 FRAMES, GAP, SHAPE = 8, 3, (50, 150)
@@ -55,7 +55,7 @@ def _study(folder: Path, signal: FloatArray | None, **scale: float) -> Study:
         names = {"Channel": {"Name": ["Rac/1 $a$", "rac 1 $a$"]}}
         tifffile.imwrite(path, signal, metadata={"axes": "TCYX"} | names)
     parameters = MovieParameters(kind="labels", layers=3, sectors=12, repeats=2, **scale)
-    return run_movie(open_movie(folder / "masks.tif", path, parameters), folder / "study")
+    return movie_study(open_movie(folder / "masks.tif", path, parameters), folder / "study")
 
 
 @pytest.fixture(scope="module")

@@ -20,7 +20,7 @@ import cytodisk as cd
 from cytodisk.errors import MaskError, OtherRunError, ParameterError, ReadError, StudyError
 from cytodisk.runs.batch import batch_run, compute_input
 from cytodisk.runs.batch.batch_file import Batch, read_batch
-from cytodisk.runs.batch.batch_run import BatchSummary, run_batch
+from cytodisk.runs.batch.batch_run import BatchSummary, batch_study
 from cytodisk.runs.batch.batch_task import expected_seconds, make_tasks
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.worker_process import WorkerProcess
@@ -84,7 +84,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def quiet(files: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Results of a run by one worker that nothing disturbs."""
     out = tmp_path_factory.mktemp("quiet")
-    run_batch(read_batch(files / "study.toml"), out)
+    batch_study(read_batch(files / "study.toml"), out)
     return out
 
 
@@ -153,7 +153,7 @@ def test_killed_and_resumed_by_two_workers_it_is_the_same_to_the_last_bit(
     assert 1 <= rows_done(out) < 5
     assert not (out / "cells.parquet").exists()
     (out / "rows" / ".movie_0.77.tmp.json").touch()  # as a kill in the middle of writing leaves it
-    summary = run_batch(read_batch(files / "study.toml"), out, workers=2, resume=True)
+    summary = batch_study(read_batch(files / "study.toml"), out, workers=2, resume=True)
     assert not list(out.glob("rows/.*"))
     assert summary.statuses == {"ok": 4, "refused": 1}
     units, qc_flags = summary.remarks
@@ -177,7 +177,7 @@ def test_an_input_that_hangs_or_crashes_has_a_row(tmp_path: Path, monkeypatch: p
 
     monkeypatch.setattr(WorkerProcess, "answer", crash)
     out = tmp_path / "out"
-    summary = run_batch(batch_of(tmp_path, "[[inputs]]\nmasks = '*.tif'\n"), out, time_limit=4)
+    summary = batch_study(batch_of(tmp_path, "[[inputs]]\nmasks = '*.tif'\n"), out, time_limit=4)
     assert summary.statuses == {"crashed": 1, "timed out": 1}
     assert len(tries) == 2
     crashed, hung = summary.failed
@@ -209,29 +209,29 @@ def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) ->
     batch = read_batch(files / "study.toml")
     before = content(quiet)
     with pytest.raises(StudyError, match=r"--resume.*--overwrite"):
-        run_batch(batch, quiet)
+        batch_study(batch, quiet)
     changed = replace(batch.inputs[0], parameters=MovieParameters(layers=3, sectors=6))
     with pytest.raises(OtherRunError, match=r"for movie_0: .*remove .*rows/movie_0\.json"):
-        run_batch(replace(batch, inputs=(changed, *batch.inputs[1:])), quiet, resume=True)
+        batch_study(replace(batch, inputs=(changed, *batch.inputs[1:])), quiet, resume=True)
     with pytest.raises(OtherRunError, match="holds a study of cytodisk movie: pass another folder"):
-        run_batch(batch, quiet / "inputs" / "movie_0", overwrite=True)
+        batch_study(batch, quiet / "inputs" / "movie_0", overwrite=True)
     with pytest.raises(StudyError, match="is not empty and holds no batch"):
-        run_batch(batch, files)
+        batch_study(batch, files)
     with pytest.raises(StudyError, match="another run is writing there"), alone_in(quiet):
-        run_batch(batch, quiet, resume=True)
+        batch_study(batch, quiet, resume=True)
     with pytest.raises(ParameterError, match=r"time_limit.*above 0.*inf"):
-        run_batch(batch, quiet, overwrite=True, time_limit=np.inf)
+        batch_study(batch, quiet, overwrite=True, time_limit=np.inf)
     with pytest.raises(ParameterError, match="must be an address"):
-        run_batch(batch, quiet, overwrite=True, scheduler="nonsense")
+        batch_study(batch, quiet, overwrite=True, scheduler="nonsense")
     with pytest.raises(ParameterError, match="must be an address"):
-        run_batch(batch, quiet / "new", scheduler="nonsense")
+        batch_study(batch, quiet / "new", scheduler="nonsense")
     assert content(quiet) == before
     assert not (quiet / "new").exists()
 
 
 def test_a_batch_goes_to_a_url_without_a_cluster_too(files: Path, tmp_path: Path) -> None:
     batch = read_batch(files / "study.toml")
-    assert run_batch(replace(batch, inputs=batch.inputs[:1]), f"file://{tmp_path}/out").statuses == {"ok": 1}
+    assert batch_study(replace(batch, inputs=batch.inputs[:1]), f"file://{tmp_path}/out").statuses == {"ok": 1}
     assert len(pd.read_parquet(tmp_path / "out" / "cells.parquet")) == 4
     assert (tmp_path / "out" / "inputs" / "movie_0" / "cells.parquet").is_file()
 

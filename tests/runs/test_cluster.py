@@ -13,7 +13,7 @@ import tifffile
 import cytodisk as cd
 from cytodisk.errors import StudyError
 from cytodisk.runs.batch.batch_file import read_batch
-from cytodisk.runs.batch.batch_run import run_batch
+from cytodisk.runs.batch.batch_run import batch_study
 
 pytestmark = pytest.mark.slow
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
@@ -65,7 +65,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def quiet(study: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     """The merged tables of a run by one process that nothing disturbs."""
     out = tmp_path_factory.mktemp("quiet")
-    run_batch(read_batch(study), out)
+    batch_study(read_batch(study), out)
     return merged(out)
 
 
@@ -94,7 +94,7 @@ def test_a_worker_that_is_killed_changes_nothing_in_the_tables(
     cluster.scheduler()
     workers = [cluster.worker(), cluster.worker()]
     cluster.wait_for_workers()
-    summary = run_batch(
+    summary = batch_study(
         read_batch(study),
         f"file://{tmp_path}/out",
         scheduler=cluster.address,
@@ -112,7 +112,7 @@ def test_a_run_whose_scheduler_was_lost_is_resumed_to_the_same_tables(
     scheduler, worker = cluster.scheduler(), cluster.worker()
     run = {"out": tmp_path / "out", "scheduler": cluster.address, "tell": lambda words: None}
     with pytest.raises(StudyError, match=r"scheduler tcp://.* was lost.*--resume"):
-        run_batch(read_batch(study), **run, progress=after(2, scheduler.kill))
+        batch_study(read_batch(study), **run, progress=after(2, scheduler.kill))
     scheduler.wait(timeout=60)
     worker.kill()  # it would end the input that it has
     worker.wait(timeout=60)
@@ -120,7 +120,7 @@ def test_a_run_whose_scheduler_was_lost_is_resumed_to_the_same_tables(
     assert 2 <= done <= IMAGES
     cluster.scheduler(), cluster.worker()
     seen = []
-    run_batch(read_batch(study), **run, resume=True, progress=lambda done, _: seen.append(done))
+    batch_study(read_batch(study), **run, resume=True, progress=lambda done, _: seen.append(done))
     assert seen[0] == done
     assert merged(tmp_path / "out") == quiet
 
@@ -132,5 +132,5 @@ def test_a_worker_of_another_version_is_refused(study: Path, cluster: Any, tmp_p
     cluster.scheduler(), cluster.worker(environment={"PYTHONPATH": str(there.parent)})
     words = rf"worker tcp://127.0.0.1:\d+ has cytodisk 0.0.1, and here is {version('cytodisk')}: install"
     with pytest.raises(StudyError, match=words):
-        run_batch(read_batch(study), tmp_path / "out", scheduler=cluster.address, tell=lambda words: None)
+        batch_study(read_batch(study), tmp_path / "out", scheduler=cluster.address, tell=lambda words: None)
     assert not (tmp_path / "out" / "rows").exists()

@@ -37,7 +37,7 @@ def masks(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def comparison(masks: Path, tmp_path_factory: pytest.TempPathFactory) -> cd.Comparison:
-    return cd.compare_cells(masks, tmp_path_factory.mktemp("comparison") / "out", GRID)
+    return cd.run_compare_windows(masks, tmp_path_factory.mktemp("comparison") / "out", parameters=GRID)
 
 
 def row_of(comparison: cd.Comparison, cell: int, method: str) -> dict[str, Any]:
@@ -125,12 +125,12 @@ def test_a_stopped_run_goes_on(
 
         patched.setattr(module, "compare_cell", stop_at_the_third)
         with pytest.raises(KeyboardInterrupt):
-            cd.compare_cells(masks, tmp_path / "out", GRID)
+            cd.run_compare_windows(masks, tmp_path / "out", parameters=GRID)
     with pytest.raises(ReadError, match=r"not complete.*--resume"):
         cd.open_comparison(tmp_path / "out")
     done: list[tuple[int, int]] = []
-    resumed = cd.compare_cells(
-        masks, tmp_path / "out", GRID, resume=True, progress=lambda *counts: done.append(counts)
+    resumed = cd.run_compare_windows(
+        masks, tmp_path / "out", parameters=GRID, resume=True, progress=lambda *counts: done.append(counts)
     )
     assert done == [(2, 4), (3, 4), (4, 4)]
     for here, there in ((resumed.cells, comparison.cells), (resumed.layers, comparison.layers)):
@@ -139,7 +139,7 @@ def test_a_stopped_run_goes_on(
         )
     monkeypatch.setattr(module, "compare_cell", None)  # a complete comparison is not run again
     (tmp_path / "out" / "comparison.csv").unlink()
-    assert cd.compare_cells(masks, tmp_path / "out", GRID, resume=True).methods == METHODS
+    assert cd.run_compare_windows(masks, tmp_path / "out", parameters=GRID, resume=True).methods == METHODS
     assert (tmp_path / "out" / "comparison.csv").exists()
 
 
@@ -152,7 +152,7 @@ def test_a_cell_that_one_method_cannot_map_has_a_row_with_the_reason(
         return cd.map_to_disk(mask, **options)
 
     monkeypatch.setattr(module, "map_to_disk", fail_on_dumbbells)
-    found = cd.compare_cells(masks, tmp_path / "out", GRID)
+    found = cd.run_compare_windows(masks, tmp_path / "out", parameters=GRID)
     lost = found.cells[found.cells["status"] == "no map"]
     assert list(zip(lost["cell"], lost["method"], strict=True)) == [(1, "harmonic")]
     assert lost["reason"].item() == "no valid map was found: for the test"
@@ -169,7 +169,7 @@ def test_a_cell_that_one_method_cannot_map_has_a_row_with_the_reason(
 def test_another_grid_is_another_run(comparison: cd.Comparison, masks: Path) -> None:
     other = GRID.model_copy(update={"layers": 5})
     with pytest.raises(StudyError, match="layers: 4 then, 5 now"):
-        cd.compare_cells(masks, comparison.path, other, resume=True)
+        cd.run_compare_windows(masks, comparison.path, parameters=other, resume=True)
 
 
 def test_folders_and_label_images_are_compared_too(tmp_path: Path) -> None:
@@ -182,7 +182,7 @@ def test_folders_and_label_images_are_compared_too(tmp_path: Path) -> None:
     tifffile.imwrite(folder / "a_masks.tif", labels)
     (folder / "b_masks.tif").write_bytes(b"no image")
     grid = cd.CompareWindowsParameters(methods=("edge",), layers=2, sectors=6, depth_px=3.0)
-    found = cd.compare_cells(folder, tmp_path / "out", grid).cells
+    found = cd.run_compare_windows(folder, tmp_path / "out", parameters=grid).cells
     assert list(found["label"]) == [4, 5, 0]
     assert list(found["status"]) == ["ok", "ok", "unreadable"]
     assert found["coverage"].iloc[0] == pytest.approx(1 - 0.4**2, abs=0.03)

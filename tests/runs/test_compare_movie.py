@@ -33,7 +33,9 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 @pytest.fixture(scope="module")
 def comparison(files: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> cd.Comparison:
     masks, signal = files
-    return cd.compare_movie(masks, tmp_path_factory.mktemp("comparison") / "out", GRID, signal=signal)
+    return cd.run_compare_windows(
+        masks, tmp_path_factory.mktemp("comparison") / "out", parameters=GRID, signal=signal
+    )
 
 
 def test_measures_are_those_of_the_movie(comparison: cd.Comparison, files: tuple[Path, Path]) -> None:
@@ -93,7 +95,7 @@ def test_a_row_sums_up_the_frames(comparison: cd.Comparison) -> None:
 
 def test_edge_windows_are_as_deep_as_the_first_frame(files: tuple[Path, Path], tmp_path: Path) -> None:
     grid = GRID.model_copy(update={"depth_px": None, "methods": ("edge", "rings")})
-    found = cd.compare_movie(files[0], tmp_path / "out", grid)
+    found = cd.run_compare_windows(files[0], tmp_path / "out", parameters=grid)
     depth = cd.edge_windows(cd.read_image(files[0], unnamed="T")[0], 4, 12).depth_px
     assert found.cells["depth_px"].tolist()[0] == pytest.approx(depth)
     assert found.consistency["channel"].isna().all()
@@ -113,7 +115,7 @@ def test_a_stopped_run_goes_on_with_the_next_method(
 
         patched.setattr(module, "map_movie", stop)
         with pytest.raises(KeyboardInterrupt):
-            cd.compare_movie(files[0], tmp_path / "out", GRID, signal=files[1])
+            cd.run_compare_windows(files[0], tmp_path / "out", parameters=GRID, signal=files[1])
     assert not list((tmp_path / "out").glob(".*.maps"))
     mapped: list[str] = []
 
@@ -123,10 +125,10 @@ def test_a_stopped_run_goes_on_with_the_next_method(
 
     monkeypatch.setattr(module, "map_movie", note)
     done: list[tuple[int, int]] = []
-    resumed = cd.compare_movie(
+    resumed = cd.run_compare_windows(
         files[0],
         tmp_path / "out",
-        GRID,
+        parameters=GRID,
         signal=files[1],
         resume=True,
         progress=lambda *counts: done.append(counts),
@@ -148,7 +150,7 @@ def test_a_movie_that_a_method_cannot_map_has_a_row_with_the_reason(
         return cd.map_movie(masks, **options)
 
     monkeypatch.setattr(module, "map_movie", fail)
-    found = cd.compare_movie(files[0], tmp_path / "out", GRID)
+    found = cd.run_compare_windows(files[0], tmp_path / "out", parameters=GRID)
     assert found.cells["status"].tolist() == ["no map", "partly", "partly"]
     assert found.cells["reason"].iloc[0] == "no valid map was found: for the test"
     newton = found.by_method.set_index("method").loc["newton"]
@@ -159,7 +161,7 @@ def test_inputs_that_do_not_fit_are_refused(files: tuple[Path, Path], tmp_path: 
     short, image = tmp_path / "short.tif", np.zeros((2, 20, 20), dtype=np.uint8)
     tifffile.imwrite(short, image, photometric="minisblack", metadata={"axes": "TYX"})
     with pytest.raises(SignalError, match="2 frames"):
-        cd.compare_movie(files[0], tmp_path / "out", GRID, signal=short)
+        cd.run_compare_windows(files[0], tmp_path / "out", parameters=GRID, signal=short)
     with pytest.raises(ParameterError, match="did you mean methods"):
         parameters_from({"method": "harmonic"}, None, cd.CompareMovieParameters)
     with pytest.raises(ParameterError, match="depth_px and depth_um exclude each other"):

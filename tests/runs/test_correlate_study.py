@@ -14,7 +14,7 @@ from cytodisk.runs.correlate.correlate_run import correlate_study
 from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 from cytodisk.simulate import movie
 from cytodisk.store.correlation_store import list_correlations, write_correlation
 
@@ -27,7 +27,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> cd.Study:
     folder = tmp_path_factory.mktemp("correlate")
     truth = movie("fluctuating", 3, frames=36, radius_px=22, dropped=0.06, lag_frames=2)
     masks, signal = write_movie(folder, truth)
-    return run_movie(open_movie(masks, signal, SMALL), folder / "out")
+    return movie_study(open_movie(masks, signal, SMALL), folder / "out")
 
 
 def test_tables_are_those_of_the_functions(study: cd.Study) -> None:
@@ -153,7 +153,7 @@ def test_a_correlation_that_is_not_there_lists_those_that_are(study: cd.Study) -
 def test_a_study_without_a_signal(tmp_path: Path) -> None:
     truth = movie("bulging", 0, frames=12, radius_px=14, signals=False)
     masks = write_masks(tmp_path / "masks.tif", truth.masks.astype(np.uint8))
-    bare = run_movie(open_movie(masks, None, SMALL), tmp_path / "out")
+    bare = movie_study(open_movie(masks, None, SMALL), tmp_path / "out")
     with pytest.raises(StudyError, match=r"no signal.*--signal"):
         correlate_study(bare, "edge")
 
@@ -166,7 +166,7 @@ def test_short_cells_have_a_row_with_the_reason(tmp_path: Path) -> None:
     labels[8:][labels[8:] == 2] = 0
     truth = type(truth)(**(vars(truth) | {"masks": labels, "signal": _twice(truth.signal)}))
     masks, signal = write_movie(tmp_path, truth)
-    study = run_movie(open_movie(masks, signal, SMALL), tmp_path / "out")
+    study = movie_study(open_movie(masks, signal, SMALL), tmp_path / "out")
     found = correlate_study(study, "edge", max_lag=5, surrogates=19)
     cells = found.cells.set_index("cell")
     assert cells["status"].tolist() == ["ok", "refused"]

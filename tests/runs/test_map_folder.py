@@ -11,7 +11,7 @@ import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError, SignalError, StudyError
 from cytodisk.runs.map.map_inputs import open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
-from cytodisk.runs.map.map_run import check_cells, run_map
+from cytodisk.runs.map.map_run import check_cells, map_study
 
 SMALL = MapParameters(layers=3, sectors=8, edge_length=2.0)
 PER_IMAGE = (11, 3, 5)  # cells; the first image has more of them than go into one part
@@ -54,7 +54,7 @@ def assert_same_study(first: cd.Study, second: cd.Study) -> None:
 @pytest.fixture(scope="module")
 def whole(written: Path, tmp_path_factory: pytest.TempPathFactory) -> cd.Study:
     inputs = open_inputs(written / "masks", written / "images", SMALL)
-    return run_map(inputs, tmp_path_factory.mktemp("whole") / "out")
+    return map_study(inputs, tmp_path_factory.mktemp("whole") / "out")
 
 
 def test_every_cell_of_every_file_has_its_row(whole: cd.Study) -> None:
@@ -89,7 +89,7 @@ def test_cellposes_own_file_gives_what_the_label_image_gives(
     labels = tifffile.imread(place / "masks" / "im9_cp_masks.tif")
     np.save(tmp_path / "im9_seg.npy", {"masks": labels, "flows": [labels / 7]}, allow_pickle=True)
     inputs = open_inputs(tmp_path / "im9_seg.npy", place / "images" / "im9.ome.tif", SMALL)
-    study = run_map(inputs, tmp_path / "out")
+    study = map_study(inputs, tmp_path / "out")
     columns = ["source", "seconds"]
     pd.testing.assert_frame_equal(
         study.cells.drop(columns=columns), whole.cells.head(PER_IMAGE[0]).drop(columns=columns)
@@ -136,7 +136,7 @@ def test_a_cell_cut_out_of_its_image_gives_what_the_whole_image_gives(whole: cd.
 def test_a_point_to_align_to_is_one_of_the_image(written: Path, tmp_path: Path) -> None:
     path = written / "masks" / "im10_cp_masks.tif"
     parameters = SMALL.model_copy(update={"align": (40.0, 60.0)})
-    study = run_map(open_inputs(path, None, parameters), tmp_path / "out")
+    study = map_study(open_inputs(path, None, parameters), tmp_path / "out")
     for cell in range(PER_IMAGE[1]):
         disk = cd.map_to_disk(tifffile.imread(path) == cell + 1, edge_length=2.0, align=(40.0, 60.0))
         assert_allclose(study.map(cell).vertices_uv, disk.vertices_uv, atol=1e-12)
@@ -146,7 +146,7 @@ def test_a_single_file_gives_what_it_gives_in_a_folder(
     whole: cd.Study, written: Path, tmp_path: Path
 ) -> None:
     paths = written / "masks" / "im9_cp_masks.tif", written / "images" / "im9.ome.tif"
-    study = run_map(open_inputs(*paths, SMALL), tmp_path / "out")
+    study = map_study(open_inputs(*paths, SMALL), tmp_path / "out")
     first = whole.cells.head(PER_IMAGE[0])
     columns = ["seconds"]
     pd.testing.assert_frame_equal(study.cells.drop(columns=columns), first.drop(columns=columns))
@@ -161,24 +161,26 @@ def test_a_stopped_run_goes_on(whole: cd.Study, written: Path, tmp_path: Path, s
             raise Stopped
 
     with pytest.raises(Stopped):
-        run_map(inputs, tmp_path / "out", progress=stop)
+        map_study(inputs, tmp_path / "out", progress=stop)
     calls: list[int] = []
-    resumed = run_map(inputs, tmp_path / "out", resume=True, progress=lambda done, total: calls.append(done))
+    resumed = map_study(
+        inputs, tmp_path / "out", resume=True, progress=lambda done, total: calls.append(done)
+    )
     assert calls == [done for done in (0, 8, 11, 14, 19) if done >= stop_after]
     assert_same_study(whole, resumed)
 
 
 def test_other_files_are_another_run(place: Path, tmp_path: Path) -> None:
-    run_map(open_inputs(place / "masks", None, SMALL), tmp_path / "out")
+    map_study(open_inputs(place / "masks", None, SMALL), tmp_path / "out")
     (place / "masks" / "im9_cp_masks.tif").rename(place / "masks" / "im8_cp_masks.tif")
     with pytest.raises(StudyError, match="masks sha256"):
-        run_map(open_inputs(place / "masks", None, SMALL), tmp_path / "out", resume=True)
+        map_study(open_inputs(place / "masks", None, SMALL), tmp_path / "out", resume=True)
 
 
 def test_a_damaged_file_costs_one_row(place: Path, whole: cd.Study, tmp_path: Path) -> None:
     content = (place / "masks" / "im10_cp_masks.tif").read_bytes()
     (place / "masks" / "im10_cp_masks.tif").write_bytes(content[: len(content) // 2])
-    study = run_map(open_inputs(place / "masks", place / "images", SMALL), tmp_path / "out")
+    study = map_study(open_inputs(place / "masks", place / "images", SMALL), tmp_path / "out")
     assert study.cells["status"].tolist() == ["ok"] * 11 + ["unreadable"] + ["ok"] * 5
     assert study.cells["source"][11] == "im10_cp_masks.tif"
     assert study.provenance["warnings"][0].startswith("im10_cp_masks.tif: frame 0 cannot be read")
@@ -189,7 +191,7 @@ def test_a_damaged_file_costs_one_row(place: Path, whole: cd.Study, tmp_path: Pa
 def test_masks_without_an_image_have_that_as_their_reason(place: Path, tmp_path: Path) -> None:
     (place / "images" / "im10.ome.tif").unlink()
     inputs = open_inputs(place / "masks", place / "images", SMALL)
-    study = run_map(inputs, tmp_path / "out")
+    study = map_study(inputs, tmp_path / "out")
     lost = study.cells[study.cells["source"] == "im10_cp_masks.tif"]
     assert set(lost["status"]) == {"no image"}
     warning = f"cell {lost['cell'].iloc[0]} of im10_cp_masks.tif: has no image in"
@@ -256,7 +258,7 @@ def test_a_file_of_another_scale_costs_its_rows_alone(place: Path, tmp_path: Pat
     inputs = open_inputs(place / "masks", None, SMALL)
     assert inputs.pixel_size_um == 0.1
     assert inputs.remarks == ("1 of 3 files have another pixel size than 0.1 µm: left out",)
-    study = run_map(inputs, tmp_path / "out")
+    study = map_study(inputs, tmp_path / "out")
     assert study.cells["status"].tolist() == ["refused"] + ["ok"] * 8
     assert "has pixels of 0.2 µm, most files of the folder 0.1 µm: map it alone" in study.cells["reason"][0]
     assert study.provenance["warnings"][0] == inputs.remarks[0]
@@ -305,7 +307,7 @@ def test_a_file_that_stands_in_for_a_damaged_one_is_named(place: Path) -> None:
 
 def test_maps_can_be_left_out(whole: cd.Study, written: Path, tmp_path: Path) -> None:
     inputs = open_inputs(written / "masks", written / "images", SMALL)
-    study = run_map(inputs, tmp_path / "out", maps=False)
+    study = map_study(inputs, tmp_path / "out", maps=False)
     assert_same_study(whole, study)
     assert not list((tmp_path / "out" / "maps").iterdir())
     with pytest.raises(ReadError, match=r"cell 3 .*no map.*--no-maps"):
@@ -320,7 +322,7 @@ def test_figures_and_outlines_lie_in_the_image(whole: cd.Study, written: Path, t
         return []
 
     inputs = open_inputs(written / "masks", written / "images", SMALL)
-    run_map(inputs, tmp_path / "out", draw=draw, draw_at_most=2, geojson=True)
+    map_study(inputs, tmp_path / "out", draw=draw, draw_at_most=2, geojson=True)
     shape = tifffile.imread(written / "masks" / "im9_cp_masks.tif").shape
     assert drawn == {f"cell_{cell:05d}": (shape, (2, *shape)) for cell in range(2)}
     outlines = pd.read_json(tmp_path / "out" / "maps" / "cell_00005.geojson")["features"]

@@ -11,7 +11,7 @@ import cytodisk as cd
 from cytodisk.errors import MaskError, ParameterError, ReadError, SignalError, StudyError
 from cytodisk.runs.map.map_inputs import MapInputs, open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
-from cytodisk.runs.map.map_run import check_cells, run_map
+from cytodisk.runs.map.map_run import check_cells, map_study
 from cytodisk.runs.parameters_file import parameters_from
 from cytodisk.store.study_folder import alone_in, part_key
 
@@ -45,7 +45,7 @@ def damage(path: Path, page_number: int) -> None:
 
 def test_a_study_holds_every_cell_window_and_channel(write_stack: WriteStack, tmp_path: Path) -> None:
     masks, signal = write_stack(3)
-    study = run_map(open_inputs(masks, signal, SMALL), tmp_path / "out", geojson=True)
+    study = map_study(open_inputs(masks, signal, SMALL), tmp_path / "out", geojson=True)
     assert study.cells["status"].tolist() == ["ok"] * 3
     assert study.cells["certificate_valid"].all()
     assert len(study.windows) == 3 * 2 * 3 * 8
@@ -62,9 +62,9 @@ def test_a_study_holds_every_cell_window_and_channel(write_stack: WriteStack, tm
 
 def test_the_pixel_size_scales_lengths_and_areas(write_stack: WriteStack, tmp_path: Path) -> None:
     masks, _ = write_stack(1)
-    plain = run_map(open_inputs(masks, None, SMALL), tmp_path / "px")
+    plain = map_study(open_inputs(masks, None, SMALL), tmp_path / "px")
     scaled_parameters = SMALL.model_copy(update={"pixel_size_um": 0.5})
-    scaled = run_map(open_inputs(masks, None, scaled_parameters), tmp_path / "um")
+    scaled = map_study(open_inputs(masks, None, scaled_parameters), tmp_path / "um")
     np.testing.assert_allclose(scaled.windows["area"], 0.25 * plain.windows["area"])
     np.testing.assert_allclose(scaled.cells["perimeter"], 0.5 * plain.cells["perimeter"])
     assert plain.windows.attrs["units"]["area"] == "px²"
@@ -73,7 +73,7 @@ def test_the_pixel_size_scales_lengths_and_areas(write_stack: WriteStack, tmp_pa
 
 def test_without_a_signal_windows_have_area_and_no_mean(write_stack: WriteStack, tmp_path: Path) -> None:
     masks, _ = write_stack(1)
-    windows = run_map(open_inputs(masks, None, SMALL), tmp_path / "out").windows
+    windows = map_study(open_inputs(masks, None, SMALL), tmp_path / "out").windows
     assert set(windows["status"]) == {"no signal"}
     assert windows["mean"].isna().all()
     assert (windows["area"] > 0).all()
@@ -81,36 +81,36 @@ def test_without_a_signal_windows_have_area_and_no_mean(write_stack: WriteStack,
 
 def test_results_do_not_depend_on_workers(write_stack: WriteStack, tmp_path: Path) -> None:
     inputs = open_inputs(*write_stack(6), SMALL)
-    one = run_map(inputs, tmp_path / "one", workers=1)
-    two = run_map(inputs, tmp_path / "two", workers=2)
+    one = map_study(inputs, tmp_path / "one", workers=1)
+    two = map_study(inputs, tmp_path / "two", workers=2)
     assert_same_study(one, two)
 
 
 @pytest.mark.parametrize("stop_after", [0, 1, 4])
 def test_resume_does_the_rest(write_stack: WriteStack, tmp_path: Path, stop_after: int) -> None:
     inputs = open_inputs(*write_stack(5), SMALL)
-    whole = run_map(inputs, tmp_path / "whole")
+    whole = map_study(inputs, tmp_path / "whole")
 
     def stop(done: int, total: int) -> None:
         if done == stop_after:
             raise Stopped
 
     with pytest.raises(Stopped):
-        run_map(inputs, tmp_path / "out", progress=stop)
+        map_study(inputs, tmp_path / "out", progress=stop)
     with pytest.raises(ReadError, match="is not complete"):
         cd.open_study(tmp_path / "out")
     calls: list[tuple[int, int]] = []
-    resumed = run_map(inputs, tmp_path / "out", resume=True, progress=lambda *call: calls.append(call))
+    resumed = map_study(inputs, tmp_path / "out", resume=True, progress=lambda *call: calls.append(call))
     assert calls == [(done, 5) for done in range(stop_after, 6)]
     assert_same_study(whole, resumed)
 
 
 def test_a_complete_study_is_returned_at_once(write_stack: WriteStack, tmp_path: Path) -> None:
     inputs = open_inputs(*write_stack(2), SMALL)
-    first = run_map(inputs, tmp_path / "out")
+    first = map_study(inputs, tmp_path / "out")
     before = {path: path.stat().st_mtime_ns for path in (tmp_path / "out").rglob("*")}
     calls: list[int] = []
-    again = run_map(inputs, tmp_path / "out", resume=True, progress=lambda done, total: calls.append(done))
+    again = map_study(inputs, tmp_path / "out", resume=True, progress=lambda done, total: calls.append(done))
     assert calls == []
     assert {path: path.stat().st_mtime_ns for path in (tmp_path / "out").rglob("*")} == before
     pd.testing.assert_frame_equal(first.cells, again.cells, check_exact=True)
@@ -118,14 +118,14 @@ def test_a_complete_study_is_returned_at_once(write_stack: WriteStack, tmp_path:
 
 def test_another_run_is_not_resumed(write_stack: WriteStack, tmp_path: Path) -> None:
     masks, signal = write_stack(1)
-    first = run_map(open_inputs(masks, signal, SMALL), tmp_path / "out")
+    first = map_study(open_inputs(masks, signal, SMALL), tmp_path / "out")
     other = open_inputs(masks, signal, SMALL.model_copy(update={"layers": 4}))
     with pytest.raises(StudyError, match=r"holds another run .*layers: 3 then, 4 now"):
-        run_map(other, tmp_path / "out", resume=True)
+        map_study(other, tmp_path / "out", resume=True)
     with pytest.raises(StudyError, match="pass --resume to go on, --overwrite to replace it"):
-        run_map(other, tmp_path / "out")
+        map_study(other, tmp_path / "out")
     assert_same_study(first, cd.open_study(tmp_path / "out"))
-    assert len(run_map(other, tmp_path / "out", overwrite=True).windows) == 2 * 4 * 8
+    assert len(map_study(other, tmp_path / "out", overwrite=True).windows) == 2 * 4 * 8
 
 
 @pytest.mark.parametrize("which", ["masks", "signal"])
@@ -134,9 +134,9 @@ def test_a_damaged_frame_loses_that_frame_alone(
     write_stack: WriteStack, tmp_path: Path, which: str, workers: int
 ) -> None:
     masks, signal = write_stack(4)
-    whole = run_map(open_inputs(masks, signal, SMALL), tmp_path / "whole")
+    whole = map_study(open_inputs(masks, signal, SMALL), tmp_path / "whole")
     damage(*((masks, 2) if which == "masks" else (signal, 5)))
-    study = run_map(open_inputs(masks, signal, SMALL), tmp_path / "out", workers=workers)
+    study = map_study(open_inputs(masks, signal, SMALL), tmp_path / "out", workers=workers)
     assert study.cells["status"].tolist() == ["ok", "ok", "unreadable", "ok"]
     assert "frame 2 cannot be read as an image" in study.cells["reason"][2]
     assert len(study.provenance["warnings"]) == 1
@@ -155,7 +155,7 @@ def test_cells_that_cannot_be_mapped_have_a_reason(tmp_path: Path) -> None:
         (1, True),
         (2, False),
     ]
-    study = run_map(inputs, tmp_path / "out")
+    study = map_study(inputs, tmp_path / "out")
     assert study.cells["status"].tolist() == ["ok", "no cell", "ok"]
     assert "is empty: no pixel belongs to the cell" in study.cells["reason"][1]
     assert study.windows["cell"].unique().tolist() == [0, 2]
@@ -167,7 +167,7 @@ def test_a_label_image_gives_a_cell_a_label_with_one_signal(tmp_path: Path) -> N
     signal = cd.simulate.linear_signal((40, 40), (1.0, 2.0)).astype(np.float32)
     tifffile.imwrite(tmp_path / "labels.tif", labels)
     tifffile.imwrite(tmp_path / "signal.tif", signal)
-    study = run_map(open_inputs(tmp_path / "labels.tif", tmp_path / "signal.tif", SMALL), tmp_path / "out")
+    study = map_study(open_inputs(tmp_path / "labels.tif", tmp_path / "signal.tif", SMALL), tmp_path / "out")
     assert study.cells[["frame", "label", "area_px"]].to_numpy().tolist() == [[0, 4, 169], [0, 9, 324]]
     expected = study.windows["centroid_y"] + 2.0 * study.windows["centroid_x"]
     # Whole pixels have the signal, parts of pixels the centre: they differ by less than a tenth of a pixel.
@@ -183,7 +183,7 @@ def test_nan_in_the_signal_is_counted(tmp_path: Path) -> None:
     tifffile.imwrite(tmp_path / "mask.tif", mask)
     tifffile.imwrite(tmp_path / "signal.tif", signal)
     paths = tmp_path / "mask.tif", tmp_path / "signal.tif"
-    study = run_map(open_inputs(*paths, SMALL), tmp_path / "out")
+    study = map_study(open_inputs(*paths, SMALL), tmp_path / "out")
     assert study.cells["nan_px"].tolist() == [3]
     assert "3 NaN or infinite values in the signal" in study.cells["notes"][0]
     touched = study.windows["n_nan"] > 0
@@ -192,7 +192,7 @@ def test_nan_in_the_signal_is_counted(tmp_path: Path) -> None:
     assert (study.windows["mean"].isna() == touched).all()
     assert (study.windows["status"] == np.where(touched, "NaN in signal", "ok")).all()
     omitting = parameters_from({"layers": 3, "sectors": 8, "nan": "omit"}, None, MapParameters)
-    windows = run_map(open_inputs(*paths, omitting), tmp_path / "omit").windows
+    windows = map_study(open_inputs(*paths, omitting), tmp_path / "omit").windows
     np.testing.assert_allclose(windows["mean"].dropna(), 1.0)
     assert windows["mean"].isna().sum() < touched.sum()
 
@@ -219,16 +219,16 @@ def test_a_stack_is_no_single_mask(write_stack: WriteStack) -> None:
 
 def test_workers_must_be_positive(write_stack: WriteStack, tmp_path: Path) -> None:
     inputs: MapInputs = open_inputs(write_stack(1)[0], None, SMALL)
-    with pytest.raises(ParameterError, match="workers must be at least 1, got 0"):
-        run_map(inputs, tmp_path / "out", workers=0)
+    with pytest.raises(ParameterError, match="workers must be a whole number of at least 1, got 0"):
+        map_study(inputs, tmp_path / "out", workers=0)
     assert not (tmp_path / "out").exists()
 
 
 def test_two_runs_do_not_write_into_one_folder(write_stack: WriteStack, tmp_path: Path) -> None:
     masks, signal = write_stack(1)
     with alone_in(tmp_path / "out"), pytest.raises(StudyError, match="another run is writing there"):
-        run_map(open_inputs(masks, signal, SMALL), tmp_path / "out")
-    assert run_map(open_inputs(masks, signal, SMALL), tmp_path / "out").cells["status"].tolist() == ["ok"]
+        map_study(open_inputs(masks, signal, SMALL), tmp_path / "out")
+    assert map_study(open_inputs(masks, signal, SMALL), tmp_path / "out").cells["status"].tolist() == ["ok"]
     assert not (tmp_path / "out" / ".lock").exists()
 
 
@@ -237,7 +237,7 @@ def test_a_run_killed_before_its_first_note_can_be_repeated(write_stack: WriteSt
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / ".lock").touch()
     (tmp_path / "out" / ".provenance.123.tmp.json").touch()
-    assert len(run_map(open_inputs(masks, signal, SMALL), tmp_path / "out").cells) == 1
+    assert len(map_study(open_inputs(masks, signal, SMALL), tmp_path / "out").cells) == 1
 
 
 def test_an_overwrite_killed_half_way_can_be_repeated(
@@ -245,14 +245,14 @@ def test_an_overwrite_killed_half_way_can_be_repeated(
 ) -> None:
     masks, signal = write_stack(1)
     inputs = open_inputs(masks, signal, SMALL)
-    run_map(inputs, tmp_path / "out")
+    map_study(inputs, tmp_path / "out")
     with monkeypatch.context() as patch:
         patch.setattr("cytodisk.store.study_folder.shutil.rmtree", _stop)
         with pytest.raises(Stopped):
-            run_map(inputs, tmp_path / "out", overwrite=True)
+            map_study(inputs, tmp_path / "out", overwrite=True)
     with pytest.raises(ReadError, match="not complete"):
         cd.open_study(tmp_path / "out")
-    assert len(run_map(inputs, tmp_path / "out", overwrite=True).cells) == 1
+    assert len(map_study(inputs, tmp_path / "out", overwrite=True).cells) == 1
 
 
 def test_a_missing_part_is_not_passed_over(write_stack: WriteStack, tmp_path: Path) -> None:
@@ -263,7 +263,7 @@ def test_a_missing_part_is_not_passed_over(write_stack: WriteStack, tmp_path: Pa
             (tmp_path / "out" / ".parts" / f"{part_key(0)}.json").unlink()
 
     with pytest.raises(StudyError, match="has 1 parts instead of 2"):
-        run_map(open_inputs(masks, signal, SMALL), tmp_path / "out", progress=lose_a_part)
+        map_study(open_inputs(masks, signal, SMALL), tmp_path / "out", progress=lose_a_part)
 
 
 def test_a_files_own_scale_stays_out_of_the_parameters(write_stack: WriteStack, tmp_path: Path) -> None:
@@ -272,7 +272,7 @@ def test_a_files_own_scale_stays_out_of_the_parameters(write_stack: WriteStack, 
         metadata = {"axes": "YX", "PhysicalSizeX": size, "PhysicalSizeY": size}
         tifffile.imwrite(tmp_path / f"{name}.ome.tif", tifffile.imread(masks)[0], metadata=metadata)
     fine = tmp_path / "fine.ome.tif"
-    study = run_map(open_inputs(tmp_path / "coarse.ome.tif", None, SMALL), tmp_path / "out")
+    study = map_study(open_inputs(tmp_path / "coarse.ome.tif", None, SMALL), tmp_path / "out")
     again = parameters_from({}, tmp_path / "out" / "parameters.toml", MapParameters)
     assert study.provenance["pixel_size_um"] == pytest.approx(0.3)
     assert open_inputs(fine, None, again).pixel_size_um == pytest.approx(0.1)
@@ -283,7 +283,7 @@ def test_a_files_own_scale_stays_out_of_the_parameters(write_stack: WriteStack, 
 def test_resume_and_overwrite_exclude_each_other(write_stack: WriteStack, tmp_path: Path) -> None:
     masks, signal = write_stack(1)
     with pytest.raises(ParameterError, match="exclude each other"):
-        run_map(open_inputs(masks, signal, SMALL), tmp_path / "out", resume=True, overwrite=True)
+        map_study(open_inputs(masks, signal, SMALL), tmp_path / "out", resume=True, overwrite=True)
 
 
 def _stop(*_: object, **__: object) -> None:

@@ -15,7 +15,7 @@ from cytodisk.images.tracks import read_frame
 from cytodisk.runs.map.map_inputs import open_inputs
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 from cytodisk.runs.parameters_file import parameters_from
 
 FRAMES, SHAPE = 6, (44, 52)
@@ -46,7 +46,7 @@ def ran(folder: Path, masks: np.ndarray, signal: np.ndarray | None = None) -> cd
     paths = write_masks(folder / "these.tif", masks), None
     if signal is not None:
         paths = paths[0], written(folder / "signal.tif", signal, "TCYX")
-    return run_movie(open_movie(*paths, SMALL), folder / "out")
+    return movie_study(open_movie(*paths, SMALL), folder / "out")
 
 
 @pytest.mark.parametrize(
@@ -194,7 +194,7 @@ def test_a_damaged_frame_loses_that_frame_alone(tmp_path: Path, kind: str, time:
     masks = write_masks(tmp_path / "masks.tif", MASKS)
     signal = written(tmp_path / "signal.tif", COUNTS, "TCYX")
     damage(*((masks, time) if kind == "masks" else (signal, 2 * time + 1)))
-    study = run_movie(open_movie(masks, signal, SMALL), tmp_path / "out")
+    study = movie_study(open_movie(masks, signal, SMALL), tmp_path / "out")
     expected = ["ok"] * FRAMES
     expected[time] = "unreadable"
     assert study.cells["status"].tolist() == expected
@@ -253,7 +253,7 @@ def test_an_output_folder_that_is_taken(tmp_path: Path, masks: Path) -> None:
         ("folder", "holds no study: pass another folder"),
     ):
         with pytest.raises(StudyError, match=words):
-            run_movie(inputs, tmp_path / name)
+            movie_study(inputs, tmp_path / name)
     assert (tmp_path / "folder" / "thesis.txt").read_text() == "years of work"
     assert not list((tmp_path / "folder").glob(".*"))
 
@@ -328,7 +328,7 @@ def named(tmp_path: Path) -> Any:
 
 def test_given_names_overrule_those_of_the_file(tmp_path: Path, masks: Path, named: Any) -> None:
     given = SMALL.model_copy(update={"channels": ("Rac1", "RhoA")})
-    study = run_movie(open_movie(masks, named("488", "velocity"), given), tmp_path / "out")
+    study = movie_study(open_movie(masks, named("488", "velocity"), given), tmp_path / "out")
     assert study.activity(0)["channel"].to_numpy().tolist() == ["Rac1", "RhoA"]
     assert set(study.windows["channel"]) == {"Rac1", "RhoA"}
     assert study.provenance["parameters"]["channels"] == ["Rac1", "RhoA"]

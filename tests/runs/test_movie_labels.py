@@ -11,7 +11,7 @@ from numpy.testing import assert_array_equal
 import cytodisk as cd
 from cytodisk.errors import MapError, ReadError
 from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 
 FRAMES, SHAPE = 7, (70, 110)
 LOST, COMES, LEAVES = 3, 2, 4
@@ -43,7 +43,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> cd.Study:
     folder = tmp_path_factory.mktemp("labels")
     inputs = opened(folder, LABELS)
     assert inputs.understood["masks"].startswith("labels of 3 cells, 7 frames of 70 × 110 pixels")
-    return run_movie(inputs, folder / "out")
+    return movie_study(inputs, folder / "out")
 
 
 def rows_of(table: pd.DataFrame, cell: int) -> pd.DataFrame:
@@ -115,7 +115,7 @@ def test_the_border_is_flagged_and_its_sectors_have_no_velocity(study: cd.Study)
 
 
 def test_the_same_cell_alone_gives_the_same_rows(study: cd.Study, tmp_path: Path) -> None:
-    alone = run_movie(opened(tmp_path, np.where(LABELS == 3, LABELS, 0)), tmp_path / "out")
+    alone = movie_study(opened(tmp_path, np.where(LABELS == 3, LABELS, 0)), tmp_path / "out")
     assert set(alone.cells["cell"]) == {0}
     assert (alone.cells["status"] == "ok").sum() == FRAMES - 1
     for name in ("windows", "edge", "consistency"):
@@ -135,7 +135,7 @@ def test_linked_labels_give_the_same_cells(study: cd.Study, tmp_path: Path) -> N
         for old, new in zip((3, 5, 9), random.permutation([1, 2, 3]), strict=True):
             shuffled[time][frame == old] = new
     assert not (shuffled[1:] == shuffled[:-1]).all()
-    linked = run_movie(opened(tmp_path, shuffled, link=True), tmp_path / "out")
+    linked = movie_study(opened(tmp_path, shuffled, link=True), tmp_path / "out")
     assert linked.cells["cell"].nunique() == 3
     for cell in range(3):
         start = rows_of(study.cells, cell).iloc[0]
@@ -153,7 +153,7 @@ def test_linked_labels_give_the_same_cells(study: cd.Study, tmp_path: Path) -> N
 def test_a_damaged_frame_is_lost_for_the_cells_that_are_around_it(tmp_path: Path) -> None:
     path = write_masks(tmp_path / "labels.tif", LABELS)
     damage(path, 5)
-    cells = run_movie(open_movie(path, None, SMALL), tmp_path / "out").cells
+    cells = movie_study(open_movie(path, None, SMALL), tmp_path / "out").cells
     lost = cells[cells["status"] == "unreadable"]
     assert lost[["cell", "frame"]].to_numpy().tolist() == [[MOVER, 5], [BORDER, 5]]
     assert lost["reason"].str.contains("frame 5 cannot be read as an image").all()
@@ -164,7 +164,7 @@ def test_a_damaged_frame_is_lost_for_the_cells_that_are_around_it(tmp_path: Path
 def test_a_damaged_frame_at_the_end_of_the_recording_is_not_passed_over(tmp_path: Path, time: int) -> None:
     path = write_masks(tmp_path / "labels.tif", LABELS)
     damage(path, time)
-    study = run_movie(open_movie(path, None, SMALL), tmp_path / "out")
+    study = movie_study(open_movie(path, None, SMALL), tmp_path / "out")
     said = [*study.cells["reason"], *study.provenance["warnings"]]
     assert any(f"frame {time} cannot be read as an image" in words for words in said)
 

@@ -6,7 +6,7 @@ from movie_files import SMALL, Stopped, assert_same_movie, stop_after, write_mov
 import cytodisk as cd
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 
 FRAMES, GAP = 8, 6
 
@@ -21,7 +21,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> MovieInputs:
 
 @pytest.fixture(scope="module")
 def whole(inputs: MovieInputs, tmp_path_factory: pytest.TempPathFactory) -> cd.Study:
-    return run_movie(inputs, tmp_path_factory.mktemp("study") / "whole")
+    return movie_study(inputs, tmp_path_factory.mktemp("study") / "whole")
 
 
 @pytest.mark.parametrize("done", [0, 1, 2, 4, GAP, GAP + 1, FRAMES])
@@ -30,11 +30,11 @@ def test_a_stopped_run_goes_on_to_the_same_results(
 ) -> None:
     """Stopped at the start, within a stretch, where the registration's reference changes, around the gap."""
     with pytest.raises(Stopped):
-        run_movie(inputs, tmp_path / "out", progress=stop_after(done))
+        movie_study(inputs, tmp_path / "out", progress=stop_after(done))
     with pytest.raises(ReadError, match="is not complete"):
         cd.open_study(tmp_path / "out")
     calls: list[tuple[int, int]] = []
-    resumed = run_movie(inputs, tmp_path / "out", resume=True, progress=lambda *call: calls.append(call))
+    resumed = movie_study(inputs, tmp_path / "out", resume=True, progress=lambda *call: calls.append(call))
     assert calls == [(count, FRAMES) for count in range(done, FRAMES + 1)]
     assert_same_movie(whole, resumed)
 
@@ -43,25 +43,25 @@ def test_a_run_with_the_other_tracker_goes_on_too(inputs: MovieInputs, tmp_path:
     parameters = inputs.parameters.model_copy(update={"tracker": "demons"})
     demons = open_movie(inputs.masks.path, None, parameters)
     with pytest.raises(Stopped):
-        run_movie(demons, tmp_path / "out", progress=stop_after(4))
-    resumed = run_movie(demons, tmp_path / "out", resume=True)
-    assert_same_movie(run_movie(demons, tmp_path / "whole"), resumed)
+        movie_study(demons, tmp_path / "out", progress=stop_after(4))
+    resumed = movie_study(demons, tmp_path / "out", resume=True)
+    assert_same_movie(movie_study(demons, tmp_path / "whole"), resumed)
 
 
 def test_a_run_may_be_stopped_again_and_again(inputs: MovieInputs, whole: cd.Study, tmp_path: Path) -> None:
     for done in (2, 3, 5):
         with pytest.raises(Stopped):
-            run_movie(inputs, tmp_path / "out", resume=True, progress=stop_after(done))
-    assert_same_movie(whole, run_movie(inputs, tmp_path / "out", resume=True))
+            movie_study(inputs, tmp_path / "out", resume=True, progress=stop_after(done))
+    assert_same_movie(whole, movie_study(inputs, tmp_path / "out", resume=True))
 
 
 def test_a_map_without_its_row_is_made_anew(inputs: MovieInputs, whole: cd.Study, tmp_path: Path) -> None:
     """A kill between the writing of a frame's map and of its row."""
     with pytest.raises(Stopped):
-        run_movie(inputs, tmp_path / "out", progress=stop_after(4))
+        movie_study(inputs, tmp_path / "out", progress=stop_after(4))
     (tmp_path / "out" / ".parts" / "00000_t00003.json").unlink()
     assert (tmp_path / "out" / "maps" / "cell_00000_t00003.npz").exists()
-    assert_same_movie(whole, run_movie(inputs, tmp_path / "out", resume=True))
+    assert_same_movie(whole, movie_study(inputs, tmp_path / "out", resume=True))
 
 
 def _stop(*_: object, **__: object) -> None:
@@ -85,11 +85,11 @@ def test_a_run_stopped_while_it_writes_its_tables_goes_on(
     with monkeypatch.context() as patch:
         patch.setattr(where, _stop)
         with pytest.raises(Stopped):
-            run_movie(inputs, tmp_path / "out")
+            movie_study(inputs, tmp_path / "out")
     with pytest.raises(ReadError, match="is not complete"):
         cd.open_study(tmp_path / "out")
     calls: list[tuple[int, int]] = []
-    resumed = run_movie(inputs, tmp_path / "out", resume=True, progress=lambda *call: calls.append(call))
+    resumed = movie_study(inputs, tmp_path / "out", resume=True, progress=lambda *call: calls.append(call))
     assert calls == [(FRAMES, FRAMES)]
     assert_same_movie(whole, resumed)
     files = [
@@ -101,7 +101,7 @@ def test_a_run_stopped_while_it_writes_its_tables_goes_on(
 
 def test_a_complete_study_is_returned_at_once(inputs: MovieInputs, whole: cd.Study) -> None:
     before = {path: path.stat().st_mtime_ns for path in whole.path.rglob("*")}
-    again = run_movie(inputs, whole.path, resume=True, progress=_stop)
+    again = movie_study(inputs, whole.path, resume=True, progress=_stop)
     assert {path: path.stat().st_mtime_ns for path in whole.path.rglob("*")} == before
     assert_same_movie(whole, again)
 
@@ -110,17 +110,17 @@ def test_a_study_is_replaced_when_asked_for_alone(
     inputs: MovieInputs, whole: cd.Study, tmp_path: Path
 ) -> None:
     changed = open_movie(inputs.masks.path, None, SMALL)
-    first = run_movie(changed, tmp_path / "out")
+    first = movie_study(changed, tmp_path / "out")
     for options, words in (({}, "holds a study: pass --resume"), ({"resume": True}, "holds another run")):
         with pytest.raises(StudyError, match=words):
-            run_movie(inputs, first.path, **options)
+            movie_study(inputs, first.path, **options)
     assert_same_movie(first, cd.open_study(first.path))
-    assert_same_movie(whole, run_movie(inputs, first.path, overwrite=True))
+    assert_same_movie(whole, movie_study(inputs, first.path, overwrite=True))
 
 
 def test_a_folder_with_something_else_is_left_alone(inputs: MovieInputs, tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("years of work")
     for options in ({}, {"resume": True}, {"overwrite": True}):
         with pytest.raises(StudyError, match="not empty and holds no study"):
-            run_movie(inputs, tmp_path, **options)
+            movie_study(inputs, tmp_path, **options)
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]

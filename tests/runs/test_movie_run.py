@@ -13,7 +13,7 @@ from cytodisk.analysis.activity import STATISTICS, sample_movie
 from cytodisk.analysis.consistency import centroid_displacement, consecutive_correlation
 from cytodisk.errors import ParameterError
 from cytodisk.runs.movie.movie_inputs import open_movie
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 from cytodisk.simulate.moving_cells import SimulatedMovie
 from cytodisk.store.tables import (
     CELL_COLUMNS,
@@ -45,7 +45,7 @@ def files(truth: SimulatedMovie, tmp_path_factory: pytest.TempPathFactory) -> tu
 
 @pytest.fixture(scope="module")
 def study(files: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> cd.Study:
-    return run_movie(open_movie(*files, SMALL), tmp_path_factory.mktemp("study") / "out")
+    return movie_study(open_movie(*files, SMALL), tmp_path_factory.mktemp("study") / "out")
 
 
 @pytest.fixture(scope="module")
@@ -205,7 +205,7 @@ def test_provenance_says_what_was_read_and_how(study: cd.Study, files: tuple[Pat
 def test_without_a_scale_units_are_pixels_and_frames(
     files: tuple[Path, Path], study: cd.Study, tmp_path: Path
 ) -> None:
-    plain = run_movie(open_movie(files[0], None, SMALL), tmp_path / "out")
+    plain = movie_study(open_movie(files[0], None, SMALL), tmp_path / "out")
     assert plain.cells["time_s"].isna().all()
     assert plain.edge.attrs["units"]["velocity"] == "px/frame"
     assert plain.cells.attrs["units"]["area"] == "px²"
@@ -238,12 +238,12 @@ def test_the_depth_decides_the_layers(files: tuple[Path, Path], tmp_path: Path) 
 
 @pytest.mark.slow
 def test_results_do_not_depend_on_workers(files: tuple[Path, Path], study: cd.Study, tmp_path: Path) -> None:
-    assert_same_movie(study, run_movie(open_movie(*files, SMALL), tmp_path / "two", workers=2))
+    assert_same_movie(study, movie_study(open_movie(*files, SMALL), tmp_path / "two", workers=2))
 
 
 def test_workers_must_be_positive(files: tuple[Path, Path], tmp_path: Path) -> None:
-    with pytest.raises(ParameterError, match="workers must be at least 1, got 0"):
-        run_movie(open_movie(*files, SMALL), tmp_path / "out", workers=0)
+    with pytest.raises(ParameterError, match="workers must be a whole number of at least 1, got 0"):
+        movie_study(open_movie(*files, SMALL), tmp_path / "out", workers=0)
     with pytest.raises(ParameterError, match="resume and overwrite exclude each other"):
-        run_movie(open_movie(*files, SMALL), tmp_path / "out", resume=True, overwrite=True)
+        movie_study(open_movie(*files, SMALL), tmp_path / "out", resume=True, overwrite=True)
     assert not (tmp_path / "out").exists()

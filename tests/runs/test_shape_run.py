@@ -20,7 +20,7 @@ from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 from cytodisk.runs.shapes.shape_run import (
     cleaned_masks,
     open_shape_inputs,
-    run_shapes,
+    shape_study,
 )
 
 NAMES = [feature.name for feature in FEATURES]
@@ -55,7 +55,7 @@ def folder(tmp_path: Path) -> Path:
 
 def run(masks: Path, out: Path, parameters: ShapeParameters | None = None, **options: object) -> pd.DataFrame:
     given = ShapeParameters() if parameters is None else parameters
-    return run_shapes(open_shape_inputs(masks, given), out, given, **options)  # type: ignore[arg-type]
+    return shape_study(open_shape_inputs(masks, given), out, given, **options)  # type: ignore[arg-type]
 
 
 def test_a_folder_gives_a_row_a_cell_and_a_bad_file_one_row(folder: Path, tmp_path: Path) -> None:
@@ -187,7 +187,7 @@ def test_only_a_complete_run_of_shapes_is_read(folder: Path, tmp_path: Path) -> 
 
 def test_masks_for_pictures_are_those_of_the_cells(folder: Path, tmp_path: Path) -> None:
     inputs = open_shape_inputs(folder, ShapeParameters())
-    table = run_shapes(inputs, tmp_path / "out")
+    table = shape_study(inputs, tmp_path / "out")
     masks = cleaned_masks(inputs, [2, 8])
     assert {cell: mask.sum() for cell, mask in masks.items()} == {
         cell: table.loc[cell, "area"] for cell in (2, 8)

@@ -5,7 +5,7 @@ from pathlib import Path
 from dask_jobqueue import SLURMCluster
 
 from cytodisk.runs.batch.batch_file import read_batch
-from cytodisk.runs.batch.batch_run import run_batch
+from cytodisk.runs.batch.batch_run import batch_study
 
 cluster = SLURMCluster(
     queue="standard",
@@ -19,7 +19,7 @@ cluster = SLURMCluster(
     scheduler_options={"dashboard_address": ":0"},
 )
 cluster.adapt(minimum_jobs=0, maximum_jobs=50)
-summary = run_batch(
+summary = batch_study(
     read_batch(Path("study.toml")),
     "/shared/out",
     scheduler=cluster.scheduler_address,

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cytodisk.cli.console import console_for, count, fail, progress_bar
-from cytodisk.cli.options import Overwrite, Quiet, Resume, Workers
+from cytodisk.cli.options import Given, Quiet, with_parameters
+from cytodisk.runs.run_options import BatchOptions
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -36,6 +37,7 @@ batch file or the folder cannot be used. With --dry-run 2 if files of an input c
 """
 
 
+@with_parameters(BatchOptions, file=False)
 def batch_command(
     study: Annotated[Path, typer.Argument(help="Batch file: TOML.", show_default=False)],
     out: Annotated[
@@ -44,18 +46,10 @@ def batch_command(
             "--out", "-o", help="Folder for the results, or a URL as s3://bucket/batch.", show_default=False
         ),
     ],
-    workers: Workers = 1,
-    time_limit: Annotated[
-        float | None, typer.Option(min=0.001, help="Seconds that one input may take (default any).")
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(help="Address of a Dask scheduler, as tcp://host:8786: run on its workers.")
-    ] = None,
+    given: Given,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="List the inputs as they are understood and run nothing.")
     ] = False,
-    resume: Resume = False,
-    overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.runs.batch.batch_file import read_batch
@@ -66,19 +60,15 @@ def batch_command(
     if dry_run:
         _list_inputs(batch)
         return
-    from cytodisk.runs.batch.batch_run import run_batch
+    from cytodisk.runs.batch.batch_run import batch_study
 
     with progress_bar(quiet, "inputs") as progress:
-        summary = run_batch(
+        summary = batch_study(
             batch,
             out,
-            workers=workers,
-            time_limit=time_limit,
-            resume=resume,
-            overwrite=overwrite,
-            scheduler=scheduler,
             progress=progress,
             tell=console.print,
+            **dict(given.options(BatchOptions)),
         )
     _finish(console, summary)
 

@@ -13,15 +13,14 @@ from cytodisk.cli.options import (
     Given,
     MaskFiles,
     OutFolder,
-    Overwrite,
     Quiet,
-    Resume,
     Signal,
     with_parameters,
 )
 from cytodisk.errors import ParameterError
 from cytodisk.runs.channel_names import shown_name
 from cytodisk.runs.compare_windows.compare_parameters import CompareMovieParameters, CompareWindowsParameters
+from cytodisk.runs.run_options import RunOptions
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -50,7 +49,7 @@ The paper's relaxation (advection) takes seconds a cell, and minutes for one of 
 """
 
 
-@with_parameters(CompareWindowsParameters, CompareMovieParameters)
+@with_parameters(CompareWindowsParameters, CompareMovieParameters, RunOptions)
 def compare_windows_command(
     masks: MaskFiles,
     out: OutFolder,
@@ -61,22 +60,21 @@ def compare_windows_command(
         str | None,
         typer.Option(help="Cells to draw, at most five, as 3,17,20 (default: from simple to complex)."),
     ] = None,
-    workers: Annotated[int, typer.Option(help="Number of processes; a movie runs in one.")] = 1,
-    resume: Resume = False,
-    overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
     drawn = _parse_cells(cells, movie)
     console = console_for(quiet)
-    options: dict[str, Any] = {"resume": resume, "overwrite": overwrite}
+    options = dict(given.options(RunOptions))
     if movie:
         found = _run_movie(console, masks, signal, out, given.of(CompareMovieParameters), options)
     else:
-        of_movies = given.beyond(CompareWindowsParameters) + (["--signal"] if signal is not None else [])
+        of_movies = given.beyond(CompareWindowsParameters, RunOptions) + (
+            ["--signal"] if signal is not None else []
+        )
         if of_movies:
             raise ParameterError(f"{', '.join(of_movies)}: only with --movie; pass that too, or leave it out")
         settings = given.of(CompareWindowsParameters)
-        found = _run_cells(console, masks, out, settings, options | {"workers": workers})
+        found = _run_cells(console, masks, out, settings, options)
     if not found.cells["mapped"].sum():
         fail(f"no cell could be used: {'; '.join(found.cells['reason'].head(1)) or 'there is none'}")
     say_comparison(console, found)

@@ -55,7 +55,7 @@ def demo_command(
     from cytodisk.runs.executor import Executor
     from cytodisk.runs.movie.movie_inputs import open_movie
     from cytodisk.runs.movie.movie_parameters import MovieParameters
-    from cytodisk.runs.movie.movie_run import run_movie
+    from cytodisk.runs.movie.movie_run import movie_study
 
     console = console_for(quiet)
     with Executor(1, apart=True) as beside:
@@ -68,7 +68,7 @@ def demo_command(
         inputs = open_movie(masks, signal, MovieParameters())
         say_movie(console, inputs)
         with progress_bar(quiet, "frames", again=_AGAIN) as progress:
-            study = run_movie(
+            study = movie_study(
                 inputs,
                 out / "study",
                 workers=workers,

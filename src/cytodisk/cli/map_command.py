@@ -1,6 +1,6 @@
 """`cytodisk map` and `cytodisk check`."""
 
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -11,14 +11,12 @@ from cytodisk.cli.options import (
     Given,
     MaskFiles,
     OutFolder,
-    Overwrite,
     Quiet,
-    Resume,
     SignalFiles,
-    Workers,
     with_parameters,
 )
 from cytodisk.runs.map.map_parameters import FileParameters, MapParameters
+from cytodisk.runs.run_options import MapOptions
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -45,43 +43,30 @@ damaged (the rest is done all the same).
 """
 
 
-@with_parameters(MapParameters)
+@with_parameters(MapParameters, MapOptions)
 def map_command(
     masks: MaskFiles,
     out: OutFolder,
     given: Given,
     signal: SignalFiles = None,
-    workers: Workers = 1,
     figures: Figures = 8,
-    no_maps: Annotated[
-        bool, typer.Option("--no-maps", help="Do not keep the map of each cell: it saves disk space.")
-    ] = False,
-    geojson: Annotated[
-        bool, typer.Option("--geojson", help="Write the outlines of windows beside the maps.")
-    ] = False,
-    resume: Resume = False,
-    overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.pages.cell_pages import write_cell_figures
     from cytodisk.runs.map.map_inputs import open_inputs
-    from cytodisk.runs.map.map_run import run_map
+    from cytodisk.runs.map.map_run import map_study
 
     console = console_for(quiet)
     inputs = open_inputs(masks, signal, given.of(MapParameters))
     say_inputs(console, inputs)
     with progress_bar(quiet, "cells") as progress:
-        study = run_map(
+        study = map_study(
             inputs,
             out,
-            workers=workers,
-            resume=resume,
-            overwrite=overwrite,
             draw=write_cell_figures if figures else None,  # workers that draw nothing stay small
             draw_at_most=None if figures < 0 else figures,
-            maps=not no_maps,
-            geojson=geojson,
             progress=progress,
+            **dict(given.options(MapOptions)),
         )
     finish_map(console, study, figures, inputs.is_folder)
 

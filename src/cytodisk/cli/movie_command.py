@@ -9,14 +9,12 @@ from cytodisk.cli.options import (
     Given,
     MovieFile,
     OutFolder,
-    Overwrite,
     Quiet,
-    Resume,
     Signal,
-    Workers,
     with_parameters,
 )
 from cytodisk.runs.movie.movie_parameters import MovieParameters
+from cytodisk.runs.run_options import RunOptions
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -40,26 +38,23 @@ Exit code: 0 when done (frames without a map have a row with the reason), 2 if n
 """
 
 
-@with_parameters(MovieParameters)
+@with_parameters(MovieParameters, RunOptions)
 def movie_command(
     masks: MovieFile,
     out: OutFolder,
     given: Given,
     signal: Signal = None,
-    workers: Workers = 1,
     figures: Figures = 4,
-    resume: Resume = False,
-    overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.runs.movie.movie_inputs import open_movie
-    from cytodisk.runs.movie.movie_run import run_movie
+    from cytodisk.runs.movie.movie_run import movie_study
 
     console = console_for(quiet)
     inputs = open_movie(masks, signal, given.of(MovieParameters))
     say_movie(console, inputs)
     with progress_bar(quiet, "frames") as progress:
-        study = run_movie(inputs, out, workers=workers, resume=resume, overwrite=overwrite, progress=progress)
+        study = movie_study(inputs, out, progress=progress, **dict(given.options(RunOptions)))
     draw_movie(quiet, study, inputs, figures)
     finish_movie(console, study)
 

@@ -11,6 +11,7 @@ from pydantic.fields import FieldInfo
 
 from cytodisk.parameter_words import choices, flag_of, help_words, kinds, tuple_items, value_of_text
 from cytodisk.parameters import Group, Parameters
+from cytodisk.taking import fields_of
 
 MaskFiles = Annotated[
     Path,
@@ -35,10 +36,7 @@ OutFolder = Annotated[Path, typer.Option("--out", "-o", help="Folder for the res
 ParametersFile = Annotated[
     Path | None, typer.Option(help="TOML file with parameters, as in every study. Flags overrule it.")
 ]
-Workers = Annotated[int, typer.Option(help="Number of processes.")]
 Figures = Annotated[int, typer.Option(help="Number of cells to draw, from the first; -1 for all.")]
-Resume = Annotated[bool, typer.Option("--resume", help="Go on with the same run in this folder.")]
-Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace the study in this folder.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 
@@ -64,11 +62,19 @@ class Given:
         """The parameters that a command works with; errors name the flags."""
         from cytodisk.runs.parameters_file import parameters_from
 
-        return parameters_from(self.values, self.file, model, self.flags)
+        return parameters_from(self._those_of(model), self.file, model, self.flags)
 
-    def beyond(self, model: type[Parameters]) -> list[str]:
-        """Flags of parameters that a model does not have."""
-        return [self.flags[name] for name in self.values if name not in model.model_fields]
+    def options(self, model: type[Group]) -> Group:
+        """Options of a run, which no file holds; errors name the flags."""
+        return model.called(self._those_of(model), self.flags)
+
+    def _those_of(self, model: type[Parameters]) -> dict[str, Any]:
+        return {name: value for name, value in self.values.items() if name in model.model_fields}
+
+    def beyond(self, *models: type[Parameters]) -> list[str]:
+        """Flags of parameters that none of the models has."""
+        known = fields_of(models)
+        return [self.flags[name] for name in self.values if name not in known]
 
 
 def with_parameters(
@@ -88,7 +94,7 @@ def with_parameters(
     callable
         A decorator. The command gets what was given as `given`, a `Given`.
     """
-    fields = {name: field for model in reversed(models) for name, field in model.model_fields.items()}
+    fields = fields_of(models)
     flags = {name: flag_of(name, field) for name, field in fields.items()}
 
     def show(command: Callable[..., None]) -> Callable[..., None]:

@@ -9,12 +9,10 @@ from cytodisk.cli.options import (
     Given,
     MaskFiles,
     OutFolder,
-    Overwrite,
     Quiet,
-    Resume,
-    Workers,
     with_parameters,
 )
+from cytodisk.runs.run_options import RunOptions
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 
 if TYPE_CHECKING:
@@ -43,17 +41,14 @@ _FAR_FROM_LINE = (
 )
 
 
-@with_parameters(ShapeParameters)
+@with_parameters(ShapeParameters, RunOptions)
 def shapes_command(
     masks: MaskFiles,
     out: OutFolder,
     given: Given,
-    workers: Workers = 1,
-    resume: Resume = False,
-    overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
-    from cytodisk.runs.shapes.shape_run import open_shape_inputs, run_shapes
+    from cytodisk.runs.shapes.shape_run import open_shape_inputs, shape_study
 
     settings = given.of(ShapeParameters)
     console = console_for(quiet)
@@ -64,9 +59,7 @@ def shapes_command(
     for remark in inputs.remarks:
         console.print(f"note: {remark}")
     with progress_bar(quiet, "cells") as progress:
-        table = run_shapes(
-            inputs, out, settings, workers=workers, resume=resume, overwrite=overwrite, progress=progress
-        )
+        table = shape_study(inputs, out, settings, progress=progress, **dict(given.options(RunOptions)))
     _draw(inputs, table, out)
     _say(console, table, out)
 

@@ -64,7 +64,7 @@ class CellSettings:
     folder : StudyFolder
         Where results go.
     draw : callable, optional
-        As `run_map` takes it.
+        As `map_study` takes it.
     maps, geojson : bool
         Whether maps, and outlines of windows, are written.
     """

@@ -20,14 +20,6 @@ def silent(done: int, total: int) -> None:
     """Report nothing."""
 
 
-def check_options(workers: int, resume: bool, overwrite: bool) -> None:
-    """Raise ParameterError if `workers` is below 1, or both `resume` and `overwrite` are set."""
-    if workers < 1:
-        raise ParameterError(f"workers must be at least 1, got {workers}")
-    if resume and overwrite:
-        raise ParameterError("resume and overwrite exclude each other: pass one of them")
-
-
 def name_channels(signal: FrameFile | None, channels: tuple[str, ...] | None) -> FrameFile | None:
     """The signal with the names that were given to its channels, or else with its own.
 

@@ -15,7 +15,7 @@ import cytodisk as cd
 from cytodisk.pages.report.page import write_report
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 from cytodisk.simulate.moving_cells import SimulatedMovie
 from cytodisk.store.correlation_store import write_correlation
 from cytodisk.store.study import Study
@@ -66,13 +66,13 @@ def signal(truth: SimulatedMovie, masks: Path) -> Path:
 
 @pytest.fixture(scope="session")
 def study(masks: Path, signal: Path) -> Study:
-    return run_movie(open_movie(masks, signal, _SMALL), masks.with_name("study"))
+    return movie_study(open_movie(masks, signal, _SMALL), masks.with_name("study"))
 
 
 @pytest.fixture(scope="session")
 def bare_study(masks: Path) -> Study:
     """Without a signal, a scale or an interval."""
-    return run_movie(open_movie(masks, None, _SMALL), masks.with_name("bare"))
+    return movie_study(open_movie(masks, None, _SMALL), masks.with_name("bare"))
 
 
 @pytest.fixture(scope="session")

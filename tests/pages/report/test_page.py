@@ -18,7 +18,7 @@ from cytodisk.pages.report.page import page_flags, write_report
 from cytodisk.pages.report.signal_file import find_signal
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 from cytodisk.runs.qc_flags.study_flags import qc_flags
 from cytodisk.simulate.moving_cells import SimulatedMovie
 from cytodisk.store.study import Study, open_study
@@ -174,7 +174,7 @@ def test_other_cells_and_their_page(truth: SimulatedMovie, tmp_path: Path) -> No
     labels = np.concatenate([first, second], axis=2)
     tifffile.imwrite(tmp_path / "labels.tif", labels, metadata={"axes": "TYX"}, photometric="minisblack")
     parameters = MovieParameters(layers=2, sectors=6, kind="labels")
-    study = run_movie(open_movie(tmp_path / "labels.tif", None, parameters), tmp_path / "two")
+    study = movie_study(open_movie(tmp_path / "labels.tif", None, parameters), tmp_path / "two")
     assert write_report(study).name == "report.html"
     assert write_report(study, cell=0).name == "report.html"
     other = write_report(study, cell=1)

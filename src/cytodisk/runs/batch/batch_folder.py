@@ -35,7 +35,7 @@ def make_room(store: Store, provenance: dict[str, Any], target: str, resume: boo
     target : str
         Name of the folder, for messages.
     resume, overwrite : bool
-        See `run_batch`.
+        See `batch_study`.
 
     Raises
     ------

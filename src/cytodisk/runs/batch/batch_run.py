@@ -8,9 +8,9 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from threading import TIMEOUT_MAX
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
-from cytodisk.errors import OtherRunError, ParameterError, WriteError
+from cytodisk.errors import OtherRunError, WriteError
 from cytodisk.runs.batch.batch_file import Batch
 from cytodisk.runs.batch.batch_folder import describe_batch, make_room, note, now, remove_left_overs
 from cytodisk.runs.batch.batch_input import BatchInput
@@ -19,9 +19,11 @@ from cytodisk.runs.batch.batch_task import LARGE_MB, BatchTask, TaskResult, make
 from cytodisk.runs.batch.input_row import ROWS, InputRow, files_mark, read_row, row_key
 from cytodisk.runs.batch.merged_tables import merge_batch
 from cytodisk.runs.executor import Executor
-from cytodisk.runs.steps import Progress, check_options, silent
+from cytodisk.runs.run_options import BatchOptions
+from cytodisk.runs.steps import Progress, silent
 from cytodisk.store.targets import Store
 from cytodisk.store.url_store import is_url
+from cytodisk.taking import takes
 
 _CLUSTER_TASK_S = 10.0
 _MOST_NAMED = 5
@@ -60,17 +62,14 @@ class BatchSummary:
             self.failed.append(row)
 
 
-def run_batch(
+@takes(BatchOptions)
+def batch_study(
     batch: Batch,
     out: str | os.PathLike[str],
     *,
-    workers: int = 1,
-    time_limit: float | None = None,
-    resume: bool = False,
-    overwrite: bool = False,
-    scheduler: str | None = None,
     progress: Progress | None = None,
     tell: Tell = print,
+    **settings: Any,
 ) -> BatchSummary:
     """Run all inputs of a batch, each in a process of its own, and merge their tables.
 
@@ -80,22 +79,12 @@ def run_batch(
         As `read_batch` returns it.
     out : path-like
         Folder of the results: a study for each input in inputs/, its row in rows/, and the merged tables.
-    workers : int
-        Processes on this machine. The merged tables do not depend on it.
-    time_limit : float, optional
-        Seconds for one input; one that takes longer is stopped, and has a row that says so.
-    resume : bool
-        Go on in a folder that holds part of the same batch: inputs that went well are not done again, those
-        that failed are tried anew, a movie that was stopped goes on from its last frame. The batch file may
-        have more inputs than before.
-    overwrite : bool
-        Remove the results that are there.
-    scheduler : str, optional
-        Address of a Dask scheduler, whose workers do the inputs.
     progress : callable, optional
         Called with (inputs done, inputs in all).
     tell : callable
         Called with sentences on workers of a cluster.
+    **settings
+        See `BatchOptions`.
 
     Returns
     -------
@@ -108,18 +97,16 @@ def run_batch(
     StudyError
         The folder cannot be used, or results cannot be written, as on a full disk.
     """
-    check_options(workers, resume, overwrite)
-    if time_limit is not None and not 0 < time_limit <= TIMEOUT_MAX:
-        raise ParameterError(
-            f"time_limit must be a number of seconds above 0, got {time_limit}: leave it out for any"
-        )
+    options = BatchOptions.of(**settings)
+    scheduler, resume = options.scheduler, options.resume
+    limit = None if options.time_limit is None else min(options.time_limit, TIMEOUT_MAX)
     if scheduler is not None and not resume:
         _reach(scheduler)  # before the folder is touched
     target = os.fspath(out)
     store = open_store(target)
     with store.alone():
         provenance = describe_batch(batch)
-        make_room(store, provenance, target, resume, overwrite)
+        make_room(store, provenance, target, resume, options.overwrite)
         summary = BatchSummary(target)
         pending = list(batch.inputs)
         if resume:
@@ -127,10 +114,10 @@ def run_batch(
             remove_left_overs(store)
         note(store, provenance)
         if scheduler is None:
-            tasks = make_tasks(pending, target, seconds=0, time_limit=time_limit)
-            results = _run_here(_started(tasks, target), min(workers, max(1, len(pending))))
+            tasks = make_tasks(pending, target, seconds=0, time_limit=limit)
+            results = _run_here(_started(tasks, target), min(options.workers, max(1, len(pending))))
         else:
-            tasks = make_tasks(pending, target, seconds=_CLUSTER_TASK_S, time_limit=time_limit)
+            tasks = make_tasks(pending, target, seconds=_CLUSTER_TASK_S, time_limit=limit)
             results = _on_cluster(tasks, scheduler, target, tell)
         try:
             _take(results, len(pending), len(batch.inputs), progress or silent)

@@ -13,10 +13,10 @@ from typing import Any
 from cytodisk.errors import CytodiskError, OtherRunError, WriteError
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.map.map_inputs import open_inputs
-from cytodisk.runs.map.map_run import run_map
+from cytodisk.runs.map.map_run import map_study
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import run_movie
+from cytodisk.runs.movie.movie_run import movie_study
 from cytodisk.store.study import Study
 
 CANNOT_WRITE = "cannot write"
@@ -74,8 +74,8 @@ def _compute(item: BatchInput, folder: Path) -> dict[str, Any]:
 
 def _run_of(item: BatchInput, folder: Path) -> Callable[..., Study]:
     if isinstance(item.parameters, MovieParameters):
-        return partial(run_movie, open_movie(item.masks, item.signal, item.parameters), folder)
-    return partial(run_map, open_inputs(item.masks, item.signal, item.parameters), folder)
+        return partial(movie_study, open_movie(item.masks, item.signal, item.parameters), folder)
+    return partial(map_study, open_inputs(item.masks, item.signal, item.parameters), folder)
 
 
 def _facts(study: Study) -> dict[str, Any]:

@@ -22,12 +22,14 @@ from cytodisk.runs.compare_windows.compare_parameters import CompareWindowsParam
 from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS, layer_columns, status_of, windows_row
 from cytodisk.runs.compare_windows.comparison import Comparison, open_comparison, write_summaries
 from cytodisk.runs.executor import Executor
-from cytodisk.runs.map.map_inputs import MapInputs, open_inputs
+from cytodisk.runs.map.map_inputs import MapInputs
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
-from cytodisk.runs.steps import Progress, check_options, finish_run, silent
+from cytodisk.runs.run_options import RunOptions
+from cytodisk.runs.steps import Progress, finish_run, silent
 from cytodisk.scale import Scale
 from cytodisk.store.study_folder import PARAMETERS, StudyFolder, alone_in, part_key
+from cytodisk.taking import takes
 from cytodisk.windows.edge_windows import edge_windows
 from cytodisk.windows.grid import polar_windows
 from cytodisk.windows.on_cell import PARTS, WindowsOnCell
@@ -47,85 +49,46 @@ class CompareTask:
     path: Path
 
 
-def compare_cells(
-    masks: str | os.PathLike[str],
+@takes(RunOptions)
+def compare_opened_cells(
+    inputs: MapInputs,
     out: str | os.PathLike[str],
-    parameters: CompareWindowsParameters | None = None,
+    parameters: CompareWindowsParameters,
     *,
-    workers: int = 1,
-    resume: bool = False,
-    overwrite: bool = False,
     progress: Progress | None = None,
+    **settings: Any,
 ) -> Comparison:
     """Lay windows of several methods, with the same grid, on every cell and measure them.
 
     Parameters
     ----------
-    masks : path-like
-        One mask, a stack of masks or a label image, or a folder of those; see `open_mask_files`.
+    inputs : MapInputs
+        Opened with these parameters.
     out : path-like
         Folder for the results.
-    parameters : CompareWindowsParameters, optional
-    workers : int
-        Processes; with 1 everything runs in this one.
-    resume, overwrite : bool
-        Go on with the same run in this folder; replace the study that is there.
+    parameters : CompareWindowsParameters
     progress : callable, optional
         Called with (cells done, cells in all).
+    **settings
+        See `RunOptions`.
 
     Returns
     -------
     Comparison
         Complete; a cell that a method cannot map has a row with the reason.
 
-    Raises
-    ------
-    ReadError, MaskError, ParameterError
-        The masks cannot be used at all, or a parameter is out of range.
-    StudyError
-        The folder cannot be used.
-
     References
     ----------
     u-Unwrap, section 4.1 and Fig. 3.
     """
-    parameters = CompareWindowsParameters() if parameters is None else parameters
-    inputs = open_inputs(masks, None, parameters)
-    options: dict[str, Any] = {"workers": workers, "resume": resume, "overwrite": overwrite}
-    return compare_opened_cells(inputs, out, parameters, progress=progress, **options)
-
-
-def compare_opened_cells(
-    inputs: MapInputs,
-    out: str | os.PathLike[str],
-    parameters: CompareWindowsParameters,
-    *,
-    workers: int = 1,
-    resume: bool = False,
-    overwrite: bool = False,
-    progress: Progress | None = None,
-) -> Comparison:
-    """As `compare_cells`, with masks that are open already.
-
-    Parameters
-    ----------
-    inputs : MapInputs
-        Opened with these parameters.
-    out, parameters, workers, resume, overwrite, progress
-        See `compare_cells`.
-
-    Returns
-    -------
-    Comparison
-    """
-    check_options(workers, resume, overwrite)
+    options = RunOptions.of(**settings)
     parameters = parameters.in_pixels(Scale(inputs.pixel_size_um))
     provenance = describe_run(inputs.paths, parameters, inputs.understood, None) | {"run": "comparison"}
     with alone_in(out):
-        if resume and StudyFolder.is_complete(out, provenance):
+        if options.resume and StudyFolder.is_complete(out, provenance):
             write_summaries(Path(out))  # in case it was stopped just before
             return open_comparison(out)
-        folder = StudyFolder.start(out, provenance, COMPARED_CELLS, resume=resume, overwrite=overwrite)
+        folder = StudyFolder.start(out, provenance, COMPARED_CELLS, **options.again)
         write_parameters(parameters, folder.path / PARAMETERS)
         cells = [found.cell for found in read_source_cells(inputs.sources)]
         pending = {cell for cell in cells if not folder.has(part_key(cell))}
@@ -137,7 +100,7 @@ def compare_opened_cells(
             for found in read_source_cells(inputs.sources)
             if found.cell in pending
         )
-        with Executor(min(workers, max(1, len(pending)))) as executor:
+        with Executor(min(options.workers, max(1, len(pending)))) as executor:
             for rows in executor.each(compare_cell, tasks):
                 folder.add_cells(part_key(rows[0][0]["cell"]), rows)
                 done += 1

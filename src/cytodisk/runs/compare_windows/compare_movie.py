@@ -23,12 +23,14 @@ from cytodisk.runs.compare_windows.compare_frames import FollowedCell, measure_f
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, CompareMovieParameters
 from cytodisk.runs.compare_windows.compare_tables import COMPARED_MOVIE
 from cytodisk.runs.compare_windows.comparison import Comparison, open_comparison, write_summaries
-from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
+from cytodisk.runs.movie.movie_inputs import MovieInputs
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
-from cytodisk.runs.steps import check_options, finish_run, silent
+from cytodisk.runs.run_options import RunOptions
+from cytodisk.runs.steps import finish_run, silent
 from cytodisk.scale import Scale
 from cytodisk.store.study_folder import PARAMETERS, StudyFolder, alone_in, part_key
+from cytodisk.taking import takes
 
 
 @dataclass(frozen=True)
@@ -40,15 +42,14 @@ class _Part:
     key: str
 
 
-def compare_movie(
-    masks: str | os.PathLike[str],
+@takes(RunOptions)
+def compare_opened_movie(
+    inputs: MovieInputs,
     out: str | os.PathLike[str],
-    parameters: CompareMovieParameters | None = None,
+    parameters: CompareMovieParameters,
     *,
-    signal: str | os.PathLike[str] | None = None,
-    resume: bool = False,
-    overwrite: bool = False,
     progress: Callable[[int, int], None] | None = None,
+    **settings: Any,
 ) -> Comparison:
     """Follow each cell with the windows of several methods and measure how consistent they are.
 
@@ -56,72 +57,35 @@ def compare_movie(
 
     Parameters
     ----------
-    masks : path-like
-        Masks of one cell by frame, or label images by frame.
+    inputs : MovieInputs
+        Opened with these parameters.
     out : path-like
         Folder for the results.
-    parameters : CompareMovieParameters, optional
-    signal : path-like, optional
-        As many images, of the same shape; without it there is no correlation of consecutive frames.
-    resume, overwrite : bool
-        Go on with the same run in this folder; replace the study that is there.
+    parameters : CompareMovieParameters
     progress : callable, optional
         Called with (frames done, frames in all), over all methods.
+    **settings
+        See `RunOptions`; it runs in one process.
 
     Returns
     -------
     Comparison
         Complete; its `consistency` has the measures of the paper's Fig. 4.
 
-    Raises
-    ------
-    ReadError, MaskError, SignalError, ParameterError
-        A file is missing, damaged, or does not fit.
-    StudyError
-        The folder cannot be used.
-
     References
     ----------
     u-Unwrap, section 4.2 and Fig. 4.
     """
-    parameters = CompareMovieParameters() if parameters is None else parameters
-    inputs = open_movie(masks, signal, parameters)
-    options = {"resume": resume, "overwrite": overwrite}
-    return compare_opened_movie(inputs, out, parameters, progress=progress, **options)
-
-
-def compare_opened_movie(
-    inputs: MovieInputs,
-    out: str | os.PathLike[str],
-    parameters: CompareMovieParameters,
-    *,
-    resume: bool = False,
-    overwrite: bool = False,
-    progress: Callable[[int, int], None] | None = None,
-) -> Comparison:
-    """As `compare_movie`, with files that are open already.
-
-    Parameters
-    ----------
-    inputs : MovieInputs
-        Opened with these parameters.
-    out, parameters, resume, overwrite, progress
-        See `compare_movie`.
-
-    Returns
-    -------
-    Comparison
-    """
-    check_options(1, resume, overwrite)
+    options = RunOptions.of(**settings)
     parameters = parameters.in_pixels(Scale(inputs.scale.pixel_size_um))
     scale = inputs.scale.pixel_size_um, inputs.scale.frame_interval_s
     paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
     provenance = describe_run(paths, parameters, inputs.understood, *scale) | {"run": "movie comparison"}
     with alone_in(out):
-        if resume and StudyFolder.is_complete(out, provenance):
+        if options.resume and StudyFolder.is_complete(out, provenance):
             write_summaries(Path(out))  # in case it was stopped just before
             return open_comparison(out)
-        folder = StudyFolder.start(out, provenance, COMPARED_MOVIE, resume=resume, overwrite=overwrite)
+        folder = StudyFolder.start(out, provenance, COMPARED_MOVIE, **options.again)
         write_parameters(parameters, folder.path / PARAMETERS)
         parts = _parts(inputs, parameters.methods)
         _run(parts, inputs, parameters, folder, progress or silent)

@@ -20,25 +20,24 @@ from cytodisk.runs.map.map_inputs import MapInputs
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
-from cytodisk.runs.steps import Progress, check_options, finish_run, silent
+from cytodisk.runs.run_options import MapOptions
+from cytodisk.runs.steps import Progress, finish_run, silent
 from cytodisk.store.study import Study, open_study
 from cytodisk.store.study_folder import MAP_TABLES, PARAMETERS, StudyFolder, alone_in, part_key
+from cytodisk.taking import takes
 
 _CELLS_PER_PART = 8  # of one image, which go to a worker and into a file together
 
 
-def run_map(
+@takes(MapOptions)
+def map_study(
     inputs: MapInputs,
     out: str | os.PathLike[str],
     *,
-    workers: int = 1,
-    resume: bool = False,
-    overwrite: bool = False,
     draw: DrawCell | None = None,
     draw_at_most: int | None = None,
-    maps: bool = True,
-    geojson: bool = False,
     progress: Progress | None = None,
+    **settings: Any,
 ) -> Study:
     """Map and sample every cell, and write a study.
 
@@ -48,20 +47,14 @@ def run_map(
         As `open_inputs` returns it.
     out : path-like
         Folder of the study.
-    workers : int
-        Processes; with 1 everything runs in this one. The results do not depend on it.
-    resume, overwrite : bool
-        What to do with a study that is there; see `StudyFolder.start`.
     draw : callable, optional
         Draws a cell's figures: (folder, name, windows, signal, scale) → paths.
     draw_at_most : int, optional
         How many cells, from the first, to draw.
-    maps : bool
-        Write the map of each cell.
-    geojson : bool
-        Write each cell's window outlines beside its map.
     progress : callable, optional
         Called with (cells done, cells in all) at the start and after every few cells.
+    **settings
+        See `MapOptions`.
 
     Returns
     -------
@@ -75,30 +68,30 @@ def run_map(
     StudyError
         The folder cannot be used.
     """
-    check_options(workers, resume, overwrite)
+    options = MapOptions.of(**settings)
     provenance = describe_run(inputs.paths, inputs.parameters, inputs.understood, inputs.pixel_size_um)
     with alone_in(out):
-        if resume and StudyFolder.is_complete(out, provenance):
+        if options.resume and StudyFolder.is_complete(out, provenance):
             return open_study(out)
-        folder = StudyFolder.start(out, provenance, MAP_TABLES, resume=resume, overwrite=overwrite)
+        folder = StudyFolder.start(out, provenance, MAP_TABLES, **options.again)
         write_parameters(inputs.parameters, folder.path / PARAMETERS)
         parts = {_key(part): len(part) for part in _parts(read_source_cells(inputs.sources))}
         pending = {key for key in parts if not folder.has(key)}
         at_most = 0 if draw is None else sum(parts.values()) if draw_at_most is None else draw_at_most
-        settings = CellSettings(
+        how = CellSettings(
             inputs.parameters.part(MapParameters),
             inputs.pixel_size_um,
             folder.for_workers(),
             draw,
-            maps,
-            geojson,
+            options.maps,
+            options.geojson,
         )
         report = progress or silent
         done = sum(size for key, size in parts.items() if key not in pending)
         report(done, sum(parts.values()))
         tasks = _tasks(inputs, pending, at_most)
-        measure = partial(measure_part, settings=settings)
-        with Executor(min(workers, max(1, len(pending)))) as executor:
+        measure = partial(measure_part, settings=how)
+        with Executor(min(options.workers, max(1, len(pending)))) as executor:
             for size in executor.each(measure, tasks):
                 done += size
                 report(done, sum(parts.values()))

@@ -24,20 +24,21 @@ from cytodisk.runs.movie.movie_inputs import MovieInputs
 from cytodisk.runs.movie.movie_tables import finish_tables
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
-from cytodisk.runs.steps import Progress, check_options, finish_run, silent
+from cytodisk.runs.run_options import RunOptions
+from cytodisk.runs.steps import Progress, finish_run, silent
 from cytodisk.scale import Scale
 from cytodisk.store.study import Study, open_study
 from cytodisk.store.study_folder import MOVIE_TABLES, PARAMETERS, StudyFolder, alone_in, part_key
+from cytodisk.taking import takes
 
 
-def run_movie(
+@takes(RunOptions)
+def movie_study(
     inputs: MovieInputs,
     out: str | os.PathLike[str],
     *,
-    workers: int = 1,
-    resume: bool = False,
-    overwrite: bool = False,
     progress: Progress | None = None,
+    **settings: Any,
 ) -> Study:
     """Map, sample and measure every frame of every cell, and write a study.
 
@@ -47,12 +48,10 @@ def run_movie(
         As `open_movie` returns it.
     out : path-like
         Folder of the study.
-    workers : int
-        Processes; with 1 everything runs in this one. The results do not depend on it.
-    resume, overwrite : bool
-        What to do with a study that is there; see `StudyFolder.start`.
     progress : callable, optional
         Called with (frames done, frames in all), counted over all cells.
+    **settings
+        See `RunOptions`.
 
     Returns
     -------
@@ -66,7 +65,7 @@ def run_movie(
     StudyError
         The folder cannot be used.
     """
-    check_options(workers, resume, overwrite)
+    options = RunOptions.of(**settings)
     paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
     provenance = describe_run(
         paths, inputs.parameters, inputs.understood, inputs.scale.pixel_size_um, inputs.scale.frame_interval_s
@@ -77,11 +76,11 @@ def run_movie(
         "image_shape": list(inputs.masks.image_shape),
     }
     with alone_in(out):
-        if resume and StudyFolder.is_complete(out, provenance):
+        if options.resume and StudyFolder.is_complete(out, provenance):
             return open_study(out)
-        folder = StudyFolder.start(out, provenance, MOVIE_TABLES, resume=resume, overwrite=overwrite)
+        folder = StudyFolder.start(out, provenance, MOVIE_TABLES, **options.again)
         write_parameters(inputs.parameters, folder.path / PARAMETERS)
-        with Executor(workers) as executor:
+        with Executor(options.workers) as executor:
             _Run(inputs, folder, executor, progress).all_frames()
         channels = inputs.signal.channels if inputs.signal else ()
         finish_tables(folder, inputs.tracks, inputs.grid, inputs.scale, channels)

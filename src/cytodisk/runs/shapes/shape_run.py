@@ -22,11 +22,13 @@ from cytodisk.runs.map.map_inputs import MapInputs, open_inputs
 from cytodisk.runs.map.map_parameters import FileParameters
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
+from cytodisk.runs.run_options import RunOptions
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 from cytodisk.runs.shapes.shape_tables import SHAPE_TABLES, open_shapes, shape_table, write_shapes
-from cytodisk.runs.steps import Progress, check_options, finish_run, silent
+from cytodisk.runs.steps import Progress, finish_run, silent
 from cytodisk.runs.versions import installed
 from cytodisk.store.study_folder import MAPS, PARAMETERS, StudyFolder, alone_in, part_key
+from cytodisk.taking import takes
 
 CELLS_PER_PART = 32  # which go to a worker and into a file together: about a second's work
 _LAYOUT = (
@@ -58,15 +60,14 @@ def open_shape_inputs(masks: str | os.PathLike[str], parameters: ShapeParameters
     return open_inputs(masks, None, parameters.part(FileParameters))
 
 
-def run_shapes(
+@takes(RunOptions)
+def shape_study(
     inputs: MapInputs,
     out: str | os.PathLike[str],
     parameters: ShapeParameters | None = None,
     *,
-    workers: int = 1,
-    resume: bool = False,
-    overwrite: bool = False,
     progress: Progress | None = None,
+    **settings: Any,
 ) -> pd.DataFrame:
     """Measure the shape of every cell, score its complexity, and write a study.
 
@@ -77,12 +78,10 @@ def run_shapes(
     out : path-like
         Folder for the results.
     parameters : ShapeParameters, optional
-    workers : int
-        Processes; with 1 everything runs in this one. The results do not depend on it.
-    resume, overwrite : bool
-        Go on with the same run in this folder; replace the study that is there.
     progress : callable, optional
         Called with (cells done, cells in all) at the start and after every few cells.
+    **settings
+        See `RunOptions`.
 
     Returns
     -------
@@ -97,15 +96,15 @@ def run_shapes(
     StudyError
         The folder cannot be used.
     """
-    check_options(workers, resume, overwrite)
+    options = RunOptions.of(**settings)
     parameters = ShapeParameters() if parameters is None else parameters
     provenance = _describe(inputs, parameters)
     with alone_in(out):
-        if resume and StudyFolder.is_complete(out, provenance):
+        if options.resume and StudyFolder.is_complete(out, provenance):
             return open_shapes(out)
-        folder = StudyFolder.start(out, provenance, SHAPE_TABLES, resume=resume, overwrite=overwrite)
+        folder = StudyFolder.start(out, provenance, SHAPE_TABLES, **options.again)
         write_parameters(parameters, folder.path / PARAMETERS)
-        keys = _measure_all(inputs, folder, workers, progress)
+        keys = _measure_all(inputs, folder, options.workers, progress)
         table = shape_table(
             folder.read_rows(keys),
             inputs.pixel_size_um,

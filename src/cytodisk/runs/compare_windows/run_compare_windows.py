@@ -1,0 +1,81 @@
+"""`cytodisk compare-windows` as a function."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from cytodisk.runs.compare_windows.compare_cells import compare_opened_cells
+from cytodisk.runs.compare_windows.compare_movie import compare_opened_movie
+from cytodisk.runs.compare_windows.compare_parameters import CompareMovieParameters, CompareWindowsParameters
+from cytodisk.runs.compare_windows.comparison import Comparison
+from cytodisk.runs.map.map_inputs import open_inputs
+from cytodisk.runs.movie.movie_inputs import open_movie
+from cytodisk.runs.run_options import RunOptions
+from cytodisk.runs.steps import Progress
+from cytodisk.taking import takes
+
+
+@takes(CompareWindowsParameters, CompareMovieParameters, RunOptions)
+def run_compare_windows(
+    masks: str | os.PathLike[str],
+    out: str | os.PathLike[str],
+    *,
+    signal: str | os.PathLike[str] | None = None,
+    movie: bool = False,
+    progress: Progress | None = None,
+    parameters: CompareWindowsParameters | CompareMovieParameters | None = None,
+    **settings: Any,
+) -> Comparison:
+    """Lay windows of several kinds on cells and measure them: `cytodisk compare-windows`.
+
+    Parameters
+    ----------
+    masks : path-like
+        One mask, a stack of masks or a label image, or a folder of those.
+    out : path-like
+        Folder for the results.
+    signal : path-like, optional
+        Of a movie: what is sampled, to see how alike consecutive frames are.
+    movie : bool
+        The masks are the frames of a movie, whose cells are followed.
+    progress : callable, optional
+        Called with (cells or frames done, in all).
+    parameters : CompareWindowsParameters or CompareMovieParameters, optional
+        All parameters together; those that are given by name overrule them.
+    **settings
+        See `CompareWindowsParameters`, of a movie `CompareMovieParameters`, and `RunOptions`.
+
+    Returns
+    -------
+    Comparison
+        A cell that cannot be mapped has a row with the reason.
+
+    Raises
+    ------
+    ReadError, MaskError, SignalError, ParameterError
+        A file is missing, damaged, or does not fit, or a parameter is unknown or out of its range.
+    StudyError
+        The folder cannot be used.
+
+    References
+    ----------
+    u-Unwrap, sections 4.1 and 4.2, Figs. 3 and 4.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> from cytodisk import run_compare_windows, simulate
+    >>> tifffile.imwrite("mask.tif", simulate.disk(9).astype("uint8"))
+    >>> found = run_compare_windows("mask.tif", "compared", methods=("newton", "edge"), layers=2, sectors=4)
+    >>> found.by_method["method"].tolist()
+    ['newton', 'edge']
+    """
+    options, values = RunOptions.split(settings)
+    if movie or isinstance(parameters, CompareMovieParameters):
+        of_movie = CompareMovieParameters.chosen(parameters, values)
+        frames = open_movie(masks, signal, of_movie)
+        return compare_opened_movie(frames, out, of_movie, progress=progress, **dict(options))
+    of_cells = CompareWindowsParameters.chosen(parameters, values)
+    cells = open_inputs(masks, None, of_cells)
+    return compare_opened_cells(cells, out, of_cells, progress=progress, **dict(options))

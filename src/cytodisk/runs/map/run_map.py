@@ -1,0 +1,71 @@
+"""`cytodisk map` as a function."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from cytodisk.runs.map.map_inputs import open_inputs
+from cytodisk.runs.map.map_parameters import MapParameters
+from cytodisk.runs.map.map_run import map_study
+from cytodisk.runs.run_options import MapOptions
+from cytodisk.runs.steps import Progress
+from cytodisk.store.study import Study
+from cytodisk.taking import takes
+
+
+@takes(MapParameters, MapOptions)
+def run_map(
+    masks: str | os.PathLike[str],
+    out: str | os.PathLike[str],
+    *,
+    signal: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+    parameters: MapParameters | None = None,
+    **settings: Any,
+) -> Study:
+    """Map cells onto the disk, sample a signal in their windows, and write a study: `cytodisk map`.
+
+    Parameters
+    ----------
+    masks : path-like
+        One mask, a stack of masks or a label image, or a folder of those.
+    out : path-like
+        Folder for the results.
+    signal : path-like, optional
+        Image of the shape of the masks; for a folder of masks a folder, or an ending of names as "_img".
+    progress : callable, optional
+        Called with (cells done, cells in all).
+    parameters : MapParameters, optional
+        All parameters together; those that are given by name overrule them.
+    **settings
+        See `MapParameters` and `MapOptions`.
+
+    Returns
+    -------
+    Study
+        A cell that could not be mapped has a row with the reason.
+
+    Raises
+    ------
+    ReadError, MaskError, SignalError, ParameterError
+        A file is missing, damaged, or does not fit, or a parameter is unknown or out of its range.
+    StudyError
+        The folder cannot be used.
+
+    See Also
+    --------
+    map_to_disk : Maps one mask in memory.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> from cytodisk import run_map, simulate
+    >>> tifffile.imwrite("mask.tif", simulate.disk(9).astype("uint8"))
+    >>> study = run_map("mask.tif", "mapped", layers=2, sectors=4)
+    >>> study.cells["status"].tolist(), len(study.windows)
+    (['ok'], 8)
+    """
+    options, values = MapOptions.split(settings)
+    inputs = open_inputs(masks, signal, MapParameters.chosen(parameters, values))
+    return map_study(inputs, out, progress=progress, **dict(options))

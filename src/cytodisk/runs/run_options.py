@@ -1,0 +1,51 @@
+"""Options of a run that do not change its results, beside what decides them."""
+
+from collections.abc import Mapping
+from typing import Any, Self
+
+from pydantic import model_validator
+
+from cytodisk.parameters import Parameters, parameter
+
+
+class RunOptions(Parameters):
+    """How a run is done."""
+
+    workers: int = parameter(1, "Number of processes. The results do not depend on it.", least=1)
+    resume: bool = parameter(False, "Go on with the same run in this folder.")
+    overwrite: bool = parameter(False, "Replace the results in this folder.")
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> Self:
+        if self.resume and self.overwrite:
+            raise ValueError("resume and overwrite exclude each other: pass one of them")
+        return self
+
+    @property
+    def again(self) -> dict[str, bool]:
+        """What to do with results that are there; see `StudyFolder.start`."""
+        return {"resume": self.resume, "overwrite": self.overwrite}
+
+    @classmethod
+    def split(cls, settings: Mapping[str, Any]) -> tuple[Self, dict[str, Any]]:
+        """These options out of some settings, and the settings that are left."""
+        own = {name: value for name, value in settings.items() if name in cls.model_fields}
+        return cls(**own), {name: value for name, value in settings.items() if name not in own}
+
+
+class MapOptions(RunOptions):
+    """How a run of `cytodisk map` is done."""
+
+    maps: bool = parameter(True, "Keep the map of each cell. Without them the study takes less disk space.")
+    geojson: bool = parameter(False, "Write the outlines of windows beside the maps.")
+
+
+class BatchOptions(RunOptions):
+    """How a batch is done."""
+
+    time_limit: float | None = parameter(
+        None, "Longest time that one input may take; without it any.", above=0, unit="s"
+    )
+    scheduler: str | None = parameter(
+        None, "Address of a Dask scheduler, such as tcp://host:8786, whose workers do the inputs."
+    )
