@@ -67,7 +67,7 @@ def run_correlate(
     >>> import tifffile
     >>> from cytodisk import run_correlate, run_movie, simulate
     >>> movie = simulate.movie("fluctuating", frames=24, radius_px=14)
-    >>> tifffile.imwrite("masks.tif", movie.masks.astype("uint8"), metadata={"axes": "TYX"})
+    >>> tifffile.imwrite("masks.tif", movie.masks.astype("uint8"), photometric="minisblack")
     >>> tifffile.imwrite("signal.ome.tif", movie.signal.to_numpy(), metadata={"axes": "TCYX"})
     >>> study = run_movie("masks.tif", "movie", signal="signal.ome.tif", layers=2, sectors=8)
     >>> found = run_correlate(study, "0", max_lag=3, surrogates=19)

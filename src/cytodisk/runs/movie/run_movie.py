@@ -62,10 +62,10 @@ def run_movie(
     >>> import tifffile
     >>> from cytodisk import run_movie, simulate
     >>> movie = simulate.movie("growing", frames=3, radius_px=10, signals=False)
-    >>> tifffile.imwrite("masks.tif", movie.masks.astype("uint8"), metadata={"axes": "TYX"})
+    >>> tifffile.imwrite("masks.tif", movie.masks.astype("uint8"), photometric="minisblack")
     >>> study = run_movie("masks.tif", "movie", layers=2, sectors=4)
     >>> study.cells["status"].tolist(), len(study.edge)
-    (['ok', 'ok', 'ok'], 8)
+    (['ok', 'ok', 'ok'], 12)
     """
     options, values = RunOptions.split(settings)
     inputs = open_movie(masks, signal, MovieParameters.chosen(parameters, values))
