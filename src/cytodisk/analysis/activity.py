@@ -82,6 +82,7 @@ def sample_movie(
     >>> dict(activity["mean"].sizes)
     {'time': 3, 'channel': 2, 'layer': 2, 'sector': 6}
     """
+    how = dict(SampleParameters.of(**settings))
     frames, channels = parse_signals(signals, len(movie), movie.image_shape)
     shape = (len(movie), len(channels), grid.layers, grid.sectors)
     tables = {name: np.full(shape, np.nan) for name in STATISTICS}
@@ -89,7 +90,7 @@ def sample_movie(
     for time, record in enumerate(movie.records):
         if record.boundary is not None:
             windows = grid.on(movie[time])
-            data = sample(windows, _frame(frames[time], time, len(channels), movie.image_shape), **settings)
+            data = sample(windows, _frame(frames[time], time, len(channels), movie.image_shape), **how)
             for name in STATISTICS:
                 tables[name][time] = data[name].to_numpy()
             area[time] = windows.areas

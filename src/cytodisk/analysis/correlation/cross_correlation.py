@@ -98,8 +98,8 @@ def cross_correlate(
     >>> correlations["correlation"].mean("sector").idxmax("lag").item()  # the edge moves before the signal
     -3.0
     """
-    first, second, interval_s = named_series(a, b)
     how = CrossCorrelationParameters.of(**settings)
+    first, second, interval_s = named_series(a, b)
     lags = lags_within(max_lag, how.min_pairs, first.sizes["time"])
     _check_skipped(how.skip_lags, lags)
     options = how.part(PrepareParameters).changed(detrend_frames=default_frames(how, max_lag)).model_dump()

@@ -65,9 +65,9 @@ def peak_correlation(correlations: xr.Dataset, **settings: Any) -> xr.Dataset:
     >>> peaks["lag"].to_numpy(), peaks["q"].to_numpy()
     (array([[-3., -3., -3., -3.]]), array([[0.01, 0.01, 0.01, 0.01]]))
     """
+    rule = PeakParameters.of(**settings).rule
     if not isinstance(correlations, xr.Dataset) or "lag" not in correlations.coords:
         raise ParameterError("correlations must be the Dataset that cross_correlate returns")
-    rule = PeakParameters.of(**settings).rule
     curves = correlations["correlation"].transpose("lag", ...)
     lags = correlations["lag"].to_numpy()
     threshold = correlations["threshold"].to_numpy() if "threshold" in correlations else None

@@ -96,11 +96,11 @@ def correlate_pairs(
     >>> round(pairs["correlation"].sel(distance=0, lag=0).item(), 6)  # each window with itself
     1.0
     """
+    how = PairParameters.of(**settings)
     first, second, interval_s = named_series(a, b)
     for name, series in (("a", first), ("b", second)):
         if set(series.dims) != {"time", *_WINDOW}:
             raise ParameterError(f"{name} has the dims {list(series.dims)}: pass (time, layer, sector)")
-    how = PairParameters.of(**settings)
     min_pairs, surrogates = how.min_pairs, how.surrogates
     lags = lags_within(max_lag, min_pairs, first.sizes["time"])
     frames = default_frames(how, max_lag)

@@ -38,12 +38,11 @@ class ComparedParameters(EdgeGridParameters):
 
     exclusive: ClassVar[tuple[tuple[str, str], ...]] = (("depth_px", "depth_um"),)
 
-    methods: tuple[WindowMethod, ...] = ()
     depth_um: float | None = parameter(
         None, "The thickness of that layer in place of `depth_px`; needs the pixel size.", above=0, unit="µm"
     )
 
-    @field_validator("methods")
+    @field_validator("methods", check_fields=False)
     @classmethod
     def _once_each(cls, methods: tuple[WindowMethod, ...]) -> tuple[WindowMethod, ...]:
         if not methods or len(set(methods)) < len(methods):
