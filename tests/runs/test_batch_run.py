@@ -231,7 +231,9 @@ def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) ->
 
 def test_a_batch_goes_to_a_url_without_a_cluster_too(files: Path, tmp_path: Path) -> None:
     batch = read_batch(files / "study.toml")
-    assert batch_study(replace(batch, inputs=batch.inputs[:1]), f"file://{tmp_path}/out").statuses == {"ok": 1}
+    assert batch_study(replace(batch, inputs=batch.inputs[:1]), f"file://{tmp_path}/out").statuses == {
+        "ok": 1
+    }
     assert len(pd.read_parquet(tmp_path / "out" / "cells.parquet")) == 4
     assert (tmp_path / "out" / "inputs" / "movie_0" / "cells.parquet").is_file()
 
