@@ -265,7 +265,7 @@ def test_check_of_good_masks(run: Run, mask: Path) -> None:
     code, said, _ = run("check", mask)
     assert code == 0
     assert "0\t0\t1\tyes\t" in said
-    assert "1 cell: 1 usable (0 of them doubtful), 0 not usable" in said
+    assert "1 cell: 1 usable (0 with QC flags), 0 not usable" in said
 
 
 def test_check_names_what_is_wrong(run: Run, tmp_path: Path) -> None:
@@ -277,13 +277,13 @@ def test_check_names_what_is_wrong(run: Run, tmp_path: Path) -> None:
     assert "1\t1\t1\tyes\t1 fragment" in said
     assert "2\t2\t0\tno\tmask of shape (30, 30) is empty" in said
     assert "frames without a cell: 1 empty" in said
-    assert "2 frames: 2 usable (0 of them doubtful), 0 not usable" in said
+    assert "2 frames: 2 usable (0 with QC flags), 0 not usable" in said
 
 
 def test_check_counts_cells_of_labels(run: Run, tmp_path: Path) -> None:
     labels = np.zeros((30, 60), dtype=np.uint8)
     labels[5:25, 5:25], labels[5:25, 35:50] = 1, 2
-    assert "2 cells: 2 usable (0 of them" in run("check", write(tmp_path / "labels.tif", labels))[1]
+    assert "2 cells: 2 usable (0 with" in run("check", write(tmp_path / "labels.tif", labels))[1]
 
 
 def test_names_of_channels(run: Run, mask: Path, tmp_path: Path) -> None:
@@ -439,6 +439,6 @@ def test_doubtful_cells_are_named(run: Run, tmp_path: Path) -> None:
     mask = np.zeros((30, 60), dtype=np.uint8)
     mask[5:25, 5:25] = mask[5:25, 35:50] = 1
     path = write(tmp_path / "mask.tif", mask)
-    assert "doubtful\tperhaps more than one cell" in run("check", path)[1]
+    assert "QC flag\tperhaps more than one cell" in run("check", path)[1]
     said = run("map", path, "-o", tmp_path / "out", "--figures", 0)[1]
     assert "look at cell 0 (frame 0): perhaps more than one cell" in said

@@ -61,7 +61,7 @@ def test_a_folder_is_checked(run: Run, folder: Path) -> None:
     lines = said.splitlines()
     assert "cell\tfile\tframe\tlabel\tusable\tremarks" in lines
     assert any(line.startswith("4\t001_masks.png\t0\t1\t") for line in lines)
-    assert "6 files, 12 cells: 12 usable (0 of them doubtful), 0 not usable" in said
+    assert "6 files, 12 cells: 12 usable (0 with QC flags), 0 not usable" in said
     assert "files or images without a cell: 2 empty, 1 damaged" in said
     assert "2 without a cell: 003_masks.png: mask of shape" in error
     (folder / "001b_masks.png").unlink()

@@ -26,7 +26,7 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
         for layer in rows.itertuples():
             console.print(_layer_words(layer, of_cell[of_cell["layer"] == layer.layer]))
     for _, row in found.cells.iterrows():
-        for words in _doubts(row, settings):
+        for words in _cautions(row, settings):
             console.print(f"cell {row['cell']}{words}")
     _say_power(console, found.cells, windows)
     console.print(f"{count(layers['cell'].nunique())} correlated: {found.path}")
@@ -47,7 +47,7 @@ def say_replaced(console: "Console", before: dict[str, Any] | None, now: dict[st
         console.print(f"this replaced the correlation with {', '.join(changed)}: --name NAME keeps both")
 
 
-def _doubts(row: Any, settings: dict[str, Any]) -> Iterator[str]:
+def _cautions(row: Any, settings: dict[str, Any]) -> Iterator[str]:
     """What speaks against a cell's correlations."""
     from cytodisk.analysis.correlation.prepared_series import DRIFTING_SHARE
     from cytodisk.runs.channel_names import VELOCITIES

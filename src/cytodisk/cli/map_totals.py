@@ -106,12 +106,12 @@ def _say_remarks(console: "Console", mapped: "pd.DataFrame", of_folder: bool) ->
     remarks = mapped[mapped["notes"] != ""]
     if len(remarks):
         console.print(f"{count(len(remarks))} with remarks: column 'notes' of cells.parquet")
-    doubtful = mapped[mapped["qc_flags"] != ""]
-    for _, row in doubtful.head(_MOST_LINES).iterrows():
+    flagged = mapped[mapped["qc_flags"] != ""]
+    for _, row in flagged.head(_MOST_LINES).iterrows():
         place = row["source"] if of_folder else f"frame {row['frame']}"
         console.print(f"look at cell {row['cell']} ({place}): {row['qc_flags']}")
-    if len(doubtful) > _MOST_LINES:
-        console.print(f"… and at {len(doubtful) - _MOST_LINES} more: column 'qc_flags' of cells.parquet")
+    if len(flagged) > _MOST_LINES:
+        console.print(f"… and at {len(flagged) - _MOST_LINES} more: column 'qc_flags' of cells.parquet")
 
 
 def _say_lost(lost: "pd.DataFrame") -> None:
@@ -149,7 +149,7 @@ def say_checked(console: "Console", inputs: "MapInputs", cells: Iterable["Checke
 
     An image without any cell is no fault in a folder, where such images are usual.
     """
-    unusable = doubtful = looked_at = on_border = 0
+    unusable = flagged = looked_at = on_border = 0
     without: Counter[str] = Counter()
     lost: list[tuple[int | None, str, str, str]] = []
     print("cell\tfile\t" if inputs.is_folder else "cell\t", end="")
@@ -162,18 +162,18 @@ def say_checked(console: "Console", inputs: "MapInputs", cells: Iterable["Checke
         unusable += is_cell and bool(checked.reason)
         if not is_cell:
             without[checked.status] += 1
-        doubtful += bool(qc_flags)
+        flagged += bool(qc_flags)
         on_border += report is not None and report.touches_border
         reason = without_name(checked.reason, found.source) if inputs.is_folder else checked.reason
         remarks = reason or "; ".join([*qc_flags, *notes])
-        usable = "no" if checked.reason else "doubtful" if qc_flags else "yes"
+        usable = "no" if checked.reason else "QC flag" if qc_flags else "yes"
         place = f"{found.cell}\t{found.source}" if inputs.is_folder else f"{found.cell}"
         print(f"{place}\t{found.frame}\t{found.label}\t{usable}\t{remarks}")
         if checked.reason:
             number, what = (found.cell, "not usable") if is_cell else (None, "without a cell")
             lost.append((number, found.source, what, checked.reason))
     what = count(looked_at, "cell" if inputs.sources[0].kind != "stack" or inputs.is_folder else "frame")
-    words = f"{what}: {looked_at - unusable} usable ({doubtful} of them doubtful), {unusable} not usable"
+    words = f"{what}: {looked_at - unusable} usable ({flagged} with QC flags), {unusable} not usable"
     if inputs.is_folder:
         words = f"{count(len(inputs.sources), 'file')}, {words}, {on_border} on the image border"
         say_reasons(lost)

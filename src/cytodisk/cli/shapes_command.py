@@ -88,7 +88,7 @@ def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:
         console.print(f"files or images without a cell: {len(table) - cells}")
     border = int(measured["touches_border"].sum())
     console.print(f"on the image border, so measured in part: {count(border)}")
-    _say_doubts(console, measured)
+    _say_qc_flags(console, measured)
     say_reasons(zip(lost["cell"], lost["source"], lost["status"], lost["reason"], strict=True))
     if measured["complexity"].notna().any():
         _say_complexity(console, measured)
@@ -101,13 +101,13 @@ def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:
         fail(f"damaged files or frames of the input: {status['unreadable']}; all others are in {out}")
 
 
-def _say_doubts(console: "Console", measured: "pd.DataFrame") -> None:
+def _say_qc_flags(console: "Console", measured: "pd.DataFrame") -> None:
     from cytodisk.analysis.shape.curvature_features import RESOLVED_PX
     from cytodisk.analysis.shape.features import split_qc_flags
 
     small, others = split_qc_flags(measured["qc_flags"])
-    if doubtful := int((others != "").sum()):
-        console.print(f"perhaps not one whole cell: {doubtful}, column 'qc_flags' of shapes.parquet")
+    if flagged := int((others != "").sum()):
+        console.print(f"perhaps not one whole cell: {flagged}, column 'qc_flags' of shapes.parquet")
     if small.any():
         console.print(
             f"equivalent diameter below {RESOLVED_PX:.0f} px: {small.sum()} of {count(len(measured))}; their "

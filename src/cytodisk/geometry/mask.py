@@ -9,8 +9,8 @@ from scipy import ndimage
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import EmptyMaskError, MaskError, ParameterError
 
-# Shares from which on a mask is doubtful: of the area in dropped pieces, of the area in holes, of the edge.
-_DOUBTFUL_DROPPED, _DOUBTFUL_FILLED, _DOUBTFUL_BORDER = 0.1, 0.02, 0.5
+# Shares from which on a mask gets a QC flag: area in dropped pieces, area in holes, edge on the border.
+_FLAGGED_DROPPED, _FLAGGED_FILLED, _FLAGGED_BORDER = 0.1, 0.02, 0.5
 _EIGHT = np.ones((3, 3), dtype=bool)
 _FOUR = ndimage.generate_binary_structure(2, 1)
 
@@ -79,11 +79,11 @@ class MaskReport:
     def qc_flags(self) -> tuple[str, ...]:
         """What speaks against this being the mask of one cell, in words; a user should look at it."""
         qc_flags = []
-        if self.dropped_px > _DOUBTFUL_DROPPED * self.area_px:
+        if self.dropped_px > _FLAGGED_DROPPED * self.area_px:
             qc_flags.append("perhaps more than one cell: a large fragment was dropped")
-        if self.filled_px > _DOUBTFUL_FILLED * self.area_px:
+        if self.filled_px > _FLAGGED_FILLED * self.area_px:
             qc_flags.append("perhaps several touching cells: what was a hole is measured as cell")
-        if self.border_share > _DOUBTFUL_BORDER:
+        if self.border_share > _FLAGGED_BORDER:
             qc_flags.append("perhaps inverted or cut off: most of its edge is the image border")
         return tuple(qc_flags)
 
