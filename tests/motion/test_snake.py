@@ -2,8 +2,11 @@ import numpy as np
 import pytest
 
 from cytodisk import simulate
+from cytodisk.motion.demons_parameters import DemonsParameters
 from cytodisk.motion.snake import edge_map, gradient_vector_flow, sample_field, settle
 
+DEFAULT = DemonsParameters()
+FREE = DemonsParameters(snake_tension=0.0, snake_stiffness=0.0)
 CENTRE = 38.0  # of simulate.disk(30.0), whose margin is 8 pixels
 
 
@@ -39,13 +42,13 @@ def test_the_edge_map_is_a_level_ridge_on_the_boundary() -> None:
 
 def test_the_flow_has_the_steady_state_of_its_source() -> None:
     edges = edge_map(simulate.disk(6.0))
-    ours = gradient_vector_flow(edges, mu=0.1, iterations=4000)
+    ours = gradient_vector_flow(edges, DemonsParameters(gvf_mu=0.1, gvf_iterations=4000))
     np.testing.assert_allclose(ours, flow_by_hand(edges, 0.1, 4000), atol=1e-6)
 
 
 @pytest.mark.parametrize(("radius", "sign"), [(20.0, 1.0), (37.0, -1.0)])
 def test_the_flow_points_to_the_edge_from_afar(radius: float, sign: float) -> None:
-    flow = gradient_vector_flow(edge_map(simulate.disk(30.0)))
+    flow = gradient_vector_flow(edge_map(simulate.disk(30.0)), DEFAULT)
     points = circle(radius)
     outward = (points - CENTRE) / radius
     push = np.column_stack([sample_field(component, points) for component in flow])
@@ -56,25 +59,25 @@ def test_the_flow_points_to_the_edge_from_afar(radius: float, sign: float) -> No
 @pytest.mark.parametrize("radius", [15.0, 29.0, 37.0])
 def test_a_snake_settles_on_the_boundary_and_stays(radius: float, n: int) -> None:
     edges = edge_map(simulate.disk(30.0))
-    flow = gradient_vector_flow(edges)
-    last = settle(circle(radius, n), edges, flow)
+    flow = gradient_vector_flow(edges, DEFAULT)
+    last = settle(circle(radius, n), edges, flow, DEFAULT)
     assert np.abs(radii(last) - 30.0).max() < 0.5
-    after = settle(last, edges, flow, iterations=1)
+    after = settle(last, edges, flow, DEFAULT.changed(snake_iterations=1))
     assert np.abs(after - last).max() < 0.05
 
 
 def test_steps_are_no_longer_than_asked() -> None:
     edges = edge_map(simulate.disk(30.0))
-    flow = gradient_vector_flow(edges)
+    flow = gradient_vector_flow(edges, DEFAULT)
     start = circle(15.0)
-    moved = settle(start, edges, flow, step_px=0.5, iterations=4, tension=0.0, stiffness=0.0)
+    moved = settle(start, edges, flow, FREE.changed(snake_step=0.5, snake_iterations=4))
     np.testing.assert_allclose(np.linalg.norm(moved - start, axis=1), 2.0, atol=0.05)
 
 
 def test_a_flow_that_has_not_arrived_moves_nothing() -> None:
     edges = edge_map(simulate.disk(30.0))
     start = circle(10.0)
-    moved = settle(start, edges, np.zeros((2, *edges.shape)), tension=0.0, stiffness=0.0)
+    moved = settle(start, edges, np.zeros((2, *edges.shape)), FREE)
     np.testing.assert_allclose(moved, start, atol=1e-9)
 
 
@@ -84,5 +87,6 @@ def test_the_internal_energy_is_that_of_the_circulant_matrix() -> None:
     second = np.roll(np.eye(30), 1, axis=0) + np.roll(np.eye(30), -1, axis=0) - 2.0 * np.eye(30)
     matrix = np.eye(30) - 0.3 / spacing**2 * second + 2.0 / spacing**4 * second @ second
     still = np.zeros((76, 76))
-    moved = settle(start, still, np.stack([still, still]), iterations=1, tension=0.3, stiffness=2.0)
+    once = DemonsParameters(snake_iterations=1, snake_tension=0.3, snake_stiffness=2.0)
+    moved = settle(start, still, np.stack([still, still]), once)
     np.testing.assert_allclose(moved, np.linalg.solve(matrix, start), atol=1e-9)

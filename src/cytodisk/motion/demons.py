@@ -65,16 +65,8 @@ def propagate(
     field = _displacement(mask_here, mask_there, parameters)
     moved = points + np.column_stack([sample_field(component, points) for component in field])
     edges = edge_map(mask_there)
-    flow = gradient_vector_flow(edges, mu=parameters.gvf_mu, iterations=parameters.gvf_iterations)
-    settled = settle(
-        moved,
-        edges,
-        flow,
-        step_px=parameters.snake_step,
-        iterations=parameters.snake_iterations,
-        tension=parameters.snake_tension,
-        stiffness=parameters.snake_stiffness,
-    )
+    flow = gradient_vector_flow(edges, parameters)
+    settled = settle(moved, edges, flow, parameters)
     return (space_evenly(settled) if parameters.redistribute else settled) + low
 
 

@@ -5,6 +5,7 @@ from scipy.ndimage import gaussian_filter, laplace, map_coordinates
 
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.geometry.polygon import edge_lengths
+from cytodisk.motion.demons_parameters import DemonsParameters
 
 _BLUR_PX = 1.0
 # Across a straight edge the edge map is exp(-d² / 2w²) to second order in the distance d, with this w².
@@ -32,17 +33,15 @@ def edge_map(mask: BoolArray) -> FloatArray:
     return 4.0 * blurred * (1.0 - blurred)
 
 
-def gradient_vector_flow(edges: FloatArray, *, mu: float = 0.2, iterations: int = 100) -> FloatArray:
+def gradient_vector_flow(edges: FloatArray, parameters: DemonsParameters) -> FloatArray:
     """Gradient of an edge map, spread from the edges into the flat parts by diffusion.
 
     Parameters
     ----------
     edges : ndarray of shape (H, W) and dtype float
         Edge map, 0 to 1.
-    mu : float
-        Weight of smoothness, 0 to 0.25 (above that the diffusion is unstable).
-    iterations : int
-        Time steps of the diffusion; each takes the flow one pixel further.
+    parameters : DemonsParameters
+        `gvf_mu` and `gvf_iterations`, each of which takes the flow one pixel further.
 
     Returns
     -------
@@ -61,9 +60,9 @@ def gradient_vector_flow(edges: FloatArray, *, mu: float = 0.2, iterations: int 
     gradient = np.stack([np.gradient(edges, axis=axis) for axis in (0, 1)])
     weight = (gradient**2).sum(axis=0)
     flow = gradient.copy()
-    for _ in range(iterations):
+    for _ in range(parameters.gvf_iterations):
         spread = np.stack([laplace(component, mode="nearest") for component in flow])
-        flow = (flow + mu * spread + weight * gradient) / (1.0 + weight)
+        flow = (flow + parameters.gvf_mu * spread + weight * gradient) / (1.0 + weight)
     return np.asarray(flow)
 
 
@@ -71,11 +70,7 @@ def settle(
     points_yx: FloatArray,
     edges: FloatArray,
     flow: FloatArray,
-    *,
-    step_px: float = 1.0,
-    iterations: int = 100,
-    tension: float = 0.01,
-    stiffness: float = 0.1,
+    parameters: DemonsParameters,
 ) -> FloatArray:
     """Closed snake after it has moved along a flow onto the edges.
 
@@ -87,14 +82,9 @@ def settle(
         As `edge_map` returns it.
     flow : ndarray of shape (2, H, W) and dtype float
         As `gradient_vector_flow` returns it.
-    step_px : float
-        Longest step of an iteration, in pixels.
-    iterations : int
-        Number of steps.
-    tension : float
-        Weight of the squared first derivative along the snake (α of [1]_), in square pixels.
-    stiffness : float
-        Weight of the squared second derivative (β of [1]_), in pixels to the fourth.
+    parameters : DemonsParameters
+        Those of the snake; tension and stiffness are the weights α and β of [1]_, of the squared first and
+        second derivative along it.
 
     Returns
     -------
@@ -115,10 +105,11 @@ def settle(
     .. [1] Xu and Prince 1998, Snakes, shapes, and gradient vector flow, doi:10.1109/83.661186
     """
     spacing = float(edge_lengths(points_yx).mean())
-    damping = _internal_damping(len(points_yx), tension / spacing**2, stiffness / spacing**4)
+    tension, stiffness = parameters.snake_tension / spacing**2, parameters.snake_stiffness / spacing**4
+    damping = _internal_damping(len(points_yx), tension, stiffness)
     points = points_yx
-    for _ in range(iterations):
-        pushed = points + _steps(points, edges, flow, step_px)
+    for _ in range(parameters.snake_iterations):
+        pushed = points + _steps(points, edges, flow, parameters.snake_step)
         points = np.fft.irfft(np.fft.rfft(pushed, axis=0) * damping[:, None], n=len(points_yx), axis=0)
     return np.asarray(points)
 
