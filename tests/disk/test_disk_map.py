@@ -58,7 +58,7 @@ def test_bad_points_are_refused(disk: DiskMap) -> None:
         disk.to_disk(np.zeros((4, 3)))
     with pytest.raises(ParameterError, match="points_uv must have 2"):
         disk.to_cell(1.0)
-    with pytest.raises(ParameterError, match="outside must be 'nan' or 'nearest', got 'zero'"):
+    with pytest.raises(ParameterError, match=r"outside.*'zero'"):
         disk.to_disk([[0.0, 0.0]], outside="zero")
 
 
@@ -77,9 +77,9 @@ def test_image_shows_the_signal_where_the_map_says(disk: DiskMap) -> None:
 def test_bad_images_are_refused(disk: DiskMap) -> None:
     with pytest.raises(SignalError, match=r"signal has shape \(3, 3\), the mask"):
         disk.image(np.zeros((3, 3)))
-    with pytest.raises(SignalError, match="signal must be numeric, got dtype complex128"):
+    with pytest.raises(SignalError, match=r"signal.*dtype complex128"):
         disk.image(np.zeros(disk.mask.shape, dtype=complex))
-    with pytest.raises(ParameterError, match="size must be a whole number of at least 1, got 0"):
+    with pytest.raises(ParameterError, match=r"size.*0"):
         disk.image(np.zeros(disk.mask.shape), size=0)
 
 

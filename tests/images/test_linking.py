@@ -189,7 +189,7 @@ def test_frames_that_are_no_label_images(frames: list[np.ndarray], message: str)
 
 @pytest.mark.parametrize("least_overlap", [0, -0.1, 1.01, float("nan")])
 def test_least_overlap_out_of_range(least_overlap: float) -> None:
-    with pytest.raises(ParameterError, match="least_overlap must be above 0 and at most 1, got"):
+    with pytest.raises(ParameterError, match="least_overlap must"):
         link_labels([], least_overlap=least_overlap)
 
 

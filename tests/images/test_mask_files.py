@@ -105,7 +105,8 @@ def test_a_frame_without_label_has_a_reason(tmp_path: Path) -> None:
 
 def test_labels_that_are_no_whole_numbers_have_a_reason(tmp_path: Path) -> None:
     (found,) = read_cells(written(tmp_path, TWO.astype(np.float32)), "labels")
-    assert str(found.fault) == "labels must be whole numbers, got dtype float32: save the labels as uint16"
+    assert "whole numbers" in str(found.fault)
+    assert "float32" in str(found.fault)
 
 
 def test_a_mask_with_smoothed_edges_is_refused(tmp_path: Path) -> None:

@@ -122,5 +122,5 @@ def test_labels_that_are_no_whole_numbers_are_refused(tmp_path: Path, link: bool
 
 @pytest.mark.parametrize("link", [False, True])
 def test_a_file_without_any_label_is_refused(tmp_path: Path, link: bool) -> None:
-    with pytest.raises(MaskError, match=r"labels\.tif holds no label in any of its 3 frames"):
+    with pytest.raises(MaskError, match=r"labels\.tif.*3 frames"):
         tracks_of(written(tmp_path, drawn({}, {}, {})), "labels", link=link)

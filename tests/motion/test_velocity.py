@@ -321,7 +321,7 @@ def test_bad_sectors_are_refused(
 
 @pytest.mark.parametrize("function", [edge_velocity, boundary_velocity, edge_changes])
 def test_an_unknown_frame_is_refused(gappy: DiskMovie, function: Callable[..., xr.DataArray]) -> None:
-    with pytest.raises(ParameterError, match="frame must be 'lab' or 'cell', got 'moon'"):
+    with pytest.raises(ParameterError, match=r"frame.*'moon'"):
         function(gappy, frame="moon")
 
 

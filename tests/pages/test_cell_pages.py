@@ -74,7 +74,7 @@ def test_page_of_an_empty_signal(tmp_path: Path, windows: CellWindows, value: fl
 
 
 def test_page_refuses(tmp_path: Path, windows: CellWindows) -> None:
-    with pytest.raises(ParameterError, match="name must be a file name without folders, got 'a/b'"):
+    with pytest.raises(ParameterError, match=r"name.*'a/b'"):
         write_cell_figures(tmp_path, "a/b", windows, None, None)
     with pytest.raises(SignalError, match="signal has shape"):
         write_cell_figures(tmp_path, "a", windows, xr.DataArray(np.ones((3, 3)), dims=("y", "x")), None)

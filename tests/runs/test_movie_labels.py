@@ -95,7 +95,7 @@ def test_a_cell_that_leaves_ends_there(study: cd.Study) -> None:
 def test_frames_before_a_cell_came_are_missing_in_its_movie(study: cd.Study) -> None:
     movie = study.movie(GUEST)
     assert movie.status == ["missing", "missing", "ok", "ok", "ok"]
-    with pytest.raises(MapError, match="frame 1 has no map: cell 1 is not in frame 1 yet"):
+    with pytest.raises(MapError, match=r"frame 1.*cell 1"):
         movie[1]
     assert_array_equal(movie[COMES].mask, LABELS[COMES] == 5)
 

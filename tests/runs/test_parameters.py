@@ -126,5 +126,5 @@ def test_a_file_of_another_command_is_called_so(tmp_path: Path) -> None:
         parameters_from({}, tmp_path / "parameters.toml", MapParameters)
     write_parameters(MapParameters(), tmp_path / "parameters.toml")
     (tmp_path / "provenance.json").write_text('{"fingerprint": {}}')
-    with pytest.raises(ParameterError, match=r"layers, .*: it is that of cytodisk map; use that"):
+    with pytest.raises(ParameterError, match=r"layers, .*cytodisk map"):
         parameters_from({}, tmp_path / "parameters.toml", ShapeParameters)

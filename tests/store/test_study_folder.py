@@ -163,7 +163,7 @@ def test_a_file_is_no_output_folder(tmp_path: Path) -> None:
 
 
 def test_open_study_says_why_not(tmp_path: Path) -> None:
-    with pytest.raises(ReadError, match=r"study .*nowhere does not exist: check the path"):
+    with pytest.raises(ReadError, match="nowhere does not exist"):
         cd.open_study(tmp_path / "nowhere")
     with pytest.raises(ReadError, match=r"no study.*provenance\.json"):
         cd.open_study(tmp_path)

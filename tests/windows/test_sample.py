@@ -149,9 +149,9 @@ def test_a_signal_that_does_not_fit_is_refused(signal: object, message: str) -> 
 
 def test_parameters_out_of_range_are_refused(windows: cd.CellWindows) -> None:
     signal = np.zeros(windows.mask.shape)
-    with pytest.raises(ParameterError, match=r"quantiles must be a sequence of numbers 0 to 1, got"):
+    with pytest.raises(ParameterError, match="quantiles must"):
         cd.sample(windows, signal, quantiles=[-0.1, 0.5, 2])
-    with pytest.raises(ParameterError, match="nan must be one of propagate, omit, got 'drop'"):
+    with pytest.raises(ParameterError, match=r"nan.*'drop'"):
         cd.sample(windows, signal, nan="drop")
 
 

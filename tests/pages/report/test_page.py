@@ -60,7 +60,7 @@ def test_study_without_a_map_is_refused(study: Study) -> None:
 
 
 def test_unknown_cell_is_refused(study: Study) -> None:
-    with pytest.raises(ParameterError, match="cell must be a number of the study's 1 cells from 0, got 4"):
+    with pytest.raises(ParameterError, match=r"cell.*4"):
         write_report(study, cell=4)
 
 
@@ -70,7 +70,7 @@ def test_folder_that_is_not_there(study: Study, tmp_path: Path) -> None:
 
 
 def test_signal_that_does_not_fit(study: Study, masks: Path) -> None:
-    with pytest.raises(SignalError, match="signal has 8 frames of 1 channels, the study's has 2 channels"):
+    with pytest.raises(SignalError, match=r"8 frames of 1 channels.*2 channels"):
         write_report(study, signal=open_frames(masks))
 
 
@@ -79,7 +79,7 @@ def test_signal_of_another_size(study: Study, signal: Path, tmp_path: Path) -> N
     height, width = study.provenance["image_shape"]
     words = f"has images of {height} × {width} pixels, the study's masks have {height + 2} × {width}"
     other = Study(study.path, study.cells, study.provenance | {"image_shape": [height + 2, width]})
-    with pytest.raises(SignalError, match=f"signal {words}: pass the movie that was measured"):
+    with pytest.raises(SignalError, match=f"signal {words}"):
         write_report(other, tmp_path / "report.html", signal=open_frames(signal))
     assert not (tmp_path / "report.html").exists()
     found = find_signal(other)
