@@ -213,7 +213,7 @@ def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) ->
     changed = replace(batch.inputs[0], parameters=MovieParameters(layers=3, sectors=6))
     with pytest.raises(OtherRunError, match=r"for movie_0: .*remove .*rows/movie_0\.json"):
         batch_study(replace(batch, inputs=(changed, *batch.inputs[1:])), quiet, resume=True)
-    with pytest.raises(OtherRunError, match="holds a study of cytodisk movie: pass another folder"):
+    with pytest.raises(OtherRunError, match="study of cytodisk movie"):
         batch_study(batch, quiet / "inputs" / "movie_0", overwrite=True)
     with pytest.raises(StudyError, match="is not empty and holds no batch"):
         batch_study(batch, files)

@@ -122,7 +122,7 @@ def test_another_run_is_not_resumed(write_stack: WriteStack, tmp_path: Path) -> 
     other = open_inputs(masks, signal, SMALL.model_copy(update={"layers": 4}))
     with pytest.raises(StudyError, match=r"holds another run .*layers: 3 then, 4 now"):
         map_study(other, tmp_path / "out", resume=True)
-    with pytest.raises(StudyError, match="pass --resume to go on, --overwrite to replace it"):
+    with pytest.raises(StudyError, match=r"--resume.*--overwrite"):
         map_study(other, tmp_path / "out")
     assert_same_study(first, cd.open_study(tmp_path / "out"))
     assert len(map_study(other, tmp_path / "out", overwrite=True).windows) == 2 * 4 * 8
@@ -213,13 +213,13 @@ def test_a_signal_that_does_not_fit_is_refused(write_stack: WriteStack, tmp_path
 
 def test_a_stack_is_no_single_mask(write_stack: WriteStack) -> None:
     masks, _ = write_stack(2)
-    with pytest.raises(MaskError, match="is a stack of 2 frames where one image is needed"):
+    with pytest.raises(MaskError, match="stack of 2 frames"):
         open_inputs(masks, None, parameters_from({"kind": "mask"}, None, MapParameters))
 
 
 def test_workers_must_be_positive(write_stack: WriteStack, tmp_path: Path) -> None:
     inputs: MapInputs = open_inputs(write_stack(1)[0], None, SMALL)
-    with pytest.raises(ParameterError, match="workers must be a whole number of at least 1, got 0"):
+    with pytest.raises(ParameterError, match=r"workers.*0"):
         map_study(inputs, tmp_path / "out", workers=0)
     assert not (tmp_path / "out").exists()
 

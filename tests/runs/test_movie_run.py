@@ -242,7 +242,7 @@ def test_results_do_not_depend_on_workers(files: tuple[Path, Path], study: cd.St
 
 
 def test_workers_must_be_positive(files: tuple[Path, Path], tmp_path: Path) -> None:
-    with pytest.raises(ParameterError, match="workers must be a whole number of at least 1, got 0"):
+    with pytest.raises(ParameterError, match=r"workers.*0"):
         movie_study(open_movie(*files, SMALL), tmp_path / "out", workers=0)
     with pytest.raises(ParameterError, match="resume and overwrite exclude each other"):
         movie_study(open_movie(*files, SMALL), tmp_path / "out", resume=True, overwrite=True)
