@@ -14,15 +14,6 @@ import cytodisk as cd
 
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 SLOW = {"complexity_score", "run_batch", "run_correlate"}  # UMAP is compiled, processes are started
-STILL_WITHOUT = (
-    "open_",
-    "qc_flags",
-    "write_report",
-    "write_c",
-    "write_movie",
-    "write_overview",
-    "write_shape",
-)
 SPACES: tuple[ModuleType, ...] = (cd, cd.plot, cd.pages, cd.simulate)
 
 
@@ -31,8 +22,6 @@ def public() -> Iterator[Any]:
     for space in SPACES:
         for name in space.__all__:
             value = getattr(space, name)
-            if name.startswith(STILL_WITHOUT):
-                continue
             if inspect.isroutine(value) or inspect.isclass(value):
                 marks = [pytest.mark.slow] if name in SLOW else []
                 yield pytest.param(value, id=f"{space.__name__}.{name}", marks=marks)

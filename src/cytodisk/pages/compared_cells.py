@@ -55,9 +55,23 @@ def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = N
     ParameterError
         There are more than five, or no such cell with windows.
 
+    See Also
+    --------
+    write_comparison : Measures by layer.
+
     References
     ----------
     u-Unwrap, Fig. 3A.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> import cytodisk as cd
+    >>> tifffile.imwrite("mask.tif", cd.simulate.disk(12).astype("uint8"))
+    >>> settings = {"layers": 2, "sectors": 6, "methods": ("newton", "edge")}
+    >>> comparison = cd.run_compare_windows("mask.tif", "compared", **settings)
+    >>> cd.pages.write_compared_cells(comparison).name
+    'cells.png'
     """
     chosen = chosen_cells(comparison) if cells is None else _asked_for(comparison, cells)
     if not chosen:

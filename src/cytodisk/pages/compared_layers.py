@@ -53,9 +53,24 @@ def write_comparison(comparison: Comparison) -> Path:
     -------
     Path
 
+    See Also
+    --------
+    write_compared_cells : The windows in the cells.
+    write_compared_movie : Through time.
+
     References
     ----------
     u-Unwrap, Fig. 3B.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> import cytodisk as cd
+    >>> tifffile.imwrite("mask.tif", cd.simulate.disk(12).astype("uint8"))
+    >>> settings = {"layers": 2, "sectors": 6, "methods": ("newton", "edge")}
+    >>> comparison = cd.run_compare_windows("mask.tif", "compared", **settings)
+    >>> cd.pages.write_comparison(comparison).name
+    'comparison.png'
     """
     path = figures_folder(comparison.path) / "comparison.png"
     with paper_style():

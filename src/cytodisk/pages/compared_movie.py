@@ -56,9 +56,24 @@ def write_compared_movie(comparison: Comparison, cell: int, channel: str | None 
     Path
         `figures/movie_cell_00000_<channel>.png`, or `movie_cell_00000.png` without a channel.
 
+    See Also
+    --------
+    write_comparison : Measures by layer.
+
     References
     ----------
     u-Unwrap, Fig. 4B to D.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=5, radius_px=12.0)
+    >>> tifffile.imwrite("masks.tif", truth.masks.astype("uint8"), metadata={"axes": "TYX"})
+    >>> settings = {"layers": 2, "sectors": 6, "methods": ("newton", "edge")}
+    >>> comparison = cd.run_compare_windows("masks.tif", "compared", movie=True, **settings)
+    >>> cd.pages.write_compared_movie(comparison, 0).name
+    'movie_cell_00000.png'
     """
     rows = comparison.cells[(comparison.cells["cell"] == cell) & (comparison.cells["mapped"] > 0)]
     methods = [method for method in comparison.methods if method in set(rows["method"])]

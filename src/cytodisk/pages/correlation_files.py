@@ -70,9 +70,26 @@ def write_correlation_figures(
     StudyError
         The folder cannot be written.
 
+    See Also
+    --------
+    write_movie_figures : Pictures of the movie itself.
+
     References
     ----------
     u-Unwrap, Fig. 5 and S4.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("fluctuating", frames=24, radius_px=12.0)
+    >>> tifffile.imwrite("masks.tif", truth.masks.astype("uint8"), metadata={"axes": "TYX"})
+    >>> metadata = {"axes": "TCYX", "Channel": {"Name": ["edge", "material"]}}
+    >>> tifffile.imwrite("signal.ome.tif", truth.signal.to_numpy(), metadata=metadata)
+    >>> study = cd.run_movie("masks.tif", "out", signal="signal.ome.tif", layers=2, sectors=6)
+    >>> correlation = cd.run_correlate(study, "edge", max_lag=4, surrogates=19)
+    >>> [path.name for path in cd.pages.write_correlation_figures(study, correlation)]
+    ['cell_00000_curves.png', 'cell_00000_maps.png', 'cell_00000_peaks.png', 'cell_00000_events.png']
     """
     chosen = _formats(formats)
     _check_cell(correlation, cell)

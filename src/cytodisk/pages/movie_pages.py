@@ -75,6 +75,21 @@ def write_movie_figures(
         An image has another shape than the masks.
     StudyError
         The folder cannot be written.
+
+    See Also
+    --------
+    write_animation : The animated picture alone.
+    write_correlation_figures : Pictures of a correlation.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=5, radius_px=12.0)
+    >>> tifffile.imwrite("masks.tif", truth.masks.astype("uint8"), metadata={"axes": "TYX"})
+    >>> study = cd.run_movie("masks.tif", "out", layers=2, sectors=6)
+    >>> [path.name for path in cd.pages.write_movie_figures(study, 0, animation=False)]
+    ['cell_00000_velocity.png', 'cell_00000_edge.png', 'cell_00000_strip.png', 'cell_00000_consistency.png']
     """
     movie = DrawnMovie(study, cell)
     if not movie.mapped:

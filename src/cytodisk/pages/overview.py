@@ -50,6 +50,20 @@ def write_overview(path: Path, cells: pd.DataFrame, masks: Callable[[int], DiskM
         The table has no rows or lacks a column.
     StudyError
         The file cannot be written.
+
+    See Also
+    --------
+    write_cell_figures : One cell.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> import tifffile
+    >>> import cytodisk as cd
+    >>> tifffile.imwrite("labels.tif", cd.simulate.label_image(cells=3))
+    >>> study = cd.run_map("labels.tif", "out", layers=2, sectors=6)
+    >>> cd.pages.write_overview(Path("overview.png"), study.cells).name
+    'overview.png'
     """
     missing = [column for column in _NEEDED if column not in cells.columns]
     if missing:

@@ -56,6 +56,19 @@ def write_shape_figures(
     Returns
     -------
     list of Path
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> import numpy as np
+    >>> import pandas as pd
+    >>> import cytodisk as cd
+    >>> masks = {cell: cd.simulate.random_smooth(cell, radius=12) for cell in range(12)}
+    >>> plane = np.random.default_rng(0).normal(size=(12, 2)) * [3, 1]
+    >>> score = pd.DataFrame(plane, columns=["umap_1", "umap_2"])
+    >>> score = score.assign(cell=range(12), complexity=plane[:, 0])  # as complexity_score returns it
+    >>> [path.name for path in cd.pages.write_shape_figures(Path("."), score, masks)]
+    ['complexity.png', 'extremes.png']
     """
     with paper_style():
         pages = {

@@ -45,6 +45,22 @@ class Study:
         `cells.attrs["units"]`.
     provenance : dict
         Versions, inputs with their hashes, parameters, times.
+
+    See Also
+    --------
+    open_study : Opens one.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=5, radius_px=12.0)
+    >>> tifffile.imwrite("masks.tif", truth.masks.astype("uint8"), metadata={"axes": "TYX"})
+    >>> study = cd.run_movie("masks.tif", "out", layers=2, sectors=6)
+    >>> study.is_movie, study.movie(0)[2].certificate.valid
+    (True, True)
+    >>> study.edge[["frame", "sector", "velocity"]].shape
+    (30, 3)
     """
 
     path: Path
@@ -235,6 +251,24 @@ def open_study(path: str | os.PathLike[str]) -> Study:
     ReadError
         The folder does not exist, is not a study of `cytodisk map` or `cytodisk movie`, is damaged, or its
         run is not complete.
+
+    See Also
+    --------
+    run_map, run_movie : Write a study.
+    open_shapes : Read what run_shapes wrote.
+    open_comparison : Read what run_compare_windows wrote.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> import cytodisk as cd
+    >>> tifffile.imwrite("mask.tif", cd.simulate.disk(12).astype("uint8"))
+    >>> _ = cd.run_map("mask.tif", "out", layers=3, sectors=8)  # or: cytodisk map mask.tif -o out …
+    >>> study = cd.open_study("out")
+    >>> study.cells["status"].tolist(), len(study.windows)
+    (['ok'], 24)
+    >>> study.map(0).certificate.valid
+    True
     """
     folder = Path(path)
     provenance = read_provenance(folder)

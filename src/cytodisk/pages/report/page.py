@@ -74,6 +74,20 @@ def write_report(
         The signal has images of another size, other channels or fewer frames than the study.
     MissingPartError
         Bokeh is not installed.
+
+    See Also
+    --------
+    qc_flags : What the page says first.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=5, radius_px=12.0)
+    >>> tifffile.imwrite("masks.tif", truth.masks.astype("uint8"), metadata={"axes": "TYX"})
+    >>> study = cd.run_movie("masks.tif", "out", layers=2, sectors=6)
+    >>> cd.write_report(study).name
+    'report.html'
     """
     bokeh()  # before any work is done
     usual = _usual_cell(study)

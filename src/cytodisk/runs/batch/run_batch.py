@@ -49,6 +49,10 @@ def run_batch(
     StudyError
         The folder cannot be used, or results cannot be written.
 
+    See Also
+    --------
+    run_map, run_movie : One input.
+
     Examples
     --------
     >>> import tifffile

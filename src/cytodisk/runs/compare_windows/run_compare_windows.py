@@ -58,6 +58,11 @@ def run_compare_windows(
     StudyError
         The folder cannot be used.
 
+    See Also
+    --------
+    measures_by_layer : Measures of windows that you have.
+    open_comparison : Read the results later.
+
     References
     ----------
     u-Unwrap, sections 4.1 and 4.2, Figs. 3 and 4.

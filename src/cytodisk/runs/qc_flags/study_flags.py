@@ -22,11 +22,25 @@ def qc_flags(study: Study) -> list[QCFlag]:
     list of QCFlag
         The gravest first; empty if there are none. A frame may stand in several.
 
+    See Also
+    --------
+    write_report : The page shows them first.
+
     Notes
     -----
     A frame is compared with the other frames of its own cell where cells differ by nature (area, velocity),
     by the median of absolute values, so that the faults themselves do not raise the bar; the thresholds are
     the constants of `column_flags`, `motion_flags`, `signal_drift` and `correlation_flags`.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("growing", frames=5, radius_px=12.0)
+    >>> tifffile.imwrite("masks.tif", truth.masks.astype("uint8"), metadata={"axes": "TYX"})
+    >>> study = cd.run_movie("masks.tif", "out", layers=2, sectors=6)
+    >>> cd.qc_flags(study)  # nothing to doubt
+    []
     """
     found = [flag for rule in _RULES for flag in rule(study)]
     return [*found, *_other_warnings(study, found)]

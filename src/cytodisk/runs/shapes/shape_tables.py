@@ -124,6 +124,21 @@ def open_shapes(path: str | os.PathLike[str]) -> pd.DataFrame:
     ------
     ReadError
         The folder holds no complete run of `cytodisk shapes`.
+
+    See Also
+    --------
+    run_shapes : Writes the table.
+    open_study : Read what run_map or run_movie wrote.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> import cytodisk as cd
+    >>> tifffile.imwrite("labels.tif", cd.simulate.label_image(cells=3))
+    >>> _ = cd.run_shapes("labels.tif", "shapes")  # three cells: features, but no complexity
+    >>> table = cd.open_shapes("shapes")
+    >>> table["status"].tolist(), table.attrs["units"]["area"]
+    (['ok', 'ok', 'ok'], 'px²')
     """
     folder = Path(path)
     provenance = read_provenance(folder)
