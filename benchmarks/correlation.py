@@ -53,7 +53,7 @@ from cytodisk.motion.map_movie import map_movie
 from cytodisk.motion.velocity import edge_velocity
 from cytodisk.simulate import SERIES_KINDS, independent_series, movie
 from cytodisk.simulate.null_series import SeriesKind
-from cytodisk.windows.grid import polar_windows
+from cytodisk.windows.polar_windows import polar_windows
 
 ALPHA = 0.05
 NULLS: tuple[Null, ...] = ("phase", "shift")

@@ -52,7 +52,7 @@ def windows(data: Path) -> Iterator[Figure]:
 
     from cytodisk import simulate
     from cytodisk.disk.mapping import map_to_disk
-    from cytodisk.windows.grid import polar_windows
+    from cytodisk.windows.polar_windows import polar_windows
     from cytodisk.windows.sample import sample
 
     masks = [tifffile.imread(path) > 0 for path in sorted((data / "reference_masks").glob("*.tif"))]

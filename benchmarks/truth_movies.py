@@ -46,7 +46,7 @@ from cytodisk.motion.tracking_parameters import SMOOTHNESS_PX2, Tracker, Trackin
 from cytodisk.motion.velocity import edge_velocity
 from cytodisk.simulate import MOVIE_KINDS, SimulatedMovie
 from cytodisk.simulate.movie_kinds import MovieKind
-from cytodisk.windows.grid import PolarGrid, polar_windows
+from cytodisk.windows.polar_windows import PolarGrid, polar_windows
 
 TRACKERS: tuple[Tracker, ...] = get_args(Tracker)
 HORIZONS = (1, 10, 50)

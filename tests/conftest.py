@@ -8,8 +8,7 @@ from hypothesis import HealthCheck, settings
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_to_disk
-from cytodisk.windows.cell_windows import CellWindows
-from cytodisk.windows.grid import polar_windows
+from cytodisk.windows.polar_windows import CellWindows, polar_windows
 
 _COMMON = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 settings.register_profile("here", max_examples=30, **_COMMON)

@@ -12,7 +12,7 @@ from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, paper_style, signal_
 from cytodisk.plot.window_polygons import draw_window_means, draw_windows
 from cytodisk.scale import Scale
 from cytodisk.simulate import cell_with_signal
-from cytodisk.windows.grid import polar_windows
+from cytodisk.windows.polar_windows import polar_windows
 from cytodisk.windows.sample import sample
 
 WIDTH_PX, HEIGHT_PX, DPI = 1400, 400, 200

@@ -25,7 +25,7 @@ from cytodisk.files import replacing
 from cytodisk.plot.disk_axes import disk_polygons, draw_disk_image, draw_disk_means, draw_disk_windows
 from cytodisk.plot.style import colour_bar, paper_style, signal_limits
 from cytodisk.plot.window_polygons import draw_windows
-from cytodisk.windows.grid import polar_windows
+from cytodisk.windows.polar_windows import polar_windows
 from cytodisk.windows.sample import sample
 
 IN_NUCLEUS_YX, MARGIN_PX = (180, 650), 8

@@ -24,9 +24,9 @@ from .disk.certificate import Certificate as Certificate
 from .disk.distortion import Distortion as Distortion
 
 # Windows, and the signal in them
-from .windows.grid import polar_windows as polar_windows
-from .windows.grid import PolarGrid as PolarGrid
-from .windows.cell_windows import CellWindows as CellWindows
+from .windows.polar_windows import polar_windows as polar_windows
+from .windows.polar_windows import PolarGrid as PolarGrid
+from .windows.polar_windows import CellWindows as CellWindows
 from .windows.sample import sample as sample
 from .windows.edge_windows import edge_windows as edge_windows
 from .windows.edge_windows import EdgeGrid as EdgeGrid

@@ -10,7 +10,7 @@ from cytodisk.analysis.pairs.window_distances import window_distances
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError, WindowError
-from cytodisk.windows.grid import PolarGrid, polar_windows
+from cytodisk.windows.polar_windows import PolarGrid, polar_windows
 
 RADIUS = 40.0
 

@@ -18,7 +18,7 @@ from cytodisk.disk.poisson import TOLERANCE, PoissonSolver
 from cytodisk.geometry.half_edges import half_edges
 from cytodisk.geometry.mesh import triangle_areas
 from cytodisk.motion.map_movie import map_movie
-from cytodisk.windows.grid import polar_windows
+from cytodisk.windows.polar_windows import polar_windows
 
 
 @pytest.fixture(scope="module")

@@ -11,8 +11,7 @@ from cytodisk.errors import ParameterError, SignalError, StudyError
 from cytodisk.pages import animation
 from cytodisk.pages.animation import write_animation
 from cytodisk.scale import Scale
-from cytodisk.windows.cell_windows import CellWindows
-from cytodisk.windows.grid import polar_windows
+from cytodisk.windows.polar_windows import CellWindows, polar_windows
 
 FIELD = (0.0, 49.0, 0.0, 89.0)
 

@@ -10,7 +10,7 @@ import cytodisk as cd
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError, SignalError, StudyError
 from cytodisk.pages.cell_pages import write_cell_figures
-from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.polar_windows import CellWindows
 
 
 def _pixels_across(path: Path) -> int:

@@ -11,7 +11,7 @@ from cytodisk.plot.area_distortion import distortion_limit, draw_area_distortion
 from cytodisk.plot.cell_axes import draw_cell, draw_mesh, draw_outline
 from cytodisk.plot.window_polygons import draw_window_means, draw_windows
 from cytodisk.scale import Scale
-from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.polar_windows import CellWindows
 
 
 def _polygon_area(vertices: FloatArray) -> float:

@@ -12,7 +12,7 @@ from cytodisk.plot.disk_axes import (
     draw_disk_mesh,
     draw_disk_windows,
 )
-from cytodisk.windows.grid import PolarGrid, polar_windows
+from cytodisk.windows.polar_windows import PolarGrid, polar_windows
 
 
 def test_image_is_not_mirrored(ax: Axes, image: FloatArray, disk: DiskMap) -> None:

@@ -10,7 +10,7 @@ from cytodisk.plot.field_of_view import field_of_view
 from cytodisk.plot.frame_strip import draw_strip
 from cytodisk.plot.sector_marks import sector_arcs, sector_colours
 from cytodisk.scale import Scale
-from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.polar_windows import CellWindows
 
 
 @pytest.fixture

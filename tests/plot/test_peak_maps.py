@@ -22,8 +22,7 @@ from cytodisk.plot.peak_maps import (
     peak_key,
 )
 from cytodisk.plot.style import colour_bar
-from cytodisk.windows.cell_windows import CellWindows
-from cytodisk.windows.grid import polar_windows
+from cytodisk.windows.polar_windows import CellWindows, polar_windows
 
 GRID = polar_windows(3, 8)
 Draw = Callable[..., PolyCollection]

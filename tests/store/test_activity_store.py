@@ -7,7 +7,7 @@ from numpy.testing import assert_array_equal
 
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.store.activity_store import ActivityStore, open_activity
-from cytodisk.windows.grid import polar_windows
+from cytodisk.windows.polar_windows import polar_windows
 
 GRID = polar_windows(2, 3)
 STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")

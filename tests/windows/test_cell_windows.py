@@ -54,7 +54,7 @@ def test_areas_are_those_of_the_outlines(windows: cd.CellWindows) -> None:
 def test_shapes_have_a_plain_twin(windows: cd.CellWindows) -> None:
     """From the picture of parts: each is a square of side 1/4."""
     for number, found in enumerate(windows.eccentricities.ravel()):
-        points = (np.argwhere(windows.part_labels == number) + 0.5) / 4 - 0.5
+        points = (np.argwhere(windows.subpixel_labels == number) + 0.5) / 4 - 0.5
         small, large = np.linalg.eigvalsh(np.cov(points.T, ddof=0) + np.eye(2) / 192)
         assert found == pytest.approx(np.sqrt(1 - small / large), rel=1e-9)
         assert_allclose(windows.centroids_yx.reshape(-1, 2)[number], points.mean(axis=0), rtol=1e-12)
@@ -102,7 +102,7 @@ class Bands(cd.WindowsOnCell):
     def mask(self) -> np.ndarray:
         return self.box
 
-    def windows_of_parts(self, pixels_yx: np.ndarray) -> np.ndarray:
+    def windows_of_subpixels(self, pixels_yx: np.ndarray) -> np.ndarray:
         return 2 * (pixels_yx[:, :1] - 1000) + np.repeat([0, 0, 1, 1], 4)
 
 

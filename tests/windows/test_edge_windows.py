@@ -95,7 +95,7 @@ def test_windows_hold_their_share_of_the_cell(
     windows = cd.edge_windows(random_mask(kind, seed), layers, sectors, depth)
     columns = windows.weights.sum(axis=0)
     assert columns.max() <= 1.0
-    parts = windows.part_windows
+    parts = windows.subpixel_windows
     assert windows.coverage == pytest.approx((parts >= 0).mean(), rel=1e-12)
     counts = np.bincount(parts[parts >= 0], minlength=layers * sectors)
     assert_array_equal(windows.areas.ravel(), counts / 16)
@@ -120,7 +120,7 @@ def test_depth_and_place_have_a_plain_twin(kind: str) -> None:
     """By all edges of the outline at once."""
     windows = cd.edge_windows(random_mask(kind, 3))
     outline = windows.edge.outline_yx
-    depth, angle = windows.edge.parts_of(np.argwhere(windows.mask))
+    depth, angle = windows.edge.subpixels_of(np.argwhere(windows.mask))
     places = np.argwhere(windows.mask)[:, None, :] + np.array([[-0.375, -0.375], [0.125, 0.375]])
     for part, column in ((0, 0), (11, 1)):
         start, along = outline, np.roll(outline, -1, axis=0) - outline
@@ -140,13 +140,13 @@ def test_depth_and_place_have_a_plain_twin(kind: str) -> None:
 def test_pixels_that_are_left_out_make_no_difference(kind: str) -> None:
     """Depths are only found where they matter: near the deepest point, and within the layers."""
     edge = cd.edge_windows(np.kron(random_mask(kind, 5), np.ones((4, 4), dtype=bool)), 1, 7).edge
-    depth, angle = edge.parts_of(np.argwhere(edge.mask))
+    depth, angle = edge.subpixels_of(np.argwhere(edge.mask))
     place, deepest = edge.deepest
     assert deepest == depth.max()
     assert_array_equal(place, np.argwhere(edge.mask)[depth.max(axis=1).argmax()])
     for depth_px in (0.3, 2.0):
         windows = cd.EdgeWindows(cd.EdgeGrid(2, 7, depth_px), edge)
-        assert_array_equal(windows.part_windows, windows.grid.window_of(depth, angle))
+        assert_array_equal(windows.subpixel_windows, windows.grid.window_of(depth, angle))
 
 
 @pytest.mark.parametrize("depth", [5e-324, 1e-200, 1e-18])

@@ -5,7 +5,8 @@ from hypothesis import strategies as st
 
 import cytodisk as cd
 from cytodisk.errors import WindowError
-from cytodisk.windows.grid import PolarGrid, layers_for_depth, polar_windows
+from cytodisk.windows.polar_layout import layers_for_depth
+from cytodisk.windows.polar_windows import PolarGrid, polar_windows
 
 SPACINGS = ("area", "radius")
 JUST_BELOW_A_TURN = -1e-17  # its remainder modulo one turn rounds to a whole turn

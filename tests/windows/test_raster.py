@@ -4,9 +4,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cytodisk import map_to_disk, polar_windows, simulate
-from cytodisk.windows.edge_parts import part_places
-from cytodisk.windows.raster import windows_of_all_parts
-from cytodisk.windows.weights import windows_of_parts
+from cytodisk.windows.raster import windows_of_all_subpixels
+from cytodisk.windows.subpixels import subpixel_places
+from cytodisk.windows.weights import windows_of_subpixels
 
 
 @given(
@@ -24,11 +24,11 @@ def test_every_part_is_in_the_window_that_its_place_maps_into(
     disk = map_to_disk(simulate.random_mask(kind, seed))
     grid = polar_windows(layers, sectors, spacing)
     pixels = np.argwhere(disk.mask)
-    one_by_one = windows_of_parts(grid, disk, pixels, per_side)
-    found = windows_of_all_parts(grid, disk, pixels, per_side)
+    one_by_one = windows_of_subpixels(grid, disk, pixels, per_side)
+    found = windows_of_all_subpixels(grid, disk, pixels, per_side)
     apart = found != one_by_one
     # Rounding may decide for a part that lies on the border between two windows, or at the centre.
-    uv = disk.to_disk(part_places(pixels, per_side)[apart], outside="nearest")
+    uv = disk.to_disk(subpixel_places(pixels, per_side)[apart], outside="nearest")
     turned = [(1.0 + a) * uv @ np.array([[1.0, b], [-b, 1.0]]) for a in (-1e-9, 1e-9) for b in (-1e-9, 1e-9)]
     beside = (np.array([grid.window_of(near) for near in turned]) == found[apart]).any(axis=0)
     assert (beside | (np.hypot(*uv.T) < 1e-9)).all()
@@ -39,5 +39,5 @@ def test_every_part_is_in_the_window_that_its_place_maps_into(
 def test_cells_of_a_few_pixels_anywhere_in_an_image(mask: np.ndarray) -> None:
     disk = map_to_disk(np.pad(mask > 0, ((3, 0), (0, 5))))
     grid = polar_windows(3, 5)
-    one_by_one = windows_of_parts(grid, disk, np.argwhere(disk.mask), 4)
-    np.testing.assert_array_equal(windows_of_all_parts(grid, disk, np.argwhere(disk.mask), 4), one_by_one)
+    one_by_one = windows_of_subpixels(grid, disk, np.argwhere(disk.mask), 4)
+    np.testing.assert_array_equal(windows_of_all_subpixels(grid, disk, np.argwhere(disk.mask), 4), one_by_one)

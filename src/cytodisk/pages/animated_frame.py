@@ -28,8 +28,7 @@ from cytodisk.plot.sector_marks import (
 )
 from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, colour_map, paper_style, scale_bar, signal_limits
 from cytodisk.scale import Scale
-from cytodisk.windows.cell_windows import CellWindows
-from cytodisk.windows.grid import PolarGrid
+from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
 _DPI = 100
 _WIDTH, _PANEL, _TOP, _BELOW = 140.0, 56.0, 7.0, 7.0  # mm

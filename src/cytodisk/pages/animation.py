@@ -16,7 +16,7 @@ from cytodisk.plot.field_of_view import Extent
 from cytodisk.plot.time_axis import time_stamp
 from cytodisk.plot.units import scale_for
 from cytodisk.scale import Scale
-from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.polar_windows import CellWindows
 
 MOST_FRAMES = 150
 

@@ -18,7 +18,7 @@ from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, paper_style, signal_
 from cytodisk.plot.units import scale_for
 from cytodisk.plot.window_polygons import draw_window_means, draw_windows
 from cytodisk.scale import Scale
-from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.polar_windows import CellWindows
 from cytodisk.windows.sample import sample
 
 _MOST_CHANNELS = 3

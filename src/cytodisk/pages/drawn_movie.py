@@ -13,7 +13,7 @@ from cytodisk.pages.movie_cell import MovieCell
 from cytodisk.pages.sheet import Sheet
 from cytodisk.runs.channel_names import shown_name
 from cytodisk.store.study_folder import figures_folder, part_key
-from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.polar_windows import CellWindows
 
 HEADING_MM = 12.0
 LEFT_MM = 4.0

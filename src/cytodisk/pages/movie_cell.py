@@ -10,7 +10,7 @@ import xarray as xr
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.scale import Scale
 from cytodisk.store.study import Study
-from cytodisk.windows.grid import PolarGrid, polar_windows
+from cytodisk.windows.polar_windows import PolarGrid, polar_windows
 
 
 @dataclass(frozen=True, eq=False)

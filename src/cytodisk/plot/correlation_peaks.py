@@ -14,7 +14,7 @@ from cytodisk.checks import one_of, positive_number
 from cytodisk.errors import ParameterError
 from cytodisk.plot.lag_axis import LagUnit, rows_of_cell
 from cytodisk.plot.style import DIVERGING_COLOURS, colour_map
-from cytodisk.windows.grid import PolarGrid
+from cytodisk.windows.polar_windows import PolarGrid
 
 LAG_COLOURS = "PuOr"
 """Diverging as those of correlations, for colour-blind eyes too, and not taken for them."""

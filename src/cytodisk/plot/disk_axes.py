@@ -19,7 +19,7 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.plot.cell_axes import draw_mesh
 from cytodisk.plot.style import LINE_COLOUR, MISSING_COLOUR, SIGNAL_COLOURS, colour_map, signal_limits
 from cytodisk.plot.window_polygons import add_filled_windows, add_windows, window_values
-from cytodisk.windows.grid import PolarGrid
+from cytodisk.windows.polar_windows import PolarGrid
 
 _REACH = 1.26  # of the axes, in radii: room for the angles
 _DEGREES_PER_POINT = 1.0

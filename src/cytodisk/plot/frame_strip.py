@@ -17,7 +17,7 @@ from cytodisk.plot.sector_marks import draw_sectors, note_sector
 from cytodisk.plot.style import colour_map, scale_bar, signal_limits
 from cytodisk.plot.units import scale_for
 from cytodisk.scale import Scale
-from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.polar_windows import CellWindows
 
 
 def draw_strip(

@@ -23,8 +23,7 @@ from cytodisk.plot.sector_marks import sector_arcs
 from cytodisk.plot.style import LINE_COLOUR, MISSING_COLOUR
 from cytodisk.plot.window_polygons import draw_window_means, window_polygons
 from cytodisk.scale import Scale
-from cytodisk.windows.cell_windows import CellWindows
-from cytodisk.windows.grid import PolarGrid
+from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
 PALE_NAME, OUTLINE_NAME, SECTOR_NAME = "not significant", "significant", "sector"
 

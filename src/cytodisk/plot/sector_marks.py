@@ -14,8 +14,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.plot.cell_axes import draw_outline
 from cytodisk.plot.window_polygons import window_polygons
-from cytodisk.windows.cell_windows import CellWindows
-from cytodisk.windows.grid import PolarGrid
+from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
 SECTOR_COLOURS = LinearSegmentedColormap.from_list(
     "sectors", ["#1F3F99", "#1C9AA8", "#E3B92F", "#D1492E", "#7A2A6E", "#1F3F99"]

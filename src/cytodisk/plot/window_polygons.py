@@ -16,7 +16,7 @@ from cytodisk.plot.cell_axes import draw_outline, frame_cell
 from cytodisk.plot.style import LAYER_COLOURS, SIGNAL_COLOURS, colour_map, signal_limits
 from cytodisk.plot.units import scale_for
 from cytodisk.scale import Scale
-from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.polar_windows import CellWindows
 
 
 def draw_windows(

@@ -21,8 +21,7 @@ from cytodisk.images.mask_files import SourceCell
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.scale import Scale
 from cytodisk.store.study_folder import StudyFolder, figures_folder, part_key
-from cytodisk.windows.cell_windows import CellWindows
-from cytodisk.windows.grid import polar_windows
+from cytodisk.windows.polar_windows import CellWindows, polar_windows
 from cytodisk.windows.sample import sample
 
 DrawCell: TypeAlias = Callable[[Path, str, CellWindows, xr.DataArray | None, Scale], list[Path]]

@@ -14,7 +14,7 @@ import xarray as xr
 
 from cytodisk.analysis.activity import STATISTICS, with_places
 from cytodisk.errors import ReadError, StudyError
-from cytodisk.windows.grid import PolarGrid
+from cytodisk.windows.polar_windows import PolarGrid
 
 _FRAMES_PER_CHUNK = 64
 _ZARR: dict[str, Any] = {"zarr_format": 2, "consolidated": False}  # format 3 has no strings yet

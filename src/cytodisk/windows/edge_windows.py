@@ -16,10 +16,10 @@ from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.outline import trace_outline
 from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.taking import takes
-from cytodisk.windows.edge_parts import depths_and_angles, part_places
 from cytodisk.windows.grid_parameters import EdgeGridParameters
 from cytodisk.windows.on_cell import WindowsOnCell
-from cytodisk.windows.shares import PARTS, strips
+from cytodisk.windows.shares import PER_SIDE, strips
+from cytodisk.windows.subpixels import depths_and_angles, subpixel_places
 
 _ROUGH = 2.0  # pixels by which depths from the distance transform are off, at most
 
@@ -125,39 +125,39 @@ class CellEdge:
         outline = trace_outline(mask)
         return cls(mask, outline, boundary_angles(outline), Scale.of(cell))
 
-    def parts_of(self, pixels_yx: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Depth and angle of each part of some of the mask's pixels, each (P, 16): `depths_and_angles`.
+    def subpixels_of(self, pixels_yx: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Depth and angle of each subpixel of some of the mask's pixels, each (P, 16): `depths_and_angles`.
 
         Parameters
         ----------
         pixels_yx : ndarray of shape (P, 2) and dtype int
             (row, column).
         """
-        return depths_and_angles(part_places(pixels_yx, PARTS), self.outline_yx, self.angles)
+        return depths_and_angles(subpixel_places(pixels_yx, PER_SIDE), self.outline_yx, self.angles)
 
     @cached_property
     def rough_depths(self) -> FloatArray:
         """Distance from each pixel's centre to that of the next pixel outside of the cell, shape (H, W).
 
-        In pixels, 0 outside; of all parts of the pixel within 2 px of the distance from the edge.
+        In pixels, 0 outside; the depth of each subpixel of the pixel differs from it by at most 2 px.
         """
         return np.asarray(distance_transform_edt(np.pad(self.mask, 1))[1:-1, 1:-1], dtype=np.float64)
 
     @cached_property
     def deepest(self) -> tuple[IntArray, float]:
-        """Pixel with the part that is deepest inside, (row, column), and that part's distance from the edge.
+        """Pixel of the subpixel that is deepest inside, (row, column), and the depth of that subpixel.
 
-        In pixels; the first such pixel in row-major order.
+        The depth is in pixels; of several such pixels the first in row-major order.
         """
         rough = self.rough_depths
         pixels = np.argwhere(self.mask & (rough >= rough.max() - 2.0 * _ROUGH))
-        depths = np.concatenate([self.parts_of(block)[0].max(axis=1) for _, block in strips(pixels)])
+        depths = np.concatenate([self.subpixels_of(block)[0].max(axis=1) for _, block in strips(pixels)])
         found = int(depths.argmax())
         return pixels[found], float(depths[found])
 
     @property
     def greatest_depth(self) -> float:
-        """Distance from the edge of the part that is deepest inside, in pixels."""
+        """Depth of the subpixel that is deepest inside, in pixels."""
         return self.deepest[1]
 
 
@@ -185,17 +185,17 @@ class EdgeWindows(WindowsOnCell):
     grid: EdgeGrid
     edge: CellEdge
 
-    def windows_of_parts(self, pixels_yx: IntArray) -> IntArray:
-        """Number of the window that each part of some pixels lies in, shape (P, 16); -1 for none.
+    def windows_of_subpixels(self, pixels_yx: IntArray) -> IntArray:
+        """Number of the window that each subpixel of some pixels lies in, shape (P, 16); -1 for none.
 
         Parameters
         ----------
         pixels_yx : ndarray of shape (P, 2) and dtype int
             (row, column).
         """
-        windows = np.full((len(pixels_yx), PARTS**2), -1)
+        windows = np.full((len(pixels_yx), PER_SIDE**2), -1)
         near = self.edge.rough_depths[tuple(pixels_yx.T)] - _ROUGH <= self.layers * float(self.depth_px)
-        windows[near] = self.grid.window_of(*self.edge.parts_of(pixels_yx[near]))
+        windows[near] = self.grid.window_of(*self.edge.subpixels_of(pixels_yx[near]))
         return windows
 
     @property
@@ -220,7 +220,7 @@ def edge_windows(cell: Any, *in_order: Any, **settings: Any) -> EdgeWindows:
 
     The edge is divided into sectors, of equal length but for a later frame of a movie, and every place in the
     cell belongs to the sector of the edge point it is nearest to, and to a layer by its distance from there.
-    Every pixel is divided into 4×4 parts, each of which goes whole to its window.
+    Every pixel is divided into 4×4 subpixels, each of which goes whole to its window.
 
     Parameters
     ----------

@@ -12,8 +12,7 @@ from scipy import sparse
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.windows.pieces import pieces_by_window
-from cytodisk.windows.shares import PARTS as PARTS
-from cytodisk.windows.shares import WindowShares, shares_by_strips, strips
+from cytodisk.windows.shares import PER_SIDE, WindowShares, shares_by_strips, strips
 
 
 class Grid(Protocol):
@@ -55,8 +54,8 @@ class WindowsOnCell(ABC):
         return self.grid.sectors
 
     @abstractmethod
-    def windows_of_parts(self, pixels_yx: IntArray) -> IntArray:
-        """Number of the window that each part of some mask pixels lies in, shape (P, 16); -1 for none.
+    def windows_of_subpixels(self, pixels_yx: IntArray) -> IntArray:
+        """Number of the window that each subpixel of some mask pixels lies in, shape (P, 16); -1 for none.
 
         Parameters
         ----------
@@ -66,9 +65,9 @@ class WindowsOnCell(ABC):
 
     @cached_property
     def shares(self) -> WindowShares:
-        """Shares of pixels in windows, and the windows' moments, from the parts of pixels."""
+        """Shares of pixels in windows, and moments of the windows, from subpixels."""
         pixels = np.argwhere(self.mask)
-        return shares_by_strips(pixels, self.layers * self.sectors, self.windows_of_parts)
+        return shares_by_strips(pixels, self.layers * self.sectors, self.windows_of_subpixels)
 
     @property
     def weights(self) -> sparse.csr_array:
@@ -79,18 +78,20 @@ class WindowsOnCell(ABC):
         return self.shares.weights
 
     @property
-    def part_windows(self) -> IntArray:
-        """Number of the window that each part of each mask pixel lies in, shape (pixels, 16); -1 for none."""
-        return np.concatenate([self.windows_of_parts(block) for _, block in strips(np.argwhere(self.mask))])
+    def subpixel_windows(self) -> IntArray:
+        """Number of the window of each subpixel of the mask, shape (pixels, 16); -1 for none."""
+        return np.concatenate(
+            [self.windows_of_subpixels(block) for _, block in strips(np.argwhere(self.mask))]
+        )
 
     @property
-    def part_labels(self) -> IntArray:
-        """As `labels`, with each pixel divided into 4×4 parts, shape (4 H, 4 W)."""
+    def subpixel_labels(self) -> IntArray:
+        """As `labels`, with each pixel divided into 4×4 subpixels, shape (4 H, 4 W)."""
         height, width = self.mask.shape
-        labels = np.full((height, PARTS, width, PARTS), -1, dtype=np.int64)
+        labels = np.full((height, PER_SIDE, width, PER_SIDE), -1, dtype=np.int64)
         row, column = np.nonzero(self.mask)
-        labels[row, :, column, :] = self.part_windows.reshape(-1, PARTS, PARTS)
-        return labels.reshape(PARTS * height, PARTS * width)
+        labels[row, :, column, :] = self.subpixel_windows.reshape(-1, PER_SIDE, PER_SIDE)
+        return labels.reshape(PER_SIDE * height, PER_SIDE * width)
 
     @cached_property
     def areas(self) -> FloatArray:
@@ -139,8 +140,8 @@ class WindowsOnCell(ABC):
     def eccentricities(self) -> FloatArray:
         """Eccentricity of the ellipse with each window's second moments, shape (layers, sectors), 0 to 1.
 
-        The moments are those of the parts that pixels are divided into, each a square of its own side, so a
-        window may be thinner than a pixel, but none has zero width. NaN if empty.
+        Each subpixel counts as a square, so a window may be thinner than a pixel, but none has zero width.
+        NaN if empty.
         """
         y, x, yy, xx, xy = np.moveaxis(self._mean_moments, -1, 0)
         yy, xx, xy = yy - y * y, xx - x * x, xy - x * y
@@ -160,8 +161,7 @@ class WindowsOnCell(ABC):
     def layer_pieces(self) -> IntArray:
         """Number of pieces that the windows of each layer fall into together, shape (layers,); 0 if empty.
 
-        In a neck a layer of polar windows can be thinner than the parts that pixels are divided into, and
-        then it counts as apart.
+        In a neck a layer of polar windows can be thinner than a subpixel, and then it counts as apart.
         """
         into_layers = sparse.kron(sparse.eye_array(self.layers), np.ones((1, self.sectors)))
         return pieces_by_window(sparse.csr_array(into_layers @ self.weights), self.mask)

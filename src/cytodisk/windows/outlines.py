@@ -6,12 +6,12 @@ import numpy as np
 
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.windows.grid import PolarGrid
+from cytodisk.windows.polar_layout import PolarLayout
 
 _POINTS_PER_RADIUS = 256  # samples along a radius of the disk, shared among the layers
 
 
-def window_polygons(grid: PolarGrid, disk: DiskMap) -> list[FloatArray]:
+def window_polygons(grid: PolarLayout, disk: DiskMap) -> list[FloatArray]:
     """Outline of every window in the cell.
 
     Rings and spokes of the grid are sampled as finely as the boundary is, so neighbours share their points,
@@ -19,7 +19,7 @@ def window_polygons(grid: PolarGrid, disk: DiskMap) -> list[FloatArray]:
 
     Parameters
     ----------
-    grid : PolarGrid
+    grid : PolarLayout
     disk : DiskMap
 
     Returns
@@ -41,7 +41,7 @@ def window_polygons(grid: PolarGrid, disk: DiskMap) -> list[FloatArray]:
     return polygons
 
 
-def _sector_arcs(grid: PolarGrid, disk: DiskMap, radius: float) -> list[FloatArray]:
+def _sector_arcs(grid: PolarLayout, disk: DiskMap, radius: float) -> list[FloatArray]:
     """Arc of each sector at one radius, mapped into the cell, both ends included."""
     turn = 2.0 * np.pi
     within = np.unique(np.concatenate([np.mod(disk.boundary_angles, turn), grid.angles]))
@@ -51,7 +51,7 @@ def _sector_arcs(grid: PolarGrid, disk: DiskMap, radius: float) -> list[FloatArr
     return [points[first : last + 1] for first, last in pairwise(ends)]
 
 
-def _spokes(grid: PolarGrid, disk: DiskMap, layer: int, samples: int) -> FloatArray:
+def _spokes(grid: PolarLayout, disk: DiskMap, layer: int, samples: int) -> FloatArray:
     """Each sector's first side within a layer, from outside in, shape (sectors, samples, 2)."""
     radius = np.linspace(grid.radii[layer], grid.radii[layer + 1], samples)
     angle = grid.angles[:-1, None]

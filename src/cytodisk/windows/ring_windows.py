@@ -13,11 +13,11 @@ from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.scale import Scale
 from cytodisk.taking import takes
-from cytodisk.windows.edge_parts import part_places
 from cytodisk.windows.edge_windows import CellEdge
 from cytodisk.windows.grid_parameters import CountParameters, RingGridParameters
 from cytodisk.windows.on_cell import WindowsOnCell
-from cytodisk.windows.shares import PARTS
+from cytodisk.windows.shares import PER_SIDE
+from cytodisk.windows.subpixels import subpixel_places
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class RingGrid:
 class RingWindows(WindowsOnCell):
     """Rings and wedges in a cell; they cover it, but a wedge may take in several arms of it.
 
-    Near the deepest point windows of a fine grid are too small to hold any part of a pixel: they are empty.
+    Near the deepest point windows of a fine grid are too small to hold a subpixel: they are empty.
 
     Attributes
     ----------
@@ -97,17 +97,17 @@ class RingWindows(WindowsOnCell):
         """Length of the way from the deepest pixel to each pixel, shape (H, W)."""
         return _way_from(self.edge.deepest[0], self.mask)
 
-    def windows_of_parts(self, pixels_yx: IntArray) -> IntArray:
-        """Number of the window that each part of some pixels lies in, shape (P, 16).
+    def windows_of_subpixels(self, pixels_yx: IntArray) -> IntArray:
+        """Number of the window that each subpixel of some pixels lies in, shape (P, 16).
 
         Parameters
         ----------
         pixels_yx : ndarray of shape (P, 2) and dtype int
             (row, column).
         """
-        depth, _ = self.edge.parts_of(pixels_yx)
+        depth, _ = self.edge.subpixels_of(pixels_yx)
         centre, _ = self.edge.deepest
-        away = part_places(pixels_yx, PARTS) - centre
+        away = subpixel_places(pixels_yx, PER_SIDE) - centre
         beyond = np.linalg.norm(away, axis=-1) - np.linalg.norm(pixels_yx - centre, axis=-1)[:, None]
         way = np.maximum(self._ways[tuple(pixels_yx.T)][:, None] + beyond, 0.0)
         share = depth / np.maximum(depth + way, 1e-12)

@@ -1,4 +1,4 @@
-"""How much of each pixel belongs to each window, and where in it: from the parts of pixels."""
+"""How much of each pixel belongs to each window, and where in it, from subpixels."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from scipy import sparse
 
 from cytodisk.arrays import FloatArray, Int32Array, IntArray
 
-PARTS = 4  # along a pixel's side
-PIXELS_AT_ONCE = 4096  # whose parts stay in the cache
+PER_SIDE = 4  # subpixels along the side of a pixel
+PIXELS_AT_ONCE = 4096  # whose subpixels stay in the cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,8 +25,8 @@ class WindowShares:
         Pixels of the mask in row-major order. Columns sum to 1 at most, rows to the window's area in square
         pixels.
     moments : ndarray of shape (windows, 5) and dtype float
-        Integrals of y, x, y², x², x y over each window, each part of a pixel a square of its own side. Places
-        are relative to `origin_yx`.
+        Integrals of y, x, y², x², x y over each window, each subpixel a square of its own side.
+        Places are relative to `origin_yx`.
     origin_yx : ndarray of shape (2,) and dtype int
         First row and column of the mask's box, so that moments do not depend on where in an image a cell is.
     """
@@ -37,17 +37,17 @@ class WindowShares:
 
 
 @dataclass(frozen=True, eq=False)
-class PixelParts:
-    """Window of each part of some pixels.
+class Subpixels:
+    """Window of each subpixel of some pixels.
 
     Attributes
     ----------
     pixel : ndarray of shape (P,) and dtype int
         Numbers of the pixels.
-    window : ndarray of shape (P, parts) and dtype int
-        The parts are squares, row by row; -1 for a part in no window.
+    window : ndarray of shape (P, subpixels) and dtype int
+        The subpixels are squares, row by row; -1 for a subpixel in no window.
     share : ndarray of shape (P,) and dtype float
-        Area of each part of a pixel, in square pixels.
+        Area of each subpixel, in square pixels.
     """
 
     pixel: IntArray
@@ -56,46 +56,46 @@ class PixelParts:
 
 
 def strips(pixels_yx: IntArray) -> Iterator[tuple[IntArray, IntArray]]:
-    """Numbers and places of a few neighbouring pixels at a time, so that their parts need little memory."""
+    """Numbers and places of a few neighbouring pixels at a time: their subpixels need little memory."""
     for first in range(0, len(pixels_yx), PIXELS_AT_ONCE):
         block = pixels_yx[first : first + PIXELS_AT_ONCE]
         yield np.arange(first, first + len(block)), block
 
 
 def shares_by_strips(
-    pixels_yx: IntArray, n_windows: int, windows_of_parts: Callable[[IntArray], IntArray]
+    pixels_yx: IntArray, n_windows: int, windows_of_subpixels: Callable[[IntArray], IntArray]
 ) -> WindowShares:
-    """Shares where all pixels are divided into 4×4 parts, without keeping the parts.
+    """Shares where all pixels are divided into 4×4 subpixels, which are not kept.
 
     Parameters
     ----------
     pixels_yx : ndarray of shape (P, 2) and dtype int
         (row, column) of the mask's pixels in row-major order.
     n_windows : int
-    windows_of_parts : callable
-        From places of pixels, (p, 2), to the windows of their parts, (p, 16); -1 for none.
+    windows_of_subpixels : callable
+        From places of pixels, (p, 2), to the windows of their subpixels, (p, 16); -1 for none.
 
     Returns
     -------
     WindowShares
     """
-    size = PARTS**2
-    parts = (
-        PixelParts(number, windows_of_parts(block), np.full(len(number), 1.0 / size))
+    size = PER_SIDE**2
+    subpixels = (
+        Subpixels(number, windows_of_subpixels(block), np.full(len(number), 1.0 / size))
         for number, block in strips(pixels_yx)
     )
-    return gather_shares(pixels_yx, n_windows, parts)
+    return gather_shares(pixels_yx, n_windows, subpixels)
 
 
-def gather_shares(pixels_yx: IntArray, n_windows: int, parts: Iterable[PixelParts]) -> WindowShares:
-    """Shares and moments from the windows of parts.
+def gather_shares(pixels_yx: IntArray, n_windows: int, subpixels: Iterable[Subpixels]) -> WindowShares:
+    """Shares and moments from the windows of subpixels.
 
     Parameters
     ----------
     pixels_yx : ndarray of shape (P, 2) and dtype int
         (row, column) of the mask's pixels in row-major order.
     n_windows : int
-    parts : iterable of PixelParts
+    subpixels : iterable of Subpixels
 
     Returns
     -------
@@ -105,7 +105,7 @@ def gather_shares(pixels_yx: IntArray, n_windows: int, parts: Iterable[PixelPart
     moments = np.zeros((n_windows, 5))
     entries = [
         _gather(some.pixel, pixels_yx[some.pixel] - origin, some.window, some.share, moments)
-        for some in parts
+        for some in subpixels
     ]
     window, pixel, share = (np.concatenate(column) for column in zip(*entries, strict=True))
     shape = (n_windows, len(pixels_yx))
@@ -122,8 +122,8 @@ def _gather(
     moments: FloatArray,
 ) -> tuple[IntArray, IntArray, FloatArray]:
     """Window, pixel and weight, one entry for each pair of them; the moments are added to."""
-    count, parts = window.shape
-    per_side = int(np.round(np.sqrt(parts)))
+    count, subpixels = window.shape
+    per_side = int(np.round(np.sqrt(subpixels)))
     side = 1.0 / per_side
     own = side**2 / 12.0  # second moment of a square around its middle, over its area
     windows, pixels = np.empty(window.size, dtype=np.int64), np.empty(window.size, dtype=np.int64)
@@ -132,11 +132,11 @@ def _gather(
     for row in range(count):
         first = entries
         whole, others = window[row, 0], 0
-        for part in range(parts):
-            others |= window[row, part] ^ whole
+        for subpixel in range(subpixels):
+            others |= window[row, subpixel] ^ whole
         if others == 0 and whole >= 0:
             y, x = float(places_yx[row, 0]), float(places_yx[row, 1])
-            area = parts * share[row]
+            area = subpixels * share[row]
             moments[whole, 0] += area * y
             moments[whole, 1] += area * x
             moments[whole, 2] += area * (y * y + 1.0 / 12.0)
@@ -145,12 +145,12 @@ def _gather(
             windows[entries], pixels[entries], weights[entries] = whole, pixel[row], area
             entries += 1
             continue
-        for part in range(parts):
-            here = window[row, part]
+        for subpixel in range(subpixels):
+            here = window[row, subpixel]
             if here < 0:
                 continue
-            y = places_yx[row, 0] + (part // per_side + 0.5) * side - 0.5
-            x = places_yx[row, 1] + (part % per_side + 0.5) * side - 0.5
+            y = places_yx[row, 0] + (subpixel // per_side + 0.5) * side - 0.5
+            x = places_yx[row, 1] + (subpixel % per_side + 0.5) * side - 0.5
             moments[here, 0] += share[row] * y
             moments[here, 1] += share[row] * x
             moments[here, 2] += share[row] * (y * y + own)

@@ -8,25 +8,25 @@ from scipy.spatial import cKDTree
 
 from cytodisk.arrays import FloatArray, Int32Array, IntArray
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.windows.edge_parts import part_places
-from cytodisk.windows.grid import PolarGrid
-from cytodisk.windows.raster import windows_of_all_parts
-from cytodisk.windows.shares import PARTS, PIXELS_AT_ONCE, PixelParts, WindowShares, gather_shares
+from cytodisk.windows.polar_layout import PolarLayout
+from cytodisk.windows.raster import windows_of_all_subpixels
+from cytodisk.windows.shares import PER_SIDE, PIXELS_AT_ONCE, Subpixels, WindowShares, gather_shares
+from cytodisk.windows.subpixels import subpixel_places
 
-_FINE = 16  # parts along a pixel's side
+_FINE = 16  # subpixels along a pixel's side
 
 
-def window_shares(grid: PolarGrid, disk: DiskMap) -> WindowShares:
+def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:
     """Weights of a cell's pixels in its windows, and moments of the windows.
 
-    Every pixel is divided into 4×4 parts, and each part goes whole to the window it maps into; a part
-    outside the outline goes with the nearest outline point. Pixels at windows that got no part are divided
-    into 16×16. A window that is still empty gets one more part of the pixel at its centre, which counts as a
-    square of the whole pixel's width in the moments.
+    Every pixel is divided into 4×4 subpixels. Each goes whole to the window it maps into; one outside the
+    outline goes with the nearest outline point. Pixels at windows without a subpixel are divided into 16×16.
+    A window that is still empty gets one more subpixel of the pixel at its centre, which counts as a square
+    of the whole pixel's width in the moments.
 
     Parameters
     ----------
-    grid : PolarGrid
+    grid : PolarLayout
     disk : DiskMap
 
     Returns
@@ -36,9 +36,9 @@ def window_shares(grid: PolarGrid, disk: DiskMap) -> WindowShares:
     """
     pixels = np.argwhere(disk.mask)
     if disk.method == "advection":
-        coarse: IntArray | Int32Array = windows_of_parts(grid, disk, pixels, PARTS)
+        coarse: IntArray | Int32Array = windows_of_subpixels(grid, disk, pixels, PER_SIDE)
     else:
-        coarse = windows_of_all_parts(grid, disk, pixels, PARTS)
+        coarse = windows_of_all_subpixels(grid, disk, pixels, PER_SIDE)
     shares = gather_shares(pixels, grid.n_windows, _blocks(np.arange(len(pixels)), coarse))
     empty = np.flatnonzero(np.diff(shares.weights.indptr) == 0)
     if not empty.size:
@@ -46,24 +46,24 @@ def window_shares(grid: PolarGrid, disk: DiskMap) -> WindowShares:
     near = np.unique(_pixels_at(disk, pixels, grid.centres_uv[empty]))
     kept = np.delete(np.arange(len(pixels)), near)
     coarse = coarse[kept]
-    fine = windows_of_parts(grid, disk, pixels[near], _FINE)
+    fine = windows_of_subpixels(grid, disk, pixels[near], _FINE)
     empty = np.flatnonzero(_held(grid, coarse) + _held(grid, fine) == 0)
     extra = _pixels_at(disk, pixels, grid.centres_uv[empty])
-    counts = np.full(len(pixels), PARTS**2)
+    counts = np.full(len(pixels), PER_SIDE**2)
     counts[near] = _FINE**2
     counts += np.bincount(extra, minlength=len(pixels))
     share = 1.0 / counts
     sizes = (kept, coarse), (near, fine), (extra, empty[:, None])
-    parts = chain.from_iterable(_blocks(pixel, window, share) for pixel, window in sizes)
-    return gather_shares(pixels, grid.n_windows, parts)
+    subpixels = chain.from_iterable(_blocks(pixel, window, share) for pixel, window in sizes)
+    return gather_shares(pixels, grid.n_windows, subpixels)
 
 
-def windows_of_parts(grid: PolarGrid, disk: DiskMap, pixels_yx: IntArray, per_side: int) -> IntArray:
-    """Window that each part of some pixels maps into.
+def windows_of_subpixels(grid: PolarLayout, disk: DiskMap, pixels_yx: IntArray, per_side: int) -> IntArray:
+    """Window that each subpixel of some pixels maps into.
 
     Parameters
     ----------
-    grid : PolarGrid
+    grid : PolarLayout
     disk : DiskMap
     pixels_yx : ndarray of shape (P, 2) and dtype int
         (row, column).
@@ -72,29 +72,29 @@ def windows_of_parts(grid: PolarGrid, disk: DiskMap, pixels_yx: IntArray, per_si
 
     Returns
     -------
-    ndarray of shape (P, parts) and dtype int
+    ndarray of shape (P, subpixels) and dtype int
     """
     window = np.empty((len(pixels_yx), per_side**2), dtype=np.int64)
     for first in range(0, len(pixels_yx), PIXELS_AT_ONCE):
         block = slice(first, first + PIXELS_AT_ONCE)
-        points = part_places(pixels_yx[block], per_side).reshape(-1, 2)
+        points = subpixel_places(pixels_yx[block], per_side).reshape(-1, 2)
         window[block] = grid.window_of(disk.to_disk(points, outside="nearest")).reshape(-1, per_side**2)
     return window
 
 
 def _blocks(
     pixel: IntArray, window: IntArray | Int32Array, share: FloatArray | None = None
-) -> Iterator[PixelParts]:
-    """The same parts, a few pixels at a time."""
+) -> Iterator[Subpixels]:
+    """The same subpixels, a few pixels at a time."""
     if share is None:
         share = np.full(len(pixel), 1.0 / window.shape[1])
     for first in range(0, len(pixel), PIXELS_AT_ONCE):
         block = slice(first, first + PIXELS_AT_ONCE)
-        yield PixelParts(pixel[block], window[block], share[pixel[block]])
+        yield Subpixels(pixel[block], window[block], share[pixel[block]])
 
 
-def _held(grid: PolarGrid, window: IntArray | Int32Array) -> IntArray:
-    """Number of parts in each window."""
+def _held(grid: PolarLayout, window: IntArray | Int32Array) -> IntArray:
+    """Number of subpixels in each window."""
     return np.bincount(window.ravel(), minlength=grid.n_windows)
 
 

@@ -17,7 +17,7 @@ from cytodisk.errors import WindowError
 from cytodisk.geometry.locate import TriangleLocator
 from cytodisk.geometry.polygon import edge_lengths, smooth_closed
 from cytodisk.motion.disk_movie import DiskMovie
-from cytodisk.windows.grid import PolarGrid
+from cytodisk.windows.polar_windows import PolarGrid
 
 DISTANCE_DIMS = ("layer", "sector", "other_layer", "other_sector")
 _SMOOTHING_PX = 1.0  # of the edge, whose stair steps of pixels are up to 8 % too long

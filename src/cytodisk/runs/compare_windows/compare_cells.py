@@ -31,9 +31,10 @@ from cytodisk.scale import Scale
 from cytodisk.store.study_folder import PARAMETERS, StudyFolder, alone_in, part_key
 from cytodisk.taking import takes
 from cytodisk.windows.edge_windows import edge_windows
-from cytodisk.windows.grid import polar_windows
-from cytodisk.windows.on_cell import PARTS, WindowsOnCell
+from cytodisk.windows.on_cell import WindowsOnCell
+from cytodisk.windows.polar_windows import polar_windows
 from cytodisk.windows.ring_windows import ring_windows
+from cytodisk.windows.shares import PER_SIDE
 
 _SMALL_PX = 4000  # cells up to here are drawn by parts of pixels
 
@@ -153,9 +154,9 @@ def compare_cell(task: CompareTask) -> Rows:
         row |= {"notes": "; ".join(report.notes), "qc_flags": "; ".join(report.qc_flags)}
         measures = measures_by_layer(windows)
         rows.append((row, {"layers": layer_columns(task.found.cell, task.found.frame, method, measures)}))
-        parts = PARTS if report.area_px <= _SMALL_PX else 1
-        labels[method] = (windows.labels if parts == 1 else windows.part_labels).astype(np.int32)
-        labels["mask"] = windows.mask.repeat(parts, axis=0).repeat(parts, axis=1)
+        per_side = PER_SIDE if report.area_px <= _SMALL_PX else 1
+        labels[method] = (windows.labels if per_side == 1 else windows.subpixel_labels).astype(np.int32)
+        labels["mask"] = windows.mask.repeat(per_side, axis=0).repeat(per_side, axis=1)
     if labels:
         with replacing(task.path / "maps" / f"windows_{part_key(task.found.cell)}.npz") as temporary:
             np.savez_compressed(temporary, **labels)

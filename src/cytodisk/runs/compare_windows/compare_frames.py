@@ -19,7 +19,7 @@ from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, CompareMovieParameters
 from cytodisk.runs.compare_windows.compare_tables import layer_columns, windows_row
 from cytodisk.windows.edge_windows import CellEdge, EdgeGrid
-from cytodisk.windows.grid import polar_windows
+from cytodisk.windows.polar_windows import polar_windows
 from cytodisk.windows.ring_windows import RingGrid
 from cytodisk.windows.sample import sample
 

@@ -25,7 +25,7 @@ from cytodisk.runs.correlate.event_tables import event_tables
 from cytodisk.runs.versions import installed
 from cytodisk.store.correlation_store import Correlation, write_correlation
 from cytodisk.store.study import Study
-from cytodisk.windows.grid import polar_windows
+from cytodisk.windows.polar_windows import polar_windows
 
 _LONGEST_LAG = 20  # frames, unless the user asks for more
 _LEAST_LAG_FOR_JITTER, _LAG_FOR_JITTER = 6, 10

@@ -19,7 +19,7 @@ from cytodisk.motion.mapped_frame import MappedFrame
 from cytodisk.runs.cell_rows import cell_columns, window_columns
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
-from cytodisk.windows.grid import PolarGrid
+from cytodisk.windows.polar_windows import PolarGrid
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,8 +20,9 @@ from cytodisk.runs.pixel_sizes import common_pixel_size
 from cytodisk.runs.steps import name_channels
 from cytodisk.scale import Scale
 from cytodisk.store.study_folder import part_key
-from cytodisk.windows.grid import PolarGrid, first_depth, layers_for_depth, polar_windows
 from cytodisk.windows.grid_parameters import Spacing
+from cytodisk.windows.polar_layout import first_depth, layers_for_depth
+from cytodisk.windows.polar_windows import PolarGrid, polar_windows
 
 
 @dataclass(frozen=True)

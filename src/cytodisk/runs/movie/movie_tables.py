@@ -16,7 +16,7 @@ from cytodisk.runs.movie.frame_rows import edge_columns
 from cytodisk.scale import Scale
 from cytodisk.store.activity_store import EDGE_VARIABLES, GEOMETRY, ActivityStore
 from cytodisk.store.study_folder import ACTIVITY, StudyFolder, part_key
-from cytodisk.windows.grid import PolarGrid
+from cytodisk.windows.polar_windows import PolarGrid
 
 
 def finish_tables(

@@ -1,4 +1,4 @@
-"""Depth below a cell's outline, and the outline point above, of every part of its pixels."""
+"""Depth below a cell's outline, and the outline point above, of every subpixel of its pixels."""
 
 import math
 
@@ -11,8 +11,8 @@ from cytodisk.arrays import FloatArray, IntArray
 _PIXELS_AT_ONCE = 16  # neighbours, so what is near to one is near to all
 
 
-def part_places(pixels_yx: IntArray, per_side: int) -> FloatArray:
-    """Middle of each part of pixels that are divided into per_side × per_side parts.
+def subpixel_places(pixels_yx: IntArray, per_side: int) -> FloatArray:
+    """Middle of each subpixel of pixels that are divided into per_side × per_side subpixels.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ def part_places(pixels_yx: IntArray, per_side: int) -> FloatArray:
 
     Returns
     -------
-    ndarray of shape (P, parts, 2) and dtype float
+    ndarray of shape (P, subpixels, 2) and dtype float
         (row, column) in pixels.
     """
     steps = (np.arange(per_side) + 0.5) / per_side - 0.5
@@ -37,7 +37,7 @@ def depths_and_angles(
 
     Parameters
     ----------
-    places_yx : ndarray of shape (P, parts, 2) and dtype float
+    places_yx : ndarray of shape (P, subpixels, 2) and dtype float
         Parts of P pixels, each inside its pixel.
     outline_yx : ndarray of shape (B, 2) and dtype float
         Closed polygon, (row, column) in pixels.
@@ -46,9 +46,9 @@ def depths_and_angles(
 
     Returns
     -------
-    depth : ndarray of shape (P, parts) and dtype float
+    depth : ndarray of shape (P, subpixels) and dtype float
         In pixels, exact to rounding; 0 outside the outline.
-    angle : ndarray of shape (P, parts) and dtype float
+    angle : ndarray of shape (P, subpixels) and dtype float
         In radians.
     """
     if not len(places_yx):
@@ -57,7 +57,7 @@ def depths_and_angles(
     shape = places_yx.shape[:2]
     flat = np.ascontiguousarray(places_yx.reshape(-1, 2))
     depth, angle = (found.reshape(shape) for found in _nearest(flat, shape[1], outline_yx, angles, ends))
-    rim = depth < 1.0  # parts further off are within pixels that the outline does not cut
+    rim = depth < 1.0  # subpixels further off are within pixels that the outline does not cut
     rim[rim] = ~shapely.contains_xy(shapely.Polygon(outline_yx), *places_yx[rim].T)
     depth[rim] = 0.0
     return depth, angle
@@ -65,9 +65,9 @@ def depths_and_angles(
 
 @njit(cache=True)
 def _nearest(
-    places: FloatArray, n_parts: int, outline: FloatArray, angles: FloatArray, ends: FloatArray
+    places: FloatArray, n_subpixels: int, outline: FloatArray, angles: FloatArray, ends: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Edges that can be near enough to a few pixels, of these to each pixel, then by part."""
+    """Edges that can be near enough to a few pixels, of these to each pixel, then by subpixel."""
     along = np.empty_like(outline)
     along[:-1] = outline[1:] - outline[:-1]
     along[-1] = outline[0] - outline[-1]
@@ -75,13 +75,13 @@ def _nearest(
     middles, half = outline + 0.5 * along, 0.5 * math.sqrt(squared.max())
     everything = np.arange(len(outline))
     depth, angle = np.empty(len(places)), np.empty(len(places))
-    for first in range(0, len(places), _PIXELS_AT_ONCE * n_parts):
-        last = min(first + _PIXELS_AT_ONCE * n_parts, len(places))
+    for first in range(0, len(places), _PIXELS_AT_ONCE * n_subpixels):
+        last = min(first + _PIXELS_AT_ONCE * n_subpixels, len(places))
         around = _within_reach(middles, everything, places[first:last], half)
-        for pixel in range(first, last, n_parts):
-            near = _within_reach(middles, around, places[pixel : pixel + n_parts], half)
-            for part in range(pixel, pixel + n_parts):
-                y, x = places[part]
+        for pixel in range(first, last, n_subpixels):
+            near = _within_reach(middles, around, places[pixel : pixel + n_subpixels], half)
+            for subpixel in range(pixel, pixel + n_subpixels):
+                y, x = places[subpixel]
                 best = limit = np.inf
                 for i in near:
                     if (y - middles[i, 0]) ** 2 + (x - middles[i, 1]) ** 2 > limit:
@@ -93,8 +93,8 @@ def _nearest(
                     if away < best:
                         best = away
                         limit = (math.sqrt(best) + half) ** 2 * (1.0 + 1e-12)
-                        angle[part] = angles[i] + share * (ends[i] - angles[i])
-                depth[part] = math.sqrt(best)
+                        angle[subpixel] = angles[i] + share * (ends[i] - angles[i])
+                depth[subpixel] = math.sqrt(best)
     return depth, angle
 
 

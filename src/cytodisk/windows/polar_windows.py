@@ -1,4 +1,4 @@
-"""`CellWindows`: a polar grid of windows on one cell."""
+"""Polar windows: a grid on the unit disk, and its windows on a cell."""
 
 from __future__ import annotations
 
@@ -12,11 +12,57 @@ from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
 from cytodisk.scale import Scale
-from cytodisk.windows.grid import PolarGrid
+from cytodisk.taking import takes
+from cytodisk.windows.grid_parameters import GridParameters
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.outlines import window_polygons
-from cytodisk.windows.shares import PARTS, WindowShares
-from cytodisk.windows.weights import window_shares, windows_of_parts
+from cytodisk.windows.polar_layout import PolarLayout
+from cytodisk.windows.shares import PER_SIDE, WindowShares
+from cytodisk.windows.weights import window_shares, windows_of_subpixels
+
+
+@dataclass(frozen=True)
+class PolarGrid(PolarLayout):
+    """Layers from the edge (0) inwards, sectors from angle 0 (+u) towards +v.
+
+    Window (layer, sector) has number layer · sectors + sector.
+
+    Attributes
+    ----------
+    layers, sectors : int
+    spacing : {"area", "radius"}
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import cytodisk as cd
+    >>> grid = cd.polar_windows(layers=2, sectors=4)
+    >>> grid.n_windows, grid.radii.round(2)
+    (8, array([1.  , 0.71, 0.  ]))
+    >>> grid.window_of(np.array([[0.9, 0.1]]))  # at the edge, just past angle 0
+    array([0])
+    """
+
+    def on(self, disk: DiskMap) -> CellWindows:
+        """Carry the grid onto a cell.
+
+        Parameters
+        ----------
+        disk : DiskMap
+
+        Returns
+        -------
+        CellWindows
+            No window is empty, whatever the grid.
+
+        Raises
+        ------
+        WindowError
+            `disk` is not a map.
+        """
+        if not isinstance(disk, DiskMap):
+            raise WindowError(f"disk must be a DiskMap, got {type(disk).__name__}: pass map_to_disk(mask)")
+        return CellWindows(self, disk)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,15 +97,15 @@ class CellWindows(WindowsOnCell):
         """Shares of pixels in windows, and the windows' moments; columns of the weights sum to 1."""
         return window_shares(self.grid, self.disk)
 
-    def windows_of_parts(self, pixels_yx: IntArray) -> IntArray:
-        """Number of the window that each part of some pixels maps into, shape (P, 16).
+    def windows_of_subpixels(self, pixels_yx: IntArray) -> IntArray:
+        """Number of the window that each subpixel of some pixels maps into, shape (P, 16).
 
         Parameters
         ----------
         pixels_yx : ndarray of shape (P, 2) and dtype int
             (row, column).
         """
-        return windows_of_parts(self.grid, self.disk, pixels_yx, PARTS)
+        return windows_of_subpixels(self.grid, self.disk, pixels_yx, PER_SIDE)
 
     @property
     def mask(self) -> BoolArray:
@@ -119,6 +165,46 @@ class CellWindows(WindowsOnCell):
                 }
             )
         return {"type": "FeatureCollection", "features": features}
+
+
+@takes(GridParameters)
+def polar_windows(*in_order: Any, **settings: Any) -> PolarGrid:
+    """Grid of windows on the unit disk.
+
+    Parameters
+    ----------
+    **settings
+        See `GridParameters`.
+
+    Returns
+    -------
+    PolarGrid
+
+    Raises
+    ------
+    WindowError
+        A count is not a positive whole number, or the spacing is unknown.
+
+    See Also
+    --------
+    edge_windows : Windows by distance from the edge, as the field's.
+    ring_windows : Rings and wedges, as CellProfiler's.
+    sample : The signal in each window.
+
+    References
+    ----------
+    u-Unwrap, section 3, "Windowing the cell using the disk parameterization".
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> grid = cd.polar_windows(layers=3, sectors=8)
+    >>> windows = grid.on(cd.map_to_disk(cd.simulate.dumbbell(radius=12)))
+    >>> windows.n_empty, round(windows.coverage, 6)
+    (0, 1.0)
+    """
+    grid = GridParameters.of(*in_order, **settings)
+    return PolarGrid(grid.layers, grid.sectors, grid.spacing)
 
 
 def _number(value: Any) -> float | None:

@@ -1,26 +1,21 @@
-"""`PolarGrid`: a grid of layers and sectors on the unit disk."""
+"""`PolarLayout`: how a polar grid divides the unit disk."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import WindowError
-from cytodisk.taking import takes
-from cytodisk.windows.grid_parameters import GridParameters, Spacing
-
-if TYPE_CHECKING:
-    from cytodisk.disk.disk_map import DiskMap
-    from cytodisk.windows.cell_windows import CellWindows
+from cytodisk.windows.grid_parameters import Spacing
 
 _MOST_LAYERS = 1000  # that a depth is turned into
 
 
 @dataclass(frozen=True)
-class PolarGrid:
+class PolarLayout:
     """Layers from the edge (0) inwards, sectors from angle 0 (+u) towards +v.
 
     Window (layer, sector) has number layer · sectors + sector.
@@ -29,16 +24,6 @@ class PolarGrid:
     ----------
     layers, sectors : int
     spacing : {"area", "radius"}
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import cytodisk as cd
-    >>> grid = cd.polar_windows(layers=2, sectors=4)
-    >>> grid.n_windows, grid.radii.round(2)
-    (8, array([1.  , 0.71, 0.  ]))
-    >>> grid.window_of(np.array([[0.9, 0.1]]))  # at the edge, just past angle 0
-    array([0])
     """
 
     layers: int
@@ -86,70 +71,6 @@ class PolarGrid:
         turn = np.arctan2(points_uv[:, 1], points_uv[:, 0]) / (2.0 * np.pi)
         sector = np.floor(np.mod(turn, 1.0) * self.sectors).astype(np.int64)
         return np.asarray(layer * self.sectors + np.minimum(sector, self.sectors - 1))
-
-    def on(self, disk: DiskMap) -> CellWindows:
-        """Carry the grid onto a cell.
-
-        Parameters
-        ----------
-        disk : DiskMap
-
-        Returns
-        -------
-        CellWindows
-            No window is empty, whatever the grid.
-
-        Raises
-        ------
-        WindowError
-            `disk` is not a map.
-        """
-        from cytodisk.disk.disk_map import DiskMap
-        from cytodisk.windows.cell_windows import CellWindows
-
-        if not isinstance(disk, DiskMap):
-            raise WindowError(f"disk must be a DiskMap, got {type(disk).__name__}: pass map_to_disk(mask)")
-        return CellWindows(self, disk)
-
-
-@takes(GridParameters)
-def polar_windows(*in_order: Any, **settings: Any) -> PolarGrid:
-    """Grid of windows on the unit disk.
-
-    Parameters
-    ----------
-    **settings
-        See `GridParameters`.
-
-    Returns
-    -------
-    PolarGrid
-
-    Raises
-    ------
-    WindowError
-        A count is not a positive whole number, or the spacing is unknown.
-
-    See Also
-    --------
-    edge_windows : Windows by distance from the edge, as the field's.
-    ring_windows : Rings and wedges, as CellProfiler's.
-    sample : The signal in each window.
-
-    References
-    ----------
-    u-Unwrap, section 3, "Windowing the cell using the disk parameterization".
-
-    Examples
-    --------
-    >>> import cytodisk as cd
-    >>> grid = cd.polar_windows(layers=3, sectors=8)
-    >>> windows = grid.on(cd.map_to_disk(cd.simulate.dumbbell(radius=12)))
-    >>> windows.n_empty, round(windows.coverage, 6)
-    (0, 1.0)
-    """
-    grid = GridParameters.of(*in_order, **settings)
-    return PolarGrid(grid.layers, grid.sectors, grid.spacing)
 
 
 def layers_for_depth(depth: float, area: float, perimeter: float, spacing: Spacing = "area") -> int:
