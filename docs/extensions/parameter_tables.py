@@ -12,6 +12,7 @@ from cytodisk.runs.compare_windows.compare_parameters import CompareMovieParamet
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_parameters import MovieParameters
+from cytodisk.runs.run_options import BatchOptions, MapOptions, RunOptions
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 
 MODELS: dict[str, type[Parameters]] = {
@@ -21,9 +22,11 @@ MODELS: dict[str, type[Parameters]] = {
     "cytodisk shapes": ShapeParameters,
     "cytodisk compare-windows": CompareWindowsParameters,
     "cytodisk compare-windows --movie": CompareMovieParameters,
+    "cytodisk batch": BatchOptions,
 }
 WORDS = """A parameter has one name: the keyword in Python, the key in ``parameters.toml`` and, with dashes,
 the flag on the command line. ``--parameters out/parameters.toml`` reads a file; flags overrule it."""
+OPTIONS_WORDS = """These options do not change the results. ``parameters.toml`` does not hold them."""
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
@@ -33,16 +36,23 @@ def setup(app: Sphinx) -> dict[str, Any]:
 
 def write_page(app: Sphinx, _config: Any) -> None:
     lines = [*heading("Parameters", "="), WORDS, ""]
+    lines += [*heading("How a run is done", "-"), OPTIONS_WORDS, "", *model_table(RunOptions)]
+    lines += ["``cytodisk map`` also has", "", *model_table(MapOptions, beyond=RunOptions)]
     for command, model in MODELS.items():
         lines += [*heading(f"``{command}``", "-"), *model_table(model)]
     write(Path(app.srcdir) / "reference" / "parameters.rst", lines)
 
 
-def model_table(model: type[Parameters]) -> list[str]:
-    """A row for each field: name and flag, default, what it may be, what it does."""
+def model_table(model: type[Parameters], beyond: type[Parameters] = Parameters) -> list[str]:
+    """A row for each field: name and flag, default, what it may be, what it does.
+
+    Fields that `beyond` has are left out.
+    """
     lines = [".. list-table::", "   :header-rows: 1", "   :class: small", "   :widths: 22 12 22 44", ""]
     lines += ["   * - Name, flag", "     - Default", "     - May be", "     - What it does"]
     for name, field in model.model_fields.items():
+        if name in beyond.model_fields:
+            continue
         unit = unit_of(field)
         default = "" if field.default in (None, (), "") else f"``{value_words(field.default)}``"
         allowed = range_words(field) + (f", in {unit}" if unit else "")
