@@ -56,7 +56,9 @@ def model_table(model: type[Parameters], beyond: type[Parameters] = Parameters) 
         unit = unit_of(field)
         default = "" if field.default in (None, (), "") else f"``{value_words(field.default)}``"
         allowed = range_words(field) + (f", in {unit}" if unit else "")
-        lines += [f"   * - | ``{name}``", f"       | ``{flag_of(name, field)}``", f"     - {default}"]
+        flag = flag_of(name, field)
+        flags = f"``{flag}``" if field.annotation is not bool else f"``{flag}``, ``--no-{flag[2:]}``"
+        lines += [f"   * - | ``{name}``", f"       | {flags}", f"     - {default}"]
         lines += [f"     - {plain(allowed)}", f"     - {plain(field.description or '')}"]
     return [*lines, ""]
 
