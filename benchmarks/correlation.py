@@ -42,10 +42,10 @@ import xarray as xr
 
 from cytodisk.analysis.accuracy import share_by_sector
 from cytodisk.analysis.activity import sample_movie
+from cytodisk.analysis.correlation.correlation_parameters import Null
 from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer, cross_correlate
 from cytodisk.analysis.correlation.jitter_mark import JITTERED_LAGS, jitter_step
 from cytodisk.analysis.correlation.peaks import peak_correlation
-from cytodisk.analysis.correlation.surrogates import Null
 from cytodisk.analysis.pairs.pair_correlation import correlate_pairs
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import StationarityWarning

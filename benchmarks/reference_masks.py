@@ -15,8 +15,8 @@ from typing import Any, get_args
 import numpy as np
 import tifffile
 
-from cytodisk.disk.disk_map import Method
 from cytodisk.disk.mapping import map_to_disk
+from cytodisk.disk.mapping_parameters import Method
 
 TARGETS = {  # largest mean |log λ|
     "example": 0.04,
