@@ -38,7 +38,10 @@ RENAMED = {"time": "frame", "doubts": "qc_flags", "track_times": "track_frames"}
 # Patterns of files' names, as they were, and what stands for them.
 RENAMED_FILES: dict[str, str] = {}
 # File (a pattern) and name: a difference that is wanted, and why.
-EXPLAINED: dict[tuple[str, str], str] = {}
+EXPLAINED: dict[tuple[str, str], str] = {
+    (r"\.npz$", "header.pixel_size_um"): "a map carries its scale",
+    (r"\.npz$", "header.frame_interval_s"): "a map carries its scale",
+}
 LEFT_OUT = {"seconds": "running time", "description": "words about columns", "header.format": "file format"}
 _UNREAD = (".html", ".json", ".toml")
 
