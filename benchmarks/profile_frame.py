@@ -70,7 +70,7 @@ FRAME_STAGES = (
     Stage("sampling", "two channels", ("cytodisk.windows.sample:sample",)),
     Stage("measures", "edge motion", ("cytodisk.motion.edge:edge_motion",)),
     Stage("measures", "distortion", ("cytodisk.disk.distortion:distortion_of",)),
-    Stage("measures", "rows", ("cytodisk.runs.movie.frame_rows:measure_frame",)),
+    Stage("measures", "rows", ("cytodisk.runs.movie.measured_frame:measure_frame",)),
     Stage("files", "map", ("cytodisk.motion.frame_file:save_frame",)),
     Stage(
         "files",

@@ -14,7 +14,7 @@ import cytodisk as cd
 from cytodisk.arrays import BoolArray
 from cytodisk.motion.mapped_frame import map_frame
 from cytodisk.motion.tracking_parameters import MovieSettings
-from cytodisk.runs.map.map_inputs import open_inputs
+from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_run import map_study
 from cytodisk.runs.movie.movie_inputs import open_movie

@@ -10,8 +10,10 @@ from cytodisk.analysis.shape.features import GROUPS
 from cytodisk.runs.batch.input_columns import INPUT, INPUT_COLUMNS
 from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS, COMPARED_MOVIE
 from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
-from cytodisk.runs.shapes.shape_tables import SHAPE_TABLES
-from cytodisk.store.study_folder import MAP_TABLES, MOVIE_TABLES, Tables
+from cytodisk.runs.map.map_study import MAP
+from cytodisk.runs.movie.movie_study import MOVIE
+from cytodisk.runs.shapes.shape_tables import SHAPE_STUDY
+from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import Columns
 
 WORDS = """Tables are Parquet files. ``cytodisk.open_study`` reads them. Each table has the units of its
@@ -28,14 +30,14 @@ def setup(app: Sphinx) -> dict[str, Any]:
 
 def write_page(app: Sphinx, _config: Any) -> None:
     lines = [*heading("Columns of every table", "="), WORDS, ""]
-    mapped = tables_of(MAP_TABLES, MOVIE_TABLES)
+    mapped = tables_of(MAP, MOVIE)
     lines += run("Maps and movies", "``cytodisk map`` and ``cytodisk movie`` write these tables.", mapped)
     lines += run(
         "Correlations",
         "``cytodisk correlate`` writes these tables into ``correlation/SIGNAL~WITH/``.",
         CORRELATION_TABLES,
     )
-    lines += run("Shapes", "``cytodisk shapes`` writes this table.", {"shapes": SHAPE_TABLES.cells})
+    lines += run("Shapes", "``cytodisk shapes`` writes this table.", {"shapes": SHAPE_STUDY.cells})
     lines += ["The features follow; ``features.csv`` lists them, too.", "", *features()]
     compared = tables_of(COMPARED_CELLS, COMPARED_MOVIE)
     lines += run("Comparisons of windows", "``cytodisk compare-windows`` writes these tables.", compared)
@@ -49,11 +51,11 @@ def write_page(app: Sphinx, _config: Any) -> None:
     write(Path(app.srcdir) / "reference" / "tables.rst", lines)
 
 
-def tables_of(*kinds: Tables) -> dict[str, Columns]:
+def tables_of(*kinds: StudyKind) -> dict[str, Columns]:
     """Columns of the tables that runs of these kinds write, all that any of them has."""
     found: dict[str, Columns] = {}
     for kind in kinds:
-        for name, columns in {"cells": kind.cells, **kind.others}.items():
+        for name, columns in kind.tables.items():
             known = found.get(name, ())
             found[name] = (*known, *(column for column in columns if column not in known))
     return found

@@ -215,7 +215,7 @@ def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) ->
         batch_study(replace(batch, inputs=(changed, *batch.inputs[1:])), quiet, resume=True)
     with pytest.raises(OtherRunError, match="study of cytodisk movie"):
         batch_study(batch, quiet / "inputs" / "movie_0", overwrite=True)
-    with pytest.raises(StudyError, match="is not empty and holds no batch"):
+    with pytest.raises(StudyError, match="is not empty and holds no study"):
         batch_study(batch, files)
     with pytest.raises(StudyError, match="another run is writing there"), alone_in(quiet):
         batch_study(batch, quiet, resume=True)

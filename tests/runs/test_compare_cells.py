@@ -117,11 +117,11 @@ def test_a_stopped_run_goes_on(
     with monkeypatch.context() as patched:
         measure, calls = module.compare_cell, []
 
-        def stop_at_the_third(task: Any) -> Any:
+        def stop_at_the_third(task: Any, **settings: Any) -> Any:
             calls.append(task.found.cell)
             if len(calls) == 3:
                 raise KeyboardInterrupt
-            return measure(task)
+            return measure(task, **settings)
 
         patched.setattr(module, "compare_cell", stop_at_the_third)
         with pytest.raises(KeyboardInterrupt):
@@ -137,7 +137,7 @@ def test_a_stopped_run_goes_on(
         pd.testing.assert_frame_equal(
             here.drop(columns="seconds", errors="ignore"), there.drop(columns="seconds", errors="ignore")
         )
-    monkeypatch.setattr(module, "compare_cell", None)  # a complete comparison is not run again
+    monkeypatch.setattr(module.CellRun, "fill", None)  # a complete comparison is not run again
     (tmp_path / "out" / "comparison.csv").unlink()
     assert cd.run_compare_windows(masks, tmp_path / "out", parameters=GRID, resume=True).methods == METHODS
     assert (tmp_path / "out" / "comparison.csv").exists()
@@ -209,10 +209,17 @@ def test_the_parameters_of_a_comparison_can_be_fed_back(comparison: cd.Compariso
 
 
 def test_a_map_study_is_no_comparison(tmp_path: Path) -> None:
-    with pytest.raises(ReadError, match=r"no comparison.*cytodisk compare-windows"):
+    with pytest.raises(ReadError, match="is no study"):
         cd.open_comparison(tmp_path)
-    (tmp_path / "provenance.json").write_text(json.dumps({"fingerprint": {}, "status": "complete"}))
-    with pytest.raises(ReadError, match="holds no comparison"):
+    other = {
+        "fingerprint": {},
+        "status": "complete",
+        "format": 2,
+        "run": "map",
+        "reader": "read otherwise",
+    }
+    (tmp_path / "provenance.json").write_text(json.dumps(other))
+    with pytest.raises(ReadError, match="holds a run of cytodisk map: read otherwise"):
         cd.open_comparison(tmp_path)
 
 

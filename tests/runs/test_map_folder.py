@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError, SignalError, StudyError
-from cytodisk.runs.map.map_inputs import open_inputs
+from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_run import check_cells, map_study
 
@@ -256,14 +256,14 @@ def test_a_file_of_another_scale_costs_its_rows_alone(place: Path, tmp_path: Pat
         path = place / "masks" / f"im{number}_cp_masks.tif"
         write_with_scale(path, tifffile.imread(path), size)
     inputs = open_inputs(place / "masks", None, SMALL)
-    assert inputs.pixel_size_um == 0.1
+    assert inputs.scale.pixel_size_um == 0.1
     assert inputs.remarks == ("1 of 3 files have another pixel size than 0.1 µm: left out",)
     study = map_study(inputs, tmp_path / "out")
     assert study.cells["status"].tolist() == ["refused"] + ["ok"] * 8
     assert "has pixels of 0.2 µm, most files of the folder 0.1 µm: map it alone" in study.cells["reason"][0]
     assert study.provenance["warnings"][0] == inputs.remarks[0]
     given = open_inputs(place / "masks", None, SMALL.model_copy(update={"pixel_size_um": 0.3}))
-    assert (given.pixel_size_um, given.remarks, given.sources[0].fault) == (0.3, (), None)
+    assert (given.scale.pixel_size_um, given.remarks, given.sources[0].fault) == (0.3, (), None)
 
 
 def test_an_image_of_another_scale_costs_its_rows_alone(place: Path) -> None:
@@ -271,7 +271,7 @@ def test_an_image_of_another_scale_costs_its_rows_alone(place: Path) -> None:
         labels = tifffile.imread(place / "masks" / f"im{number}_cp_masks.tif")
         write_with_scale(place / "images" / f"im{number}.ome.tif", labels, size)
     inputs = open_inputs(place / "masks", place / "images", SMALL)
-    assert inputs.pixel_size_um == 0.1
+    assert inputs.scale.pixel_size_um == 0.1
     assert "has pixels of 0.2 µm" in str(inputs.signals["im11_cp_masks.tif"].fault)
     assert inputs.sources[2].fault is None
 
@@ -280,7 +280,7 @@ def test_files_without_a_scale_are_counted(place: Path) -> None:
     path = place / "masks" / "im10_cp_masks.tif"
     write_with_scale(path, tifffile.imread(path), 0.1)
     inputs = open_inputs(place / "masks", None, SMALL)
-    assert inputs.pixel_size_um == 0.1
+    assert inputs.scale.pixel_size_um == 0.1
     words = "2 of 3 files do not say their pixel size: 0.1 µm is taken for them"
     assert inputs.remarks == (words,)
 
@@ -317,7 +317,7 @@ def test_maps_can_be_left_out(whole: cd.Study, written: Path, tmp_path: Path) ->
 def test_figures_and_outlines_lie_in_the_image(whole: cd.Study, written: Path, tmp_path: Path) -> None:
     drawn: dict[str, tuple[tuple[int, ...], tuple[int, ...]]] = {}
 
-    def draw(folder: Path, name: str, windows: cd.CellWindows, signal: object, size: object) -> list[Path]:
+    def draw(folder: Path, name: str, windows: cd.CellWindows, signal: object) -> list[Path]:
         drawn[name] = windows.mask.shape, np.shape(signal)
         return []
 

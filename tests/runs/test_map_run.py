@@ -9,7 +9,7 @@ from numpy.testing import assert_array_equal
 
 import cytodisk as cd
 from cytodisk.errors import MaskError, ParameterError, ReadError, SignalError, StudyError
-from cytodisk.runs.map.map_inputs import MapInputs, open_inputs
+from cytodisk.runs.cells.cell_inputs import CellInputs, open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_run import check_cells, map_study
 from cytodisk.runs.parameters_file import parameters_from
@@ -218,7 +218,7 @@ def test_a_stack_is_no_single_mask(write_stack: WriteStack) -> None:
 
 
 def test_workers_must_be_positive(write_stack: WriteStack, tmp_path: Path) -> None:
-    inputs: MapInputs = open_inputs(write_stack(1)[0], None, SMALL)
+    inputs: CellInputs = open_inputs(write_stack(1)[0], None, SMALL)
     with pytest.raises(ParameterError, match=r"workers.*0"):
         map_study(inputs, tmp_path / "out", workers=0)
     assert not (tmp_path / "out").exists()
@@ -247,7 +247,7 @@ def test_an_overwrite_killed_half_way_can_be_repeated(
     inputs = open_inputs(masks, signal, SMALL)
     map_study(inputs, tmp_path / "out")
     with monkeypatch.context() as patch:
-        patch.setattr("cytodisk.store.study_folder.shutil.rmtree", _stop)
+        patch.setattr(Path, "rmdir", _stop)
         with pytest.raises(Stopped):
             map_study(inputs, tmp_path / "out", overwrite=True)
     with pytest.raises(ReadError, match="not complete"):
@@ -275,7 +275,7 @@ def test_a_files_own_scale_stays_out_of_the_parameters(write_stack: WriteStack, 
     study = map_study(open_inputs(tmp_path / "coarse.ome.tif", None, SMALL), tmp_path / "out")
     again = parameters_from({}, tmp_path / "out" / "parameters.toml", MapParameters)
     assert study.provenance["pixel_size_um"] == pytest.approx(0.3)
-    assert open_inputs(fine, None, again).pixel_size_um == pytest.approx(0.1)
+    assert open_inputs(fine, None, again).scale.pixel_size_um == pytest.approx(0.1)
     with pytest.raises(SignalError, match="pixel sizes differ"):
         open_inputs(fine, tmp_path / "coarse.ome.tif", SMALL)
 

@@ -12,7 +12,7 @@ import cytodisk as cd
 from cytodisk.errors import CytodiskError, MaskError, ParameterError, ReadError, SignalError, StudyError
 from cytodisk.images.frames import open_frames
 from cytodisk.images.tracks import read_frame
-from cytodisk.runs.map.map_inputs import open_inputs
+from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_run import movie_study

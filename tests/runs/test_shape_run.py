@@ -34,7 +34,7 @@ def plane(monkeypatch: pytest.MonkeyPatch) -> None:
         return np.asarray(values[:, :2] - values[:, :2].mean(axis=0))
 
     monkeypatch.setattr(complexity, "umap_plane", two_features)
-    monkeypatch.setattr(shape_run, "CELLS_PER_PART", 3)
+    monkeypatch.setattr(shape_run, "CELLS_AT_ONCE", 3)
 
 
 @pytest.fixture
@@ -125,7 +125,7 @@ def test_a_stopped_run_does_the_rest_to_the_same_results(
     with pytest.raises(StudyError, match="--resume"):
         run(folder, tmp_path / "out")
     table = run(folder, tmp_path / "out", resume=True, progress=lambda so_far, total: done.append(so_far))
-    assert done == [6, 9, 12, 13]
+    assert done == [6, 7, 10, 12, 13]
     pd.testing.assert_frame_equal(table, whole, check_exact=True)
     assert (tmp_path / "out/shapes.csv").read_bytes() == (tmp_path / "whole/shapes.csv").read_bytes()
 
@@ -140,7 +140,7 @@ def test_nothing_is_measured_again_where_the_score_failed(
         broken.setattr(shape_run, "shape_table", fail)
         with pytest.raises(RuntimeError):
             run(folder, tmp_path / "out")
-    monkeypatch.setattr(shape_run, "measure_shapes", fail)
+    monkeypatch.setattr(shape_run, "measure_shape", fail)
     table = run(folder, tmp_path / "out", resume=True)
     assert (table["status"] == "ok").sum() == 12
 
@@ -174,7 +174,7 @@ def test_cells_that_are_all_alike_have_features_and_no_complexity(tmp_path: Path
 
 
 def test_only_a_complete_run_of_shapes_is_read(folder: Path, tmp_path: Path) -> None:
-    with pytest.raises(ReadError, match="holds no shapes"):
+    with pytest.raises(ReadError, match="is no study"):
         cd.open_shapes(tmp_path)
     run(folder / "b_masks.tif", tmp_path / "out")
     with pytest.raises(ReadError, match="open_shapes"):

@@ -6,6 +6,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from cytodisk.errors import ReadError, StudyError
+from cytodisk.scale import Scale
 from cytodisk.store.activity_store import ActivityStore, open_activity
 from cytodisk.windows.polar_windows import polar_windows
 
@@ -21,6 +22,7 @@ MOTION = (
     "edge_length",
 )
 PER_CHUNK = 64
+SCALE = Scale(0.16, 5.0)
 
 
 def frame_arrays(time: int, channels: int = 2) -> dict[str, Any]:
@@ -39,10 +41,10 @@ def write(
     cell: int = 0,
     gaps: tuple[int, ...] = (),
     channels: tuple[str, ...] = ("Rac1", "RhoA"),
-    scale: tuple[float | None, float | None] = (0.16, 5.0),
+    scale: Scale = SCALE,
 ) -> None:
     with ActivityStore.replacing(target) as store:
-        group = store.cell(cell, 7, GRID, channels, *scale)
+        group = store.cell(cell, 7, GRID, channels, scale)
         for time in times:
             if time in gaps:
                 group.append(time, None, "refused", f"frame {time} is empty")
@@ -93,7 +95,7 @@ def test_a_gap_is_nan_with_status_and_reason(tmp_path: Path) -> None:
 
 def test_a_reason_of_a_later_chunk_is_not_cut(tmp_path: Path) -> None:
     with ActivityStore.replacing(tmp_path / "a.zarr") as store:
-        group = store.cell(0, 1, GRID, ("a",), None, None)
+        group = store.cell(0, 1, GRID, ("a",), Scale())
         for time in range(PER_CHUNK):
             group.append(time, frame_arrays(time, 1), "ok", "")
         group.append(PER_CHUNK, None, "unreadable", "µ" * 300)
@@ -114,15 +116,13 @@ def test_without_channels_there_are_geometry_and_motion_alone(tmp_path: Path) ->
 @pytest.mark.parametrize(
     ("scale", "length", "second"),
     [
-        ((None, None), "px", "frame"),
-        ((0.5, None), "µm", "frame"),
-        ((None, 2.0), "px", "s"),
-        ((0.5, 2.0), "µm", "s"),
+        (Scale(), "px", "frame"),
+        (Scale(0.5), "µm", "frame"),
+        (Scale(None, 2.0), "px", "s"),
+        (Scale(0.5, 2.0), "µm", "s"),
     ],
 )
-def test_units_follow_what_is_known(
-    tmp_path: Path, scale: tuple[float | None, float | None], length: str, second: str
-) -> None:
+def test_units_follow_what_is_known(tmp_path: Path, scale: Scale, length: str, second: str) -> None:
     write(tmp_path / "a.zarr", range(1), scale=scale)
     found = open_activity(tmp_path / "a.zarr", 0)
     units = {str(name): values.attrs.get("units") for name, values in found.reset_coords().data_vars.items()}
@@ -132,13 +132,13 @@ def test_units_follow_what_is_known(
         assert units[name] == f"{length}²"
     assert units["edge_length"] == length
     assert (units["mean"], units["n_pixels"], units["centroid_y"]) == ("a.u.", "px²", "px")
-    assert ("time_s" in found.coords) == (scale[1] is not None)
+    assert ("time_s" in found.coords) == (scale.frame_interval_s is not None)
 
 
 def test_cells_are_groups_of_their_own(tmp_path: Path) -> None:
     with ActivityStore.replacing(tmp_path / "a.zarr") as store:
         for cell, times in ((0, range(2)), (12, range(5, 8))):
-            group = store.cell(cell, cell + 1, GRID, ("a",), None, None)
+            group = store.cell(cell, cell + 1, GRID, ("a",), Scale())
             for time in times:
                 group.append(time, frame_arrays(10 * cell + time, 1), "ok", "")
             group.close()
@@ -155,7 +155,7 @@ class Killed(Exception):
 
 def start_and_die(target: Path) -> None:
     with ActivityStore.replacing(target) as store:
-        group = store.cell(0, 7, GRID, ("a",), None, None)
+        group = store.cell(0, 7, GRID, ("a",), Scale())
         for time in range(PER_CHUNK + 1):
             group.append(time, frame_arrays(time, 1), "ok", "")
         raise Killed

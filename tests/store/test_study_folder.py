@@ -7,9 +7,14 @@ import pytest
 
 import cytodisk as cd
 from cytodisk.errors import ReadError, StudyError
-from cytodisk.store.provenance_file import differences
-from cytodisk.store.study_folder import StudyFolder, figures_folder, part_key
+from cytodisk.store.provenance_file import differences, record_files
+from cytodisk.store.study_folder import StudyFolder, figure_path, part_key
+from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import SOURCE_COLUMNS, WINDOW_COLUMNS
+
+KIND = StudyKind(
+    "map", "cytodisk map", "", SOURCE_COLUMNS, {"windows": WINDOW_COLUMNS}, ("maps/cell_*.npz", "extra.csv")
+)
 
 
 def run(length_unit: str = "px", **settings: object) -> dict[str, object]:
@@ -28,7 +33,7 @@ def add(folder: StudyFolder, cell: int, **values: object) -> None:
 
 
 def finished(path: Path, length_unit: str = "px") -> StudyFolder:
-    folder = StudyFolder.start(path, run(length_unit))
+    folder = StudyFolder.start(path, run(length_unit), KIND)
     add(folder, 0, status="ok", area=12.5)
     add(folder, 1, status="refused", reason="empty")
     folder.finish([part_key(0), part_key(1)])
@@ -65,7 +70,7 @@ def test_units_stand_in_the_tables_metadata(tmp_path: Path, unit: str) -> None:
 
 
 def test_parts_come_in_the_order_of_cells_whatever_the_order_of_adding(tmp_path: Path) -> None:
-    folder = StudyFolder.start(tmp_path / "out", run())
+    folder = StudyFolder.start(tmp_path / "out", run(), KIND)
     for cell in (10, 2, 0):
         add(folder, cell, status="ok")
     folder.finish([part_key(cell) for cell in (0, 2, 10)])
@@ -78,28 +83,28 @@ def test_a_folder_with_something_else_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("years of work")
     for options in ({}, {"resume": True}, {"overwrite": True}):
         with pytest.raises(StudyError, match="not empty and holds no study"):
-            StudyFolder.start(tmp_path, run(), **options)
+            StudyFolder.start(tmp_path, run(), KIND, **options)
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
 
 
 def test_a_provenance_of_something_else_is_no_study(tmp_path: Path) -> None:
     (tmp_path / "provenance.json").write_text('{"made by": "another program"}')
     with pytest.raises(StudyError, match="holds no study"):
-        StudyFolder.start(tmp_path, run(), overwrite=True)
+        StudyFolder.start(tmp_path, run(), KIND, overwrite=True)
     assert json.loads((tmp_path / "provenance.json").read_text()) == {"made by": "another program"}
 
 
 def test_a_study_is_not_overwritten_unasked(tmp_path: Path) -> None:
     finished(tmp_path / "out")
     with pytest.raises(StudyError, match=r"--resume.*--overwrite"):
-        StudyFolder.start(tmp_path / "out", run())
+        StudyFolder.start(tmp_path / "out", run(), KIND)
     assert len(cd.open_study(tmp_path / "out").cells) == 2
 
 
 def test_resume_names_what_differs_from_another_run(tmp_path: Path) -> None:
     finished(tmp_path / "out")
     with pytest.raises(StudyError, match=r"layers: 10 then, 5 now.*--overwrite"):
-        StudyFolder.start(tmp_path / "out", run(layers=5), resume=True)
+        StudyFolder.start(tmp_path / "out", run(layers=5), KIND, resume=True)
     assert len(cd.open_study(tmp_path / "out").cells) == 2
 
 
@@ -116,39 +121,83 @@ def test_resume_names_the_packages_that_differ_alone() -> None:
 
 
 def test_resume_keeps_complete_parts(tmp_path: Path) -> None:
-    add(StudyFolder.start(tmp_path / "out", run()), 3, status="ok")
-    again = StudyFolder.start(tmp_path / "out", run(), resume=True)
+    add(StudyFolder.start(tmp_path / "out", run(), KIND), 3, status="ok")
+    again = StudyFolder.start(tmp_path / "out", run(), KIND, resume=True)
     assert (again.has(part_key(3)), again.has(part_key(4))) == (True, False)
     assert [row["cell"] for row in again.rows()] == [3]
 
 
 def test_a_part_without_its_row_is_not_complete(tmp_path: Path) -> None:
-    folder = StudyFolder.start(tmp_path / "out", run())
+    folder = StudyFolder.start(tmp_path / "out", run(), KIND)
     add(folder, 3, status="ok")
     next((tmp_path / "out").glob(".parts/*.json")).unlink()
-    assert not StudyFolder.start(tmp_path / "out", run(), resume=True).has(part_key(3))
+    assert not StudyFolder.start(tmp_path / "out", run(), KIND, resume=True).has(part_key(3))
 
 
 def test_overwrite_removes_the_study_and_nothing_else(tmp_path: Path) -> None:
     finished(tmp_path / "out")
-    (tmp_path / "out" / "notes.txt").write_text("mine")
-    old = figures_folder(tmp_path / "out") / "cell_00000.png"
-    old.write_bytes(b"old")
-    folder = StudyFolder.start(tmp_path / "out", run(layers=5), overwrite=True)
+    out = tmp_path / "out"
+    ours = [figure_path(out, "cell_00000.png"), out / "extra.csv", out / "maps" / "cell_00000.npz"]
+    record_files(out, ["report.html", "folder"])
+    (out / "folder").mkdir()
+    ours += [out / "report.html", out / "folder" / "a.csv"]
+    theirs = [out / name for name in ("notes.txt", "figures/mine.png", "maps/mine.npz", "report_2.html")]
+    for path in (*ours, *theirs):
+        path.write_text("there")
+    folder = StudyFolder.start(out, run(layers=5), KIND, overwrite=True)
     assert folder.rows() == []
-    assert (tmp_path / "out" / "notes.txt").read_text() == "mine"
-    assert not old.exists()
-    assert not (tmp_path / "out" / "cells.parquet").exists()
+    assert [path.read_text() for path in theirs] == ["there"] * len(theirs)
+    assert not any(path.exists() for path in ours)
+    assert not (out / "folder").exists()
+    assert not (out / "cells.parquet").exists()
+
+
+def test_overwrite_keeps_an_input_even_where_a_result_stood(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    finished(out)
+    (out / "maps" / "cell_00000.npz").write_text("masks")
+    here = run() | {"inputs": {"masks": {"path": str(out / "maps" / "cell_00000.npz")}}}
+    StudyFolder.start(out, here, KIND, overwrite=True)
+    assert (out / "maps" / "cell_00000.npz").read_text() == "masks"
+    assert not (out / "cells.parquet").exists()
+
+
+def test_the_provenance_names_all_that_a_run_writes(tmp_path: Path) -> None:
+    folder = finished(tmp_path / "out")
+    figure_path(folder.path, "cell_00000.png").write_bytes(b"")
+    patterns = cd.open_study(folder.path).provenance["files"]
+    names = [path.relative_to(folder.path) for path in folder.path.rglob("*") if path.is_file()]
+    assert len(names) == 4
+    assert all(any(name.match(pattern) for pattern in patterns) for name in names)
+
+
+@pytest.mark.parametrize("options", [{"resume": True}, {"overwrite": True}])
+def test_a_study_of_the_version_before_is_left_alone_and_named(
+    tmp_path: Path, options: dict[str, bool]
+) -> None:
+    """It had no list of its files, and other names of columns."""
+    finished(tmp_path / "out")
+    told = tmp_path / "out" / "provenance.json"
+    old = {
+        name: value for name, value in json.loads(told.read_text()).items() if name not in ("format", "files")
+    }
+    told.write_text(json.dumps(old | {"versions": {"cytodisk": "0.1.0"}}))
+    assert not StudyFolder.is_complete(tmp_path / "out", run())
+    with pytest.raises(StudyError, match=r"0\.1\.0.*another folder"):
+        StudyFolder.start(tmp_path / "out", run(), KIND, **options)
+    with pytest.raises(ReadError, match=r"0\.1\.0.*that version"):
+        cd.open_study(tmp_path / "out")
+    assert (tmp_path / "out" / "cells.parquet").exists()
 
 
 def test_left_over_temporary_files_of_a_killed_run_go_and_other_files_stay(tmp_path: Path) -> None:
-    StudyFolder.start(tmp_path / "out", run())
+    StudyFolder.start(tmp_path / "out", run(), KIND)
     left_over = tmp_path / "out" / "maps" / ".cell_00000.4711.tmp.npz"
     theirs = [tmp_path / "out" / ".editor.tmp.txt", tmp_path / "out" / "mine" / ".a.1.tmp.txt"]
     theirs[1].parent.mkdir()
     for path in (left_over, *theirs):
         path.write_text("half")
-    StudyFolder.start(tmp_path / "out", run(), resume=True)
+    StudyFolder.start(tmp_path / "out", run(), KIND, resume=True)
     assert not left_over.exists()
     assert [path.read_text() for path in theirs] == ["half", "half"]
 
@@ -156,9 +205,9 @@ def test_left_over_temporary_files_of_a_killed_run_go_and_other_files_stay(tmp_p
 def test_a_file_is_no_output_folder(tmp_path: Path) -> None:
     (tmp_path / "out").write_text("mine")
     with pytest.raises(StudyError, match="is a file: pass a folder"):
-        StudyFolder.start(tmp_path / "out", run(), overwrite=True)
+        StudyFolder.start(tmp_path / "out", run(), KIND, overwrite=True)
     with pytest.raises(StudyError, match="cannot be written: Not a directory"):
-        StudyFolder.start(tmp_path / "out" / "below", run())
+        StudyFolder.start(tmp_path / "out" / "below", run(), KIND)
     assert (tmp_path / "out").read_text() == "mine"
 
 
@@ -167,7 +216,7 @@ def test_open_study_says_why_not(tmp_path: Path) -> None:
         cd.open_study(tmp_path / "nowhere")
     with pytest.raises(ReadError, match=r"no study.*provenance\.json"):
         cd.open_study(tmp_path)
-    StudyFolder.start(tmp_path / "half", run())
+    StudyFolder.start(tmp_path / "half", run(), KIND)
     with pytest.raises(ReadError, match=r"not complete.*--resume"):
         cd.open_study(tmp_path / "half")
     finished(tmp_path / "out")

@@ -9,8 +9,8 @@ from numpy.testing import assert_array_equal
 
 import cytodisk as cd
 from cytodisk.errors import MapError, ReadError
+from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.map import map_run
-from cytodisk.runs.map.map_inputs import open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie import movie_run
 from cytodisk.runs.movie.movie_inputs import open_movie

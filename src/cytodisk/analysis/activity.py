@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -18,6 +18,7 @@ from cytodisk.windows.grid_parameters import SampleParameters
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.sample import sample
 
+GEOMETRY = ("area", "centroid_y", "centroid_x")
 STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
 
 
@@ -84,26 +85,69 @@ def sample_movie(
     """
     how = dict(SampleParameters.of(**settings))
     frames, channels = parse_signals(signals, len(movie), movie.image_shape)
-    shape = (len(movie), len(channels), grid.layers, grid.sectors)
-    tables = {name: np.full(shape, np.nan) for name in STATISTICS}
-    area, y, x = (np.full((len(movie), grid.layers, grid.sectors), np.nan) for _ in range(3))
-    for time, record in enumerate(movie.records):
-        if record.boundary is not None:
-            windows = grid.on(movie[time])
-            data = sample(windows, _frame(frames[time], time, len(channels), movie.image_shape), **how)
-            for name in STATISTICS:
-                tables[name][time] = data[name].to_numpy()
-            area[time] = windows.areas
-            y[time], x[time] = np.moveaxis(windows.centroids_yx, -1, 0)
+    tables = ActivityTables(len(movie), channels, grid)
+    for time, has_map in enumerate(movie.mapped):
+        if has_map:
+            image = _frame(frames[time], time, len(channels), movie.image_shape)
+            tables.put(time, window_arrays(grid.on(movie[time]), image, **how))
         if progress is not None:
             progress(time + 1, len(movie))
-    return activity_dataset(
-        tables | {"area": area, "centroid_y": y, "centroid_x": x},
-        channels,
-        [record.status for record in movie.records],
-        [record.reason for record in movie.records],
-        movie.scale,
-    )
+    return tables.dataset(movie)
+
+
+def window_arrays(windows: WindowsOnCell, image: Any, **settings: Any) -> dict[str, FloatArray]:
+    """What is known of the windows of one frame: the one step that all activity comes from.
+
+    Parameters
+    ----------
+    windows : WindowsOnCell
+    image : array_like of shape (C, H, W), DataArray with dims (channel, y, x), or None
+        Without an image there are no statistics.
+    **settings
+        As for `sample`.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Statistics of shape (C, L, S); area in square pixels, centroid_y and centroid_x of shape (L, S).
+    """
+    arrays = {"area": windows.areas}
+    arrays["centroid_y"], arrays["centroid_x"] = np.moveaxis(windows.centroids_yx, -1, 0)
+    if image is None:
+        return arrays
+    data = sample(windows, image, **settings)
+    return {name: data[name].to_numpy() for name in STATISTICS} | arrays
+
+
+class ActivityTables:
+    """Arrays of the windows of a movie, filled frame by frame; NaN where there is nothing.
+
+    Parameters
+    ----------
+    n_frames : int
+    channels : list of str
+    grid : Grid
+    statistics : sequence of str
+        Which of them are kept.
+    """
+
+    def __init__(
+        self, n_frames: int, channels: list[str], grid: Grid, statistics: Sequence[str] = STATISTICS
+    ):
+        shape = n_frames, grid.layers, grid.sectors
+        self.channels = channels
+        self.tables = {name: np.full((n_frames, len(channels), *shape[1:]), np.nan) for name in statistics}
+        self.tables |= {name: np.full(shape, np.nan) for name in GEOMETRY}
+
+    def put(self, frame: int, arrays: dict[str, FloatArray]) -> None:
+        """Keep the arrays of a frame, as `window_arrays` returns them."""
+        for name in self.tables.keys() & arrays.keys():
+            self.tables[name][frame] = arrays[name]
+
+    def dataset(self, movie: DiskMovie, first_frame: int = 0) -> xr.Dataset:
+        """All of it, with the status of the movie's frames; see `activity_dataset`."""
+        reasons = [record.reason for record in movie.records]
+        return activity_dataset(self.tables, self.channels, movie.status, reasons, movie.scale, first_frame)
 
 
 def activity_dataset(

@@ -93,8 +93,8 @@ def _run_cells(
     settings: CompareWindowsParameters,
     options: dict[str, Any],
 ) -> "Comparison":
+    from cytodisk.runs.cells.cell_inputs import open_inputs
     from cytodisk.runs.compare_windows.compare_cells import compare_opened_cells
-    from cytodisk.runs.map.map_inputs import open_inputs
 
     inputs = open_inputs(masks, None, settings)
     say_inputs(console, inputs)

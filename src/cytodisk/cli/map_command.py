@@ -15,13 +15,14 @@ from cytodisk.cli.options import (
     SignalFiles,
     with_parameters,
 )
-from cytodisk.runs.map.map_parameters import FileParameters, MapParameters
+from cytodisk.runs.cells.cell_parameters import FileParameters
+from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.run_options import MapOptions
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from cytodisk.runs.map.map_inputs import MapInputs
+    from cytodisk.runs.cells.cell_inputs import CellInputs
 
 MAP_HELP = """Map masks onto the disk and sample a signal in windows, into a study folder.
 
@@ -53,7 +54,7 @@ def map_command(
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.pages.cell_pages import write_cell_figures
-    from cytodisk.runs.map.map_inputs import open_inputs
+    from cytodisk.runs.cells.cell_inputs import open_inputs
     from cytodisk.runs.map.map_run import map_study
 
     console = console_for(quiet)
@@ -81,7 +82,7 @@ def check_command(masks: MaskFiles, given: Given, signal: SignalFiles = None) ->
     Example: cytodisk check labels.tif
     """
     from cytodisk.cli.map_totals import say_checked
-    from cytodisk.runs.map.map_inputs import open_inputs
+    from cytodisk.runs.cells.cell_inputs import open_inputs
     from cytodisk.runs.map.map_run import check_cells
 
     inputs = open_inputs(masks, signal, given.of(FileParameters))
@@ -91,10 +92,10 @@ def check_command(masks: MaskFiles, given: Given, signal: SignalFiles = None) ->
     raise typer.Exit(1 if unusable else 0)
 
 
-def say_inputs(console: "Console", inputs: "MapInputs") -> None:
+def say_inputs(console: "Console", inputs: "CellInputs") -> None:
     for role, words in inputs.understood.items():
         console.print(f"{role}: {words}")
-    size = inputs.pixel_size_um
+    size = inputs.scale.pixel_size_um
     console.print(f"pixel size: {size:g} µm" if size else "pixel size: unknown, results are in px")
     for remark in inputs.remarks:
         console.print(f"note: {remark}")

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from rich.console import Console
 
-    from cytodisk.runs.map.map_inputs import MapInputs
+    from cytodisk.runs.cells.cell_inputs import CellInputs
     from cytodisk.runs.map.map_run import CheckedCell
     from cytodisk.store.study import Study
 
@@ -25,11 +25,11 @@ _EMPTY = {"no cell": "empty", "no image": "without an image", "unreadable": "dam
 def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool) -> None:
     """Draw the overview and say what came out; exit code 2 if that is nothing, or an input is damaged."""
     from cytodisk.pages.overview import write_overview
-    from cytodisk.store.study_folder import figures_folder
+    from cytodisk.store.study_folder import figure_path
 
     rows = study.cells
     if len(rows) > 1:
-        write_overview(figures_folder(study.path) / "overview.png", rows)
+        write_overview(figure_path(study.path, "overview.png"), rows)
     cells, without = rows[rows["label"] != 0], rows[rows["label"] == 0]
     mapped, lost = rows[rows["status"] == "ok"], rows[rows["status"] != "ok"]
     if of_folder:
@@ -144,7 +144,7 @@ def say_reasons(lost: Iterable[tuple[int | None, str, str, str]]) -> None:
         print(f"… and {rest} for other reasons: column 'reason' of cells.parquet", file=sys.stderr)
 
 
-def say_checked(console: "Console", inputs: "MapInputs", cells: Iterable["CheckedCell"]) -> int:
+def say_checked(console: "Console", inputs: "CellInputs", cells: Iterable["CheckedCell"]) -> int:
     """Print a line a cell and the totals; give the number of cells, files and images that are at fault.
 
     An image without any cell is no fault in a folder, where such images are usual.

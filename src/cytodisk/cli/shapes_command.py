@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from rich.console import Console
 
-    from cytodisk.runs.map.map_inputs import MapInputs
+    from cytodisk.runs.cells.cell_inputs import CellInputs
 
 SHAPES_HELP = """Measure the shape of cells in a hundred features, and order them from plain to complex ones.
 
@@ -54,7 +54,7 @@ def shapes_command(
     console = console_for(quiet)
     inputs = open_shape_inputs(masks, settings)
     console.print(f"masks: {inputs.understood['masks']}")
-    size = inputs.pixel_size_um
+    size = inputs.scale.pixel_size_um
     console.print(f"pixel size: {size:g} µm" if size else "pixel size: unknown, lengths are in px")
     for remark in inputs.remarks:
         console.print(f"note: {remark}")
@@ -64,15 +64,14 @@ def shapes_command(
     _say(console, table, out)
 
 
-def _draw(inputs: "MapInputs", table: "pd.DataFrame", out: Path) -> None:
+def _draw(inputs: "CellInputs", table: "pd.DataFrame", out: Path) -> None:
     from cytodisk.pages.shape_pages import cells_to_draw, write_shape_figures
     from cytodisk.runs.shapes.shape_run import cleaned_masks
-    from cytodisk.scale import Scale
     from cytodisk.store.study_folder import figures_folder
 
     if table["complexity"].notna().any():
         masks = cleaned_masks(inputs, cells_to_draw(table))
-        write_shape_figures(figures_folder(out), table, masks, Scale(inputs.pixel_size_um))
+        write_shape_figures(figures_folder(out, "complexity.png", "extremes.png"), table, masks, inputs.scale)
 
 
 def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:

@@ -1,4 +1,4 @@
-"""Which image belongs to which mask file."""
+"""Images of a signal: which one belongs to which mask file, and the image of a frame."""
 
 from __future__ import annotations
 
@@ -6,12 +6,40 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-from cytodisk.errors import ReadError, SignalError
+import xarray as xr
+
+from cytodisk.errors import ReadError, SignalError, as_data
+from cytodisk.images.frames import FrameFile
 from cytodisk.images.mask_files import MaskSource
 from cytodisk.images.mask_names import base_name, image_stem, visible_files
 
 _USUAL_ENDINGS = ("", "_img")
 _STARTS_OF_ENDINGS = ("_", "-", ".")
+
+
+def load_image(file: FrameFile | None, frame: int) -> xr.DataArray | ReadError | None:
+    """The image of a frame of the masks.
+
+    Parameters
+    ----------
+    file : FrameFile or None
+        None where there is no signal. A single image goes with all frames of the masks.
+    frame : int
+        Of the masks.
+
+    Returns
+    -------
+    DataArray with dims (channel, y, x), ReadError or None
+        With the channels' names, and the scale in attrs. The error of a damaged frame, as data.
+    """
+    if file is None:
+        return None
+    try:
+        values = file.frame(min(frame, file.n_frames - 1))
+    except ReadError as error:
+        return as_data(error)
+    coords = {"channel": list(file.channels)}
+    return xr.DataArray(values, dims=("channel", "y", "x"), coords=coords, attrs=file.scale.attrs)
 
 
 def pair_images(

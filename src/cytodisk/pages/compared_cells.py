@@ -18,7 +18,7 @@ from cytodisk.plot.style import DOUBLE_COLUMN_MM, paper_style
 from cytodisk.plot.window_labels import draw_label_image
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
-from cytodisk.store.study_folder import figures_folder
+from cytodisk.store.study_folder import figure_path
 
 _MOST_CELLS = 5
 _LEFT, _TOP, _GAP, _WORDS = 6.0, 13.0, 2.0, 4.0  # mm
@@ -76,7 +76,7 @@ def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = N
     chosen = chosen_cells(comparison) if cells is None else _asked_for(comparison, cells)
     if not chosen:
         return None
-    path = figures_folder(comparison.path) / "cells.png"
+    path = figure_path(comparison.path, "cells.png")
     size = (DOUBLE_COLUMN_MM - _LEFT - 2.0 - _GAP * (_MOST_CELLS - 1)) / _MOST_CELLS
     with paper_style():
         sheet = Sheet(_TOP + len(comparison.methods) * (size + _WORDS + _GAP) + _BELOW)

@@ -17,7 +17,7 @@ from cytodisk.plot.style import paper_style
 from cytodisk.plot.time_axis import TICK_STEPS
 from cytodisk.runs.compare_windows.compare_parameters import TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
-from cytodisk.store.study_folder import figures_folder
+from cytodisk.store.study_folder import figure_path
 
 # Colours that the colour-blind can tell apart (Okabe and Ito), and a mark beside. Where lines lie on each
 # other the thinner ones, and those with gaps, are in front, so that each is seen.
@@ -72,7 +72,7 @@ def write_comparison(comparison: Comparison) -> Path:
     >>> cd.pages.write_comparison(comparison).name
     'comparison.png'
     """
-    path = figures_folder(comparison.path) / "comparison.png"
+    path = figure_path(comparison.path, "comparison.png")
     with paper_style():
         sheet = Sheet(_TOP + _HEIGHT + 15.0)
         for number, (name, title) in enumerate(PANELS):

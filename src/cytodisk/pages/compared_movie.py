@@ -30,7 +30,7 @@ from cytodisk.runs.channel_names import file_names, shown_name
 from cytodisk.runs.compare_windows.compare_parameters import TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
 from cytodisk.scale import Scale
-from cytodisk.store.study_folder import figures_folder
+from cytodisk.store.study_folder import figure_path
 
 _LEFT, _TOP, _GAP, _BAR = 14.0, 11.0, 3.0, 16.0  # mm
 _KEY = "By layer: medians over frames, bands are their quartiles. Through time: mean over layers, no bands."
@@ -82,7 +82,7 @@ def write_compared_movie(comparison: Comparison, cell: int, channel: str | None 
         names = _channels(comparison, cell, methods)
         number = names.index(channel)
         name += f"_{file_names(names)[number]}"
-    path = figures_folder(comparison.path) / f"{name}.png"
+    path = figure_path(comparison.path, f"{name}.png")
     layers = shown_layers(comparison.provenance["parameters"]["layers"]) if channel is not None else []
     maps = _TOP + len(layers) * (_MAP + _MAP_GAP) + 8.0 if layers else 0.0
     with paper_style():

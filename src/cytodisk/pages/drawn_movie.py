@@ -12,7 +12,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.pages.movie_cell import MovieCell
 from cytodisk.pages.sheet import Sheet
 from cytodisk.runs.channel_names import shown_name
-from cytodisk.store.study_folder import figures_folder, part_key
+from cytodisk.store.study_folder import figure_path, part_key
 from cytodisk.windows.polar_windows import CellWindows
 
 HEADING_MM = 12.0
@@ -71,7 +71,7 @@ class DrawnMovie(MovieCell):
 
     def path(self, ending: str) -> Path:
         """Where a figure is to stand."""
-        return figures_folder(self.study.path) / f"cell_{part_key(self.cell)}{ending}"
+        return figure_path(self.study.path, f"cell_{part_key(self.cell)}{ending}")
 
     def _facts(self) -> list[str]:
         last = self.first + self.frames - 1

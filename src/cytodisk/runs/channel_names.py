@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
+
+from cytodisk.errors import ParameterError, SignalError
+from cytodisk.images.frames import FrameFile
 
 VELOCITIES = ("velocity", "velocity_cell_frame")  # of the edge: no channel can have such a name
 _LONGEST = 24
@@ -61,3 +65,42 @@ def file_names(channels: Sequence[str]) -> list[str]:
         taken = name.casefold() in (other.casefold() for other in names)
         names.append(f"{name}_{number}" if taken else name)
     return names
+
+
+def name_channels(signal: FrameFile | None, channels: tuple[str, ...] | None) -> FrameFile | None:
+    """The signal with the names that were given to its channels, or else with its own.
+
+    Parameters
+    ----------
+    signal : FrameFile or None
+    channels : tuple of str, or None
+        As `MapParameters` takes them.
+
+    Returns
+    -------
+    FrameFile or None
+
+    Raises
+    ------
+    ParameterError
+        There is no signal, or it has more or fewer channels.
+    SignalError
+        A name in the file is one of the edge's velocity.
+    """
+    if channels is None:
+        for name in VELOCITIES:
+            if signal is not None and name in signal.channels:
+                raise SignalError(
+                    f"signal {signal.path} has a channel {name!r}, which is the name of the edge's velocity: "
+                    f"pass other names for its {len(signal.channels)} channels, as --channels"
+                )
+        return signal
+    given = ", ".join(map(repr, channels))
+    if signal is None:
+        raise ParameterError(f"channels are named ({given}), but there is no signal: pass it as --signal")
+    if len(channels) != len(signal.channels):
+        raise ParameterError(
+            f"channels must be as many names as {signal.path} has channels, which are {len(signal.channels)} "
+            f"({signal.axes} {signal.shape}), got {len(channels)} ({given})"
+        )
+    return replace(signal, channels=channels)

@@ -12,7 +12,7 @@ from cytodisk.errors import ParameterError
 from cytodisk.files import replacing
 from cytodisk.parameters import Group, Parameters
 from cytodisk.store.provenance_file import command_of, read_provenance
-from cytodisk.store.study_folder import PARAMETERS
+from cytodisk.store.study_kind import PARAMETERS
 
 
 def parameters_from(

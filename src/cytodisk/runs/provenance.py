@@ -3,23 +3,22 @@
 import hashlib
 import platform
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel
-
 from cytodisk.errors import ReadError
+from cytodisk.parameters import Parameters
 from cytodisk.runs.versions import NUMERIC, installed
 from cytodisk.scale import Scale
 
 
 def describe_run(
     inputs: Mapping[str, Path | Sequence[Path]],
-    parameters: BaseModel,
+    parameters: Parameters,
     understood: Mapping[str, str],
-    pixel_size_um: float | None,
-    frame_interval_s: float | None = None,
+    scale: Scale,
 ) -> dict[str, Any]:
     """Provenance of a run that starts now.
 
@@ -27,12 +26,11 @@ def describe_run(
     ----------
     inputs : dict of role to Path, or to a sequence of Path
         As "masks" and "signal"; a sequence for files of one folder.
-    parameters : BaseModel
+    parameters : Parameters
     understood : dict of role to str
         What each input was read as, in words.
-    pixel_size_um : float or None
-        The scale that the results are in.
-    frame_interval_s : float or None
+    scale : Scale
+        That the results are in.
 
     Returns
     -------
@@ -49,16 +47,15 @@ def describe_run(
     fingerprint: dict[str, Any] = {f"{role} sha256": found["sha256"] for role, found in described.items()}
     fingerprint |= {"cytodisk": installed(("cytodisk",))["cytodisk"]} | settings
     fingerprint["packages"] = installed(NUMERIC)
-    fingerprint |= {"pixel_size_um": pixel_size_um, "frame_interval_s": frame_interval_s}
+    fingerprint |= asdict(scale)
     return {
         "status": "running",
         "fingerprint": fingerprint,
         "inputs": {role: found | {"read as": understood[role]} for role, found in described.items()},
         "parameters": settings,
-        "pixel_size_um": pixel_size_um,
-        "frame_interval_s": frame_interval_s,
-        "length_unit": "px" if pixel_size_um is None else "µm",
-        "velocity_unit": Scale(pixel_size_um, frame_interval_s).velocity_unit,
+        **asdict(scale),
+        "length_unit": scale.length_unit,
+        "velocity_unit": scale.velocity_unit,
         "versions": installed(),
         "python": platform.python_version(),
         "platform": platform.platform(),

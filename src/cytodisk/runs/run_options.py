@@ -1,11 +1,18 @@
 """Options of a run that do not change its results, beside what decides them."""
 
-from collections.abc import Mapping
-from typing import Any, Self
+from collections.abc import Callable, Mapping
+from typing import Any, Self, TypeAlias
 
 from pydantic import model_validator
 
 from cytodisk.parameters import Parameters, parameter
+
+Progress: TypeAlias = Callable[[int, int], None]
+"""Called with (done, in all)."""
+
+
+def silent(done: int, total: int) -> None:
+    """Report nothing."""
 
 
 class RunOptions(Parameters):

@@ -12,13 +12,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cytodisk.analysis.activity import STATISTICS, with_places
+from cytodisk.analysis.activity import GEOMETRY, STATISTICS, with_places
 from cytodisk.errors import ReadError, StudyError
+from cytodisk.scale import Scale
 from cytodisk.windows.polar_windows import PolarGrid
 
 _FRAMES_PER_CHUNK = 64
 _ZARR: dict[str, Any] = {"zarr_format": 2, "consolidated": False}  # format 3 has no strings yet
-GEOMETRY = ("area", "centroid_y", "centroid_x")
+ACTIVITY = "activity.zarr"
 EDGE_VARIABLES = (
     "velocity",
     "velocity_cell_frame",
@@ -70,13 +71,10 @@ class ActivityStore:
         label: int,
         grid: PolarGrid,
         channels: Sequence[str],
-        pixel_size_um: float | None,
-        frame_interval_s: float | None,
+        scale: Scale,
     ) -> CellActivity:
         """Start the group of a cell; without channels it has no statistics."""
-        attrs: dict[str, Any] = {"cell": cell, "label": label}
-        scale = {"pixel_size_um": pixel_size_um, "frame_interval_s": frame_interval_s}
-        attrs |= {name: value for name, value in scale.items() if value is not None}
+        attrs: dict[str, Any] = {"cell": cell, "label": label} | scale.attrs
         return CellActivity(self._path, group_name(cell), grid, channels, attrs)
 
 
@@ -91,6 +89,7 @@ class CellActivity:
         self._grid = grid
         self._channels = list(channels)
         self._attrs = attrs
+        self._scale = Scale(attrs.get("pixel_size_um"), attrs.get("frame_interval_s"))
         self._frames: list[tuple[int, dict[str, Any] | None, str, str]] = []
         self._written = False
 
@@ -145,27 +144,19 @@ class CellActivity:
             data[name] = (("time", *dims), np.stack(values), {"units": self._unit(name)})
         for place, name in ((2, "status"), (3, "reason")):
             data[name] = ("time", np.array([frame[place] for frame in self._frames], dtype=object))
-        times = np.array([frame[0] for frame in self._frames])
-        coords: dict[str, Any] = {
-            "frame": ("time", times, {"units": "frame"}),
-            "layer": np.arange(layers),
-            "sector": np.arange(sectors),
-        }
+        coords: dict[str, Any] = {"layer": np.arange(layers), "sector": np.arange(sectors)}
         if names:
             coords["channel"] = np.array(names, dtype=object)
-        if "frame_interval_s" in self._attrs:
-            coords["time_s"] = ("time", times * self._attrs["frame_interval_s"], {"units": "s"})
+        coords |= self._scale.time_coords(np.array([frame[0] for frame in self._frames]))
         return xr.Dataset(data, coords, self._attrs)
 
     def _unit(self, name: str) -> str:
-        length = "µm" if "pixel_size_um" in self._attrs else "px"
-        second = "s" if "frame_interval_s" in self._attrs else "frame"
         if name.startswith("velocity"):
-            return f"{length}/{second}"
+            return self._scale.velocity_unit
         if name == "edge_length":
-            return length
+            return self._scale.length_unit
         if name.endswith("area"):
-            return f"{length}²"
+            return self._scale.area_unit
         return {"n_pixels": "px²", "n_nan": "px²", "centroid_y": "px", "centroid_x": "px"}.get(name, "a.u.")
 
 

@@ -16,6 +16,7 @@ import pandas as pd
 import pyarrow as pa
 
 from cytodisk.errors import ReadError, StudyError
+from cytodisk.store.provenance_file import record_files
 from cytodisk.store.tables import read_table, write_table
 
 CORRELATION = "correlation"
@@ -142,6 +143,7 @@ def write_correlation(
             write_table(table, temporary / f"{table_name}.parquet")
         (temporary / SETTINGS).write_text(text + "\n", encoding="utf-8")
         _exchange(target, temporary)
+        record_files(study, [f"{CORRELATION}/{target.name}"])
     except OSError as error:
         raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
     finally:

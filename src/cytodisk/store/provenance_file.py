@@ -1,23 +1,78 @@
-"""The file that says where a study comes from, and how two runs differ."""
+"""The file that says where a study comes from and what it wrote, and how two runs differ."""
 
 from __future__ import annotations
 
 import json
+import os
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from cytodisk.errors import ReadError
 from cytodisk.files import replacing
 
 PROVENANCE = "provenance.json"
+FORMAT = 2
+"""Of the tables and files of a study: 1 had no list of files, and other names of columns."""
 
 
 def read_provenance(folder: Path) -> dict[str, Any] | None:
     """What a folder says of its run; None if it holds no study."""
     try:
-        found = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError):
+        return parse_provenance((folder / PROVENANCE).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError):
+        return None
+
+
+def parse_provenance(text: str) -> dict[str, Any] | None:
+    """The content of a provenance file; None if it is none."""
+    try:
+        found = json.loads(text)
+    except json.JSONDecodeError:
         return None
     return found if isinstance(found, dict) and "fingerprint" in found else None
+
+
+def read_complete(folder: Path, *runs: str) -> dict[str, Any]:
+    """The provenance of a complete study.
+
+    Parameters
+    ----------
+    folder : Path
+    *runs : str
+        Kinds of run that are wanted.
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    ReadError
+        The folder does not exist, holds no study or one of another kind or version, or it is not complete.
+    """
+    found = read_provenance(folder)
+    if found is None and not folder.exists():
+        raise ReadError(f"study {folder} does not exist: check the path")
+    if found is None:
+        raise ReadError(f"{folder} is no study: it has no readable {PROVENANCE}")
+    if words := other_version(found):
+        raise ReadError(f"study {folder} {words}: read it with that version, or run the command anew")
+    if found.get("run") not in runs:
+        raise ReadError(f"study {folder} holds a run of {command_of(found)}: {found.get('reader')}")
+    if found.get("status") != "complete":
+        raise ReadError(f"study {folder} is not complete: run the same command again with --resume")
+    return found
+
+
+def other_version(provenance: dict[str, Any]) -> str:
+    """Words for a study that another version wrote in another way; empty for one of this version."""
+    if provenance.get("format") == FORMAT:
+        return ""
+    version = provenance.get("versions", {}).get("cytodisk", "of unknown version")
+    return f"was written by an earlier or later cytodisk ({version}), with other tables"
 
 
 def write_json(path: Path, content: Any) -> None:
@@ -26,19 +81,44 @@ def write_json(path: Path, content: Any) -> None:
         temporary.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
-_COMMANDS = {
-    None: "cytodisk map",
-    "movie": "cytodisk movie",
-    "shapes": "cytodisk shapes",
-    "comparison": "cytodisk compare-windows",
-    "movie comparison": "cytodisk compare-windows --movie",
-}
+def record_files(folder: Path, names: Iterable[str]) -> None:
+    """Note in the provenance of a study what else is written into its folder; nothing without a study.
+
+    Parameters
+    ----------
+    folder : Path
+    names : iterable of str
+        Relative to the folder; `--overwrite` removes them.
+    """
+    if not (given := list(dict.fromkeys(names))):
+        return
+    with _held(folder):
+        found = read_provenance(folder)
+        known = [] if found is None else found.get("files", [])
+        new = [name for name in given if name not in known]
+        if found is not None and new:
+            write_json(folder / PROVENANCE, found | {"files": [*known, *new]})
+
+
+@contextmanager
+def _held(folder: Path) -> Iterator[None]:
+    """Let one process at a time change the provenance."""
+    if sys.platform == "win32":
+        yield
+        return
+    import fcntl
+
+    held = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(held)
 
 
 def command_of(provenance: dict[str, Any]) -> str:
     """The command that makes such a run."""
-    run = provenance.get("run")
-    return _COMMANDS.get(run, f"cytodisk {run}")
+    return str(provenance.get("command") or f"cytodisk {provenance.get('run', 'map')}")
 
 
 def differences(there: dict[str, Any], here: dict[str, Any]) -> str:

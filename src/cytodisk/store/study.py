@@ -18,19 +18,14 @@ from cytodisk.errors import ReadError
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
 from cytodisk.motion.frame_file import load_boundary
 from cytodisk.scale import Scale
-from cytodisk.store.activity_store import open_activity
+from cytodisk.store.activity_store import ACTIVITY, open_activity
 from cytodisk.store.correlation_store import Correlation, list_correlations, read_correlation
-from cytodisk.store.provenance_file import PROVENANCE, read_provenance
-from cytodisk.store.study_folder import (
-    ACTIVITY,
-    CELLS,
-    CONSISTENCY,
-    EDGE,
-    MAPS,
-    WINDOWS,
-    part_key,
-)
+from cytodisk.store.provenance_file import read_complete
+from cytodisk.store.study_folder import part_key
+from cytodisk.store.study_kind import CELLS, MAPS
 from cytodisk.store.tables import read_table
+
+WINDOWS, EDGE, CONSISTENCY = "windows.parquet", "edge.parquet", "consistency.parquet"
 
 
 @dataclass(frozen=True)
@@ -249,8 +244,8 @@ def open_study(path: str | os.PathLike[str]) -> Study:
     Raises
     ------
     ReadError
-        The folder does not exist, is not a study of `cytodisk map` or `cytodisk movie`, is damaged, or its
-        run is not complete.
+        The folder does not exist, is not a study of `cytodisk map` or `cytodisk movie`, is damaged, was
+        written by another version in another way, or its run is not complete.
 
     See Also
     --------
@@ -271,28 +266,8 @@ def open_study(path: str | os.PathLike[str]) -> Study:
     True
     """
     folder = Path(path)
-    provenance = read_provenance(folder)
-    if provenance is None and not folder.exists():
-        raise ReadError(f"study {folder} does not exist: check the path")
-    if provenance is None:
-        raise ReadError(f"{folder} is no study: it has no readable {PROVENANCE}")
-    if provenance.get("status") != "complete":
-        raise ReadError(f"study {folder} is not complete: run the same command again with --resume")
-    run = provenance.get("run", "map")
-    if run not in ("map", "movie"):
-        table, reader = "comparison.csv", "open_comparison"
-        if run == "batch":
-            raise ReadError(
-                f"study {folder} holds a batch: open one of the studies in {folder / 'inputs'}, or read the "
-                "merged tables with pandas.read_parquet"
-            )
-        if run == "shapes":
-            table, reader = "shapes.csv", "open_shapes"
-        raise ReadError(
-            f"study {folder} holds {run}, not windows: look at its {table} and figures; from Python, read it "
-            f"with {reader}"
-        )
-    names = (CELLS, WINDOWS, EDGE, CONSISTENCY) if run == "movie" else (CELLS, WINDOWS)
+    provenance = read_complete(folder, "map", "movie")
+    names = (CELLS, WINDOWS, EDGE, CONSISTENCY) if provenance["run"] == "movie" else (CELLS, WINDOWS)
     try:
         for name in names:
             pq.read_schema(folder / name)

@@ -7,7 +7,6 @@ import os
 import shutil
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,45 +16,33 @@ import pyarrow.parquet as pq
 from cytodisk.errors import StudyError, WriteError
 from cytodisk.files import lock, replacing
 from cytodisk.store.merging import merge_tables, repeating, write_rows
-from cytodisk.store.provenance_file import PROVENANCE, read_provenance, write_json
+from cytodisk.store.provenance_file import (
+    PROVENANCE,
+    other_version,
+    read_provenance,
+    record_files,
+    write_json,
+)
+from cytodisk.store.study_kind import CELLS, FIGURES, MAPS, PARTS, StudyKind
 from cytodisk.store.study_room import LOCK, is_left_over, make_room, remove_left_overs
-from cytodisk.store.tables import (
-    CELL_COLUMNS,
-    CONSISTENCY_COLUMNS,
-    EDGE_COLUMNS,
-    SOURCE_COLUMNS,
-    TRACK_COLUMNS,
-    WINDOW_COLUMNS,
-    Columns,
-    schema,
-)
+from cytodisk.store.tables import Columns, schema
 
-PARAMETERS = "parameters.toml"
-CELLS, WINDOWS, EDGE = "cells.parquet", "windows.parquet", "edge.parquet"
-CONSISTENCY, ACTIVITY = "consistency.parquet", "activity.zarr"
-MAPS, FIGURES, _PARTS = "maps", "figures", ".parts"
-_LATER = ("correlation", "report.html", "report_cell_*.html")  # what other commands wrote from these results
-_COMPARED = ("layers.parquet", "comparison*.csv")  # beside cells, by a comparison of windows
-_SHAPES = ("shapes.parquet", "shapes.csv", "features.csv")  # beside cells, by a run over shapes
-_OWN = (
-    PARAMETERS,
-    CELLS,
-    WINDOWS,
-    EDGE,
-    CONSISTENCY,
-    ACTIVITY,
-    MAPS,
-    FIGURES,
-    _PARTS,
-    *_LATER,
-    *_COMPARED,
-    *_SHAPES,
-)
 _UNITS = ("length_unit", "velocity_unit")  # of the provenance
 
 
-def figures_folder(study: Path) -> Path:
-    """The folder for the figures of a study; it is made where there is none.
+def figures_folder(study: Path, *names: str) -> Path:
+    """The folder for the figures of a study, which is made; their names are noted as the study's.
+
+    Parameters
+    ----------
+    study : Path
+        Folder of a study, or of a correlation in one.
+    *names : str
+        Of the figures that are to be written.
+
+    Returns
+    -------
+    Path
 
     Raises
     ------
@@ -65,32 +52,15 @@ def figures_folder(study: Path) -> Path:
     folder = study / FIGURES
     try:
         folder.mkdir(exist_ok=True)
+        record_files(study, [f"{FIGURES}/{name}" for name in names])
     except OSError as error:
         raise WriteError(f"cannot write {folder}: {error.strerror or error}") from error
     return folder
 
 
-@dataclass(frozen=True)
-class Tables:
-    """Which tables a run writes.
-
-    Attributes
-    ----------
-    cells : tuple of (name, type, unit)
-        Columns of the table with a row for each cell, or for each frame of a cell.
-    others : dict of str to tuple of (name, type, unit)
-        By name of the table.
-    """
-
-    cells: Columns
-    others: dict[str, Columns]
-
-
-MAP_TABLES = Tables(SOURCE_COLUMNS, {"windows": WINDOW_COLUMNS})
-MOVIE_TABLES = Tables(
-    (*CELL_COLUMNS, *TRACK_COLUMNS),
-    {"windows": WINDOW_COLUMNS, "edge": EDGE_COLUMNS, "consistency": CONSISTENCY_COLUMNS},
-)
+def figure_path(study: Path, name: str) -> Path:
+    """Where a figure of a study is to stand; see `figures_folder`."""
+    return figures_folder(study, name) / name
 
 
 def part_key(cell: int, time: int | None = None) -> str:
@@ -139,17 +109,17 @@ class StudyFolder:
     within `alone_in`.
     """
 
-    def __init__(self, path: Path, provenance: dict[str, Any], tables: Tables = MAP_TABLES):
+    def __init__(self, path: Path, provenance: dict[str, Any], kind: StudyKind):
         self.path = path
         self.provenance = provenance
-        self.tables = tables
+        self.kind = kind
 
     @classmethod
     def start(
         cls,
         path: str | os.PathLike[str],
         provenance: dict[str, Any],
-        tables: Tables = MAP_TABLES,
+        kind: StudyKind,
         *,
         resume: bool = False,
         overwrite: bool = False,
@@ -162,8 +132,8 @@ class StudyFolder:
             Is made if need be.
         provenance : dict
             Must hold "fingerprint": what the results depend on. Two runs with one fingerprint have the same
-            results.
-        tables : Tables
+            results. Gets what `kind` says of the run.
+        kind : StudyKind
         resume : bool
             Go on in a folder that holds part of the same run.
         overwrite : bool
@@ -179,17 +149,18 @@ class StudyFolder:
             The folder holds something else, or another run, or cannot be written.
         """
         folder = Path(path)
-        study = cls(folder, provenance, tables)
+        study = cls(folder, provenance | kind.provenance, kind)
         try:
             if folder.exists() and not folder.is_dir():
                 raise StudyError(f"output {folder} is a file: pass a folder")
             folder.mkdir(parents=True, exist_ok=True)
             if any(not is_left_over(file) for file in folder.iterdir()):
-                make_room(folder, provenance, _OWN, resume, overwrite)
+                make_room(folder, study.provenance, resume, overwrite)
             study.note("status", "running")  # first, so that a folder that stands is known as a study
-            for name in (MAPS, _PARTS):
-                (folder / name).mkdir(exist_ok=True)
-            places = (folder, *(folder / name for name in (MAPS, FIGURES, _PARTS)))
+            (folder / PARTS).mkdir(exist_ok=True)
+            if any(name.startswith(f"{MAPS}/") for name in kind.files):
+                (folder / MAPS).mkdir(exist_ok=True)
+            places = (folder, *(folder / name for name in (MAPS, FIGURES, PARTS)))
             remove_left_overs(place for place in places if place.is_dir())
         except StudyError:
             raise
@@ -201,7 +172,8 @@ class StudyFolder:
     def is_complete(path: str | os.PathLike[str], provenance: dict[str, Any]) -> bool:
         """Whether a folder holds the whole of the same run already."""
         there = read_provenance(Path(path)) or {}
-        return there.get("status") == "complete" and there.get("fingerprint") == provenance["fingerprint"]
+        same = there.get("fingerprint") == provenance["fingerprint"] and not other_version(there)
+        return same and there.get("status") == "complete"
 
     def note(self, name: str, value: Any) -> None:
         """Set an entry of the provenance and write it."""
@@ -223,7 +195,7 @@ class StudyFolder:
     def for_workers(self) -> StudyFolder:
         """The same folder for other processes, without what only the main one needs."""
         units = {name: self.provenance[name] for name in _UNITS if name in self.provenance}
-        return StudyFolder(self.path, units, self.tables)
+        return StudyFolder(self.path, units, self.kind)
 
     def add_table(self, key: str, table: str, *columns: dict[str, Any]) -> None:
         """Write a part's rows for a table.
@@ -233,11 +205,11 @@ class StudyFolder:
         key : str
             See `part_key`.
         table : str
-            One of `self.tables.others`.
+            One of `self.kind.others`.
         *columns : dict of str to array
             One below the other, such as those of several cells.
         """
-        columns_schema = self._schema(self.tables.others[table])
+        columns_schema = self._schema(self.kind.others[table])
         rows = pa.concat_tables([pa.table(some, schema=columns_schema) for some in columns])
         with replacing(self._part(key, f"{table}.parquet")) as temporary:
             pq.write_table(rows, temporary, use_dictionary=repeating(columns_schema))
@@ -268,7 +240,7 @@ class StudyFolder:
         cells : sequence of (row, tables)
             As `add` takes them.
         """
-        for table in self.tables.others:
+        for table in self.kind.others:
             columns = [tables[table] for _, tables in cells if table in tables]
             if columns:
                 self.add_table(key, table, *columns)
@@ -323,19 +295,19 @@ class StudyFolder:
             A part is missing.
         """
         with replacing(self.path / CELLS) as temporary:
-            write_rows(self.read_rows(keys), self._schema(self.tables.cells), temporary)
-        for name, columns in self.tables.others.items():
+            write_rows(self.read_rows(keys), self._schema(self.kind.cells), temporary)
+        for name, columns in self.kind.others.items():
             parts = (self.part_table(key, name) for key in keys if self.has_table(key, name))
             with replacing(self.path / f"{name}.parquet") as temporary:
                 merge_tables(parts, self._schema(columns), temporary)
         self.note("status", "complete")
-        shutil.rmtree(self.path / _PARTS, ignore_errors=True)  # the tables stand; parts are only in the way
+        shutil.rmtree(self.path / PARTS, ignore_errors=True)  # the tables stand; parts are only in the way
 
     def _complete(self) -> list[str]:
-        return [part.stem for part in (self.path / _PARTS).glob("[0-9]*.json")]
+        return [part.stem for part in (self.path / PARTS).glob("[0-9]*.json")]
 
     def _part(self, key: str, suffix: str) -> Path:
-        return self.path / _PARTS / f"{key}.{suffix}"
+        return self.path / PARTS / f"{key}.{suffix}"
 
     def _schema(self, columns: Columns) -> Any:
         return schema(columns, *(str(self.provenance.get(unit, "")) for unit in _UNITS))

@@ -4,28 +4,31 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from cytodisk.errors import OtherRunError, StudyError
-from cytodisk.store.provenance_file import PROVENANCE, differences, read_provenance, write_json
+from cytodisk.store.provenance_file import (
+    PROVENANCE,
+    differences,
+    other_version,
+    read_provenance,
+    write_json,
+)
 
 LOCK = ".lock"
 
 
-def make_room(
-    folder: Path, provenance: dict[str, Any], own: Sequence[str], resume: bool, overwrite: bool
-) -> None:
+def make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite: bool) -> None:
     """Check that a run may write to a folder that is not empty, and remove what it replaces.
 
     Parameters
     ----------
     folder : Path
     provenance : dict
-        Provenance of the run.
-    own : sequence of str
-        Names, or patterns of names, of what belongs to a study; nothing else is removed.
+        Of the run; its inputs are never removed.
     resume, overwrite : bool
         See `StudyFolder.start`.
 
@@ -35,22 +38,49 @@ def make_room(
         The folder holds something else, or another run (`OtherRunError`).
     """
     there = read_provenance(folder)
-    if there is None:
-        raise StudyError(f"output folder {folder} is not empty and holds no study: pass another folder")
-    if overwrite:
+    check_room(there, provenance, f"output folder {folder}", resume, overwrite)
+    if overwrite and there is not None:
         # The old provenance stays, marked, until the new one replaces it: a kill leaves a known study.
         write_json(folder / PROVENANCE, there | {"status": "being replaced", "fingerprint": {}})
-        for name in own:
-            for file in folder.glob(name):
+        kept = {Path(found["path"]).resolve() for found in provenance.get("inputs", {}).values()}
+        names = [name for name in there["files"] if name != PROVENANCE]
+        for file in [file for name in names for file in folder.glob(name)]:
+            if not kept & {file.resolve(), *file.resolve().parents}:
                 _remove(file)
+        for name in {Path(name).parent for name in names} - {Path()}:
+            with suppress(OSError):  # something that is not ours stands there
+                (folder / name).rmdir()
+
+
+def check_room(
+    there: dict[str, Any] | None, here: dict[str, Any], place: str, resume: bool, overwrite: bool
+) -> None:
+    """Check that a run may write where another one was.
+
+    Parameters
+    ----------
+    there, here : dict
+        Provenance of the two; None if what stands there is no study.
+    place : str
+        In words.
+    resume, overwrite : bool
+
+    Raises
+    ------
+    StudyError
+        It must not; `OtherRunError` if results of another run stand there.
+    """
+    if there is None:
+        raise StudyError(f"{place} is not empty and holds no study: pass another folder")
+    if words := other_version(there):
+        raise StudyError(f"{place} holds a study that {words}: pass another folder")
+    if overwrite:
         return
     if not resume:
-        raise StudyError(
-            f"output folder {folder} holds a study: pass --resume to go on, --overwrite to replace it"
-        )
-    if there.get("fingerprint") != provenance["fingerprint"]:
+        raise StudyError(f"{place} holds a study: pass --resume to go on, --overwrite to replace it")
+    if there.get("fingerprint") != here["fingerprint"]:
         raise OtherRunError(
-            f"output folder {folder} holds another run ({differences(there, provenance)}): "
+            f"{place} holds another run ({differences(there, here)}): "
             "pass --overwrite to replace it, or another folder"
         )
 

@@ -25,6 +25,7 @@ from cytodisk.plot.correlation_peaks import LAG_COLOURS
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.study_flags import qc_flags
+from cytodisk.store.provenance_file import record_files
 from cytodisk.store.study import Study
 
 REPORT = "report.html"
@@ -99,6 +100,8 @@ def write_report(
     html = _render(shown, shown_signal(study, signal), progress)
     with replacing(target) as temporary:
         temporary.write_text(html, encoding="utf-8")
+    if path is None:
+        record_files(study.path, [target.name])
     return target
 
 

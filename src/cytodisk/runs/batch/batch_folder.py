@@ -9,14 +9,16 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from cytodisk.errors import OtherRunError, StudyError
+from cytodisk.errors import OtherRunError
 from cytodisk.runs.batch.batch_file import Batch
 from cytodisk.runs.batch.input_row import ROWS, STUDIES
 from cytodisk.runs.versions import NUMERIC, installed
-from cytodisk.store.provenance_file import PROVENANCE, command_of, differences
+from cytodisk.store.provenance_file import FORMAT, PROVENANCE, command_of, parse_provenance
+from cytodisk.store.study_room import check_room
 from cytodisk.store.targets import Store
 
-_OWN = (
+_FILES = (
+    PROVENANCE,
     ROWS,
     STUDIES,
     *(f"{name}.parquet" for name in ("inputs", "cells", "windows", "edge", "consistency")),
@@ -42,36 +44,19 @@ def make_room(store: Store, provenance: dict[str, Any], target: str, resume: boo
     StudyError
         The folder holds something else, or the results of another batch (`OtherRunError`).
     """
-    there = _read_provenance(store)
-    if there is None:
-        if any(not name.startswith(".") for name in store.names("")):
-            raise StudyError(f"output folder {target} is not empty and holds no batch: pass another folder")
-    elif there.get("run") != "batch":
+    there = parse_provenance(store.read_text(PROVENANCE) or "null")
+    if there is None and all(name.startswith(".") for name in store.names("")):
+        return
+    if there is not None and there.get("run") != "batch":
         raise OtherRunError(
             f"output folder {target} holds a study of {command_of(there)}: pass another folder for a batch"
         )
-    elif overwrite:
+    check_room(there, provenance, f"output folder {target}", resume, overwrite)
+    if overwrite and there is not None:
         note(store, there | {"status": "being replaced", "fingerprint": {}})
-        for name in _OWN:
-            store.remove(name)
-    elif not resume:
-        raise StudyError(
-            f"output folder {target} holds a batch: pass --resume to go on, --overwrite to replace it"
-        )
-    elif there.get("fingerprint") != provenance["fingerprint"]:
-        raise OtherRunError(
-            f"output folder {target} holds another run ({differences(there, provenance)}): "
-            "pass --overwrite to replace it, or another folder"
-        )
-
-
-def _read_provenance(store: Store) -> dict[str, Any] | None:
-    """What the folder says of its run; None if that cannot be read, or is none."""
-    try:
-        found = json.loads(store.read_text(PROVENANCE) or "null")
-    except json.JSONDecodeError:
-        return None
-    return found if isinstance(found, dict) and "fingerprint" in found else None
+        for name in there["files"]:
+            if name != PROVENANCE:
+                store.remove(name)
 
 
 def describe_batch(batch: Batch) -> dict[str, Any]:
@@ -89,6 +74,10 @@ def describe_batch(batch: Batch) -> dict[str, Any]:
     files = {"batch file": batch.path} | ({} if batch.table is None else {"table": batch.table})
     return {
         "run": "batch",
+        "command": "cytodisk batch",
+        "reader": f"open one of the studies in {STUDIES}/, or read its tables with pandas.read_parquet",
+        "format": FORMAT,
+        "files": list(_FILES),
         "status": "running",
         "fingerprint": {"cytodisk": installed(("cytodisk",))["cytodisk"], "packages": installed(NUMERIC)},
         "inputs": {role: _described_file(path) for role, path in files.items()},

@@ -19,8 +19,7 @@ from cytodisk.runs.batch.batch_task import LARGE_MB, BatchTask, TaskResult, make
 from cytodisk.runs.batch.input_row import ROWS, InputRow, files_mark, read_row, row_key
 from cytodisk.runs.batch.merged_tables import merge_batch
 from cytodisk.runs.executor import Executor
-from cytodisk.runs.run_options import BatchOptions
-from cytodisk.runs.steps import Progress, silent
+from cytodisk.runs.run_options import BatchOptions, Progress, silent
 from cytodisk.store.targets import Store
 from cytodisk.store.url_store import is_url
 from cytodisk.taking import takes

@@ -12,7 +12,7 @@ from typing import Any
 
 from cytodisk.errors import CytodiskError, OtherRunError, WriteError
 from cytodisk.runs.batch.batch_input import BatchInput
-from cytodisk.runs.map.map_inputs import open_inputs
+from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.map.map_run import map_study
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters

@@ -9,7 +9,7 @@ from typing import Any
 from cytodisk.errors import CytodiskError
 from cytodisk.runs.batch.batch_file_rows import SCALE
 from cytodisk.runs.batch.batch_input import BatchInput
-from cytodisk.runs.map.map_inputs import open_inputs
+from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_inputs import open_movie_files
 from cytodisk.runs.movie.movie_parameters import MovieParameters
@@ -84,7 +84,7 @@ def _with_files(given: Understood, item: BatchInput) -> Understood:
         signal, pixel_size_um = files.signal, files.scale.pixel_size_um
     else:
         inputs = open_inputs(item.masks, item.signal, item.parameters)
-        signal, pixel_size_um = next(iter(inputs.signal_files), None), inputs.pixel_size_um
+        signal, pixel_size_um = next(iter(inputs.signal_files), None), inputs.scale.pixel_size_um
     channels = signal.channels if signal is not None else ()
     return replace(given, pixel_size_um=pixel_size_um, channels=_together(channels))
 

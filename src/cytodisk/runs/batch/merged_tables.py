@@ -16,12 +16,13 @@ from cytodisk.runs.batch.batch_file import Batch
 from cytodisk.runs.batch.batch_input import BatchInput, Value
 from cytodisk.runs.batch.input_columns import INPUT, INPUT_COLUMNS, UNITS
 from cytodisk.runs.batch.input_row import InputRow, read_row, row_key, study_key
+from cytodisk.runs.map.map_study import MAP
+from cytodisk.runs.movie.movie_study import MOVIE
 from cytodisk.store.merging import merge_tables, write_rows
-from cytodisk.store.study_folder import MAP_TABLES, MOVIE_TABLES
 from cytodisk.store.tables import Column, Columns, schema
 from cytodisk.store.targets import Store
 
-_OF_MAPS = ("cells", *MAP_TABLES.others)
+_OF_MAPS = tuple(MAP.tables)
 _MOST = 2**63  # longer numbers are such as those on a label
 _TIMES = ("seconds",)  # columns with running times, which differ from run to run
 INPUTS = "inputs"
@@ -177,10 +178,10 @@ def _schema(columns: Columns, done: Sequence[_Done]) -> Any:
 def _tables(batch: Batch) -> dict[str, Columns]:
     """Columns of the merged tables: all that any kind of input has."""
     kinds = {item.kind for item in batch.inputs}
-    kept = [tables for kind, tables in (("map", MAP_TABLES), ("movie", MOVIE_TABLES)) if kind in kinds]
+    kept = [study.tables for study in (MAP, MOVIE) if study.run in kinds]
     merged: dict[str, dict[str, Any]] = {}
     for tables in kept:
-        for name, columns in {"cells": tables.cells, **tables.others}.items():
+        for name, columns in tables.items():
             known = merged.setdefault(name, {})
             known |= {column.name: column for column in columns if column.name not in (*known, *_TIMES)}
     return {name: tuple(columns.values()) for name, columns in merged.items()}

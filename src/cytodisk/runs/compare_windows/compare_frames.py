@@ -9,19 +9,19 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cytodisk.analysis.activity import Grid, activity_dataset
+from cytodisk.analysis.activity import ActivityTables, Grid, window_arrays
 from cytodisk.analysis.consistency import centroid_displacement, consecutive_correlation
 from cytodisk.analysis.window_measures import measures_by_layer
 from cytodisk.errors import MaskError, ReadError
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.images.frames import FrameFile
+from cytodisk.images.signal_files import load_image
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, CompareMovieParameters
 from cytodisk.runs.compare_windows.compare_tables import layer_columns, windows_row
 from cytodisk.windows.edge_windows import CellEdge, EdgeGrid
 from cytodisk.windows.polar_windows import polar_windows
 from cytodisk.windows.ring_windows import RingGrid
-from cytodisk.windows.sample import sample
 
 _SUMMED = ("invalid_maps", "flipped", "lost_px", "empty_windows")
 _MIDDLE = ("area_px", "area_distortion", "angle_distortion", "coverage")
@@ -135,42 +135,19 @@ def _sample_frames(
     followed: FollowedCell, grid: Grid
 ) -> tuple[xr.Dataset, list[dict[str, Any]], list[dict[str, Any]]]:
     """The activity, and by mapped frame what windows are like: for the row, and by layer."""
-    movie, signal = followed.movie, followed.signal
+    movie, signal, first = followed.movie, followed.signal, followed.first
     channels = [""] if signal is None else list(signal.channels)
-    shape = (len(movie), grid.layers, grid.sectors)
-    area, y, x = (np.full(shape, np.nan) for _ in range(3))
-    mean = np.full((shape[0], len(channels), *shape[1:]), np.nan)
+    tables = ActivityTables(len(movie), channels, grid, ("mean",))
     frames, layers = [], []
     for time in np.flatnonzero(movie.mapped).tolist():
         disk = movie[time]
         windows = grid.on(disk)
-        area[time] = windows.areas
-        y[time], x[time] = np.moveaxis(windows.centroids_yx, -1, 0)
-        image = _image(signal, followed.first + time)
-        if image is not None:
-            mean[time] = sample(windows, image, nan=followed.parameters.nan)["mean"].to_numpy()
+        image = load_image(signal, first + time)
+        known = None if isinstance(image, ReadError) else image
+        tables.put(time, window_arrays(windows, known, nan=followed.parameters.nan))
         frames.append(windows_row(windows, disk if followed.method in ON_A_MAP else None))
-        measures = measures_by_layer(windows)
-        layers.append(layer_columns(followed.cell, followed.first + time, followed.method, measures))
-    activity = activity_dataset(
-        {"mean": mean, "area": area, "centroid_y": y, "centroid_x": x},
-        channels,
-        movie.status,
-        [record.reason for record in movie.records],
-        movie.scale,
-        first_frame=followed.first,
-    )
-    return activity, frames, layers
-
-
-def _image(signal: FrameFile | None, time: int) -> Any:
-    """A frame of the signal, (channel, y, x); None where there is none or it is damaged."""
-    if signal is None:
-        return None
-    try:
-        return signal.frame(time)
-    except ReadError:
-        return None
+        layers.append(layer_columns(followed.cell, first + time, followed.method, measures_by_layer(windows)))
+    return tables.dataset(movie, first), frames, layers
 
 
 def _consistency(
@@ -179,7 +156,6 @@ def _consistency(
     """Rows of the table of consistency: by frame with a map, channel and layer."""
     correlation = consecutive_correlation(activity["mean"]).to_numpy()
     moved = centroid_displacement(followed.movie, activity).mean("sector").to_numpy()
-    interval = followed.movie.scale.frame_interval_s
     columns: list[dict[str, Any]] = []
     for found in layers:
         time, count = int(found["frame"][0]), len(found["layer"])
@@ -187,7 +163,7 @@ def _consistency(
             columns.append(
                 {
                     **{name: found[name] for name in ("cell", "method", "frame", "layer", "completeness")},
-                    "time_s": [None if interval is None else time * interval] * count,
+                    "time_s": [followed.movie.scale.seconds(time)] * count,
                     "channel": [str(channel) or None] * count,
                     "correlation": correlation[time - followed.first, number],
                     "centroid_displacement": moved[time - followed.first],

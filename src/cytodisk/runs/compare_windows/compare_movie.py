@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import os
 import time as clock
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -23,13 +21,13 @@ from cytodisk.runs.compare_windows.compare_frames import FollowedCell, measure_f
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, CompareMovieParameters
 from cytodisk.runs.compare_windows.compare_tables import COMPARED_MOVIE
 from cytodisk.runs.compare_windows.comparison import Comparison, open_comparison, write_summaries
+from cytodisk.runs.executor import Executor
 from cytodisk.runs.movie.movie_inputs import MovieInputs
-from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
-from cytodisk.runs.run_options import RunOptions
-from cytodisk.runs.steps import finish_run, silent
-from cytodisk.scale import Scale
-from cytodisk.store.study_folder import PARAMETERS, StudyFolder, alone_in, part_key
+from cytodisk.runs.run_options import Progress, RunOptions, silent
+from cytodisk.runs.study_run import StudyRun
+from cytodisk.store.study_folder import StudyFolder, part_key
+from cytodisk.store.study_kind import MAPS
 from cytodisk.taking import takes
 
 
@@ -48,7 +46,7 @@ def compare_opened_movie(
     out: str | os.PathLike[str],
     parameters: CompareMovieParameters,
     *,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
     **settings: Any,
 ) -> Comparison:
     """Follow each cell with the windows of several methods and measure how consistent they are.
@@ -65,7 +63,7 @@ def compare_opened_movie(
     progress : callable, optional
         Called with (frames done, frames in all), over all methods.
     **settings
-        See `RunOptions`; it runs in one process.
+        See `RunOptions`; a process takes one cell by one method.
 
     Returns
     -------
@@ -77,45 +75,48 @@ def compare_opened_movie(
     u-Unwrap, section 4.2 and Fig. 4.
     """
     options = RunOptions.of(**settings)
-    parameters = parameters.in_pixels(Scale(inputs.scale.pixel_size_um))
-    scale = inputs.scale.pixel_size_um, inputs.scale.frame_interval_s
-    paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
-    provenance = describe_run(paths, parameters, inputs.understood, *scale) | {"run": "movie comparison"}
-    with alone_in(out):
-        if options.resume and StudyFolder.is_complete(out, provenance):
-            write_summaries(Path(out))  # in case it was stopped just before
-            return open_comparison(out)
-        folder = StudyFolder.start(out, provenance, COMPARED_MOVIE, **options.again)
-        write_parameters(parameters, folder.path / PARAMETERS)
+    parameters = parameters.in_pixels(inputs.scale)
+
+    def work(folder: StudyFolder) -> tuple[list[str], list[str]]:
         parts = _parts(inputs, parameters.methods)
-        _run(parts, inputs, parameters, folder, progress or silent)
+        _compare_all(parts, inputs, parameters, folder, options.workers, progress or silent)
         keys = [part.key for part in parts]
-        rows = list(folder.read_rows(keys))
-        reasons = [f"cell {row['cell']}, {row['method']}: {row['reason']}" for row in rows if row["reason"]]
-        finish_run(folder, keys, reasons)
-        write_summaries(folder.path)
-        return open_comparison(folder.path)
+        rows = folder.read_rows(keys)
+        return keys, [
+            f"cell {row['cell']}, {row['method']}: {row['reason']}" for row in rows if row["reason"]
+        ]
+
+    provenance = describe_run(inputs.paths, parameters, inputs.understood, inputs.scale)
+    run = StudyRun(COMPARED_MOVIE, provenance, parameters, options)
+    return run.into(out, work, open_comparison, after=write_summaries)
 
 
-def _run(
+def _compare_all(
     parts: list[_Part],
     inputs: MovieInputs,
     parameters: CompareMovieParameters,
     folder: StudyFolder,
-    progress: Callable[[int, int], None],
+    workers: int,
+    progress: Progress,
 ) -> None:
     """Do the parts that are not there yet; progress is counted in frames of all parts."""
-    lengths = [len(part.track.times) for part in parts]
-    for number, part in enumerate(parts):
-        before, total = sum(lengths[:number]), sum(lengths)
-        if not folder.has(part.key):
-            report = partial(_report, progress, before, total)
-            folder.add(part.key, *_compare(part, inputs, parameters, folder.path, report))
-        progress(before + lengths[number], total)
+    pending = [part for part in parts if not folder.has(part.key)]
+    total = sum(len(part.track.times) for part in parts)
+    done = total - sum(len(part.track.times) for part in pending)
+    progress(done, total)
 
+    def within(frames: int, _: int) -> None:
+        progress(done + frames, total)
 
-def _report(progress: Callable[[int, int], None], before: int, total: int, done: int, _: int) -> None:
-    progress(before + done, total)
+    report = within if workers == 1 else None  # no call reaches this process from another one
+    with Executor(workers) as executor:
+        submitted = (
+            executor.submit(_compare, part, inputs, parameters, folder.path, report) for part in pending
+        )
+        for part, rows in zip(pending, executor.results(submitted), strict=True):
+            folder.add(part.key, *rows)
+            done += len(part.track.times)
+            progress(done, total)
 
 
 def _parts(inputs: MovieInputs, methods: tuple[str, ...]) -> list[_Part]:
@@ -131,7 +132,7 @@ def _compare(
     inputs: MovieInputs,
     parameters: CompareMovieParameters,
     folder: Path,
-    report: Callable[[int, int], None],
+    report: Progress | None,
 ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
     """Row and tables of one cell by one method; a movie without any map has the reason in its row."""
     track, started = part.track, clock.perf_counter()
@@ -154,7 +155,7 @@ def _compare(
         measured = measure_frames(followed)
     seconds = (clock.perf_counter() - started) / len(masks)
     activity = measured.activity
-    with replacing(folder / "maps" / f"activity_{part_key(track.cell)}_{part.method}.npz") as temporary:
+    with replacing(folder / MAPS / f"activity_{part_key(track.cell)}_{part.method}.npz") as temporary:
         channels = np.array(activity["channel"].to_numpy(), dtype=str)
         arrays: dict[str, Any] = {name: activity[name].to_numpy() for name in ("mean", "area", "frame")}
         np.savez_compressed(temporary, channel=channels, **arrays)
@@ -170,7 +171,7 @@ def _map(
     inputs: MovieInputs,
     parameters: CompareMovieParameters,
     folder: str,
-    report: Callable[[int, int], None],
+    report: Progress | None,
 ) -> DiskMovie:
     return map_movie(
         masks,

@@ -8,7 +8,7 @@ from pydantic import field_validator
 
 from cytodisk.errors import ParameterError
 from cytodisk.parameters import parameter
-from cytodisk.runs.map.map_parameters import CellParameters
+from cytodisk.runs.cells.cell_parameters import CellParameters
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
 from cytodisk.windows.grid_parameters import EdgeGridParameters

@@ -10,7 +10,7 @@ import xarray as xr
 
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import CytodiskError, MaskError, ReadError
-from cytodisk.store.study_folder import Tables
+from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import (
     CELL,
     CONSISTENCY_COLUMNS,
@@ -75,8 +75,19 @@ BY_LAYER = tuple(column.name for column in _BY_LAYER)
 _LAYERS: Columns = (CELL, FRAME, _METHOD, LAYER, *_BY_LAYER)
 _CONSISTENCY: Columns = (CELL, _METHOD, *CONSISTENCY_COLUMNS[1:])
 
-COMPARED_CELLS = Tables(_CELLS, {"layers": _LAYERS})
-COMPARED_MOVIE = Tables(_CELLS, {"layers": _LAYERS, "consistency": _CONSISTENCY})
+_READER = "read it with open_comparison"
+_FILES = ("comparison*.csv", "maps/windows_*.npz", "maps/activity_*.npz")
+COMPARED_CELLS = StudyKind(
+    "comparison", "cytodisk compare-windows", _READER, _CELLS, {"layers": _LAYERS}, _FILES
+)
+COMPARED_MOVIE = StudyKind(
+    "movie comparison",
+    "cytodisk compare-windows --movie",
+    _READER,
+    _CELLS,
+    {"layers": _LAYERS, "consistency": _CONSISTENCY},
+    _FILES,
+)
 
 
 def status_of(fault: CytodiskError) -> str:

@@ -23,8 +23,10 @@ from cytodisk.runs.compare_windows.compare_columns import (
 )
 from cytodisk.runs.compare_windows.compare_summaries import layer_summary, method_summary, movie_summary
 from cytodisk.scale import Scale
-from cytodisk.store.provenance_file import read_provenance
-from cytodisk.store.study_folder import CELLS, CONSISTENCY, MAPS, part_key
+from cytodisk.store.provenance_file import read_complete
+from cytodisk.store.study import CONSISTENCY
+from cytodisk.store.study_folder import part_key
+from cytodisk.store.study_kind import CELLS, MAPS
 from cytodisk.store.tables import read_table
 
 COLUMNS_FILE = "comparison_columns.csv"
@@ -177,11 +179,7 @@ def open_comparison(path: str | os.PathLike[str]) -> Comparison:
     [1.0, 1.0, 1.0, 1.0]
     """
     folder = Path(path)
-    provenance = read_provenance(folder)
-    if provenance is None or "comparison" not in str(provenance.get("run")):
-        raise ReadError(f"{folder} holds no comparison: pass a folder that cytodisk compare-windows wrote")
-    if provenance.get("status") != "complete":
-        raise ReadError(f"comparison {folder} is not complete: run the same command again with --resume")
+    provenance = read_complete(folder, "comparison", "movie comparison")
     return Comparison(folder, read_table(folder / CELLS), read_table(folder / "layers.parquet"), provenance)
 
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import os
 from typing import Any
 
+from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.compare_windows.compare_cells import compare_opened_cells
 from cytodisk.runs.compare_windows.compare_movie import compare_opened_movie
 from cytodisk.runs.compare_windows.compare_parameters import CompareMovieParameters, CompareWindowsParameters
 from cytodisk.runs.compare_windows.comparison import Comparison
-from cytodisk.runs.map.map_inputs import open_inputs
 from cytodisk.runs.movie.movie_inputs import open_movie
-from cytodisk.runs.run_options import RunOptions
-from cytodisk.runs.steps import Progress
+from cytodisk.runs.run_options import Progress, RunOptions
 from cytodisk.taking import takes
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.correlate.correlate_run import correlate_study
-from cytodisk.runs.steps import Progress
+from cytodisk.runs.run_options import Progress
 from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.study import Study, open_study
 from cytodisk.taking import takes

@@ -5,11 +5,10 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from cytodisk.runs.map.map_inputs import open_inputs
+from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_run import map_study
-from cytodisk.runs.run_options import MapOptions
-from cytodisk.runs.steps import Progress
+from cytodisk.runs.run_options import MapOptions, Progress
 from cytodisk.store.study import Study
 from cytodisk.taking import takes
 

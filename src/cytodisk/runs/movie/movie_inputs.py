@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 from cytodisk.errors import CytodiskError, MaskError, ParameterError, SignalError
 from cytodisk.geometry.mask import clean_mask
@@ -14,10 +15,10 @@ from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile, open_frames
 from cytodisk.images.mask_kinds import look_at
 from cytodisk.images.tracks import CellTrack, list_tracks, read_frame
-from cytodisk.runs.map.map_inputs import check_signal
+from cytodisk.runs.cells.cell_inputs import check_signal
+from cytodisk.runs.channel_names import name_channels
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters, MovieParameters
 from cytodisk.runs.pixel_sizes import common_pixel_size
-from cytodisk.runs.steps import name_channels
 from cytodisk.scale import Scale
 from cytodisk.store.study_folder import part_key
 from cytodisk.windows.grid_parameters import Spacing
@@ -95,6 +96,11 @@ class MovieInputs:
                 f"{self.wanted_depth_um:g} µm)"
             )
         return words
+
+    @property
+    def paths(self) -> dict[str, Path]:
+        """Files by their role."""
+        return {"masks": self.masks.path} | ({"signal": self.signal.path} if self.signal else {})
 
     @property
     def n_frames(self) -> int:

@@ -5,7 +5,8 @@ from typing import ClassVar
 from cytodisk.images.file_parameters import MovieKindParameters
 from cytodisk.motion.tracking_parameters import FollowingParameters, JitterParameters
 from cytodisk.parameters import parameter
-from cytodisk.runs.map.map_parameters import CellParameters, MapParameters
+from cytodisk.runs.cells.cell_parameters import CellParameters
+from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.scale_parameters import ScaleParameters
 
 

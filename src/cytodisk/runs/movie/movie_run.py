@@ -8,27 +8,25 @@ from collections.abc import Iterator
 from concurrent.futures import Future
 from typing import Any
 
-import numpy as np
-import xarray as xr
-
-from cytodisk.errors import MaskError, ReadError, as_data
-from cytodisk.images.frames import FrameFile
+from cytodisk.errors import MaskError, ReadError
+from cytodisk.images.signal_files import load_image
 from cytodisk.images.tracks import CellTrack, read_frame
 from cytodisk.motion.frame_file import load_frame
 from cytodisk.motion.map_movie import FrameResult, map_one
 from cytodisk.motion.mapped_frame import MappedFrame
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.executor import Executor, finished
-from cytodisk.runs.movie.frame_rows import FrameRows, FrameTask, measure_frame, unmapped_row
+from cytodisk.runs.frame_rows import FramePlace
+from cytodisk.runs.movie.measured_frame import FrameRows, FrameTask, measure_frame, unmapped_rows
 from cytodisk.runs.movie.movie_inputs import MovieInputs
+from cytodisk.runs.movie.movie_study import MOVIE
 from cytodisk.runs.movie.movie_tables import finish_tables
-from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.provenance import describe_run
-from cytodisk.runs.run_options import RunOptions
-from cytodisk.runs.steps import Progress, finish_run, silent
+from cytodisk.runs.run_options import Progress, RunOptions, silent
+from cytodisk.runs.study_run import StudyRun
 from cytodisk.scale import Scale
 from cytodisk.store.study import Study, open_study
-from cytodisk.store.study_folder import MOVIE_TABLES, PARAMETERS, StudyFolder, alone_in, part_key
+from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.taking import takes
 
 
@@ -66,27 +64,17 @@ def movie_study(
         The folder cannot be used.
     """
     options = RunOptions.of(**settings)
-    paths = {"masks": inputs.masks.path} | ({"signal": inputs.signal.path} if inputs.signal else {})
-    provenance = describe_run(
-        paths, inputs.parameters, inputs.understood, inputs.scale.pixel_size_um, inputs.scale.frame_interval_s
-    )
-    provenance |= {
-        "run": "movie",
-        "layers": inputs.grid.layers,
-        "image_shape": list(inputs.masks.image_shape),
-    }
-    with alone_in(out):
-        if options.resume and StudyFolder.is_complete(out, provenance):
-            return open_study(out)
-        folder = StudyFolder.start(out, provenance, MOVIE_TABLES, **options.again)
-        write_parameters(inputs.parameters, folder.path / PARAMETERS)
+    provenance = describe_run(inputs.paths, inputs.parameters, inputs.understood, inputs.scale)
+    provenance |= {"layers": inputs.grid.layers, "image_shape": list(inputs.masks.image_shape)}
+
+    def work(folder: StudyFolder) -> tuple[list[str], list[str]]:
         with Executor(options.workers) as executor:
-            _Run(inputs, folder, executor, progress).all_frames()
+            _Run(inputs, folder, executor, progress or silent).all_frames()
         channels = inputs.signal.channels if inputs.signal else ()
         finish_tables(folder, inputs.tracks, inputs.grid, inputs.scale, channels)
-        rows = folder.rows()
-        finish_run(folder, inputs.keys, [_warning(row) for row in rows if _warning(row)])
-        return open_study(folder.path)
+        return inputs.keys, [words for row in folder.rows() if (words := _warning(row))]
+
+    return StudyRun(MOVIE, provenance, inputs.parameters, options).into(out, work, open_study)
 
 
 class _Run:
@@ -95,15 +83,13 @@ class _Run:
     A frame is mapped when the one before is; measuring it runs beside the mapping of the next one.
     """
 
-    def __init__(
-        self, inputs: MovieInputs, folder: StudyFolder, executor: Executor, progress: Progress | None
-    ):
+    def __init__(self, inputs: MovieInputs, folder: StudyFolder, executor: Executor, report: Progress):
         self._inputs = inputs
         self._folder = folder
         self._executor = executor
         self._settings = inputs.parameters.part(MovieSettings)
         self._last: dict[int, MappedFrame] = {}
-        self._report = progress or silent
+        self._report = report
 
     def all_frames(self) -> None:
         """Do what is not done yet."""
@@ -129,7 +115,7 @@ class _Run:
 
     def _one_time(self, time: int, tracks: list[CellTrack]) -> Iterator[Future[FrameRows]]:
         frame = read_frame(self._inputs.masks, time)
-        signal = _signal_at(self._inputs.signal, time)
+        signal = load_image(self._inputs.signal, time)
         mapping = []
         for track in tracks:
             if track.cell not in self._last:
@@ -142,22 +128,19 @@ class _Run:
             yield self._measured(track, time, *future.result(), signal)
 
     def _measured(
-        self, track: CellTrack, time: int, result: FrameResult, seconds: float, signal: xr.DataArray | None
+        self, track: CellTrack, time: int, result: FrameResult, seconds: float, signal: Any
     ) -> Future[FrameRows]:
+        place = FramePlace(track.cell, time, track.label, self._inputs.scale.seconds(time))
         if result.mapped is None:
-            fault = result.fault or MaskError("no map")
-            place = track.cell, time, self._inputs.scale.seconds(time)
-            return finished(FrameRows(unmapped_row(place, track.label, fault, seconds), {}, None))
+            return finished(unmapped_rows(place, result.fault or MaskError("no map"), seconds))
         last = self._last.get(track.cell)
         task = FrameTask(
-            track.cell,
-            track.label,
+            place,
             result.mapped,
             last if last is not None and last.time == time - 1 else None,
             signal,
             self._inputs.grid,
             self._inputs.parameters,
-            self._inputs.scale,
             self._folder.map_path(part_key(track.cell, time)),
             seconds,
         )
@@ -178,17 +161,6 @@ def _map_timed(
 ) -> tuple[FrameResult, float]:
     started = clock.perf_counter()
     return map_one(time, mask, last, settings, scale), clock.perf_counter() - started
-
-
-def _signal_at(signal: FrameFile | None, time: int) -> Any:
-    if signal is None:
-        return None
-    try:
-        values = signal.frame(time)
-    except ReadError as error:
-        return as_data(error)
-    coords = {"channel": list(signal.channels)}
-    return xr.DataArray(values.astype(np.float64), dims=("channel", "y", "x"), coords=coords)
 
 
 def _warning(row: dict[str, Any]) -> str:

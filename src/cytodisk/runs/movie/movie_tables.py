@@ -8,14 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.analysis.activity import STATISTICS
+from cytodisk.analysis.activity import GEOMETRY, STATISTICS
 from cytodisk.analysis.consistency import correlation_over_sectors, displacement_between
 from cytodisk.images.tracks import CellTrack
 from cytodisk.motion.registration import RigidTransform
-from cytodisk.runs.movie.frame_rows import edge_columns
+from cytodisk.runs.frame_rows import FramePlace
+from cytodisk.runs.movie.measured_frame import edge_columns
 from cytodisk.scale import Scale
-from cytodisk.store.activity_store import EDGE_VARIABLES, GEOMETRY, ActivityStore
-from cytodisk.store.study_folder import ACTIVITY, StudyFolder, part_key
+from cytodisk.store.activity_store import ACTIVITY, EDGE_VARIABLES, ActivityStore
+from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.windows.polar_windows import PolarGrid
 
 
@@ -57,7 +58,7 @@ def _finish_track(
     store: ActivityStore,
 ) -> None:
     before: dict[str, Any] | None = None
-    cell = store.cell(track.cell, track.label, grid, channels, scale.pixel_size_um, scale.frame_interval_s)
+    cell = store.cell(track.cell, track.label, grid, channels, scale)
     for time in track.times:
         key, row = part_key(track.cell, time), rows[track.cell, time]
         here = _frame_arrays(folder, key, grid, row, channels) if row["status"] == "ok" else None
@@ -109,7 +110,7 @@ def _complete_edge(
         return
     following = rows.get((track.cell, time + 1))
     status = "last frame" if following is None else f"the next frame has no map: {following['reason']}"
-    place = track.cell, time, scale.seconds(time)
+    place = FramePlace(track.cell, time, track.label, scale.seconds(time))
     folder.add_table(key, "edge", edge_columns(place, sectors, scale, None, None, status))
 
 
@@ -132,10 +133,7 @@ def _add_consistency(
         if "mean" in here:
             correlation = correlation_over_sectors(here["mean"], there["mean"])
     rows = len(channels) * layers
-    columns = {
-        "cell": np.full(rows, cell),
-        "frame": np.full(rows, time),
-        "time_s": [scale.seconds(time)] * rows,
+    columns = FramePlace(cell, time, 0, scale.seconds(time)).columns(rows) | {
         "channel": [name for name in channels for _ in range(layers)],
         "layer": np.tile(np.arange(layers), len(channels)),
         "correlation": correlation.ravel(),

@@ -7,10 +7,9 @@ from typing import Any
 
 import pandas as pd
 
-from cytodisk.runs.run_options import RunOptions
+from cytodisk.runs.run_options import Progress, RunOptions
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 from cytodisk.runs.shapes.shape_run import open_shape_inputs, shape_study
-from cytodisk.runs.steps import Progress
 from cytodisk.taking import takes
 
 

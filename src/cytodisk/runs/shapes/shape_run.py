@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection
 from functools import partial
-from itertools import islice
 from typing import Any
 
 import pandas as pd
@@ -16,21 +15,21 @@ from cytodisk.analysis.shape.score_parameters import ScoreParameters
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import ReadError
 from cytodisk.geometry.mask import clean_mask
-from cytodisk.images.mask_files import SourceCell, read_source_cells
-from cytodisk.runs.executor import Executor
-from cytodisk.runs.map.map_inputs import MapInputs, open_inputs
-from cytodisk.runs.map.map_parameters import FileParameters
-from cytodisk.runs.parameters_file import write_parameters
+from cytodisk.images.mask_files import list_images
+from cytodisk.runs.cells.cell_inputs import CellInputs, open_inputs
+from cytodisk.runs.cells.cell_parameters import FileParameters
+from cytodisk.runs.cells.cell_parts import CellRun, CellTask, Rows
 from cytodisk.runs.provenance import describe_run
-from cytodisk.runs.run_options import RunOptions
+from cytodisk.runs.run_options import Progress, RunOptions, silent
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
-from cytodisk.runs.shapes.shape_tables import SHAPE_TABLES, open_shapes, shape_table, write_shapes
-from cytodisk.runs.steps import Progress, finish_run, silent
+from cytodisk.runs.shapes.shape_tables import SHAPE_STUDY, open_shapes, shape_table, write_shapes
+from cytodisk.runs.study_run import StudyRun
 from cytodisk.runs.versions import installed
-from cytodisk.store.study_folder import MAPS, PARAMETERS, StudyFolder, alone_in, part_key
+from cytodisk.scale import Scale
+from cytodisk.store.study_folder import StudyFolder
 from cytodisk.taking import takes
 
-CELLS_PER_PART = 32  # which go to a worker and into a file together: about a second's work
+CELLS_AT_ONCE = 32  # of one image, which go to a worker and into a file together: about a second's work
 _LAYOUT = (
     "umap-learn",
     "scikit-learn",
@@ -38,7 +37,7 @@ _LAYOUT = (
 )  # packages that the score depends on beside the others
 
 
-def open_shape_inputs(masks: str | os.PathLike[str], parameters: ShapeParameters) -> MapInputs:
+def open_shape_inputs(masks: str | os.PathLike[str], parameters: ShapeParameters) -> CellInputs:
     """Open the files of a run.
 
     Parameters
@@ -49,7 +48,7 @@ def open_shape_inputs(masks: str | os.PathLike[str], parameters: ShapeParameters
 
     Returns
     -------
-    MapInputs
+    CellInputs
         In a folder, a file that cannot be used is kept with its fault.
 
     Raises
@@ -62,7 +61,7 @@ def open_shape_inputs(masks: str | os.PathLike[str], parameters: ShapeParameters
 
 @takes(RunOptions)
 def shape_study(
-    inputs: MapInputs,
+    inputs: CellInputs,
     out: str | os.PathLike[str],
     parameters: ShapeParameters | None = None,
     *,
@@ -73,7 +72,7 @@ def shape_study(
 
     Parameters
     ----------
-    inputs : MapInputs
+    inputs : CellInputs
         As `open_shape_inputs` returns it.
     out : path-like
         Folder for the results.
@@ -98,88 +97,47 @@ def shape_study(
     """
     options = RunOptions.of(**settings)
     parameters = ShapeParameters() if parameters is None else parameters
-    provenance = _describe(inputs, parameters)
-    with alone_in(out):
-        if options.resume and StudyFolder.is_complete(out, provenance):
-            return open_shapes(out)
-        folder = StudyFolder.start(out, provenance, SHAPE_TABLES, **options.again)
-        write_parameters(parameters, folder.path / PARAMETERS)
-        keys = _measure_all(inputs, folder, options.workers, progress)
-        table = shape_table(
-            folder.read_rows(keys),
-            inputs.pixel_size_um,
-            parameters.part(ScoreParameters),
-        )
+
+    def work(folder: StudyFolder) -> tuple[list[str], list[str]]:
+        measure = partial(measure_shape, scale=inputs.scale)
+        keys = CellRun(inputs, measure, CELLS_AT_ONCE).fill(folder, options.workers, progress or silent)
+        table = shape_table(folder.read_rows(keys), inputs.scale, parameters.part(ScoreParameters))
         write_shapes(table, folder.path)
-        finish_run(folder, keys, [*inputs.remarks, *_warnings(table)])
-        if not any((folder.path / MAPS).iterdir()):
-            (folder.path / MAPS).rmdir()  # no cell has a map
-    return table
+        return keys, [*inputs.remarks, *_warnings(table)]
+
+    run = StudyRun(SHAPE_STUDY, _describe(inputs, parameters), parameters, options)
+    return run.into(out, work, open_shapes)
 
 
-def _describe(inputs: MapInputs, parameters: ShapeParameters) -> dict[str, Any]:
-    provenance = describe_run(inputs.paths, parameters, inputs.understood, inputs.pixel_size_um)
+def _describe(inputs: CellInputs, parameters: ShapeParameters) -> dict[str, Any]:
+    provenance = describe_run(inputs.paths, parameters, inputs.understood, inputs.scale)
     packages = installed(_LAYOUT)
     provenance["fingerprint"] |= {"run": "shapes"}
     provenance["fingerprint"]["packages"] |= packages
     provenance["versions"] |= packages
-    return provenance | {"run": "shapes"}
+    return provenance
 
 
-def _measure_all(
-    inputs: MapInputs, folder: StudyFolder, workers: int, progress: Progress | None
-) -> list[str]:
-    """Measure what is not measured yet; the keys of all parts."""
-    sizes = {_key(part): len(part) for part in _parts(read_source_cells(inputs.sources))}
-    pending = {key for key in sizes if not folder.has(key)}
-    done, total = sum(size for key, size in sizes.items() if key not in pending), sum(sizes.values())
-    report = progress or silent
-    report(done, total)
-    parts = (part for part in _parts(read_source_cells(inputs.sources)) if _key(part) in pending)
-    measure = partial(measure_shapes, pixel_size_um=inputs.pixel_size_um)
-    with Executor(min(workers, max(1, len(pending)))) as executor:
-        for rows in executor.each(measure, parts):
-            folder.add_cells(part_key(rows[0]["cell"]), [(row, {}) for row in rows])
-            done += len(rows)
-            report(done, total)
-    return list(sizes)
-
-
-def _parts(cells: Iterable[SourceCell]) -> Iterator[list[SourceCell]]:
-    """A few cells at a time: always the same ones, so that a stopped run can go on."""
-    rest = iter(cells)
-    while part := list(islice(rest, CELLS_PER_PART)):
-        yield part
-
-
-def _key(part: Sequence[SourceCell]) -> str:
-    return part_key(part[0].cell)
-
-
-def measure_shapes(cells: Sequence[SourceCell], pixel_size_um: float | None) -> list[dict[str, Any]]:
-    """Measure the shape of a few cells.
+def measure_shape(task: CellTask, scale: Scale) -> Rows:
+    """Measure the shape of a cell.
 
     Parameters
     ----------
-    cells : sequence of SourceCell
-    pixel_size_um : float or None
+    task : CellTask
+    scale : Scale
 
     Returns
     -------
-    list of dict
-        For each cell where it comes from, its status and its features.
+    list of (row, tables)
+        One row: where the cell comes from, its status and its features.
     """
-    rows = []
-    for found in cells:
-        place = {"cell": found.cell, "source": found.source, "frame": found.frame, "label": found.label}
-        if found.fault is None:
-            measured = shape_row(found.mask, pixel_size_um)
-        else:
-            status = "unreadable" if isinstance(found.fault, ReadError) else "refused"
-            measured = {"status": status, "reason": str(found.fault), "notes": "", "qc_flags": ""}
-            measured["touches_border"] = False
-        rows.append(place | measured)
-    return rows
+    found = task.found
+    place = {"cell": found.cell, "source": found.source, "frame": found.frame, "label": found.label}
+    if found.fault is None:
+        return [(place | shape_row(found.mask, scale.pixel_size_um), {})]
+    status = "unreadable" if isinstance(found.fault, ReadError) else "refused"
+    words = {"status": status, "reason": str(found.fault), "notes": "", "qc_flags": ""}
+    return [(place | words | {"touches_border": False}, {})]
 
 
 def _warnings(table: pd.DataFrame) -> list[str]:
@@ -197,12 +155,12 @@ def _warnings(table: pd.DataFrame) -> list[str]:
     return warnings
 
 
-def cleaned_masks(inputs: MapInputs, cells: Collection[int]) -> dict[int, BoolArray]:
+def cleaned_masks(inputs: CellInputs, cells: Collection[int]) -> dict[int, BoolArray]:
     """The cleaned masks of some cells, each in its crop, such as for pictures.
 
     Parameters
     ----------
-    inputs : MapInputs
+    inputs : CellInputs
     cells : collection of int
         Cells that could be measured.
 
@@ -211,8 +169,14 @@ def cleaned_masks(inputs: MapInputs, cells: Collection[int]) -> dict[int, BoolAr
     dict of int to ndarray of shape (h, w) and dtype bool
     """
     wanted = set(cells)
+    images = (
+        image
+        for image in list_images(inputs.sources)
+        if not wanted.isdisjoint(range(image.first_cell, image.first_cell + image.n_cells))
+    )
     return {
         found.cell: clean_mask(found.mask)[0]
-        for found in read_source_cells(inputs.sources)
+        for image in images
+        for found in image.cells()
         if found.cell in wanted
     }

@@ -13,10 +13,10 @@ import pandas as pd
 from cytodisk.analysis.shape.complexity import complexity_score, why_unscored
 from cytodisk.analysis.shape.features import FEATURES, GROUPS, SCALE_FREE, feature_table
 from cytodisk.analysis.shape.score_parameters import ScoreParameters
-from cytodisk.errors import ReadError
 from cytodisk.files import replacing
-from cytodisk.store.provenance_file import read_provenance
-from cytodisk.store.study_folder import Tables
+from cytodisk.scale import Scale
+from cytodisk.store.provenance_file import read_complete
+from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import (
     CELL,
     FRAME,
@@ -35,20 +35,24 @@ from cytodisk.store.tables import (
 SHAPES, SHAPES_CSV, FEATURES_CSV = "shapes.parquet", "shapes.csv", "features.csv"
 SCORES = ("complexity", "umap_1", "umap_2")
 _CELL: Columns = (CELL, SOURCE, FRAME, LABEL, STATUS, REASON, NOTES, QC_FLAGS, TOUCHES_BORDER)
-SHAPE_TABLES = Tables(_CELL, {})
-"""What a study has beside `shapes.parquet`: its table of cells, without features."""
+SHAPE_STUDY = StudyKind(
+    "shapes",
+    "cytodisk shapes",
+    "read it with open_shapes",
+    _CELL,  # without features, which are in the table of shapes
+    {},
+    (SHAPES, SHAPES_CSV, FEATURES_CSV),
+)
 
 
-def shape_table(
-    rows: Iterable[dict[str, Any]], pixel_size_um: float | None, parameters: ScoreParameters
-) -> pd.DataFrame:
+def shape_table(rows: Iterable[dict[str, Any]], scale: Scale, parameters: ScoreParameters) -> pd.DataFrame:
     """The rows of all cells with their complexity.
 
     Parameters
     ----------
     rows : iterable of dict
         As `shape_row` returns them, with cell, source, frame and label before.
-    pixel_size_um : float or None
+    scale : Scale
     parameters : ScoreParameters
         See `complexity_score`.
 
@@ -58,7 +62,7 @@ def shape_table(
         As `shape_features` returns it, with "source", and "complexity", "umap_1" and "umap_2" before the
         features: NaN where cells cannot be scored, see `why_unscored`.
     """
-    table = feature_table(list(rows), pixel_size_um)
+    table = feature_table(list(rows), scale.pixel_size_um)
     attrs, first = table.attrs, table.columns.get_loc(GROUPS[0].features[0].name)
     if not why_unscored(table):
         score = complexity_score(table, **dict(parameters))
@@ -141,11 +145,7 @@ def open_shapes(path: str | os.PathLike[str]) -> pd.DataFrame:
     (['ok', 'ok', 'ok'], 'px²')
     """
     folder = Path(path)
-    provenance = read_provenance(folder)
-    if provenance is None or provenance.get("run") != "shapes":
-        raise ReadError(f"{folder} holds no shapes: pass a folder that cytodisk shapes wrote")
-    if provenance.get("status") != "complete":
-        raise ReadError(f"shapes in {folder} are not complete: run the same command again with --resume")
+    read_complete(folder, SHAPE_STUDY.run)
     table = read_table(folder / SHAPES)
     table.attrs["scale_free"] = list(SCALE_FREE)
     table.attrs["description"] = {feature.name: feature.description for feature in FEATURES}

@@ -12,17 +12,18 @@ from cytodisk.errors import ReadError, SignalError, as_data
 from cytodisk.images.frames import FrameFile, open_frames
 from cytodisk.images.mask_files import MaskSource, open_mask_files
 from cytodisk.images.signal_files import pair_images
-from cytodisk.runs.map.folder_inputs import SignalFile, with_common_channels, with_common_scale
-from cytodisk.runs.map.map_parameters import FileParameters
+from cytodisk.runs.cells.cell_parameters import FileParameters
+from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
+from cytodisk.runs.channel_names import name_channels
 from cytodisk.runs.pixel_sizes import common_pixel_size
-from cytodisk.runs.steps import name_channels
+from cytodisk.scale import Scale
 
 _MOST_UNNAMED = 10  # more planes than that are hardly channels
 _KINDS = {"mask": "one mask", "stack": "a stack of masks", "labels": "a label image, one cell a label"}
 
 
 @dataclass(frozen=True)
-class MapInputs:
+class CellInputs:
     """The files of a run.
 
     Attributes
@@ -34,8 +35,8 @@ class MapInputs:
         By name of the source.
     parameters : FileParameters
         As given: those of the run.
-    pixel_size_um : float or None
-        The given one, or else the files' own, in a folder that of most; None when nobody knows.
+    scale : Scale
+        The given pixel size, or else the files' own, in a folder that of most.
     remarks : tuple of str
         What a user should know of the files of a folder before the run.
     """
@@ -44,7 +45,7 @@ class MapInputs:
     sources: tuple[MaskSource, ...]
     signals: dict[str, SignalFile]
     parameters: FileParameters
-    pixel_size_um: float | None
+    scale: Scale
     remarks: tuple[str, ...] = ()
 
     @property
@@ -104,7 +105,7 @@ def _count(number: int, of: str) -> str:
 
 def open_inputs(
     masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: FileParameters
-) -> MapInputs:
+) -> CellInputs:
     """Open the files of a run and check that they fit.
 
     Parameters
@@ -120,7 +121,7 @@ def open_inputs(
 
     Returns
     -------
-    MapInputs
+    CellInputs
         In a folder, a file that cannot be used, or has no image, is kept with its fault.
 
     Raises
@@ -134,10 +135,12 @@ def open_inputs(
     found = _open_signal(sources[0], signal, parameters)
     files = [file for file in (found.file, sources[0].file) if file is not None]
     pixel_size_um = parameters.pixel_size_um or common_pixel_size(files)
-    return MapInputs(Path(masks), sources, {sources[0].name: found}, parameters, pixel_size_um)
+    return CellInputs(Path(masks), sources, {sources[0].name: found}, parameters, Scale(pixel_size_um))
 
 
-def _open_folder(masks: Path, signal: str | os.PathLike[str] | None, parameters: FileParameters) -> MapInputs:
+def _open_folder(
+    masks: Path, signal: str | os.PathLike[str] | None, parameters: FileParameters
+) -> CellInputs:
     sources = open_mask_files(masks, parameters.kind, images=_ending_beside(masks, signal))
     signals, remarks = _open_signals(sources, signal, parameters)
     pixel_size_um = parameters.pixel_size_um
@@ -150,7 +153,7 @@ def _open_folder(masks: Path, signal: str | os.PathLike[str] | None, parameters:
         for source in sources
         if source.damaged
     ]
-    return MapInputs(masks, sources, signals, parameters, pixel_size_um, (*replaced, *remarks))
+    return CellInputs(masks, sources, signals, parameters, Scale(pixel_size_um), (*replaced, *remarks))
 
 
 def _ending_beside(masks: Path, signal: str | os.PathLike[str] | None) -> str:

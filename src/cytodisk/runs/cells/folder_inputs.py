@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from cytodisk.errors import CytodiskError, MaskError, SignalError
 from cytodisk.images.frames import FrameFile
 from cytodisk.images.mask_files import MaskSource
+from cytodisk.runs.channel_names import name_channels
 from cytodisk.runs.pixel_sizes import alike, most_common_size
-from cytodisk.runs.steps import name_channels
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,9 @@
-"""One frame of a movie's run: measure what was mapped, and put it into rows."""
+"""What a run of `cytodisk movie` does with a mapped frame: sample it, measure its edge, and write its map."""
 
 from __future__ import annotations
 
 import time as clock
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from cytodisk.motion.edge import EdgeMotion, edge_motion, mean_by_sector, normal
 from cytodisk.motion.frame_file import save_frame
 from cytodisk.motion.map_movie import status_of
 from cytodisk.motion.mapped_frame import MappedFrame
-from cytodisk.runs.cell_rows import cell_columns, window_columns
+from cytodisk.runs.frame_rows import FramePlace, measure_windows
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
 from cytodisk.windows.polar_windows import PolarGrid
@@ -24,16 +24,29 @@ from cytodisk.windows.polar_windows import PolarGrid
 
 @dataclass(frozen=True, eq=False)
 class FrameTask:
-    """Everything that a worker needs to measure a mapped frame."""
+    """Everything that a worker needs to measure a mapped frame.
 
-    cell: int
-    label: int
+    Attributes
+    ----------
+    place : FramePlace
+    frame : MappedFrame
+    before : MappedFrame or None
+        The frame before, if that has a map.
+    signal : DataArray with dims (channel, y, x), or None
+    grid : PolarGrid
+    parameters : FollowedCellParameters
+    map_path : Path
+        Where the map is to stand.
+    seconds : float
+        That mapping took.
+    """
+
+    place: FramePlace
     frame: MappedFrame
     before: MappedFrame | None
     signal: xr.DataArray | None
     grid: PolarGrid
     parameters: FollowedCellParameters
-    scale: Scale
     map_path: Path
     seconds: float
 
@@ -74,12 +87,10 @@ def measure_frame(task: FrameTask) -> FrameRows:
         The map cannot be written.
     """
     started = clock.perf_counter()
-    frame, scale = task.frame, task.scale
-    place = task.cell, frame.time, scale.seconds(frame.time)
+    frame = task.frame
     windows = task.grid.on(frame.disk)
-    columns = window_columns(place, windows, task.signal, task.parameters.nan, scale.pixel_size_um)
-    row = frame_row(place, task.label) | cell_columns(frame.disk, windows, task.signal, scale.pixel_size_um)
-    row |= _track_columns(frame, scale)
+    row, columns = measure_windows(task.place, windows, task.signal, task.parameters.nan)
+    row |= _track_columns(frame)
     row["qc_flags"] = "; ".join(filter(None, [row["qc_flags"], _jump(task)]))
     save_frame(task.map_path, frame)
     edge = None if task.before is None else _edge_before(task, task.before)
@@ -94,35 +105,26 @@ def _jump(task: FrameTask) -> str:
     return f"the cell does not touch its place in frame {task.before.time}: it moved far, or is another one"
 
 
-def frame_row(place: tuple[int, int, float | None], label: int) -> dict[str, Any]:
-    """Start of a frame's row: cell, frame, its time in seconds, label."""
-    cell, time, time_s = place
-    return {"cell": cell, "frame": time, "time_s": time_s, "label": label}
-
-
-def unmapped_row(
-    place: tuple[int, int, float | None], label: int, fault: CytodiskError, seconds: float
-) -> dict[str, Any]:
+def unmapped_rows(place: FramePlace, fault: CytodiskError, seconds: float) -> FrameRows:
     """Row of a frame without a map.
 
     Parameters
     ----------
-    place : (int, int, float or None)
-        Cell, frame, and its time in seconds.
-    label : int
+    place : FramePlace
     fault : CytodiskError
     seconds : float
+        Spent on it.
 
     Returns
     -------
-    dict
+    FrameRows
     """
     status = "missing" if isinstance(fault, MissingLabel) else status_of(fault)
-    return frame_row(place, label) | {"status": status, "reason": str(fault), "seconds": seconds}
+    return FrameRows(place.row | {"status": status, "reason": str(fault), "seconds": seconds}, {}, None)
 
 
 def edge_columns(
-    place: tuple[int, int, float | None],
+    place: FramePlace,
     sectors: int,
     scale: Scale,
     motion: EdgeMotion | None,
@@ -133,8 +135,7 @@ def edge_columns(
 
     Parameters
     ----------
-    place : (int, int, float or None)
-        Cell, frame, and its time in seconds.
+    place : FramePlace
     sectors : int
     scale : Scale
     motion : EdgeMotion or None
@@ -149,14 +150,8 @@ def edge_columns(
     dict of str to array
     """
     nothing = np.full(sectors, np.nan)
-    cell, time, time_s = place
     states = np.full(sectors, status, dtype=object)
-    columns: dict[str, Any] = {
-        "cell": np.full(sectors, cell),
-        "frame": np.full(sectors, time),
-        "time_s": [time_s] * sectors,
-        "sector": np.arange(sectors),
-    }
+    columns = place.columns(sectors) | {"sector": np.arange(sectors)}
     if motion is None:
         names = ("velocity", "velocity_cell_frame", "velocity_error", "protruded_area", "retracted_area")
         return columns | dict.fromkeys((*names, "edge_length"), nothing) | {"status": states}
@@ -174,9 +169,10 @@ def edge_columns(
 
 def _edge_before(task: FrameTask, before: MappedFrame) -> dict[str, Any]:
     here, there, sectors = before.boundary, task.frame.boundary, task.parameters.sectors
-    place = task.cell, before.time, task.scale.seconds(before.time)
+    scale = task.frame.disk.scale
+    place = replace(task.place, frame=before.time, time_s=scale.seconds(before.time))
     if there.restarted:
-        return edge_columns(place, sectors, task.scale, None, None, "tracking starts anew in the next frame")
+        return edge_columns(place, sectors, scale, None, None, "tracking starts anew in the next frame")
     motion = edge_motion(
         here,
         there,
@@ -189,14 +185,14 @@ def _edge_before(task: FrameTask, before: MappedFrame) -> dict[str, Any]:
     in_cell_frame = mean_by_sector(
         normal_displacement(here, there, "cell"), here, there, (shape[0], shape[1]), sectors
     )
-    return edge_columns(place, sectors, task.scale, motion, in_cell_frame, "ok")
+    return edge_columns(place, sectors, scale, motion, in_cell_frame, "ok")
 
 
-def _track_columns(frame: MappedFrame, scale: Scale) -> dict[str, Any]:
+def _track_columns(frame: MappedFrame) -> dict[str, Any]:
     boundary, transform = frame.boundary, frame.boundary.transform
     return {
         "restarted": boundary.restarted,
-        "tracking_residual": scale.length(boundary.residual_px),
+        "tracking_residual": frame.disk.scale.length(boundary.residual_px),
         "order_violations": boundary.order_violations,
         "registration_angle": float(np.degrees(transform.angle)),
         "registration_shift_y": transform.shift_y,

@@ -1,0 +1,181 @@
+"""A measured frame of a cell → rows of the tables: its own, and those of its windows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.analysis.activity import STATISTICS, window_arrays
+from cytodisk.errors import CytodiskError, EmptyMaskError, ReadError, SignalError
+from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
+from cytodisk.windows.polar_windows import CellWindows
+
+_PERIMETER_SMOOTHING_PX = 1.0
+
+
+@dataclass(frozen=True)
+class FramePlace:
+    """Where a row comes from.
+
+    Attributes
+    ----------
+    cell, frame, label : int
+    time_s : float or None
+        Time of the frame in seconds, where it is known.
+    source : str or None
+        Name of the mask file, where there can be many.
+    """
+
+    cell: int
+    frame: int
+    label: int
+    time_s: float | None = None
+    source: str | None = None
+
+    @property
+    def row(self) -> dict[str, Any]:
+        """Start of the row in the table of cells."""
+        source = {} if self.source is None else {"source": self.source}
+        return {"cell": self.cell, **source, "frame": self.frame, "time_s": self.time_s, "label": self.label}
+
+    def columns(self, rows: int) -> dict[str, Any]:
+        """Start of so many rows in another table."""
+        return {
+            "cell": np.full(rows, self.cell),
+            "frame": np.full(rows, self.frame),
+            "time_s": [self.time_s] * rows,
+        }
+
+
+def status_of(fault: CytodiskError) -> str:
+    """What the table of cells says of a row without results.
+
+    Parameters
+    ----------
+    fault : CytodiskError
+
+    Returns
+    -------
+    {"unreadable", "no cell", "no image", "refused"}
+        A file is damaged, an image holds no cell, its signal cannot be used, or the mask cannot.
+    """
+    if isinstance(fault, ReadError):
+        return "unreadable"
+    if isinstance(fault, EmptyMaskError):
+        return "no cell"
+    return "no image" if isinstance(fault, SignalError) else "refused"
+
+
+def measure_windows(
+    place: FramePlace,
+    windows: CellWindows,
+    image: xr.DataArray | None,
+    nan: Literal["propagate", "omit"],
+    corner: tuple[int, int] = (0, 0),
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Sample the signal in the windows of a map, and describe both.
+
+    Parameters
+    ----------
+    place : FramePlace
+    windows : CellWindows
+    image : DataArray with dims (channel, y, x), or None
+        Of the shape of the map's mask.
+    nan : {"propagate", "omit"}
+    corner : (int, int)
+        (row, column) of the first pixel of the mask in the image that the rows are about.
+
+    Returns
+    -------
+    row : dict
+        Of the table of cells.
+    columns : dict of str to array
+        Of the table of windows: for each channel every window, layers first.
+    """
+    row = place.row | _cell_columns(windows, image)
+    columns = _window_columns(place, windows, image, nan)
+    for values in (row, columns):
+        for name, first in zip(("centroid_y", "centroid_x"), corner, strict=True):
+            values[name] = values[name] + float(first)
+    return row, columns
+
+
+def _cell_columns(windows: CellWindows, image: xr.DataArray | None) -> dict[str, Any]:
+    """What the table of cells says about a map and its windows."""
+    disk = windows.disk
+    report, distortion, certificate = disk.report, disk.distortion, disk.certificate
+    centre = centroid(disk.outline_yx)
+    smooth = smooth_closed(disk.outline_yx, _PERIMETER_SMOOTHING_PX)
+    missing = int((~np.isfinite(image.to_numpy()[:, disk.mask])).sum()) if image is not None else 0
+    return {
+        "notes": "; ".join(_notes(windows, missing)),
+        "qc_flags": "; ".join(report.qc_flags),
+        "area": disk.scale.area(float(report.area_px)),
+        "perimeter": disk.scale.length(float(edge_lengths(smooth).sum())),
+        "centroid_y": float(centre[0]),
+        "centroid_x": float(centre[1]),
+        "area_px": report.area_px,
+        "components": report.components,
+        "dropped_px": report.dropped_px,
+        "holes": report.holes,
+        "filled_px": report.filled_px,
+        "touches_border": report.touches_border,
+        "border_share": report.border_share,
+        "nan_px": missing,
+        "certificate_valid": certificate.valid,
+        "flipped": len(certificate.flipped_in_disk),
+        "vertices": len(disk.vertices_yx),
+        "triangles": len(disk.triangles),
+        "area_distortion": distortion.area,
+        "area_ratio_p1": distortion.area_percentiles[1],
+        "area_ratio_p99": distortion.area_percentiles[99],
+        "angle_distortion": distortion.angle,
+        "angle_distortion_p95": distortion.angle_percentiles[95],
+        "empty_windows": int((windows.areas <= 0).sum()),
+        "relaxation_start": disk.start,
+        "steps": disk.steps,
+        "converged": disk.converged,
+    }
+
+
+def _notes(windows: CellWindows, missing: int) -> list[str]:
+    disk = windows.disk
+    notes = list(disk.report.notes)
+    if not disk.converged:
+        notes.append("relaxation stopped before its criterion")
+    if disk.start == "uniform":
+        notes.append("harmonic start with uniform weights")
+    if missing:
+        notes.append(f"{missing} NaN or infinite values in the signal")
+    return notes
+
+
+def _window_columns(
+    place: FramePlace,
+    windows: CellWindows,
+    image: xr.DataArray | None,
+    nan: Literal["propagate", "omit"],
+) -> dict[str, Any]:
+    arrays = window_arrays(windows, image, nan=nan)
+    n_windows = windows.grid.n_windows
+    channels = [None] if image is None else [str(name) for name in image["channel"].to_numpy()]
+    repeats = len(channels)
+    status = ["no signal"] * n_windows
+    if image is not None:
+        status = np.where(np.isnan(arrays["mean"]), "NaN in signal", "ok").ravel().tolist()
+    layer, sector = np.divmod(np.tile(np.arange(n_windows), repeats), windows.grid.sectors)
+    nothing = np.full(n_windows * repeats, np.nan)
+    return place.columns(n_windows * repeats) | {
+        "channel": [name for name in channels for _ in range(n_windows)],
+        "layer": layer,
+        "sector": sector,
+        **{name: arrays[name].ravel() if name in arrays else nothing for name in STATISTICS},
+        "area": np.tile(windows.scale.area(arrays["area"]).ravel(), repeats),
+        "centroid_y": np.tile(arrays["centroid_y"].ravel(), repeats),
+        "centroid_x": np.tile(arrays["centroid_x"].ravel(), repeats),
+        "eccentricity": np.tile(windows.eccentricities.ravel(), repeats),
+        "status": status,
+    }

@@ -1,0 +1,100 @@
+"""What a run of `cytodisk map` does with one cell: map it, sample it, and write its map."""
+
+from __future__ import annotations
+
+import json
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import xarray as xr
+
+from cytodisk.disk.disk_map import DiskMap
+from cytodisk.disk.mapping import map_to_disk
+from cytodisk.disk.mapping_parameters import Align, MappingParameters
+from cytodisk.errors import CytodiskError
+from cytodisk.files import replacing
+from cytodisk.images.mask_files import SourceCell
+from cytodisk.runs.cells.cell_parts import CellTask, Rows
+from cytodisk.runs.frame_rows import FramePlace, measure_windows, status_of
+from cytodisk.runs.map.map_parameters import MapParameters
+from cytodisk.scale import Scale
+from cytodisk.store.study_folder import StudyFolder, figures_folder, part_key
+from cytodisk.windows.grid_parameters import GridParameters
+from cytodisk.windows.polar_windows import CellWindows, polar_windows
+
+DrawCell: TypeAlias = Callable[[Path, str, CellWindows, xr.DataArray | None], list[Path]]
+
+
+@dataclass(frozen=True)
+class MapWork:
+    """Maps and samples a cell; the same for all cells of a run.
+
+    Attributes
+    ----------
+    parameters : MapParameters
+    scale : Scale
+    folder : StudyFolder
+        Where maps go.
+    draw : callable, optional
+        As `run_map` takes it.
+    maps, geojson : bool
+        Whether maps, and outlines of windows, are written.
+    """
+
+    parameters: MapParameters
+    scale: Scale
+    folder: StudyFolder
+    draw: DrawCell | None
+    maps: bool
+    geojson: bool
+
+    def __call__(self, task: CellTask) -> Rows:
+        """Rows of one cell; a fault of its input becomes a row with the reason."""
+        started = clock.perf_counter()
+        found = task.found
+        place = FramePlace(found.cell, found.frame, found.label, source=found.source)
+        fault = found.fault or task.fault
+        if fault is None:
+            try:
+                disk = self._map(found)
+            except CytodiskError as error:
+                fault = error
+        if fault is not None:
+            return [(place.row | {"status": status_of(fault), "reason": str(fault)} | _seconds(started), {})]
+        windows = polar_windows(**dict(self.parameters.part(GridParameters))).on(disk)
+        row, columns = measure_windows(place, windows, task.signal, self.parameters.nan, found.corner)
+        placed = windows
+        if self.maps or self.geojson or task.drawn:  # in pixels of the whole image
+            placed = windows.grid.on(disk.placed(found.corner, found.image_shape))
+            self._write(placed, self.folder.map_path(part_key(found.cell)))
+        row |= {"status": "ok", "reason": ""} | _seconds(started)
+        if task.drawn and self.draw is not None:
+            image = None if task.image is None else task.image.astype(np.float64)
+            self.draw(figures_folder(self.folder.path), f"cell_{found.cell:05d}", placed, image)
+        return [(row, {"windows": columns})]
+
+    def _map(self, found: SourceCell) -> DiskMap:
+        mapping = dict(self.parameters.part(MappingParameters))
+        mapping["align"] = _in_crop(self.parameters.align, found.corner)
+        return map_to_disk(found.mask, **mapping, pixel_size_um=self.scale.pixel_size_um)
+
+    def _write(self, windows: CellWindows, path: Path) -> None:
+        if self.maps:
+            windows.disk.save(path)
+        if self.geojson:
+            with replacing(path.with_suffix(".geojson")) as temporary:
+                temporary.write_text(json.dumps(windows.geojson()), encoding="utf-8")
+
+
+def _in_crop(align: Align, corner: tuple[int, int]) -> Align:
+    if isinstance(align, tuple):
+        return align[0] - corner[0], align[1] - corner[1]
+    return align
+
+
+def _seconds(started: float) -> dict[str, Any]:
+    return {"seconds": clock.perf_counter() - started}

@@ -1,0 +1,81 @@
+"""What every run that writes a study does, from the check of its options to the study that it returns."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, TypeVar
+
+from cytodisk.parameters import Parameters
+from cytodisk.runs.parameters_file import write_parameters
+from cytodisk.runs.run_options import RunOptions
+from cytodisk.store.study_folder import StudyFolder, alone_in
+from cytodisk.store.study_kind import PARAMETERS, StudyKind
+
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True)
+class StudyRun:
+    """A run that is ready to start.
+
+    Attributes
+    ----------
+    kind : StudyKind
+    provenance : dict
+        As `describe_run` returns it.
+    parameters : Parameters
+    options : RunOptions
+    """
+
+    kind: StudyKind
+    provenance: dict[str, Any]
+    parameters: Parameters
+    options: RunOptions
+
+    def into(
+        self,
+        out: str | os.PathLike[str],
+        work: Callable[[StudyFolder], tuple[Sequence[str], Sequence[str]]],
+        read: Callable[[Path], Result],
+        after: Callable[[Path], None] | None = None,
+    ) -> Result:
+        """Do the work in a folder and mark the study as complete, unless it is.
+
+        Parameters
+        ----------
+        out : path-like
+            Is made if need be.
+        work : callable
+            Writes what is not there yet into the folder that it is given. Returns the keys of all parts, in
+            the order of the tables, and warnings.
+        read : callable
+            Opens the complete study.
+        after : callable, optional
+            Writes what follows from a complete study; called with its folder, also for one that was there.
+
+        Returns
+        -------
+        object
+            What `read` returns.
+
+        Raises
+        ------
+        StudyError
+            The folder cannot be used, or results cannot be written.
+        """
+        options, place = self.options, Path(out)
+        with alone_in(out):
+            if not (options.resume and StudyFolder.is_complete(out, self.provenance)):
+                folder = StudyFolder.start(out, self.provenance, self.kind, **options.again)
+                write_parameters(self.parameters, place / PARAMETERS)
+                keys, warnings = work(folder)
+                folder.note("warnings", list(warnings))
+                folder.note("finished", datetime.now(UTC).isoformat(timespec="seconds"))
+                folder.finish(list(keys))
+            if after is not None:
+                after(place)
+            return read(place)

@@ -1,0 +1,58 @@
+"""`StudyKind`: what a run writes into its folder; each command declares its own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from cytodisk.store.provenance_file import FORMAT, PROVENANCE
+from cytodisk.store.tables import Columns
+
+PARAMETERS = "parameters.toml"
+CELLS = "cells.parquet"
+MAPS, FIGURES, PARTS = "maps", "figures", ".parts"
+
+
+@dataclass(frozen=True)
+class StudyKind:
+    """The tables and files of a run.
+
+    Attributes
+    ----------
+    run : str
+        Name of the run in the provenance.
+    command : str
+        Such as "cytodisk map".
+    reader : str
+        How to read the results, for whoever takes them for another kind.
+    cells : tuple of Column
+        Of the table with a row for each cell, or for each frame of a cell.
+    others : dict of str to tuple of Column
+        By name of the table.
+    files : tuple of str
+        Names, or patterns of names, of all else that it writes.
+    """
+
+    run: str
+    command: str
+    reader: str
+    cells: Columns
+    others: dict[str, Columns]
+    files: tuple[str, ...] = ()
+
+    @property
+    def tables(self) -> dict[str, Columns]:
+        """Columns of all tables, by name."""
+        return {"cells": self.cells, **self.others}
+
+    @property
+    def provenance(self) -> dict[str, Any]:
+        """What the provenance says of the kind of run."""
+        tables = (f"{name}.parquet" for name in self.tables)
+        return {
+            "run": self.run,
+            "command": self.command,
+            "reader": self.reader,
+            "format": FORMAT,
+            "files": [PROVENANCE, PARAMETERS, *tables, *self.files, PARTS],
+        }
