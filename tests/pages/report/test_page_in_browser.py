@@ -90,9 +90,8 @@ def test_hover_on_the_disk_shows_in_every_view(page: Page, study: Study) -> None
         path = page.js(f"cytodisk.figures.{name}.select('highlight')[0].data")
         assert (min(path["y"]), max(path["y"])) == (4.5, 5.5)
         assert (min(path["x"]), max(path["x"])) == (-2.5, 2.5)
-    wedge = page.js("cytodisk.figures.peaks.select('highlight')[0].data")
-    middle = np.arctan2(np.mean(wedge["y"]), np.mean(wedge["x"])) / (2 * np.pi) * SECTORS
-    assert int(middle) == 5
+    for name in ("disk", "peaks"):
+        assert page.js(f"cytodisk.figures.{name}.select('chosen')[0].indices") == [SECTORS + 5]
     curve = page.js("cytodisk.figures.curve.select('window')[0].data")
     assert curve["lag"] == [5.0 * lag for lag in LAGS]
     np.testing.assert_allclose(curve["r"], 0.1 * LAGS, atol=1e-6)
@@ -312,21 +311,20 @@ def test_choices_change_what_is_drawn(page: Page) -> None:
 
 
 def test_windows_that_are_not_significant_are_hatched(page: Page) -> None:
-    """Layers 1 to 3 have q of 0.5; their windows hold two colours, those of layer 0 one."""
-    image = page.js("Array.from(cytodisk.figures.peaks.select('pixels')[0].data.image[0])")
-    pixels = np.array(image, dtype=np.uint32).reshape(
-        page.js("cytodisk.figures.peaks.select('pixels')[0].data.image[0].shape")
-    )
-    centre = pixels.shape[0] // 2
-
-    def colours(layer: int) -> int:
-        u, v = disk_point(layer, 2)
-        row, column = round(centre * (1 + v)), round(centre * (1 + u))
-        return len(np.unique(pixels[row - 6 : row + 7, column - 6 : column + 7]))
-
-    assert colours(0) == 1
-    assert colours(2) == 2
+    """Layers 1 to 3 have q of 0.5."""
+    hatched = page.js("cytodisk.figures.peaks.select('doubtful')[0].indices")
+    assert hatched == list(range(SECTORS, LAYERS * SECTORS))
     assert page.text("peaks-key") == "hatched: not significant (q ≥ 0.05)"
+
+
+def test_wedges_lie_where_the_windows_are(page: Page) -> None:
+    """Angles of a wedge run against the clock on a screen, those of windows with it."""
+    source = page.js("cytodisk.figures.disk.select('pixels')[0].data")
+    grid = cd.polar_windows(LAYERS, SECTORS)
+    angle = -0.5 * (np.array(source["start"]) + np.array(source["end"]))
+    radius = 0.5 * (np.array(source["inner"]) + np.array(source["outer"]))
+    middles = radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+    np.testing.assert_array_equal(grid.window_of(middles), np.arange(grid.n_windows))
 
 
 def test_without_signal_correlation_or_scale(

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from cytodisk.errors import MissingPartError
 
 MISSING = "#d9d9d9"
@@ -23,7 +21,7 @@ def bokeh() -> Any:
         It is not installed.
     """
     try:
-        import bokeh.embed
+        import bokeh.document
         import bokeh.models
         import bokeh.plotting
         import bokeh.resources
@@ -71,20 +69,18 @@ def source_of(**columns: Any) -> Any:
     return bokeh().models.ColumnDataSource(data=columns)
 
 
-def add_pixels(plot: Any, x: float, y: float, width: float, height: float) -> None:
-    """An RGBA image whose source is called "pixels"."""
-    empty = np.zeros((1, 1), dtype=np.uint32)
-    source = source_of(image=[empty], x=[x], y=[y], dw=[width], dh=[height])
-    source.name = "pixels"
-    plot.image_rgba(image="image", x="x", y="y", dw="dw", dh="dh", source=source)
-
-
-def add_outline(plot: Any, black: float = 4.5, white: float = 2.0) -> None:
-    """A line that stands out from every colour, white on black; its source is called "highlight"."""
-    source = source_of(x=[], y=[])
-    source.name = "highlight"
-    plot.line("x", "y", source=source, line_color="black", line_width=black, line_join="miter")
-    plot.line("x", "y", source=source, line_color="white", line_width=white, line_join="miter")
+def add_image(
+    plot: Any, name: str, values: Any, place: tuple[float, float, float, float], mapper: Any = None
+) -> None:
+    """An image whose source has a name; of numbers by a colour mapper, or else of RGBA."""
+    x, y, width, height = place
+    source = source_of(image=[values], x=[x], y=[y], dw=[width], dh=[height])
+    source.name = name
+    columns = {"image": "image", "x": "x", "y": "y", "dw": "dw", "dh": "dh", "source": source}
+    if mapper is None:
+        plot.image_rgba(**columns)
+    else:
+        plot.image(**columns, color_mapper=mapper)
 
 
 def add_colour_bar(plot: Any, mapper: Any) -> None:

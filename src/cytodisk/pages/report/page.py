@@ -22,14 +22,14 @@ from cytodisk.pages.report.shown_correlations import pairs_of
 from cytodisk.pages.report.signal_file import FoundSignal, FrameSource, shown_signal
 from cytodisk.pages.report.words import MOST_PLACES, page_words
 from cytodisk.plot.correlation_peaks import LAG_COLOURS
-from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS
+from cytodisk.plot.style import DIVERGING_COLOURS
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.study_flags import qc_flags
 from cytodisk.store.provenance_file import record_files
 from cytodisk.store.study import Study
 
 REPORT = "report.html"
-_SCRIPTS = ("decode", "store", "raster", "views", "controls", "main")
+_SCRIPTS = ("decode", "state", "pixels", "views", "controls", "main")
 
 Progress = Callable[[int, int], None]
 
@@ -176,11 +176,7 @@ def _render(cell: ShownCell, found: FoundSignal, progress: Progress | None) -> s
         "pairs": pairs,
         "first": next(k for k, frame in enumerate(pictures) if frame["labels"]) if _any(pictures) else 0,
         "picture": {"shape": box.shape, "limits": limits, "box": vars(box)},
-        "palettes": {
-            "signal": palette(SIGNAL_COLOURS),
-            "diverging": palette(DIVERGING_COLOURS),
-            "lag": palette(LAG_COLOURS),
-        },
+        "palettes": {"correlation": palette(DIVERGING_COLOURS), "lag": palette(LAG_COLOURS)},
     }
     words = page_words(cell, _flags(cell.study, found), found, box, left_out)
     template = Environment(autoescape=True, undefined=StrictUndefined).from_string(_asset("page.html"))

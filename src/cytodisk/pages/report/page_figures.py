@@ -9,11 +9,11 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.colors import to_hex
 
+from cytodisk.arrays import FloatArray
 from cytodisk.pages.report.bokeh_parts import (
     MISSING,
     add_colour_bar,
-    add_outline,
-    add_pixels,
+    add_image,
     bare_figure,
     bokeh,
     colour_mapper,
@@ -22,7 +22,8 @@ from cytodisk.pages.report.bokeh_parts import (
     title_of,
 )
 from cytodisk.pages.report.pictures import Box
-from cytodisk.pages.report.shown_cell import ShownCell
+from cytodisk.pages.report.shown_cell import ShownCell, strip_range
+from cytodisk.plot.activity_maps import top_speed
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS, nice_length
 from cytodisk.scale import Scale
 
@@ -35,6 +36,7 @@ _MAP, _STRIP = 118, 44  # px: heights of frames on the right
 _WINDOW, _LAYER = "#D55E00", "#0072B2"  # of Okabe and Ito, told apart by all
 _MOST_DOTS = 100  # frames that a line shows as dots
 _MOST_LINES = 1500  # windows whose borders are drawn on a disk
+_WEDGE = (0, 0, "inner", "outer", "start", "end")  # middle, and columns of the source
 
 
 def palette(name: str) -> list[str]:
@@ -49,24 +51,74 @@ def library_script() -> str:
 
 
 def figures_of(cell: ShownCell, box: Box, *, correlated: bool) -> dict[str, Any]:
-    """All figures as JSON for `Bokeh.embed.embed_item`, by name."""
+    """All figures as one document for `Bokeh.embed.embed_items`, and where each is to stand.
+
+    Parameters
+    ----------
+    cell : ShownCell
+    box : Box
+        Box of the pictures.
+    correlated : bool
+        Whether there are correlations to show.
+
+    Returns
+    -------
+    dict
+        "documents", and "items" with the element of each figure, "figure-" and its name.
+    """
+    shared = _shared_parts(cell)
     plots: dict[str, Plot] = {
         "cell": _cell(box, cell.scale),
-        "disk": _disk(cell, palette(SIGNAL_COLOURS)),
-        "activity": _map(cell, palette(SIGNAL_COLOURS), "white", bottom=False),
-        "velocity": _map(cell, palette(DIVERGING_COLOURS), "black", bottom=True),
+        "disk": _disk(cell, palette(SIGNAL_COLOURS), shared),
+        "activity": _map(cell, palette(SIGNAL_COLOURS), "white", shared),
+        "velocity": _velocity(cell, shared),
     }
     if correlated:
-        plots["peaks"] = _disk(cell, palette(DIVERGING_COLOURS))
+        plots["peaks"] = _disk(cell, palette(DIVERGING_COLOURS), shared, doubtful=True)
         plots["curve"] = _curve(cell)
     units = cell.study.cells.attrs["units"]
-    plots |= {
-        "area": _strip(cell, f"area ({units['area']})"),
-        "residual": _strip(cell, f"tracking residual ({units['tracking_residual']})"),
-        "distortion": _strip(cell, "area distortion, mean |ln λ|"),
-        "intensity": _strip(cell, "mean intensity of the cell (a.u.)", bottom=True),
+    titles = {
+        "area": f"area ({units['area']})",
+        "tracking_residual": f"tracking residual ({units['tracking_residual']})",
+        "area_distortion": "area distortion, mean |ln λ|",
     }
-    return {name: bokeh().embed.json_item(plot) for name, plot in plots.items()}
+    plots |= {
+        name.split("_")[-1]: _strip(cell, title, cell.quality[name].to_numpy(), shared)
+        for name, title in titles.items()
+    }
+    mean = cell.whole_mean(0) if cell.channels else np.full(len(cell.frames), np.nan)
+    plots["intensity"] = _strip(cell, "mean intensity of the cell (a.u.)", mean, shared, bottom=True)
+    document = bokeh().document.Document()
+    for name, plot in plots.items():
+        plot.name = name
+        document.add_root(plot)
+    roots = {plot.id: f"figure-{name}" for name, plot in plots.items()}
+    item = {"docid": "page", "roots": roots, "root_ids": list(roots)}
+    return {"documents": {"page": document.to_json(deferred=False)}, "items": [item]}
+
+
+def _shared_parts(cell: ShownCell) -> dict[str, Any]:
+    """What several figures show: the range of time, the moments marked on it, and the highlighted window."""
+    models, step, half = bokeh().models, cell.times.per_frame, 0.5 * cell.every
+    marks: dict[str, Any] = {"dimension": "height", "location": float("nan")}
+    moment, row = source_of(x=[], y=[]), source_of(y=[])
+    moment.name, row.name = "highlight", "row"
+    lost = np.array([frame for frame, reason in zip(cell.frames, cell.reasons, strict=True) if reason])
+    missing = source_of(left=(lost - half) * step, right=(lost + half) * step)
+    missing.name = "missing"
+    return {
+        "time": models.Range1d((cell.frames[0] - half) * step, (cell.frames[-1] + half) * step),
+        "marks": [
+            models.Span(name="now", line_color="white", line_width=3.5, line_alpha=0.9, **marks),
+            models.Span(name="now", line_color="black", line_width=1.4, **marks),
+            models.Span(name="under", line_color="black", line_width=1, line_dash="dotted", **marks),
+        ],
+        "moment": moment,
+        "row": row,
+        "missing": missing,
+        "wedges": source_of(**_wedges(cell)),  # that do not change with the frame
+        "chosen": models.IndexFilter(name="chosen", indices=[]),
+    }
 
 
 def _cell(box: Box, scale: Scale) -> Any:
@@ -79,9 +131,11 @@ def _cell(box: Box, scale: Scale) -> Any:
         round(box.height * shrink),
     )
     plot.axis.visible = False
-    add_pixels(plot, left, top, box.width, box.height)
+    mapper, place = colour_mapper(palette(SIGNAL_COLOURS)), (left, top, box.width, box.height)
+    add_image(plot, "pixels", np.full((1, 1), np.nan, dtype=np.float32), place, mapper)
+    add_image(plot, "lines", np.zeros((1, 1), dtype=np.uint32), place)
     _scale_bar(plot, box, scale)
-    add_colour_bar(plot, colour_mapper(palette(SIGNAL_COLOURS)))
+    add_colour_bar(plot, mapper)
     return plot
 
 
@@ -106,13 +160,49 @@ def _scale_bar(plot: Any, box: Box, scale: Scale) -> None:
     )
 
 
-def _disk(cell: ShownCell, colours: Sequence[str]) -> Any:
-    """The unit disk, v down as y in the image."""
+def _disk(cell: ShownCell, colours: Sequence[str], shared: dict[str, Any], *, doubtful: bool = False) -> Any:
+    """The unit disk, v down as y in the image; some windows can be pale and hatched."""
     plot = bare_figure((-1.16, 1.16), (1.16, -1.16), _SQUARE - 22, _SQUARE - 22)
     plot.axis.visible = False
-    add_pixels(plot, -1, -1, 2, 2)
-    _disk_lines(plot, cell)
-    sectors = cell.grid.sectors
+    mapper = colour_mapper(colours)
+    source = source_of(**_wedges(cell), value=np.full(cell.grid.n_windows, np.nan, dtype=np.float32))
+    source.name = "pixels"
+    lined = cell.grid.n_windows <= _MOST_LINES
+    lines = {"line_color": "white", "line_alpha": 0.3, "line_width": 0.6} if lined else {"line_color": None}
+    fill = {"field": "value", "transform": mapper}
+    plot.annular_wedge(*_WEDGE, source=source, fill_color=fill, **lines)
+    if doubtful:
+        hatch = {"hatch_pattern": "right_diagonal_line", "hatch_color": "#9a9a9a", "hatch_scale": 8.0}
+        where = _where(bokeh().models.IndexFilter(name="doubtful", indices=[]))
+        style = {"fill_color": "white", "fill_alpha": 0.55, "line_color": None}
+        plot.annular_wedge(*_WEDGE, source=source, view=where, **style, **hatch)
+    for colour, width in (("black", 4.5), ("white", 2.0)):
+        style = {"fill_color": None, "line_color": colour, "line_width": width, "line_join": "miter"}
+        plot.annular_wedge(*_WEDGE, source=shared["wedges"], view=_where(shared["chosen"]), **style)
+    plot.circle(0, 0, radius=1.0, fill_color=None, line_color="#777777")
+    _number_sectors(plot, cell.grid.sectors)
+    add_colour_bar(plot, mapper)
+    return plot
+
+
+def _wedges(cell: ShownCell) -> dict[str, Any]:
+    """The windows as wedges; angles run against the clock in Bokeh, on a page where v goes down."""
+    grid = cell.grid
+    layer, sector = np.divmod(np.arange(grid.n_windows), grid.sectors)
+    radii, angles = grid.radii.astype(np.float32), grid.angles.astype(np.float32)
+    return {
+        "inner": radii[layer + 1],
+        "outer": radii[layer],
+        "start": -angles[sector + 1],
+        "end": -angles[sector],
+    }
+
+
+def _where(filter_: Any) -> Any:
+    return bokeh().models.CDSView(filter=filter_)
+
+
+def _number_sectors(plot: Any, sectors: int) -> None:
     shown = sorted({round(k * sectors / 4) % sectors for k in range(4)})
     angle = 2 * np.pi * (np.array(shown) + 0.5) / sectors
     plot.text(
@@ -124,100 +214,67 @@ def _disk(cell: ShownCell, colours: Sequence[str]) -> Any:
         text_font_size="10px",
         text_color="#555555",
     )
-    add_outline(plot)
-    add_colour_bar(plot, colour_mapper(colours))
-    return plot
 
 
-def _disk_lines(plot: Any, cell: ShownCell) -> None:
-    turn = np.linspace(0, 2 * np.pi, 181)
-    plot.line(np.cos(turn), np.sin(turn), line_color="#ffffff", line_width=2.5)
-    plot.line(np.cos(turn), np.sin(turn), line_color="#777777", line_width=1)
-    if cell.grid.n_windows > _MOST_LINES:
-        return
-    radii = cell.grid.radii[1:-1]
-    plot.multi_line(
-        [radius * np.cos(turn) for radius in radii],
-        [radius * np.sin(turn) for radius in radii],
-        line_color="white",
-        line_alpha=0.35,
-        line_width=0.6,
-    )
-    angles, inner = cell.grid.angles[:-1], 0.0
-    plot.segment(
-        inner * np.cos(angles),
-        inner * np.sin(angles),
-        np.cos(angles),
-        np.sin(angles),
-        line_color="white",
-        line_alpha=0.25,
-        line_width=0.6,
-    )
-
-
-def _time_figure(cell: ShownCell, y: tuple[float, float], height: int, bottom: bool) -> Any:
-    step, half = cell.times.per_frame, 0.5 * cell.every
-    x = (cell.frames[0] - half) * step, (cell.frames[-1] + half) * step
-    plot = bare_figure(x, y, _RIGHT_FRAME, height, min_border_left=_LEFT)
+def _time_figure(
+    cell: ShownCell, y: tuple[float, float], height: int, shared: dict[str, Any], bottom: bool
+) -> Any:
+    plot = bare_figure((0.0, 1.0), y, _RIGHT_FRAME, height, min_border_left=_LEFT)
+    plot.x_range = shared["time"]
     plot.xaxis.axis_label = cell.times.label
     plot.xaxis.visible = bottom
     return plot
 
 
-def _time_marks(plot: Any) -> None:
-    """Lines at the frame that is shown and at the one under the pointer."""
-    span = bokeh().models.Span
-    common = {"dimension": "height", "location": float("nan")}
-    plot.add_layout(span(name="now", line_color="white", line_width=3.5, line_alpha=0.9, **common))
-    plot.add_layout(span(name="now", line_color="black", line_width=1.4, **common))
-    plot.add_layout(span(name="under", line_color="black", line_width=1, line_dash="dotted", **common))
-
-
-def _map(cell: ShownCell, colours: Sequence[str], guide: str, *, bottom: bool) -> Any:
+def _map(
+    cell: ShownCell, colours: Sequence[str], guide: str, shared: dict[str, Any], *, bottom: bool = False
+) -> Any:
     """Time × sector; `guide` is the colour of the lines along the highlighted sector."""
-    sectors = cell.grid.sectors
-    plot = _time_figure(cell, (-0.5, sectors - 0.5), _MAP, bottom)
+    sectors, time = cell.grid.sectors, shared["time"]
+    plot = _time_figure(cell, (-0.5, sectors - 0.5), _MAP, shared, bottom)
     plot.yaxis.axis_label = "sector"
     plot.yaxis.ticker = bokeh().models.FixedTicker(ticks=sorted({round(k * sectors / 4) for k in range(4)}))
     mapper = colour_mapper(colours)
-    source = source_of(
-        image=[np.full((1, 1), np.nan, dtype=np.float32)],
-        x=[plot.x_range.start],
-        y=[-0.5],
-        dw=[plot.x_range.end - plot.x_range.start],
-        dh=[sectors],
-    )
-    source.name = "pixels"
-    plot.image(image="image", x="x", y="y", dw="dw", dh="dh", source=source, color_mapper=mapper)
-    for _ in range(2):  # above and below the highlighted sector
-        plot.add_layout(
-            bokeh().models.Span(
-                name="row", dimension="width", location=float("nan"), line_color=guide, line_width=0.8
-            )
-        )
-    _time_marks(plot)
-    add_outline(plot, 3.5, 1.5)
+    place = (time.start, -0.5, time.end - time.start, sectors)
+    add_image(plot, "pixels", np.full((1, 1), np.nan, dtype=np.float32), place, mapper)
+    plot.hspan("y", source=shared["row"], line_color=guide, line_width=0.8)
+    for mark in shared["marks"]:
+        plot.add_layout(mark)
+    for colour, width in (("black", 3.5), ("white", 1.5)):  # white on black stands out from every colour
+        plot.line("x", "y", source=shared["moment"], line_color=colour, line_width=width, line_join="miter")
     add_colour_bar(plot, mapper)
     return plot
 
 
-def _strip(cell: ShownCell, title: str, *, bottom: bool = False) -> Any:
+def _velocity(cell: ShownCell, shared: dict[str, Any]) -> Any:
+    plot = _map(cell, palette(DIVERGING_COLOURS), "black", shared, bottom=True)
+    limit = top_speed(cell.activity["velocity"].to_numpy())
+    plot.select_one({"name": "colours"}).update(low=-limit, high=limit)
+    plot.select_one({"name": "unit"}).text = cell.unit("velocity")
+    velocity = cell.shown["velocity"].transpose("sector", "time").to_numpy()
+    plot.select_one({"name": "pixels"}).data["image"] = [velocity.astype(np.float32)]
+    return plot
+
+
+def _strip(
+    cell: ShownCell, title: str, values: FloatArray, shared: dict[str, Any], *, bottom: bool = False
+) -> Any:
     """One number against time."""
-    plot = _time_figure(cell, (0.0, 1.0), _STRIP, bottom)
+    plot = _time_figure(cell, strip_range(values), _STRIP, shared, bottom)
     plot.title = title_of(None, title)
     plot.min_border_top = 0
     plot.yaxis.formatter = numbers()
     plot.yaxis.ticker = bokeh().models.BasicTicker(desired_num_ticks=2, mantissas=[1, 2, 5])
     plot.ygrid.visible = True
     plot.ygrid.grid_line_color = "#eeeeee"
-    missing = source_of(left=[], right=[])
-    missing.name = "missing"
-    plot.quad("left", "right", top=1e12, bottom=-1e12, source=missing, color=MISSING, line_color=None)
-    line = source_of(x=[], y=[])
+    style = {"top": 1e12, "bottom": -1e12, "color": MISSING, "line_color": None}
+    plot.quad("left", "right", source=shared["missing"], **style)
+    line = source_of(x=cell.times.at, y=np.asarray(values, dtype=np.float64))
     line.name = "line"
     plot.line("x", "y", source=line, line_color=_LAYER, line_width=1.4)
     plot.scatter("x", "y", source=line, size=3 if len(cell.frames) <= _MOST_DOTS else 1, color=_LAYER)
-    _time_marks(plot)
+    for mark in shared["marks"]:
+        plot.add_layout(mark)
     return plot
 
 

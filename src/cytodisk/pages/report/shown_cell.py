@@ -8,13 +8,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from cytodisk.arrays import FloatArray
 from cytodisk.pages.movie_cell import MovieCell
 from cytodisk.pages.report.encode import pack_floats
 from cytodisk.pages.report.shown_names import without_folders
-from cytodisk.plot.activity_maps import top_speed
 from cytodisk.plot.style import signal_limits
 from cytodisk.plot.time_axis import FrameTimes
 from cytodisk.runs.channel_names import shown_name
@@ -24,6 +24,7 @@ MOST_ARRAY_BYTES = 5_000_000
 
 _BY_WINDOW = ("mean", "sd")
 _SHOWN = (*_BY_WINDOW, "n_pixels", "area", "velocity", "velocity_error", "status", "reason")
+_STRIP_MARGIN = 0.12  # of the range, above and below
 _QUALITY = ("area", "tracking_residual", "area_distortion")
 
 
@@ -78,9 +79,9 @@ class ShownCell(MovieCell):
             "cell": self.cell,
             "frames": self.frames,
             "every": self.every,
-            "reasons": self._reasons(),
+            "reasons": self.reasons,
             "interval_s": self.scale.frame_interval_s,
-            "time": {"step": self.times.per_frame, "label": self.times.label},
+            "time_step": self.times.per_frame,
             "layers": self.grid.layers,
             "sectors": self.grid.sectors,
             "radii": self.grid.radii.tolist(),
@@ -88,12 +89,11 @@ class ShownCell(MovieCell):
             "channels": list(self._channels()),
             "velocity": pack_floats(self.shown["velocity"]),
             "velocity_error": pack_floats(self.shown["velocity_error"]),
-            "velocity_limit": top_speed(self.activity["velocity"].to_numpy()),
             "area": pack_floats(self.shown["area"]),
-            "quality": self._quality(),
         }
 
-    def _reasons(self) -> list[str]:
+    @cached_property
+    def reasons(self) -> list[str]:
         """Why a shown frame has no map; empty if it has one."""
         pairs = zip(self.shown["status"].to_numpy(), self.shown["reason"].to_numpy(), strict=True)
         return [
@@ -103,33 +103,43 @@ class ShownCell(MovieCell):
 
     def _channels(self) -> Iterator[dict[str, Any]]:
         for number, name in enumerate(self.channels):
-            values = self.shown.isel(channel=number)
+            values, whole = self.shown.isel(channel=number), self.whole_mean(number)
             yield {
                 "name": shown_name(name),
                 "unit": self.unit("mean"),
                 "mean": pack_floats(values["mean"]),
                 "sd": pack_floats(values["sd"]),
-                "whole_mean": pack_floats(_whole_mean(values)),
+                "whole_mean": pack_floats(whole),
+                "whole_range": strip_range(whole),
                 **_limits(self.activity["mean"].isel(channel=number).to_numpy()),
             }
         area = {"name": "window area", "unit": self.unit("area"), "mean": None, "sd": None}
         yield area | {"whole_mean": None} | _limits(self.activity["area"].to_numpy())
 
-    def _quality(self) -> dict[str, Any]:
+    def whole_mean(self, channel: int) -> FloatArray:
+        """Mean of a channel over the cell in each shown frame, windows counted by their pixels."""
+        values = self.shown.isel(channel=channel)
+        pixels = values["n_pixels"].where(values["mean"].notnull())
+        inside = pixels.sum(("layer", "sector"))
+        total = (values["mean"] * pixels).sum(("layer", "sector"))
+        return np.asarray((total / inside.where(inside > 0)).to_numpy())
+
+    @cached_property
+    def quality(self) -> pd.DataFrame:
+        """Area, tracking residual and area distortion in each shown frame; NaN where there is no map."""
         rows = self.study.cells[self.study.cells["cell"] == self.cell].set_index("frame")
-        rows = rows.reindex(self.frames)
-        return {name: pack_floats(rows[name]) for name in _QUALITY}
+        return rows.reindex(self.frames)[list(_QUALITY)]
+
+
+def strip_range(values: FloatArray) -> tuple[float, float]:
+    """Ends of the axis of a number against time: what it holds, with a margin."""
+    known = values[np.isfinite(values)]
+    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    margin = _STRIP_MARGIN * ((high - low) or abs(high) or 1.0)
+    return low - margin, high + margin
 
 
 def _limits(values: FloatArray) -> dict[str, Any]:
     """Ends of the colours, for all layers together and for each; `values` are (T, L, S)."""
     layers = [signal_limits(layer) for layer in np.moveaxis(values, 1, 0)]
     return {"limits": signal_limits(values), "layer_limits": layers}
-
-
-def _whole_mean(values: xr.Dataset) -> FloatArray:
-    """Mean over the cell by frame, windows counted by their pixels."""
-    pixels = values["n_pixels"].where(values["mean"].notnull())
-    inside = pixels.sum(("layer", "sector"))
-    total = (values["mean"] * pixels).sum(("layer", "sector"))
-    return np.asarray((total / inside.where(inside > 0)).to_numpy())

@@ -1,14 +1,10 @@
 "use strict";
-// Buttons, slider, keys and the pointer.
+// Buttons, slider, keys and the pointer, and the numbers in words.
 (() => {
   const page = window.cytodisk;
   const MILLISECONDS = 150; // a frame
   const SPEECH_DELAY = 300;
   const byId = (id) => document.getElementById(id);
-  const write = (id, words) => {
-    const element = byId(id);
-    if (element && element.textContent !== words) element.textContent = words;
-  };
 
   const goTo = (index) => {
     page.changedAt = performance.now();
@@ -26,20 +22,15 @@
   const goToLayer = (wanted) => {
     const { pinned, hover } = page.state;
     const layer = Math.min(Math.max(wanted, 0), page.data.layers - 1);
-    page.set({
-      layer,
-      pinned: pinned && { ...pinned, layer },
-      hover: hover && { ...hover, layer },
-    });
+    page.set({ layer, pinned: pinned && { ...pinned, layer }, hover: hover && { ...hover, layer } });
   };
 
   const stepLayer = (by) => goToLayer((page.focus()?.layer ?? page.state.layer) + by);
 
   const stepSector = (by) => {
     const { state, data } = page;
-    const at = page.focus() ?? { layer: state.layer, sector: by > 0 ? -1 : 0 };
-    const sector = (at.sector + by + data.sectors) % data.sectors;
-    page.set({ layer: at.layer, pinned: { layer: at.layer, sector } });
+    const { layer, sector } = page.focus() ?? { layer: state.layer, sector: by > 0 ? -1 : 0 };
+    page.set({ layer, pinned: { layer, sector: (sector + by + data.sectors) % data.sectors } });
   };
 
   const KEYS = {
@@ -61,6 +52,13 @@
     return event.ctrlKey || event.metaKey || event.altKey;
   };
 
+  // A control that was used with the pointer gives its keys back to the page; one that was reached
+  // with the Tab key keeps them.
+  let byPointer = false;
+  const giveBack = ({ target }) => {
+    if (byPointer) target.closest?.("button, summary, select, input")?.blur();
+  };
+
   const onKey = (event) => {
     if (event.key === "Tab") byPointer = false;
     if (isChord(event) || !(event.key in KEYS)) return;
@@ -72,53 +70,17 @@
     announce();
   };
 
-  // A control that was used with the pointer gives its keys back to the page; one that was reached
-  // with the Tab key keeps them.
-  let byPointer = false;
-  const giveBack = ({ target }) => {
-    const control = target.closest?.("button, summary, select, input");
-    if (byPointer && control) control.blur();
-  };
-
-  const announce = () => {
-    clearTimeout(speaking);
-    if (page.state.playing) {
-      write("spoken", "playing");
-      return;
-    }
-    const at = page.focus();
-    const { state, data } = page;
-    const words = [`frame ${state.frame}`, `layer ${at?.layer ?? state.layer}`];
-    if (at) {
-      const number = page.windowOf(at.layer, at.sector);
-      const value = page.byWindow(page.channelValues(), at.index)[number];
-      words.push(`sector ${at.sector}`, `${page.channel().name} ${page.withUnit(value, page.channel().unit)}`);
-      words.push(`velocity ${page.withUnit(data.velocity.values[at.index * data.sectors + at.sector], data.units.velocity)}`);
-    }
-    write("spoken", words.join(", "));
-  };
-
-  // Once things rest: not every frame and window on the way.
-  let speaking = null;
-  const announceSoon = () => {
-    clearTimeout(speaking);
-    speaking = setTimeout(announce, SPEECH_DELAY);
-  };
-
-  const within = ({ x_range: x, y_range: y }, event) =>
-    Math.min(x.start, x.end) <= event.x &&
-    event.x <= Math.max(x.start, x.end) &&
-    Math.min(y.start, y.end) <= event.y &&
-    event.y <= Math.max(y.start, y.end);
-
   // What lies under the pointer in each kind of view: a window, a moment, or both.
-  const indexAt = (x) => page.indexOfFrame(x / page.data.time.step);
-  const inMap = ({ x, y }) => ({
-    layer: page.state.layer,
-    sector: Math.min(Math.max(Math.round(y), 0), page.data.sectors - 1),
-    index: indexAt(x),
-  });
-  const inDisk = ({ x, y }) => page.windowAtDisk(x, y);
+  const indexAt = (x) => page.indexOfFrame(x / page.data.time_step);
+  const inMap = ({ x, y }) => ({ layer: page.state.layer, sector: Math.round(y), index: indexAt(x) });
+  const inStrip = ({ x }) => ({ index: indexAt(x) });
+  const inDisk = ({ x, y }) => {
+    const { radii, sectors } = page.data;
+    const layer = radii.filter((radius) => Math.hypot(x, y) <= radius).length - 1;
+    const turn = Math.atan2(y, x) / (2 * Math.PI);
+    const sector = Math.min(Math.floor((turn - Math.floor(turn)) * sectors), sectors - 1);
+    return layer < 0 ? null : { layer: Math.min(layer, page.data.layers - 1), sector };
+  };
   const inCell = ({ x, y }) => {
     const { shape, box } = page.data.picture;
     const row = Math.floor(((y + 0.5 - box.top) / box.height) * shape[0]);
@@ -130,122 +92,118 @@
   const UNDER = { cell: inCell, disk: inDisk, peaks: inDisk, activity: inMap, velocity: inMap };
   const STRIPS = ["area", "residual", "distortion", "intensity"];
 
-  const listen = (name, figure) => {
-    const under = (event) => (within(figure, event) ? UNDER[name](event) : null);
-    figure.js_event_callbacks = {
-      mousemove: [(event) => page.set({ hover: under(event) })],
-      mouseleave: [() => page.set({ hover: null })],
-      tap: [
-        (event) => {
-          const at = under(event);
-          if (at?.index !== undefined) goTo(at.index);
-          page.pin(at);
-          announce();
-        },
-      ],
+  const within = ({ start, end }, value) => Math.min(start, end) < value && value < Math.max(start, end);
+
+  const listen = (figure, find, shows) => {
+    const { x_range: x, y_range: y } = figure;
+    const under = (event) => (within(x, event.x) && within(y, event.y) ? find(event) : null);
+    const tap = (event) => {
+      const at = under(event);
+      if (at?.index !== undefined) goTo(at.index);
+      if (!shows) return;
+      page.pin(at);
+      announce();
     };
+    const hover = (at) => page.set({ hover: at });
+    const follow = { mousemove: [(event) => hover(under(event))], mouseleave: [() => hover(null)] };
+    figure.js_event_callbacks = { tap: [tap], ...(shows && follow) };
   };
 
-  const listenStrip = (figure) => {
-    figure.js_event_callbacks = {
-      tap: [(event) => within(figure, event) && goTo(indexAt(event.x))],
-    };
+  const onChange = (id, change) => byId(id)?.addEventListener("change", ({ target }) => change(target.value));
+
+  const showPlace = ({ frame, sector }) => {
+    play(false);
+    goTo(page.indexOfFrame(Number(frame)));
+    if (sector !== undefined) page.set({ layer: 0, pinned: { layer: 0, sector: Number(sector) } });
+    byId("explorer").scrollIntoView({ block: "start" });
   };
 
   page.connect = () => {
-    for (const [name, figure] of Object.entries(page.figures)) {
-      if (name in UNDER) listen(name, figure);
-      if (STRIPS.includes(name)) listenStrip(figure);
-    }
+    for (const [name, find] of Object.entries(UNDER)) if (page.figures[name]) listen(page.figures[name], find, true);
+    for (const name of STRIPS) listen(page.figures[name], inStrip, false);
     document.addEventListener("keydown", onKey);
-    document.addEventListener("pointerdown", () => {
-      byPointer = true;
-    }, true);
+    document.addEventListener("pointerdown", () => (byPointer = true), true);
     document.addEventListener("change", giveBack);
     document.addEventListener("click", (event) => {
       if (!event.target.closest("select, label")) giveBack(event); // a list has only just opened
     });
     byId("time").addEventListener("input", (event) => goTo(event.target.valueAsNumber));
     byId("play").addEventListener("click", () => play(!page.state.playing));
-    for (const name of ["channel", "pair"]) {
-      byId(name)?.addEventListener("change", (event) => page.set({ [name]: Number(event.target.value) }));
-    }
-    for (const name of ["peak", "colours"]) {
-      byId(name)?.addEventListener("change", (event) => page.set({ [name]: event.target.value }));
-    }
-    byId("layer").addEventListener("change", (event) => goToLayer(Number(event.target.value)));
-    connectFlags();
-  };
-
-  const connectFlags = () => {
+    for (const name of ["channel", "pair"]) onChange(name, (value) => page.set({ [name]: Number(value) }));
+    for (const name of ["peak", "colours"]) onChange(name, (value) => page.set({ [name]: value }));
+    onChange("layer", (value) => goToLayer(Number(value)));
     for (const button of document.querySelectorAll("button[data-frame]")) {
-      button.addEventListener("click", () => {
-        const { frame, sector } = button.dataset;
-        play(false);
-        goTo(page.indexOfFrame(Number(frame)));
-        if (sector !== undefined) page.set({ layer: 0, pinned: { layer: 0, sector: Number(sector) } });
-        byId("explorer").scrollIntoView({ block: "start" });
-      });
+      button.addEventListener("click", () => showPlace(button.dataset));
     }
     for (const button of document.querySelectorAll("button.why")) {
       button.addEventListener("click", () => {
-        const open = button.closest(".flag").classList.toggle("open");
-        button.setAttribute("aria-expanded", String(open));
+        button.setAttribute("aria-expanded", String(button.closest(".flag").classList.toggle("open")));
       });
     }
     document.documentElement.classList.add("live");
   };
 
-  const readWindow = (at) => {
+  // The numbers of the window and moment that are highlighted, in words.
+  const numbersOf = ({ layer, sector, index }) => {
     const { data } = page;
-    const number = page.windowOf(at.layer, at.sector);
-    const place = at.index * data.sectors + at.sector;
+    const number = page.windowOf(layer, sector);
     const { mean, sd, unit } = page.channel();
-    const value = mean && page.byWindow(mean, at.index)[number];
-    const spread = mean && page.byWindow(sd, at.index)[number];
-    write("read-mean", mean ? `${page.digits(value)} ± ${page.withUnit(spread, unit)}` : "–");
-    write("read-area", page.withUnit(page.byWindow(data.area, at.index)[number], data.units.area));
-    const [speed, error] = [data.velocity.values[place], data.velocity_error.values[place]];
-    write(
-      "read-velocity",
-      Number.isFinite(speed) ? `${page.digits(speed)} ± ${page.withUnit(error, data.units.velocity)}` : "–",
-    );
+    const [area, speed, error] = [
+      page.row(data.area, index)[number],
+      page.row(data.velocity, index)[sector],
+      page.row(data.velocity_error, index)[sector],
+    ];
+    const spread = (value, around, of) => `${page.digits(value)} ± ${page.withUnit(around, of)}`;
+    const words = {
+      window: `layer ${layer}, sector ${sector}`,
+      mean: mean ? spread(page.row(mean, index)[number], page.row(sd, index)[number], unit) : "–",
+      area: page.withUnit(area, data.units.area),
+      velocity: Number.isFinite(speed) ? spread(speed, error, data.units.velocity) : "–",
+    };
+    if (!data.pairs.length) return words;
+    const { windows } = page.pair();
+    const [r, lag, p, q] = ["correlation", "lag", "p", "q"].map((name) => windows[name].values[number]);
+    const seconds = page.lagSeconds(lag);
+    const lagWords = page.frameWords(lag) + (seconds && ` (${seconds})`);
+    return { ...words, correlation: page.fixed(r), lag: lagWords, p: page.chance(p), q: page.chance(q) };
   };
 
-  const readPair = (at) => {
-    const { windows } = page.pair();
-    const number = page.windowOf(at.layer, at.sector);
-    const of = (name) => windows[name]?.values[number];
-    const lag = of("lag");
-    const seconds = page.data.interval_s === null ? "" : ` (${page.lagWords(lag)})`;
-    write("read-correlation", page.fixed(of("correlation")));
-    write("read-lag", Number.isFinite(lag) ? `${page.frameWords(lag)}${seconds}` : "–");
-    write("read-p", page.chance(of("p")));
-    write("read-q", page.chance(of("q")));
+  let speaking = null;
+  const announce = () => {
+    clearTimeout(speaking);
+    const { state } = page;
+    const at = page.focus();
+    const words = [`frame ${state.frame}`, `layer ${at?.layer ?? state.layer}`];
+    if (at) {
+      const { name, unit } = page.channel();
+      const value = page.row(page.channelValues(), at.index)[page.windowOf(at.layer, at.sector)];
+      words.push(`sector ${at.sector}`, `${name} ${page.withUnit(value, unit)}`);
+      words.push(`velocity ${page.withUnit(page.row(page.data.velocity, at.index)[at.sector], page.data.units.velocity)}`);
+    }
+    page.write("spoken", state.playing ? "playing" : words.join(", "));
   };
+
+  const READ = ["window", "mean", "area", "velocity", "correlation", "lag", "p", "q"];
+  const stampOf = (number, time) => (time ? `${number} · ${time}` : `${number}`);
 
   page.drawControls = () => {
     const { state, data } = page;
     const at = page.focus();
+    const words = at ? numbersOf(at) : {};
+    for (const name of READ) page.write(`read-${name}`, words[name] ?? "–");
     const index = at?.index ?? state.index;
-    const time = page.timeOf(index);
-    write("read-frame", `${data.frames[index]}${time && ` · ${time}`}`);
-    write("read-window", at ? `layer ${at.layer}, sector ${at.sector}` : "–");
-    write("read-channel", page.channel().mean ? `${page.channel().name}, mean ± sd` : "signal");
-    if (at) readWindow(at);
-    else for (const name of ["mean", "area", "velocity"]) write(`read-${name}`, "–");
-    if (at && data.pairs.length) readPair(at);
-    else for (const name of ["correlation", "lag", "p", "q"]) write(`read-${name}`, "–");
+    page.write("read-frame", stampOf(data.frames[index], page.timeOf(index)));
+    page.write("read-channel", page.channel().mean ? `${page.channel().name}, mean ± sd` : "signal");
     byId("readout").classList.toggle("idle", !at);
     byId("read-pin").hidden = !state.pinned;
-    const slider = byId("time");
-    slider.value = state.index;
-    slider.setAttribute("aria-valuetext", `frame ${state.frame}${page.timeOf(state.index) && `, ${page.timeOf(state.index)}`}`);
+    const now = stampOf(`frame ${state.frame}`, page.timeOf(state.index));
+    page.write("now", now);
+    byId("time").value = state.index;
+    byId("time").setAttribute("aria-valuetext", now.replace(" · ", ", "));
     byId("layer").value = state.layer;
-    write("now", `frame ${state.frame}${page.timeOf(state.index) && ` · ${page.timeOf(state.index)}`}`);
-    const button = byId("play");
-    button.setAttribute("aria-pressed", String(state.playing));
-    button.textContent = state.playing ? "❚❚ Pause" : "▶ Play";
-    announceSoon();
+    byId("play").setAttribute("aria-pressed", String(state.playing));
+    page.write("play", state.playing ? "❚❚ Pause" : "▶ Play");
+    clearTimeout(speaking);
+    speaking = setTimeout(announce, SPEECH_DELAY); // once things rest: not every window on the way
   };
 })();

@@ -5,11 +5,7 @@
   try {
     page.pictures = read("pictures");
     page.data = await page.unpack(read("data"));
-    page.palettes = Object.fromEntries(
-      Object.entries(page.data.palettes).map(([name, list]) => [name, page.colours(list)]),
-    );
     await page.embed(read("figures"));
-    page.drawAlways();
     page.connect();
     page.set({ index: page.data.first });
     await page.frameAt(page.data.first);

@@ -50,11 +50,10 @@
 
   page.windowOf = (layer, sector) => layer * page.data.sectors + sector;
 
-  // Values of all windows of a frame, as a view into the array.
-  page.byWindow = (array, index) => {
-    const { layers, sectors } = page.data;
-    const size = layers * sectors;
-    return array.values.subarray(index * size, (index + 1) * size);
+  // A row of an array, as a view into it; rows of arrays by frame hold all windows.
+  page.row = ({ values, shape }, number) => {
+    const length = shape.slice(1).reduce((product, size) => product * size, 1);
+    return values.subarray(number * length, (number + 1) * length);
   };
 
   page.channel = () => page.data.channels[page.state.channel];
@@ -66,38 +65,27 @@
     return clamp(Math.round((frame - frames[0]) / every), frames.length);
   };
 
-  page.timeOf = (index) => {
-    const { frames, interval_s: interval } = page.data;
-    return interval === null ? "" : `${page.digits(frames[index] * interval)} s`;
-  };
-
-  page.digits = (value) => {
-    if (value === null || value === undefined || !Number.isFinite(value)) return "–";
-    const size = Math.abs(value);
-    if (size === 0) return "0";
-    const text = size >= 1e5 || size < 1e-3 ? value.toExponential(1) : size >= 1000 ? value.toFixed(0) : value.toPrecision(3);
-    return text.replace("-", "−");
-  };
-
-  const signed = (text) => text.replace("-", "−");
+  // Numbers in words, with a true minus; a dash for none.
   const known = (value) => typeof value === "number" && Number.isFinite(value);
+  const words = (value, text) => (known(value) ? String(text(value)).replace("-", "−") : "–");
+  page.digits = (value) =>
+    words(value, () => {
+      const size = Math.abs(value);
+      if (size === 0) return 0;
+      if (size >= 1e5 || size < 1e-3) return value.toExponential(1);
+      return size >= 1000 ? value.toFixed(0) : value.toPrecision(3);
+    });
+  page.withUnit = (value, unit) => (known(value) && unit ? `${page.digits(value)} ${unit}` : page.digits(value));
+  page.fixed = (value) => words(value, () => value.toFixed(2).replace(/^-(0\.00)$/, "$1"));
+  page.chance = (value) => words(value, () => Number(value.toPrecision(2)));
 
-  // Correlations with two decimals; p and q with two digits; lags, which are whole frames, without zeros.
-  page.fixed = (value) => (known(value) ? signed(value.toFixed(2).replace(/^-(0\.00)$/, "$1")) : "–");
-  page.chance = (value) => (known(value) ? signed(String(Number(value.toPrecision(2)))) : "–");
-  page.frameWords = (lag) => `${signed(String(lag))} ${Math.abs(lag) === 1 ? "frame" : "frames"}`;
-
-  // A lag, in frames, in the unit of the axis.
-  page.lagScale = () => page.data.interval_s ?? 1;
-  page.lagUnit = () => (page.data.interval_s === null ? "frames" : "s");
-  page.lagWords = (lag) => {
-    if (!known(lag)) return "–";
+  // Times and lags come in frames; the axes are in seconds where they are known.
+  page.seconds = (frames, digits) => {
     const { interval_s: interval } = page.data;
-    return interval === null ? page.frameWords(lag) : `${signed(String(Number((lag * interval).toPrecision(3))))} s`;
+    return interval === null || !known(frames) ? "" : `${digits(frames * interval)} s`;
   };
-
-  page.withUnit = (value, unit) => {
-    const text = page.digits(value);
-    return text === "–" || !unit ? text : `${text} ${unit}`;
-  };
+  page.timeOf = (index) => page.seconds(page.data.frames[index], page.digits);
+  page.frameWords = (lag) => (known(lag) ? `${words(lag, String)} ${Math.abs(lag) === 1 ? "frame" : "frames"}` : "–");
+  page.lagSeconds = (lag) => page.seconds(lag, (value) => words(value, () => Number(value.toPrecision(3))));
+  page.lagScale = () => page.data.interval_s ?? 1;
 })();
