@@ -102,9 +102,8 @@ def _boundary_words(study: Study, truth: SimulatedMovie) -> str:
     error = tracking_error(first, last, truth.boundary_yx[0], truth.boundary_yx[-1]) * truth.pixel_size_um
     share = error.mean() / (last.contour.length * truth.pixel_size_um)
     return (
-        f"after {len(movie) - 1} frames the tracked points are {error.mean():.2f} µm along the edge from "
-        f"where they belong on average (95 % within {np.percentile(error, 95):.2f} µm), {share:.1%} of the "
-        "way around"
+        f"after {len(movie) - 1} frames the tracked points are {error.mean():.2f} µm off along the edge on "
+        f"average, {share:.1%} of the perimeter (95 % within {np.percentile(error, 95):.2f} µm)"
     )
 
 
@@ -117,8 +116,8 @@ def _velocity_words(study: Study, truth: SimulatedMovie, found: FloatArray) -> s
     spread = float(known[both].std())
     correlation = float(np.corrcoef(found[both], known[both])[0, 1])
     return (
-        f"error {error:.3f} µm/s (rms; the velocities spread by {spread:.3f} µm/s), correlation with the "
-        f"known ones {correlation:.3f}"
+        f"error {error:.3f} µm/s (rms), correlation with the true velocity {correlation:.3f}; the true "
+        f"velocity has a standard deviation of {spread:.3f} µm/s"
     )
 
 
@@ -134,7 +133,7 @@ def _signal_words(study: Study, truth: SimulatedMovie) -> str:
             counted = float(counts.to_numpy()[time, number][mask].sum(dtype=np.float64))
             off.append(abs(found[str(channel), time] - counted) / counted)
     worst = float(np.max(off))
-    return f"sum over windows against counts in the cell: at most {worst:.0e} off, in any frame and channel"
+    return f"the sum over windows is that of the cell, at most {worst:.0e} off in any frame and channel"
 
 
 def _lag_words(study: Study, truth: SimulatedMovie) -> str:
@@ -146,11 +145,10 @@ def _lag_words(study: Study, truth: SimulatedMovie) -> str:
     interval, lag = truth.frame_interval_s, -float(coupled["lag"].median())
     right = (coupled["lag"] + truth.lag_frames).abs() <= 1
     return (
-        f"where the edge signal was made to follow edge velocity by {truth.lag_frames * interval:g} s "
-        f"({truth.lag_frames} frames), it is found to follow by {lag * interval:g} s ({lag:g} frames), "
-        f"within a frame in {right.sum()} of {len(coupled)} sectors, q < 0.05 in "
-        f"{(coupled['q'] < 0.05).sum()}; where it has nothing to do with velocity, q < 0.05 in "
-        f"{(others['q'] < 0.05).sum()} of {len(others)}"
+        f"the simulated signal follows the edge after {truth.lag_frames * interval:g} s, the measured one "
+        f"after {lag * interval:g} s, within a frame in {right.sum()} of {len(coupled)} sectors, with "
+        f"q < 0.05 in {(coupled['q'] < 0.05).sum()}. Where it does not follow the edge, q < 0.05 in "
+        f"{(others['q'] < 0.05).sum()} of {len(others)} sectors"
     )
 
 
