@@ -8,11 +8,11 @@ from matplotlib.figure import Figure
 import cytodisk as cd
 from cytodisk.errors import StationarityWarning
 from cytodisk.files import replacing
-from cytodisk.plot.cell_axes import frame_cell
-from cytodisk.plot.correlation_peaks import PeakMap
-from cytodisk.plot.peak_maps import draw_peaks_on_cell
+from cytodisk.plot.cell.cell_axes import frame_cell
+from cytodisk.plot.cell.window_polygons import draw_windows
+from cytodisk.plot.correlation.correlation_peaks import PeakMap
+from cytodisk.plot.correlation.peak_maps import draw_peaks_on_cell
 from cytodisk.plot.style import colour_bar, paper_style
-from cytodisk.plot.window_polygons import draw_windows
 
 WIDTH_PX, HEIGHT_PX, DPI = 1400, 420, 200
 SECTORS = 60

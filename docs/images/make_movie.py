@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 
 import cytodisk as cd
 from cytodisk.files import replacing
-from cytodisk.plot.activity_maps import draw_activity_map, draw_velocity_map
-from cytodisk.plot.edge_motion import draw_tracks
+from cytodisk.plot.movie.activity_maps import draw_activity_map, draw_velocity_map
+from cytodisk.plot.movie.edge_motion import draw_tracks
 from cytodisk.plot.style import paper_style
 
 WIDTH_PX, HEIGHT_PX, DPI = 1400, 420, 200

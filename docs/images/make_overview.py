@@ -6,10 +6,10 @@ from matplotlib.figure import Figure
 
 from cytodisk.disk.mapping import map_to_disk
 from cytodisk.files import replacing
-from cytodisk.plot.cell_axes import draw_cell
-from cytodisk.plot.disk_axes import draw_disk_image, draw_disk_means
+from cytodisk.plot.cell.cell_axes import draw_cell
+from cytodisk.plot.cell.disk_axes import draw_disk_image, draw_disk_means
+from cytodisk.plot.cell.window_polygons import draw_window_means, draw_windows
 from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, paper_style, signal_limits
-from cytodisk.plot.window_polygons import draw_window_means, draw_windows
 from cytodisk.scale import Scale
 from cytodisk.simulate import cell_with_signal
 from cytodisk.windows.polar_windows import polar_windows

@@ -22,9 +22,9 @@ from skimage.segmentation import watershed
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.disk.mapping import map_to_disk
 from cytodisk.files import replacing
-from cytodisk.plot.disk_axes import disk_polygons, draw_disk_image, draw_disk_means, draw_disk_windows
+from cytodisk.plot.cell.disk_axes import disk_polygons, draw_disk_image, draw_disk_means, draw_disk_windows
+from cytodisk.plot.cell.window_polygons import draw_windows
 from cytodisk.plot.style import colour_bar, paper_style, signal_limits
-from cytodisk.plot.window_polygons import draw_windows
 from cytodisk.windows.polar_windows import polar_windows
 from cytodisk.windows.sample import sample
 

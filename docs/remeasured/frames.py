@@ -8,8 +8,8 @@ import numpy as np
 import tifffile
 
 import cytodisk as cd
+from cytodisk.plot.cell.window_labels import draw_label_image
 from cytodisk.plot.style import DPI, PAPER
-from cytodisk.plot.window_labels import draw_label_image
 from cytodisk.runs.compare_windows.compare_parameters import TITLES
 from cytodisk.windows.edge_windows import EdgeGrid
 from remeasured.movies import LAYERS, MOVIES, SECTORS

@@ -12,7 +12,7 @@ from cytodisk.errors import ParameterError
 from cytodisk.pages.compared_cells import chosen_cells
 from cytodisk.pages.compared_layers import METHOD_STYLES, draw_measure_by_layer, spread_over
 from cytodisk.pages.compared_movie import consistency_by_layer, draw_displacement
-from cytodisk.plot.window_labels import draw_label_image
+from cytodisk.plot.cell.window_labels import draw_label_image
 from cytodisk.runs.compare_windows.compare_parameters import TITLES
 
 METHODS = ("newton", "edge")

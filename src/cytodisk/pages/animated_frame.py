@@ -14,10 +14,9 @@ from PIL import Image
 from cytodisk.arrays import AnyArray, FloatArray
 from cytodisk.errors import ParameterError
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.cell_axes import fitting_image
-from cytodisk.plot.disk_axes import disk_polygons, fit_disk, frame_disk
-from cytodisk.plot.field_of_view import Extent, frame_field
-from cytodisk.plot.sector_marks import (
+from cytodisk.plot.cell.cell_axes import fitting_image
+from cytodisk.plot.cell.disk_axes import disk_polygons, fit_disk, frame_disk
+from cytodisk.plot.cell.sector_marks import (
     EDGE_WIDTH,
     draw_edge,
     mark_point,
@@ -26,6 +25,7 @@ from cytodisk.plot.sector_marks import (
     sector_colours,
     sector_style,
 )
+from cytodisk.plot.field_of_view import Extent, frame_field
 from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, colour_map, paper_style, scale_bar, signal_limits
 from cytodisk.scale import Scale
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid

@@ -11,12 +11,12 @@ from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.area_distortion import DISTORTION_LABEL, draw_area_distortion, draw_area_spread
-from cytodisk.plot.cell_axes import draw_cell, draw_mesh, draw_outline, frame_cell
-from cytodisk.plot.disk_axes import draw_disk_image, draw_disk_means, draw_disk_mesh, draw_disk_windows
+from cytodisk.plot.cell.area_distortion import DISTORTION_LABEL, draw_area_distortion, draw_area_spread
+from cytodisk.plot.cell.cell_axes import draw_cell, draw_mesh, draw_outline, frame_cell
+from cytodisk.plot.cell.disk_axes import draw_disk_image, draw_disk_means, draw_disk_mesh, draw_disk_windows
+from cytodisk.plot.cell.window_polygons import draw_window_means, draw_windows
 from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, paper_style, signal_limits
 from cytodisk.plot.units import scale_for
-from cytodisk.plot.window_polygons import draw_window_means, draw_windows
 from cytodisk.scale import Scale
 from cytodisk.windows.polar_windows import CellWindows
 from cytodisk.windows.sample import sample

@@ -13,9 +13,9 @@ from matplotlib.axes import Axes
 from cytodisk.errors import ParameterError
 from cytodisk.pages.compared_layers import spread_over
 from cytodisk.pages.sheet import Sheet
+from cytodisk.plot.cell.window_labels import draw_label_image
 from cytodisk.plot.field_of_view import frame_field
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, paper_style
-from cytodisk.plot.window_labels import draw_label_image
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
 from cytodisk.store.study_folder import figure_path

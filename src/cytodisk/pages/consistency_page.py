@@ -10,8 +10,8 @@ from matplotlib.lines import Line2D
 
 from cytodisk.pages.drawn_movie import HEADING_MM, LEFT_MM, DrawnMovie
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.layer_lines import draw_by_layer
 from cytodisk.plot.layer_looks import layer_colours, layer_names, shown_layers
+from cytodisk.plot.movie.layer_lines import draw_by_layer
 from cytodisk.plot.style import DOUBLE_COLUMN_MM
 
 _MOST_CORRELATIONS = 2

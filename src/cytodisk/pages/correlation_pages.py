@@ -13,14 +13,14 @@ from cytodisk.pages.drawn_correlation import DrawnCorrelation, broken_lines
 from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.settings_words import detrending
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.correlation_curves import curve_key, draw_correlation_curves, draw_map_pair
-from cytodisk.plot.correlation_peaks import PeakMap, Shown
-from cytodisk.plot.event_curves import band_key, draw_event_average, draw_events
-from cytodisk.plot.lag_axis import sides
+from cytodisk.plot.correlation.correlation_curves import curve_key, draw_correlation_curves, draw_map_pair
+from cytodisk.plot.correlation.correlation_peaks import PeakMap, Shown
+from cytodisk.plot.correlation.event_curves import band_key, draw_event_average, draw_events
+from cytodisk.plot.correlation.lag_axis import sides
+from cytodisk.plot.correlation.pair_curves import draw_pairs
+from cytodisk.plot.correlation.pair_table import PairTable, drawn_kinds
+from cytodisk.plot.correlation.peak_maps import draw_peaks_on_cell, draw_peaks_on_disk, peak_key
 from cytodisk.plot.layer_looks import shown_layers
-from cytodisk.plot.pair_curves import draw_pairs
-from cytodisk.plot.pair_table import PairTable, drawn_kinds
-from cytodisk.plot.peak_maps import draw_peaks_on_cell, draw_peaks_on_disk, peak_key
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM, colour_bar
 from cytodisk.plot.time_axis import time_stamp
 from cytodisk.plot.time_raster import bar_beside, cut_off

@@ -6,9 +6,9 @@ import xarray as xr
 from cytodisk.arrays import FloatArray
 from cytodisk.pages.drawn_movie import HEADING_MM, DrawnMovie
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.edge_arrows import draw_velocity_arrows
-from cytodisk.plot.edge_motion import draw_area_change, draw_tracks
-from cytodisk.plot.mean_velocity import draw_mean_velocity
+from cytodisk.plot.movie.edge_arrows import draw_velocity_arrows
+from cytodisk.plot.movie.edge_motion import draw_area_change, draw_tracks
+from cytodisk.plot.movie.mean_velocity import draw_mean_velocity
 from cytodisk.plot.style import nice_length
 from cytodisk.plot.time_axis import time_stamp
 

@@ -13,10 +13,10 @@ from cytodisk.pages.consistency_page import consistency_sheet
 from cytodisk.pages.drawn_movie import HEADING_MM, LEFT_MM, DrawnMovie
 from cytodisk.pages.edge_page import edge_sheet
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.activity_maps import draw_layers, draw_velocity_map
+from cytodisk.plot.cell.frame_strip import draw_strip
 from cytodisk.plot.field_of_view import field_of_view
-from cytodisk.plot.frame_strip import draw_strip
 from cytodisk.plot.layer_looks import shown_layers
+from cytodisk.plot.movie.activity_maps import draw_layers, draw_velocity_map
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, colour_bar, paper_style, signal_limits
 from cytodisk.plot.time_axis import time_stamp
 from cytodisk.plot.time_raster import bar_beside

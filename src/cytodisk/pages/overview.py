@@ -12,7 +12,7 @@ from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.area_distortion import DISTORTION_LABEL, distortion_limit, draw_area_distortion
+from cytodisk.plot.cell.area_distortion import DISTORTION_LABEL, distortion_limit, draw_area_distortion
 from cytodisk.plot.style import STATUS_COLOURS, colour_bar, paper_style
 from cytodisk.scale import Scale
 

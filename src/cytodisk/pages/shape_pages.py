@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from cytodisk.arrays import BoolArray
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.shape_plane import draw_shape_landscape, known_scores, plane_limits, spread_cells
-from cytodisk.plot.shape_rows import cells_along, draw_shape_examples, least_median_most
+from cytodisk.plot.shape.shape_plane import draw_shape_landscape, known_scores, plane_limits, spread_cells
+from cytodisk.plot.shape.shape_rows import cells_along, draw_shape_examples, least_median_most
 from cytodisk.plot.style import colour_bar, paper_style
 from cytodisk.scale import Scale
 

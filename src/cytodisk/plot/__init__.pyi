@@ -1,52 +1,52 @@
 # ruff: noqa: I001 - groups, not the alphabet
 
 # A mask and its disk
-from .cell_axes import draw_cell as draw_cell
-from .cell_axes import draw_outline as draw_outline
-from .cell_axes import draw_mesh as draw_mesh
-from .area_distortion import draw_area_distortion as draw_area_distortion
-from .area_distortion import draw_area_spread as draw_area_spread
-from .disk_axes import draw_disk_image as draw_disk_image
-from .disk_axes import draw_disk_mesh as draw_disk_mesh
-from .cell_axes import frame_cell as frame_cell
+from .cell.cell_axes import draw_cell as draw_cell
+from .cell.cell_axes import draw_outline as draw_outline
+from .cell.cell_axes import draw_mesh as draw_mesh
+from .cell.area_distortion import draw_area_distortion as draw_area_distortion
+from .cell.area_distortion import draw_area_spread as draw_area_spread
+from .cell.disk_axes import draw_disk_image as draw_disk_image
+from .cell.disk_axes import draw_disk_mesh as draw_disk_mesh
+from .cell.cell_axes import frame_cell as frame_cell
 
 # Windows
-from .window_polygons import draw_windows as draw_windows
-from .window_polygons import draw_window_means as draw_window_means
-from .window_labels import draw_window_labels as draw_window_labels
-from .sector_marks import draw_sectors as draw_sectors
-from .frame_strip import draw_strip as draw_strip
-from .disk_axes import draw_disk_windows as draw_disk_windows
-from .disk_axes import draw_disk_means as draw_disk_means
+from .cell.window_polygons import draw_windows as draw_windows
+from .cell.window_polygons import draw_window_means as draw_window_means
+from .cell.window_labels import draw_window_labels as draw_window_labels
+from .cell.sector_marks import draw_sectors as draw_sectors
+from .cell.frame_strip import draw_strip as draw_strip
+from .cell.disk_axes import draw_disk_windows as draw_disk_windows
+from .cell.disk_axes import draw_disk_means as draw_disk_means
 
 # Movies
-from .activity_maps import draw_activity_map as draw_activity_map
-from .activity_maps import draw_velocity_map as draw_velocity_map
-from .activity_maps import draw_layers as draw_layers
-from .layer_lines import draw_by_layer as draw_by_layer
-from .mean_velocity import draw_mean_velocity as draw_mean_velocity
-from .edge_arrows import draw_velocity_arrows as draw_velocity_arrows
-from .edge_motion import draw_tracks as draw_tracks
-from .edge_motion import draw_area_change as draw_area_change
-from .kymograph_lines import draw_line_kymograph as draw_line_kymograph
-from .kymograph_lines import draw_boundary_kymograph as draw_boundary_kymograph
+from .movie.activity_maps import draw_activity_map as draw_activity_map
+from .movie.activity_maps import draw_velocity_map as draw_velocity_map
+from .movie.activity_maps import draw_layers as draw_layers
+from .movie.layer_lines import draw_by_layer as draw_by_layer
+from .movie.mean_velocity import draw_mean_velocity as draw_mean_velocity
+from .movie.edge_arrows import draw_velocity_arrows as draw_velocity_arrows
+from .movie.edge_motion import draw_tracks as draw_tracks
+from .movie.edge_motion import draw_area_change as draw_area_change
+from .movie.kymograph_lines import draw_line_kymograph as draw_line_kymograph
+from .movie.kymograph_lines import draw_boundary_kymograph as draw_boundary_kymograph
 
 # Correlations and events
-from .correlation_curves import draw_correlation_curves as draw_correlation_curves
-from .correlation_curves import curve_key as curve_key
-from .correlation_curves import draw_map_pair as draw_map_pair
-from .pair_curves import draw_pairs as draw_pairs
-from .correlation_peaks import PeakMap as PeakMap
-from .peak_maps import draw_peaks_on_cell as draw_peaks_on_cell
-from .peak_maps import draw_peaks_on_disk as draw_peaks_on_disk
-from .peak_maps import peak_key as peak_key
-from .event_curves import draw_events as draw_events
-from .event_curves import draw_event_average as draw_event_average
-from .event_curves import band_key as band_key
+from .correlation.correlation_curves import draw_correlation_curves as draw_correlation_curves
+from .correlation.correlation_curves import curve_key as curve_key
+from .correlation.correlation_curves import draw_map_pair as draw_map_pair
+from .correlation.pair_curves import draw_pairs as draw_pairs
+from .correlation.correlation_peaks import PeakMap as PeakMap
+from .correlation.peak_maps import draw_peaks_on_cell as draw_peaks_on_cell
+from .correlation.peak_maps import draw_peaks_on_disk as draw_peaks_on_disk
+from .correlation.peak_maps import peak_key as peak_key
+from .correlation.event_curves import draw_events as draw_events
+from .correlation.event_curves import draw_event_average as draw_event_average
+from .correlation.event_curves import band_key as band_key
 
 # Shapes
-from .shape_plane import draw_shape_landscape as draw_shape_landscape
-from .shape_rows import draw_shape_examples as draw_shape_examples
+from .shape.shape_plane import draw_shape_landscape as draw_shape_landscape
+from .shape.shape_rows import draw_shape_examples as draw_shape_examples
 
 # Looks
 from .style import paper_style as paper_style

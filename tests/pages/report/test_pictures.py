@@ -6,7 +6,7 @@ import cytodisk as cd
 from cytodisk.pages.report import pictures
 from cytodisk.pages.report.pictures import OUTSIDE, Box, Pictures, box_around, resampled, window_labels
 from cytodisk.pages.report.shown_cell import ShownCell
-from cytodisk.plot.activity_maps import top_speed
+from cytodisk.plot.movie.activity_maps import top_speed
 from cytodisk.store.study import Study
 
 

@@ -21,7 +21,7 @@ from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_correlations import pairs_of
 from cytodisk.pages.report.signal_file import FoundSignal, FrameSource, shown_signal
 from cytodisk.pages.report.words import MOST_PLACES, page_words
-from cytodisk.plot.correlation_peaks import LAG_COLOURS
+from cytodisk.plot.correlation.correlation_peaks import LAG_COLOURS
 from cytodisk.plot.style import DIVERGING_COLOURS
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.study_flags import qc_flags

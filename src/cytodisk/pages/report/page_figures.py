@@ -23,7 +23,7 @@ from cytodisk.pages.report.bokeh_parts import (
 )
 from cytodisk.pages.report.pictures import Box
 from cytodisk.pages.report.shown_cell import ShownCell, strip_range
-from cytodisk.plot.activity_maps import top_speed
+from cytodisk.plot.movie.activity_maps import top_speed
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS, nice_length
 from cytodisk.scale import Scale
 

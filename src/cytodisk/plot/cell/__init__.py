@@ -1,0 +1,1 @@
+"""A cell, its disk and its windows."""

@@ -1,0 +1,1 @@
+"""Correlations, pairs of windows, and events of the edge."""

@@ -1,0 +1,239 @@
+"""Draw the peak of each window's correlation, and its lag, on the disk and on the cell.
+
+Windows that chance could explain are pale and hatched, regions of others have an outline; windows
+without a correlation are grey.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path
+from shapely import Polygon, get_parts, unary_union
+
+from cytodisk.arrays import FloatArray
+from cytodisk.plot.cell.disk_axes import disk_polygons, draw_disk_means
+from cytodisk.plot.cell.sector_marks import sector_arcs
+from cytodisk.plot.cell.window_polygons import draw_window_means, window_polygons
+from cytodisk.plot.correlation.correlation_peaks import PeakMap, Shown
+from cytodisk.plot.style import LINE_COLOUR, MISSING_COLOUR
+from cytodisk.scale import Scale
+from cytodisk.windows.polar_windows import CellWindows, PolarGrid
+
+PALE_NAME, OUTLINE_NAME, SECTOR_NAME = "not significant", "significant", "sector"
+
+_PALE = 0.4  # how far windows that are not significant let the page's white through
+_HATCH, _HATCH_COLOUR = "/////", "0.5"
+_NUMBER_AWAY, _NUMBER_SIZE = 7.0, 6.0  # points: of a sector's number from the edge, and its height
+_MOST_VECTOR = 3000  # windows; more become pixels inside vector files
+
+
+def draw_peaks_on_disk(
+    ax: Axes,
+    peaks: PeakMap,
+    grid: PolarGrid,
+    shown: Shown = "correlation",
+    *,
+    limit: float | None = None,
+) -> PolyCollection:
+    """Draw the correlation at each window's peak, or its lag, on the disk.
+
+    Parameters
+    ----------
+    ax : Axes
+    peaks : PeakMap
+    grid : PolarGrid
+    shown : {"correlation", "lag"}
+    limit : float, optional
+        Colours go from -limit to limit; by default `peaks.limit(shown)`.
+
+    Returns
+    -------
+    PolyCollection
+        One polygon a window, by window number, for a colour bar. Windows that are not significant are
+        translucent, and covered by a hatch with the gid "not significant"; the outline of the others has
+        the gid "significant". Four sectors have their numbers.
+
+    Raises
+    ------
+    ParameterError
+        `shown` is unknown, or the limit is not a positive number.
+    WindowError
+        The peaks are of another grid.
+
+    See Also
+    --------
+    draw_peaks_on_cell : The same in the cell.
+    peak_key : Says what is pale, framed and grey.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> signal, velocity = cd.simulate.independent_series("ar1", 0, 60, 3, 8)
+    >>> correlations = cd.cross_correlate(signal, velocity, max_lag=5, surrogates=99)
+    >>> table = cd.peak_correlation(correlations).to_dataframe().reset_index().assign(cell=0)
+    >>> grid = cd.polar_windows(layers=3, sectors=8)
+    >>> figure, ax = plt.subplots()
+    >>> polygons = cd.plot.draw_peaks_on_disk(ax, cd.plot.PeakMap.of(table, grid), grid)
+    """
+    values, colours, limits = peaks.picture(shown, limit)
+    drawn = draw_disk_means(ax, grid, values, cmap=colours, limits=limits, number_sectors=True)
+    _fade(ax, disk_polygons(grid), peaks, drawn)
+    return drawn
+
+
+def draw_peaks_on_cell(
+    ax: Axes,
+    peaks: PeakMap,
+    windows: CellWindows,
+    shown: Shown = "correlation",
+    *,
+    limit: float | None = None,
+    scale: Scale | None = None,
+) -> PolyCollection:
+    """Draw the correlation at each window's peak, or its lag, on the cell.
+
+    Parameters
+    ----------
+    ax : Axes
+    peaks : PeakMap
+    windows : CellWindows
+        Windows of the frame to draw on.
+    shown : {"correlation", "lag"}
+    limit : float, optional
+        Colours go from -limit to limit; by default `peaks.limit(shown)`.
+    scale : Scale, optional
+        By default that of the windows; without a pixel size the scale bar is in px.
+
+    Returns
+    -------
+    PolyCollection
+        As of `draw_peaks_on_disk`; numbers of sectors, with the gid "sector", stand where they begin.
+
+    Raises
+    ------
+    ParameterError
+        `shown` is unknown, or the limit is not positive.
+    WindowError
+        The peaks are of another grid.
+
+    See Also
+    --------
+    draw_peaks_on_disk : The same on the disk.
+    peak_key : Says what is pale, framed and grey.
+
+    References
+    ----------
+    u-Unwrap, Fig. 5G.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> signal, velocity = cd.simulate.independent_series("ar1", 0, 60, 3, 8)
+    >>> correlations = cd.cross_correlate(signal, velocity, max_lag=5, surrogates=99)
+    >>> table = cd.peak_correlation(correlations).to_dataframe().reset_index().assign(cell=0)
+    >>> grid = cd.polar_windows(layers=3, sectors=8)
+    >>> windows = grid.on(cd.map_to_disk(cd.simulate.disk(12)))
+    >>> figure, ax = plt.subplots()
+    >>> polygons = cd.plot.draw_peaks_on_cell(ax, cd.plot.PeakMap.of(table, grid), windows, "lag")
+    """
+    values, colours, limits = peaks.picture(shown, limit)
+    drawn = draw_window_means(ax, windows, values, cmap=colours, limits=limits, scale=scale)
+    _fade(ax, window_polygons(windows), peaks, drawn)
+    _number_sectors(ax, windows)
+    return drawn
+
+
+def peak_key(peaks: PeakMap) -> list[Any]:
+    """Handles of a legend: what is pale, framed and grey, of windows that are there.
+
+    Parameters
+    ----------
+    peaks : PeakMap
+
+    Returns
+    -------
+    list of Artist
+
+    See Also
+    --------
+    draw_peaks_on_cell, draw_peaks_on_disk : Draw the peaks.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> signal, velocity = cd.simulate.independent_series("ar1", 0, 60, 3, 8)
+    >>> correlations = cd.cross_correlate(signal, velocity, max_lag=5, surrogates=99)
+    >>> table = cd.peak_correlation(correlations).to_dataframe().reset_index().assign(cell=0)
+    >>> peaks = cd.plot.PeakMap.of(table, cd.polar_windows(layers=3, sectors=8))
+    >>> legend = plt.figure().legend(handles=cd.plot.peak_key(peaks))
+    """
+    handles: list[Any] = []
+    pale, known = int(peaks.pale.sum()), int(np.isfinite(peaks.correlation).sum())
+    if pale:
+        frame: Any = {"facecolor": "white", "linewidth": 0.6}
+        words = f"not significant (q ≥ {peaks.alpha:g}): {pale} of {known}"
+        handles.append(Patch(label=words, hatch=_HATCH, **frame | {"edgecolor": _HATCH_COLOUR}))
+        if pale < known:
+            handles.append(Patch(label=f"q < {peaks.alpha:g}", **frame | {"edgecolor": LINE_COLOUR}))
+    if known < peaks.correlation.size:
+        handles.append(Patch(facecolor=MISSING_COLOUR, linewidth=0, label="none, or not used"))
+    return handles
+
+
+def _fade(ax: Axes, polygons_xy: Sequence[FloatArray], peaks: PeakMap, drawn: PolyCollection) -> None:
+    """Make windows that are not significant paler and hatch them, and frame regions of the others."""
+    pale = peaks.pale.ravel()
+    drawn.set_rasterized(len(polygons_xy) > _MOST_VECTOR)
+    if not pale.any() or peaks.significant is None:
+        return
+    # Arrays are allowed, whatever the stubs say: colour bars take no notice of them, but of lists.
+    drawn.set_alpha(np.where(pale, 1.0 - _PALE, 1.0))  # type: ignore[arg-type]
+    drawn.set_linewidth(np.where(pale, 0.0, 0.2).tolist())  # translucent lines would be darker than areas
+    covered = [polygons_xy[number] for number in np.flatnonzero(pale).tolist()]
+    style: Any = {"facecolor": "none", "edgecolor": _HATCH_COLOUR, "linewidth": 0.0}
+    hatched = PathPatch(_region(covered), hatch=_HATCH, gid=PALE_NAME, **style)
+    ax.add_artist(hatched)
+    others = [polygons_xy[number] for number in np.flatnonzero(peaks.significant.ravel()).tolist()]
+    if others:
+        framed: Any = {"fill": False, "edgecolor": LINE_COLOUR, "linewidth": 0.6, "zorder": 2.5}
+        ax.add_artist(PathPatch(_region(others), gid=OUTLINE_NAME, **framed))
+
+
+def _number_sectors(ax: Axes, windows: CellWindows) -> None:
+    """Numbers of the four sectors that have theirs on the disk, outside the cell at their beginning."""
+    arcs = sector_arcs(windows)
+    for quarter in range(4):
+        number = len(arcs) * quarter // 4
+        y, x = arcs[number][0]
+        down, right = arcs[number][-1] - arcs[number - 1][0]
+        # Sectors follow one another clockwise on the page: where they go down, outwards is to the right.
+        away = _NUMBER_AWAY * np.array([down, right]) / max(np.hypot(down, right), 1e-9)
+        ax.annotate(
+            str(number),
+            (x, y),
+            xytext=tuple(away.tolist()),
+            textcoords="offset points",
+            ha="center",
+            va="center_baseline",
+            fontsize=_NUMBER_SIZE,
+            annotation_clip=False,
+            gid=SECTOR_NAME,
+            arrowprops={"arrowstyle": "-", "linewidth": 0.5, "shrinkA": 3.0, "shrinkB": 0.0},
+        )
+
+
+def _region(polygons_xy: Sequence[FloatArray]) -> Path:
+    """What windows cover together, with a line around neighbours and none between them."""
+    region = unary_union([Polygon(polygon).buffer(0) for polygon in polygons_xy])
+    parts = [part for part in get_parts(region) if isinstance(part, Polygon)]
+    rings = [ring for part in parts for ring in (part.exterior, *part.interiors) if not ring.is_empty]
+    return Path.make_compound_path(*(Path(np.asarray(ring.coords), closed=True) for ring in rings))
