@@ -27,7 +27,7 @@ import cytodisk as cd
 from cytodisk.plot.style import PAPER
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 from pages import PAGES, machine_words, write_words
 from reference_masks import data_folder
 from speed import restart_with_one_thread

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from cytodisk.runs.correlate.correlate_run import channels_of, correlate_study
+from cytodisk.runs.correlate.correlate_study import channels_of, correlate_study
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.study import Study, open_study
 

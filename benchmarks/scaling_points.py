@@ -16,10 +16,10 @@ from cytodisk.motion.mapped_frame import map_frame
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
-from cytodisk.runs.map.map_run import map_study
+from cytodisk.runs.map.map_study import map_study
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 from scale import write_folder
 
 _REPEAT_BELOW_S = 0.3

@@ -10,8 +10,8 @@ from cytodisk.analysis.shape.features import GROUPS
 from cytodisk.runs.batch.input_columns import INPUT, INPUT_COLUMNS
 from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS, COMPARED_MOVIE
 from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
-from cytodisk.runs.map.map_study import MAP
-from cytodisk.runs.movie.movie_study import MOVIE
+from cytodisk.runs.map.map_kind import MAP
+from cytodisk.runs.movie.movie_kind import MOVIE
 from cytodisk.runs.shapes.shape_tables import SHAPE_STUDY
 from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import Columns

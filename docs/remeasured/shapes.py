@@ -11,7 +11,7 @@ from scipy.stats import spearmanr
 import cytodisk as cd
 from cytodisk.pages.shape_pages import cells_to_draw, write_shape_figures
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
-from cytodisk.runs.shapes.shape_run import cleaned_masks, open_shape_inputs, shape_study
+from cytodisk.runs.shapes.shape_study import cleaned_masks, open_shape_inputs, shape_study
 
 QUANTILES = (0.01, 0.3, 0.6, 0.85, 0.99)
 SEEDS = (1, 2, 3, 4, 5)

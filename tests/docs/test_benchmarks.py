@@ -15,7 +15,7 @@ from cytodisk.disk import mapping
 from cytodisk.geometry import outline
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 
 ROOT = Path(__file__).parents[2]
 

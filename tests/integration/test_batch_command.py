@@ -9,8 +9,8 @@ import pytest
 import tifffile
 from command_line import Run, assert_refused
 
-from cytodisk.runs.batch import batch_run
-from cytodisk.runs.batch.batch_run import BatchSummary
+from cytodisk.runs.batch import batch_study as module
+from cytodisk.runs.batch.batch_study import BatchSummary
 from cytodisk.runs.batch.input_row import InputRow
 
 
@@ -88,7 +88,7 @@ def test_what_failed_is_said(
     failed = [row("a", "refused", "mask is empty"), row("b", "timed out", "took longer")]
     statuses = Counter({"ok": ok, "refused": 1, "timed out": 30})
     summary = BatchSummary("out", statuses, failed, ["a remark"])
-    monkeypatch.setattr(batch_run, "batch_study", lambda *args, **options: summary)
+    monkeypatch.setattr(module, "batch_study", lambda *args, **options: summary)
     exit_code, said, errors = run("batch", study, "-o", "out")
     assert exit_code == code
     assert said.splitlines()[:4] == [

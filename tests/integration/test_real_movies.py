@@ -10,7 +10,7 @@ import tifffile
 import cytodisk as cd
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 
 GRID = MovieParameters(layers=8, sectors=36)
 STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")

@@ -15,10 +15,10 @@ from matplotlib.figure import Figure
 import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError, StudyError
 from cytodisk.pages.correlation_files import write_correlation_figures
-from cytodisk.runs.correlate.correlate_run import correlate_study
+from cytodisk.runs.correlate.correlate_study import correlate_study
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.simulate import movie
 from cytodisk.store.correlation_store import Correlation
 

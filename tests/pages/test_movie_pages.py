@@ -15,7 +15,7 @@ from cytodisk.pages.edge_page import fastest_frame
 from cytodisk.pages.movie_pages import write_movie_figures
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.store.study import Study
 
 FRAMES, GAP, SHAPE = 8, 3, (50, 150)

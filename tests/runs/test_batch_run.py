@@ -18,13 +18,13 @@ import tifffile
 
 import cytodisk as cd
 from cytodisk.errors import MaskError, OtherRunError, ParameterError, ReadError, StudyError
-from cytodisk.runs.batch import batch_run, compute_input
+from cytodisk.runs.batch import compute_input
 from cytodisk.runs.batch.batch_file import Batch, read_batch
-from cytodisk.runs.batch.batch_run import BatchSummary, batch_study
+from cytodisk.runs.batch.batch_study import BatchSummary, batch_study, pending_inputs
 from cytodisk.runs.batch.batch_task import expected_seconds, make_tasks
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.worker_process import WorkerProcess
-from cytodisk.store.study_folder import alone_in
+from cytodisk.store.study_room import alone_in
 from cytodisk.store.tables import read_table
 from cytodisk.store.targets import FolderStore
 from deadlines import wait_until
@@ -246,7 +246,7 @@ def test_resumed_it_does_what_failed_is_new_or_has_changed(files: Path, quiet: P
     changed = replace(others[0], masks=files / "labels.tif")
     summary = BatchSummary("out")
     now = replace(batch, inputs=(moved, changed, *others[2:], last, new))
-    assert batch_run.pending_inputs(store, now, summary) == [changed, last, new]
+    assert pending_inputs(store, now, summary) == [changed, last, new]
     assert summary.remarks == [
         "files changed since they were done, so they are looked at again: movie_1",
         "not in the batch file any more, so not in the tables, though their results stay: movie_2",

@@ -13,7 +13,7 @@ import tifffile
 import cytodisk as cd
 from cytodisk.errors import StudyError
 from cytodisk.runs.batch.batch_file import read_batch
-from cytodisk.runs.batch.batch_run import batch_study
+from cytodisk.runs.batch.batch_study import batch_study
 
 pytestmark = pytest.mark.slow
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"

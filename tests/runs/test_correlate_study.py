@@ -10,11 +10,11 @@ from movie_files import write_masks, write_movie
 
 import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError, StudyError
-from cytodisk.runs.correlate.correlate_run import correlate_study
+from cytodisk.runs.correlate.correlate_study import correlate_study
 from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.simulate import movie
 from cytodisk.store.correlation_store import list_correlations, write_correlation
 

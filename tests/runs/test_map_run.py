@@ -11,9 +11,10 @@ import cytodisk as cd
 from cytodisk.errors import MaskError, ParameterError, ReadError, SignalError, StudyError
 from cytodisk.runs.cells.cell_inputs import CellInputs, open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
-from cytodisk.runs.map.map_run import check_cells, map_study
+from cytodisk.runs.map.map_study import check_cells, map_study
 from cytodisk.runs.parameters_file import parameters_from
-from cytodisk.store.study_folder import alone_in, part_key
+from cytodisk.store.study_folder import part_key
+from cytodisk.store.study_room import alone_in
 
 WriteStack = Callable[[int], tuple[Path, Path]]
 SMALL = MapParameters(layers=3, sectors=8)

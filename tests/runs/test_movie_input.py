@@ -15,7 +15,7 @@ from cytodisk.images.tracks import read_frame
 from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.runs.parameters_file import parameters_from
 
 FRAMES, SHAPE = 6, (44, 52)

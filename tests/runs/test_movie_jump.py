@@ -4,7 +4,7 @@ import numpy as np
 from movie_files import SMALL, write_masks
 
 from cytodisk.runs.movie.movie_inputs import open_movie
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 
 
 def test_a_cell_that_is_nowhere_where_it_was_is_doubted(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from numpy.testing import assert_array_equal
 import cytodisk as cd
 from cytodisk.errors import MapError, ReadError
 from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 
 FRAMES, SHAPE = 7, (70, 110)
 LOST, COMES, LEAVES = 3, 2, 4

@@ -6,7 +6,7 @@ from movie_files import SMALL, Stopped, assert_same_movie, stop_after, write_mov
 import cytodisk as cd
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 
 FRAMES, GAP = 8, 6
 
@@ -71,7 +71,7 @@ def _stop(*_: object, **__: object) -> None:
 @pytest.mark.parametrize(
     "where",
     [
-        "cytodisk.runs.movie.movie_run.finish_tables",
+        "cytodisk.runs.movie.movie_study.finish_tables",
         "cytodisk.runs.movie.movie_tables.edge_columns",
         "cytodisk.runs.movie.movie_tables.displacement_between",
         "cytodisk.store.activity_store.CellActivity.close",

@@ -13,7 +13,7 @@ from cytodisk.analysis.activity import STATISTICS, sample_movie
 from cytodisk.analysis.consistency import centroid_displacement, consecutive_correlation
 from cytodisk.errors import ParameterError
 from cytodisk.runs.movie.movie_inputs import open_movie
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.simulate.moving_cells import SimulatedMovie
 from cytodisk.store.tables import (
     CELL_COLUMNS,

@@ -15,9 +15,9 @@ from cytodisk.analysis.shape import complexity
 from cytodisk.analysis.shape.features import FEATURES
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError, ReadError, StudyError
-from cytodisk.runs.shapes import shape_run
+from cytodisk.runs.shapes import shape_study as module
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
-from cytodisk.runs.shapes.shape_run import (
+from cytodisk.runs.shapes.shape_study import (
     cleaned_masks,
     open_shape_inputs,
     shape_study,
@@ -34,7 +34,7 @@ def plane(monkeypatch: pytest.MonkeyPatch) -> None:
         return np.asarray(values[:, :2] - values[:, :2].mean(axis=0))
 
     monkeypatch.setattr(complexity, "umap_plane", two_features)
-    monkeypatch.setattr(shape_run, "CELLS_AT_ONCE", 3)
+    monkeypatch.setattr(module, "CELLS_AT_ONCE", 3)
 
 
 @pytest.fixture
@@ -137,10 +137,10 @@ def test_nothing_is_measured_again_where_the_score_failed(
         raise RuntimeError("out of memory")
 
     with monkeypatch.context() as broken:
-        broken.setattr(shape_run, "shape_table", fail)
+        broken.setattr(module, "shape_table", fail)
         with pytest.raises(RuntimeError):
             run(folder, tmp_path / "out")
-    monkeypatch.setattr(shape_run, "measure_shape", fail)
+    monkeypatch.setattr(module, "measure_shape", fail)
     table = run(folder, tmp_path / "out", resume=True)
     assert (table["status"] == "ok").sum() == 12
 

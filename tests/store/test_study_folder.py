@@ -7,8 +7,9 @@ import pytest
 
 import cytodisk as cd
 from cytodisk.errors import ReadError, StudyError
+from cytodisk.store.figures_folder import figure_path
 from cytodisk.store.provenance_file import differences, record_files
-from cytodisk.store.study_folder import StudyFolder, figure_path, part_key
+from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import SOURCE_COLUMNS, WINDOW_COLUMNS
 

@@ -10,9 +10,9 @@ from numpy.testing import assert_array_equal
 import cytodisk as cd
 from cytodisk.errors import MapError, ReadError
 from cytodisk.runs.cells.cell_inputs import open_inputs
-from cytodisk.runs.map import map_run
+from cytodisk.runs.map import map_study as map_module
 from cytodisk.runs.map.map_parameters import MapParameters
-from cytodisk.runs.movie import movie_run
+from cytodisk.runs.movie import movie_study as movie_module
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 
@@ -34,14 +34,14 @@ def masks(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def movie_study(masks: Path, tmp_path_factory: pytest.TempPathFactory) -> cd.Study:
     parameters = MovieParameters(layers=2, sectors=6, pixel_size_um=0.5, frame_interval_s=3.0)
     out = tmp_path_factory.mktemp("movie") / "out"
-    movie_run.movie_study(open_movie(masks, None, parameters), out)
+    movie_module.movie_study(open_movie(masks, None, parameters), out)
     return cd.open_study(out)
 
 
 @pytest.fixture(scope="module")
 def map_study(masks: Path, tmp_path_factory: pytest.TempPathFactory) -> cd.Study:
     inputs = open_inputs(masks, None, MapParameters(layers=2, sectors=6))
-    return map_run.map_study(inputs, tmp_path_factory.mktemp("map") / "out")
+    return map_module.map_study(inputs, tmp_path_factory.mktemp("map") / "out")
 
 
 def test_a_study_knows_what_it_is_of(movie_study: cd.Study, map_study: cd.Study) -> None:
@@ -130,7 +130,7 @@ def test_a_study_of_single_masks_has_no_movie(map_study: cd.Study) -> None:
 
 @pytest.mark.parametrize("name", ["edge.parquet", "consistency.parquet", "windows.parquet", "cells.parquet"])
 def test_a_table_that_is_gone_or_damaged(masks: Path, tmp_path: Path, name: str) -> None:
-    study = movie_run.movie_study(
+    study = movie_module.movie_study(
         open_movie(masks, None, MovieParameters(layers=1, sectors=2)), tmp_path / "out"
     )
     (study.path / name).write_bytes(b"PAR1 damaged")
@@ -142,7 +142,7 @@ def test_a_table_that_is_gone_or_damaged(masks: Path, tmp_path: Path, name: str)
 
 
 def test_a_map_or_store_that_is_gone_or_damaged(masks: Path, tmp_path: Path) -> None:
-    study = movie_run.movie_study(
+    study = movie_module.movie_study(
         open_movie(masks, None, MovieParameters(layers=1, sectors=2)), tmp_path / "out"
     )
     movie = study.movie(0)

@@ -5,7 +5,7 @@ from pathlib import Path
 from dask_jobqueue import SLURMCluster
 
 from cytodisk.runs.batch.batch_file import read_batch
-from cytodisk.runs.batch.batch_run import batch_study
+from cytodisk.runs.batch.batch_study import batch_study
 
 cluster = SLURMCluster(
     queue="standard",

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from cytodisk.runs.batch.batch_file import Batch
-    from cytodisk.runs.batch.batch_run import BatchSummary
+    from cytodisk.runs.batch.batch_study import BatchSummary
 
 BATCH_HELP = """Run many movies and images in one go, and merge their tables.
 
@@ -60,7 +60,7 @@ def batch_command(
     if dry_run:
         _list_inputs(batch)
         return
-    from cytodisk.runs.batch.batch_run import batch_study
+    from cytodisk.runs.batch.batch_study import batch_study
 
     with progress_bar(quiet, "inputs") as progress:
         summary = batch_study(

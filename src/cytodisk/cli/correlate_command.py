@@ -62,7 +62,7 @@ def correlate_command(
     formats: Annotated[str, typer.Option("--format", help="Of figures: png, pdf, svg, or several.")] = "png",
     quiet: Quiet = False,
 ) -> None:
-    from cytodisk.runs.correlate.correlate_run import channels_of, correlate_study
+    from cytodisk.runs.correlate.correlate_study import channels_of, correlate_study
     from cytodisk.store.study import open_study
 
     wanted = _formats(formats)

@@ -50,12 +50,12 @@ def demo_command(
 
     Nothing is downloaded. OUT/input holds the simulated files, OUT/study the results, with report.html.
     """
-    from cytodisk.runs.correlate.correlate_run import correlate_study
+    from cytodisk.runs.correlate.correlate_study import correlate_study
     from cytodisk.runs.demo_input import compare_with_truth, write_demo_input
     from cytodisk.runs.executor import Executor
     from cytodisk.runs.movie.movie_inputs import open_movie
     from cytodisk.runs.movie.movie_parameters import MovieParameters
-    from cytodisk.runs.movie.movie_run import movie_study
+    from cytodisk.runs.movie.movie_study import movie_study
 
     console = console_for(quiet)
     with Executor(1, apart=True) as beside:

@@ -55,7 +55,7 @@ def map_command(
 ) -> None:
     from cytodisk.pages.cell_pages import write_cell_figures
     from cytodisk.runs.cells.cell_inputs import open_inputs
-    from cytodisk.runs.map.map_run import map_study
+    from cytodisk.runs.map.map_study import map_study
 
     console = console_for(quiet)
     inputs = open_inputs(masks, signal, given.of(MapParameters))
@@ -83,7 +83,7 @@ def check_command(masks: MaskFiles, given: Given, signal: SignalFiles = None) ->
     """
     from cytodisk.cli.map_totals import say_checked
     from cytodisk.runs.cells.cell_inputs import open_inputs
-    from cytodisk.runs.map.map_run import check_cells
+    from cytodisk.runs.map.map_study import check_cells
 
     inputs = open_inputs(masks, signal, given.of(FileParameters))
     console = console_for(False)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from cytodisk.runs.cells.cell_inputs import CellInputs
-    from cytodisk.runs.map.map_run import CheckedCell
+    from cytodisk.runs.map.map_study import CheckedCell
     from cytodisk.store.study import Study
 
 _MOST_LINES = 20
@@ -25,7 +25,7 @@ _EMPTY = {"no cell": "empty", "no image": "without an image", "unreadable": "dam
 def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool) -> None:
     """Draw the overview and say what came out; exit code 2 if that is nothing, or an input is damaged."""
     from cytodisk.pages.overview import write_overview
-    from cytodisk.store.study_folder import figure_path
+    from cytodisk.store.figures_folder import figure_path
 
     rows = study.cells
     if len(rows) > 1:

@@ -48,7 +48,7 @@ def movie_command(
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.runs.movie.movie_inputs import open_movie
-    from cytodisk.runs.movie.movie_run import movie_study
+    from cytodisk.runs.movie.movie_study import movie_study
 
     console = console_for(quiet)
     inputs = open_movie(masks, signal, given.of(MovieParameters))

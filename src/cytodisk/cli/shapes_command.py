@@ -48,7 +48,7 @@ def shapes_command(
     given: Given,
     quiet: Quiet = False,
 ) -> None:
-    from cytodisk.runs.shapes.shape_run import open_shape_inputs, shape_study
+    from cytodisk.runs.shapes.shape_study import open_shape_inputs, shape_study
 
     settings = given.of(ShapeParameters)
     console = console_for(quiet)
@@ -66,8 +66,8 @@ def shapes_command(
 
 def _draw(inputs: "CellInputs", table: "pd.DataFrame", out: Path) -> None:
     from cytodisk.pages.shape_pages import cells_to_draw, write_shape_figures
-    from cytodisk.runs.shapes.shape_run import cleaned_masks
-    from cytodisk.store.study_folder import figures_folder
+    from cytodisk.runs.shapes.shape_study import cleaned_masks
+    from cytodisk.store.figures_folder import figures_folder
 
     if table["complexity"].notna().any():
         masks = cleaned_masks(inputs, cells_to_draw(table))

@@ -18,7 +18,7 @@ from cytodisk.plot.field_of_view import frame_field
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, paper_style
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
-from cytodisk.store.study_folder import figure_path
+from cytodisk.store.figures_folder import figure_path
 
 _MOST_CELLS = 5
 _LEFT, _TOP, _GAP, _WORDS = 6.0, 13.0, 2.0, 4.0  # mm

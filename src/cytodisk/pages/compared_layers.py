@@ -17,7 +17,7 @@ from cytodisk.plot.style import paper_style
 from cytodisk.plot.time_axis import TICK_STEPS
 from cytodisk.runs.compare_windows.compare_parameters import TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
-from cytodisk.store.study_folder import figure_path
+from cytodisk.store.figures_folder import figure_path
 
 # Colours that the colour-blind can tell apart (Okabe and Ito), and a mark beside. Where lines lie on each
 # other the thinner ones, and those with gaps, are in front, so that each is seen.

@@ -30,7 +30,7 @@ from cytodisk.runs.channel_names import file_names, shown_name
 from cytodisk.runs.compare_windows.compare_parameters import TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
 from cytodisk.scale import Scale
-from cytodisk.store.study_folder import figure_path
+from cytodisk.store.figures_folder import figure_path
 
 _LEFT, _TOP, _GAP, _BAR = 14.0, 11.0, 3.0, 16.0  # mm
 _KEY = "By layer: medians over frames, bands are their quartiles. Through time: mean over layers, no bands."

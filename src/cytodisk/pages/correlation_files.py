@@ -13,8 +13,9 @@ from cytodisk.pages.drawn_movie import DrawnMovie
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.style import paper_style
 from cytodisk.store.correlation_store import Correlation
+from cytodisk.store.figures_folder import figures_folder
 from cytodisk.store.study import Study
-from cytodisk.store.study_folder import figures_folder, part_key
+from cytodisk.store.study_folder import part_key
 
 FORMATS = ("png", "pdf", "svg")
 

@@ -12,7 +12,8 @@ from cytodisk.arrays import FloatArray
 from cytodisk.pages.movie_cell import MovieCell
 from cytodisk.pages.sheet import Sheet
 from cytodisk.runs.channel_names import shown_name
-from cytodisk.store.study_folder import figure_path, part_key
+from cytodisk.store.figures_folder import figure_path
+from cytodisk.store.study_folder import part_key
 from cytodisk.windows.polar_windows import CellWindows
 
 HEADING_MM = 12.0

@@ -12,8 +12,9 @@ from typing import Any, TypeVar
 from cytodisk.parameters import Parameters
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.run_options import RunOptions
-from cytodisk.store.study_folder import StudyFolder, alone_in
+from cytodisk.store.study_folder import StudyFolder
 from cytodisk.store.study_kind import PARAMETERS, StudyKind
+from cytodisk.store.study_room import alone_in
 
 Result = TypeVar("Result")
 

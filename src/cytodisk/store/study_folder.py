@@ -6,7 +6,6 @@ import json
 import os
 import shutil
 from collections.abc import Collection, Iterator, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -14,91 +13,24 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from cytodisk.errors import StudyError, WriteError
-from cytodisk.files import lock, replacing
+from cytodisk.files import replacing
 from cytodisk.store.merging import merge_tables, repeating, write_rows
 from cytodisk.store.provenance_file import (
     PROVENANCE,
     other_version,
     read_provenance,
-    record_files,
     write_json,
 )
 from cytodisk.store.study_kind import CELLS, FIGURES, MAPS, PARTS, StudyKind
-from cytodisk.store.study_room import LOCK, is_left_over, make_room, remove_left_overs
+from cytodisk.store.study_room import is_left_over, make_room, remove_left_overs
 from cytodisk.store.tables import Columns, schema
 
 _UNITS = ("length_unit", "velocity_unit")  # of the provenance
 
 
-def figures_folder(study: Path, *names: str) -> Path:
-    """The folder for the figures of a study, which is made; their names are noted as the study's.
-
-    Parameters
-    ----------
-    study : Path
-        Folder of a study, or of a correlation in one.
-    *names : str
-        Of the figures that are to be written.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    WriteError
-        It cannot be made.
-    """
-    folder = study / FIGURES
-    try:
-        folder.mkdir(exist_ok=True)
-        record_files(study, [f"{FIGURES}/{name}" for name in names])
-    except OSError as error:
-        raise WriteError(f"cannot write {folder}: {error.strerror or error}") from error
-    return folder
-
-
-def figure_path(study: Path, name: str) -> Path:
-    """Where a figure of a study is to stand; see `figures_folder`."""
-    return figures_folder(study, name) / name
-
-
 def part_key(cell: int, time: int | None = None) -> str:
     """Name of a part of a study: a cell, or a frame of a cell."""
     return f"{cell:05d}" if time is None else f"{cell:05d}_t{time:05d}"
-
-
-@contextmanager
-def alone_in(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Keep other runs out of a folder while the block runs.
-
-    Parameters
-    ----------
-    path : path-like
-        Is made if need be.
-
-    Raises
-    ------
-    StudyError
-        Another run is writing there, or the folder cannot be written.
-    """
-    folder = Path(path)
-    try:
-        if folder.exists() and not folder.is_dir():
-            raise StudyError(f"output {folder} is a file: pass a folder")
-        folder.mkdir(parents=True, exist_ok=True)
-        held = lock(folder / LOCK)
-    except StudyError:
-        raise
-    except BlockingIOError as error:
-        raise StudyError(f"output folder {folder}: another run is writing there, wait for its end") from error
-    except OSError as error:
-        raise WriteError(f"output folder {folder} cannot be written: {error.strerror}") from error
-    try:
-        yield
-    finally:
-        (folder / LOCK).unlink(missing_ok=True)
-        held.close()
 
 
 class StudyFolder:

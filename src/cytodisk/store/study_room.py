@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
-from collections.abc import Iterable
-from contextlib import suppress
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from cytodisk.errors import OtherRunError, StudyError
+from cytodisk.errors import OtherRunError, StudyError, WriteError
+from cytodisk.files import lock
 from cytodisk.store.provenance_file import (
     PROVENANCE,
     differences,
@@ -19,6 +21,39 @@ from cytodisk.store.provenance_file import (
 )
 
 LOCK = ".lock"
+
+
+@contextmanager
+def alone_in(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Keep other runs out of a folder while the block runs.
+
+    Parameters
+    ----------
+    path : path-like
+        Is made if need be.
+
+    Raises
+    ------
+    StudyError
+        Another run is writing there, or the folder cannot be written.
+    """
+    folder = Path(path)
+    try:
+        if folder.exists() and not folder.is_dir():
+            raise StudyError(f"output {folder} is a file: pass a folder")
+        folder.mkdir(parents=True, exist_ok=True)
+        held = lock(folder / LOCK)
+    except StudyError:
+        raise
+    except BlockingIOError as error:
+        raise StudyError(f"output folder {folder}: another run is writing there, wait for its end") from error
+    except OSError as error:
+        raise WriteError(f"output folder {folder} cannot be written: {error.strerror}") from error
+    try:
+        yield
+    finally:
+        (folder / LOCK).unlink(missing_ok=True)
+        held.close()
 
 
 def make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite: bool) -> None:

@@ -13,7 +13,7 @@ from typing import BinaryIO, Protocol
 
 from cytodisk.errors import CytodiskError, StudyError, WriteError
 from cytodisk.files import replacing
-from cytodisk.store.study_folder import alone_in
+from cytodisk.store.study_room import alone_in
 
 _WORK = ".work"
 

@@ -15,7 +15,7 @@ import cytodisk as cd
 from cytodisk.pages.report.page import write_report
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.simulate.moving_cells import SimulatedMovie
 from cytodisk.store.correlation_store import write_correlation
 from cytodisk.store.study import Study

@@ -13,10 +13,10 @@ from typing import Any
 from cytodisk.errors import CytodiskError, OtherRunError, WriteError
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.cells.cell_inputs import open_inputs
-from cytodisk.runs.map.map_run import map_study
+from cytodisk.runs.map.map_study import map_study
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.store.study import Study
 
 CANNOT_WRITE = "cannot write"

@@ -16,8 +16,8 @@ from cytodisk.runs.batch.batch_file import Batch
 from cytodisk.runs.batch.batch_input import BatchInput, Value
 from cytodisk.runs.batch.input_columns import INPUT, INPUT_COLUMNS, UNITS
 from cytodisk.runs.batch.input_row import InputRow, read_row, row_key, study_key
-from cytodisk.runs.map.map_study import MAP
-from cytodisk.runs.movie.movie_study import MOVIE
+from cytodisk.runs.map.map_kind import MAP
+from cytodisk.runs.movie.movie_kind import MOVIE
 from cytodisk.store.merging import merge_tables, write_rows
 from cytodisk.store.tables import Column, Columns, schema
 from cytodisk.store.targets import Store

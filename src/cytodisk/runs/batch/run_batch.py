@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cytodisk.runs.batch.batch_file import read_batch
-from cytodisk.runs.batch.batch_run import BatchSummary, Tell, batch_study
+from cytodisk.runs.batch.batch_study import BatchSummary, Tell, batch_study
 from cytodisk.runs.run_options import BatchOptions, Progress
 from cytodisk.taking import takes
 

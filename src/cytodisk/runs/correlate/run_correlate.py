@@ -6,7 +6,7 @@ import os
 from typing import Any
 
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
-from cytodisk.runs.correlate.correlate_run import correlate_study
+from cytodisk.runs.correlate.correlate_study import correlate_study
 from cytodisk.runs.run_options import Progress
 from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.study import Study, open_study

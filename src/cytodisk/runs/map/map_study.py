@@ -1,13 +1,138 @@
-"""What `cytodisk map` writes."""
+"""A run over all cells of a mask file, or of a folder of them: `cytodisk map` and the same from Python."""
 
-from cytodisk.store.study_kind import StudyKind
-from cytodisk.store.tables import SOURCE_COLUMNS, WINDOW_COLUMNS
+from __future__ import annotations
 
-MAP = StudyKind(
-    "map",
-    "cytodisk map",
-    "read it with open_study",
-    SOURCE_COLUMNS,
-    {"windows": WINDOW_COLUMNS},
-    ("maps/cell_*.npz", "maps/cell_*.geojson", "figures/cell_*.png"),
-)
+import os
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+from cytodisk.errors import CytodiskError
+from cytodisk.geometry.mask import MaskReport, clean_mask
+from cytodisk.images.mask_files import SourceCell, read_source_cells
+from cytodisk.images.mask_names import without_name
+from cytodisk.runs.cells.cell_inputs import CellInputs
+from cytodisk.runs.cells.cell_parts import CellRun
+from cytodisk.runs.frame_rows import status_of
+from cytodisk.runs.map.map_kind import MAP
+from cytodisk.runs.map.map_parameters import MapParameters
+from cytodisk.runs.map.map_work import DrawCell, MapWork
+from cytodisk.runs.provenance import describe_run
+from cytodisk.runs.run_options import MapOptions, Progress, silent
+from cytodisk.runs.study_run import StudyRun
+from cytodisk.store.study import Study, open_study
+from cytodisk.store.study_folder import StudyFolder
+from cytodisk.taking import takes
+
+_CELLS_AT_ONCE = 8  # of one image, which go to a worker and into a file together
+
+
+@takes(MapOptions)
+def map_study(
+    inputs: CellInputs,
+    out: str | os.PathLike[str],
+    *,
+    draw: DrawCell | None = None,
+    draw_at_most: int | None = None,
+    progress: Progress | None = None,
+    **settings: Any,
+) -> Study:
+    """Map and sample every cell, and write a study.
+
+    Parameters
+    ----------
+    inputs : CellInputs
+        As `open_inputs` returns it.
+    out : path-like
+        Folder of the study.
+    draw : callable, optional
+        Draws a cell's figures: (folder, name, windows, signal) → paths.
+    draw_at_most : int, optional
+        How many cells, from the first, to draw.
+    progress : callable, optional
+        Called with (cells done, cells in all) at the start and after every few cells.
+    **settings
+        See `MapOptions`.
+
+    Returns
+    -------
+    Study
+        Complete; a cell that could not be mapped has a row with the reason.
+
+    Raises
+    ------
+    ParameterError
+        `workers` is below 1, or both `resume` and `overwrite` are set.
+    StudyError
+        The folder cannot be used.
+    """
+    options = MapOptions.of(**settings)
+    provenance = describe_run(inputs.paths, inputs.parameters, inputs.understood, inputs.scale)
+
+    def work(folder: StudyFolder) -> tuple[list[str], list[str]]:
+        parameters = inputs.parameters.part(MapParameters)
+        maker = MapWork(parameters, inputs.scale, folder.for_workers(), draw, options.maps, options.geojson)
+        at_most = 0 if draw is None else sys.maxsize if draw_at_most is None else draw_at_most
+        keys = CellRun(inputs, maker, _CELLS_AT_ONCE, at_most).fill(
+            folder, options.workers, progress or silent
+        )
+        rows = folder.read_rows(keys)
+        warnings = [words for row in rows if (words := _warning(row, inputs.is_folder))]
+        return keys, [*inputs.remarks, *warnings]
+
+    return StudyRun(MAP, provenance, inputs.parameters, options).into(out, work, open_study)
+
+
+def _warning(row: dict[str, Any], of_many: bool) -> str:
+    words = row["reason"] or row.get("qc_flags")
+    if not words:
+        return ""
+    if not of_many:
+        return f"cell {row['cell']}: {words}"
+    place = f"cell {row['cell']} of {row['source']}" if row["label"] else row["source"]
+    return f"{place}: {without_name(words, row['source'])}"
+
+
+@dataclass(frozen=True)
+class CheckedCell:
+    """What a look at a mask says.
+
+    Attributes
+    ----------
+    found : SourceCell
+    status : str
+        "ok", or as `status_of` calls the fault.
+    reason : str
+        Why it cannot be used; empty if it can.
+    report : MaskReport or None
+        What cleaning would change, and what speaks against this being the mask of one cell.
+    """
+
+    found: SourceCell
+    status: str
+    reason: str
+    report: MaskReport | None
+
+
+def check_cells(inputs: CellInputs) -> Iterator[CheckedCell]:
+    """Look at every mask without mapping it.
+
+    Parameters
+    ----------
+    inputs : CellInputs
+
+    Yields
+    ------
+    CheckedCell
+    """
+    for found in read_source_cells(inputs.sources):
+        fault = found.fault or inputs.signals[found.source].fault
+        if fault is None:
+            try:
+                _, report = clean_mask(found.mask)
+                yield CheckedCell(replace(found, mask=None), "ok", "", report)
+                continue
+            except CytodiskError as error:
+                fault = error
+        yield CheckedCell(replace(found, mask=None), status_of(fault), str(fault), None)

@@ -22,7 +22,8 @@ from cytodisk.runs.cells.cell_parts import CellTask, Rows
 from cytodisk.runs.frame_rows import FramePlace, measure_windows, status_of
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.scale import Scale
-from cytodisk.store.study_folder import StudyFolder, figures_folder, part_key
+from cytodisk.store.figures_folder import figures_folder
+from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.windows.grid_parameters import GridParameters
 from cytodisk.windows.polar_windows import CellWindows, polar_windows
 

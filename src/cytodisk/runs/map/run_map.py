@@ -7,7 +7,7 @@ from typing import Any
 
 from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
-from cytodisk.runs.map.map_run import map_study
+from cytodisk.runs.map.map_study import map_study
 from cytodisk.runs.run_options import MapOptions, Progress
 from cytodisk.store.study import Study
 from cytodisk.taking import takes

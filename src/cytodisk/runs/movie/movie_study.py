@@ -1,20 +1,169 @@
-"""What `cytodisk movie` writes."""
+"""A run over a mask movie: `cytodisk movie` and the same from Python."""
 
-from cytodisk.store.activity_store import ACTIVITY
-from cytodisk.store.study_kind import StudyKind
-from cytodisk.store.tables import (
-    CELL_COLUMNS,
-    CONSISTENCY_COLUMNS,
-    EDGE_COLUMNS,
-    TRACK_COLUMNS,
-    WINDOW_COLUMNS,
-)
+from __future__ import annotations
 
-MOVIE = StudyKind(
-    "movie",
-    "cytodisk movie",
-    "read it with open_study",
-    (*CELL_COLUMNS, *TRACK_COLUMNS),
-    {"windows": WINDOW_COLUMNS, "edge": EDGE_COLUMNS, "consistency": CONSISTENCY_COLUMNS},
-    (ACTIVITY, "maps/cell_*.npz"),
-)
+import os
+import time as clock
+from collections.abc import Iterator
+from concurrent.futures import Future
+from typing import Any
+
+from cytodisk.errors import MaskError, ReadError
+from cytodisk.images.signal_files import load_image
+from cytodisk.images.tracks import CellTrack, read_frame
+from cytodisk.motion.frame_file import load_frame
+from cytodisk.motion.map_movie import FrameResult, map_one
+from cytodisk.motion.mapped_frame import MappedFrame
+from cytodisk.motion.tracking_parameters import MovieSettings
+from cytodisk.runs.executor import Executor, finished
+from cytodisk.runs.frame_rows import FramePlace
+from cytodisk.runs.movie.measured_frame import FrameRows, FrameTask, measure_frame, unmapped_rows
+from cytodisk.runs.movie.movie_inputs import MovieInputs
+from cytodisk.runs.movie.movie_kind import MOVIE
+from cytodisk.runs.movie.movie_tables import finish_tables
+from cytodisk.runs.provenance import describe_run
+from cytodisk.runs.run_options import Progress, RunOptions, silent
+from cytodisk.runs.study_run import StudyRun
+from cytodisk.scale import Scale
+from cytodisk.store.study import Study, open_study
+from cytodisk.store.study_folder import StudyFolder, part_key
+from cytodisk.taking import takes
+
+
+@takes(RunOptions)
+def movie_study(
+    inputs: MovieInputs,
+    out: str | os.PathLike[str],
+    *,
+    progress: Progress | None = None,
+    **settings: Any,
+) -> Study:
+    """Map, sample and measure every frame of every cell, and write a study.
+
+    Parameters
+    ----------
+    inputs : MovieInputs
+        As `open_movie` returns it.
+    out : path-like
+        Folder of the study.
+    progress : callable, optional
+        Called with (frames done, frames in all), counted over all cells.
+    **settings
+        See `RunOptions`.
+
+    Returns
+    -------
+    Study
+        Complete; a frame that could not be mapped has a row with the reason.
+
+    Raises
+    ------
+    ParameterError
+        `workers` is below 1, or both `resume` and `overwrite` are set.
+    StudyError
+        The folder cannot be used.
+    """
+    options = RunOptions.of(**settings)
+    provenance = describe_run(inputs.paths, inputs.parameters, inputs.understood, inputs.scale)
+    provenance |= {"layers": inputs.grid.layers, "image_shape": list(inputs.masks.image_shape)}
+
+    def work(folder: StudyFolder) -> tuple[list[str], list[str]]:
+        with Executor(options.workers) as executor:
+            _Run(inputs, folder, executor, progress or silent).all_frames()
+        channels = inputs.signal.channels if inputs.signal else ()
+        finish_tables(folder, inputs.tracks, inputs.grid, inputs.scale, channels)
+        return inputs.keys, [words for row in folder.rows() if (words := _warning(row))]
+
+    return StudyRun(MOVIE, provenance, inputs.parameters, options).into(out, work, open_study)
+
+
+class _Run:
+    """Frame after frame, all cells of a frame side by side.
+
+    A frame is mapped when the one before is; measuring it runs beside the mapping of the next one.
+    """
+
+    def __init__(self, inputs: MovieInputs, folder: StudyFolder, executor: Executor, report: Progress):
+        self._inputs = inputs
+        self._folder = folder
+        self._executor = executor
+        self._settings = inputs.parameters.part(MovieSettings)
+        self._last: dict[int, MappedFrame] = {}
+        self._report = report
+
+    def all_frames(self) -> None:
+        """Do what is not done yet."""
+        done, total = sum(self._folder.has(key) for key in self._inputs.keys), self._inputs.n_frames
+        self._report(done, total)
+        for rows in self._executor.results(self._frames()):
+            if rows.edge_before is not None:
+                self._folder.add_table(part_key(rows.cell, rows.frame - 1), "edge", rows.edge_before)
+            self._folder.add(part_key(rows.cell, rows.frame), rows.row, rows.tables)
+            done += 1
+            self._report(done, total)
+
+    def _frames(self) -> Iterator[Future[FrameRows]]:
+        """Frames on their way to be measured."""
+        for time in range(self._inputs.masks.n_frames):
+            present = [track for track in self._inputs.tracks if time in track.times]
+            pending = [track for track in present if not self._folder.has(part_key(track.cell, time))]
+            if pending:
+                yield from self._one_time(time, pending)
+            for track in present:
+                if time == track.last:
+                    self._last.pop(track.cell, None)
+
+    def _one_time(self, time: int, tracks: list[CellTrack]) -> Iterator[Future[FrameRows]]:
+        frame = read_frame(self._inputs.masks, time)
+        signal = load_image(self._inputs.signal, time)
+        mapping = []
+        for track in tracks:
+            if track.cell not in self._last:
+                self._resume_from(track, time)
+            mask = signal if isinstance(signal, ReadError) else track.mask_in(frame, time)
+            last = self._last.get(track.cell)
+            task = time, mask, last, self._settings, self._inputs.scale
+            mapping.append((track, self._executor.submit(_map_timed, *task)))
+        for track, future in mapping:
+            yield self._measured(track, time, *future.result(), signal)
+
+    def _measured(
+        self, track: CellTrack, time: int, result: FrameResult, seconds: float, signal: Any
+    ) -> Future[FrameRows]:
+        place = FramePlace(track.cell, time, track.label, self._inputs.scale.seconds(time))
+        if result.mapped is None:
+            return finished(unmapped_rows(place, result.fault or MaskError("no map"), seconds))
+        last = self._last.get(track.cell)
+        task = FrameTask(
+            place,
+            result.mapped,
+            last if last is not None and last.time == time - 1 else None,
+            signal,
+            self._inputs.grid,
+            self._inputs.parameters,
+            self._folder.map_path(part_key(track.cell, time)),
+            seconds,
+        )
+        self._last[track.cell] = result.mapped
+        return self._executor.submit(measure_frame, task)
+
+    def _resume_from(self, track: CellTrack, time: int) -> None:
+        """Read the last frame that has a map back, if an earlier run left any."""
+        done = [t for t in range(track.first, time) if self._folder.has(part_key(track.cell, t))]
+        paths = {t: self._folder.map_path(part_key(track.cell, t)) for t in done}
+        mapped = {t: path for t, path in paths.items() if path.exists()}
+        if mapped:
+            self._last[track.cell] = load_frame(mapped[max(mapped)], mapped)
+
+
+def _map_timed(
+    time: int, mask: Any, last: MappedFrame | None, settings: MovieSettings, scale: Scale
+) -> tuple[FrameResult, float]:
+    started = clock.perf_counter()
+    return map_one(time, mask, last, settings, scale), clock.perf_counter() - started
+
+
+def _warning(row: dict[str, Any]) -> str:
+    remarks = [row.get(name) for name in ("reason", "qc_flags", "restarted")]
+    words = "; ".join(str(remark) for remark in remarks if remark)
+    return f"cell {row['cell']}, frame {row['frame']}: {words}" if words else ""

@@ -7,7 +7,7 @@ from typing import Any
 
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_run import movie_study
+from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.runs.run_options import Progress, RunOptions
 from cytodisk.store.study import Study
 from cytodisk.taking import takes

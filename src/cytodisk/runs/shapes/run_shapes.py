@@ -9,7 +9,7 @@ import pandas as pd
 
 from cytodisk.runs.run_options import Progress, RunOptions
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
-from cytodisk.runs.shapes.shape_run import open_shape_inputs, shape_study
+from cytodisk.runs.shapes.shape_study import open_shape_inputs, shape_study
 from cytodisk.taking import takes
 
 

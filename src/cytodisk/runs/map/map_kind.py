@@ -1,0 +1,13 @@
+"""What `cytodisk map` writes."""
+
+from cytodisk.store.study_kind import StudyKind
+from cytodisk.store.tables import SOURCE_COLUMNS, WINDOW_COLUMNS
+
+MAP = StudyKind(
+    "map",
+    "cytodisk map",
+    "read it with open_study",
+    SOURCE_COLUMNS,
+    {"windows": WINDOW_COLUMNS},
+    ("maps/cell_*.npz", "maps/cell_*.geojson", "figures/cell_*.png"),
+)

@@ -1,0 +1,20 @@
+"""What `cytodisk movie` writes."""
+
+from cytodisk.store.activity_store import ACTIVITY
+from cytodisk.store.study_kind import StudyKind
+from cytodisk.store.tables import (
+    CELL_COLUMNS,
+    CONSISTENCY_COLUMNS,
+    EDGE_COLUMNS,
+    TRACK_COLUMNS,
+    WINDOW_COLUMNS,
+)
+
+MOVIE = StudyKind(
+    "movie",
+    "cytodisk movie",
+    "read it with open_study",
+    (*CELL_COLUMNS, *TRACK_COLUMNS),
+    {"windows": WINDOW_COLUMNS, "edge": EDGE_COLUMNS, "consistency": CONSISTENCY_COLUMNS},
+    (ACTIVITY, "maps/cell_*.npz"),
+)
