@@ -19,7 +19,7 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -167,15 +167,21 @@ def report(files: Sequence[str], findings: Sequence[Finding]) -> bool:
     for kind, number in Counter(_kind(file) for file in files if file not in touched).items():
         same = "on both sides, not compared" if Path(kind).suffix in _UNREAD else "equal bit for bit"
         print(f"{kind}: {same}" + (f" ({number} files)" if number > 1 else ""))
-    for found, number in Counter(replace(found, file=_kind(found.file)) for found in findings).items():
-        why = explanation(found)
-        mark = "wanted" if why else "DIFFERENT" if found.counts else "told"
-        words = [mark, found.file, *([found.name] if found.name else []), found.text]
-        print(": ".join(words) + (f" ({number} files)" if number > 1 else "") + (f"; {why}" if why else ""))
+    for words, number in Counter(_line(found) for found in findings).items():
+        print(words + (f" ({number} files)" if number > 1 else ""))
     print("left out: " + ", ".join(f"{name} ({why})" for name, why in LEFT_OUT.items()))
     bad = [found for found in findings if found.counts and not explanation(found)]
     print(f"{len(files)} files on both sides; {len(bad)} differences that are not explained")
     return not bad
+
+
+def _line(found: Finding) -> str:
+    """A difference in words, the same for files of one kind; for all files where it is wanted."""
+    why = explanation(found)
+    if why:
+        return f"wanted: {found.name}: {found.text}; {why}"
+    mark = "DIFFERENT" if found.counts else "told"
+    return ": ".join([mark, _kind(found.file), *([found.name] if found.name else []), found.text])
 
 
 def _kind(file: str) -> str:
