@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import matplotlib as mpl
+import numpy as np
+from matplotlib.colors import to_hex
+
 from cytodisk.errors import MissingPartError
 
 MISSING = "#d9d9d9"
@@ -117,6 +121,11 @@ def title_of(name: str | None, text: str, align: str = "left") -> Any:
         standoff=1,
         align=align,
     )
+
+
+def palette(name: str) -> list[str]:
+    """256 colours of a colour map as "#rrggbb"."""
+    return [to_hex(colour) for colour in mpl.colormaps[name](np.linspace(0, 1, 256))]
 
 
 def colour_mapper(colours: Sequence[str]) -> Any:

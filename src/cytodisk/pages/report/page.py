@@ -13,9 +13,9 @@ import numpy as np
 
 from cytodisk.errors import ParameterError, StudyError
 from cytodisk.files import replacing
-from cytodisk.pages.report.bokeh_parts import bokeh
+from cytodisk.pages.report.bokeh_parts import bokeh, palette
 from cytodisk.pages.report.encode import json_for_script
-from cytodisk.pages.report.page_figures import figures_of, library_script, palette
+from cytodisk.pages.report.page_figures import figures_of, library_script
 from cytodisk.pages.report.pictures import MOST_BYTES, OUTSIDE, Pictures, box_around, encode_frames, size_of
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_correlations import pairs_of
