@@ -44,7 +44,7 @@ def signals() -> xr.DataArray:
 def test_the_depth_of_a_round_cell_is_its_radius_less(
     movie: DiskMovie, signals: xr.DataArray, depth_um: float
 ) -> None:
-    kymograph = boundary_kymograph(movie, signals, depth_um, points=90)
+    kymograph = boundary_kymograph(movie, depth_um, signals, points=90)
     assert kymograph.dims == ("time", "point", "channel")
     there = np.arange(FRAMES) != EMPTY
     assert np.isfinite(kymograph.to_numpy()).all(axis=(1, 2)).tolist() == there.tolist()
@@ -56,13 +56,13 @@ def test_the_depth_of_a_round_cell_is_its_radius_less(
 
 
 def test_a_frame_without_a_map_is_nan(movie: DiskMovie, signals: xr.DataArray) -> None:
-    kymograph = boundary_kymograph(movie, signals, 1.0, points=12)
+    kymograph = boundary_kymograph(movie, 1.0, signals, points=12)
     assert np.isnan(kymograph[EMPTY]).all()
     assert np.isnan(kymograph["y"][EMPTY]).all()
 
 
 def test_the_pattern_stays_where_it_is_on_the_cell(movie: DiskMovie, signals: xr.DataArray) -> None:
-    kymograph = boundary_kymograph(movie, signals.sel(channel="angle"), 2.0, points=120)
+    kymograph = boundary_kymograph(movie, 2.0, signals.sel(channel="angle"), points=120)
     assert kymograph.dims == ("time", "point")
     expected = 100.0 + 50.0 * np.cos(3.0 * kymograph["angle"])
     for time in (0, 1, 3, 4):
@@ -105,7 +105,7 @@ def test_values_on_a_gradient_are_those_of_the_depth() -> None:
     masks = np.zeros((2, 40, 80), dtype=bool)
     masks[:, 10:30, 10:70] = True
     rows = np.broadcast_to(10.0 * np.arange(40.0)[:, None], (2, 40, 80))
-    kymograph = boundary_kymograph(map_movie(masks), rows, 3.0, points=100)
+    kymograph = boundary_kymograph(map_movie(masks), 3.0, rows, points=100)
     assert kymograph.attrs["depth_units"] == "px"
     np.testing.assert_allclose(kymograph, 10.0 * kymograph["y"])
     top = kymograph[0].where(np.abs(kymograph["x"][0] - 39.5) < 15).min()
@@ -142,18 +142,18 @@ def test_rays_end_at_their_first_place_of_the_depth_or_have_none() -> None:
 def test_the_border_of_the_image_is_no_edge() -> None:
     y, x = np.mgrid[:50, :60]
     masks = np.array([np.hypot(y - 4, x - 30) <= 20] * 2)
-    kymograph = boundary_kymograph(map_movie(masks), np.ones((2, 50, 60)), 2.0, points=80)
+    kymograph = boundary_kymograph(map_movie(masks), 2.0, np.ones((2, 50, 60)), points=80)
     up = np.isnan(kymograph[0]).to_numpy()
     assert 10 < up.sum() < 50
     assert not up[:30].any()  # angles towards +y, away from the border
 
 
 def test_channels_and_times(movie: DiskMovie, signals: xr.DataArray) -> None:
-    array = boundary_kymograph(movie, signals.to_numpy(), 1.0, points=8)
+    array = boundary_kymograph(movie, 1.0, signals.to_numpy(), points=8)
     assert array["channel"].to_numpy().tolist() == ["0", "1"]
     assert "time_s" not in array.coords
     timed = DiskMovie(movie.records, movie.image_shape, Scale(0.5, 4.0), movie.load)
-    known = boundary_kymograph(timed, signals, 1.0, points=8)
+    known = boundary_kymograph(timed, 1.0, signals, points=8)
     np.testing.assert_array_equal(known["time_s"], 4.0 * np.arange(FRAMES))
     np.testing.assert_array_equal(known, array)
 
@@ -172,21 +172,21 @@ def test_numbers_out_of_range_are_refused(
     movie: DiskMovie, signals: xr.DataArray, depth: Any, options: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(ParameterError, match=message):
-        boundary_kymograph(movie, signals, depth, **options)
+        boundary_kymograph(movie, depth, signals, **options)
 
 
 @pytest.mark.parametrize("other", [np.zeros((2, 9, 9)), "study", None])
 def test_what_is_no_movie_is_refused(signals: xr.DataArray, other: Any) -> None:
     words = rf"movie must be a DiskMovie, got {type(other).__name__}: pass study\.movie\(cell\)"
     with pytest.raises(ParameterError, match=words):
-        boundary_kymograph(other, signals, 1.0)
+        boundary_kymograph(other, 1.0, signals)
 
 
 def test_signals_that_do_not_fit_are_refused(movie: DiskMovie, signals: xr.DataArray) -> None:
     with pytest.raises(SignalError, match=r"'movie\.tif'.*read_image"):
-        boundary_kymograph(movie, "movie.tif", 1.0)
+        boundary_kymograph(movie, 1.0, "movie.tif")
     with pytest.raises(SignalError, match="4 frames, the movie 5"):
-        boundary_kymograph(movie, signals[:4], 1.0)
+        boundary_kymograph(movie, 1.0, signals[:4])
     frames = [*signals.to_numpy()[:4], signals.to_numpy()[4, :1]]
     with pytest.raises(SignalError, match="frame 4 of the signals"):
-        boundary_kymograph(movie, frames, 1.0)
+        boundary_kymograph(movie, 1.0, frames)

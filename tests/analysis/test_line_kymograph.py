@@ -16,7 +16,7 @@ def gradient(frames: int = 4, height: int = 20, width: int = 30) -> np.ndarray:
 
 
 def test_a_slanted_line_over_a_gradient() -> None:
-    kymograph = line_kymograph(gradient(), [(2.0, 3.0), (8.0, 11.0)])  # 10 px long: 0.6 down, 0.8 right
+    kymograph = line_kymograph([(2.0, 3.0), (8.0, 11.0)], gradient())  # 10 px long: 0.6 down, 0.8 right
     assert kymograph.dims == ("time", "distance")
     distance = np.arange(11.0)
     np.testing.assert_allclose(kymograph["distance"], distance)
@@ -30,7 +30,7 @@ def test_a_slanted_line_over_a_gradient() -> None:
 
 def test_a_line_with_corners_goes_on_around_them() -> None:
     line = [(5, 2), (5, 2), (5, 6), (12, 6)]  # the repeated point counts for nothing
-    kymograph = line_kymograph(gradient(1), line, spacing_px=1.5)
+    kymograph = line_kymograph(line, gradient(1), spacing_px=1.5)
     expected = [(5, 2), (5, 3.5), (5, 5), (5.5, 6), (7, 6), (8.5, 6), (10, 6), (11.5, 6)]
     np.testing.assert_allclose(np.column_stack([kymograph["y"], kymograph["x"]]), expected)
     np.testing.assert_allclose(kymograph[0], [10 * y + x for y, x in expected])
@@ -40,7 +40,7 @@ def test_a_line_with_corners_goes_on_around_them() -> None:
 @pytest.mark.parametrize("spacing", [0.1, 0.3, 1 / 3, 0.7])
 def test_the_end_of_a_whole_number_of_steps_is_a_place(spacing: float) -> None:
     line = [(3.0, 1.0), (3.0, 1.0 + 30 * spacing)]
-    kymograph = line_kymograph(gradient(1), line, spacing_px=spacing)
+    kymograph = line_kymograph(line, gradient(1), spacing_px=spacing)
     assert kymograph.sizes["distance"] == 31
 
 
@@ -50,8 +50,8 @@ def test_the_width_is_averaged_across_the_line() -> None:
     image[0, 8, :] = 30.0
     along = [(7, 2), (7, 12)]
     for width, value in ((1, 9.0), (2, 0.5 * (4.5 + 19.5)), (3, 13.0), (5, 39.0 / 5)):
-        np.testing.assert_allclose(line_kymograph(image, along, width_px=width), value)
-    across = line_kymograph(image, [(2, 7), (12, 7)], width_px=3)
+        np.testing.assert_allclose(line_kymograph(along, image, width_px=width), value)
+    across = line_kymograph([(2, 7), (12, 7)], image, width_px=3)
     np.testing.assert_allclose(across[0, 5:7], [9.0, 30.0])
 
 
@@ -59,7 +59,7 @@ def test_a_bright_line_that_moves() -> None:
     images = np.zeros((6, 12, 40), dtype=np.uint16)
     for time in range(6):
         images[time, :, 5 + 4 * time] = 1000
-    kymograph = line_kymograph(images, [(6, 2), (6, 38)], width_px=3)
+    kymograph = line_kymograph([(6, 2), (6, 38)], images, width_px=3)
     assert kymograph.argmax("distance").to_numpy().tolist() == [3, 7, 11, 15, 19, 23]
     assert (kymograph.sum("distance") == 1000.0).all()
 
@@ -68,22 +68,22 @@ def test_scale_and_channels_come_from_the_image() -> None:
     values = np.stack([gradient(), -gradient()], axis=1)
     attrs = {"pixel_size_um": 0.2, "frame_interval_s": 3.0}
     signals = xr.DataArray(values, {"channel": ["a", "b"]}, ("time", "channel", "y", "x"), attrs=attrs)
-    kymograph = line_kymograph(signals, [(4, 2), (4, 12)], spacing_px=2.0)
+    kymograph = line_kymograph([(4, 2), (4, 12)], signals, spacing_px=2.0)
     assert kymograph.dims == ("time", "distance", "channel")
     np.testing.assert_allclose(kymograph["distance"], 0.4 * np.arange(6))
     assert kymograph["distance"].attrs["units"] == "µm"
     np.testing.assert_allclose(kymograph["time_s"], 3.0 * np.arange(4))
     np.testing.assert_array_equal(kymograph.sel(channel="a"), -kymograph.sel(channel="b"))
-    one = line_kymograph(signals.sel(channel="a"), [(4, 2), (4, 12)], spacing_px=2.0)
+    one = line_kymograph([(4, 2), (4, 12)], signals.sel(channel="a"), spacing_px=2.0)
     assert one.dims == ("time", "distance")
-    turned = line_kymograph(signals.transpose("x", "time", "channel", "y"), [(4, 2), (4, 12)], spacing_px=2.0)
+    turned = line_kymograph([(4, 2), (4, 12)], signals.transpose("x", "time", "channel", "y"), spacing_px=2.0)
     assert turned.identical(kymograph)
 
 
 def test_frames_may_come_one_by_one() -> None:
     frames = list(gradient())
     np.testing.assert_array_equal(
-        line_kymograph(frames, [(0, 0), (19, 29)]), line_kymograph(gradient(), [(0, 0), (19, 29)])
+        line_kymograph([(0, 0), (19, 29)], frames), line_kymograph([(0, 0), (19, 29)], gradient())
     )
 
 
@@ -91,11 +91,11 @@ def test_nan_is_only_where_it_has_a_share() -> None:
     image = gradient(1)
     image[0, 5, 10] = np.nan
     image[0, 3, 10] = np.inf
-    known = np.isfinite(line_kymograph(image, [(4, 5), (4, 15)])[0])  # row 4 touches neither 5 nor 3
+    known = np.isfinite(line_kymograph([(4, 5), (4, 15)], image)[0])  # row 4 touches neither 5 nor 3
     assert known.all()
-    known = np.isfinite(line_kymograph(image, [(5, 5), (5, 15)])[0])
+    known = np.isfinite(line_kymograph([(5, 5), (5, 15)], image)[0])
     assert known.to_numpy().tolist() == [True] * 5 + [False] + [True] * 5
-    known = np.isfinite(line_kymograph(image, [(4.5, 5.5), (4.5, 14.5)])[0])
+    known = np.isfinite(line_kymograph([(4.5, 5.5), (4.5, 14.5)], image)[0])
     assert known.to_numpy().tolist() == [True] * 4 + [False] * 2 + [True] * 4
 
 
@@ -133,7 +133,7 @@ LINE = [(2, 2), (8, 8)]
 )
 def test_lines_that_make_no_sense_are_refused(line: Any, options: dict[str, Any], message: str) -> None:
     with pytest.raises(ParameterError, match=message):
-        line_kymograph(gradient(), line, **options)
+        line_kymograph(line, gradient(), **options)
 
 
 @pytest.mark.parametrize(
@@ -153,10 +153,10 @@ def test_lines_that_make_no_sense_are_refused(line: Any, options: dict[str, Any]
 )
 def test_signals_that_are_no_movie_are_refused(signals: Any, message: str) -> None:
     with pytest.raises(SignalError, match=message):
-        line_kymograph(signals, LINE)
+        line_kymograph(LINE, signals)
 
 
 def test_a_scale_that_is_none_is_refused() -> None:
     signals = xr.DataArray(gradient(), dims=("time", "y", "x"), attrs={"pixel_size_um": -1})
     with pytest.raises(ParameterError, match=r"pixel_size_um.*-1"):
-        line_kymograph(signals, LINE)
+        line_kymograph(LINE, signals)

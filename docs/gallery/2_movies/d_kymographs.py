@@ -22,7 +22,7 @@ signal = truth.signal.sel(channel="edge")
 # A line, three pixels wide, from the middle of the image to its right side.
 middle = signal.sizes["y"] // 2, signal.sizes["x"] // 2
 end = (middle[0], signal.sizes["x"] - 2)
-line = cd.line_kymograph(signal, [middle, end], width_px=3)
+line = cd.line_kymograph([middle, end], signal, width_px=3)
 
 figure, axes = plt.subplots(
     1, 2, figsize=(6.2, 2.4), width_ratios=(1, 1.6), layout="constrained"
@@ -36,7 +36,7 @@ plt.show()
 # %%
 # Along the tracked edge, half a micrometre deep. Protrusions come and go, and each
 # stays at its height in the picture.
-rim = cd.boundary_kymograph(movie, signal, depth=0.5)
+rim = cd.boundary_kymograph(movie, 0.5, signal)
 figure, ax = plt.subplots(figsize=(5.6, 2.8), layout="constrained")
 cd.plot.draw_boundary_kymograph(ax, rim)
 plt.show()

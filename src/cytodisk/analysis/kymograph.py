@@ -21,15 +21,15 @@ from cytodisk.scale import Scale
 _ROUNDING = 1e-9  # of the spacing: a line's end at a whole number of steps is a place
 
 
-def line_kymograph(signals: Any, line_yx: Any, *, width_px: int = 1, spacing_px: float = 1.0) -> xr.DataArray:
+def line_kymograph(line_yx: Any, signals: Any, *, width_px: int = 1, spacing_px: float = 1.0) -> xr.DataArray:
     """Intensity along a line in every frame, linear between pixels and averaged over the line's width.
 
     Parameters
     ----------
-    signals : array_like of shape (T, H, W) or (T, C, H, W), DataArray or sequence
-        A DataArray has the dims time, (channel,) y, x; a sequence may read its frames when asked for them.
     line_yx : array_like of shape (M, 2)
         Corners of the line, (row, column) in pixels, pixel centres at integers.
+    signals : array_like of shape (T, H, W) or (T, C, H, W), DataArray or sequence
+        A DataArray has the dims time, (channel,) y, x; a sequence may read its frames when asked for them.
     width_px : int
         Lines that are averaged, a pixel apart, side by side and centred on `line_yx`.
     spacing_px : float
@@ -62,7 +62,7 @@ def line_kymograph(signals: Any, line_yx: Any, *, width_px: int = 1, spacing_px:
     >>> import numpy as np
     >>> import cytodisk as cd
     >>> image = np.broadcast_to(np.arange(8.0), (2, 6, 8))  # two frames, brighter to the right
-    >>> kymograph = cd.line_kymograph(image, [(3, 1), (3, 5)])
+    >>> kymograph = cd.line_kymograph([(3, 1), (3, 5)], image)
     >>> kymograph.to_numpy()
     array([[1., 2., 3., 4., 5.],
            [1., 2., 3., 4., 5.]])
@@ -87,7 +87,7 @@ def line_kymograph(signals: Any, line_yx: Any, *, width_px: int = 1, spacing_px:
     return _kymograph(np.array(rows), "distance", channels, coords, scale, attrs).rename("line_kymograph")
 
 
-def boundary_kymograph(movie: DiskMovie, signals: Any, depth: float, *, points: int = 360) -> xr.DataArray:
+def boundary_kymograph(movie: DiskMovie, depth: float, signals: Any, *, points: int = 360) -> xr.DataArray:
     """Intensity along the tracked edge of a cell, at a depth below it, in every frame.
 
     From each point of the edge the ray of the map is followed, on which the angle of the disk stays the
@@ -98,11 +98,11 @@ def boundary_kymograph(movie: DiskMovie, signals: Any, depth: float, *, points: 
     ----------
     movie : DiskMovie
         Of `map_movie`, or a cell's of a study: `study.movie(cell)`.
-    signals : array_like of shape (T, H, W) or (T, C, H, W), DataArray or sequence
-        As for `sample_movie`.
     depth : float
         In µm when the movie knows its scale, else in pixels; 0 is the edge itself, half of whose light
         comes from outside the cell.
+    signals : array_like of shape (T, H, W) or (T, C, H, W), DataArray or sequence
+        As for `sample_movie`.
     points : int
         Angles of the disk, evenly spaced.
 
@@ -130,7 +130,7 @@ def boundary_kymograph(movie: DiskMovie, signals: Any, depth: float, *, points: 
     >>> import cytodisk as cd
     >>> truth = cd.simulate.movie("growing", frames=3, radius_px=15.0)
     >>> movie = cd.map_movie(truth.masks)
-    >>> kymograph = cd.boundary_kymograph(movie, truth.signal, 2.0, points=90)
+    >>> kymograph = cd.boundary_kymograph(movie, 2.0, truth.signal, points=90)
     >>> kymograph.dims, kymograph.shape
     (('time', 'point', 'channel'), (3, 90, 2))
     """

@@ -14,7 +14,7 @@ def kymograph() -> xr.DataArray:
     values = np.arange(4 * 2 * 12 * 20.0).reshape(4, 2, 12, 20)
     attrs = {"pixel_size_um": 0.5, "frame_interval_s": 3.0}
     signals = xr.DataArray(values, {"channel": ["a", "b"]}, ("time", "channel", "y", "x"), attrs=attrs)
-    return line_kymograph(signals, [(3, 2), (3, 12)])
+    return line_kymograph([(3, 2), (3, 12)], signals)
 
 
 def test_time_goes_right_and_the_line_up(ax: Axes, kymograph: xr.DataArray) -> None:

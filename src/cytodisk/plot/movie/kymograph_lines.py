@@ -55,7 +55,7 @@ def draw_line_kymograph(
     >>> import matplotlib.pyplot as plt
     >>> import numpy as np
     >>> import cytodisk as cd
-    >>> kymograph = cd.line_kymograph(np.random.default_rng(0).random((10, 6, 8)), [(3, 1), (3, 6)])
+    >>> kymograph = cd.line_kymograph([(3, 1), (3, 6)], np.random.default_rng(0).random((10, 6, 8)))
     >>> figure, ax = plt.subplots()
     >>> image = cd.plot.draw_line_kymograph(ax, kymograph)
     >>> image.get_array().shape
@@ -112,7 +112,7 @@ def draw_boundary_kymograph(
     >>> import matplotlib.pyplot as plt
     >>> import cytodisk as cd
     >>> truth = cd.simulate.movie("growing", frames=4, radius_px=12.0)
-    >>> kymograph = cd.boundary_kymograph(cd.map_movie(truth.masks), truth.signal, 2.0, points=90)
+    >>> kymograph = cd.boundary_kymograph(cd.map_movie(truth.masks), 2.0, truth.signal, points=90)
     >>> figure, ax = plt.subplots()
     >>> image = cd.plot.draw_boundary_kymograph(ax, kymograph.isel(channel=0))
     >>> image.get_array().shape
