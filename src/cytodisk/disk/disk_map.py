@@ -2,33 +2,27 @@
 
 from __future__ import annotations
 
-import json
 import os
-import zipfile
-import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
-from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
-from scipy import ndimage
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.certificate import Certificate, certify
 from cytodisk.disk.circle import polygon_radius
+from cytodisk.disk.disk_image import image_on_disk
 from cytodisk.disk.distortion import Distortion, distortion_of
+from cytodisk.disk.map_file import placed_mask, reading_map, write_map_file
 from cytodisk.disk.mapping_parameters import Method
-from cytodisk.errors import ParameterError, ReadError, SignalError
-from cytodisk.files import replacing
+from cytodisk.errors import ParameterError
 from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline
 from cytodisk.geometry.mask import MaskReport
 from cytodisk.scale import UNKNOWN, Scale
 
 Start: TypeAlias = Literal["cotangent", "uniform", "previous"]
-
-_FORMAT = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,23 +192,7 @@ class DiskMap:
         ParameterError
             `size` is below 1.
         """
-        array = np.asarray(signal)
-        if array.dtype.kind not in "biuf":
-            raise SignalError(f"signal must be numeric, got dtype {array.dtype}")
-        values = array.astype(np.float64, copy=False)
-        if values.shape != self.mask.shape:
-            raise SignalError(
-                f"signal has shape {values.shape}, the mask {self.mask.shape}: pass one channel of one frame"
-            )
-        if not isinstance(size, int | np.integer) or size < 1:
-            raise ParameterError(f"size must be a whole number of at least 1, got {size!r}")
-        axis = (np.arange(size) + 0.5) / size * 2.0 - 1.0
-        v, u = np.meshgrid(axis, axis, indexing="ij")
-        points = self.to_cell(np.column_stack([u.ravel(), v.ravel()]))
-        inside = np.isfinite(points[:, 0])
-        out = np.full(size * size, np.nan)
-        out[inside] = ndimage.map_coordinates(values, points[inside].T, order=1, mode="nearest")
-        return out.reshape(size, size)
+        return image_on_disk(signal, self.mask.shape, self.to_cell, size)
 
     def placed(self, corner: tuple[int, int], image_shape: tuple[int, int]) -> DiskMap:
         """The same map in the image that its mask was cut out of.
@@ -231,7 +209,7 @@ class DiskMap:
             Its mask has the shape of the image, its points are pixels of the image.
         """
         vertices_yx = self.vertices_yx + np.array(corner, dtype=np.float64)
-        return replace(self, mask=_placed(self.mask, corner, image_shape), vertices_yx=vertices_yx)
+        return replace(self, mask=placed_mask(self.mask, corner, image_shape), vertices_yx=vertices_yx)
 
     def save(self, path: str | os.PathLike[str], beside: Mapping[str, FloatArray] | None = None) -> None:
         """Write the map to a compressed `.npz` file that `load_map` reads back.
@@ -250,20 +228,10 @@ class DiskMap:
         ParameterError
             The name does not end in `.npz`.
         """
-        if Path(path).suffix != ".npz":
-            raise ParameterError(f"path must end in .npz, got {path}")
         facts = {name: getattr(self, name) for name in _FACTS}
-        crop, corner = _cropped(self.mask)  # a cell is small in its image
-        place = {"corner": corner, "image_shape": list(self.mask.shape)}
-        header = {"format": _FORMAT, "report": asdict(self.report), **asdict(self.scale), **place, **facts}
-        with replacing(path) as temporary:
-            np.savez_compressed(
-                temporary,
-                header=np.array(json.dumps(header)),
-                mask=crop,
-                **dict[str, Any](beside or {}),
-                **{name: getattr(self, name) for name in _ARRAYS},
-            )
+        header = {"report": asdict(self.report), **asdict(self.scale), **facts}
+        arrays = {name: getattr(self, name) for name in _ARRAYS}
+        write_map_file(path, header, self.mask, {**(beside or {}), **arrays})
 
     @cached_property
     def _in_cell(self) -> TriangleLocator:
@@ -315,43 +283,14 @@ def load_map(path: str | os.PathLike[str]) -> DiskMap:
     >>> disk.certificate.valid
     True
     """
-    try:
-        if not zipfile.is_zipfile(path) and Path(path).is_file():
-            raise ReadError(f"{path} is not a map that DiskMap.save wrote, or it is damaged")
-        with Path(path).open("rb") as stream, np.load(stream) as file:
-            header = json.loads(str(file["header"]))
-            if header["format"] != _FORMAT:
-                raise ReadError(
-                    f"{path} is a map of format {header['format']}, this version reads format {_FORMAT}: "
-                    "make it again, with cytodisk map or map_to_disk"
-                )
-            return DiskMap(
-                mask=_placed(file["mask"], header["corner"], header["image_shape"]),
-                report=MaskReport(**header["report"]),
-                **{name: file[name] for name in _ARRAYS},
-                **{name: header[name] for name in _FACTS},
-                scale=Scale(header.get("pixel_size_um"), header.get("frame_interval_s")),
-            )
-    except FileNotFoundError as error:
-        raise ReadError(f"{path} does not exist: pass a file that DiskMap.save wrote") from error
-    except (zipfile.BadZipFile, zlib.error, KeyError, TypeError, ValueError, OSError, EOFError) as error:
-        if isinstance(error, ReadError):
-            raise
-        raise ReadError(f"{path} is not a map that DiskMap.save wrote: {error}") from error
-
-
-def _cropped(mask: BoolArray) -> tuple[BoolArray, list[int]]:
-    rows = np.flatnonzero(mask.any(axis=1))
-    strip = mask[rows[0] : rows[-1] + 1]
-    columns = np.flatnonzero(strip.any(axis=0))
-    return strip[:, columns[0] : columns[-1] + 1], [int(rows[0]), int(columns[0])]
-
-
-def _placed(mask: BoolArray, corner: Sequence[int], image_shape: Sequence[int]) -> BoolArray:
-    whole = np.zeros(tuple(image_shape), dtype=bool)
-    (y, x), (height, width) = corner, mask.shape
-    whole[y : y + height, x : x + width] = mask
-    return whole
+    with reading_map(path) as (header, mask, file):
+        return DiskMap(
+            mask=mask,
+            report=MaskReport(**header["report"]),
+            **{name: file[name] for name in _ARRAYS},
+            **{name: header[name] for name in _FACTS},
+            scale=Scale(header.get("pixel_size_um"), header.get("frame_interval_s")),
+        )
 
 
 def _as_points(points: Any, name: str) -> tuple[FloatArray, tuple[int, ...]]:

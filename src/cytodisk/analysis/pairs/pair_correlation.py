@@ -10,7 +10,8 @@ import xarray as xr
 from scipy.spatial.distance import cdist
 
 from cytodisk.analysis.correlation.correlation_parameters import DetrendParameters, PairParameters
-from cytodisk.analysis.correlation.cross_correlation import ALPHA, drifting_shares, lags_within
+from cytodisk.analysis.correlation.cross_correlation import drifting_shares, lags_within
+from cytodisk.analysis.correlation.lag_tables import ALPHA
 from cytodisk.analysis.correlation.pairing import named_series
 from cytodisk.analysis.correlation.prepared_series import default_frames, prepare_series
 from cytodisk.analysis.correlation.surrogates import surrogates as make_surrogates
