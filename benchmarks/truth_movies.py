@@ -81,7 +81,7 @@ def projected(points_yx: FloatArray, contour: Contour) -> FloatArray:
 def tracking_error(truth: SimulatedMovie, first: TrackedBoundary, last: TrackedBoundary) -> FloatArray:
     """Distance along the outline between tracked and true places of material points, in pixels."""
     every = np.linspace(0, truth.boundary_yx.shape[1], _POINTS, endpoint=False).astype(np.int64)
-    start, stop = (projected(truth.boundary_yx[found.time, every], found.contour) for found in (first, last))
+    start, stop = (projected(truth.boundary_yx[found.frame, every], found.contour) for found in (first, last))
     number = np.arange(len(first.s), dtype=np.float64)
     place = carry(start, first.s, number, first.contour.length, len(number))
     tracked = carry(place, number, last.s, len(number), last.contour.length)
@@ -148,7 +148,7 @@ def median_milliseconds(boundaries: Sequence[TrackedBoundary], tracker: Tracker)
     for number in np.linspace(0, len(boundaries) - 2, _TIMED_STEPS).astype(int):
         last, following = boundaries[number], boundaries[number + 1]
         start = time.perf_counter()
-        follow(following.time, following.contour, last, last, settings)
+        follow(following.frame, following.contour, last, last, settings)
         whole.append(time.perf_counter() - start)
         here, there = (found.alignment.of(found.contour) for found in (last, following))
         step.append(seconds_of_step(here, there, last.s, tracker))
@@ -159,10 +159,10 @@ def figures_of(truth: SimulatedMovie, tracker: Tracker) -> dict[str, float]:
     """All numbers of one movie."""
     movie = map_movie(truth.masks, tracker=tracker)
     boundaries = [record.boundary for record in movie.records if record.boundary is not None]
-    by_time = {found.time: found for found in boundaries}
+    by_frame = {found.frame: found for found in boundaries}
     figures: dict[str, float] = {}
     for horizon in HORIZONS:
-        error = tracking_error(truth, boundaries[0], by_time[frame_near(truth, horizon)])
+        error = tracking_error(truth, boundaries[0], by_frame[frame_near(truth, horizon)])
         figures[f"error {horizon}"] = float(error.mean())
         figures[f"p95 {horizon}"] = float(np.percentile(error, 95))
     figures["velocity"] = velocity_error(truth, movie, boundaries[0])

@@ -64,12 +64,12 @@ def true_edge_velocity(
     angle = carry(start, first.s, point_angles(len(first.s)), first.contour.length, 2.0 * np.pi)
     sector = sector_of(angle, sectors)
     velocity = np.full((len(boundary_yx), sectors), np.nan)
-    for time, displacement in enumerate(normal_displacement_px):
-        after = edge_lengths(boundary_yx[time])
+    for number, displacement in enumerate(normal_displacement_px):
+        after = edge_lengths(boundary_yx[number])
         weight = 0.5 * (after + np.roll(after, 1))
         total = np.bincount(sector, weight, sectors)
         held = total > 0.0
-        velocity[time, held] = np.bincount(sector, weight * displacement, sectors)[held] / total[held]
+        velocity[number, held] = np.bincount(sector, weight * displacement, sectors)[held] / total[held]
     return velocity
 
 
@@ -93,9 +93,9 @@ def share_by_sector(
         Mean over frames with a map.
     """
     found = []
-    for time in np.flatnonzero(movie.mapped):
-        disk = movie[int(time)]
-        _, nearest = cKDTree(boundary_yx[time]).query(disk.vertices_yx[disk.boundary])
+    for number in np.flatnonzero(movie.mapped):
+        disk = movie[int(number)]
+        _, nearest = cKDTree(boundary_yx[number]).query(disk.vertices_yx[disk.boundary])
         sector = sector_of(disk.boundary_angles, sectors)
         total = np.bincount(sector, values[nearest], sectors)
         found.append(total / np.maximum(np.bincount(sector, minlength=sectors), 1))

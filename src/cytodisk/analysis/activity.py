@@ -86,12 +86,12 @@ def sample_movie(
     how = dict(SampleParameters.of(**settings))
     frames, channels = parse_signals(signals, len(movie), movie.image_shape)
     tables = ActivityTables(len(movie), channels, grid)
-    for time, has_map in enumerate(movie.mapped):
+    for number, has_map in enumerate(movie.mapped):
         if has_map:
-            image = _frame(frames[time], time, len(channels), movie.image_shape)
-            tables.put(time, window_arrays(grid.on(movie[time]), image, **how))
+            image = _frame(frames[number], number, len(channels), movie.image_shape)
+            tables.put(number, window_arrays(grid.on(movie[number]), image, **how))
         if progress is not None:
-            progress(time + 1, len(movie))
+            progress(number + 1, len(movie))
     return tables.dataset(movie)
 
 
@@ -264,13 +264,13 @@ def parse_signals(signals: Any, n_frames: int, image_shape: tuple[int, int]) -> 
     return signals, names
 
 
-def _frame(frame: Any, time: int, channels: int, image_shape: tuple[int, int]) -> Any:
+def _frame(frame: Any, number: int, channels: int, image_shape: tuple[int, int]) -> Any:
     values = np.asarray(frame)
     if values.ndim == 2:
         values = values[None]
     if values.shape != (channels, *image_shape):
         raise SignalError(
-            f"frame {time} of the signals has shape {values.shape}, those before "
+            f"frame {number} of the signals has shape {values.shape}, those before "
             f"{(channels, *image_shape)}: save all frames alike"
         )
     return values

@@ -91,9 +91,9 @@ def centroid_displacement(movie: DiskMovie, activity: xr.Dataset) -> xr.DataArra
     """
     centroids = np.stack([activity["centroid_y"].to_numpy(), activity["centroid_x"].to_numpy()], axis=-1)
     steps = movie.scale.length(displacement_between(movie.registered(centroids)))
-    for time, record in enumerate(movie.records[1:]):
+    for number, record in enumerate(movie.records[1:]):
         if record.boundary is not None and record.boundary.restarted:
-            steps[time] = np.nan  # windows before and after have nothing to do with each other
+            steps[number] = np.nan  # windows before and after have nothing to do with each other
     coords = {name: activity[name] for name in ("frame", "layer", "sector")}
     attrs = {"units": movie.scale.length_unit} | movie.scale.attrs
     return xr.DataArray(steps, coords, ("time", "layer", "sector"), name="centroid_displacement", attrs=attrs)

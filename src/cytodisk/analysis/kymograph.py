@@ -148,10 +148,10 @@ def boundary_kymograph(movie: DiskMovie, depth: float, signals: Any, *, points: 
     angles, scale = point_angles(points), movie.scale
     places = np.full((len(movie), points, 2), np.nan)
     rows = np.full((len(movie), *([] if channels is None else [len(channels)]), points), np.nan)
-    for time, frame in enumerate(_each(frames, channels, movie.image_shape)):
-        if movie.records[time].has_map:
-            places[time] = places_at_depth(movie[time], angles, depth / scale.length(1.0))
-            rows[time] = bilinear(frame, places[time])
+    for number, frame in enumerate(_each(frames, channels, movie.image_shape)):
+        if movie.records[number].has_map:
+            places[number] = places_at_depth(movie[number], angles, depth / scale.length(1.0))
+            rows[number] = bilinear(frame, places[number])
     coords: dict[str, Any] = {
         "point": np.arange(points),
         "angle": ("point", angles, {"units": "rad"}),
@@ -265,12 +265,11 @@ def _check_inside(points: FloatArray, shape: tuple[int, int], width_px: int) -> 
 
 def _each(frames: Any, channels: list[str] | None, shape: tuple[int, int]) -> Iterator[AnyArray]:
     wanted = shape if channels is None else (len(channels), *shape)
-    for time in range(len(frames)):
-        frame = np.asarray(frames[time])
+    for number in range(len(frames)):
+        frame = np.asarray(frames[number])
         if frame.shape != wanted:
-            raise SignalError(
-                f"frame {time} of the signals has shape {frame.shape}, those before {wanted}: save all alike"
-            )
+            found = f"frame {number} of the signals has shape {frame.shape}, those before {wanted}"
+            raise SignalError(f"{found}: save all alike")
         yield frame
 
 

@@ -88,18 +88,18 @@ class DiskMovie(Sequence[DiskMap]):
         return len(self.records)
 
     @overload
-    def __getitem__(self, time: int) -> DiskMap: ...
+    def __getitem__(self, frame: int) -> DiskMap: ...
     @overload
-    def __getitem__(self, time: slice) -> list[DiskMap]: ...
-    def __getitem__(self, time: int | slice) -> DiskMap | list[DiskMap]:
+    def __getitem__(self, frame: slice) -> list[DiskMap]: ...
+    def __getitem__(self, frame: int | slice) -> DiskMap | list[DiskMap]:
         """Map of a frame, or a list of maps; negative numbers count from the end."""
-        if isinstance(time, slice):
-            return [self[number] for number in range(*time.indices(len(self)))]
-        if not isinstance(time, int | np.integer):
-            raise ParameterError(f"a movie is indexed by frame number, got {time!r}")
-        number = int(time) + (len(self) if time < 0 else 0)
+        if isinstance(frame, slice):
+            return [self[number] for number in range(*frame.indices(len(self)))]
+        if not isinstance(frame, int | np.integer):
+            raise ParameterError(f"a movie is indexed by frame number, got {frame!r}")
+        number = int(frame) + (len(self) if frame < 0 else 0)
         if not 0 <= number < len(self):
-            raise IndexError(f"frame {time} of a movie of {len(self)} frames")
+            raise IndexError(f"frame {frame} of a movie of {len(self)} frames")
         record = self.records[number]
         if not record.has_map:
             raise MapError(f"frame {number} has no map: {record.reason}")
@@ -170,9 +170,9 @@ class DiskMovie(Sequence[DiskMap]):
             NaN for frames without a map.
         """
         moved = np.full_like(points_yx, np.nan)
-        for time, transform in enumerate(self.transforms):
+        for frame, transform in enumerate(self.transforms):
             if transform is not None:
-                moved[time] = transform(points_yx[time])
+                moved[frame] = transform(points_yx[frame])
         return moved
 
     @property
@@ -181,9 +181,9 @@ class DiskMovie(Sequence[DiskMap]):
 
     def _by_frame(self, shape: tuple[int, ...], value: Callable[[TrackedBoundary], FloatArray]) -> FloatArray:
         out = np.full((len(self), *shape), np.nan)
-        for time, found in enumerate(self._boundaries):
+        for frame, found in enumerate(self._boundaries):
             if found is not None:
-                out[time] = value(found)
+                out[frame] = value(found)
         return out
 
 

@@ -107,7 +107,7 @@ def edge_motion(
     """
     weights = _sector_weights(here, there, disk_here.mask.shape, sectors)
     displacement = _mean_by_sector(weights, normal_displacement(here, there, frame))
-    random = np.random.default_rng([jitter.seed, here.time])
+    random = np.random.default_rng([jitter.seed, here.frame])
     draws = [
         _mean_by_sector(weights, _jittered(here, there, frame, jitter.jitter_px, random))
         for _ in range(jitter.repeats)
@@ -186,8 +186,8 @@ def _jittered(
     s_first, s_second = _unwrapped(s_first, first.length), _unwrapped(s_second, second.length)
     s_second = match(here.alignment.of(first), there.alignment.of(second), s_first, s_second, SMOOTHNESS_PX2)
     again = (
-        TrackedBoundary(here.time, first, s_first, start),
-        TrackedBoundary(there.time, second, s_second, stop),
+        TrackedBoundary(here.frame, first, s_first, start),
+        TrackedBoundary(there.frame, second, s_second, stop),
     )
     return normal_displacement(*again, frame)
 

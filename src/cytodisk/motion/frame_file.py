@@ -38,7 +38,7 @@ def save_frame(path: str | os.PathLike[str], frame: MappedFrame) -> None:
             "track_s": boundary.s,
             "track_transforms": np.array([astuple(boundary.transform), astuple(boundary.alignment)]),
             "track_residual_px": np.array(boundary.residual_px),
-            "track_times": np.array([boundary.time, frame.reference.time, boundary.order_violations]),
+            "track_times": np.array([boundary.frame, frame.reference.frame, boundary.order_violations]),
             "track_restarted": np.array(boundary.restarted),
         },
     )
@@ -73,7 +73,7 @@ def load_frame(path: str | os.PathLike[str], path_at: dict[int, Path]) -> Mapped
     ----------
     path : path-like
     path_at : dict of int to Path
-        Files of the movie's frames by time, for the frame that this one was registered to.
+        Files of the movie's frames by number, for the frame that this one was registered to.
 
     Returns
     -------
@@ -85,22 +85,22 @@ def load_frame(path: str | os.PathLike[str], path_at: dict[int, Path]) -> Mapped
         A file is missing, damaged, or holds no boundary.
     """
     disk = load_map(path)
-    boundary, reference_time = _read(path, disk)
-    if reference_time == boundary.time:
+    boundary, reference_frame = _read(path, disk)
+    if reference_frame == boundary.frame:
         return MappedFrame(disk, boundary, boundary)
-    if reference_time not in path_at:
-        raise ReadError(f"{path} refers to frame {reference_time}, which has no file")
-    return MappedFrame(disk, boundary, load_boundary(path_at[reference_time]))
+    if reference_frame not in path_at:
+        raise ReadError(f"{path} refers to frame {reference_frame}, which has no file")
+    return MappedFrame(disk, boundary, load_boundary(path_at[reference_frame]))
 
 
 def _read(path: str | os.PathLike[str], disk: DiskMap | None) -> tuple[TrackedBoundary, int]:
     outline = (disk or load_map(path)).outline_yx
     try:
         with Path(path).open("rb") as stream, np.load(stream) as file:
-            time, reference_time, violations = (int(number) for number in file["track_times"])
+            number, reference_frame, violations = (int(value) for value in file["track_times"])
             transform, alignment = (RigidTransform(*row) for row in file["track_transforms"].tolist())
             boundary = TrackedBoundary(
-                time,
+                number,
                 Contour.of_outline(outline),
                 file["track_s"],
                 transform,
@@ -109,6 +109,6 @@ def _read(path: str | os.PathLike[str], disk: DiskMap | None) -> tuple[TrackedBo
                 violations,
                 str(file["track_restarted"]),
             )
-            return boundary, reference_time
+            return boundary, reference_frame
     except (zipfile.BadZipFile, zlib.error, KeyError, ValueError, OSError, EOFError) as error:
         raise ReadError(f"{path} holds no tracked boundary: {error}") from error

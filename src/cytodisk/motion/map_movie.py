@@ -29,13 +29,13 @@ class FrameResult:
 
     Attributes
     ----------
-    time : int
+    frame : int
     mapped : MappedFrame or None
     fault : CytodiskError or None
         Why there is no map.
     """
 
-    time: int
+    frame: int
     mapped: MappedFrame | None
     fault: CytodiskError | None
 
@@ -73,20 +73,20 @@ def map_frames(
         In order; a frame that cannot be mapped has its fault, and the next one goes on from the last map.
     """
     last: MappedFrame | None = None
-    for time in range(len(masks)):
-        result = map_one(time, masks[time], last, settings, scale)
+    for frame in range(len(masks)):
+        result = map_one(frame, masks[frame], last, settings, scale)
         last = result.mapped or last
         yield result
 
 
 def map_one(
-    time: int, mask: Any, last: MappedFrame | None, settings: MovieSettings, scale: Scale = UNKNOWN
+    frame: int, mask: Any, last: MappedFrame | None, settings: MovieSettings, scale: Scale = UNKNOWN
 ) -> FrameResult:
     """Map one frame; a fault of its mask becomes part of the result.
 
     Parameters
     ----------
-    time : int
+    frame : int
     mask : array_like of shape (H, W), or CytodiskError
     last : MappedFrame or None
     settings : MovieSettings
@@ -97,11 +97,11 @@ def map_one(
     FrameResult
     """
     if isinstance(mask, CytodiskError):
-        return FrameResult(time, None, mask)
+        return FrameResult(frame, None, mask)
     try:
-        return FrameResult(time, map_frame(time, mask, last, settings, scale), None)
+        return FrameResult(frame, map_frame(frame, mask, last, settings, scale), None)
     except (MaskError, MapError) as fault:
-        return FrameResult(time, None, fault)
+        return FrameResult(frame, None, fault)
 
 
 @takes(MovieMapParameters)
@@ -169,9 +169,9 @@ def map_movie(
     shape: tuple[int, ...] = ()
     for result in map_frames(frames, given, scale):
         if result.mapped is not None:
-            _check_shape(result.mapped.disk.mask.shape, shape, result.time)
+            _check_shape(result.mapped.disk.mask.shape, shape, result.frame)
             shape = result.mapped.disk.mask.shape
-            store.keep(result.time, result.mapped.disk)
+            store.keep(result.frame, result.mapped.disk)
         records.append(result.record)
         if progress is not None:
             progress(len(records), len(frames))
@@ -180,10 +180,10 @@ def map_movie(
     return DiskMovie(tuple(records), (shape[0], shape[1]), scale, store.load)
 
 
-def _check_shape(found: tuple[int, ...], before: tuple[int, ...], time: int) -> None:
+def _check_shape(found: tuple[int, ...], before: tuple[int, ...], frame: int) -> None:
     if before and found != before:
         raise MaskError(
-            f"frame {time} of masks has shape {found}, those before {before}: crop the frames alike"
+            f"frame {frame} of masks has shape {found}, those before {before}: crop the frames alike"
         )
 
 
@@ -239,11 +239,11 @@ class _Memory:
     def __init__(self) -> None:
         self._maps: dict[int, DiskMap] = {}
 
-    def keep(self, time: int, disk: DiskMap) -> None:
-        self._maps[time] = disk
+    def keep(self, frame: int, disk: DiskMap) -> None:
+        self._maps[frame] = disk
 
-    def load(self, time: int) -> DiskMap:
-        return self._maps[time]
+    def load(self, frame: int) -> DiskMap:
+        return self._maps[frame]
 
 
 class _Folder:
@@ -260,11 +260,11 @@ class _Folder:
         self._folder = folder
         self.load = lru_cache(maxsize=_KEPT)(self._read)
 
-    def keep(self, time: int, disk: DiskMap) -> None:
-        disk.save(self._path(time))
+    def keep(self, frame: int, disk: DiskMap) -> None:
+        disk.save(self._path(frame))
 
-    def _read(self, time: int) -> DiskMap:
-        return load_map(self._path(time))
+    def _read(self, frame: int) -> DiskMap:
+        return load_map(self._path(frame))
 
-    def _path(self, time: int) -> Path:
-        return self._folder / f"frame_{time:05d}.npz"
+    def _path(self, frame: int) -> Path:
+        return self._folder / f"frame_{frame:05d}.npz"

@@ -37,19 +37,19 @@ class MappedFrame:
     reference: TrackedBoundary
 
     @property
-    def time(self) -> int:
+    def frame(self) -> int:
         """Number of the frame."""
-        return self.boundary.time
+        return self.boundary.frame
 
 
 def map_frame(
-    time: int, mask: Any, last: MappedFrame | None, settings: MovieSettings, scale: Scale = UNKNOWN
+    frame: int, mask: Any, last: MappedFrame | None, settings: MovieSettings, scale: Scale = UNKNOWN
 ) -> MappedFrame:
     """Map a frame of a movie so that it corresponds to the frame before.
 
     Parameters
     ----------
-    time : int
+    frame : int
         Number of the frame.
     mask : array_like of shape (H, W)
         One cell.
@@ -74,11 +74,11 @@ def map_frame(
     if last is None:
         angles = boundary_angles(contour.outline_yx, settings.align)
         disk = _map(cell, angles, settings)
-        boundary = first_boundary(time, contour, angles)
+        boundary = first_boundary(frame, contour, angles)
         return MappedFrame(disk, boundary, boundary)
-    renewed = time // settings.renew_every > last.time // settings.renew_every
+    renewed = frame // settings.renew_every > last.frame // settings.renew_every
     reference = last.boundary if renewed else last.reference
-    boundary = follow(time, contour, last.boundary, reference, settings)
+    boundary = follow(frame, contour, last.boundary, reference, settings)
     angles = tracked_angles(contour, boundary.s, point_angles(len(boundary.s)))
     anchor = None
     if not boundary.restarted and settings.method == "newton":

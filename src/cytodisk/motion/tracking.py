@@ -31,7 +31,7 @@ class TrackedBoundary:
 
     Attributes
     ----------
-    time : int
+    frame : int
         Number of the frame.
     contour : Contour
         In the image's frame.
@@ -50,7 +50,7 @@ class TrackedBoundary:
         Why tracking started anew here; empty if it did not.
     """
 
-    time: int
+    frame: int
     contour: Contour
     s: FloatArray
     transform: RigidTransform = IDENTITY
@@ -86,12 +86,12 @@ def point_angles(n: int) -> FloatArray:
     return np.asarray(2.0 * np.pi * (np.arange(n) + 0.5) / n)
 
 
-def first_boundary(time: int, contour: Contour, angles: FloatArray) -> TrackedBoundary:
+def first_boundary(frame: int, contour: Contour, angles: FloatArray) -> TrackedBoundary:
     """Points to be tracked, at even angles of the first frame.
 
     Parameters
     ----------
-    time : int
+    frame : int
     contour : Contour
     angles : ndarray of shape (B,) and dtype float
         Angle of each outline point on the disk, in radians, strictly increasing within one turn.
@@ -102,12 +102,12 @@ def first_boundary(time: int, contour: Contour, angles: FloatArray) -> TrackedBo
         About one point a pixel, 256 at least.
     """
     return TrackedBoundary(
-        time, contour, _at_even_angles(contour, angles, max(_LEAST_POINTS, round(contour.length)))
+        frame, contour, _at_even_angles(contour, angles, max(_LEAST_POINTS, round(contour.length)))
     )
 
 
 def follow(
-    time: int,
+    frame: int,
     contour: Contour,
     last: TrackedBoundary,
     reference: TrackedBoundary,
@@ -117,7 +117,7 @@ def follow(
 
     Parameters
     ----------
-    time : int
+    frame : int
         Number of this frame.
     contour : Contour
         This frame's, in the image's frame.
@@ -147,20 +147,20 @@ def follow(
         )
     overlap = _overlap(here, transform.of(contour))
     if overlap < _LEAST_OVERLAP:
-        why = f"outlines overlap by {overlap:.0%} only (frames {last.time} and {time})"
-        return _restart(time, contour, transform, last, why)
+        why = f"outlines overlap by {overlap:.0%} only (frames {last.frame} and {frame})"
+        return _restart(frame, contour, transform, last, why)
     if settings.tracker == "demons":
-        return _follow_demons(time, contour, last, transform, settings.demons or DemonsParameters())
+        return _follow_demons(frame, contour, last, transform, settings.demons or DemonsParameters())
     here, there = last.alignment.of(last.contour), alignment.of(contour)
     s = match(here, there, last.s, guess, smoothness)
     back = match(there, here, s, last.s, smoothness)
     residual = float(np.linalg.norm(here.at(back) - here.at(last.s), axis=1).mean())
     even = _towards_even(s, there.length, settings.tension)
-    return TrackedBoundary(time, contour, even, transform, alignment, residual)
+    return TrackedBoundary(frame, contour, even, transform, alignment, residual)
 
 
 def _follow_demons(
-    time: int,
+    frame: int,
     contour: Contour,
     last: TrackedBoundary,
     transform: RigidTransform,
@@ -170,23 +170,23 @@ def _follow_demons(
     try:
         points = propagate(here, there, here.at(last.s), parameters)
     except ParameterError as fault:  # of a cell of a few pixels; the movie goes on
-        return _restart(time, contour, transform, last, f"demons cannot follow the outline: {fault}")
+        return _restart(frame, contour, transform, last, f"demons cannot follow the outline: {fault}")
     edge, share = nearest_on_outline(points, there.points_yx)
     s = there.arc[edge] + share * (there.arc[edge + 1] - there.arc[edge])
     residual = float(np.linalg.norm(there.at(s) - points, axis=1).mean())
     steps = np.mod(np.diff(s, append=s[:1]) + 0.5 * there.length, there.length) - 0.5 * there.length
     if abs(steps.sum() - there.length) > 1e-6 * there.length:
-        why = f"demons points do not go once around the outline (frames {last.time} and {time})"
-        return _restart(time, contour, transform, last, why)
+        why = f"demons points do not go once around the outline (frames {last.frame} and {frame})"
+        return _restart(frame, contour, transform, last, why)
     ordered = np.maximum(steps, _LEAST_GAP * there.length / len(s))
     ordered *= there.length / ordered.sum()
     placed = s[0] + np.concatenate([[0.0], np.cumsum(ordered)[:-1]])
     violations = int((steps <= 0).sum())
-    return TrackedBoundary(time, contour, placed, transform, transform, residual, violations)
+    return TrackedBoundary(frame, contour, placed, transform, transform, residual, violations)
 
 
 def _restart(
-    time: int, contour: Contour, transform: RigidTransform, last: TrackedBoundary, why: str
+    frame: int, contour: Contour, transform: RigidTransform, last: TrackedBoundary, why: str
 ) -> TrackedBoundary:
     """Points anew, with the disk turned to the cell as it was in the last frame."""
     angles = boundary_angles(transform(contour.outline_yx))
@@ -195,7 +195,7 @@ def _restart(
     lead = point_angles(len(last.s)) - np.arctan2(away[:, 0], away[:, 1])
     angles = angles + float(np.angle(np.exp(1j * lead).sum()))
     s = _at_even_angles(contour, angles, len(last.s))
-    return TrackedBoundary(time, contour, s, transform, transform, restarted=why)
+    return TrackedBoundary(frame, contour, s, transform, transform, restarted=why)
 
 
 def _at_even_angles(contour: Contour, angles: FloatArray, n: int) -> FloatArray:

@@ -64,9 +64,9 @@ def edge_velocity(movie: DiskMovie, sectors: int = 60, *, frame: Frame = "lab") 
     """
     _check(sectors, frame)
     values = np.full((len(movie), sectors), np.nan)
-    for time, (here, there) in _pairs(movie):
+    for number, (here, there) in _pairs(movie):
         displacement = normal_displacement(here, there, frame)
-        values[time] = mean_by_sector(displacement, here, there, movie.image_shape, sectors)
+        values[number] = mean_by_sector(displacement, here, there, movie.image_shape, sectors)
     return _labelled(movie, movie.scale.velocity(values), "sector", frame)
 
 
@@ -103,8 +103,8 @@ def boundary_velocity(movie: DiskMovie, *, frame: Frame = "lab") -> xr.DataArray
     """
     _check(1, frame)
     values = np.full((len(movie), movie.n_points), np.nan)
-    for time, (here, there) in _pairs(movie):
-        values[time] = normal_displacement(here, there, frame)
+    for number, (here, there) in _pairs(movie):
+        values[number] = normal_displacement(here, there, frame)
     border = movie.on_border
     values[:-1][border[:-1] | border[1:]] = np.nan
     labelled = _labelled(movie, movie.scale.velocity(values), "point", frame)
@@ -156,12 +156,12 @@ def edge_changes(
     _check(sectors, frame)
     jitter = JitterParameters.of(**settings)
     rows: dict[int, EdgeMotion] = {}
-    for time, (here, there) in _pairs(movie):
-        rows[time] = edge_motion(
+    for number, (here, there) in _pairs(movie):
+        rows[number] = edge_motion(
             here,
             there,
-            movie[time],
-            movie[time + 1],
+            movie[number],
+            movie[number + 1],
             sectors,
             frame=frame,
             jitter=jitter,
@@ -177,8 +177,8 @@ def edge_changes(
     columns = {}
     for name, (source, convert, units) in scaled.items():
         values = np.full((len(movie), sectors), np.nan)
-        for time, row in rows.items():
-            values[time] = convert(getattr(row, source))
+        for number, row in rows.items():
+            values[number] = convert(getattr(row, source))
         columns[name] = _labelled(movie, values, "sector", frame).assign_attrs(units=units)
     return xr.Dataset(columns, attrs={"frame": frame} | scale.attrs)
 
@@ -191,11 +191,11 @@ def _check(sectors: Any, frame: Any) -> None:
 
 
 def _pairs(movie: DiskMovie) -> Any:
-    """(time, boundaries of this frame and the next) where both have a map and tracking went on."""
-    for time, (first, second) in enumerate(zip(movie.records, movie.records[1:], strict=False)):
+    """(number, boundaries of this frame and the next) where both have a map and tracking went on."""
+    for number, (first, second) in enumerate(zip(movie.records, movie.records[1:], strict=False)):
         here, there = first.boundary, second.boundary
         if here is not None and there is not None and not there.restarted:
-            yield time, (here, there)
+            yield number, (here, there)
 
 
 def _labelled(movie: DiskMovie, values: Any, last: str, frame: str) -> xr.DataArray:

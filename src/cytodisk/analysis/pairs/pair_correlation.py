@@ -191,7 +191,7 @@ def _between_centroids(series: xr.DataArray) -> FloatArray:
     if not frames.size:
         raise ParameterError("a has no frame in which all windows have a centroid: pass distances")
     chosen = frames[np.unique(np.linspace(0, frames.size - 1, _FRAMES_FOR_DISTANCE).round().astype(int))]
-    apart = np.mean([cdist(yx[time], yx[time]) for time in chosen], axis=0)
+    apart = np.mean([cdist(yx[number], yx[number]) for number in chosen], axis=0)
     return np.asarray(Scale.of(series["centroid_y"]).length(apart))
 
 

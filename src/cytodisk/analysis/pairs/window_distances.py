@@ -81,7 +81,7 @@ def window_distances(cell: DiskMap | DiskMovie, grid: PolarGrid, *, frames: int 
         chosen = mapped[
             np.unique(np.linspace(0, mapped.size - 1, min(frames, mapped.size)).round().astype(int))
         ]
-        maps = [cell[int(time)] for time in chosen]
+        maps = [cell[int(number)] for number in chosen]
     tables = [_distances_on(disk, grid) for disk in maps]
     attrs = {"units": cell.scale.length_unit} | cell.scale.attrs
     shape = (grid.layers, grid.sectors, grid.layers, grid.sectors)

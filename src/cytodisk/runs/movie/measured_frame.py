@@ -102,7 +102,7 @@ def _jump(task: FrameTask) -> str:
     """Remark on a cell that is nowhere where it was in the frame before."""
     if task.before is None or (task.before.disk.mask & task.frame.disk.mask).any():
         return ""
-    return f"the cell does not touch its place in frame {task.before.time}: it moved far, or is another one"
+    return f"the cell does not touch its place in frame {task.before.frame}: it moved far, or is another one"
 
 
 def unmapped_rows(place: FramePlace, fault: CytodiskError, seconds: float) -> FrameRows:
@@ -170,7 +170,7 @@ def edge_columns(
 def _edge_before(task: FrameTask, before: MappedFrame) -> dict[str, Any]:
     here, there, sectors = before.boundary, task.frame.boundary, task.parameters.sectors
     scale = task.frame.disk.scale
-    place = replace(task.place, frame=before.time, time_s=scale.seconds(before.time))
+    place = replace(task.place, frame=before.frame, time_s=scale.seconds(before.frame))
     if there.restarted:
         return edge_columns(place, sectors, scale, None, None, "tracking starts anew in the next frame")
     motion = edge_motion(

@@ -137,7 +137,7 @@ class _Run:
         task = FrameTask(
             place,
             result.mapped,
-            last if last is not None and last.time == time - 1 else None,
+            last if last is not None and last.frame == time - 1 else None,
             signal,
             self._inputs.grid,
             self._inputs.parameters,
