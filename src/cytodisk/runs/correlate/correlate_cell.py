@@ -1,0 +1,157 @@
+"""One cell of a study: a signal with the motion of the edge, or with another signal."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from cytodisk.analysis.correlation.correlation_parameters import PairCorrelationParameters
+from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer, cross_correlate
+from cytodisk.analysis.correlation.jitter_mark import JITTERED_DIFFERENCES, JITTERED_LAGS, jitter_step
+from cytodisk.analysis.pairs.pair_correlation import correlate_pairs
+from cytodisk.analysis.pairs.window_distances import window_distances
+from cytodisk.arrays import IntArray
+from cytodisk.errors import ParameterError, StationarityWarning
+from cytodisk.runs.channel_names import VELOCITIES
+from cytodisk.runs.correlate.chosen_series import chosen_sectors, chosen_series
+from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
+from cytodisk.runs.correlate.correlation_tables import as_table, tables_of
+from cytodisk.runs.correlate.event_tables import event_tables
+from cytodisk.runs.run_options import Progress
+from cytodisk.store.study import Study
+from cytodisk.windows.polar_windows import polar_windows
+
+_LEAST_LAG_FOR_JITTER, _LAG_FOR_JITTER = 6, 10
+_SIDES = (("signal", "a"), ("with", "b"))
+_PAIRED_SURROGATES = 99  # of the mean over pairs at most, which take longer than those of windows
+
+
+@dataclass(frozen=True)
+class CellCorrelation:
+    """Correlates one cell; the same for all cells of a study.
+
+    Attributes
+    ----------
+    study : Study
+    signal, with_ : str
+    max_lag : int
+        In frames.
+    options : CorrelateParameters
+    """
+
+    study: Study
+    signal: str
+    with_: str
+    max_lag: int
+    options: CorrelateParameters
+
+    def of(self, cell: int, progress: Progress | None) -> tuple[dict[str, pd.DataFrame], dict[str, Any]]:
+        """Tables of one cell, and its row in the table of cells.
+
+        Raises
+        ------
+        ParameterError
+            The cell cannot be correlated.
+        """
+        options, with_ = self.options, self.with_
+        activity = chosen_series(self.study.activity(cell), options)
+        a = activity["mean"].sel(channel=self.signal).load()
+        b = _other(activity, with_, options).load()
+        if not (np.isfinite(a).any() and np.isfinite(b).any()):
+            empty = self.signal if not np.isfinite(a).any() else with_
+            raise ParameterError(f"cell {cell} has no values of {empty}")
+        first, second = _phases(progress, 2 if options.pairs else 1)
+        common = dict(options.part(PairCorrelationParameters))
+        with _shares_in_the_table():
+            correlations = cross_correlate(
+                a, b, self.max_lag, skip_lags=options.skip_lags, progress=first, **common
+            )
+            jitter = _jitter(a, b, options) if with_ in VELOCITIES else 0.0
+        tables = tables_of(correlations, options)
+        if options.pairs:
+            tables["pairs"] = self._pairs(cell, activity, a, second)
+        row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "jitter": jitter}
+        row["surrogates"] = correlations.attrs["surrogates"]
+        row["pair_surrogates"] = tables["pairs"].attrs["surrogates"] if options.pairs else 0
+        row["restarts"] = self._restarts(cell, activity["frame"].to_numpy())
+        row |= {f"drifting_{name}": correlations.attrs[f"drifting_{side}"] for name, side in _SIDES}
+        row |= {"no_events_because": "", "event_threshold": np.nan, "event_noise": np.nan}
+        if with_ in VELOCITIES:
+            try:
+                edge = chosen_series(self.study.activity(cell), options.changed(sectors=None))
+                events = event_tables(edge, a, with_, self.max_lag, options)
+            except ParameterError as error:
+                row["no_events_because"] = str(error)
+            else:
+                tables |= events
+                row |= {f"event_{name}": events["events"].attrs[name] for name in ("threshold", "noise")}
+        return tables, row
+
+    def _restarts(self, cell: int, times: IntArray) -> int:
+        """How often tracking started anew within frames: a sector may then be another place of the cell."""
+        cells = self.study.cells
+        rows = cells[(cells["cell"] == cell) & cells["frame"].isin(times[1:])]
+        return int((rows["restarted"].fillna("") != "").sum())
+
+    def _pairs(
+        self, cell: int, activity: xr.Dataset, a: xr.DataArray, progress: Progress | None
+    ) -> pd.DataFrame:
+        study, options = self.study, self.options
+        parameters = study.provenance["parameters"]
+        grid = polar_windows(study.provenance["layers"], parameters["sectors"], parameters["spacing"])
+        b = activity["mean"].sel(channel=self.with_).load()
+        surrogates = {"surrogates": min(options.surrogates, _PAIRED_SURROGATES)}
+        common = dict(options.part(PairCorrelationParameters)) | surrogates
+        sectors = chosen_sectors(options, grid.sectors)
+        distances = window_distances(study.movie(cell), grid).isel(sector=sectors, other_sector=sectors)
+        with _shares_in_the_table():
+            found = correlate_pairs(a, b, self.max_lag, distances=distances, progress=progress, **common)
+        table = as_table(found, ("along", "distance", "lag"))
+        table.attrs["surrogates"] = found.attrs["surrogates"]
+        return table
+
+
+@contextmanager
+def _shares_in_the_table() -> Iterator[None]:
+    """No warnings of series that drift: their shares are in the table of cells, and are told."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", StationarityWarning)
+        yield
+
+
+def _phases(progress: Progress | None, phases: int) -> tuple[Progress | None, Progress | None]:
+    """What to call with the steps done, and all steps, of two phases; they count alike."""
+    if progress is None:
+        return None, None
+    return (
+        lambda done, steps: progress(done, phases * steps),
+        lambda done, steps: progress(steps + done, phases * steps),
+    )
+
+
+def _other(activity: xr.Dataset, with_: str, options: CorrelateParameters) -> xr.DataArray:
+    """What the signal is correlated with, by sector or by window."""
+    if with_ in VELOCITIES:
+        return activity[with_]
+    other = activity["mean"].sel(channel=with_)
+    return other.isel(layer=0, drop=True) if options.against == "edge" else other
+
+
+def _jitter(a: xr.DataArray, b: xr.DataArray, options: CorrelateParameters) -> float:
+    """Largest mark of jitter in any layer; 0 for none, or where its lags are left out; NaN if unknown."""
+    marked = JITTERED_LAGS if not options.difference else JITTERED_DIFFERENCES
+    if set(marked) <= set(options.skip_lags):
+        return 0.0
+    lag = min(_LAG_FOR_JITTER, a.sizes["time"] - options.min_pairs)
+    if lag < _LEAST_LAG_FOR_JITTER:
+        return float("nan")
+    found = cross_correlate(a, b, lag, detrend=options.detrend, min_pairs=options.min_pairs)
+    steps = jitter_step(correlation_by_layer(found)).to_numpy()
+    return float(steps[np.abs(steps).argmax()])
