@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from cytodisk.errors import ParameterError
+
+Word = TypeVar("Word", bound=str)
 
 
 def is_number(value: Any) -> bool:
@@ -67,7 +69,7 @@ def positive_number(name: str, value: Any) -> float:
     return float(value)
 
 
-def one_of(name: str, value: Any, choices: Collection[str]) -> str:
+def one_of(name: str, value: Any, choices: Collection[Word]) -> Word:
     """A parameter that is one of a few words.
 
     Raises
@@ -75,6 +77,7 @@ def one_of(name: str, value: Any, choices: Collection[str]) -> str:
     ParameterError
         It is another one.
     """
+    chosen: Word = value
     if not (isinstance(value, str) and value in choices):
         raise ParameterError(f"{name} must be one of {', '.join(choices)}, got {value!r}")
-    return value
+    return chosen

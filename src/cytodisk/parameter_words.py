@@ -59,17 +59,13 @@ def range_words(field: FieldInfo) -> str:
 def limits(field: FieldInfo) -> str:
     """The range of a number, as " above 0" or " from 0 to 1"; empty if there is none."""
     found = {name: getattr(part, name) for part in field.metadata for name in _LIMITS if hasattr(part, name)}
-    least, above, most = (found.get(name) for name in _LIMITS)
-    if least is not None and most is not None:
-        return f" from {least:g} to {most:g}"
-    if least is not None:
-        return f" of at least {least:g}"
-    words = [f" above {above:g}"] if above is not None else []
-    words += [f" at most {most:g}"] if most is not None else []
-    return " and".join(words)
+    if {"ge", "le"} <= found.keys():
+        return f" from {found['ge']:g} to {found['le']:g}"
+    words = [f"{word} {found[name]:g}" for name, word in _LIMITS.items() if name in found]
+    return f" {' and '.join(words)}" if words else ""
 
 
-_LIMITS = ("ge", "gt", "le")
+_LIMITS = {"ge": "of at least", "gt": "above", "le": "at most", "lt": "below"}
 
 
 def flag_of(name: str, field: FieldInfo) -> str:

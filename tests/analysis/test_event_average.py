@@ -232,7 +232,7 @@ EVENTS = events_of(GOOD)
         (GOOD, EVENTS, {"kind": "both"}, "kind must be one of protrusion, retraction, got 'both'"),
         (GOOD, EVENTS, {"at": "start"}, "at must be one of onset, peak, end"),
         (GOOD, EVENTS, {"normalise": None}, "normalise must be one of none, mean, sd"),
-        (GOOD, EVENTS, {"confidence": 95}, "confidence must be between 0 and 1, got 95"),
+        (GOOD, EVENTS, {"confidence": 95}, "confidence must be .* got 95"),
         (GOOD, EVENTS, {"confidence": 1.0}, "confidence"),
     ],
 )

@@ -10,7 +10,7 @@ from cytodisk.geometry.outline import trace_outline
 
 def mesh_of(mask: np.ndarray) -> Mesh:
     cleaned, _ = clean_mask(mask)
-    return mesh_inside(trace_outline(cleaned), cleaned)
+    return mesh_inside(trace_outline(cleaned), cleaned, edge_length=0.9)
 
 
 def fill_at_random(system: BlockSystem, mesh: Mesh, seed: int) -> np.ndarray:

@@ -118,7 +118,7 @@ def problem() -> dict[str, np.ndarray | Mesh]:
     mask = simulate.random_spiky(4, radius=12.0, spike_length=15.0)
     mask, _ = clean_mask(mask)
     outline = trace_outline(mask)
-    mesh = mesh_inside(outline, mask)
+    mesh = mesh_inside(outline, mask, edge_length=0.9)
     angles = boundary_angles(outline)
     uv, _ = harmonic_map(mesh, np.column_stack([np.cos(angles), np.sin(angles)]))
     areas = triangle_areas(mesh.vertices_yx, mesh.triangles)

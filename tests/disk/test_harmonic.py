@@ -63,7 +63,7 @@ def test_the_harmonic_map_of_an_ellipse_is_the_series() -> None:
     mask = simulate.ellipse((SEMI_Y, SEMI_X))
     middle = (np.array(mask.shape) - 1) / 2
     outline = np.column_stack([SEMI_Y * np.sin(nu), SEMI_X * np.cos(nu)])
-    mesh = mesh_inside(outline + middle, mask)
+    mesh = mesh_inside(outline + middle, mask, edge_length=0.9)
     theta = solution.theta(nu)
     uv, weights = harmonic_map(mesh, np.column_stack([np.cos(theta), np.sin(theta)]))
     expected = solution(*(mesh.vertices_yx - middle).T)

@@ -34,7 +34,7 @@ def test_euler_characteristic_of_an_annulus_is_zero() -> None:
 
 def test_outer_edges_of_a_cell_are_its_outline() -> None:
     mask, _ = clean_mask(simulate.random_spiky(3))
-    mesh = mesh_inside(trace_outline(mask), mask)
+    mesh = mesh_inside(trace_outline(mask), mask, edge_length=0.9)
     edges = half_edges(mesh.triangles, len(mesh.vertices_yx))
     loop = np.arange(mesh.n_boundary)
     np.testing.assert_array_equal(edges.start[edges.outer], loop)

@@ -64,4 +64,4 @@ def test_hat_gradients_differentiate_a_linear_function() -> None:
 def test_an_outline_that_crosses_itself_is_refused() -> None:
     bow_tie = np.array([(0.0, 0.0), (10.0, 10.0), (0.0, 10.0), (10.0, 0.0)])
     with pytest.raises(MeshError, match=r"crosses itself|not a disk"):
-        mesh_inside(bow_tie, np.ones((11, 11), dtype=bool))
+        mesh_inside(bow_tie, np.ones((11, 11), dtype=bool), edge_length=0.9)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -10,14 +10,13 @@ import xarray as xr
 from scipy.special import ndtr
 from scipy.stats import t as student
 
-from cytodisk.analysis.events import KINDS, Kind
+from cytodisk.analysis.event_average_parameters import EventAverageParameters, Moment, Normalisation
+from cytodisk.analysis.events import Kind
 from cytodisk.analysis.time_steps import frame_interval, frame_numbers
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.checks import whole_number
 from cytodisk.errors import ParameterError
-
-Moment: TypeAlias = Literal["onset", "peak", "end"]
-Normalisation: TypeAlias = Literal["none", "mean", "sd"]
+from cytodisk.taking import takes
 
 # What must be known of an event for its moment to be known.
 _KNOWN: dict[Moment, str] = {"onset": "onset_known", "peak": "complete", "end": "end_known"}
@@ -25,18 +24,14 @@ _LEAST_PATCHES = 5  # with fewer the band is far too narrow
 _COLUMNS = ("sector", "kind", "patch")
 
 
+@takes(EventAverageParameters)
 def average_around(
     activity: xr.DataArray,
     events: pd.DataFrame,
     *,
     before: int,
     after: int,
-    kind: Kind = "protrusion",
-    at: Moment = "onset",
-    normalise: Normalisation = "none",
-    bootstrap: int = 1000,
-    seed: int = 0,
-    confidence: float = 0.95,
+    **settings: Any,
 ) -> xr.Dataset:
     """Mean of a signal around a moment of protrusion or retraction events, in the sector of each.
 
@@ -48,19 +43,8 @@ def average_around(
         Of `edge_events` on the same cell, frames and sectors.
     before, after : int
         Frames of the window before and after the moment.
-    kind : {"protrusion", "retraction"}
-    at : {"onset", "peak", "end"}
-        The moment, delay 0. Events in which it is not known, at the ends of the movie and beside NaN, are
-        left out; a peak is known where both ends are.
-    normalise : {"none", "mean", "sd"}
-        "mean" subtracts from each window of each event its own mean over the delays that it has; "sd"
-        then divides by its standard deviation, and leaves out windows that do not vary.
-    bootstrap : int
-        How often patches are drawn for the band; 0 for none.
-    seed : int
-        Seed of the draws.
-    confidence : float
-        Share of repeated experiments whose band is to hold the true mean, at one delay.
+    **settings
+        See `EventAverageParameters`.
 
     Returns
     -------
@@ -108,17 +92,17 @@ def average_around(
     >>> around["mean"].to_numpy()
     array([0., 0., 1., 1., 1.])
     """
-    _check_options(before, after, kind, at, normalise, bootstrap, seed, confidence)
-    before, after, bootstrap, seed = (int(number) for number in (before, after, bootstrap, seed))
+    how = EventAverageParameters.of(**settings)
+    before, after = whole_number("before", before, 0), whole_number("after", after, 0)
     values, dims, shape = _parse(activity)
-    chosen = _chosen(events, activity, kind, at)
+    chosen = _chosen(events, activity, how.kind, how.at)
     first = frame_numbers(activity, "activity")[0]
     delays = np.arange(-before, after + 1)
-    windows = _windows(values, chosen[at].to_numpy() - first, _places(chosen, activity), delays)
-    windows = _normalised(windows, normalise)
+    windows = _windows(values, chosen[how.at].to_numpy() - first, _places(chosen, activity), delays)
+    windows = _normalised(windows, how.normalise)
     sums, counts, patches = _by_patch(windows, chosen["patch"].to_numpy())
-    means = _resampled(sums, counts, bootstrap, seed)
-    lower, upper = _band(means, patches, confidence)
+    means = _resampled(sums, counts, how.bootstrap, how.seed)
+    lower, upper = _band(means, patches, how.confidence)
     whole = _ratio(sums.sum(axis=0), counts.sum(axis=0))
     tables = {"mean": whole, "lower": lower, "upper": upper, "n": counts.sum(axis=0), "n_patches": patches}
     data = {
@@ -128,26 +112,10 @@ def average_around(
     average = xr.Dataset(data, _coordinates(activity, dims, delays))
     for name in ("n", "n_patches"):
         average[name] = average[name].astype(np.int64)
-    units = "1" if normalise == "sd" else activity.attrs.get("units", "a.u.")
+    units = "1" if how.normalise == "sd" else activity.attrs.get("units", "a.u.")
     for name in ("mean", "lower", "upper"):
         average[name].attrs["units"] = units
-    return average.assign_attrs(
-        kind=kind, at=at, normalise=normalise, bootstrap=bootstrap, seed=seed, confidence=confidence
-    )
-
-
-def _check_options(
-    before: Any, after: Any, kind: Any, at: Any, normalise: Any, bootstrap: Any, seed: Any, confidence: Any
-) -> None:
-    numbers = {"before": before, "after": after, "bootstrap": bootstrap, "seed": seed}
-    for name, value in numbers.items():
-        whole_number(name, value, 0)
-    choices = {"kind": (kind, KINDS), "at": (at, get_args(Moment))}
-    for name, (value, allowed) in (choices | {"normalise": (normalise, get_args(Normalisation))}).items():
-        if value not in allowed:
-            raise ParameterError(f"{name} must be one of {', '.join(allowed)}, got {value!r}")
-    if not isinstance(confidence, float | np.floating) or not 0.0 < confidence < 1.0:
-        raise ParameterError(f"confidence must be between 0 and 1, got {confidence!r}: 0.95 is the default")
+    return average.assign_attrs(how.model_dump())
 
 
 def _parse(activity: Any) -> tuple[FloatArray, tuple[str, ...], tuple[int, ...]]:

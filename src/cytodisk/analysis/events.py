@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from cytodisk.analysis.edge_area import area_by_step
 from cytodisk.analysis.time_steps import frame_numbers, frame_seconds
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
-from cytodisk.checks import whole_number
+from cytodisk.checks import number_between, whole_number
 from cytodisk.errors import ParameterError
 
 Kind: TypeAlias = Literal["protrusion", "retraction"]
@@ -198,10 +198,7 @@ def _threshold(threshold: Any, noise: float, values: FloatArray) -> float:
                 "pass a number"
             )
         return _NOISES * noise
-    number = isinstance(threshold, int | float | np.number) and not isinstance(threshold, bool)
-    if not number or not 0.0 <= threshold < np.inf:
-        raise ParameterError(f"threshold must be a number of at least 0, got {threshold!r}")
-    return float(threshold)
+    return number_between("threshold", threshold, 0.0)
 
 
 def _runs(values: FloatArray, areas: FloatArray) -> _Runs:

@@ -12,7 +12,7 @@ import xarray as xr
 from cytodisk.analysis.activity import parse_signals
 from cytodisk.analysis.boundary_depth import places_at_depth
 from cytodisk.arrays import AnyArray, BoolArray, FloatArray
-from cytodisk.checks import whole_number
+from cytodisk.checks import number_between, positive_number, whole_number
 from cytodisk.errors import ParameterError, SignalError
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.tracking import point_angles
@@ -68,8 +68,7 @@ def line_kymograph(line_yx: Any, signals: Any, *, width_px: int = 1, spacing_px:
            [1., 2., 3., 4., 5.]])
     """
     line = _parse_line(line_yx)
-    _check_sampling(width_px, spacing_px)
-    width_px = int(width_px)
+    width_px, spacing_px = whole_number("width_px", width_px, 1), positive_number("spacing_px", spacing_px)
     _refuse_path(signals)
     frames, channels, shape = _parse_movie(signals)
     distance, places, normals = _along(line, spacing_px)
@@ -83,7 +82,7 @@ def line_kymograph(line_yx: Any, signals: Any, *, width_px: int = 1, spacing_px:
         "y": ("distance", places[:, 0], {"units": "px"}),
         "x": ("distance", places[:, 1], {"units": "px"}),
     }
-    attrs = {"width_px": width_px, "spacing_px": float(spacing_px)}
+    attrs = {"width_px": width_px, "spacing_px": spacing_px}
     return _kymograph(np.array(rows), "distance", channels, coords, scale, attrs).rename("line_kymograph")
 
 
@@ -140,8 +139,7 @@ def boundary_kymograph(movie: DiskMovie, depth: float, signals: Any, *, points: 
             "or map_movie(masks)"
         )
     _refuse_path(signals)
-    if isinstance(depth, bool) or not isinstance(depth, int | float | np.number) or not 0 <= depth < np.inf:
-        raise ParameterError(f"depth must be a number of at least 0, got {depth!r}")
+    depth = number_between("depth", depth, 0.0)
     points = whole_number("points", points, 1)
     frames, names = parse_signals(signals, len(movie), movie.image_shape)
     channels = names if np.ndim(frames[0]) == 3 else None
@@ -158,7 +156,7 @@ def boundary_kymograph(movie: DiskMovie, depth: float, signals: Any, *, points: 
         "y": (("time", "point"), places[..., 0], {"units": "px"}),
         "x": (("time", "point"), places[..., 1], {"units": "px"}),
     }
-    attrs = {"depth": float(depth), "depth_units": scale.length_unit}
+    attrs = {"depth": depth, "depth_units": scale.length_unit}
     named = _kymograph(rows, "point", channels, coords, scale, attrs)
     return named.rename("boundary_kymograph")
 
@@ -205,13 +203,6 @@ def _parse_line(line_yx: Any) -> FloatArray:
     if moved.sum() < 2:
         raise ParameterError("line_yx has no length: pass points that differ")
     return np.asarray(line[moved])
-
-
-def _check_sampling(width_px: Any, spacing_px: Any) -> None:
-    whole_number("width_px", width_px, 1)
-    number = isinstance(spacing_px, int | float | np.number) and not isinstance(spacing_px, bool)
-    if not number or not 0 < spacing_px < np.inf:
-        raise ParameterError(f"spacing_px must be a positive number, got {spacing_px!r}: 1 is the default")
 
 
 def _refuse_path(signals: Any) -> None:

@@ -46,7 +46,7 @@ def mesh_inside(
     outline_yx: FloatArray,
     mask: BoolArray,
     *,
-    edge_length: float = 0.9,
+    edge_length: float,
     growth: float = 0.5,
     clearance: float = 0.75,
 ) -> Mesh:

@@ -7,14 +7,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cytodisk.errors import ParameterError, WindowError
+from cytodisk.checks import one_of
+from cytodisk.disk.sector_parameters import SECTORS, SectorParameters
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.edge import FRAMES, EdgeMotion, Frame, edge_motion, mean_by_sector, normal_displacement
 from cytodisk.motion.tracking_parameters import JitterParameters
 from cytodisk.taking import takes
 
 
-def edge_velocity(movie: DiskMovie, sectors: int = 60, *, frame: Frame = "lab") -> xr.DataArray:
+def edge_velocity(movie: DiskMovie, sectors: int = SECTORS, *, frame: Frame = "lab") -> xr.DataArray:
     """Outward velocity of the cell's edge by frame and sector.
 
     Displacement of the tracked boundary points from frame t to t + 1 along the outward normal, averaged over
@@ -62,7 +63,7 @@ def edge_velocity(movie: DiskMovie, sectors: int = 60, *, frame: Frame = "lab") 
     >>> 0.5 < velocity.mean().item() < 0.7
     True
     """
-    _check(sectors, frame)
+    sectors, frame = SectorParameters(sectors=sectors).sectors, one_of("frame", frame, FRAMES)
     values = np.full((len(movie), sectors), np.nan)
     for number, (here, there) in _pairs(movie):
         displacement = normal_displacement(here, there, frame)
@@ -101,7 +102,7 @@ def boundary_velocity(movie: DiskMovie, *, frame: Frame = "lab") -> xr.DataArray
     >>> velocity.dims, 0.5 < velocity.mean().item() < 0.7
     (('time', 'point'), True)
     """
-    _check(1, frame)
+    frame = one_of("frame", frame, FRAMES)
     values = np.full((len(movie), movie.n_points), np.nan)
     for number, (here, there) in _pairs(movie):
         values[number] = normal_displacement(here, there, frame)
@@ -114,7 +115,7 @@ def boundary_velocity(movie: DiskMovie, *, frame: Frame = "lab") -> xr.DataArray
 @takes(JitterParameters)
 def edge_changes(
     movie: DiskMovie,
-    sectors: int = 60,
+    sectors: int = SECTORS,
     *,
     frame: Frame = "lab",
     **settings: Any,
@@ -153,7 +154,7 @@ def edge_changes(
     >>> bool((changes["protruded_area"].sum("sector") > changes["retracted_area"].sum("sector"))[0])
     True
     """
-    _check(sectors, frame)
+    sectors, frame = SectorParameters(sectors=sectors).sectors, one_of("frame", frame, FRAMES)
     jitter = JitterParameters.of(**settings)
     rows: dict[int, EdgeMotion] = {}
     for number, (here, there) in _pairs(movie):
@@ -181,13 +182,6 @@ def edge_changes(
             values[number] = convert(getattr(row, source))
         columns[name] = _labelled(movie, values, "sector", frame).assign_attrs(units=units)
     return xr.Dataset(columns, attrs={"frame": frame} | scale.attrs)
-
-
-def _check(sectors: Any, frame: Any) -> None:
-    if isinstance(sectors, bool) or not isinstance(sectors, int | np.integer) or sectors < 1:
-        raise WindowError(f"sectors must be a whole number of at least 1, got {sectors!r}")
-    if frame not in FRAMES:
-        raise ParameterError(f"frame must be 'lab' or 'cell', got {frame!r}")
 
 
 def _pairs(movie: DiskMovie) -> Any:

@@ -3,8 +3,9 @@
 import numpy as np
 
 from cytodisk.arrays import BoolArray
+from cytodisk.checks import number_between
 from cytodisk.errors import ParameterError
-from cytodisk.simulate.drawing import check_at_least, dot, paint, pixel_grid
+from cytodisk.simulate.drawing import dot, paint, pixel_grid
 
 
 def disk(radius: float = 60.0, margin: int = 8) -> BoolArray:
@@ -39,7 +40,7 @@ def disk(radius: float = 60.0, margin: int = 8) -> BoolArray:
     >>> mask.shape, int(mask.sum())  # about 100 π pixels
     ((37, 37), 317)
     """
-    check_at_least("radius", radius, 0.5)
+    number_between("radius", radius, 0.5)
     return ellipse((radius, radius), margin=margin)
 
 
@@ -80,8 +81,8 @@ def ellipse(
     """
     if np.shape(semi_axes) != (2,):
         raise ParameterError(f"semi_axes must be two numbers (along y, along x), got {semi_axes!r}")
-    check_at_least("semi_axes", min(semi_axes), 0.5)
-    check_at_least("margin", margin, 0)
+    number_between("semi_axes", min(semi_axes), 0.5)
+    number_between("margin", margin, 0)
     turn = np.radians(angle)
     along_y, along_x = semi_axes
     half_height = np.hypot(along_y * np.cos(turn), along_x * np.sin(turn))
@@ -135,10 +136,10 @@ def star(
     >>> cd.clean_mask(mask)[1].components
     1
     """
-    check_at_least("arms", arms, 1)
-    check_at_least("body_radius", body_radius, 1)
-    check_at_least("arm_length", arm_length, 0)
-    check_at_least("arm_width", arm_width, 1)
+    number_between("arms", arms, 1)
+    number_between("body_radius", body_radius, 1)
+    number_between("arm_length", arm_length, 0)
+    number_between("arm_width", arm_width, 1)
     reach = body_radius + arm_length - 0.5 * arm_width
     angle = 2.0 * np.pi * np.arange(arms) / arms
     tips = reach * np.column_stack([np.sin(angle), np.cos(angle)])
@@ -184,9 +185,9 @@ def dumbbell(
     >>> cd.clean_mask(mask)[1].components  # the neck holds the two disks together
     1
     """
-    check_at_least("radius", radius, 1)
-    check_at_least("neck_length", neck_length, 0)
-    check_at_least("neck_width", neck_width, 1)
+    number_between("radius", radius, 1)
+    number_between("neck_length", neck_length, 0)
+    number_between("neck_width", neck_width, 1)
     away = radius + 0.5 * neck_length
     return paint(
         np.array(

@@ -5,21 +5,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray
-from cytodisk.errors import ParameterError
-
-
-def check_at_least(name: str, value: Any, least: float) -> None:
-    """Raise unless a parameter is a finite number that is large enough."""
-    number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-    if not (number and least <= value < np.inf):
-        raise ParameterError(f"{name} must be a number of at least {least}, got {value!r}: pass a larger one")
-
-
-def check_whole(name: str, value: Any, least: float) -> None:
-    """Raise unless a parameter is a whole number that is large enough."""
-    check_at_least(name, value, least)
-    if value != int(value):
-        raise ParameterError(f"{name} must be a whole number, got {value!r}: pass {int(value)}")
+from cytodisk.checks import number_between
 
 
 def pixel_grid(half_height: float, half_width: float) -> tuple[FloatArray, FloatArray]:
@@ -36,7 +22,7 @@ def all_angles() -> FloatArray:
 
 def inside_radius(radius_of_angle: FloatArray, margin: int) -> BoolArray:
     """Pixels nearer to the centre than a radius given at `all_angles()`."""
-    check_at_least("margin", margin, 0)
+    number_between("margin", margin, 0)
     reach = radius_of_angle.max() + margin
     y, x = pixel_grid(reach, reach)
     return np.asarray(np.hypot(y, x) <= np.interp(np.arctan2(y, x), all_angles(), radius_of_angle))
@@ -53,7 +39,7 @@ def paint(strokes: FloatArray, margin: int) -> BoolArray:
     Pixel centres are at integers; the origin of the strokes is a pixel centre. Strokes are at least as wide
     as it takes to stay 8-connected.
     """
-    check_at_least("margin", margin, 0)
+    number_between("margin", margin, 0)
     half = np.maximum(strokes[:, 4], 0.5 * np.sqrt(2.0))
     points = np.concatenate([strokes[:, :2], strokes[:, 2:4]])
     reach = np.concatenate([half, half])[:, None]

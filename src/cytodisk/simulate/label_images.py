@@ -6,7 +6,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from cytodisk.arrays import BoolArray
-from cytodisk.simulate.drawing import check_at_least
+from cytodisk.checks import number_between
 from cytodisk.simulate.random_cells import branching, migrating, random_smooth, random_spiky
 
 _GAP_PX = 1  # background between the boxes of neighbours
@@ -44,7 +44,7 @@ def label_image(cells: int = 50, seed: int = 0) -> np.ndarray[Any, np.dtype[np.u
     >>> int(labels.max())
     5
     """
-    check_at_least("cells", cells, 1)
+    number_between("cells", cells, 1)
     random = np.random.default_rng([7, seed])
     makers = [_MAKERS[kind] for kind in random.choice(len(_MAKERS), cells, p=_SHARES)]
     masks = [make(random) for make in makers]

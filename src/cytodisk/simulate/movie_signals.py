@@ -57,9 +57,7 @@ def rasterised(outline_yx: FloatArray, shape: tuple[int, int]) -> BoolArray:
     return np.asarray(shapely.contains_xy(polygon, row, column))
 
 
-def expected_counts(
-    scene: Scene, random: np.random.Generator, pixel_size_um: float, frame_interval_s: float
-) -> xr.DataArray:
+def expected_counts(scene: Scene, random: np.random.Generator) -> xr.DataArray:
     """Channels "material" and "edge" of all frames without noise, nothing in the frames that were dropped."""
     material = _Material(scene, random)
     counts = np.zeros((len(scene.present), 2, *scene.shape))
@@ -71,12 +69,7 @@ def expected_counts(
         counts[frame] = _BACKGROUND
         counts[frame, 0, inside] += material(back, scene.plan.pose.to_cell(pixels - scene.shift, frame))
         counts[frame, 1, inside] += _edge(pixels, scene.boundary_yx[frame], scene.followed_px[frame])
-    return xr.DataArray(
-        counts,
-        dims=("time", "channel", "y", "x"),
-        coords={"channel": _CHANNELS},
-        attrs={"pixel_size_um": pixel_size_um, "frame_interval_s": frame_interval_s},
-    )
+    return xr.DataArray(counts, {"channel": _CHANNELS}, ("time", "channel", "y", "x"))
 
 
 def camera(truth: xr.DataArray, random: np.random.Generator) -> xr.DataArray:

@@ -1,18 +1,21 @@
 """Movies of one moving cell whose every material point is known, for tests of boundary trackers."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from cytodisk.arrays import BoolArray, FloatArray
-from cytodisk.errors import ParameterError
+from cytodisk.checks import one_of, whole_number
+from cytodisk.scale import Scale
 from cytodisk.simulate.coupling import coupled_stretch, partly_followed
-from cytodisk.simulate.drawing import check_at_least, check_whole
 from cytodisk.simulate.jittered_masks import jittered
-from cytodisk.simulate.movie_kinds import HABITS, MOVIE_KINDS, Habits, MovieKind, plan_movie
+from cytodisk.simulate.movie_kinds import MOVIE_KINDS, MovieKind, plan_movie
 from cytodisk.simulate.movie_signals import Scene, camera, expected_counts, rasterised
+from cytodisk.simulate.moving_cell_parameters import MovingCellParameters
 from cytodisk.simulate.paths import normal_displacement, paths
+from cytodisk.taking import takes
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,27 +73,11 @@ class SimulatedMovie:
     frame_interval_s: float
 
 
-def movie(
-    kind: MovieKind = "migrating",
-    seed: int = 0,
-    *,
-    frames: int = 40,
-    radius_px: float = 45.0,
-    speed_px: float | None = None,
-    turn_deg: float | None = None,
-    protrusion_px: float | None = None,
-    jitter_px: float | None = None,
-    dropped: float | None = None,
-    lag_frames: int = 4,
-    coupled: float = 1.0,
-    pixel_size_um: float = 0.16,
-    frame_interval_s: float = 5.0,
-    margin: int = 10,
-    signals: bool = True,
-) -> SimulatedMovie:
+@takes(MovingCellParameters)
+def movie(kind: MovieKind = "migrating", seed: int = 0, **settings: Any) -> SimulatedMovie:
     """A movie of one moving cell with exact answers.
 
-    A smooth flow of the plane carries the cell's edge and its inside. None stands for the kind's own value.
+    A smooth flow of the plane carries the cell's edge and its inside.
 
     Parameters
     ----------
@@ -102,36 +89,8 @@ def movie(
         "fluctuating" (the edge moves by smooth noise that has no period, so that a lag can be told).
     seed : int
         Places, phases, widths and directions; the same arguments give the same movie.
-    frames : int
-        At least 2.
-    radius_px : float
-        Radius of the disk of the same area as the cell at rest, at least 10.
-    speed_px : float, optional
-        Speed of the whole cell in pixels per frame, at least 0; for "growing" of its edge.
-    turn_deg : float, optional
-        Turn of the whole cell and its direction in degrees per frame, positive from +x towards +y.
-    protrusion_px : float, optional
-        Height of the largest protrusion in pixels, at least 0; only for kinds that have protrusions. For
-        "fluctuating" three standard deviations of the edge about its mean place.
-    jitter_px : float, optional
-        Standard deviation of the drawn outline about the true one in pixels, at least 0. Smooth along the
-        edge, independent between frames.
-    dropped : float, optional
-        Share of frames with an empty mask and no signal, from 0 to below 1; never the first or last.
-    lag_frames : int
-        By how many frames the "edge" channel follows the edge's velocity; negative: leads it.
-    coupled : float
-        Share of the edge, from 0 to 1, along which the "edge" channel follows the edge's velocity: one
-        stretch from a random place on. Elsewhere it follows, at the same boundary points, the velocity of
-        another cell of the kind, drawn independently; within 30 of the 3000 boundary points the one goes
-        over into the other. Whatever all movies of a kind share, like the steady advance of a front, both
-        cells have: "fluctuating" shares nothing, "growing" everything.
-    pixel_size_um, frame_interval_s : float
-        Above 0; stored with the signal.
-    margin : int
-        Pixels of background around all that is drawn, at least 0.
-    signals : bool
-        Whether to make the two channels, which takes most of the time.
+    **settings
+        See `MovingCellParameters`.
 
     Returns
     -------
@@ -154,25 +113,27 @@ def movie(
     >>> len(truth.masks), truth.signal.dims
     (3, ('time', 'channel', 'y', 'x'))
     """
-    _check(seed, frames, radius_px, lag_frames, coupled, pixel_size_um, frame_interval_s, margin)
-    habits = _habits(kind, speed_px, turn_deg, protrusion_px, jitter_px, dropped)
-    plan = plan_movie(kind, np.random.default_rng([seed, 0]), radius_px, habits)
-    around = abs(lag_frames) if signals else 0
+    kind, seed = one_of("kind", kind, MOVIE_KINDS), whole_number("seed", seed, 0)
+    how = MovingCellParameters.of(**settings)
+    frames, lag, scale = how.frames, how.lag_frames, Scale(how.pixel_size_um, how.frame_interval_s)
+    habits = how.habits(kind)
+    plan = plan_movie(kind, np.random.default_rng([seed, 0]), how.radius_px, habits)
+    around = abs(lag) if how.signals else 0
     path = paths(plan, -around, frames + around + 1)
     shown = slice(around, around + frames)
     drawn = jittered(path.boundary_yx[shown], habits.jitter_px, np.random.default_rng([seed, 1]))
-    shape, shift = _image_frame(drawn, margin)
+    shape, shift = _image_frame(drawn, how.margin)
     present = _present(frames, habits.dropped, np.random.default_rng([seed, 2]))
     displacement = normal_displacement(path.boundary_yx)
     boundary = path.boundary_yx[shown] + shift
-    stretch = coupled_stretch(coupled, np.random.default_rng([seed, 5]))
+    stretch = coupled_stretch(how.coupled, np.random.default_rng([seed, 5]))
     signal, truth = None, None
-    if signals:
-        other = plan_movie(kind, np.random.default_rng([seed, 6]), radius_px, habits)
+    if how.signals:
+        other = plan_movie(kind, np.random.default_rng([seed, 6]), how.radius_px, habits)
         followed = partly_followed(displacement, stretch, other, -around)
-        followed = followed[around - lag_frames : around - lag_frames + frames]
+        followed = followed[around - lag : around - lag + frames]
         scene = Scene(plan, path.places_yx[shown], boundary, followed, shape, shift, present)
-        truth = expected_counts(scene, np.random.default_rng([seed, 3]), pixel_size_um, frame_interval_s)
+        truth = expected_counts(scene, np.random.default_rng([seed, 3])).assign_attrs(scale.attrs)
         signal = camera(truth, np.random.default_rng([seed, 4]))
     displacement = displacement[shown].copy()
     displacement[-1] = np.nan
@@ -187,65 +148,10 @@ def movie(
         truth=truth,
         kind=kind,
         seed=seed,
-        lag_frames=lag_frames,
-        pixel_size_um=pixel_size_um,
-        frame_interval_s=frame_interval_s,
+        lag_frames=lag,
+        pixel_size_um=how.pixel_size_um,
+        frame_interval_s=how.frame_interval_s,
     )
-
-
-def _habits(
-    kind: MovieKind,
-    speed_px: float | None,
-    turn_deg: float | None,
-    protrusion_px: float | None,
-    jitter_px: float | None,
-    dropped: float | None,
-) -> Habits:
-    """The kind's habits with what the caller replaced."""
-    if kind not in MOVIE_KINDS:
-        raise ParameterError(f"kind must be one of {', '.join(MOVIE_KINDS)}, got {kind!r}")
-    if protrusion_px is not None and HABITS[kind].protrusion_px is None:
-        raise ParameterError(
-            f"kind {kind!r} has no protrusions, got protrusion_px={protrusion_px!r}: leave it out"
-        )
-    own = HABITS[kind]
-    habits = Habits(
-        speed_px=own.speed_px if speed_px is None else speed_px,
-        turn_deg=own.turn_deg if turn_deg is None else turn_deg,
-        protrusion_px=own.protrusion_px if protrusion_px is None else protrusion_px,
-        jitter_px=own.jitter_px if jitter_px is None else jitter_px,
-        dropped=own.dropped if dropped is None else dropped,
-    )
-    for name in ("speed_px", "jitter_px", "dropped"):
-        check_at_least(name, getattr(habits, name), 0.0)
-    check_at_least("turn_deg", habits.turn_deg, -180.0)
-    check_at_least("protrusion_px", habits.protrusion_px or 0.0, 0.0)
-    if habits.dropped >= 1.0:
-        raise ParameterError(f"dropped must be a share below 1, got {dropped!r}: pass 0.15 for 15 %")
-    return habits
-
-
-def _check(
-    seed: int,
-    frames: int,
-    radius_px: float,
-    lag_frames: int,
-    coupled: float,
-    pixel_size_um: float,
-    frame_interval_s: float,
-    margin: int,
-) -> None:
-    for name, value, least in (("seed", seed, 0), ("frames", frames, 2), ("margin", margin, 0)):
-        check_whole(name, value, least)
-    check_whole("lag_frames", lag_frames, -frames)
-    check_at_least("radius_px", radius_px, 10.0)
-    check_at_least("coupled", coupled, 0.0)
-    if coupled > 1.0:
-        raise ParameterError(
-            f"coupled must be a share from 0 to 1, got {coupled!r}: pass 0.5 for half the edge"
-        )
-    check_at_least("pixel_size_um", pixel_size_um, 1e-9)
-    check_at_least("frame_interval_s", frame_interval_s, 1e-9)
 
 
 def _image_frame(drawn_yx: FloatArray, margin: int) -> tuple[tuple[int, int], FloatArray]:

@@ -1,14 +1,16 @@
 """Activity and edge velocity as random series with known correlations, without a cell or an image."""
 
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 import xarray as xr
 from scipy.signal import lfilter, oaconvolve
 
 from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.checks import one_of, whole_number
 from cytodisk.errors import ParameterError
-from cytodisk.simulate.drawing import check_at_least, check_whole
+from cytodisk.simulate.series_parameters import CouplingParameters, NeighbourParameters
+from cytodisk.taking import takes
 
 SeriesKind = Literal["white", "ar1", "slow", "smooth", "oscillating"]
 SERIES_KINDS: tuple[SeriesKind, ...] = get_args(SeriesKind)
@@ -19,14 +21,9 @@ _OSCILLATION_DAMPING, _OSCILLATION_PERIOD = 0.9, 10.0
 _REACH = 4.0  # correlation lengths beyond which noise counts for nothing
 
 
+@takes(NeighbourParameters)
 def independent_series(
-    kind: SeriesKind,
-    seed: int,
-    frames: int,
-    layers: int,
-    sectors: int,
-    *,
-    correlation_length: float = 1.0,
+    kind: SeriesKind, seed: int, frames: int, layers: int, sectors: int, **settings: Any
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Activity and velocity that have nothing to do with each other: every correlation found is false.
 
@@ -40,9 +37,8 @@ def independent_series(
         At least 0; the same arguments give the same series.
     frames, layers, sectors : int
         At least 1.
-    correlation_length : float
-        Windows over which the correlation between neighbours falls to exp(-1/2), along the edge, where the
-        last sector is the first one's neighbour, and inwards; 0: windows are independent.
+    **settings
+        See `NeighbourParameters`.
 
     Returns
     -------
@@ -72,12 +68,14 @@ def independent_series(
     >>> activity.shape, velocity.shape
     ((50, 2, 6), (50, 6))
     """
-    _check(kind, seed, frames, layers, sectors, correlation_length)
-    velocity = _velocity(kind, seed, frames, sectors, correlation_length)
-    activity = _activity(kind, seed, frames, (layers, sectors), correlation_length)
+    length = NeighbourParameters.of(**settings).correlation_length
+    _check(kind, seed, frames, layers, sectors)
+    velocity = _velocity(kind, seed, frames, sectors, length)
+    activity = _activity(kind, seed, frames, (layers, sectors), length)
     return _labelled(activity, velocity)
 
 
+@takes(CouplingParameters)
 def coupled_series(
     kind: SeriesKind,
     seed: int,
@@ -87,8 +85,7 @@ def coupled_series(
     *,
     lag_frames: int,
     windows: BoolArray,
-    strength: float = 0.5,
-    correlation_length: float = 1.0,
+    **settings: Any,
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Activity that follows the velocity of its sector in given windows, and only there.
 
@@ -98,14 +95,14 @@ def coupled_series(
 
     Parameters
     ----------
-    kind, seed, frames, layers, sectors, correlation_length
+    kind, seed, frames, layers, sectors
         See `independent_series`.
     lag_frames : int
         By how many frames activity follows velocity, at least -`frames`; negative: leads it.
     windows : array_like of shape (layers, sectors) and dtype bool
         Where.
-    strength : float
-        From -1 to 1.
+    **settings
+        See `CouplingParameters`.
 
     Returns
     -------
@@ -129,11 +126,9 @@ def coupled_series(
     >>> activity.shape, velocity.shape
     ((50, 2, 6), (50, 6))
     """
-    _check(kind, seed, frames, layers, sectors, correlation_length)
-    check_whole("lag_frames", lag_frames, -frames)
-    check_at_least("strength", strength, -1.0)
-    if strength > 1.0:
-        raise ParameterError(f"strength must be a number from -1 to 1, got {strength!r}")
+    how = CouplingParameters.of(**settings)
+    _check(kind, seed, frames, layers, sectors)
+    lag_frames = whole_number("lag_frames", lag_frames, -frames)
     coupled = np.asarray(windows)
     if coupled.dtype != bool or coupled.shape != (layers, sectors):
         raise ParameterError(
@@ -141,23 +136,19 @@ def coupled_series(
             f"{coupled.shape}: pass True for each window that follows the velocity"
         )
     around = abs(lag_frames)
-    run = _velocity(kind, seed, frames + around, sectors, correlation_length)
+    run = _velocity(kind, seed, frames + around, sectors, how.correlation_length)
     velocity = run[max(lag_frames, 0) :][:frames]
     followed = run[max(-lag_frames, 0) :][:frames, None, :]
-    noise = _activity(kind, seed, frames, (layers, sectors), correlation_length)
-    mixed = strength * followed + np.sqrt(1.0 - strength**2) * noise
+    noise = _activity(kind, seed, frames, (layers, sectors), how.correlation_length)
+    mixed = how.strength * followed + np.sqrt(1.0 - how.strength**2) * noise
     return _labelled(np.where(coupled, mixed, noise), velocity)
 
 
-def _check(
-    kind: SeriesKind, seed: int, frames: int, layers: int, sectors: int, correlation_length: float
-) -> None:
-    if kind not in SERIES_KINDS:
-        raise ParameterError(f"kind must be one of {', '.join(SERIES_KINDS)}, got {kind!r}")
-    check_whole("seed", seed, 0)
+def _check(kind: SeriesKind, seed: int, frames: int, layers: int, sectors: int) -> None:
+    one_of("kind", kind, SERIES_KINDS)
+    whole_number("seed", seed, 0)
     for name, value in (("frames", frames), ("layers", layers), ("sectors", sectors)):
-        check_whole(name, value, 1)
-    check_at_least("correlation_length", correlation_length, 0.0)
+        whole_number(name, value, 1)
 
 
 def _velocity(kind: SeriesKind, seed: int, frames: int, sectors: int, length: float) -> FloatArray:

@@ -3,8 +3,9 @@
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.checks import number_between
 from cytodisk.errors import ParameterError
-from cytodisk.simulate.drawing import all_angles, check_at_least, dot, inside_radius, paint
+from cytodisk.simulate.drawing import all_angles, dot, inside_radius, paint
 
 _SMOOTH_MODES = 6
 _TURN_PER_STEP = 0.35  # radians, standard deviation of a process's change of direction
@@ -60,11 +61,11 @@ def branching(
     >>> cd.clean_mask(mask)[1].components
     1
     """
-    check_at_least("soma_radius", soma_radius, 1)
-    check_at_least("processes", processes, 0)
-    check_at_least("process_length", process_length, 0)
-    check_at_least("process_width", process_width, 1)
-    check_at_least("branch_every", branch_every, 1)
+    number_between("soma_radius", soma_radius, 1)
+    number_between("processes", processes, 0)
+    number_between("process_length", process_length, 0)
+    number_between("process_width", process_width, 1)
+    number_between("branch_every", branch_every, 1)
     random = np.random.default_rng(seed)
     strokes = [dot(0.0, 0.0, soma_radius)]
     first = random.uniform(0.0, 2.0 * np.pi)
@@ -124,8 +125,8 @@ def random_smooth(
     >>> bool((first == again).all())  # the seed decides
     True
     """
-    check_at_least("radius", radius, 1)
-    check_at_least("roughness", roughness, 0)
+    number_between("radius", radius, 1)
+    number_between("roughness", roughness, 0)
     if roughness > 1:
         raise ParameterError(f"roughness must be 0 to 1, got {roughness!r}: pass a smaller one")
     mode = np.arange(1, _SMOOTH_MODES + 1)
@@ -183,10 +184,10 @@ def random_spiky(
     >>> cd.clean_mask(mask)[1].components
     1
     """
-    check_at_least("radius", radius, 1)
-    check_at_least("spikes", spikes, 0)
-    check_at_least("spike_length", spike_length, 0)
-    check_at_least("spike_width", spike_width, 1)
+    number_between("radius", radius, 1)
+    number_between("spikes", spikes, 0)
+    number_between("spike_length", spike_length, 0)
+    number_between("spike_width", spike_width, 1)
     random = np.random.default_rng(seed)
     strokes = []
     for _ in range(4):
@@ -240,8 +241,8 @@ def migrating(seed: int = 0, *, size: float = 1.0, margin: int = 8) -> BoolArray
     >>> cd.map_to_disk(mask).certificate.valid
     True
     """
-    check_at_least("size", size, 0.1)
-    check_at_least("margin", margin, 0)
+    number_between("size", size, 0.1)
+    number_between("margin", margin, 0)
     random = np.random.default_rng(seed)
     strokes = np.concatenate([_fan(random), _tail(random)])
     return paint(size * strokes, margin)

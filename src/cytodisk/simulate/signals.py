@@ -7,8 +7,8 @@ import xarray as xr
 from scipy import ndimage
 
 from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.checks import number_between
 from cytodisk.errors import ParameterError
-from cytodisk.simulate.drawing import check_at_least
 from cytodisk.simulate.random_cells import migrating
 
 _CHANNELS = ["edge", "perinuclear"]
@@ -94,7 +94,7 @@ def ring_signal(
     >>> bool(signal[mask].max() > 8.0), float(signal[18, 18].round(2))  # at the edge, and in the middle
     (True, 0.41)
     """
-    check_at_least("decay_px", decay_px, 1e-6)
+    number_between("decay_px", decay_px, 1e-6)
     return np.asarray(background + peak * np.where(mask, np.exp(-depth(mask) / decay_px), 0.0))
 
 
@@ -176,7 +176,7 @@ def cell_with_signal(seed: int = 0) -> SimulatedCell:
     >>> cell.signal.dims, cell.signal["channel"].to_numpy().tolist()
     (('channel', 'y', 'x'), ['edge', 'perinuclear'])
     """
-    check_at_least("seed", seed, 0)
+    number_between("seed", seed, 0)
     mask = migrating(seed)
     expected = np.stack([_leading_edge(mask), _around_nucleus(mask)]) + 20.0
     counts = np.random.default_rng([seed, 1]).poisson(expected).astype(np.uint16)

@@ -1,10 +1,10 @@
 """Parameters of grids of windows, and of sampling in them."""
 
-from typing import ClassVar, Literal, Self, TypeAlias
+from typing import Literal, Self, TypeAlias
 
 from pydantic import model_validator
 
-from cytodisk.errors import CytodiskError, WindowError
+from cytodisk.disk.sector_parameters import SectorParameters
 from cytodisk.parameters import Parameters, parameter
 
 Spacing: TypeAlias = Literal["area", "radius"]
@@ -13,13 +13,14 @@ NanRule: TypeAlias = Literal["propagate", "omit"]
 _MOST_WINDOWS = 10_000_000  # beyond any image, and still within memory
 
 
-class CountParameters(Parameters):
-    """How many windows there are."""
-
-    fault: ClassVar[type[CytodiskError]] = WindowError
+class LayerParameters(Parameters):
+    """How many layers there are."""
 
     layers: int = parameter(10, "Number of layers; layer 0 is at the edge of the cell.", least=1)
-    sectors: int = parameter(60, "Number of sectors around the cell.", least=1)
+
+
+class CountParameters(SectorParameters, LayerParameters):
+    """How many windows there are."""
 
     @model_validator(mode="after")
     def _not_too_many(self) -> Self:

@@ -125,7 +125,7 @@ def test_pruning_leaves_arms_and_takes_spurs() -> None:
 
 def test_the_coarse_mesh_tells_the_area_error_of_the_fine_one() -> None:
     shape = crop_shape(star(5, 70))
-    coarse, fine = coarse_mesh(shape), mesh_inside(shape.traced, shape.mask)
+    coarse, fine = coarse_mesh(shape), mesh_inside(shape.traced, shape.mask, edge_length=0.9)
     assert 2 * len(coarse.vertices_yx) < len(fine.vertices_yx)
     disk = cd.map_to_disk(shape.mask, method="harmonic")
     found = measure_distortion(shape)

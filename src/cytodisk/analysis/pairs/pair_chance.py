@@ -10,13 +10,12 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from cytodisk.analysis.correlation.prepared_series import standardised
+from cytodisk.analysis.correlation.surrogates import Surrogates
 from cytodisk.analysis.pairs.pair_blocks import DistanceBins, mean_by_bin, unit_columns
 from cytodisk.arrays import FloatArray, IntArray
 
 _AT_ONCE = 32  # surrogates in memory
 _FEWEST = 0.5  # pairs in a bin over the number of windows, for the threshold: fewer are noise
-
-ManySurrogates = Callable[[FloatArray, slice], FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +39,7 @@ class PairChance:
 def chance_of_pairs(
     a: FloatArray,
     b: FloatArray,
-    changed: ManySurrogates,
-    count: int,
+    surrogates: Surrogates,
     lags: IntArray,
     min_pairs: int,
     bins: list[DistanceBins],
@@ -53,10 +51,8 @@ def chance_of_pairs(
     Parameters
     ----------
     a, b : ndarray of shape (T, W) and dtype float
-    changed : callable
-        Gives some surrogates (T, R) of a series.
-    count : int
-        Surrogates.
+    surrogates : Surrogates
+        Of `b`; all its series are changed together.
     lags : ndarray of shape (K,) and dtype int
     min_pairs : int
     bins : list of DistanceBins
@@ -75,11 +71,12 @@ def chance_of_pairs(
     a window are made once a lag, and multiplied with all surrogates. Where windows have gaps of their own,
     each surrogate's correlations are computed one by one instead.
     """
+    count = surrogates.count
     means = np.empty((count, len(bins), bins[0].count, lags.size))
     a = standardised(a)
     for first in range(0, count, _AT_ONCE):
         some = slice(first, min(first + _AT_ONCE, count))
-        series = np.stack([changed(column, some) for column in b.T], axis=1)  # (T, V, R)
+        series = np.stack([surrogates.together(column, some) for column in b.T], axis=1)  # (T, V, R)
         if same_gaps(a) and same_gaps(series.reshape(len(series), -1)):
             means[some] = _means(a, series, lags, min_pairs, bins, step)
         else:

@@ -117,9 +117,7 @@ def correlate_pairs(
     data: dict[str, Any] = {name: (dims, values) for name, values in found.items()}
     if surrogates:
         changed = make_surrogates(how.null, len(tables[1]), surrogates, how.seed, max_lag)
-        chance = chance_of_pairs(
-            tables[0], tables[1], changed.together, changed.count, lags, min_pairs, sorted_pairs, ALPHA, steps
-        )
+        chance = chance_of_pairs(tables[0], tables[1], changed, lags, min_pairs, sorted_pairs, ALPHA, steps)
         data |= {"null_low": (dims, chance.low), "null_high": (dims, chance.high)}
         data["threshold"] = ("along", chance.threshold)
     coords: dict[str, Any] = {

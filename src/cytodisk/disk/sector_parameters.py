@@ -1,0 +1,16 @@
+"""Into how many sectors the disk is divided."""
+
+from typing import ClassVar
+
+from cytodisk.errors import CytodiskError, WindowError
+from cytodisk.parameters import Parameters, parameter
+
+SECTORS = 60
+
+
+class SectorParameters(Parameters):
+    """How many sectors there are."""
+
+    fault: ClassVar[type[CytodiskError]] = WindowError
+
+    sectors: int = parameter(SECTORS, "Number of sectors around the cell.", least=1)

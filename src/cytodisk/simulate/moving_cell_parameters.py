@@ -1,0 +1,101 @@
+"""Parameters of simulated movies."""
+
+from dataclasses import replace
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from cytodisk.parameters import Parameters, parameter
+from cytodisk.simulate.movie_kinds import HABITS, Habits, MovieKind
+
+
+class HabitParameters(Parameters):
+    """What a cell does, where it is not what all cells of its kind do."""
+
+    speed_px: float | None = parameter(
+        None,
+        'Speed of the whole cell, for "growing" of its edge; without it that of the kind.',
+        least=0,
+        unit="px/frame",
+    )
+    turn_deg: float | None = parameter(
+        None,
+        "Turn of the whole cell and its direction, positive from +x towards +y; without it that of the kind.",
+        least=-180,
+        unit="degrees/frame",
+    )
+    protrusion_px: float | None = parameter(
+        None,
+        'Height of the largest protrusion, for kinds that have protrusions; for "fluctuating" three standard '
+        "deviations of the edge about its mean place. Without it that of the kind.",
+        least=0,
+        unit="px",
+    )
+    jitter_px: float | None = parameter(
+        None,
+        "Standard deviation of the drawn outline about the true one, smooth along the edge and independent "
+        "between frames; without it that of the kind.",
+        least=0,
+        unit="px",
+    )
+    dropped: Annotated[float | None, Field(lt=1)] = parameter(
+        None,
+        "Share of frames with an empty mask and no signal, never the first or last; without it that of the "
+        "kind.",
+        least=0,
+    )
+
+    def habits(self, kind: MovieKind) -> Habits:
+        """The habits of a kind, with those that are given here.
+
+        Raises
+        ------
+        ParameterError
+            A protrusion for a kind that has none.
+        """
+        own = HABITS[kind]
+        if self.protrusion_px is not None and own.protrusion_px is None:
+            raise self.fault(
+                f"kind {kind!r} has no protrusions, got protrusion_px={self.protrusion_px!r}: leave it out"
+            )
+        names = HabitParameters.model_fields
+        given = {name: value for name in names if (value := getattr(self, name)) is not None}
+        return replace(own, **given)
+
+
+class MovingCellParameters(HabitParameters):
+    """How a movie of one cell is made."""
+
+    frames: int = parameter(40, "Number of frames.", least=2)
+    radius_px: float = parameter(
+        45.0, "Radius of the disk of the same area as the cell at rest.", least=10, unit="px"
+    )
+    lag_frames: int = parameter(
+        4,
+        'Number of frames by which the "edge" channel follows the velocity of the edge; negative: leads it.',
+        unit="frames",
+    )
+    coupled: float = parameter(
+        1.0,
+        'Share of the edge along which the "edge" channel follows the velocity of the edge: one stretch from '
+        "a random place on. Elsewhere it follows, at the same boundary points, the velocity of another cell "
+        "of the kind, drawn independently; within 30 of the 3000 boundary points the one goes over into the "
+        "other. Whatever all movies of a kind share, like the steady advance of a front, both cells have: "
+        '"fluctuating" shares nothing, "growing" everything.',
+        least=0,
+        most=1,
+    )
+    pixel_size_um: float = parameter(
+        0.16, "Side of a pixel, stored with the signal.", above=0, unit="µm", flag="pixel-size"
+    )
+    frame_interval_s: float = parameter(
+        5.0, "Time between frames, stored with the signal.", above=0, unit="s", flag="frame-interval"
+    )
+    margin: int = parameter(10, "Width of the background around all that is drawn.", least=0, unit="px")
+    signals: bool = parameter(True, "Make the two channels, which takes most of the time.")
+
+    @model_validator(mode="after")
+    def _known_velocity(self) -> Self:
+        if self.lag_frames < -self.frames:
+            raise ValueError(f"lag_frames must be at least -{self.frames}, the frames, got {self.lag_frames}")
+        return self
