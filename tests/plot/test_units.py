@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import cytodisk as cd
 from cytodisk.arrays import BoolArray
-from cytodisk.plot.units import scale_for, velocity_label
+from cytodisk.plot.units import scale_for, velocity_label, with_unit
 from cytodisk.scale import Scale
 
 FRAMES, LAYERS, SECTORS = 4, 3, 8
@@ -136,3 +136,7 @@ def test_what_is_passed_goes_before_what_is_carried() -> None:
     assert scale_for(carrier) == Scale(0.1, 4.0)
     assert scale_for(carrier, SIZE_ALONE) == Scale(0.5, 4.0)
     assert scale_for(np.zeros(3), BOTH) == BOTH
+
+
+def test_ratios_have_no_unit() -> None:
+    assert [with_unit("r", unit) for unit in ("", "1", "µm")] == ["r", "r", "r (µm)"]

@@ -24,7 +24,7 @@ print(activity["mean"].sizes)
 # where the edge has just moved, and only near the edge.
 velocity = cd.edge_velocity(movie, sectors=60)
 mean = activity["mean"].sel(channel="edge")
-figure, axes = plt.subplots(5, 1, figsize=(5.6, 6.4))
+figure, axes = plt.subplots(5, 1, figsize=(5.6, 6.8), height_ratios=(1.8, 1, 1, 1, 1))
 figure.subplots_adjust(hspace=0.35, top=0.96, bottom=0.08, right=0.84)
 cd.plot.draw_layers(axes, mean, velocity)
 plt.show()

@@ -38,8 +38,8 @@ def unit_of(values: Any, otherwise: str = "") -> str:
 
 
 def with_unit(label: str, unit: str) -> str:
-    """A label with its unit in brackets; the label alone where the unit is empty."""
-    return f"{label} ({unit})" if unit else label
+    """A label with its unit in brackets; the label alone where there is none, or it is a ratio's "1"."""
+    return label if unit in ("", "1") else f"{label} ({unit})"
 
 
 def velocity_label(velocity: Any, scale: Scale | None = None) -> str:
