@@ -60,7 +60,7 @@ def random_triangles(count: int) -> list[tuple[np.ndarray, np.ndarray]]:
 def free_triangle_hessian(uv: np.ndarray, hats: np.ndarray, weight: float) -> tuple[np.ndarray, np.ndarray]:
     gradient, blocks = np.empty((3, 2)), np.empty((6, 2, 2))
     place = np.array([[[0, 1, 3], [-1, 2, 4], [-1, -1, 5]]])
-    derivatives(uv, ONE, hats, np.ones(1), weight, np.arange(3), place, False, gradient, blocks)
+    derivatives(uv, ONE, hats, np.ones(1), weight, (np.arange(3), place), False, (gradient, blocks))
     full = np.zeros((3, 2, 3, 2))
     for k, l in zip(*np.nonzero(place[0] >= 0), strict=True):
         full[k, :, l] = blocks[place[0, k, l]]
@@ -146,7 +146,14 @@ def test_the_gradient_agrees_with_finite_differences(problem: dict) -> None:
     system = BlockSystem(mesh)
     gradient = np.empty((len(system.vertex), 2))
     derivatives(
-        uv, mesh.triangles, hats, share, 0.005, system.unknown, system.place, False, gradient, system.blocks
+        uv,
+        mesh.triangles,
+        hats,
+        share,
+        0.005,
+        (system.unknown, system.place),
+        False,
+        (gradient, system.blocks),
     )
     random = np.random.default_rng(0)
     for unknown, axis in zip(random.integers(0, len(gradient), 25), random.integers(0, 2, 25), strict=True):
@@ -165,9 +172,15 @@ def test_the_assembled_hessian_is_the_sum_of_the_triangles_blocks(problem: dict)
     mesh, uv, hats, share = (problem[key] for key in ("mesh", "uv", "hats", "share"))
     system = BlockSystem(mesh)
     derivatives(
-        uv, mesh.triangles, hats, share, 0.005, system.unknown, system.place, False,
-        np.empty((len(system.vertex), 2)), system.blocks,
-    )  # fmt: skip
+        uv,
+        mesh.triangles,
+        hats,
+        share,
+        0.005,
+        (system.unknown, system.place),
+        False,
+        (np.empty((len(system.vertex), 2)), system.blocks),
+    )
     expected = np.zeros_like(system.blocks)
     for t, triangle in enumerate(mesh.triangles):
         _, block = free_triangle_hessian(uv[triangle], hats[t : t + 1], 0.005)

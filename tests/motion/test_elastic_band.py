@@ -40,7 +40,7 @@ def relaxed(
     n = len(places)
     points = here.at(evenly(here, n))
     return relax_band(
-        points, there.points_yx, there.arc, places, here.length / n, smoothness, motion, rigid, doubt
+        points, (there.points_yx, there.arc), places, here.length / n, smoothness, motion, rigid, doubt
     )
 
 

@@ -58,7 +58,7 @@ class BlockSystem:
 
     def factorise(self) -> None:
         """Compute the factors of `blocks`."""
-        _factorise(self.blocks, self._first, self._row, *self._pattern, self._factor, self._inverse)
+        _factorise(self.blocks, self._first, self._row, self._pattern, self._factor, self._inverse)
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solution for one right-hand side, (N, 2), with the last factors."""
@@ -172,15 +172,12 @@ def _factorise(
     blocks: FloatArray,
     first: IntArray,
     row: IntArray,
-    start: IntArray,
-    below: IntArray,
-    row_start: IntArray,
-    left: IntArray,
-    where: IntArray,
+    pattern: tuple[IntArray, IntArray, IntArray, IntArray, IntArray],
     factor: FloatArray,
     inverse: FloatArray,
 ) -> None:
-    """Fill the factor, row after row, and the inverses of its diagonal blocks."""
+    """Fill the factor, row after row, and the inverses of its diagonal blocks; see `_factor_pattern`."""
+    start, below, row_start, left, where = pattern
     n = len(first) - 1
     work = np.zeros((n, 2, 2))  # column k of what is left of the matrix
     for k in range(n):

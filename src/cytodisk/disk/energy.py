@@ -107,17 +107,16 @@ def derivatives(
     hats: FloatArray,
     share: FloatArray,
     weight: float,
-    unknown: IntArray,
-    place: IntArray,
+    where: tuple[IntArray, IntArray],
     gauss: bool,
-    gradient: FloatArray,
-    blocks: FloatArray,
+    filled: tuple[FloatArray, FloatArray],
 ) -> None:
     """Fill the gradient (N, 2) and the 2×2 blocks of the projected Hessian.
 
     With `gauss` the area term counts with its Gauss-Newton Hessian, 2 ∇L ∇Lᵀ, which leaves out L ∇²L.
-    `unknown` and `place` say where a vertex and a pair of corners belong, as in `blocks.BlockSystem`.
+    `where` says where a vertex and a pair of corners belong: `unknown` and `place` of `blocks.BlockSystem`.
     """
+    (unknown, place), (gradient, blocks) = where, filled
     gradient[:] = 0.0
     blocks[:] = 0.0
     x, y = np.empty(3), np.empty(3)  # hat gradients in the frame of the singular vectors

@@ -150,11 +150,9 @@ class _Problem:
             self._hats,
             self._share,
             self._weight,
-            system.unknown,
-            system.place,
+            (system.unknown, system.place),
             gauss,
-            gradient,
-            system.blocks,
+            (gradient, system.blocks),
         )
         if self._inertia.any():
             pull = 2.0 * self._inertia[system.vertex, None]

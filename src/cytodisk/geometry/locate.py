@@ -59,8 +59,7 @@ class TriangleLocator:
             self._low,
             self._bin,
             self._shape,
-            self._start,
-            self._list,
+            (self._start, self._list),
             self._slack,
         )
 
@@ -150,10 +149,10 @@ def _locate(
     low: FloatArray,
     size: float,
     shape: IntArray,
-    start: IntArray,
-    found: IntArray,
+    lists: tuple[IntArray, IntArray],
     slack: float,
 ) -> tuple[IntArray, FloatArray]:
+    start, found = lists
     triangle = np.full(queries.shape[0], -1, dtype=np.int64)
     weights = np.full((queries.shape[0], 3), np.nan)
     w, height = np.empty(3), np.empty(3)

@@ -42,9 +42,9 @@ def cyclic_path(
     offset = float(np.angle(np.exp(1j * lead).sum())) / (2.0 * np.pi) * m
     half = max(3, round(_BAND * m))
     # Two turns with free ends: their middle does not feel the ends, and is a pair to cut the circle at.
-    i, j = _path(here, there, 0, _TURNS * n, offset, half, -1, spacing, smoothness, _STEPS)
+    i, j = _path(here, there, (0, _TURNS * n), (offset, half), -1, spacing, smoothness, _STEPS)
     cut = int(np.abs(i - n).argmin())
-    i, j = _path(here, there, i[cut], i[cut] + n, offset, half, j[cut], spacing, smoothness, _STEPS)
+    i, j = _path(here, there, (i[cut], i[cut] + n), (offset, half), j[cut], spacing, smoothness, _STEPS)
     return i[:-1], j[:-1]
 
 
@@ -74,19 +74,18 @@ def _step_cost(
 def _path(
     here: FloatArray,
     there: FloatArray,
-    first: int,
-    last: int,
-    offset: float,
-    half: int,
+    ends: tuple[int, int],
+    band: tuple[float, int],
     pinned: int,
     spacing: float,
     smoothness: float,
     steps: IntArray,
 ) -> tuple[IntArray, IntArray]:
-    """Cheapest path from row `first` to row `last`, within a band about an even pairing.
+    """Cheapest path from one row to another, within a band about an even pairing: its offset and half width.
 
-    `pinned` is the partner of `first`, and one turn later of `last`; -1 leaves both free.
+    `pinned` is the partner of the first row, and one turn later of the last; -1 leaves both free.
     """
+    (first, last), (offset, half) = ends, band
     n, m = here.shape[0], there.shape[0]
     rows, width = last - first + 1, 2 * half + 1
     low = np.empty(rows, np.int64)

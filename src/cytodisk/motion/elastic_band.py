@@ -1,6 +1,7 @@
 """Gauss-Newton relaxation of an elastic band: points of one closed curve slide along another."""
 
 import math
+from typing import TypeAlias
 
 import numpy as np
 from numba import njit
@@ -15,12 +16,14 @@ _STILL_PX = 1e-3
 _LONGEST_STEP_PX = 3.0
 _MOST_SHRINKING = 0.8  # of the gap between neighbours in one round, so that order is kept
 
+_State: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+"""Of each point: the tangent of the target, the displacement, its derivative by the motion, and the gap."""
+
 
 @njit(cache=True)
 def relax_band(
     points: FloatArray,
-    target: FloatArray,
-    arc: FloatArray,
+    curve: tuple[FloatArray, FloatArray],
     places: FloatArray,
     spacing: float,
     smoothness: float,
@@ -35,10 +38,8 @@ def relax_band(
     points : ndarray of shape (N, 2) and dtype float
         Evenly spaced along a closed curve; d is the displacement from a point, after the rigid motion, to
         its place.
-    target : ndarray of shape (B, 2) and dtype float
-        Closed polygon.
-    arc : ndarray of shape (B + 1,) and dtype float
-        Distance along it.
+    curve : ndarray of shape (B, 2), and ndarray of shape (B + 1,), both of dtype float
+        Closed polygon, the target, and the distance along it.
     places : ndarray of shape (N,) and dtype float
         Start: distance of each point's place along the target, strictly increasing through one turn.
     spacing : float
@@ -67,10 +68,11 @@ def relax_band(
     by_motion = np.zeros((n, 2, 3))  # derivative of d by the rigid motion
     by_motion[:, 0, 1] = -1.0
     by_motion[:, 1, 2] = -1.0
-    _displace(points, target, arc, places, motion, tangent, d, by_motion, gaps)
+    state = tangent, d, by_motion, gaps
+    _displace(points, curve, places, motion, state)
     value = _energy(d, gaps, spacing, stiffness, doubt, motion)
     for _ in range(_ROUNDS):
-        change, moved = _newton_step(tangent, d, by_motion, gaps, spacing, stiffness, rigid, doubt, motion)
+        change, moved = _newton_step(state, spacing, stiffness, rigid, doubt, motion)
         longest = max(np.abs(change).max(), reach * abs(moved[0]), abs(moved[1]), abs(moved[2]))
         scale = min(1.0, _LONGEST_STEP_PX / max(longest, 1e-12))
         for i in range(n):
@@ -79,13 +81,13 @@ def relax_band(
                 scale = min(scale, _MOST_SHRINKING * gaps[i] / shrinking)
         for _ in range(_HALVINGS):
             new_places, new_motion = places + scale * change, motion + scale * moved
-            _displace(points, target, arc, new_places, new_motion, tangent, d, by_motion, gaps)
+            _displace(points, curve, new_places, new_motion, state)
             new_value = _energy(d, gaps, spacing, stiffness, doubt, new_motion)
             if new_value <= value:
                 break
             scale *= 0.5
         if not new_value <= value:  # the polygon's corners leave no descent: this is as far as it goes
-            _displace(points, target, arc, places, motion, tangent, d, by_motion, gaps)
+            _displace(points, curve, places, motion, state)
             break
         places, motion, value = new_places, new_motion, new_value
         if scale * longest < _STILL_PX:
@@ -108,16 +110,13 @@ def _energy(
 @njit(cache=True)
 def _displace(
     points: FloatArray,
-    target: FloatArray,
-    arc: FloatArray,
+    curve: tuple[FloatArray, FloatArray],
     places: FloatArray,
     motion: FloatArray,
-    tangent: FloatArray,
-    d: FloatArray,
-    by_motion: FloatArray,
-    gaps: FloatArray,
+    state: _State,
 ) -> None:
-    """Fill in displacements, their derivatives by place (the tangent) and by the angle, and the gaps."""
+    """Fill in a state: derivatives by place and by the angle, displacements, gaps."""
+    (target, arc), (tangent, d, by_motion, gaps) = curve, state
     cosine, sine = math.cos(motion[0]), math.sin(motion[0])
     total, edges = arc[-1], target.shape[0]
     n = points.shape[0]
@@ -142,10 +141,7 @@ def _displace(
 
 @njit(cache=True)
 def _newton_step(
-    tangent: FloatArray,
-    d: FloatArray,
-    by_motion: FloatArray,
-    gaps: FloatArray,
+    state: _State,
     weight: float,
     stiffness: float,
     rigid: bool,
@@ -153,6 +149,7 @@ def _newton_step(
     motion: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
     """Change of places and of the rigid motion; places are eliminated first, three unknowns are left."""
+    tangent, d, by_motion, gaps = state
     n = d.shape[0]
     spring = _SPRING * stiffness
     diagonal, coupling, right = np.empty(n), np.empty(n), np.zeros((n, 4))

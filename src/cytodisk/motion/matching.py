@@ -82,8 +82,7 @@ def match(here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoot
     start = carry(grid, s, guess, here.length, there.length)
     places, _, _ = relax_band(
         here.at(grid),
-        there.points_yx,
-        there.arc,
+        (there.points_yx, there.arc),
         start,
         here.length / len(grid),
         smoothness,
@@ -103,7 +102,7 @@ def mean_square_displacement(
     spacing = here.length / len(grid)
     return float(
         relax_band(
-            here.at(grid), there.points_yx, there.arc, start, spacing, smoothness, np.zeros(3), False, 0.0
+            here.at(grid), (there.points_yx, there.arc), start, spacing, smoothness, np.zeros(3), False, 0.0
         )[2]
     )
 
@@ -144,8 +143,7 @@ def rigid_motion(
     for _ in range(3):
         _, motion, left_over = relax_band(
             growth * (points - pivot),
-            there.points_yx,
-            there.arc,
+            (there.points_yx, there.arc),
             places,
             growth * here.length / len(grid),
             smoothness,
