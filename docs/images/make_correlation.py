@@ -34,7 +34,7 @@ def main() -> None:
     with paper_style():
         figure = Figure(figsize=(WIDTH_PX / DPI, HEIGHT_PX / DPI))
         lefts, width = (0.04, 0.36, 0.7), 0.2
-        headings = ("the signal follows the edge here", "found: correlation, q < 0.05 framed", "and its lag")
+        headings = ("the signal follows the edge here", "correlation, q < 0.05 framed", "and its lag")
         axes = []
         for left, heading in zip(lefts, headings, strict=True):
             axes.append(figure.add_axes((left, 0.12, width, 0.74)))
