@@ -141,6 +141,23 @@ def test_a_stopped_run_goes_on_with_the_next_method(
     pd.testing.assert_frame_equal(resumed.layers, comparison.layers)
 
 
+def test_results_do_not_depend_on_workers(
+    comparison: cd.Comparison, files: tuple[Path, Path], tmp_path: Path
+) -> None:
+    done: list[int] = []
+    found = cd.run_compare_windows(
+        files[0],
+        tmp_path / "out",
+        parameters=GRID,
+        signal=files[1],
+        workers=2,
+        progress=lambda frames, _: done.append(frames),
+    )
+    assert done == [0, 5, 10, 15]
+    pd.testing.assert_frame_equal(found.consistency, comparison.consistency)
+    pd.testing.assert_frame_equal(found.layers, comparison.layers)
+
+
 def test_a_movie_that_a_method_cannot_map_has_a_row_with_the_reason(
     files: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
