@@ -19,8 +19,9 @@ from cytodisk.analysis.shape.fourier import FOURIER
 from cytodisk.analysis.shape.moments import MOMENTS
 from cytodisk.analysis.shape.size import SIZE
 from cytodisk.analysis.shape.skeleton import SKELETON
-from cytodisk.errors import CytodiskError, MaskError, ParameterError
+from cytodisk.errors import CytodiskError, MaskError
 from cytodisk.geometry.mask import clean_mask
+from cytodisk.scale import UNKNOWN, Scale
 
 GROUPS: tuple[FeatureGroup, ...] = (
     SIZE,
@@ -49,7 +50,7 @@ def shape_features(masks: Any, *, pixel_size_um: float | None = None) -> pd.Data
         A label image (each whole number but 0 is a cell; a boolean image is one cell), a stack of masks of
         one cell each, or a list of such masks, which may differ in size.
     pixel_size_um : float, optional
-        Micrometres a pixel; without it lengths are in px.
+        Micrometres a pixel; by default that of a DataArray's attrs, else lengths are in px.
 
     Returns
     -------
@@ -98,20 +99,19 @@ def shape_features(masks: Any, *, pixel_size_um: float | None = None) -> pd.Data
     >>> features.attrs["units"]["area"]
     'µm²'
     """
-    check_pixel_size(pixel_size_um)
-    rows = []
+    scale, rows = Scale.of(masks).given(pixel_size_um), []
     for cell, (frame, label, mask) in enumerate(_cells(masks)):
-        rows.append({"cell": cell, "frame": frame, "label": label} | shape_row(mask, pixel_size_um))
-    return feature_table(rows, pixel_size_um)
+        rows.append({"cell": cell, "frame": frame, "label": label} | shape_row(mask, scale))
+    return feature_table(rows, scale)
 
 
-def shape_row(mask: Any, pixel_size_um: float | None = None) -> dict[str, Any]:
+def shape_row(mask: Any, scale: Scale = UNKNOWN) -> dict[str, Any]:
     """Status, remarks and features of one cell.
 
     Parameters
     ----------
     mask : array_like of shape (H, W)
-    pixel_size_um : float, optional
+    scale : Scale
 
     Returns
     -------
@@ -134,8 +134,7 @@ def shape_row(mask: Any, pixel_size_um: float | None = None) -> dict[str, Any]:
         row["qc_flags"] = "; ".join([*report.qc_flags, *_flags_of_size(shape)])
     except CytodiskError as error:
         return row | {"status": "refused", "reason": str(error)}
-    pixel = 1.0 if pixel_size_um is None else float(pixel_size_um)
-    return row | {feature.name: values[feature.name] * _scale(feature, pixel) for feature in FEATURES}
+    return row | {feature.name: _scaled(feature, values[feature.name], scale) for feature in FEATURES}
 
 
 def _flags_of_size(shape: CellShape) -> list[str]:
@@ -161,15 +160,15 @@ def split_qc_flags(qc_flags: pd.Series[str]) -> tuple[pd.Series[bool], pd.Series
     return small, qc_flags.str.replace(f"(; )?{TOO_SMALL}.*", "", regex=True)  # it stands last
 
 
-def feature_table(rows: Sequence[dict[str, Any]], pixel_size_um: float | None) -> pd.DataFrame:
+def feature_table(rows: Sequence[dict[str, Any]], scale: Scale) -> pd.DataFrame:
     """Rows of cells as a table, with its units and descriptions.
 
     Parameters
     ----------
     rows : sequence of dict
         Each as `shape_row` returns it, with columns of its own before.
-    pixel_size_um : float or None
-        The scale that the rows are in.
+    scale : Scale
+        That the rows are in.
 
     Returns
     -------
@@ -182,26 +181,17 @@ def feature_table(rows: Sequence[dict[str, Any]], pixel_size_um: float | None) -
     names = [feature.name for feature in FEATURES]
     table = pd.DataFrame(list(rows), columns=[*before, *names])
     table[names] = table[names].astype(np.float64)
-    unit = "px" if pixel_size_um is None else "µm"
+    unit = scale.length_unit
     table.attrs["units"] = {feature.name: feature.unit.replace("length", unit) for feature in FEATURES}
     table.attrs["scale_free"] = list(SCALE_FREE)
     table.attrs["description"] = {feature.name: feature.description for feature in FEATURES}
     return table
 
 
-def check_pixel_size(pixel_size_um: Any) -> None:
-    """Raise ParameterError unless a pixel size is a positive number or None."""
-    if pixel_size_um is None:
-        return
-    number = isinstance(pixel_size_um, int | float | np.number) and not isinstance(pixel_size_um, bool)
-    if not number or not 0 < pixel_size_um < np.inf:
-        raise ParameterError(
-            f"pixel_size_um must be a positive number, got {pixel_size_um!r}: leave it out if it is not known"
-        )
-
-
-def _scale(feature: Feature, pixel: float) -> float:
-    return {"length": pixel, "length²": pixel**2}.get(feature.unit, 1.0)
+def _scaled(feature: Feature, value: float, scale: Scale) -> float:
+    if feature.unit == "length":
+        return scale.length(value)
+    return scale.area(value) if feature.unit == "length²" else value
 
 
 def _cells(masks: Any) -> Iterator[tuple[int, int, Any]]:

@@ -134,7 +134,7 @@ def measure_shape(task: CellTask, scale: Scale) -> Rows:
     found = task.found
     place = {"cell": found.cell, "source": found.source, "frame": found.frame, "label": found.label}
     if found.fault is None:
-        return [(place | shape_row(found.mask, scale.pixel_size_um), {})]
+        return [(place | shape_row(found.mask, scale), {})]
     status = "unreadable" if isinstance(found.fault, ReadError) else "refused"
     words = {"status": status, "reason": str(found.fault), "notes": "", "qc_flags": ""}
     return [(place | words | {"touches_border": False}, {})]

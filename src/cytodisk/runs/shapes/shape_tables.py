@@ -62,7 +62,7 @@ def shape_table(rows: Iterable[dict[str, Any]], scale: Scale, parameters: ScoreP
         As `shape_features` returns it, with "source", and "complexity", "umap_1" and "umap_2" before the
         features: NaN where cells cannot be scored, see `why_unscored`.
     """
-    table = feature_table(list(rows), scale.pixel_size_um)
+    table = feature_table(list(rows), scale)
     attrs, first = table.attrs, table.columns.get_loc(GROUPS[0].features[0].name)
     if not why_unscored(table):
         score = complexity_score(table, **dict(parameters))
