@@ -72,6 +72,11 @@ class SimulatedMovie:
     pixel_size_um: float
     frame_interval_s: float
 
+    @property
+    def scale(self) -> Scale:
+        """Both sizes, as maps and arrays carry them."""
+        return Scale(self.pixel_size_um, self.frame_interval_s)
+
 
 @takes(MovingCellParameters)
 def movie(kind: MovieKind = "migrating", seed: int = 0, **settings: Any) -> SimulatedMovie:

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.analysis.correlation.correlation_parameters import CrossCorrelationParameters, PrepareParameters
-from cytodisk.analysis.correlation.lag_tables import SECTOR, LagTables
+from cytodisk.analysis.correlation.lag_tables import SECTOR, LagTables, with_units
 from cytodisk.analysis.correlation.pairing import named_series, paired
 from cytodisk.analysis.correlation.prepared_series import (
     DRIFTING_SHARE,
@@ -170,7 +170,7 @@ def correlation_by_layer(correlations: xr.Dataset) -> xr.Dataset:
     for name in ("threshold", "null"):
         if f"mean_{name}" in correlations:
             data[name] = correlations[f"mean_{name}"]
-    return xr.Dataset(data, attrs=correlations.attrs)
+    return with_units(xr.Dataset(data, attrs=correlations.attrs))
 
 
 def lags_within(max_lag: int, min_pairs: int, frames: int) -> IntArray:

@@ -71,7 +71,7 @@ class LagTables:
         if frame_interval_s is not None:
             coords["lag_s"] = ("lag", self._lags * frame_interval_s, {"units": "s"})
         found = xr.Dataset(data, coords).transpose("surrogate", *order, "lag", missing_dims="ignore")
-        return found.assign(n=found["n"].astype(np.int64))
+        return with_units(found.assign(n=found["n"].astype(np.int64)))
 
     def _series(self, place: tuple[Any, ...]) -> FloatArray:
         """Series of `a` that are compared with one of `b`, shape (T, H)."""
@@ -108,6 +108,13 @@ class LagTables:
             data["mean_null"] = (("surrogate", *rest), null)
             data["mean_threshold"] = (rest, _threshold(null))
         return data
+
+
+def with_units(table: xr.Dataset) -> xr.Dataset:
+    """The Dataset with the unit 1 in the attrs of each variable that has none: correlations, counts, p."""
+    return table.assign(
+        {name: values.assign_attrs({"units": "1"} | values.attrs) for name, values in table.data_vars.items()}
+    )
 
 
 def _largest(curves: FloatArray) -> FloatArray:

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.analysis.correlation.correlation_parameters import PeakParameters, Rule
+from cytodisk.analysis.correlation.lag_tables import with_units
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import ParameterError
 from cytodisk.taking import takes
@@ -88,7 +89,7 @@ def peak_correlation(correlations: xr.Dataset, **settings: Any) -> xr.Dataset:
         p = p_value(found, null)
         data |= {"p": (dims, p), "q": (dims, false_discovery(p))}
     coords = {name: value for name, value in curves.coords.items() if "lag" not in value.dims}
-    return xr.Dataset(data, coords, attrs=correlations.attrs | {"rule": rule})
+    return with_units(xr.Dataset(data, coords, attrs=correlations.attrs | {"rule": rule}))
 
 
 def find_peak(

@@ -11,7 +11,7 @@ from scipy.spatial.distance import cdist
 
 from cytodisk.analysis.correlation.correlation_parameters import DetrendParameters, PairParameters
 from cytodisk.analysis.correlation.cross_correlation import drifting_shares, lags_within
-from cytodisk.analysis.correlation.lag_tables import ALPHA
+from cytodisk.analysis.correlation.lag_tables import ALPHA, with_units
 from cytodisk.analysis.correlation.pairing import named_series
 from cytodisk.analysis.correlation.prepared_series import default_frames, prepare_series
 from cytodisk.analysis.correlation.surrogates import surrogates as make_surrogates
@@ -131,7 +131,7 @@ def correlate_pairs(
     attrs = {"distance": kind, "units": units, "surrogates": count, "null": how.null, "seed": how.seed}
     attrs |= {name: value for name, value in options.items() if value is not None}
     out = xr.Dataset(data, coords, attrs | drifting)
-    out["n"] = out["n"].astype(np.int64)
+    out = with_units(out.assign(n=out["n"].astype(np.int64)))
     return out if isinstance(distances, xr.Dataset) else out.isel(along=0, drop=True)
 
 
