@@ -4,7 +4,7 @@ import pytest
 from cytodisk import simulate
 from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.circle import boundary_angles
-from cytodisk.disk.energy import derivatives, energy, jacobian, largest_step
+from cytodisk.disk.energy import Elements, derivatives, energy, jacobian, largest_step
 from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.mesh import Mesh, hat_gradients, mesh_inside, triangle_areas
@@ -60,7 +60,8 @@ def random_triangles(count: int) -> list[tuple[np.ndarray, np.ndarray]]:
 def free_triangle_hessian(uv: np.ndarray, hats: np.ndarray, weight: float) -> tuple[np.ndarray, np.ndarray]:
     gradient, blocks = np.empty((3, 2)), np.empty((6, 2, 2))
     place = np.array([[[0, 1, 3], [-1, 2, 4], [-1, -1, 5]]])
-    derivatives(uv, ONE, hats, np.ones(1), weight, (np.arange(3), place), False, (gradient, blocks))
+    cell = Elements(ONE, hats, np.ones(1))
+    derivatives(uv, cell, weight, np.arange(3), place, False, gradient, blocks)
     full = np.zeros((3, 2, 3, 2))
     for k, l in zip(*np.nonzero(place[0] >= 0), strict=True):
         full[k, :, l] = blocks[place[0, k, l]]
@@ -114,7 +115,7 @@ def test_the_hessian_of_a_large_similarity_is_finite_where_its_stretches_are_ali
 
 
 @pytest.fixture(scope="module")
-def problem() -> dict[str, np.ndarray | Mesh]:
+def problem() -> dict[str, np.ndarray | Mesh | Elements]:
     mask = simulate.random_spiky(4, radius=12.0, spike_length=15.0)
     mask, _ = clean_mask(mask)
     outline = trace_outline(mask)
@@ -123,37 +124,37 @@ def problem() -> dict[str, np.ndarray | Mesh]:
     uv, _ = harmonic_map(mesh, np.column_stack([np.cos(angles), np.sin(angles)]))
     areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
     hats = hat_gradients(mesh.vertices_yx * np.sqrt(np.pi / areas.sum()), mesh.triangles)
-    return {"mesh": mesh, "uv": uv, "hats": hats, "share": areas / areas.sum()}
+    return {"mesh": mesh, "uv": uv, "cell": Elements(mesh.triangles, hats, areas / areas.sum())}
 
 
 def test_energy_is_the_sum_over_triangles(problem: dict) -> None:
-    mesh, uv, hats, share = (problem[key] for key in ("mesh", "uv", "hats", "share"))
-    jacobians = np.einsum("tka,tkb->tab", uv[mesh.triangles], hats)
-    expected = sum(s * psi(j.ravel(), 0.005) for s, j in zip(share, jacobians, strict=True))
-    assert energy(uv, mesh.triangles, hats, share, 0.005) == pytest.approx(expected, rel=1e-10)
-    np.testing.assert_allclose(jacobian(uv, mesh.triangles[5], hats[5]), jacobians[5].ravel())
+    mesh, uv, cell = (problem[key] for key in ("mesh", "uv", "cell"))
+    jacobians = np.einsum("tka,tkb->tab", uv[mesh.triangles], cell.hats)
+    expected = sum(s * psi(j.ravel(), 0.005) for s, j in zip(cell.share, jacobians, strict=True))
+    assert energy(uv, *cell, 0.005) == pytest.approx(expected, rel=1e-10)
+    np.testing.assert_allclose(jacobian(uv, mesh.triangles[5], cell.hats[5]), jacobians[5].ravel())
 
 
 def test_energy_of_a_flipped_triangle_is_infinite(problem: dict) -> None:
-    mesh, uv, hats, share = (problem[key] for key in ("mesh", "uv", "hats", "share"))
+    uv, cell = problem["uv"], problem["cell"]
     flipped = uv.copy()
     flipped[-1] += 3.0
-    assert energy(flipped, mesh.triangles, hats, share, 0.005) == np.inf
+    assert energy(flipped, *cell, 0.005) == np.inf
 
 
 def test_the_gradient_agrees_with_finite_differences(problem: dict) -> None:
-    mesh, uv, hats, share = (problem[key] for key in ("mesh", "uv", "hats", "share"))
+    mesh, uv, cell = (problem[key] for key in ("mesh", "uv", "cell"))
     system = BlockSystem(mesh)
     gradient = np.empty((len(system.vertex), 2))
     derivatives(
         uv,
-        mesh.triangles,
-        hats,
-        share,
+        cell,
         0.005,
-        (system.unknown, system.place),
+        system.unknown,
+        system.place,
         False,
-        (gradient, system.blocks),
+        gradient,
+        system.blocks,
     )
     random = np.random.default_rng(0)
     for unknown, axis in zip(random.integers(0, len(gradient), 25), random.integers(0, 2, 25), strict=True):
@@ -164,30 +165,26 @@ def test_the_gradient_agrees_with_finite_differences(problem: dict) -> None:
         for sign in (1, -1):
             moved = uv.copy()
             moved[vertex, axis] += sign * h
-            values.append(energy(moved, mesh.triangles, hats, share, 0.005))
+            values.append(energy(moved, *cell, 0.005))
         assert gradient[unknown, axis] == pytest.approx((values[0] - values[1]) / (2 * h), rel=1e-3, abs=1e-6)
 
 
 def test_the_assembled_hessian_is_the_sum_of_the_triangles_blocks(problem: dict) -> None:
-    mesh, uv, hats, share = (problem[key] for key in ("mesh", "uv", "hats", "share"))
+    mesh, uv, cell = (problem[key] for key in ("mesh", "uv", "cell"))
     system = BlockSystem(mesh)
     derivatives(
-        uv,
-        mesh.triangles,
-        hats,
-        share,
-        0.005,
-        (system.unknown, system.place),
-        False,
-        (np.empty((len(system.vertex), 2)), system.blocks),
-    )
+        uv, cell, 0.005, system.unknown, system.place, False,
+        np.empty((len(system.vertex), 2)), system.blocks,
+    )  # fmt: skip
     expected = np.zeros_like(system.blocks)
     for t, triangle in enumerate(mesh.triangles):
-        _, block = free_triangle_hessian(uv[triangle], hats[t : t + 1], 0.005)
+        _, block = free_triangle_hessian(uv[triangle], cell.hats[t : t + 1], 0.005)
         for k in range(3):
             for l in range(3):
                 if system.place[t, k, l] >= 0:
-                    expected[system.place[t, k, l]] += share[t] * block[2 * k : 2 * k + 2, 2 * l : 2 * l + 2]
+                    expected[system.place[t, k, l]] += (
+                        cell.share[t] * block[2 * k : 2 * k + 2, 2 * l : 2 * l + 2]
+                    )
     np.testing.assert_allclose(system.blocks, expected, atol=1e-9 * np.abs(expected).max())
 
 
@@ -202,7 +199,7 @@ def test_the_largest_step_is_where_the_first_triangle_loses_its_area() -> None:
 
 
 def test_the_largest_step_agrees_with_roots_of_every_triangle(problem: dict) -> None:
-    mesh, uv, hats = (problem[key] for key in ("mesh", "uv", "hats"))
+    mesh, uv, cell = (problem[key] for key in ("mesh", "uv", "cell"))
     direction = np.random.default_rng(2).normal(size=uv.shape)
     direction[: mesh.n_boundary] = 0.0
     first = np.inf
@@ -212,4 +209,4 @@ def test_the_largest_step_agrees_with_roots_of_every_triangle(problem: dict) -> 
         roots = np.roots([square, areas[1] - areas[0] - square, areas[0]])
         real = roots[np.abs(roots.imag) < 1e-12].real
         first = min(first, real[real > 0].min(initial=np.inf))
-    assert largest_step(uv, direction, mesh.triangles, hats) == pytest.approx(first, rel=1e-6)
+    assert largest_step(uv, direction, cell.triangles, cell.hats) == pytest.approx(first, rel=1e-6)

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cytodisk.motion.contour import Contour
-from cytodisk.motion.elastic_band import relax_band
+from cytodisk.motion.elastic_band import Target, relax_band
 from cytodisk.motion.registration import RigidTransform
 
 STILL = np.zeros(3)
@@ -40,7 +40,7 @@ def relaxed(
     n = len(places)
     points = here.at(evenly(here, n))
     return relax_band(
-        points, (there.points_yx, there.arc), places, here.length / n, smoothness, motion, rigid, doubt
+        points, Target(there.points_yx, there.arc), places, here.length / n, smoothness, motion, rigid, doubt
     )
 
 

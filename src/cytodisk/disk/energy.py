@@ -9,11 +9,29 @@ doi:10.1145/3241041): twist, flip and two stretches; negative eigenvalues are ra
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from cytodisk.arrays import FloatArray, IntArray
+
+
+class Elements(NamedTuple):
+    """The triangles of a cell.
+
+    Attributes
+    ----------
+    triangles : ndarray of shape (F, 3) and dtype int
+    hats : ndarray of shape (F, 3, 2) and dtype float
+        Gradients of their hat functions in the cell, scaled to the area of the disk.
+    share : ndarray of shape (F,) and dtype float
+        Their shares of the area.
+    """
+
+    triangles: IntArray
+    hats: FloatArray
+    share: FloatArray
 
 
 @njit(cache=True)
@@ -103,20 +121,20 @@ def _projected(
 @njit(cache=True, error_model="numpy")
 def derivatives(
     uv: FloatArray,
-    triangles: IntArray,
-    hats: FloatArray,
-    share: FloatArray,
+    cell: Elements,
     weight: float,
-    where: tuple[IntArray, IntArray],
+    unknown: IntArray,
+    place: IntArray,
     gauss: bool,
-    filled: tuple[FloatArray, FloatArray],
+    gradient: FloatArray,
+    blocks: FloatArray,
 ) -> None:
     """Fill the gradient (N, 2) and the 2×2 blocks of the projected Hessian.
 
     With `gauss` the area term counts with its Gauss-Newton Hessian, 2 ∇L ∇Lᵀ, which leaves out L ∇²L.
-    `where` says where a vertex and a pair of corners belong: `unknown` and `place` of `blocks.BlockSystem`.
+    `unknown` and `place` say where a vertex and a pair of corners belong, as in `blocks.BlockSystem`.
     """
-    (unknown, place), (gradient, blocks) = where, filled
+    triangles, hats, share = cell
     gradient[:] = 0.0
     blocks[:] = 0.0
     x, y = np.empty(3), np.empty(3)  # hat gradients in the frame of the singular vectors

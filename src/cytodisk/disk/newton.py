@@ -18,7 +18,7 @@ import numpy as np
 
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.blocks import BlockSystem
-from cytodisk.disk.energy import derivatives, energy, largest_step
+from cytodisk.disk.energy import Elements, derivatives, energy, largest_step
 from cytodisk.errors import MapError
 from cytodisk.geometry.mesh import Mesh, hat_gradients, triangle_areas
 
@@ -124,18 +124,17 @@ class _Problem:
     ):
         areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
         scale = np.sqrt(triangle_areas(uv[:, ::-1], mesh.triangles).sum() / areas.sum())
-        self._hats = hat_gradients(mesh.vertices_yx * scale, mesh.triangles)
-        self._share = areas / areas.sum()
-        self._triangles = mesh.triangles
+        hats = hat_gradients(mesh.vertices_yx * scale, mesh.triangles)
+        self._cell = Elements(mesh.triangles, hats, areas / areas.sum())
         self._weight = shape_weight
         self._system = system
         self._anchor = anchor_uv
-        corner_share = np.repeat(self._share / 3.0, 3)
+        corner_share = np.repeat(self._cell.share / 3.0, 3)
         self._inertia = inertia * np.bincount(mesh.triangles.ravel(), corner_share, minlength=len(uv))
         self._inertia[: mesh.n_boundary] = 0.0
 
     def energy(self, uv: FloatArray) -> float:
-        value = float(energy(uv, self._triangles, self._hats, self._share, self._weight))
+        value = float(energy(uv, *self._cell, self._weight))
         if self._inertia.any():
             value += float((self._inertia * np.square(uv - self._anchor).sum(axis=1)).sum())
         return value
@@ -146,13 +145,13 @@ class _Problem:
         gradient = np.empty((len(system.vertex), 2))
         derivatives(
             uv,
-            self._triangles,
-            self._hats,
-            self._share,
+            self._cell,
             self._weight,
-            (system.unknown, system.place),
+            system.unknown,
+            system.place,
             gauss,
-            (gradient, system.blocks),
+            gradient,
+            system.blocks,
         )
         if self._inertia.any():
             pull = 2.0 * self._inertia[system.vertex, None]
@@ -174,7 +173,7 @@ class _Problem:
         halvings: int = _HALVINGS,
     ) -> tuple[FloatArray, float] | None:
         """Armijo backtracking from the longest step that keeps every triangle positive."""
-        barrier = largest_step(uv, direction, self._triangles, self._hats)
+        barrier = largest_step(uv, direction, self._cell.triangles, self._cell.hats)
         size = min(1.0, _SAFE_SHARE * barrier)
         for _ in range(halvings):
             moved = uv + size * direction

@@ -1,6 +1,7 @@
 """Find the triangle that holds a point, and the outline point nearest to one."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -10,6 +11,29 @@ from cytodisk.arrays import FloatArray, IntArray
 
 _BLOCK = 8192  # points
 _TOLERANCE = 1e-9  # of the mesh's extent: a point this far outside still counts as on the edge
+
+
+class _Bins(NamedTuple):
+    """A grid of bins, and the triangles that touch each.
+
+    Attributes
+    ----------
+    low : ndarray of shape (2,) and dtype float
+        Where the first bin starts.
+    size : float
+        Side of a bin.
+    shape : ndarray of shape (2,) and dtype int
+    start : ndarray of shape (bins + 1,) and dtype int
+        First entry of each bin in `found`.
+    found : ndarray of shape (M,) and dtype int
+        Triangles, bin by bin.
+    """
+
+    low: FloatArray
+    size: float
+    shape: IntArray
+    start: IntArray
+    found: IntArray
 
 
 class TriangleLocator:
@@ -29,13 +53,12 @@ class TriangleLocator:
         self._triangles = np.ascontiguousarray(triangles)
         low, high = points.min(axis=0), points.max(axis=0)
         self._slack = _TOLERANCE * float((high - low).max())
-        self._low = low - self._slack
-        extent = high - self._low + self._slack
-        self._bin = math.sqrt(float(extent.prod()) / len(triangles))
-        self._shape = np.ceil(extent / self._bin).astype(np.int64)
-        self._start, self._list = _fill_bins(
-            self._points, self._triangles, self._low, self._bin, self._shape, self._slack
-        )
+        low = low - self._slack
+        extent = high - low + self._slack
+        size = math.sqrt(float(extent.prod()) / len(triangles))
+        shape = np.ceil(extent / size).astype(np.int64)
+        listed = _fill_bins(self._points, self._triangles, low, size, shape, self._slack)
+        self._bins = _Bins(low, size, shape, *listed)
 
     def __call__(self, points: FloatArray) -> tuple[IntArray, FloatArray]:
         """Triangle of each point and its barycentric coordinates there.
@@ -56,10 +79,7 @@ class TriangleLocator:
             np.ascontiguousarray(points, dtype=np.float64),
             self._points,
             self._triangles,
-            self._low,
-            self._bin,
-            self._shape,
-            (self._start, self._list),
+            self._bins,
             self._slack,
         )
 
@@ -146,13 +166,10 @@ def _locate(
     queries: FloatArray,
     points: FloatArray,
     triangles: IntArray,
-    low: FloatArray,
-    size: float,
-    shape: IntArray,
-    lists: tuple[IntArray, IntArray],
+    bins: _Bins,
     slack: float,
 ) -> tuple[IntArray, FloatArray]:
-    start, found = lists
+    low, size, shape, start, found = bins
     triangle = np.full(queries.shape[0], -1, dtype=np.int64)
     weights = np.full((queries.shape[0], 3), np.nan)
     w, height = np.empty(3), np.empty(3)

@@ -1,5 +1,7 @@
 """Cheapest order-preserving pairing of two closed curves, by dynamic programming."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
@@ -11,6 +13,28 @@ _STEPS = np.array(
 )
 _BAND = 0.25  # of the curve: how far a pair may lie from an even pairing, on either side
 _TURNS = 2
+
+
+class _Strip(NamedTuple):
+    """Where a path may run: from one row to another, in a band about an even pairing.
+
+    Attributes
+    ----------
+    first, last : int
+        Rows: samples of `here`.
+    offset : float
+        Partner of row 0 in the even pairing.
+    half : int
+        How far from it partners may lie, on either side.
+    pinned : int
+        Partner of `first`, and one turn later of `last`; -1 leaves both free.
+    """
+
+    first: int
+    last: int
+    offset: float
+    half: int
+    pinned: int
 
 
 def cyclic_path(
@@ -42,9 +66,11 @@ def cyclic_path(
     offset = float(np.angle(np.exp(1j * lead).sum())) / (2.0 * np.pi) * m
     half = max(3, round(_BAND * m))
     # Two turns with free ends: their middle does not feel the ends, and is a pair to cut the circle at.
-    i, j = _path(here, there, (0, _TURNS * n), (offset, half), -1, spacing, smoothness, _STEPS)
+    free = _Strip(0, _TURNS * n, offset, half, -1)
+    i, j = _path(here, there, free, spacing, smoothness, _STEPS)
     cut = int(np.abs(i - n).argmin())
-    i, j = _path(here, there, (i[cut], i[cut] + n), (offset, half), j[cut], spacing, smoothness, _STEPS)
+    pinned = _Strip(int(i[cut]), int(i[cut]) + n, offset, half, int(j[cut]))
+    i, j = _path(here, there, pinned, spacing, smoothness, _STEPS)
     return i[:-1], j[:-1]
 
 
@@ -74,18 +100,13 @@ def _step_cost(
 def _path(
     here: FloatArray,
     there: FloatArray,
-    ends: tuple[int, int],
-    band: tuple[float, int],
-    pinned: int,
+    strip: _Strip,
     spacing: float,
     smoothness: float,
     steps: IntArray,
 ) -> tuple[IntArray, IntArray]:
-    """Cheapest path from one row to another, within a band about an even pairing: its offset and half width.
-
-    `pinned` is the partner of the first row, and one turn later of the last; -1 leaves both free.
-    """
-    (first, last), (offset, half) = ends, band
+    """Cheapest path through a strip."""
+    first, last, offset, half, pinned = strip
     n, m = here.shape[0], there.shape[0]
     rows, width = last - first + 1, 2 * half + 1
     low = np.empty(rows, np.int64)

@@ -1,7 +1,7 @@
 """Gauss-Newton relaxation of an elastic band: points of one closed curve slide along another."""
 
 import math
-from typing import TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -16,14 +16,47 @@ _STILL_PX = 1e-3
 _LONGEST_STEP_PX = 3.0
 _MOST_SHRINKING = 0.8  # of the gap between neighbours in one round, so that order is kept
 
-_State: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
-"""Of each point: the tangent of the target, the displacement, its derivative by the motion, and the gap."""
+
+class Target(NamedTuple):
+    """The curve along which points slide.
+
+    Attributes
+    ----------
+    corners : ndarray of shape (B, 2) and dtype float
+        Closed polygon.
+    arc : ndarray of shape (B + 1,) and dtype float
+        Distance along it.
+    """
+
+    corners: FloatArray
+    arc: FloatArray
+
+
+class _Band(NamedTuple):
+    """What the places of the points give.
+
+    Attributes
+    ----------
+    d : ndarray of shape (N, 2) and dtype float
+        Displacements.
+    gaps : ndarray of shape (N,) and dtype float
+        From each place to the next, along the target.
+    tangent : ndarray of shape (N, 2) and dtype float
+        Derivative of d by the place.
+    by_motion : ndarray of shape (N, 2, 3) and dtype float
+        Derivative of d by the rigid motion.
+    """
+
+    d: FloatArray
+    gaps: FloatArray
+    tangent: FloatArray
+    by_motion: FloatArray
 
 
 @njit(cache=True)
 def relax_band(
     points: FloatArray,
-    curve: tuple[FloatArray, FloatArray],
+    target: Target,
     places: FloatArray,
     spacing: float,
     smoothness: float,
@@ -38,8 +71,7 @@ def relax_band(
     points : ndarray of shape (N, 2) and dtype float
         Evenly spaced along a closed curve; d is the displacement from a point, after the rigid motion, to
         its place.
-    curve : ndarray of shape (B, 2), and ndarray of shape (B + 1,), both of dtype float
-        Closed polygon, the target, and the distance along it.
+    target : Target
     places : ndarray of shape (N,) and dtype float
         Start: distance of each point's place along the target, strictly increasing through one turn.
     spacing : float
@@ -64,15 +96,14 @@ def relax_band(
     stiffness = smoothness / spacing
     reach = math.sqrt((points**2).sum() / n)
     places, motion = places.copy(), motion.copy()
-    tangent, d, gaps = np.empty((n, 2)), np.empty((n, 2)), np.empty(n)
-    by_motion = np.zeros((n, 2, 3))  # derivative of d by the rigid motion
-    by_motion[:, 0, 1] = -1.0
-    by_motion[:, 1, 2] = -1.0
-    state = tangent, d, by_motion, gaps
-    _displace(points, curve, places, motion, state)
+    band = _Band(np.empty((n, 2)), np.empty(n), np.empty((n, 2)), np.zeros((n, 2, 3)))
+    d, gaps = band.d, band.gaps
+    band.by_motion[:, 0, 1] = -1.0
+    band.by_motion[:, 1, 2] = -1.0
+    _displace(points, target, places, motion, band)
     value = _energy(d, gaps, spacing, stiffness, doubt, motion)
     for _ in range(_ROUNDS):
-        change, moved = _newton_step(state, spacing, stiffness, rigid, doubt, motion)
+        change, moved = _newton_step(band, spacing, stiffness, rigid, doubt, motion)
         longest = max(np.abs(change).max(), reach * abs(moved[0]), abs(moved[1]), abs(moved[2]))
         scale = min(1.0, _LONGEST_STEP_PX / max(longest, 1e-12))
         for i in range(n):
@@ -81,13 +112,13 @@ def relax_band(
                 scale = min(scale, _MOST_SHRINKING * gaps[i] / shrinking)
         for _ in range(_HALVINGS):
             new_places, new_motion = places + scale * change, motion + scale * moved
-            _displace(points, curve, new_places, new_motion, state)
+            _displace(points, target, new_places, new_motion, band)
             new_value = _energy(d, gaps, spacing, stiffness, doubt, new_motion)
             if new_value <= value:
                 break
             scale *= 0.5
         if not new_value <= value:  # the polygon's corners leave no descent: this is as far as it goes
-            _displace(points, curve, places, motion, state)
+            _displace(points, target, places, motion, band)
             break
         places, motion, value = new_places, new_motion, new_value
         if scale * longest < _STILL_PX:
@@ -109,16 +140,13 @@ def _energy(
 
 @njit(cache=True)
 def _displace(
-    points: FloatArray,
-    curve: tuple[FloatArray, FloatArray],
-    places: FloatArray,
-    motion: FloatArray,
-    state: _State,
+    points: FloatArray, target: Target, places: FloatArray, motion: FloatArray, band: _Band
 ) -> None:
-    """Fill in a state: derivatives by place and by the angle, displacements, gaps."""
-    (target, arc), (tangent, d, by_motion, gaps) = curve, state
+    """Fill in displacements, their derivatives by place (the tangent) and by the angle, and the gaps."""
+    corners, arc = target
+    d, gaps, tangent, by_motion = band
     cosine, sine = math.cos(motion[0]), math.sin(motion[0])
-    total, edges = arc[-1], target.shape[0]
+    total, edges = arc[-1], corners.shape[0]
     n = points.shape[0]
     edge = 0
     for i in range(n):
@@ -134,22 +162,17 @@ def _displace(
         x = cosine * points[i, 1] - sine * points[i, 0]
         by_motion[i, 0, 0], by_motion[i, 1, 0] = -x, y
         for k in range(2):
-            side = target[edge + 1 if edge < edges - 1 else 0, k] - target[edge, k]
+            side = corners[edge + 1 if edge < edges - 1 else 0, k] - corners[edge, k]
             tangent[i, k] = side / length
-            d[i, k] = target[edge, k] + share * side - (y if k == 0 else x) - motion[1 + k]
+            d[i, k] = corners[edge, k] + share * side - (y if k == 0 else x) - motion[1 + k]
 
 
 @njit(cache=True)
 def _newton_step(
-    state: _State,
-    weight: float,
-    stiffness: float,
-    rigid: bool,
-    doubt: float,
-    motion: FloatArray,
+    band: _Band, weight: float, stiffness: float, rigid: bool, doubt: float, motion: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Change of places and of the rigid motion; places are eliminated first, three unknowns are left."""
-    tangent, d, by_motion, gaps = state
+    d, gaps, tangent, by_motion = band
     n = d.shape[0]
     spring = _SPRING * stiffness
     diagonal, coupling, right = np.empty(n), np.empty(n), np.zeros((n, 4))

@@ -17,7 +17,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.geometry.polygon import signed_area
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.cyclic_path import cyclic_path
-from cytodisk.motion.elastic_band import relax_band
+from cytodisk.motion.elastic_band import Target, relax_band
 
 _COARSE_SAMPLES = 128
 _FINE_PX = 1.0
@@ -82,7 +82,7 @@ def match(here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoot
     start = carry(grid, s, guess, here.length, there.length)
     places, _, _ = relax_band(
         here.at(grid),
-        (there.points_yx, there.arc),
+        _target(there),
         start,
         here.length / len(grid),
         smoothness,
@@ -101,9 +101,7 @@ def mean_square_displacement(
     start = carry(grid, s, guess, here.length, there.length)
     spacing = here.length / len(grid)
     return float(
-        relax_band(
-            here.at(grid), (there.points_yx, there.arc), start, spacing, smoothness, np.zeros(3), False, 0.0
-        )[2]
+        relax_band(here.at(grid), _target(there), start, spacing, smoothness, np.zeros(3), False, 0.0)[2]
     )
 
 
@@ -143,7 +141,7 @@ def rigid_motion(
     for _ in range(3):
         _, motion, left_over = relax_band(
             growth * (points - pivot),
-            (there.points_yx, there.arc),
+            _target(there),
             places,
             growth * here.length / len(grid),
             smoothness,
@@ -157,6 +155,10 @@ def rigid_motion(
     explained = max(0.0, by_shift - by_both) / max(by_shift, _PIXEL_NOISE_PX2)
     motion = shifted + explained * (turned - shifted)
     return float(motion[0]), pivot, motion[1:]
+
+
+def _target(there: Contour) -> Target:
+    return Target(there.points_yx, there.arc)
 
 
 def carry(at: FloatArray, x: FloatArray, y: FloatArray, period_x: float, period_y: float) -> FloatArray:
