@@ -6,7 +6,6 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
-import typer
 from docutils import nodes
 from docutils.statemachine import StringList
 from sphinx.application import Sphinx
@@ -19,8 +18,8 @@ class CommandLine(SphinxDirective):
     """Sections of all commands, in the order of `cytodisk --help`."""
 
     def run(self) -> list[nodes.Node]:
-        commands: dict[str, Any] = typer.main.get_command(cytodisk_app).commands  # type: ignore[attr-defined]
-        lines = [line for name, command in commands.items() for line in command_lines(name, command)]
+        commands: dict[str, Any] = cytodisk_app.commands
+        lines = [line for name, command in commands.items() for line in command_lines(name, command.loaded)]
         holder = nodes.section()
         holder.document = self.state.document
         self.state.nested_parse(StringList(lines, source="cytodisk --help"), 0, holder, match_titles=True)

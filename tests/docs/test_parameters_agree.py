@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import typer
 
 import cytodisk as cd
 from cytodisk.cli import app
@@ -75,7 +74,7 @@ def test_keywords_flags_and_help_are_those_of_the_models(command: str) -> None:
     shown = inspect.signature(function).parameters
     options = {
         option.name: option
-        for option in typer.main.get_command(app).commands[command].params  # type: ignore[attr-defined]
+        for option in app.commands[command].loaded.params  # type: ignore[attr-defined]
     }
     for name, field in fields_of(models).items():
         assert shown[name].default == field.default, name

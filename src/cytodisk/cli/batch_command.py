@@ -16,26 +16,6 @@ if TYPE_CHECKING:
     from cytodisk.runs.batch.batch_file import Batch
     from cytodisk.runs.batch.batch_study import BatchSummary
 
-BATCH_HELP = """Run many movies and images in one go, and merge their tables.
-
-STUDY is a TOML file that names the inputs, by patterns or in a table, with their condition, replicate and
-scale. Each input runs in a process of its own: a crash, a time-out or a lack of memory costs a row, not
-the run.
-
-Examples:
-
-  cytodisk batch study.toml -o out/ --dry-run
-
-  cytodisk batch study.toml -o out/ --workers 4 --time-limit 3600
-
-  cytodisk batch study.toml -o out/ --workers 4 --resume
-
-  cytodisk batch study.toml -o /shared/out --scheduler tcp://10.0.0.1:8786
-
-Exit code: 0 when done (an input that failed has a row with the reason), 2 if no input went well, or the
-batch file or the folder cannot be used. With --dry-run 2 if files of an input cannot be used.
-"""
-
 
 @with_parameters(BatchOptions, file=False)
 def batch_command(

@@ -27,27 +27,6 @@ if TYPE_CHECKING:
 
     from cytodisk.runs.compare_windows.comparison import Comparison
 
-COMPARE_WINDOWS_HELP = """Compare kinds of windows on your own masks: how many are empty, how regular.
-
-MASKS is one mask, a stack of masks, or a label image, or a folder of those. With --movie it is a stack of
-masks of one cell through time (or label images in which a label is a cell), and --signal what to sample.
-
-Methods: newton (cytodisk's default map), harmonic (before relaxation), advection (the paper's relaxation),
-edge (by distance from the edge, the field's), rings (around the deepest point, as CellProfiler's). A movie is
-compared by newton, harmonic and edge, if --methods does not say otherwise.
-
-Examples:
-
-  cytodisk compare-windows masks.tif -o out/ --layers 12 --sectors 60 --workers 2
-
-  cytodisk compare-windows masks.tif --movie --signal movie.ome.tif -o out/ --depth-px 10
-
-Exit code: 0 when done (cells without a map have a row with the reason), 2 if no cell could be used, or a file
-is damaged.
-
-The paper's relaxation (advection) takes seconds a cell, and minutes for one of 50 000 pixels and more.
-"""
-
 
 @with_parameters(CompareWindowsParameters, CompareMovieParameters, RunOptions)
 def compare_windows_command(

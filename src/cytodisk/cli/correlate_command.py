@@ -19,33 +19,6 @@ if TYPE_CHECKING:
 NOTHING_CHANGED = "Stopped; nothing was changed."
 Format = Literal["png", "pdf", "svg"]
 
-CORRELATE_HELP = """Correlate a signal with the motion of the edge, or with another signal, window by window.
-
-STUDY is the folder that cytodisk movie wrote. Positive lag: the edge moves after the signal. Tables and
-figures go to STUDY/correlation/SIGNAL~WITH.
-
-Examples:
-
-  cytodisk correlate out/ --signal VASP --with velocity --max-lag 20
-
-  cytodisk correlate out/ --signal Rac1 --with RhoA --pairs --format pdf,png
-
-  cytodisk correlate out/ --signal Rac1 --with Rac1 --against edge --detrend linear
-
-Exit code: 0 when done (a cell that cannot be correlated has a row with the reason), 2 if none could be.
-"""
-
-REPORT_HELP = """Write one HTML page that shows a study: QC flags, windows, activity, velocity, correlation.
-
-The page holds all it needs: it opens in any browser, without a network, and can be sent as one file.
-
-Examples:
-
-  cytodisk report out/
-
-  cytodisk report out/ --cell 3
-"""
-
 
 @with_parameters(CorrelateParameters)
 def correlate_command(

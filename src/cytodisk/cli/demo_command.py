@@ -1,8 +1,6 @@
-"""`cytodisk demo` and `cytodisk info`."""
+"""`cytodisk demo`."""
 
-import platform
 from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
 
@@ -14,29 +12,8 @@ from cytodisk.cli.correlation_words import say_correlation
 from cytodisk.cli.movie_command import draw_movie, finish_movie, say_movie
 from cytodisk.cli.options import Quiet
 from cytodisk.errors import MissingPartError
-from cytodisk.runs.versions import NOT_INSTALLED, PACKAGES, PARTS, installed
 
 _AGAIN = "run the same command again"
-
-
-def info_command() -> None:
-    """Print versions, and which optional parts are there."""
-    print(f"python\t{platform.python_version()} on {platform.platform()}")
-    optional = {name for packages in PARTS.values() for name in packages}
-    for name, number in installed(PACKAGES).items():
-        if name not in optional:
-            print(f"{name}\t{number}")
-    for part, packages in PARTS.items():
-        print(f"{part}\t{_part_words(part, installed(packages))}")
-    print("image formats\tTIFF, OME-TIFF, ImageJ TIFF, PNG")
-    print(f"compressed TIFF\t{'yes' if find_spec('imagecodecs') else 'no: pip install imagecodecs'}")
-
-
-def _part_words(part: str, found: dict[str, str]) -> str:
-    words = ", ".join(f"{name} {number}" for name, number in found.items())
-    if NOT_INSTALLED not in found.values():
-        return words
-    return f"{words}: in the clone of cytodisk type .venv/bin/pip install -c constraints.txt -e '.[{part}]'"
 
 
 def demo_command(
@@ -46,10 +23,6 @@ def demo_command(
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in OUT/study.")] = False,
     quiet: Quiet = False,
 ) -> None:
-    """Simulate a moving cell with two signals, follow it, correlate, report, compare with the known answer.
-
-    Nothing is downloaded. OUT/input holds the simulated files, OUT/study the results, with report.html.
-    """
     from cytodisk.runs.correlate.correlate_study import correlate_study
     from cytodisk.runs.demo_input import compare_with_truth, write_demo_input
     from cytodisk.runs.executor import Executor

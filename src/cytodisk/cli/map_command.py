@@ -24,25 +24,6 @@ if TYPE_CHECKING:
 
     from cytodisk.runs.cells.cell_inputs import CellInputs
 
-MAP_HELP = """Map masks onto the disk and sample a signal in windows, into a study folder.
-
-MASKS is one mask, a stack of masks, or a label image (each label a cell), as TIFF or PNG; or a folder of such
-files, as Cellpose writes them (_masks.tif, _cp_masks.png, _seg.npy). Cells are counted through all files.
-
-Examples:
-
-  cytodisk map mask.tif -o out/
-
-  cytodisk map masks.tif --signal image.ome.tif -o out/ --layers 10 --sectors 60 --workers 2
-
-  cytodisk map cellpose_folder/ --signal _img -o out/ --workers 4 --no-maps
-
-  cytodisk map labels.tif -o out/ --parameters other_study/parameters.toml --resume
-
-Exit code: 0 when done (refused cells have a row with the reason), 2 if nothing could be mapped or an input is
-damaged (the rest is done all the same).
-"""
-
 
 @with_parameters(MapParameters, MapOptions)
 def map_command(
@@ -74,13 +55,6 @@ def map_command(
 
 @with_parameters(FileParameters, file=False)
 def check_command(masks: MaskFiles, given: Given, signal: SignalFiles = None) -> None:
-    """Say what is wrong with masks before a run: a line a cell, or a frame of a stack.
-
-    Exit code: 0 when all can be used (an image of a folder may be empty), 1 if any cannot, 2 if the file
-    cannot be read at all.
-
-    Example: cytodisk check labels.tif
-    """
     from cytodisk.cli.map_totals import say_checked
     from cytodisk.runs.cells.cell_inputs import open_inputs
     from cytodisk.runs.map.map_study import check_cells

@@ -22,21 +22,6 @@ if TYPE_CHECKING:
     from cytodisk.runs.movie.movie_inputs import MovieInputs
     from cytodisk.store.study import Study
 
-MOVIE_HELP = """Follow cells through a movie: maps, activity of a signal, edge velocity, into a study folder.
-
-MASKS is a stack of masks of one cell, or label images in which a label is a cell in all frames, as TIFF.
-
-Examples:
-
-  cytodisk movie masks.tif --signal movie.ome.tif -o out/ --layers 10 --sectors 60 --workers 2
-
-  cytodisk movie masks.tif --signal movie.tif -o out/ --pixel-size 0.16 --frame-interval 5 --depth-um 1.6
-
-  cytodisk movie labels.tif -o out/ --link --resume
-
-Exit code: 0 when done (frames without a map have a row with the reason), 2 if nothing could be mapped.
-"""
-
 
 @with_parameters(MovieParameters, RunOptions)
 def movie_command(

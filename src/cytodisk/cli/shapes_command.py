@@ -21,20 +21,6 @@ if TYPE_CHECKING:
 
     from cytodisk.runs.cells.cell_inputs import CellInputs
 
-SHAPES_HELP = """Measure the shape of cells in a hundred features, and order them from plain to complex ones.
-
-MASKS is one mask, a stack of masks, or a label image (each label a cell), or a folder of such files.
-The score of complexity (features, UMAP, principal axis) is relative to the cells of the run: at least ten.
-
-Examples:
-
-  cytodisk shapes labels.tif -o out/ --pixel-size 0.3
-
-  cytodisk shapes cellpose_folder/ -o out/ --workers 4
-
-Exit code: 0 when done (refused cells have a row with the reason), 2 if nothing could be measured.
-"""
-
 _LEAST_SHARE = 0.65  # of the plane's variance along the axis, below which the axis says little
 _FAR_FROM_LINE = (
     "look at figures/complexity.png: the shapes do not lie along one axis, so the score says little"

@@ -5,9 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from cytodisk.errors import ParameterError, SignalError
-from cytodisk.images.frames import FrameFile
+
+if TYPE_CHECKING:
+    from cytodisk.images.frames import FrameFile
 
 VELOCITIES = ("velocity", "velocity_cell_frame")  # of the edge: no channel can have such a name
 _LONGEST = 24

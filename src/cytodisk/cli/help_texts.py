@@ -1,0 +1,126 @@
+"""What `cytodisk --help` and `cytodisk COMMAND --help` say of each command."""
+
+HELP = {
+    "map": """Map masks onto the disk and sample a signal in windows, into a study folder.
+
+MASKS is one mask, a stack of masks, or a label image (each label a cell), as TIFF or PNG; or a folder of such
+files, as Cellpose writes them (_masks.tif, _cp_masks.png, _seg.npy). Cells are counted through all files.
+
+Examples:
+
+  cytodisk map mask.tif -o out/
+
+  cytodisk map masks.tif --signal image.ome.tif -o out/ --layers 10 --sectors 60 --workers 2
+
+  cytodisk map cellpose_folder/ --signal _img -o out/ --workers 4 --no-maps
+
+  cytodisk map labels.tif -o out/ --parameters other_study/parameters.toml --resume
+
+Exit code: 0 when done (refused cells have a row with the reason), 2 if nothing could be mapped or an input is
+damaged (the rest is done all the same).
+""",
+    "movie": """Follow cells through a movie: maps, activity of a signal, edge velocity, into a study folder.
+
+MASKS is a stack of masks of one cell, or label images in which a label is a cell in all frames, as TIFF.
+
+Examples:
+
+  cytodisk movie masks.tif --signal movie.ome.tif -o out/ --layers 10 --sectors 60 --workers 2
+
+  cytodisk movie masks.tif --signal movie.tif -o out/ --pixel-size 0.16 --frame-interval 5 --depth-um 1.6
+
+  cytodisk movie labels.tif -o out/ --link --resume
+
+Exit code: 0 when done (frames without a map have a row with the reason), 2 if nothing could be mapped.
+""",
+    "batch": """Run many movies and images in one go, and merge their tables.
+
+STUDY is a TOML file that names the inputs, by patterns or in a table, with their condition, replicate and
+scale. Each input runs in a process of its own: a crash, a time-out or a lack of memory costs a row, not
+the run.
+
+Examples:
+
+  cytodisk batch study.toml -o out/ --dry-run
+
+  cytodisk batch study.toml -o out/ --workers 4 --time-limit 3600
+
+  cytodisk batch study.toml -o out/ --workers 4 --resume
+
+  cytodisk batch study.toml -o /shared/out --scheduler tcp://10.0.0.1:8786
+
+Exit code: 0 when done (an input that failed has a row with the reason), 2 if no input went well, or the
+batch file or the folder cannot be used. With --dry-run 2 if files of an input cannot be used.
+""",
+    "correlate": """Correlate a signal with the motion of the edge, or with another signal, window by window.
+
+STUDY is the folder that cytodisk movie wrote. Positive lag: the edge moves after the signal. Tables and
+figures go to STUDY/correlation/SIGNAL~WITH.
+
+Examples:
+
+  cytodisk correlate out/ --signal VASP --with velocity --max-lag 20
+
+  cytodisk correlate out/ --signal Rac1 --with RhoA --pairs --format pdf,png
+
+  cytodisk correlate out/ --signal Rac1 --with Rac1 --against edge --detrend linear
+
+Exit code: 0 when done (a cell that cannot be correlated has a row with the reason), 2 if none could be.
+""",
+    "shapes": """Measure the shape of cells in a hundred features, and order them from plain to complex ones.
+
+MASKS is one mask, a stack of masks, or a label image (each label a cell), or a folder of such files.
+The score of complexity (features, UMAP, principal axis) is relative to the cells of the run: at least ten.
+
+Examples:
+
+  cytodisk shapes labels.tif -o out/ --pixel-size 0.3
+
+  cytodisk shapes cellpose_folder/ -o out/ --workers 4
+
+Exit code: 0 when done (refused cells have a row with the reason), 2 if nothing could be measured.
+""",
+    "report": """Write one HTML page that shows a study: QC flags, windows, activity, velocity, correlation.
+
+The page holds all it needs: it opens in any browser, without a network, and can be sent as one file.
+
+Examples:
+
+  cytodisk report out/
+
+  cytodisk report out/ --cell 3
+""",
+    "compare-windows": """Compare kinds of windows on your own masks: how many are empty, how regular.
+
+MASKS is one mask, a stack of masks, or a label image, or a folder of those. With --movie it is a stack of
+masks of one cell through time (or label images in which a label is a cell), and --signal what to sample.
+
+Methods: newton (cytodisk's default map), harmonic (before relaxation), advection (the paper's relaxation),
+edge (by distance from the edge, the field's), rings (around the deepest point, as CellProfiler's). A movie is
+compared by newton, harmonic and edge, if --methods does not say otherwise.
+
+Examples:
+
+  cytodisk compare-windows masks.tif -o out/ --layers 12 --sectors 60 --workers 2
+
+  cytodisk compare-windows masks.tif --movie --signal movie.ome.tif -o out/ --depth-px 10
+
+Exit code: 0 when done (cells without a map have a row with the reason), 2 if no cell could be used, or a file
+is damaged.
+
+The paper's relaxation (advection) takes seconds a cell, and minutes for one of 50 000 pixels and more.
+""",
+    "check": """Say what is wrong with masks before a run: a line a cell, or a frame of a stack.
+
+Exit code: 0 when all can be used (an image of a folder may be empty), 1 if any cannot, 2 if the file
+cannot be read at all.
+
+Example: cytodisk check labels.tif
+""",
+    "info": "Print versions, and which optional parts are there.",
+    "demo": "Simulate a moving cell with two signals, follow it, correlate, report, "
+    """compare with the known answer.
+
+Nothing is downloaded. OUT/input holds the simulated files, OUT/study the results, with report.html.
+""",
+}

@@ -1,0 +1,37 @@
+"""A command whose module is imported when it runs: the list of commands needs none of them."""
+
+from functools import cached_property
+from importlib import import_module
+from typing import Any
+
+import typer
+from typer.core import TyperCommand
+
+
+class LazyCommand(TyperCommand):
+    """A command that is known by its name and its help until it is called.
+
+    Parameters
+    ----------
+    name : str
+        The function is called so too, with `_command` behind it.
+    module : str
+        Where that function is.
+    help : str
+    """
+
+    def __init__(self, name: str, module: str, help: str):
+        super().__init__(name, help=help, rich_markup_mode="rich")
+        self._module = module
+
+    @cached_property
+    def loaded(self) -> Any:
+        """The command itself, with its options."""
+        function = getattr(import_module(self._module), f"{str(self.name).replace('-', '_')}_command")
+        alone = typer.Typer(add_completion=False, rich_markup_mode="rich")
+        alone.command(self.name, help=self.help)(function)
+        return typer.main.get_command(alone)
+
+    def make_context(self, *call: Any, **extra: Any) -> Any:
+        """Parse the arguments, as the command itself does."""
+        return self.loaded.make_context(*call, **extra)
