@@ -94,7 +94,7 @@ def cross_correlate(
     -3.0
     """
     how = CrossCorrelationParameters.of(**settings)
-    first, second, interval_s = named_series(a, b)
+    first, second, scale = named_series(a, b)
     lags = lags_within(max_lag, how.min_pairs, first.sizes["time"])
     _check_skipped(how.skip_lags, lags)
     options = how.part(PrepareParameters).changed(detrend_frames=default_frames(how, max_lag)).model_dump()
@@ -116,7 +116,7 @@ def cross_correlate(
     run = LagTables(pair, lags, np.isin(lags, how.skip_lags), how.min_pairs, attrs["surrogates"])
     run.correlate(changed, progress)
     order = [str(dim) for dim in (*first.dims, *second.dims) if dim != "time"]
-    return run.dataset(list(dict.fromkeys(order)), interval_s).assign_attrs(attrs)
+    return run.dataset(list(dict.fromkeys(order)), scale).assign_attrs(attrs)
 
 
 def correlation_by_layer(correlations: xr.Dataset) -> xr.Dataset:

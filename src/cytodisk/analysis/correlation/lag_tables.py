@@ -14,6 +14,7 @@ from cytodisk.analysis.correlation.lagged import LaggedSeries
 from cytodisk.analysis.correlation.pairing import Pair
 from cytodisk.analysis.correlation.surrogates import Surrogates
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.scale import Scale
 
 ALPHA = 0.05
 SECTOR = "sector"
@@ -52,7 +53,7 @@ class LagTables:
             if progress is not None:
                 progress(done + 1, int(np.prod(own)))
 
-    def dataset(self, order: list[str], frame_interval_s: float | None) -> xr.Dataset:
+    def dataset(self, order: list[str], scale: Scale) -> xr.Dataset:
         """The tables with names, windows in a given order of dims."""
         pair, dims = self._pair, self._pair.dims
         b = pair.b.reshape(*pair.b.shape, *[1] * (pair.a.ndim - pair.b.ndim))
@@ -68,8 +69,8 @@ class LagTables:
         data: dict[str, Any] = {name: (("lag", *dims), values) for name, values in by_lag.items()}
         data |= self._chance()
         coords: dict[str, Any] = {"lag": ("lag", self._lags, {"units": "frame"})} | pair.coords
-        if frame_interval_s is not None:
-            coords["lag_s"] = ("lag", self._lags * frame_interval_s, {"units": "s"})
+        if scale.frame_interval_s is not None:
+            coords["lag_s"] = ("lag", self._lags * scale.frame_interval_s, {"units": "s"})
         found = xr.Dataset(data, coords).transpose("surrogate", *order, "lag", missing_dims="ignore")
         return with_units(found.assign(n=found["n"].astype(np.int64)))
 

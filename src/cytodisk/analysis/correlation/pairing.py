@@ -10,6 +10,7 @@ import xarray as xr
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
+from cytodisk.scale import Scale
 
 _DIMS = ("time", "channel", "layer", "sector")
 _NAMELESS = {1: ("time",), 2: ("time", "sector"), 3: ("time", "layer", "sector"), 4: _DIMS}
@@ -42,8 +43,8 @@ class Pair:
         return self.own + self.others
 
 
-def named_series(a: Any, b: Any) -> tuple[xr.DataArray, xr.DataArray, float | None]:
-    """Two sets of series with names and the same frames, and the seconds between frames.
+def named_series(a: Any, b: Any) -> tuple[xr.DataArray, xr.DataArray, Scale]:
+    """Two sets of series with names and the same frames, and their scale in time.
 
     Parameters
     ----------
@@ -54,8 +55,8 @@ def named_series(a: Any, b: Any) -> tuple[xr.DataArray, xr.DataArray, float | No
     -------
     a, b : DataArray with dims (time, …)
         Without coordinates that are not dims.
-    frame_interval_s : float or None
-        From the coordinate time_s, where one of both has it.
+    scale : Scale
+        Of time alone, from the coordinate time_s, where one of both has it.
 
     Raises
     ------
@@ -76,7 +77,7 @@ def named_series(a: Any, b: Any) -> tuple[xr.DataArray, xr.DataArray, float | No
         xr.align(first, second, join="exact")
     except (xr.AlignmentError, ValueError) as error:
         raise ParameterError(f"a and b do not have the same frames and windows: {error}") from error
-    return first, second, next(iter(intervals), None)
+    return first, second, Scale(frame_interval_s=next(iter(intervals), None))
 
 
 def paired(a: xr.DataArray, b: xr.DataArray) -> Pair:

@@ -98,7 +98,7 @@ def correlate_pairs(
     1.0
     """
     how = PairParameters.of(**settings)
-    first, second, interval_s = named_series(a, b)
+    first, second, scale = named_series(a, b)
     for name, series in (("a", first), ("b", second)):
         if set(series.dims) != {"time", *_WINDOW}:
             raise ParameterError(f"{name} has the dims {list(series.dims)}: pass (time, layer, sector)")
@@ -125,8 +125,8 @@ def correlate_pairs(
         "distance": ("distance", _centres(edges), {"units": units}),
         "lag": ("lag", lags, {"units": "frame"}),
     }
-    if interval_s is not None:
-        coords["lag_s"] = ("lag", lags * interval_s, {"units": "s"})
+    if scale.frame_interval_s is not None:
+        coords["lag_s"] = ("lag", lags * scale.frame_interval_s, {"units": "s"})
     count = changed.count if surrogates else 0
     attrs = {"distance": kind, "units": units, "surrogates": count, "null": how.null, "seed": how.seed}
     attrs |= {name: value for name, value in options.items() if value is not None}
