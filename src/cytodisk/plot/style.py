@@ -16,6 +16,7 @@ from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from cytodisk.arrays import BoolArray
+from cytodisk.checks import positive_number
 from cytodisk.errors import ParameterError
 from cytodisk.scale import Scale
 
@@ -156,8 +157,7 @@ def nice_length(longest: float) -> float:
     ParameterError
         `longest` is not a positive number.
     """
-    if not 0 < longest < np.inf:
-        raise ParameterError(f"longest must be a positive number, got {longest!r}: pass the room for the bar")
+    longest = positive_number("longest", longest)
     power = 10.0 ** np.floor(np.log10(longest))
     return float(max(step * power for step in (0.5, 1.0, 2.0, 5.0) if step * power <= longest * (1 + 1e-9)))
 
