@@ -54,7 +54,7 @@ def test_masks_become_tables_figures_and_words(run: Run, masks: Path, tmp_path: 
     assert (code, said) == (0, "")
     assert cd.open_comparison(out).provenance["parameters"]["depth_px"] == 3.0
     assert_refused(
-        run("report", out), "holds comparison, not windows: look at its comparison.csv and figures"
+        run("report", out), "holds a run of cytodisk compare-windows: look at comparison.csv and the figures"
     )
 
 

@@ -75,7 +75,7 @@ BY_LAYER = tuple(column.name for column in _BY_LAYER)
 _LAYERS: Columns = (CELL, FRAME, _METHOD, LAYER, *_BY_LAYER)
 _CONSISTENCY: Columns = (CELL, _METHOD, *CONSISTENCY_COLUMNS[1:])
 
-_READER = "read it with open_comparison"
+_READER = "look at comparison.csv and the figures, or read it with open_comparison"
 _FILES = ("comparison*.csv", "maps/windows_*.npz", "maps/activity_*.npz")
 COMPARED_CELLS = StudyKind(
     "comparison", "cytodisk compare-windows", _READER, _CELLS, {"layers": _LAYERS}, _FILES

@@ -38,7 +38,7 @@ _CELL: Columns = (CELL, SOURCE, FRAME, LABEL, STATUS, REASON, NOTES, QC_FLAGS, T
 SHAPE_STUDY = StudyKind(
     "shapes",
     "cytodisk shapes",
-    "read it with open_shapes",
+    "look at shapes.csv and the figures, or read it with open_shapes",
     _CELL,  # without features, which are in the table of shapes
     {},
     (SHAPES, SHAPES_CSV, FEATURES_CSV),
