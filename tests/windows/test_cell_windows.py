@@ -27,7 +27,7 @@ def test_centroids_share_out_that_of_the_mask(windows: cd.CellWindows) -> None:
 
 
 def test_linear_signal_has_about_its_value_at_the_centroid(windows: cd.CellWindows) -> None:
-    """A mean takes whole pixels, a centroid their parts: at most half a pixel apart, and mostly far less."""
+    """A mean takes whole pixels, a centroid their subpixels: at most half a pixel apart, mostly less."""
     for slope in ((1.0, 0.0), (0.0, 1.0)):
         signal = cd.simulate.linear_signal(windows.mask.shape, slope, 0.0)
         off = abs(cd.sample(windows, signal)["mean"].to_numpy() - windows.centroids_yx @ slope)
@@ -52,7 +52,7 @@ def test_areas_are_those_of_the_outlines(windows: cd.CellWindows) -> None:
 
 
 def test_shapes_have_a_plain_twin(windows: cd.CellWindows) -> None:
-    """From the picture of parts: each is a square of side 1/4."""
+    """From the picture of subpixels: each is a square of side 1/4."""
     for number, found in enumerate(windows.eccentricities.ravel()):
         points = (np.argwhere(windows.subpixel_labels == number) + 0.5) / 4 - 0.5
         small, large = np.linalg.eigvalsh(np.cov(points.T, ddof=0) + np.eye(2) / 192)
@@ -68,7 +68,7 @@ def test_shapes_have_a_plain_twin(windows: cd.CellWindows) -> None:
     sectors=st.integers(1, 120),
 )
 def test_moments_share_out_those_of_the_mask(kind: str, seed: int, layers: int, sectors: int) -> None:
-    """However finely pixels are divided: the parts of a square have its second moment."""
+    """However finely pixels are divided: the subpixels of a square have its second moment."""
     disk = cd.map_to_disk(random_mask(kind, seed), method="harmonic")
     shares = cd.polar_windows(layers, sectors).on(disk).shares
     y, x = (np.argwhere(disk.mask) - shares.origin_yx).T

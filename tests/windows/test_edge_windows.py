@@ -12,17 +12,17 @@ RECTANGLE = np.pad(np.ones((12, 20), dtype=bool), 4)
 
 
 def test_layers_of_a_rectangle_are_frames() -> None:
-    """Exactly: the outline runs along the pixels' sides, and layers of 2 px end between parts. The middle is
-    6 px deep, so the fourth layer and the fifth are empty."""
+    """Exactly: the outline runs along the pixels' sides, and layers of 2 px end between subpixels. The middle
+    is 6 px deep, so the fourth layer and the fifth are empty."""
     windows = cd.edge_windows(RECTANGLE, 5, 1, depth_px=2.0)
     sizes = [(12 - 4 * layer) * (20 - 4 * layer) for layer in range(4)]
     assert_array_equal(windows.areas[:, 0], [*-np.diff(sizes), 0, 0])
     assert windows.n_empty == 2
     assert windows.coverage == 1.0
-    assert windows.edge.greatest_depth == 6 - 1 / 8  # in the middle of a part
+    assert windows.edge.greatest_depth == 6 - 1 / 8  # in the middle of a subpixel
 
 
-def test_a_layer_between_parts_is_known_too() -> None:
+def test_a_layer_between_subpixels_is_known_too() -> None:
     windows = cd.edge_windows(RECTANGLE, 1, 1, depth_px=0.75)
     assert windows.areas.item() == 12 * 20 - 10.5 * 18.5
     assert windows.coverage == pytest.approx(1 - 10.5 * 18.5 / 240)
@@ -95,9 +95,9 @@ def test_windows_hold_their_share_of_the_cell(
     windows = cd.edge_windows(random_mask(kind, seed), layers, sectors, depth)
     columns = windows.weights.sum(axis=0)
     assert columns.max() <= 1.0
-    parts = windows.subpixel_windows
-    assert windows.coverage == pytest.approx((parts >= 0).mean(), rel=1e-12)
-    counts = np.bincount(parts[parts >= 0], minlength=layers * sectors)
+    subpixels = windows.subpixel_windows
+    assert windows.coverage == pytest.approx((subpixels >= 0).mean(), rel=1e-12)
+    counts = np.bincount(subpixels[subpixels >= 0], minlength=layers * sectors)
     assert_array_equal(windows.areas.ravel(), counts / 16)
     if depth is None or depth == 50.0:
         assert windows.coverage == 1.0
@@ -122,16 +122,16 @@ def test_depth_and_place_have_a_plain_twin(kind: str) -> None:
     outline = windows.edge.outline_yx
     depth, angle = windows.edge.subpixels_of(np.argwhere(windows.mask))
     places = np.argwhere(windows.mask)[:, None, :] + np.array([[-0.375, -0.375], [0.125, 0.375]])
-    for part, column in ((0, 0), (11, 1)):
+    for subpixel, column in ((0, 0), (11, 1)):
         start, along = outline, np.roll(outline, -1, axis=0) - outline
         away = places[:, column, None] - start
         share = np.clip((away * along).sum(axis=-1) / (along**2).sum(axis=-1), 0.0, 1.0)
         distance = np.linalg.norm(away - share[..., None] * along, axis=-1)
-        inside = depth[:, part] > 0
-        assert_allclose(depth[inside, part], distance.min(axis=1)[inside], atol=1e-12)
+        inside = depth[:, subpixel] > 0
+        assert_allclose(depth[inside, subpixel], distance.min(axis=1)[inside], atol=1e-12)
         assert distance.min(axis=1)[~inside].max(initial=0.0) < 0.75  # corners of pixels cut by the outline
         above = np.column_stack(
-            [np.interp(angle[:, part], windows.edge.angles, xs, period=2.0 * np.pi) for xs in outline.T]
+            [np.interp(angle[:, subpixel], windows.edge.angles, xs, period=2.0 * np.pi) for xs in outline.T]
         )
         assert_allclose(np.linalg.norm(places[:, column] - above, axis=-1), distance.min(axis=1), atol=1e-9)
 
@@ -151,7 +151,7 @@ def test_pixels_that_are_left_out_make_no_difference(kind: str) -> None:
 
 @pytest.mark.parametrize("depth", [5e-324, 1e-200, 1e-18])
 def test_a_tiny_depth_leaves_almost_all_out(depth: float) -> None:
-    """But three parts at each corner, which the outline cuts off: their depth is 0."""
+    """But three subpixels at each corner, which the outline cuts off: their depth is 0."""
     windows = cd.edge_windows(RECTANGLE, 3, 1, depth)
     assert_array_equal(windows.areas[:, 0], [12 / 16, 0, 0])
 

@@ -18,7 +18,7 @@ from cytodisk.windows.weights import windows_of_subpixels
     per_side=st.sampled_from([1, 4, 5]),
 )
 @settings(max_examples=25, deadline=None)
-def test_every_part_is_in_the_window_that_its_place_maps_into(
+def test_every_subpixel_is_in_the_window_that_its_place_maps_into(
     kind: str, seed: int, layers: int, sectors: int, spacing: str, per_side: int
 ) -> None:
     disk = map_to_disk(simulate.random_mask(kind, seed))
@@ -27,12 +27,12 @@ def test_every_part_is_in_the_window_that_its_place_maps_into(
     one_by_one = windows_of_subpixels(grid, disk, pixels, per_side)
     found = windows_of_all_subpixels(grid, disk, pixels, per_side)
     apart = found != one_by_one
-    # Rounding may decide for a part that lies on the border between two windows, or at the centre.
+    # Rounding may decide for a subpixel that lies on the border between two windows, or at the centre.
     uv = disk.to_disk(subpixel_places(pixels, per_side)[apart], outside="nearest")
     turned = [(1.0 + a) * uv @ np.array([[1.0, b], [-b, 1.0]]) for a in (-1e-9, 1e-9) for b in (-1e-9, 1e-9)]
     beside = (np.array([grid.window_of(near) for near in turned]) == found[apart]).any(axis=0)
     assert (beside | (np.hypot(*uv.T) < 1e-9)).all()
-    assert apart.sum() <= 16 + 1e-3 * apart.size  # a symmetric pixel has many such parts
+    assert apart.sum() <= 16 + 1e-3 * apart.size  # a symmetric pixel has many such subpixels
 
 
 @pytest.mark.parametrize("mask", [np.ones((1, 1)), np.ones((2, 9)), np.eye(6)])

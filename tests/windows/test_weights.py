@@ -61,11 +61,12 @@ def test_no_window_of_the_finest_grid_is_empty(mask: np.ndarray, spacing: str) -
 
 
 def test_equal_area_windows_of_a_disk_have_equal_areas() -> None:
-    """A window's area is counted in parts of 1/16 px², whole on one side or the other of its outline.
+    """A window's area is counted in subpixels of 1/16 px², whole on one side or the other of its outline.
 
-    A window of 40 px² has an outline of about 25 px, so some hundred parts of its 600 are cut by it, half of
-    which fall on the wrong side: a standard deviation of √100/2 = 5 parts, 0.8 %. The map itself is off by
-    0.7 % on a disk (mean |log λ|), mostly in the steps of the pixel outline. Together that is below 2 %.
+    A window of 40 px² has an outline of about 25 px, so some hundred subpixels of its 600 are cut by it, half
+    of which fall on the wrong side: a standard deviation of √100/2 = 5 subpixels, 0.8 %.
+    The map itself is off by 0.7 % on a disk (mean |log λ|), mostly in the steps of the pixel outline.
+    Together that is below 2 %.
     """
     disk = cd.map_to_disk(cd.simulate.disk(60))
     areas = cd.polar_windows(10, 28).on(disk).areas
@@ -73,7 +74,7 @@ def test_equal_area_windows_of_a_disk_have_equal_areas() -> None:
 
 
 def test_equal_radius_windows_of_a_disk_grow_with_their_radius() -> None:
-    """Ring k of L has the share (2 (L − k) − 1) / L² of a disk, to 0.5 % by the parts of pixels."""
+    """Ring k of L has the share (2 (L − k) − 1) / L² of a disk, to 0.5 % by the subpixels."""
     disk = cd.map_to_disk(cd.simulate.disk(60))
     rings = cd.polar_windows(5, 6, "radius").on(disk).areas.sum(axis=1)
     np.testing.assert_allclose(rings / rings.sum(), np.array([9, 7, 5, 3, 1]) / 25, rtol=0.005)

@@ -38,7 +38,7 @@ def depths_and_angles(
     Parameters
     ----------
     places_yx : ndarray of shape (P, subpixels, 2) and dtype float
-        Parts of P pixels, each inside its pixel.
+        Subpixels of P pixels, each inside its pixel.
     outline_yx : ndarray of shape (B, 2) and dtype float
         Closed polygon, (row, column) in pixels.
     angles : ndarray of shape (B,) and dtype float

@@ -68,7 +68,7 @@ def windows_of_subpixels(grid: PolarLayout, disk: DiskMap, pixels_yx: IntArray, 
     pixels_yx : ndarray of shape (P, 2) and dtype int
         (row, column).
     per_side : int
-        Parts along a pixel's side.
+        Subpixels along a pixel's side.
 
     Returns
     -------
