@@ -108,10 +108,7 @@ class Parameters(BaseModel):
         ParameterError
             As for `of`.
         """
-        for pair in cls.exclusive:
-            if all(values.get(name) is not None for name in pair):
-                shown = [names.get(name, name) for name in pair]
-                raise cls.fault(f"{shown[0]} and {shown[1]} exclude each other: pass one of them")
+        cls._check_exclusive(values, names)
         if not names:
             return cls(**values)
         try:
@@ -119,6 +116,13 @@ class Parameters(BaseModel):
         except ValidationError as error:
             raise cls.fault(_fault_words(error, cls, names)) from None
         return cls(**values)
+
+    @classmethod
+    def _check_exclusive(cls, values: Mapping[str, Any], names: Mapping[str, str]) -> None:
+        for pair in cls.exclusive:
+            if all(values.get(name) is not None for name in pair):
+                shown = [names.get(name, name) for name in pair]
+                raise cls.fault(f"{shown[0]} and {shown[1]} exclude each other: pass one of them")
 
     @classmethod
     def chosen(cls, parameters: Parameters | None, values: Mapping[str, Any]) -> Self:
@@ -130,8 +134,19 @@ class Parameters(BaseModel):
         return parameters.changed(**values)
 
     def changed(self, **values: Any) -> Self:
-        """These parameters, some of them with other values."""
-        return type(self)(**(dict(self) | values)) if values else self
+        """These parameters, some of them with other values; what a given one excludes has its default again.
+
+        Raises
+        ------
+        ParameterError
+            As for `of`.
+        """
+        if not values:
+            return self
+        self._check_exclusive(values, {})
+        given = {name for name, value in values.items() if value is not None}
+        excluded = {name for pair in self.exclusive if given & set(pair) for name in pair}
+        return type(self)(**({name: value for name, value in self if name not in excluded} | values))
 
     def part(self, group: type[Group]) -> Group:
         """What a group of parameters shares with these."""

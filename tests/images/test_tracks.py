@@ -51,8 +51,8 @@ def test_a_stack_is_one_track_of_all_frames(tmp_path: Path) -> None:
     file = written(tmp_path, drawn({1: 1}, {}, {1: 255}))
     (track,) = tracks_of(file, "stack", link=False)
     assert spans([track]) == [(0, 1, 0, 2)]
-    assert track.times == range(3)
-    for time in track.times:
+    assert track.frames == range(3)
+    for time in track.frames:
         frame = read_frame(file, time)
         assert track.mask_in(frame, time) is frame
 
@@ -61,7 +61,7 @@ def test_each_label_is_a_track_from_its_first_frame_to_its_last(tmp_path: Path) 
     file = written(tmp_path, LATE_EARLY_AND_GAP)
     tracks = tracks_of(file, "labels", link=False)
     assert spans(tracks) == [(0, 3, 0, 3), (1, 7, 1, 2)]
-    assert list(tracks[1].times) == [1, 2]
+    assert list(tracks[1].frames) == [1, 2]
     mask = tracks[0].mask_in(read_frame(file, 1), 1)
     assert_array_equal(mask, read_frame(file, 1) == 3)
     assert mask.sum() == 64
@@ -80,7 +80,7 @@ def test_linked_labels_follow_the_cell(tmp_path: Path) -> None:
     tracks = tracks_of(file, "labels", link=True)
     assert spans(tracks) == [(0, 1, 0, 3), (1, 2, 0, 2), (2, 3, 1, 3)]
     for track, place in zip(tracks, PLACES.values(), strict=True):
-        for time in track.times:
+        for time in track.frames:
             mask = track.mask_in(read_frame(file, time), time)
             assert mask[place].all()
             assert mask.sum() == mask[place].size

@@ -32,7 +32,7 @@ def test_map_writes_a_study(run: Run, mask: Path, tmp_path: Path) -> None:
     code, said, error = run("map", mask, "-o", tmp_path / "out", *GRID)
     assert (code, error.strip()) == (0, "")
     assert "masks: one mask, YX (40, 50) uint8" in said
-    assert "pixel size: unknown, results are in px" in said
+    assert "pixel size: unknown, lengths are in px" in said
     assert "1 of 1 cell mapped, one to one" in said
     study = cd.open_study(tmp_path / "out")
     assert study.map(0).certificate.valid

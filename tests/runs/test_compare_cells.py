@@ -203,6 +203,11 @@ def test_parameters_that_make_no_sense_are_refused(values: dict[str, Any], words
         parameters_from(values, None, cd.CompareWindowsParameters)
 
 
+def test_a_signal_needs_a_movie(masks: Path, tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match="signal .* movie=True"):
+        cd.run_compare_windows(masks, tmp_path / "out", signal=masks)
+
+
 def test_the_parameters_of_a_comparison_can_be_fed_back(comparison: cd.Comparison) -> None:
     path = comparison.path / "parameters.toml"
     assert parameters_from({}, path, cd.CompareWindowsParameters) == GRID

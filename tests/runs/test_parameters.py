@@ -128,3 +128,12 @@ def test_a_file_of_another_command_is_called_so(tmp_path: Path) -> None:
     (tmp_path / "provenance.json").write_text('{"fingerprint": {}}')
     with pytest.raises(ParameterError, match=r"layers, .*cytodisk map"):
         parameters_from({}, tmp_path / "parameters.toml", ShapeParameters)
+
+
+def test_a_given_parameter_overrules_the_one_that_it_excludes() -> None:
+    by_depth = MovieParameters.of(depth_um=2.0)
+    assert by_depth.changed(layers=5).depth_um is None
+    assert MovieParameters.of(layers=5).changed(depth_um=2.0).layers == MovieParameters().layers
+    assert by_depth.changed(sectors=7).depth_um == 2.0
+    with pytest.raises(ParameterError, match="exclude each other"):
+        by_depth.changed(layers=5, depth_um=1.0)

@@ -153,6 +153,15 @@ def test_overwrite_removes_the_study_and_nothing_else(tmp_path: Path) -> None:
     assert not (out / "cells.parquet").exists()
 
 
+def test_overwrite_removes_nothing_outside_the_folder(tmp_path: Path) -> None:
+    out, outside = tmp_path / "out", tmp_path / "notes.txt"
+    finished(out)
+    outside.write_text("there")
+    record_files(out, ["../notes.txt", "maps/../../notes.txt", str(outside)])
+    StudyFolder.start(out, run(), KIND, overwrite=True)
+    assert outside.read_text() == "there"
+
+
 def test_overwrite_keeps_an_input_even_where_a_result_stood(tmp_path: Path) -> None:
     out = tmp_path / "out"
     finished(out)

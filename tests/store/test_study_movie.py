@@ -99,7 +99,7 @@ def test_a_frame_without_a_map_has_its_reason(movie_study: cd.Study) -> None:
 def test_a_movies_map_needs_a_frame_and_another_needs_none(
     movie_study: cd.Study, map_study: cd.Study
 ) -> None:
-    with pytest.raises(ReadError, match=r"out: pass cell and time"):
+    with pytest.raises(ReadError, match=r"out: pass cell and frame"):
         movie_study.map(0)
     with pytest.raises(ReadError, match=r"out: pass the cell alone"):
         map_study.map(0, 0)

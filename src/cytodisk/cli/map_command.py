@@ -69,7 +69,6 @@ def check_command(masks: MaskFiles, given: Given, signal: SignalFiles = None) ->
 def say_inputs(console: "Console", inputs: "CellInputs") -> None:
     for role, words in inputs.understood.items():
         console.print(f"{role}: {words}")
-    size = inputs.scale.pixel_size_um
-    console.print(f"pixel size: {size:g} µm" if size else "pixel size: unknown, results are in px")
+    console.print(inputs.scale.words()[0])
     for remark in inputs.remarks:
         console.print(f"note: {remark}")

@@ -47,11 +47,8 @@ def movie_command(
 def say_movie(console: "Console", inputs: "MovieInputs") -> None:
     for role, words in inputs.understood.items():
         console.print(f"{role}: {words}")
-    pixel, interval = inputs.scale.pixel_size_um, inputs.scale.frame_interval_s
-    console.print(f"pixel size: {pixel:g} µm" if pixel else "pixel size: unknown, lengths are in px")
-    console.print(
-        f"frame interval: {interval:g} s" if interval else "frame interval: unknown, times are in frames"
-    )
+    for words in inputs.scale.words():
+        console.print(words)
 
 
 def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int, again: str = RESUME) -> None:

@@ -40,8 +40,7 @@ def shapes_command(
     console = console_for(quiet)
     inputs = open_shape_inputs(masks, settings)
     console.print(f"masks: {inputs.understood['masks']}")
-    size = inputs.scale.pixel_size_um
-    console.print(f"pixel size: {size:g} µm" if size else "pixel size: unknown, lengths are in px")
+    console.print(inputs.scale.words()[0])
     for remark in inputs.remarks:
         console.print(f"note: {remark}")
     with progress_bar(quiet, "cells") as progress:

@@ -37,42 +37,43 @@ class CellTrack:
     labels: dict[int, int] | None
 
     @property
-    def times(self) -> range:
-        """Frames from the first to the last."""
+    def frames(self) -> range:
+        """Numbers of the frames from the first to the last."""
         return range(self.first, self.last + 1)
 
-    def mask_in(self, frame: Any, time: int) -> Any:
+    def mask_in(self, image: Any, frame: int) -> Any:
         """The cell's mask in a frame.
 
         Parameters
         ----------
-        frame : ndarray of shape (H, W), or CytodiskError
-            As `read_frame` returns it.
-        time : int
+        image : ndarray of shape (H, W), or CytodiskError
+            The frame's masks or labels, as `read_frame` returns them.
+        frame : int
+            Its number.
 
         Returns
         -------
         ndarray of shape (H, W), or CytodiskError
             An error says why there is no mask: the frame is damaged, or the label is not in it.
         """
-        if isinstance(frame, CytodiskError) or self.labels is None:
-            return frame
-        if time not in self.labels:
-            return MissingLabel(f"label {self.label} is not in frame {time}")
-        return frame == self.labels[time]
+        if isinstance(image, CytodiskError) or self.labels is None:
+            return image
+        if frame not in self.labels:
+            return MissingLabel(f"label {self.label} is not in frame {frame}")
+        return image == self.labels[frame]
 
 
 class MissingLabel(MaskError):
     """A tracked cell is not in a frame between its first and its last."""
 
 
-def read_frame(file: FrameFile, time: int) -> Any:
+def read_frame(file: FrameFile, frame: int) -> Any:
     """A frame of a mask movie.
 
     Parameters
     ----------
     file : FrameFile
-    time : int
+    frame : int
 
     Returns
     -------
@@ -80,7 +81,7 @@ def read_frame(file: FrameFile, time: int) -> Any:
         The error of a damaged frame, so that the frames around it can be used.
     """
     try:
-        return file.frame(time)[0]
+        return file.frame(frame)[0]
     except ReadError as error:
         return as_data(error)
 
@@ -110,32 +111,32 @@ def list_tracks(file: FrameFile, look: MaskLook, link: bool) -> list[CellTrack]:
     """
     if look.kind != "labels":
         return [CellTrack(0, 1, 0, file.n_frames - 1, None)]
-    faults = {time: found for time, found in enumerate(look.labels) if isinstance(found, CytodiskError)}
+    faults = {frame: found for frame, found in enumerate(look.labels) if isinstance(found, CytodiskError)}
     for fault in faults.values():
         if not isinstance(fault, ReadError):
             raise fault
     found: dict[int, dict[int, int]] = {}
     tracks = link_labels(_label_frames(file)) if link else _labels_as_tracks(look)
-    for time, in_frame in enumerate(tracks):
+    for frame, in_frame in enumerate(tracks):
         for label, track in in_frame.items():
-            found.setdefault(track, {})[time] = label
+            found.setdefault(track, {})[frame] = label
     if not found:
         raise MaskError(f"{file.path} holds no label in any of its {file.n_frames} frames")
     cells = [
         CellTrack(cell, track, min(found[track]), max(found[track]), found[track])
         for cell, track in enumerate(sorted(found))
     ]
-    for time in faults:
-        cells = _with_damaged(cells, time)
+    for frame in faults:
+        cells = _with_damaged(cells, frame)
     return cells
 
 
-def _with_damaged(tracks: list[CellTrack], time: int) -> list[CellTrack]:
+def _with_damaged(tracks: list[CellTrack], frame: int) -> list[CellTrack]:
     """Give a damaged frame that no cell spans to the cells nearest in time, so that their rows tell of it."""
-    away = [max(track.first - time, time - track.last, 0) for track in tracks]
+    away = [max(track.first - frame, frame - track.last, 0) for track in tracks]
     nearest = min(away)
     return [
-        replace(track, first=min(track.first, time), last=max(track.last, time))
+        replace(track, first=min(track.first, frame), last=max(track.last, frame))
         if distance == nearest > 0
         else track
         for track, distance in zip(tracks, away, strict=True)
@@ -150,6 +151,6 @@ def _labels_as_tracks(look: MaskLook) -> list[dict[int, int]]:
 
 def _label_frames(file: FrameFile) -> Iterator[Any]:
     """Frames as label images; a damaged one counts as empty here."""
-    for time in range(file.n_frames):
-        frame = read_frame(file, time)
-        yield np.zeros(file.image_shape, dtype=np.uint8) if isinstance(frame, ReadError) else frame
+    for frame in range(file.n_frames):
+        labels = read_frame(file, frame)
+        yield np.zeros(file.image_shape, dtype=np.uint8) if isinstance(labels, ReadError) else labels

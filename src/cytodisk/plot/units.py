@@ -24,12 +24,7 @@ def scale_for(carrier: Any, scale: Scale | None = None) -> Scale:
     Scale
     """
     carried = Scale.of(carrier)
-    if scale is None:
-        return carried
-    return Scale(
-        carried.pixel_size_um if scale.pixel_size_um is None else scale.pixel_size_um,
-        carried.frame_interval_s if scale.frame_interval_s is None else scale.frame_interval_s,
-    )
+    return carried if scale is None else carried.given(scale.pixel_size_um, scale.frame_interval_s)
 
 
 def unit_of(values: Any, otherwise: str = "") -> str:

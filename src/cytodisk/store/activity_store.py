@@ -93,17 +93,17 @@ class CellActivity:
         self._frames: list[tuple[int, dict[str, Any] | None, str, str]] = []
         self._written = False
 
-    def append(self, time: int, arrays: dict[str, Any] | None, status: str, reason: str) -> None:
+    def append(self, frame: int, arrays: dict[str, Any] | None, status: str, reason: str) -> None:
         """Add a frame.
 
         Parameters
         ----------
-        time : int
+        frame : int
         arrays : dict of str to ndarray, or None
             Statistics of shape (C, L, S), geometry (L, S), edge (S,); None without a map.
         status, reason : str
         """
-        self._frames.append((time, arrays, status, reason))
+        self._frames.append((frame, arrays, status, reason))
         if len(self._frames) >= _FRAMES_PER_CHUNK:
             self._flush()
 

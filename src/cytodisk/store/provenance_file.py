@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 from cytodisk.errors import ReadError
@@ -73,6 +73,16 @@ def other_version(provenance: dict[str, Any]) -> str:
         return ""
     version = provenance.get("versions", {}).get("cytodisk", "of unknown version")
     return f"was written by an earlier or later cytodisk ({version}), with other tables"
+
+
+def own_files(provenance: dict[str, Any]) -> list[str]:
+    """Names, or patterns of names, of what a run wrote into its folder, beside the provenance.
+
+    Names that lead out of the folder are left out: the file may come from elsewhere, and `--overwrite`
+    removes what is named here.
+    """
+    names = [str(name) for name in provenance.get("files", []) if name and name != PROVENANCE]
+    return [name for name in names if not PurePath(name).is_absolute() and ".." not in PurePath(name).parts]
 
 
 def write_json(path: Path, content: Any) -> None:

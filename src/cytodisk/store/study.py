@@ -75,17 +75,17 @@ class Study:
 
     @cached_property
     def windows(self) -> pd.DataFrame:
-        """One row a cell, time, channel, layer and sector; units in `attrs["units"]`. Read when asked for."""
+        """One row a cell, frame, channel, layer and sector; units in `attrs["units"]`."""
         return read_table(self.path / WINDOWS)
 
     @cached_property
     def edge(self) -> pd.DataFrame:
-        """For a movie, one row a cell, time and sector: edge velocity, areas won and lost."""
+        """For a movie, one row a cell, frame and sector: edge velocity, areas won and lost."""
         return self._movie_table(EDGE)
 
     @cached_property
     def consistency(self) -> pd.DataFrame:
-        """For a movie, one row a cell, time, channel and layer: the paper's measures."""
+        """For a movie, one row a cell, frame, channel and layer: the paper's measures."""
         return self._movie_table(CONSISTENCY)
 
     @property
@@ -122,14 +122,14 @@ class Study:
             raise ReadError(f"study {self.path} is not that of a movie: it has no {name}")
         return read_table(self.path / name)
 
-    def map(self, cell: int, time: int | None = None) -> DiskMap:
+    def map(self, cell: int, frame: int | None = None) -> DiskMap:
         """Read the map of one cell, in one frame of a movie.
 
         Parameters
         ----------
         cell : int
             Its number in the tables.
-        time : int, optional
+        frame : int, optional
             Number of the frame, for a movie.
 
         Returns
@@ -141,21 +141,21 @@ class Study:
         ReadError
             There is no such map, as the row in `cells` says.
         """
-        if self.is_movie != (time is not None):
+        if self.is_movie != (frame is not None):
             raise ReadError(
-                f"study {self.path}: pass {'cell and time' if self.is_movie else 'the cell alone'}"
+                f"study {self.path}: pass {'cell and frame' if self.is_movie else 'the cell alone'}"
             )
-        key = part_key(cell, time)
+        key = part_key(cell, frame)
         rows = self._rows_of(cell)
-        if time is not None:
-            rows = rows[rows["frame"] == time]
+        if frame is not None:
+            rows = rows[rows["frame"] == frame]
             if rows.empty:
-                raise ReadError(f"cell {cell} of {self.path} is not in frame {time}")
+                raise ReadError(f"cell {cell} of {self.path} is not in frame {frame}")
         path = self._map_path(key)
         if not path.exists():
-            frame = "" if time is None else f", frame {time},"
+            place = "" if frame is None else f", frame {frame},"
             reason = rows["reason"].iloc[0] or "it was not kept (--no-maps)"
-            raise ReadError(f"cell {cell}{frame} of {self.path} has no map: {reason}")
+            raise ReadError(f"cell {cell}{place} of {self.path} has no map: {reason}")
         return replace(load_map(path), scale=self.scale)
 
     def activity(self, cell: int = 0) -> xr.Dataset:
@@ -201,21 +201,21 @@ class Study:
             raise ReadError(f"study {self.path} is not that of a movie: use map({cell})")
         at = {int(row["frame"]): row for _, row in rows.iterrows()}
         last = max(at)
-        records = [self._record(cell, time, at.get(time)) for time in range(last + 1)]
+        records = [self._record(cell, frame, at.get(frame)) for frame in range(last + 1)]
         height, width = self.provenance["image_shape"]
         return DiskMovie(
             tuple(records),
             (height, width),
             self.scale,
-            lambda time: replace(load_map(self._map_path(part_key(cell, time))), scale=self.scale),
+            lambda frame: replace(load_map(self._map_path(part_key(cell, frame))), scale=self.scale),
         )
 
-    def _record(self, cell: int, time: int, row: Any) -> FrameRecord:
+    def _record(self, cell: int, frame: int, row: Any) -> FrameRecord:
         if row is None:
-            return FrameRecord("missing", f"cell {cell} is not in frame {time} yet", None)
+            return FrameRecord("missing", f"cell {cell} is not in frame {frame} yet", None)
         if row["status"] != "ok":
             return FrameRecord(row["status"], row["reason"], None)
-        path = self._map_path(part_key(cell, time))
+        path = self._map_path(part_key(cell, frame))
         return FrameRecord("ok", "", lambda: load_boundary(path))
 
     def _map_path(self, key: str) -> Path:

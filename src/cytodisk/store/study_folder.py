@@ -28,9 +28,9 @@ from cytodisk.store.tables import Columns, schema
 _UNITS = ("length_unit", "velocity_unit")  # of the provenance
 
 
-def part_key(cell: int, time: int | None = None) -> str:
+def part_key(cell: int, frame: int | None = None) -> str:
     """Name of a part of a study: a cell, or a frame of a cell."""
-    return f"{cell:05d}" if time is None else f"{cell:05d}_t{time:05d}"
+    return f"{cell:05d}" if frame is None else f"{cell:05d}_t{frame:05d}"
 
 
 class StudyFolder:
@@ -206,7 +206,7 @@ class StudyFolder:
             yield from found if isinstance(found, list) else [found]
 
     def rows(self) -> list[dict[str, Any]]:
-        """The rows of all complete parts, in the order of cells, then time."""
+        """The rows of all complete parts, by cell, then frame."""
         return sorted(self.read_rows(self._complete()), key=lambda row: (row["cell"], row["frame"]))
 
     def part_table(self, key: str, table: str) -> Any:

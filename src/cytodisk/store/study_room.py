@@ -16,6 +16,7 @@ from cytodisk.store.provenance_file import (
     PROVENANCE,
     differences,
     other_version,
+    own_files,
     read_provenance,
     write_json,
 )
@@ -78,7 +79,7 @@ def make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite:
         # The old provenance stays, marked, until the new one replaces it: a kill leaves a known study.
         write_json(folder / PROVENANCE, there | {"status": "being replaced", "fingerprint": {}})
         kept = {Path(found["path"]).resolve() for found in provenance.get("inputs", {}).values()}
-        names = [name for name in there["files"] if name != PROVENANCE]
+        names = own_files(there)
         for file in [file for name in names for file in folder.glob(name)]:
             if not kept & {file.resolve(), *file.resolve().parents}:
                 _remove(file)

@@ -13,7 +13,7 @@ from cytodisk.errors import OtherRunError
 from cytodisk.runs.batch.batch_file import Batch
 from cytodisk.runs.batch.input_row import ROWS, STUDIES
 from cytodisk.runs.versions import NUMERIC, installed
-from cytodisk.store.provenance_file import FORMAT, PROVENANCE, command_of, parse_provenance
+from cytodisk.store.provenance_file import FORMAT, PROVENANCE, command_of, own_files, parse_provenance
 from cytodisk.store.study_room import check_room
 from cytodisk.store.targets import Store
 
@@ -54,9 +54,8 @@ def make_room(store: Store, provenance: dict[str, Any], target: str, resume: boo
     check_room(there, provenance, f"output folder {target}", resume, overwrite)
     if overwrite and there is not None:
         note(store, there | {"status": "being replaced", "fingerprint": {}})
-        for name in there["files"]:
-            if name != PROVENANCE:
-                store.remove(name)
+        for name in own_files(there):
+            store.remove(name)
 
 
 def describe_batch(batch: Batch) -> dict[str, Any]:

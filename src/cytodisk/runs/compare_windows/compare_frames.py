@@ -139,14 +139,16 @@ def _sample_frames(
     channels = [""] if signal is None else list(signal.channels)
     tables = ActivityTables(len(movie), channels, grid, ("mean",))
     frames, layers = [], []
-    for time in np.flatnonzero(movie.mapped).tolist():
-        disk = movie[time]
+    for frame in np.flatnonzero(movie.mapped).tolist():
+        disk = movie[frame]
         windows = grid.on(disk)
-        image = load_image(signal, first + time)
+        image = load_image(signal, first + frame)
         known = None if isinstance(image, ReadError) else image
-        tables.put(time, window_arrays(windows, known, nan=followed.parameters.nan))
+        tables.put(frame, window_arrays(windows, known, nan=followed.parameters.nan))
         frames.append(windows_row(windows, disk if followed.method in ON_A_MAP else None))
-        layers.append(layer_columns(followed.cell, first + time, followed.method, measures_by_layer(windows)))
+        layers.append(
+            layer_columns(followed.cell, first + frame, followed.method, measures_by_layer(windows))
+        )
     return tables.dataset(movie, first), frames, layers
 
 
@@ -158,15 +160,15 @@ def _consistency(
     moved = centroid_displacement(followed.movie, activity).mean("sector").to_numpy()
     columns: list[dict[str, Any]] = []
     for found in layers:
-        time, count = int(found["frame"][0]), len(found["layer"])
+        frame, count = int(found["frame"][0]), len(found["layer"])
         for number, channel in enumerate(activity["channel"].to_numpy()):
             columns.append(
                 {
                     **{name: found[name] for name in ("cell", "method", "frame", "layer", "completeness")},
-                    "time_s": [followed.movie.scale.seconds(time)] * count,
+                    "time_s": [followed.movie.scale.seconds(frame)] * count,
                     "channel": [str(channel) or None] * count,
-                    "correlation": correlation[time - followed.first, number],
-                    "centroid_displacement": moved[time - followed.first],
+                    "correlation": correlation[frame - followed.first, number],
+                    "centroid_displacement": moved[frame - followed.first],
                 }
             )
     return _stacked(columns)

@@ -101,8 +101,8 @@ def _compare_all(
 ) -> None:
     """Do the parts that are not there yet; progress is counted in frames of all parts."""
     pending = [part for part in parts if not folder.has(part.key)]
-    total = sum(len(part.track.times) for part in parts)
-    done = total - sum(len(part.track.times) for part in pending)
+    total = sum(len(part.track.frames) for part in parts)
+    done = total - sum(len(part.track.frames) for part in pending)
     progress(done, total)
 
     def within(frames: int, _: int) -> None:
@@ -115,7 +115,7 @@ def _compare_all(
         )
         for part, rows in zip(pending, executor.results(submitted), strict=True):
             folder.add(part.key, *rows)
-            done += len(part.track.times)
+            done += len(part.track.frames)
             progress(done, total)
 
 
@@ -136,7 +136,7 @@ def _compare(
 ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
     """Row and tables of one cell by one method; a movie without any map has the reason in its row."""
     track, started = part.track, clock.perf_counter()
-    masks = [track.mask_in(read_frame(inputs.masks, time), time) for time in track.times]
+    masks = [track.mask_in(read_frame(inputs.masks, frame), frame) for frame in track.frames]
     row: dict[str, Any] = {
         "cell": track.cell,
         "source": inputs.masks.path.name,
@@ -159,8 +159,8 @@ def _compare(
         channels = np.array(activity["channel"].to_numpy(), dtype=str)
         arrays: dict[str, Any] = {name: activity[name].to_numpy() for name in ("mean", "area", "frame")}
         np.savez_compressed(temporary, channel=channels, **arrays)
-    reasons = [(track.first + time, record.reason) for time, record in enumerate(movie.records)]
-    faults = "; ".join(f"frame {time}: {reason}" for time, reason in reasons if reason)
+    reasons = [(track.first + frame, record.reason) for frame, record in enumerate(movie.records)]
+    faults = "; ".join(f"frame {frame}: {reason}" for frame, reason in reasons if reason)
     outcome = {"status": "partly" if faults else "ok", "reason": faults, "seconds": seconds}
     return row | measured.row | outcome, measured.tables
 

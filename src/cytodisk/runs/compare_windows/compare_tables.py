@@ -132,12 +132,12 @@ def windows_row(windows: WindowsOnCell, disk: DiskMap | None) -> dict[str, Any]:
     }
 
 
-def layer_columns(cell: int, time: int, method: str, measures: xr.Dataset) -> dict[str, Any]:
+def layer_columns(cell: int, frame: int, method: str, measures: xr.Dataset) -> dict[str, Any]:
     """Rows of the table of layers: what `measures_by_layer` found, for one cell, frame and method."""
     count = measures.sizes["layer"]
     return {
         "cell": np.full(count, cell),
-        "frame": np.full(count, time),
+        "frame": np.full(count, frame),
         "method": [method] * count,
         "layer": np.arange(count),
         **{name: measures[name].to_numpy().astype(np.float64) for name in BY_LAYER},

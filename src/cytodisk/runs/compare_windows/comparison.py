@@ -86,7 +86,7 @@ class Comparison:
 
     @cached_property
     def consistency(self) -> pd.DataFrame:
-        """For a movie, one row a cell, method, time, channel and layer."""
+        """For a movie, one row a cell, method, frame, channel and layer."""
         if not self.is_movie:
             raise ReadError(f"comparison {self.path} is not that of a movie: it has no {CONSISTENCY}")
         return read_table(self.path / CONSISTENCY)

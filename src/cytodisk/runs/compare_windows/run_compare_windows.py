@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
+from cytodisk.errors import ParameterError
 from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.compare_windows.compare_cells import compare_opened_cells
 from cytodisk.runs.compare_windows.compare_movie import compare_opened_movie
@@ -80,6 +81,8 @@ def run_compare_windows(
         of_movie = CompareMovieParameters.chosen(parameters, values)
         frames = open_movie(masks, signal, of_movie)
         return compare_opened_movie(frames, out, of_movie, progress=progress, **dict(options))
+    if signal is not None:
+        raise ParameterError("signal is sampled in movies only: pass movie=True too, or leave signal out")
     of_cells = CompareWindowsParameters.chosen(parameters, values)
     cells = open_inputs(masks, None, of_cells)
     return compare_opened_cells(cells, out, of_cells, progress=progress, **dict(options))

@@ -105,12 +105,12 @@ class MovieInputs:
     @property
     def n_frames(self) -> int:
         """Frames of all cells together."""
-        return sum(len(track.times) for track in self.tracks)
+        return sum(len(track.frames) for track in self.tracks)
 
     @property
     def keys(self) -> list[str]:
-        """Parts of the study, by cell, then time."""
-        return [part_key(track.cell, time) for track in self.tracks for time in track.times]
+        """Parts of the study, by cell, then frame."""
+        return [part_key(track.cell, frame) for track in self.tracks for frame in track.frames]
 
 
 def open_movie(
@@ -229,9 +229,9 @@ def _layers(
     """Layers for the wanted depth, and the depth they give, on the first frame that can be used."""
     if scale.pixel_size_um is None:
         raise ParameterError("depth_um needs a pixel size: pass it as --pixel-size, or layers instead")
-    for track, time in _first_frames(tracks):
+    for track, frame in _first_frames(tracks):
         try:
-            mask, report = clean_mask(track.mask_in(read_frame(masks, time), time))
+            mask, report = clean_mask(track.mask_in(read_frame(masks, frame), frame))
         except CytodiskError:
             continue  # has its row in the run; the next frame serves as well
         perimeter = float(edge_lengths(smooth_closed(trace_outline(mask), 1.0)).sum())
@@ -243,5 +243,5 @@ def _layers(
 
 def _first_frames(tracks: tuple[CellTrack, ...]) -> Iterator[tuple[CellTrack, int]]:
     for track in tracks:
-        for time in track.times:
-            yield track, time
+        for frame in track.frames:
+            yield track, frame

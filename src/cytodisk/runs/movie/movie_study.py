@@ -104,52 +104,52 @@ class _Run:
 
     def _frames(self) -> Iterator[Future[FrameRows]]:
         """Frames on their way to be measured."""
-        for time in range(self._inputs.masks.n_frames):
-            present = [track for track in self._inputs.tracks if time in track.times]
-            pending = [track for track in present if not self._folder.has(part_key(track.cell, time))]
+        for frame in range(self._inputs.masks.n_frames):
+            present = [track for track in self._inputs.tracks if frame in track.frames]
+            pending = [track for track in present if not self._folder.has(part_key(track.cell, frame))]
             if pending:
-                yield from self._one_time(time, pending)
+                yield from self._one_frame(frame, pending)
             for track in present:
-                if time == track.last:
+                if frame == track.last:
                     self._last.pop(track.cell, None)
 
-    def _one_time(self, time: int, tracks: list[CellTrack]) -> Iterator[Future[FrameRows]]:
-        frame = read_frame(self._inputs.masks, time)
-        signal = load_image(self._inputs.signal, time)
+    def _one_frame(self, frame: int, tracks: list[CellTrack]) -> Iterator[Future[FrameRows]]:
+        labels = read_frame(self._inputs.masks, frame)
+        signal = load_image(self._inputs.signal, frame)
         mapping = []
         for track in tracks:
             if track.cell not in self._last:
-                self._resume_from(track, time)
-            mask = signal if isinstance(signal, ReadError) else track.mask_in(frame, time)
+                self._resume_from(track, frame)
+            mask = signal if isinstance(signal, ReadError) else track.mask_in(labels, frame)
             last = self._last.get(track.cell)
-            task = time, mask, last, self._settings, self._inputs.scale
+            task = frame, mask, last, self._settings, self._inputs.scale
             mapping.append((track, self._executor.submit(_map_timed, *task)))
         for track, future in mapping:
-            yield self._measured(track, time, *future.result(), signal)
+            yield self._measured(track, frame, *future.result(), signal)
 
     def _measured(
-        self, track: CellTrack, time: int, result: FrameResult, seconds: float, signal: Any
+        self, track: CellTrack, frame: int, result: FrameResult, seconds: float, signal: Any
     ) -> Future[FrameRows]:
-        place = FramePlace(track.cell, time, track.label, self._inputs.scale.seconds(time))
+        place = FramePlace(track.cell, frame, track.label, self._inputs.scale.seconds(frame))
         if result.mapped is None:
             return finished(unmapped_rows(place, result.fault or MaskError("no map"), seconds))
         last = self._last.get(track.cell)
         task = FrameTask(
             place,
             result.mapped,
-            last if last is not None and last.frame == time - 1 else None,
+            last if last is not None and last.frame == frame - 1 else None,
             signal,
             self._inputs.grid,
             self._inputs.parameters,
-            self._folder.map_path(part_key(track.cell, time)),
+            self._folder.map_path(part_key(track.cell, frame)),
             seconds,
         )
         self._last[track.cell] = result.mapped
         return self._executor.submit(measure_frame, task)
 
-    def _resume_from(self, track: CellTrack, time: int) -> None:
+    def _resume_from(self, track: CellTrack, frame: int) -> None:
         """Read the last frame that has a map back, if an earlier run left any."""
-        done = [t for t in range(track.first, time) if self._folder.has(part_key(track.cell, t))]
+        done = [t for t in range(track.first, frame) if self._folder.has(part_key(track.cell, t))]
         paths = {t: self._folder.map_path(part_key(track.cell, t)) for t in done}
         mapped = {t: path for t, path in paths.items() if path.exists()}
         if mapped:
@@ -157,10 +157,10 @@ class _Run:
 
 
 def _map_timed(
-    time: int, mask: Any, last: MappedFrame | None, settings: MovieSettings, scale: Scale
+    frame: int, mask: Any, last: MappedFrame | None, settings: MovieSettings, scale: Scale
 ) -> tuple[FrameResult, float]:
     started = clock.perf_counter()
-    return map_one(time, mask, last, settings, scale), clock.perf_counter() - started
+    return map_one(frame, mask, last, settings, scale), clock.perf_counter() - started
 
 
 def _warning(row: dict[str, Any]) -> str:

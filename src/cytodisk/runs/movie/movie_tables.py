@@ -59,16 +59,16 @@ def _finish_track(
 ) -> None:
     before: dict[str, Any] | None = None
     cell = store.cell(track.cell, track.label, grid, channels, scale)
-    for time in track.times:
-        key, row = part_key(track.cell, time), rows[track.cell, time]
+    for frame in track.frames:
+        key, row = part_key(track.cell, frame), rows[track.cell, frame]
         here = _frame_arrays(folder, key, grid, row, channels) if row["status"] == "ok" else None
         if here is not None:
-            _complete_edge(folder, track, time, grid.sectors, scale, rows)
+            _complete_edge(folder, track, frame, grid.sectors, scale, rows)
             here |= _edge_arrays(folder, key)
         if before is not None:
             there = None if row.get("restarted") else here
-            _add_consistency(folder, track.cell, time - 1, scale, channels, before, there)
-        cell.append(time, here, row["status"], row["reason"])
+            _add_consistency(folder, track.cell, frame - 1, scale, channels, before, there)
+        cell.append(frame, here, row["status"], row["reason"])
         before = here
     if before is not None:
         _add_consistency(folder, track.cell, track.last, scale, channels, before, None)
@@ -99,25 +99,25 @@ def _edge_arrays(folder: StudyFolder, key: str) -> dict[str, Any]:
 def _complete_edge(
     folder: StudyFolder,
     track: CellTrack,
-    time: int,
+    frame: int,
     sectors: int,
     scale: Scale,
     rows: dict[tuple[int, int], dict[str, Any]],
 ) -> None:
     """Give a frame without a next one its rows of the edge table, with the reason."""
-    key = part_key(track.cell, time)
+    key = part_key(track.cell, frame)
     if folder.has_table(key, "edge"):
         return
-    following = rows.get((track.cell, time + 1))
+    following = rows.get((track.cell, frame + 1))
     status = "last frame" if following is None else f"the next frame has no map: {following['reason']}"
-    place = FramePlace(track.cell, time, track.label, scale.seconds(time))
+    place = FramePlace(track.cell, frame, track.label, scale.seconds(frame))
     folder.add_table(key, "edge", edge_columns(place, sectors, scale, None, None, status))
 
 
 def _add_consistency(
     folder: StudyFolder,
     cell: int,
-    time: int,
+    frame: int,
     scale: Scale,
     names: Sequence[str],
     here: dict[str, Any],
@@ -133,14 +133,14 @@ def _add_consistency(
         if "mean" in here:
             correlation = correlation_over_sectors(here["mean"], there["mean"])
     rows = len(channels) * layers
-    columns = FramePlace(cell, time, 0, scale.seconds(time)).columns(rows) | {
+    columns = FramePlace(cell, frame, 0, scale.seconds(frame)).columns(rows) | {
         "channel": [name for name in channels for _ in range(layers)],
         "layer": np.tile(np.arange(layers), len(channels)),
         "correlation": correlation.ravel(),
         "centroid_displacement": np.tile(moved, len(channels)),
         "completeness": np.tile((here["area"] > 0).mean(axis=-1), len(channels)),
     }
-    folder.add_table(part_key(cell, time), "consistency", columns)
+    folder.add_table(part_key(cell, frame), "consistency", columns)
 
 
 def _registered(arrays: dict[str, Any]) -> Any:
