@@ -204,7 +204,7 @@ def test_parameters_that_make_no_sense_are_refused(values: dict[str, Any], words
 
 
 def test_a_signal_needs_a_movie(masks: Path, tmp_path: Path) -> None:
-    with pytest.raises(ParameterError, match="signal .* movie=True"):
+    with pytest.raises(ParameterError, match=r"signal .* movie=True"):
         cd.run_compare_windows(masks, tmp_path / "out", signal=masks)
 
 
