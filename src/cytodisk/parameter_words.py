@@ -11,7 +11,8 @@ from typing import Any, Literal, Union, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-_NUMBER = r"[+-]?[0-9.]+([eE][+-]?[0-9]+)?"
+_WHOLE = r"[+-]?[0-9]+"
+_NUMBER = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"
 _LONGEST_VALUE = 60  # letters of a refused value that a message repeats
 
 
@@ -107,9 +108,10 @@ def value_of_text(field: FieldInfo, text: str) -> Any:
     parts = [part.strip() for part in text.split(":" if item == (int, int) else ",")]
     if item[0] not in (int, float):
         return tuple(parts)
-    if (item == (int, int) and len(parts) != 2) or not all(re.fullmatch(_NUMBER, part) for part in parts):
+    form = _NUMBER if item[0] is float else _WHOLE
+    if (item == (int, int) and len(parts) != 2) or not all(re.fullmatch(form, part) for part in parts):
         return text
-    values = tuple(float(part) if item[0] is float else int(float(part)) for part in parts)
+    values = tuple(item[0](part) for part in parts)
     return values[0] if len(values) == 1 and float in wanted else values
 
 

@@ -225,6 +225,9 @@ def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) ->
         batch_study(batch, quiet, overwrite=True, scheduler="nonsense")
     with pytest.raises(ParameterError, match="must be an address"):
         batch_study(batch, quiet / "new", scheduler="nonsense")
+    inside = replace(batch.inputs[0], masks=quiet / "inputs" / "movie_0" / "masks.tif")
+    with pytest.raises(StudyError, match="lies among the results"):
+        batch_study(replace(batch, inputs=(inside,)), quiet, overwrite=True)
     assert content(quiet) == before
     assert not (quiet / "new").exists()
 

@@ -9,13 +9,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from cytodisk.errors import OtherRunError
+from cytodisk.errors import OtherRunError, StudyError
 from cytodisk.runs.batch.batch_file import Batch
 from cytodisk.runs.batch.input_row import ROWS, STUDIES
 from cytodisk.runs.versions import NUMERIC, installed
 from cytodisk.store.provenance_file import FORMAT, PROVENANCE, command_of, own_files, parse_provenance
 from cytodisk.store.study_room import check_room
 from cytodisk.store.targets import Store
+from cytodisk.store.url_store import is_url
 
 _FILES = (
     PROVENANCE,
@@ -56,6 +57,27 @@ def make_room(store: Store, provenance: dict[str, Any], target: str, resume: boo
         note(store, there | {"status": "being replaced", "fingerprint": {}})
         for name in own_files(there):
             store.remove(name)
+
+
+def refuse_inputs_inside(batch: Batch, target: str) -> None:
+    """Raise StudyError if a file of the batch lies where `--overwrite` removes results.
+
+    Parameters
+    ----------
+    batch : Batch
+    target : str
+        Folder of the results, or a URL, where no input can be.
+    """
+    if is_url(target):
+        return
+    removed = {(Path(target) / name).resolve() for name in (ROWS, STUDIES)}
+    for item in batch.inputs:
+        for file in (item.masks, item.signal):
+            if file is not None and removed & {file.resolve(), *file.resolve().parents}:
+                raise StudyError(
+                    f"input {file} lies among the results in {target}, which --overwrite removes: "
+                    "move it, or pass another folder"
+                )
 
 
 def describe_batch(batch: Batch) -> dict[str, Any]:

@@ -12,7 +12,14 @@ from typing import Any, TypeAlias
 
 from cytodisk.errors import OtherRunError, WriteError
 from cytodisk.runs.batch.batch_file import Batch
-from cytodisk.runs.batch.batch_folder import describe_batch, make_room, note, now, remove_left_overs
+from cytodisk.runs.batch.batch_folder import (
+    describe_batch,
+    make_room,
+    note,
+    now,
+    refuse_inputs_inside,
+    remove_left_overs,
+)
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.batch.batch_target import begin_run, open_store
 from cytodisk.runs.batch.batch_task import LARGE_MB, BatchTask, TaskResult, make_tasks, run_task
@@ -102,6 +109,8 @@ def batch_study(
     if scheduler is not None and not resume:
         _reach(scheduler)  # before the folder is touched
     target = os.fspath(out)
+    if options.overwrite:
+        refuse_inputs_inside(batch, target)
     store = open_store(target)
     with store.alone():
         provenance = describe_batch(batch)

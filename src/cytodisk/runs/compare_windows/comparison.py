@@ -120,7 +120,7 @@ class Comparison:
         return table
 
     def labels(self, cell: int) -> dict[str, Any]:
-        """Which part of a cell is in which window: "mask", and by method an int array, -1 for none.
+        """Which pixel of a cell is in which window: "mask", and by method an int array, -1 for none.
 
         In cells of up to 4000 pixels each pixel is divided into 4×4.
         """
@@ -137,9 +137,10 @@ class Comparison:
         try:
             with np.load(path) as file:
                 _, _, layers, sectors = file["mean"].shape
-                coords = {"frame": ("time", file["frame"]), "channel": file["channel"]}
+                coords = self.scale.time_coords(file["frame"]) | {"channel": file["channel"]}
                 coords |= {"layer": np.arange(layers), "sector": np.arange(sectors)}
-                values = xr.DataArray(file["mean"], coords, ("time", "channel", "layer", "sector"))
+                dims = ("time", "channel", "layer", "sector")
+                values = xr.DataArray(file["mean"], coords, dims, attrs={"units": "a.u."} | self.scale.attrs)
                 return values.set_xindex("frame")
         except OSError as error:
             raise ReadError(f"cell {cell} has no activity by {method} in comparison {self.path}") from error
