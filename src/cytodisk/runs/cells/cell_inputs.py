@@ -15,7 +15,7 @@ from cytodisk.images.signal_files import pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
 from cytodisk.runs.channel_names import name_channels
-from cytodisk.runs.pixel_sizes import common_pixel_size
+from cytodisk.runs.file_scales import agreed
 from cytodisk.scale import Scale
 
 _MOST_UNNAMED = 10  # more planes than that are hardly channels
@@ -134,7 +134,7 @@ def open_inputs(
     sources = open_mask_files(masks, parameters.kind)
     found = _open_signal(sources[0], signal, parameters)
     files = [file for file in (found.file, sources[0].file) if file is not None]
-    pixel_size_um = parameters.pixel_size_um or common_pixel_size(files)
+    pixel_size_um = parameters.pixel_size_um or agreed(files, "pixel_size_um")
     return CellInputs(Path(masks), sources, {sources[0].name: found}, parameters, Scale(pixel_size_um))
 
 

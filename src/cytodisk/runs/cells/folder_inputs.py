@@ -10,7 +10,7 @@ from cytodisk.errors import CytodiskError, MaskError, SignalError
 from cytodisk.images.frames import FrameFile
 from cytodisk.images.mask_files import MaskSource
 from cytodisk.runs.channel_names import name_channels
-from cytodisk.runs.pixel_sizes import alike, most_common_size
+from cytodisk.runs.file_scales import alike, most_common_size
 
 
 @dataclass(frozen=True)

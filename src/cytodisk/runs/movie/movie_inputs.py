@@ -17,8 +17,8 @@ from cytodisk.images.mask_kinds import look_at
 from cytodisk.images.tracks import CellTrack, list_tracks, read_frame
 from cytodisk.runs.cells.cell_inputs import check_signal
 from cytodisk.runs.channel_names import name_channels
+from cytodisk.runs.file_scales import agreed
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters, MovieParameters
-from cytodisk.runs.pixel_sizes import common_pixel_size
 from cytodisk.scale import Scale
 from cytodisk.store.study_folder import part_key
 from cytodisk.windows.grid_parameters import Spacing
@@ -177,8 +177,8 @@ def open_movie_files(
         check_signal(mask_file, signal_file)
     opened = [file for file in (signal_file, mask_file) if file is not None]
     scale = Scale(
-        parameters.pixel_size_um or common_pixel_size(opened),
-        parameters.frame_interval_s or _frame_interval(mask_file, signal_file),
+        parameters.pixel_size_um or agreed(opened, "pixel_size_um"),
+        parameters.frame_interval_s or agreed(opened, "frame_interval_s"),
     )
     return MovieFiles(mask_file, signal_file, scale)
 
@@ -210,17 +210,6 @@ def _check_frames(masks: FrameFile, signal: FrameFile) -> None:
         f"signal {signal.path} was understood as {signal.n_frames} frames of {len(signal.channels)} channels "
         f"({signal.axes} {signal.shape}), the masks have {masks.n_frames} frames: {hint}"
     )
-
-
-def _frame_interval(masks: FrameFile, signal: FrameFile | None) -> float | None:
-    known = [file for file in (signal, masks) if file is not None and file.scale.frame_interval_s is not None]
-    intervals = [file.scale.frame_interval_s for file in known if file.scale.frame_interval_s is not None]
-    if intervals and max(intervals) > 1.01 * min(intervals):
-        raise SignalError(
-            f"frame intervals differ: {known[0].path} says {intervals[0]:g} s, {known[1].path} "
-            f"{intervals[1]:g} s: pass the right one, as --frame-interval"
-        )
-    return intervals[0] if intervals else None
 
 
 def _layers(
