@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 from typing import Any, TypeVar
 
@@ -14,8 +15,12 @@ Word = TypeVar("Word", bound=str)
 
 def is_number(value: Any) -> bool:
     """Whether a value is one finite real number; True and False are none."""
-    plain = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-    return bool(plain and np.isfinite(value))
+    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number beyond all floats
+        return False
 
 
 def whole_number(name: str, value: Any, least: int) -> int:

@@ -254,6 +254,11 @@ FAULTS: dict[str, tuple[Any, Any, str]] = {
         named(GOOD, "sector").assign_coords(time=np.arange(5, 5 + FRAMES)),
         "a and b do not have the same frames and windows",
     ),
+    "other frames, by other names": (
+        xr.DataArray(GOOD, {"frame": ("time", np.arange(FRAMES))}, ("time", "sector")),
+        xr.DataArray(GOOD, {"time": np.arange(5, 5 + FRAMES)}, ("time", "sector")),
+        "a and b do not have the same frames and windows: frame of a begins with 0, time of b with 5",
+    ),
     "other sectors": (GOOD, noise(0, FRAMES, SECTORS + 1), "a and b do not have the same frames and windows"),
     "other intervals": (
         named(GOOD, "sector", interval_s=1.0),
@@ -453,3 +458,15 @@ def test_what_is_coupled_is_found_and_the_rest_is_not() -> None:
     assert found[windows].all()
     assert found[~windows].mean() < 0.05
     np.testing.assert_array_equal(peak["lag"].to_numpy()[windows], -4)
+
+
+def test_a_frame_that_is_one_number_counts_for_nothing() -> None:
+    without = cross_correlate(GOOD, GOOD, 2)
+    found = cross_correlate(named(GOOD, "sector").assign_coords(frame=3, time_s=1.5), GOOD, 2)
+    np.testing.assert_array_equal(found["correlation"], without["correlation"])
+
+
+def test_a_seed_may_be_longer_than_64_bits() -> None:
+    found = cross_correlate(GOOD, GOOD, 2, surrogates=3, seed=2**70)
+    assert found.attrs["seed"] == 2**70
+    xr.testing.assert_identical(found, cross_correlate(GOOD, GOOD, 2, surrogates=3, seed=2**70))

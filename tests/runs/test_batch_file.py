@@ -261,3 +261,13 @@ def test_the_example_of_the_documentation_is_a_batch_file(tmp_path: Path) -> Non
     assert names == ["control-day_1-a_masks", "drug-day_1-a_masks", "drug-day_2-a_masks"]
     assert batch.inputs[0].columns == ("control", "day_1", None)
     assert [item.columns for item in batch.inputs[1:]] == [("drug", f"day_{k}", 50) for k in (1, 2)]
+
+
+@pytest.mark.parametrize(
+    ("of_all", "own"), [("layers = 4", "depth_um = 1.5"), ("depth_um = 1.5", "layers = 4")]
+)
+def test_a_row_overrules_what_excludes_its_own_parameter(folder: Path, of_all: str, own: str) -> None:
+    text = f"[parameters]\n{of_all}\n[[inputs]]\nmasks = 'drug/cell1_masks.tif'\nparameters = {{{own}}}"
+    found = batch_of(folder, text).inputs[0].parameters
+    assert isinstance(found, MovieParameters)
+    assert (found.layers, found.depth_um) == ((10, 1.5) if "depth" in own else (4, None))

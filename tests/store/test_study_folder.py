@@ -172,6 +172,28 @@ def test_overwrite_keeps_an_input_even_where_a_result_stood(tmp_path: Path) -> N
     assert not (out / "cells.parquet").exists()
 
 
+def test_overwrite_removes_what_a_killed_run_left_in_a_folder_among_the_inputs(tmp_path: Path) -> None:
+    """Else its parts, of other parameters, would count as done."""
+    out = tmp_path / "out"
+    add(StudyFolder.start(out, run(), KIND), 0, status="ok")
+    (tmp_path / "a.tif").touch()
+    here = run(layers=5) | {"inputs": {"masks": {"path": str(tmp_path), "files": {"a.tif": "hash"}}}}
+    folder = StudyFolder.start(out, here, KIND, overwrite=True)
+    assert not folder.has(part_key(0))
+    assert (tmp_path / "a.tif").exists()
+
+
+def test_overwrite_keeps_an_input_within_a_folder_of_results(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    finished(out)
+    record_files(out, ["results"])
+    (out / "results").mkdir()
+    (out / "results" / "a.tif").write_text("masks")
+    here = run() | {"inputs": {"masks": {"path": str(out / "results"), "files": {"a.tif": "hash"}}}}
+    StudyFolder.start(out, here, KIND, overwrite=True)
+    assert (out / "results" / "a.tif").read_text() == "masks"
+
+
 def test_the_provenance_names_all_that_a_run_writes(tmp_path: Path) -> None:
     folder = finished(tmp_path / "out")
     figure_path(folder.path, "cell_00000.png").write_bytes(b"")

@@ -29,7 +29,7 @@ def frame_numbers(array: xr.DataArray, name: str) -> IntArray:
     ParameterError
         The numbers do not follow each other without a gap.
     """
-    known = next((coordinate for coordinate in ("frame", "time") if coordinate in array.coords), None)
+    known = frame_coordinate(array)
     if known is None:
         return np.arange(array.sizes["time"])
     numbers = array[known].to_numpy()
@@ -41,6 +41,16 @@ def frame_numbers(array: xr.DataArray, name: str) -> IntArray:
     return np.asarray(numbers.astype(np.int64))
 
 
+def frame_coordinate(array: xr.DataArray) -> str | None:
+    """The coordinate that numbers the frames of an array: frame, or else time."""
+    return next((name for name in ("frame", "time") if has_times(array, name)), None)
+
+
+def has_times(array: xr.DataArray, coordinate: str) -> bool:
+    """Whether an array has a coordinate with a value for each frame."""
+    return coordinate in array.coords and array[coordinate].dims == ("time",)
+
+
 def frame_seconds(array: xr.DataArray) -> FloatArray:
     """Time of each frame and of the end of the last, in seconds, shape (T + 1,); NaN when it is not known.
 
@@ -50,7 +60,7 @@ def frame_seconds(array: xr.DataArray) -> FloatArray:
         Its coordinate time_s is read; the last frame lasts as long as the one before it.
     """
     frames = array.sizes["time"]
-    if "time_s" not in array.coords or frames < 2:
+    if not has_times(array, "time_s") or frames < 2:
         return np.full(frames + 1, np.nan)
     seconds = array["time_s"].to_numpy().astype(np.float64)
     return np.append(seconds, 2.0 * seconds[-1] - seconds[-2])

@@ -78,14 +78,24 @@ def make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite:
     if overwrite and there is not None:
         # The old provenance stays, marked, until the new one replaces it: a kill leaves a known study.
         write_json(folder / PROVENANCE, there | {"status": "being replaced", "fingerprint": {}})
-        kept = {Path(found["path"]).resolve() for found in provenance.get("inputs", {}).values()}
+        inputs = _input_files(provenance)
         names = own_files(there)
         for file in [file for name in names for file in folder.glob(name)]:
-            if not kept & {file.resolve(), *file.resolve().parents}:
+            if not any(one.is_relative_to(file.resolve()) for one in inputs):
                 _remove(file)
         for name in {Path(name).parent for name in names} - {Path()}:
             with suppress(OSError):  # something that is not ours stands there
                 (folder / name).rmdir()
+
+
+def _input_files(provenance: dict[str, Any]) -> set[Path]:
+    """The files that a run reads; of a folder of masks those that count, not what else stands in it."""
+    inputs = provenance.get("inputs", {}).values()
+    return {
+        file.resolve()
+        for found in inputs
+        for file in (Path(found["path"]) / name for name in found.get("files", [""]))
+    }
 
 
 def check_room(

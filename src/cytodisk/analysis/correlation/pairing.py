@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 import xarray as xr
 
+from cytodisk.analysis.time_steps import frame_coordinate, has_times
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
 from cytodisk.scale import Scale
@@ -72,6 +73,7 @@ def named_series(a: Any, b: Any) -> tuple[xr.DataArray, xr.DataArray, Scale]:
     intervals = {step for step in (_interval(first, "a"), _interval(second, "b")) if step is not None}
     if len(intervals) > 1:
         raise ParameterError(f"a and b have other seconds between frames: {sorted(intervals)}")
+    _check_same_frames(first, second)
     first, second = (series.reset_coords(drop=True) for series in (first, second))
     try:
         xr.align(first, second, join="exact")
@@ -138,10 +140,23 @@ def _named(values: Any, name: Literal["a", "b"]) -> xr.DataArray:
     return series
 
 
+def _check_same_frames(a: xr.DataArray, b: xr.DataArray) -> None:
+    """Refuse series that number their frames otherwise, one of them perhaps by frame, the other by time."""
+    known_a, known_b = frame_coordinate(a), frame_coordinate(b)
+    if known_a is None or known_b is None:
+        return
+    frames_a, frames_b = a[known_a].to_numpy(), b[known_b].to_numpy()
+    if not np.array_equal(frames_a, frames_b):
+        raise ParameterError(
+            f"a and b do not have the same frames and windows: {known_a} of a begins with {frames_a[0]}, "
+            f"{known_b} of b with {frames_b[0]}"
+        )
+
+
 def _interval(series: xr.DataArray, name: str) -> float | None:
     """Seconds between frames; the frames must be evenly spaced."""
     for coordinate in ("frame", "time", "time_s"):
-        if coordinate in series.coords and series.sizes["time"] > 2:
+        if has_times(series, coordinate) and series.sizes["time"] > 2:
             steps = np.diff(series[coordinate].to_numpy().astype(np.float64))
             if steps.min() <= 0.0:
                 raise ParameterError(f"{name} goes back in {coordinate}, or stands still: sort it by time")
@@ -150,6 +165,6 @@ def _interval(series: xr.DataArray, name: str) -> float | None:
                     f"{name} has frames {steps.min():g} to {steps.max():g} apart in {coordinate}: lags need "
                     "even steps, so put NaN where a frame is missing"
                 )
-    if "time_s" not in series.coords or series.sizes["time"] < 2:
+    if not has_times(series, "time_s") or series.sizes["time"] < 2:
         return None
     return round(float(np.diff(series["time_s"].to_numpy()).mean()), 9)

@@ -109,8 +109,10 @@ class RowReader:
             self.faults.add(row.place, "frame_interval_s is for movies only: take it out")
             return None
         shared = {name: value for name, value in self.parameters.items() if name in of.model_fields}
-        if "layers" in own:
-            shared.pop("depth_um", None)  # the two exclude each other
+        for one, other in of.exclusive:
+            for given, left_out in ((one, other), (other, one)):
+                if given in own:
+                    shared.pop(left_out, None)
         try:
             return parameters_from(shared | own, None, of)
         except ParameterError as error:
