@@ -39,7 +39,7 @@ class DrawnMovie(MovieCell):
     @cached_property
     def mapped(self) -> list[int]:
         """Numbers of the frames with a map."""
-        return [int(time) for time in np.flatnonzero(self.maps.mapped)]
+        return [int(frame) for frame in np.flatnonzero(self.maps.mapped)]
 
     def shown_name(self, channel: int = 0) -> str:
         """Name of a channel for headings and labels."""
@@ -55,9 +55,9 @@ class DrawnMovie(MovieCell):
         """Tracked boundary points from the cell's first frame on, shape (frames, N, 2); NaN without map."""
         return self.maps.points_yx[self.first :]
 
-    def windows(self, time: int) -> CellWindows:
+    def windows(self, frame: int) -> CellWindows:
         """Windows of a mapped frame to draw."""
-        return self.grid.on(self.maps[time])
+        return self.grid.on(self.maps[frame])
 
     def write_heading(self, sheet: Sheet, what: str) -> None:
         """Name of the cell, its frames, scale, and what the page shows, in two lines."""

@@ -95,17 +95,17 @@ def write_movie_figures(
     if not movie.mapped:
         return []
     pages = _pages(movie, signal)
-    times = _evenly(movie.mapped, MOST_ANIMATED) if animation else []
+    frames = _evenly(movie.mapped, MOST_ANIMATED) if animation else []
     report = progress or (lambda done, whole: None)
-    whole, paths = len(pages) + len(times), []
+    whole, paths = len(pages) + len(frames), []
     for done, (what, draw) in enumerate(pages):
         report(done, whole)
         with paper_style():
             sheet = draw()
             if sheet is not None:
                 paths.append(movie.save(sheet, what))
-    if times:
-        paths.append(_animate(movie, signal, times, lambda done: report(len(pages) + done, whole)))
+    if frames:
+        paths.append(_animate(movie, signal, frames, lambda done: report(len(pages) + done, whole)))
     report(whole, whole)
     return paths
 
@@ -151,14 +151,14 @@ def _activity_sheet(movie: DrawnMovie, channel: int) -> Sheet:
 
 
 def _strip_sheet(movie: DrawnMovie, signal: SignalAt | None) -> Sheet:
-    times = _spread(movie.mapped, _STRIP_FRAMES)
-    images = [_background(signal, time) for time in times]
+    frames = _spread(movie.mapped, _STRIP_FRAMES)
+    images = [_background(signal, frame) for frame in frames]
     shown = [image for image in images if image is not None]
     extent = field_of_view([movie.points_yx])
     wide, right = extent[3] - extent[2], 15.0 if shown else 0.0
     width = (DOUBLE_COLUMN_MM - 2 * LEFT_MM - right - 3.0 * (_STRIP_COLUMNS - 1)) / _STRIP_COLUMNS
     height = width * min((extent[1] - extent[0]) / wide, _TALLEST)
-    rows = -(-len(times) // _STRIP_COLUMNS)
+    rows = -(-len(frames) // _STRIP_COLUMNS)
     sheet = Sheet(HEADING_MM + rows * (height + 10.0) + 1.0)
     movie.write_heading(sheet, "windows through time" + (f", over {movie.shown_name()}" if shown else ""))
     axes = [
@@ -168,10 +168,10 @@ def _strip_sheet(movie: DrawnMovie, signal: SignalAt | None) -> Sheet:
             width,
             height,
         )
-        for k in range(len(times))
+        for k in range(len(frames))
     ]
-    windows = [movie.windows(time) for time in times]
-    stamps = [time_stamp(time, movie.scale) for time in times]
+    windows = [movie.windows(frame) for frame in frames]
+    stamps = [time_stamp(frame, movie.scale) for frame in frames]
     # A frame without its image stays blank below its windows, as its neighbours keep their colours.
     missing = np.full(movie.maps.image_shape, np.nan)
     draw_strip(
@@ -189,15 +189,15 @@ def _strip_sheet(movie: DrawnMovie, signal: SignalAt | None) -> Sheet:
 
 
 def _animate(
-    movie: DrawnMovie, signal: SignalAt | None, times: list[int], progress: Callable[[int], None]
+    movie: DrawnMovie, signal: SignalAt | None, frames: list[int], progress: Callable[[int], None]
 ) -> Path:
-    def frames() -> Iterator[tuple[Any, FloatArray | None, int]]:
-        for time in times:
-            yield movie.windows(time), _background(signal, time), time
+    def drawn() -> Iterator[tuple[Any, FloatArray | None, int]]:
+        for frame in frames:
+            yield movie.windows(frame), _background(signal, frame), frame
 
     return write_animation(
         movie.path(".gif"),
-        frames(),
+        drawn(),
         extent_yx=field_of_view([movie.points_yx]),
         scale=movie.scale,
         limits=_limits(movie, signal),
@@ -209,30 +209,30 @@ def _animate(
 def _limits(movie: DrawnMovie, signal: SignalAt | None) -> tuple[float, float] | None:
     """Colours that suit first, middle and last frame alike."""
     inside = []
-    for time in _spread(movie.mapped, 3):
-        image = _background(signal, time)
+    for frame in _spread(movie.mapped, 3):
+        image = _background(signal, frame)
         if image is not None and image.shape == movie.maps.image_shape:
-            inside.append(image[movie.maps[time].mask])
+            inside.append(image[movie.maps[frame].mask])
     if not inside:
         return None
     return signal_limits(np.concatenate(inside))
 
 
-def _background(signal: SignalAt | None, time: int) -> FloatArray | None:
+def _background(signal: SignalAt | None, frame: int) -> FloatArray | None:
     """First channel of a frame's image."""
-    image = None if signal is None else signal(time)
+    image = None if signal is None else signal(frame)
     if image is None:
         return None
     values = np.asarray(image, dtype=np.float64)
     return values if values.ndim == 2 else values[0]
 
 
-def _spread(times: list[int], most: int) -> list[int]:
+def _spread(frames: list[int], most: int) -> list[int]:
     """First, last, and as many between as wanted."""
-    chosen = np.linspace(0, len(times) - 1, min(most, len(times))).round().astype(int)
-    return [times[k] for k in chosen]
+    chosen = np.linspace(0, len(frames) - 1, min(most, len(frames))).round().astype(int)
+    return [frames[k] for k in chosen]
 
 
-def _evenly(times: list[int], most: int) -> list[int]:
+def _evenly(frames: list[int], most: int) -> list[int]:
     """Every k-th, so that at most so many are left."""
-    return times[:: -(-len(times) // most)]
+    return frames[:: -(-len(frames) // most)]

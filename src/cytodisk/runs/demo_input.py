@@ -129,9 +129,9 @@ def _signal_words(study: Study, truth: SimulatedMovie) -> str:
     off = []
     counts = _signal(truth)
     for number, channel in enumerate(counts["channel"].to_numpy()):
-        for time, mask in enumerate(truth.masks):
-            counted = float(counts.to_numpy()[time, number][mask].sum(dtype=np.float64))
-            off.append(abs(found[str(channel), time] - counted) / counted)
+        for frame, mask in enumerate(truth.masks):
+            counted = float(counts.to_numpy()[frame, number][mask].sum(dtype=np.float64))
+            off.append(abs(found[str(channel), frame] - counted) / counted)
     worst = float(np.max(off))
     return f"the sum over windows is that of the cell, at most {worst:.0e} off in any frame and channel"
 
@@ -173,8 +173,8 @@ def _holds(path: Path, values: Any) -> bool:
         if found.n_frames != len(values) or found.image_shape != values.shape[-2:]:
             return False
         return all(
-            np.array_equal(found.frame(time), frame.reshape(-1, *values.shape[-2:]))
-            for time, frame in enumerate(values)
+            np.array_equal(found.frame(number), frame.reshape(-1, *values.shape[-2:]))
+            for number, frame in enumerate(values)
         )
     except ReadError:
         return False  # a file that cannot be read is written anew
