@@ -59,7 +59,7 @@ class Parameters(BaseModel):
     Raises
     ------
     ParameterError
-        A name is unknown, or a value out of its range.
+        A name is unknown, a value is out of its range, or two exclude each other.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
@@ -71,6 +71,7 @@ class Parameters(BaseModel):
     """Pairs of names of which only one can be given: the other has its default."""
 
     def __init__(self, **values: Any) -> None:
+        self._check_exclusive(values, {})
         try:
             super().__init__(**values)
         except ValidationError as error:
@@ -109,13 +110,17 @@ class Parameters(BaseModel):
             As for `of`.
         """
         cls._check_exclusive(values, names)
-        if not names:
-            return cls(**values)
+        return cls._of_all(values, names)
+
+    @classmethod
+    def _of_all(cls, values: Mapping[str, Any], names: Mapping[str, str]) -> Self:
+        """Parameters from values of which two may exclude each other, as those of another model."""
+        made = cls.__new__(cls)
         try:
-            cls.__pydantic_validator__.validate_python(dict(values), self_instance=cls.__new__(cls))
+            cls.__pydantic_validator__.validate_python(dict(values), self_instance=made)
         except ValidationError as error:
             raise cls.fault(_fault_words(error, cls, names)) from None
-        return cls(**values)
+        return made
 
     @classmethod
     def _check_exclusive(cls, values: Mapping[str, Any], names: Mapping[str, str]) -> None:
@@ -146,12 +151,13 @@ class Parameters(BaseModel):
         self._check_exclusive(values, {})
         given = {name for name, value in values.items() if value is not None}
         excluded = {name for pair in self.exclusive if given & set(pair) for name in pair}
-        return type(self)(**({name: value for name, value in self if name not in excluded} | values))
+        kept = {name: value for name, value in self if name not in excluded}
+        return self._of_all(kept | values, {})
 
     def part(self, group: type[Group]) -> Group:
         """What a group of parameters shares with these."""
         own = dict(self)
-        return group(**{name: own[name] for name in group.model_fields if name in own})
+        return group._of_all({name: own[name] for name in group.model_fields if name in own}, {})
 
     @field_validator("*", mode="before")
     @classmethod

@@ -137,3 +137,18 @@ def test_a_given_parameter_overrules_the_one_that_it_excludes() -> None:
     assert by_depth.changed(sectors=7).depth_um == 2.0
     with pytest.raises(ParameterError, match="exclude each other"):
         by_depth.changed(layers=5, depth_um=1.0)
+
+
+def test_the_constructor_takes_one_of_two_that_exclude_each_other() -> None:
+    with pytest.raises(ParameterError, match="layers and depth_um exclude each other: pass one of them"):
+        MovieParameters(layers=10, depth_um=2.0)  # the default counts, too, where it is given
+    assert MovieParameters(layers=4, depth_um=None).layers == 4
+    assert MovieParameters(depth_um=2.0).changed(sectors=9).depth_um == 2.0
+    assert MovieParameters(depth_um=2.0).part(MapParameters).layers == MapParameters().layers
+
+
+def test_a_file_with_the_default_layers_and_a_depth_can_be_fed_back(tmp_path: Path) -> None:
+    path, written = tmp_path / "parameters.toml", MovieParameters(depth_um=2.0, sectors=8)
+    write_parameters(written, path)
+    assert {"layers = 10", "depth_um = 2.0"} <= set(path.read_text().splitlines())
+    assert parameters_from({}, path, MovieParameters) == written
