@@ -113,6 +113,8 @@ class RowReader:
             for given, left_out in ((one, other), (other, one)):
                 if given in own:
                     shared.pop(left_out, None)
+            if one in shared and other in shared:
+                shared.pop(one)  # a study's parameters.toml has both, of which the second counts
         try:
             return parameters_from(shared | own, None, of)
         except ParameterError as error:
