@@ -6,7 +6,8 @@ import pytest
 import xarray as xr
 
 from cytodisk import DiskMovie, consecutive_correlation, map_movie, polar_windows, sample_movie, simulate
-from cytodisk.analysis.activity import STATISTICS, parse_signals
+from cytodisk.analysis.activity import STATISTICS
+from cytodisk.analysis.movie_signals import parse_signals
 from cytodisk.errors import SignalError
 from cytodisk.simulate import SimulatedMovie
 

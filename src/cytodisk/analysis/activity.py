@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 import xarray as xr
 
+from cytodisk.analysis.movie_signals import parse_signals
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.errors import SignalError
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.scale import Scale
 from cytodisk.taking import takes
@@ -84,15 +85,65 @@ def sample_movie(
     {'time': 3, 'channel': 2, 'layer': 2, 'sector': 6}
     """
     how = dict(SampleParameters.of(**settings))
-    frames, channels = parse_signals(signals, len(movie), movie.image_shape)
-    tables = ActivityTables(len(movie), channels, grid)
-    for number, has_map in enumerate(movie.mapped):
-        if has_map:
-            image = _frame(frames[number], number, len(channels), movie.image_shape)
-            tables.put(number, window_arrays(grid.on(movie[number]), image, **how))
-        if progress is not None:
-            progress(number + 1, len(movie))
+    known = parse_signals(signals, len(movie), movie.image_shape)
+    tables = ActivityTables(len(movie), known.channels, grid)
+    for sampled in sample_frames(movie, grid, known.image, progress=progress, **how):
+        tables.put(sampled.frame, sampled.arrays)
     return tables.dataset(movie)
+
+
+@dataclass(frozen=True, eq=False)
+class SampledFrame:
+    """One frame of a movie with its windows and what was measured in them.
+
+    Attributes
+    ----------
+    frame : int
+        Its place in the movie, from 0.
+    disk : DiskMap
+    windows : WindowsOnCell
+    arrays : dict of str to ndarray
+        See `window_arrays`.
+    """
+
+    frame: int
+    disk: DiskMap
+    windows: WindowsOnCell
+    arrays: dict[str, FloatArray]
+
+
+def sample_frames(
+    movie: DiskMovie,
+    grid: Grid,
+    image: Callable[[int], Any],
+    *,
+    progress: Callable[[int, int], None] | None = None,
+    **settings: Any,
+) -> Iterator[SampledFrame]:
+    """Lay windows on the mapped frames of a movie and sample a signal, one frame in memory at a time.
+
+    Parameters
+    ----------
+    movie : DiskMovie
+    grid : PolarGrid, EdgeGrid or RingGrid
+    image : callable
+        Gives the image of a frame, as `window_arrays` takes it, by the frame's place in the movie.
+    progress : callable, optional
+        Called with (frames done, frames in all); frames without a map count.
+    **settings
+        As for `sample`.
+
+    Yields
+    ------
+    SampledFrame
+    """
+    for frame, has_map in enumerate(movie.mapped):
+        if has_map:
+            disk = movie[frame]
+            windows = grid.on(disk)
+            yield SampledFrame(frame, disk, windows, window_arrays(windows, image(frame), **settings))
+        if progress is not None:
+            progress(frame + 1, len(movie))
 
 
 def window_arrays(windows: WindowsOnCell, image: Any, **settings: Any) -> dict[str, FloatArray]:
@@ -205,77 +256,3 @@ def with_places(activity: xr.Dataset) -> xr.Dataset:
         if activity[name].dtype.kind == "f":
             activity[name].attrs |= scale.attrs
     return activity.set_coords(["centroid_y", "centroid_x"])
-
-
-def parse_signals(signals: Any, n_frames: int, image_shape: tuple[int, int]) -> tuple[Any, list[str]]:
-    """A sequence of frames with channel names, checked against a movie.
-
-    Parameters
-    ----------
-    signals : array_like, DataArray or sequence
-        See `sample_movie`.
-    n_frames : int
-    image_shape : (int, int)
-
-    Returns
-    -------
-    frames : sequence of array_like of shape (H, W) or (C, H, W)
-    channels : list of str
-
-    Raises
-    ------
-    SignalError
-        They do not fit, or are not numbers.
-    """
-    names: list[str] | None = None
-    if isinstance(signals, xr.DataArray):
-        if not {"time", "y", "x"} <= set(signals.dims) or not set(signals.dims) <= {
-            "time",
-            "channel",
-            "y",
-            "x",
-        }:
-            raise SignalError(
-                f"signals have the dims {list(signals.dims)}: a movie has time, (channel,) y, x"
-            )
-        signals = signals.transpose("time", "channel", "y", "x", missing_dims="ignore")
-        if "channel" in signals.coords:
-            names = [str(name) for name in np.atleast_1d(signals["channel"].to_numpy())]
-        signals = signals.to_numpy()
-    if not hasattr(signals, "__getitem__") or not hasattr(signals, "__len__"):
-        raise SignalError(f"signals must be an array or a sequence of frames, got {type(signals).__name__}")
-    if len(signals) != n_frames:
-        raise SignalError(
-            f"signals have {len(signals)} frames, the movie {n_frames}"
-            + _axis_hint(getattr(signals, "shape", ()), n_frames)
-            + ": pass as many, time first"
-        )
-    first = np.asarray(signals[0])
-    if first.dtype.kind not in "biuf":
-        raise SignalError(f"signals must be numbers, got dtype {first.dtype}")
-    if first.ndim not in (2, 3) or first.shape[-2:] != tuple(image_shape):
-        raise SignalError(
-            f"a frame of the signals has shape {first.shape}, the masks {tuple(image_shape)}: "
-            "pass (time, y, x) or (time, channel, y, x) of the same size"
-        )
-    count = first.shape[0] if first.ndim == 3 else 1
-    if names is None or len(names) != count:
-        names = [str(number) for number in range(count)]
-    return signals, names
-
-
-def _frame(frame: Any, number: int, channels: int, image_shape: tuple[int, int]) -> Any:
-    values = np.asarray(frame)
-    if values.ndim == 2:
-        values = values[None]
-    if values.shape != (channels, *image_shape):
-        raise SignalError(
-            f"frame {number} of the signals has shape {values.shape}, those before "
-            f"{(channels, *image_shape)}: save all frames alike"
-        )
-    return values
-
-
-def _axis_hint(shape: tuple[int, ...], n_frames: int) -> str:
-    axes = [axis for axis, size in enumerate(shape) if size == n_frames]
-    return f" (but {n_frames} is the length of axis {axes[0]} of {tuple(shape)})" if axes else ""

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from cytodisk.analysis.activity import parse_signals
 from cytodisk.analysis.boundary_depth import places_at_depth
+from cytodisk.analysis.movie_signals import MovieSignals, parse_signals
 from cytodisk.arrays import AnyArray, BoolArray, FloatArray
 from cytodisk.checks import number_between, positive_number, whole_number
 from cytodisk.errors import ParameterError, SignalError
@@ -70,12 +69,12 @@ def line_kymograph(line_yx: Any, signals: Any, *, width_px: int = 1, spacing_px:
     line = _parse_line(line_yx)
     width_px, spacing_px = whole_number("width_px", width_px, 1), positive_number("spacing_px", spacing_px)
     _refuse_path(signals)
-    frames, channels, shape = _parse_movie(signals)
+    known = _parse_movie(signals)
     distance, places, normals = _along(line, spacing_px)
     offsets = np.arange(width_px) - 0.5 * (width_px - 1)
     band = places[:, None] + offsets[:, None] * normals[:, None]
-    _check_inside(band.reshape(-1, 2), shape, width_px)
-    rows = [bilinear(frame, band).mean(axis=-1) for frame in _each(frames, channels, shape)]
+    _check_inside(band.reshape(-1, 2), known.image_shape, width_px)
+    rows = [bilinear(known.image(frame), band).mean(axis=-1) for frame in range(len(known))]
     scale = Scale.of(signals)
     coords: dict[str, Any] = {
         "distance": ("distance", scale.length(distance), {"units": scale.length_unit}),
@@ -83,7 +82,7 @@ def line_kymograph(line_yx: Any, signals: Any, *, width_px: int = 1, spacing_px:
         "x": ("distance", places[:, 1], {"units": "px"}),
     }
     attrs = {"width_px": width_px, "spacing_px": spacing_px}
-    return _kymograph(np.array(rows), "distance", channels, coords, scale, attrs).rename("line_kymograph")
+    return _kymograph(np.array(rows), "distance", known, coords, scale, attrs).rename("line_kymograph")
 
 
 def boundary_kymograph(movie: DiskMovie, depth: float, signals: Any, *, points: int = 360) -> xr.DataArray:
@@ -141,15 +140,15 @@ def boundary_kymograph(movie: DiskMovie, depth: float, signals: Any, *, points: 
     _refuse_path(signals)
     depth = number_between("depth", depth, 0.0)
     points = whole_number("points", points, 1)
-    frames, names = parse_signals(signals, len(movie), movie.image_shape)
-    channels = names if np.ndim(frames[0]) == 3 else None
+    known = parse_signals(signals, len(movie), movie.image_shape)
     angles, scale = point_angles(points), movie.scale
     places = np.full((len(movie), points, 2), np.nan)
-    rows = np.full((len(movie), *([] if channels is None else [len(channels)]), points), np.nan)
-    for number, frame in enumerate(_each(frames, channels, movie.image_shape)):
-        if movie.records[number].has_map:
-            places[number] = places_at_depth(movie[number], angles, depth / scale.length(1.0))
-            rows[number] = bilinear(frame, places[number])
+    rows = np.full((len(movie), len(known.channels), points), np.nan)
+    for frame, record in enumerate(movie.records):
+        image = known.image(frame)
+        if record.has_map:
+            places[frame] = places_at_depth(movie[frame], angles, depth / scale.length(1.0))
+            rows[frame] = bilinear(image, places[frame])
     coords: dict[str, Any] = {
         "point": np.arange(points),
         "angle": ("point", angles, {"units": "rad"}),
@@ -157,7 +156,7 @@ def boundary_kymograph(movie: DiskMovie, depth: float, signals: Any, *, points: 
         "x": (("time", "point"), places[..., 1], {"units": "px"}),
     }
     attrs = {"depth": depth, "depth_units": scale.length_unit}
-    named = _kymograph(rows, "point", channels, coords, scale, attrs)
+    named = _kymograph(rows, "point", known, coords, scale, attrs)
     return named.rename("boundary_kymograph")
 
 
@@ -213,22 +212,19 @@ def _refuse_path(signals: Any) -> None:
         )
 
 
-def _parse_movie(signals: Any) -> tuple[Any, list[str] | None, tuple[int, int]]:
-    """Frames, the channels' names if there are channels, and the images' shape."""
+def _parse_movie(signals: Any) -> MovieSignals:
+    """Signals that are measured without a movie of masks: they need only fit each other."""
     if isinstance(signals, xr.DataArray):
         sizes = signals.sizes
-        frames, names = parse_signals(signals, sizes.get("time", 0), (sizes.get("y", 0), sizes.get("x", 0)))
-    else:
-        if not hasattr(signals, "__getitem__") or not hasattr(signals, "__len__") or not len(signals):
-            raise SignalError(f"signals must be frames of a movie, got {type(signals).__name__}")
-        first = np.shape(signals[0])
-        if len(first) not in (2, 3):
-            raise SignalError(
-                f"a frame of the signals has shape {first}: pass (time, y, x) or (time, channel, y, x)"
-            )
-        frames, names = parse_signals(signals, len(signals), (first[-2], first[-1]))
-    shape = np.shape(frames[0])
-    return frames, names if len(shape) == 3 else None, (shape[-2], shape[-1])
+        return parse_signals(signals, sizes.get("time", 0), (sizes.get("y", 0), sizes.get("x", 0)))
+    if not hasattr(signals, "__getitem__") or not hasattr(signals, "__len__") or not len(signals):
+        raise SignalError(f"signals must be frames of a movie, got {type(signals).__name__}")
+    first = np.shape(signals[0])
+    if len(first) not in (2, 3):
+        raise SignalError(
+            f"a frame of the signals has shape {first}: pass (time, y, x) or (time, channel, y, x)"
+        )
+    return parse_signals(signals, len(signals), (first[-2], first[-1]))
 
 
 def _along(line: FloatArray, spacing: float) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -254,29 +250,21 @@ def _check_inside(points: FloatArray, shape: tuple[int, int], width_px: int) -> 
         )
 
 
-def _each(frames: Any, channels: list[str] | None, shape: tuple[int, int]) -> Iterator[AnyArray]:
-    wanted = shape if channels is None else (len(channels), *shape)
-    for number in range(len(frames)):
-        frame = np.asarray(frames[number])
-        if frame.shape != wanted:
-            found = f"frame {number} of the signals has shape {frame.shape}, those before {wanted}"
-            raise SignalError(f"{found}: save all alike")
-        yield frame
-
-
 def _kymograph(
     rows: FloatArray,
     along: str,
-    channels: list[str] | None,
+    signals: MovieSignals,
     coords: dict[str, Any],
     scale: Scale,
     attrs: dict[str, Any],
 ) -> xr.DataArray:
-    """Values of shape (T, [C,] D) with their coordinates, as (time, along[, channel])."""
-    dims: tuple[str, ...] = ("time", along)
+    """Values of shape (T, C, D) with their coordinates, as (time, along[, channel])."""
     known = scale.time_coords(np.arange(len(rows)))
-    if channels is not None:
-        rows, dims, known["channel"] = np.moveaxis(rows, 1, 2), (*dims, "channel"), channels
-    return xr.DataArray(rows, known | coords, dims, attrs={"units": "a.u."} | scale.attrs | attrs).set_xindex(
-        "frame"
-    )
+    dims = ["time", along]
+    if signals.channel_names is None:
+        rows = rows[:, 0]
+    else:
+        rows, dims = np.moveaxis(rows, 1, 2), [*dims, "channel"]
+        known["channel"] = signals.channel_names
+    attrs = {"units": "a.u."} | scale.attrs | attrs
+    return xr.DataArray(rows, known | coords, dims, attrs=attrs).set_xindex("frame")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cytodisk.analysis.activity import ActivityTables, Grid, window_arrays
+from cytodisk.analysis.activity import ActivityTables, Grid, sample_frames
 from cytodisk.analysis.consistency import centroid_displacement, consecutive_correlation
 from cytodisk.analysis.window_measures import measures_by_layer
 from cytodisk.errors import MaskError, ReadError
@@ -139,16 +139,17 @@ def _sample_frames(
     channels = [""] if signal is None else list(signal.channels)
     tables = ActivityTables(len(movie), channels, grid, ("mean",))
     frames, layers = [], []
-    for frame in np.flatnonzero(movie.mapped).tolist():
-        disk = movie[frame]
-        windows = grid.on(disk)
-        image = load_image(signal, first + frame)
-        known = None if isinstance(image, ReadError) else image
-        tables.put(frame, window_arrays(windows, known, nan=followed.parameters.nan))
-        frames.append(windows_row(windows, disk if followed.method in ON_A_MAP else None))
-        layers.append(
-            layer_columns(followed.cell, first + frame, followed.method, measures_by_layer(windows))
-        )
+
+    def image(frame: int) -> Any:
+        known = load_image(signal, first + frame)
+        return None if isinstance(known, ReadError) else known
+
+    for sampled in sample_frames(movie, grid, image, nan=followed.parameters.nan):
+        tables.put(sampled.frame, sampled.arrays)
+        disk = sampled.disk if followed.method in ON_A_MAP else None
+        frames.append(windows_row(sampled.windows, disk))
+        measures = measures_by_layer(sampled.windows)
+        layers.append(layer_columns(followed.cell, first + sampled.frame, followed.method, measures))
     return tables.dataset(movie, first), frames, layers
 
 
