@@ -83,15 +83,15 @@ def default_words(field: FieldInfo) -> str:
     return "" if field.default is None else str(field.default)
 
 
-def help_words(field: FieldInfo) -> str:
-    """What a parameter does, then its unit, range and default, for the help of its option."""
+def help_words(field: FieldInfo, more: str = "") -> str:
+    """What a parameter does, then its unit, range, default and more, for the help of its option."""
     default = default_words(field)
     notes = [
         unit_of(field),
         limits(field).strip().removeprefix("of "),
         f"default {default}" if default else "",
     ]
-    said = ", ".join(note for note in notes if note)
+    said = "; ".join(words for words in (", ".join(note for note in notes if note), more) if words)
     return f"{field.description} ({said})" if said else str(field.description)
 
 

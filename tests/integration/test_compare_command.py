@@ -1,5 +1,6 @@
 """`cytodisk compare-windows`, from files to tables, figures and words."""
 
+import inspect
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from command_line import Run, assert_refused, write
 
 import cytodisk as cd
+from cytodisk.cli.compare_windows_command import compare_windows_command
 
 GRID = ("--layers", "4", "--sectors", "40")
 
@@ -99,6 +101,7 @@ def test_a_movie_is_compared_through_time(run: Run, tmp_path: Path) -> None:
     [
         (("--signal", "signal.tif"), "--signal: only with --movie"),
         (("--frame-interval", "5"), "--frame-interval: only with --movie"),
+        (("--channels", "VASP", "--nan", "omit"), "--channels, --nan: only with --movie"),
         (("--methods", "edge,voronoi"), "--methods must be several of newton"),
         (("--layers", "0"), "--layers must be"),
         (("--depth-px", "-1"), "--depth-px must be a number above 0"),
@@ -114,6 +117,18 @@ def test_what_makes_no_sense_is_refused(
     run: Run, masks: Path, tmp_path: Path, options: tuple[str, ...], words: str
 ) -> None:
     assert_refused(run("compare-windows", masks, "-o", tmp_path / "out", *options), words)
+
+
+def test_the_help_says_what_needs_a_movie() -> None:
+    shown = inspect.signature(compare_windows_command).parameters
+    helps = {name: one.annotation.__metadata__[0].help for name, one in shown.items()}
+    of_movies = {name for name, words in helps.items() if "only with --movie" in words}
+    both = cd.CompareWindowsParameters.model_fields.keys() | cd.RunOptions.model_fields.keys()
+    assert of_movies == {"signal", *(cd.CompareMovieParameters.model_fields.keys() - both)}
+    assert {"channels", "nan", "tracker", "frame_interval_s"} <= of_movies
+    ours = "(default newton,harmonic,advection,edge; with --movie newton,harmonic,edge)"
+    assert helps["methods"].endswith(ours)
+    assert not any("depth_px" in words for words in helps.values())
 
 
 def test_masks_without_any_cell_end_in_an_error(run: Run, tmp_path: Path) -> None:

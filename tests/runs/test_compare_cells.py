@@ -284,3 +284,8 @@ def test_summaries_are_medians_and_quartiles_over_cells() -> None:
     (row,) = method_summary(cells.iloc[:1], layers.iloc[:1], ("edge",)).to_dict("records")
     assert row["area_error"] == 0.1
     assert np.isnan([row["area_error_q25"], row["area_error_q75"]]).all()  # one cell has no quartiles
+
+
+def test_what_needs_a_movie_is_refused_without_one(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match=r"^channels, tracker: only with movie=True"):
+        cd.run_compare_windows("masks.tif", tmp_path / "out", channels=("VASP",), tracker="demons")

@@ -14,7 +14,6 @@ from cytodisk.cli.options import (
     MaskFiles,
     OutFolder,
     Quiet,
-    Signal,
     with_parameters,
 )
 from cytodisk.errors import ParameterError
@@ -28,13 +27,16 @@ if TYPE_CHECKING:
     from cytodisk.runs.compare_windows.comparison import Comparison
 
 
-@with_parameters(CompareWindowsParameters, CompareMovieParameters, RunOptions)
+@with_parameters(CompareWindowsParameters, RunOptions, of_movies=CompareMovieParameters)
 def compare_windows_command(
     masks: MaskFiles,
     out: OutFolder,
     given: Given,
     movie: Annotated[bool, typer.Option("--movie", help="MASKS are frames of a movie.")] = False,
-    signal: Signal = None,
+    signal: Annotated[
+        Path | None,
+        typer.Option(help="Image to sample, of the same height and width: TIFF or PNG (only with --movie)."),
+    ] = None,
     cells: Annotated[
         str | None,
         typer.Option(help="Cells to draw, at most five, as 3,17,20 (default: from simple to complex)."),
@@ -73,9 +75,10 @@ def _run_cells(
     options: dict[str, Any],
 ) -> "Comparison":
     from cytodisk.runs.cells.cell_inputs import open_inputs
+    from cytodisk.runs.cells.cell_parameters import FileParameters
     from cytodisk.runs.compare_windows.compare_cells import compare_opened_cells
 
-    inputs = open_inputs(masks, None, settings)
+    inputs = open_inputs(masks, None, settings.part(FileParameters))
     say_inputs(console, inputs)
     with progress_bar(console.quiet, "cells") as progress:
         return compare_opened_cells(inputs, out, settings, progress=progress, **options)

@@ -9,7 +9,15 @@ from typing import Annotated, Any
 import typer
 from pydantic.fields import FieldInfo
 
-from cytodisk.parameter_words import choices, flag_of, help_words, kinds, tuple_items, value_of_text
+from cytodisk.parameter_words import (
+    choices,
+    default_words,
+    flag_of,
+    help_words,
+    kinds,
+    tuple_items,
+    value_of_text,
+)
 from cytodisk.parameters import Group, Parameters
 from cytodisk.taking import fields_of
 
@@ -78,7 +86,7 @@ class Given:
 
 
 def with_parameters(
-    *models: type[Parameters], file: bool = True
+    *models: type[Parameters], of_movies: type[Parameters] | None = None, file: bool = True
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Give a command an option for every field of its models, in the place of its parameter `given`.
 
@@ -86,6 +94,8 @@ def with_parameters(
     ----------
     *models : type of Parameters
         Of a field that several have, the first counts.
+    of_movies : type of Parameters, optional
+        The model of the command with `--movie`, which has more fields or other defaults; the help says which.
     file : bool
         Whether there is `--parameters`, too.
 
@@ -94,7 +104,8 @@ def with_parameters(
     callable
         A decorator. The command gets what was given as `given`, a `Given`.
     """
-    fields = fields_of(models)
+    fields = fields_of(models if of_movies is None else (*models, of_movies))
+    more = {} if of_movies is None else _with_movie(fields_of(models), of_movies)
     flags = {name: flag_of(name, field) for name, field in fields.items()}
 
     def show(command: Callable[..., None]) -> Callable[..., None]:
@@ -113,7 +124,7 @@ def with_parameters(
             if one.name != "given":
                 shown.append(one.replace(kind=inspect.Parameter.KEYWORD_ONLY))
                 continue
-            shown += [_option(name, field) for name, field in fields.items()]
+            shown += [_option(name, field, more.get(name, "")) for name, field in fields.items()]
             if file:
                 shown.append(_keyword("parameters", ParametersFile))
         run.__signature__ = inspect.Signature(shown)  # type: ignore[attr-defined]
@@ -124,7 +135,18 @@ def with_parameters(
     return show
 
 
-def _option(name: str, field: FieldInfo) -> inspect.Parameter:
+def _with_movie(fields: dict[str, FieldInfo], of_movies: type[Parameters]) -> dict[str, str]:
+    """What `--movie` changes, by field: that there is one, or its default."""
+    words = {}
+    for name, field in of_movies.model_fields.items():
+        if name not in fields:
+            words[name] = "only with --movie"
+        elif field.default != fields[name].default:
+            words[name] = f"with --movie {default_words(field)}"
+    return words
+
+
+def _option(name: str, field: FieldInfo, more: str) -> inspect.Parameter:
     """The option of one field: its flag, and its help with range and default."""
     wanted, flag = kinds(field.annotation), flag_of(name, field)
     kind: Any = str
@@ -136,7 +158,7 @@ def _option(name: str, field: FieldInfo) -> inspect.Parameter:
     metavar = "|".join(words) if words and tuple not in wanted else None
     if tuple in wanted and not words:
         metavar = "FIRST:LAST" if tuple_items(field.annotation) == (int, int) else "A,B,…"
-    option = typer.Option(flag, help=help_words(field), metavar=metavar, show_default=False)
+    option = typer.Option(flag, help=help_words(field, more), metavar=metavar, show_default=False)
     return _keyword(name, Annotated[kind | None, option])
 
 

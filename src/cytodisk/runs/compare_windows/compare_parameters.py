@@ -6,12 +6,14 @@ from typing import ClassVar, Literal, Self, TypeAlias
 
 from pydantic import field_validator
 
-from cytodisk.errors import ParameterError
+from cytodisk.disk.mapping_parameters import MeshParameters
+from cytodisk.errors import CytodiskError, ParameterError
+from cytodisk.images.file_parameters import KindParameters
 from cytodisk.parameters import parameter
-from cytodisk.runs.cells.cell_parameters import CellParameters
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
-from cytodisk.windows.grid_parameters import EdgeGridParameters
+from cytodisk.scale_parameters import PixelSizeParameters
+from cytodisk.windows.grid_parameters import EdgeGridParameters, GridParameters
 
 WindowMethod: TypeAlias = Literal["newton", "harmonic", "advection", "edge", "rings"]
 
@@ -36,10 +38,15 @@ _WORDS = f"several of {', '.join(TITLES)}"
 class ComparedParameters(EdgeGridParameters):
     """What comparisons of cells and of movies share."""
 
+    fault: ClassVar[type[CytodiskError]] = ParameterError
+
     exclusive: ClassVar[tuple[tuple[str, str], ...]] = (("depth_px", "depth_um"),)
 
     depth_um: float | None = parameter(
-        None, "The thickness of that layer in place of `depth_px`; needs the pixel size.", above=0, unit="µm"
+        None,
+        "Thickness of a layer by distance from the edge, in place of one in pixels; needs the pixel size.",
+        above=0,
+        unit="µm",
     )
 
     @field_validator("methods", check_fields=False)
@@ -64,7 +71,9 @@ class ComparedParameters(EdgeGridParameters):
         return self.changed(depth_px=self.depth_um / scale.pixel_size_um, depth_um=None)
 
 
-class CompareWindowsParameters(ComparedParameters, CellParameters):
+class CompareWindowsParameters(
+    ComparedParameters, MeshParameters, GridParameters, PixelSizeParameters, KindParameters
+):
     """What decides the result of `cytodisk compare-windows`, beside the input files."""
 
     methods: tuple[WindowMethod, ...] = parameter(

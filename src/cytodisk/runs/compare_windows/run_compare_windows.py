@@ -7,6 +7,7 @@ from typing import Any
 
 from cytodisk.errors import ParameterError
 from cytodisk.runs.cells.cell_inputs import open_inputs
+from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.compare_windows.compare_cells import compare_opened_cells
 from cytodisk.runs.compare_windows.compare_movie import compare_opened_movie
 from cytodisk.runs.compare_windows.compare_parameters import CompareMovieParameters, CompareWindowsParameters
@@ -83,6 +84,9 @@ def run_compare_windows(
         return compare_opened_movie(frames, out, of_movie, progress=progress, **dict(options))
     if signal is not None:
         raise ParameterError("signal is sampled in movies only: pass movie=True too, or leave signal out")
+    of_movies = CompareMovieParameters.model_fields.keys() - CompareWindowsParameters.model_fields.keys()
+    if beyond := [name for name in values if name in of_movies]:
+        raise ParameterError(f"{', '.join(beyond)}: only with movie=True; pass that too, or leave it out")
     of_cells = CompareWindowsParameters.chosen(parameters, values)
-    cells = open_inputs(masks, None, of_cells)
+    cells = open_inputs(masks, None, of_cells.part(FileParameters))
     return compare_opened_cells(cells, out, of_cells, progress=progress, **dict(options))
