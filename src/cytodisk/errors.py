@@ -5,7 +5,7 @@ would catch for such a fault. `OSError` stands first, because nothing but its ow
 libraries that unpickle errors (Dask's tblib) call that of the first base.
 """
 
-from typing import TypeVar
+from typing import Self, TypeVar
 
 
 class CytodiskError(ValueError):
@@ -58,6 +58,26 @@ class OtherRunError(StudyError):
 
 class MissingPartError(ImportError, CytodiskError):
     """An optional part is not installed; the message names the `pip install` to type."""
+
+    @classmethod
+    def of(cls, needed_by: str, extra: str, fault: str = "is not installed") -> Self:
+        """An error that says what needs a package, and how to install the extra that brings it.
+
+        Parameters
+        ----------
+        needed_by : str
+            As "the report page needs Bokeh".
+        extra : str
+            Of cytodisk, as "report".
+        fault : str
+            What is wrong with the package.
+        """
+        return cls(f"{needed_by}, which {fault}: {install_words(extra)}")
+
+
+def install_words(extra: str) -> str:
+    """What to type to install an optional part of cytodisk."""
+    return f"type pip install 'cytodisk[{extra}]' (in a clone of cytodisk, pip install -e '.[{extra}]')"
 
 
 Fault = TypeVar("Fault", bound=CytodiskError)

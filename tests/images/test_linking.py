@@ -201,7 +201,7 @@ def test_largest_gap_out_of_range(largest_gap: int) -> None:
 
 def test_without_laptrack(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "laptrack", None)
-    with pytest.raises(MissingPartError, match=r"pip install.*\[link\]") as caught:
+    with pytest.raises(MissingPartError, match=r"type pip install 'cytodisk\[link\]'") as caught:
         link_labels([])
     assert isinstance(caught.value, ImportError)
     assert isinstance(caught.value, CytodiskError)

@@ -384,7 +384,7 @@ def test_info_lists_versions(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     assert versions["cytodisk"]
     assert versions["image formats"] == "TIFF, OME-TIFF, ImageJ TIFF, PNG"
     assert {"report", "link", "cluster"} <= set(versions)
-    assert "no-such-package not installed: in the clone" in versions["umap"]
+    assert "no-such-package not installed: type pip install 'cytodisk[umap]'" in versions["umap"]
 
 
 def test_demo_once_and_again(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

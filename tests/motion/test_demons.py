@@ -185,5 +185,5 @@ def test_importing_the_module_leaves_the_registration_library_alone() -> None:
 
 def test_without_simple_itk_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "SimpleITK", None)
-    with pytest.raises(MissingPartError, match=r"pip install .*\[demons\]"):
+    with pytest.raises(MissingPartError, match=r"type pip install 'cytodisk\[demons\]'"):
         cd.map_movie(cd.simulate.movie("bulging", frames=2, radius_px=10.0).masks, tracker="demons")

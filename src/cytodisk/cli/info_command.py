@@ -3,6 +3,7 @@
 import platform
 from importlib.util import find_spec
 
+from cytodisk.errors import install_words
 from cytodisk.runs.versions import NOT_INSTALLED, PACKAGES, PARTS, installed
 
 
@@ -22,4 +23,4 @@ def _part_words(part: str, found: dict[str, str]) -> str:
     words = ", ".join(f"{name} {number}" for name, number in found.items())
     if NOT_INSTALLED not in found.values():
         return words
-    return f"{words}: in the clone of cytodisk type .venv/bin/pip install -c constraints.txt -e '.[{part}]'"
+    return f"{words}: {install_words(part)}"

@@ -107,10 +107,8 @@ def _tracker(furthest: int) -> Callable[[list[AnyArray], Overlaps], Links]:
     try:
         from laptrack import LapTrack
     except ImportError as error:
-        raise MissingPartError(
-            f"link_labels needs laptrack, which cannot be imported ({error}): in the clone of cytodisk type "
-            ".venv/bin/pip install -c constraints.txt -e '.[link]'"
-        ) from error
+        fault = f"cannot be imported ({error})"
+        raise MissingPartError.of("link_labels needs laptrack", "link", fault) from error
 
     def predict(labels: list[AnyArray], overlaps: Overlaps) -> Links:
         def distance(one: FloatArray, other: FloatArray) -> float:

@@ -114,10 +114,7 @@ def _simple_itk() -> Any:
     try:
         import SimpleITK
     except ImportError as error:
-        raise MissingPartError(
-            'tracker "demons" needs SimpleITK, which is not installed: in the clone of cytodisk type '
-            ".venv/bin/pip install -c constraints.txt -e '.[demons]'"
-        ) from error
+        raise MissingPartError.of('tracker "demons" needs SimpleITK', "demons") from error
     return SimpleITK
 
 

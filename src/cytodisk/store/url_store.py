@@ -123,10 +123,7 @@ def _file_system(url: str) -> tuple[Any, str]:
     try:
         import fsspec
     except ImportError as error:
-        raise MissingPartError(
-            f"results at {url} need fsspec, which is not installed: in the clone of cytodisk type "
-            ".venv/bin/pip install -c constraints.txt -e '.[cluster]'"
-        ) from error
+        raise MissingPartError.of(f"results at {url} need fsspec", "cluster") from error
     try:
         # Without its memory of listings, which does not know what other processes write.
         files, root = fsspec.core.url_to_fs(url, use_listings_cache=False)

@@ -154,7 +154,7 @@ def test_without_umap_the_error_says_what_to_install(
 ) -> None:
     monkeypatch.setattr(complexity, "umap_plane", umap_plane)
     monkeypatch.setitem(sys.modules, "umap", None)
-    with pytest.raises(MissingPartError, match=r"pip install.*\[umap\]"):
+    with pytest.raises(MissingPartError, match=r"type pip install 'cytodisk\[umap\]'"):
         cd.complexity_score(features)
 
 

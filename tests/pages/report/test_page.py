@@ -130,7 +130,7 @@ def test_missing_bokeh_names_what_to_type(study: Study, monkeypatch: pytest.Monk
         return real(name, *args)
 
     monkeypatch.setattr(builtins, "__import__", refuse)
-    with pytest.raises(MissingPartError, match=re.escape("pip install -c constraints.txt -e '.[report]'")):
+    with pytest.raises(MissingPartError, match=re.escape("pip install 'cytodisk[report]'")):
         write_report(study)
 
 

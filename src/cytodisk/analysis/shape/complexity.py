@@ -18,10 +18,7 @@ from cytodisk.taking import takes
 
 LEAST_CELLS = 10
 _LEAST_FEATURES = 2  # that vary: a plane has two axes
-_WITHOUT_UMAP = (
-    "the complexity score needs umap-learn, which is not installed: in the clone of cytodisk type "
-    ".venv/bin/pip install -c constraints.txt -e '.[umap]'"
-)
+_WITHOUT_UMAP = str(MissingPartError.of("the complexity score needs umap-learn", "umap"))
 _NORMAL_QUARTILES = 1.349  # between the quartiles of a normal distribution with standard deviation 1
 
 

@@ -30,10 +30,7 @@ def bokeh() -> Any:
         import bokeh.plotting
         import bokeh.resources
     except ImportError as error:
-        raise MissingPartError(
-            "the report page needs Bokeh, which is not installed: in the clone of cytodisk type "
-            ".venv/bin/pip install -c constraints.txt -e '.[report]'"
-        ) from error
+        raise MissingPartError.of("the report page needs Bokeh", "report") from error
     return bokeh
 
 

@@ -107,10 +107,7 @@ def connected(address: str) -> Iterator[Any]:
     try:
         from distributed import Client
     except ImportError as error:
-        raise MissingPartError(
-            "a cluster needs distributed, which is not installed: in the clone of cytodisk type "
-            ".venv/bin/pip install -c constraints.txt -e '.[cluster]'"
-        ) from error
+        raise MissingPartError.of("a cluster needs distributed", "cluster") from error
     for name in ("distributed", "distributed.client"):  # each has a level of its own
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is raised
     try:
