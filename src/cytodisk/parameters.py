@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationIn
 from pydantic_core import PydanticCustomError
 
 from cytodisk.errors import CytodiskError, ParameterError
-from cytodisk.parameter_words import kinds, range_words, short_words, unknown_words, value_words
+from cytodisk.parameter_words import choices, kinds, range_words, short_words, unknown_words, value_words
 
 Group = TypeVar("Group", bound="Parameters")
 
@@ -164,8 +164,10 @@ class Parameters(BaseModel):
     def _plain(cls, value: Any, info: ValidationInfo) -> Any:
         """A value as Python's own types; True and "1" are not taken for numbers."""
         plain = value.tolist() if hasattr(value, "tolist") else value
-        wanted = kinds(cls.model_fields[str(info.field_name)].annotation)
-        if wanted & {int, float, bool} and isinstance(plain, bool | str) and type(plain) not in wanted:
+        annotation = cls.model_fields[str(info.field_name)].annotation
+        wanted, words = kinds(annotation), choices(annotation)
+        is_meant = type(plain) in wanted and (plain in words or not words)
+        if wanted & {int, float, bool} and isinstance(plain, bool | str) and not is_meant:
             raise PydanticCustomError("no_number", "this is no number")
         return plain
 

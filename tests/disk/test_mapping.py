@@ -160,3 +160,8 @@ def test_bad_parameters_are_refused(change: dict[str, object], message: str) -> 
 def test_a_stack_is_refused() -> None:
     with pytest.raises(MaskError, match="mask must be 2D"):
         map_to_disk(np.ones((2, 5, 5)))
+
+
+def test_a_text_is_no_angle() -> None:
+    with pytest.raises(ParameterError, match=r"align.*got '2'"):
+        map_to_disk(np.ones((9, 9), dtype=bool), align="2")

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -161,3 +162,10 @@ def test_doubtful_masks_are_said_to_be() -> None:
 def test_a_ragged_list_is_a_mask_error() -> None:
     with pytest.raises(MaskError, match=r"mask must be an array of shape \(H, W\)"):
         clean_mask([[1, 0], [1]])
+
+
+def test_a_dataarray_goes_by_the_names_of_its_dims() -> None:
+    mask = np.zeros((6, 9), dtype=bool)
+    mask[1:3, 1:8] = True
+    named = xr.DataArray(mask, dims=("y", "x"))
+    np.testing.assert_array_equal(clean_mask(named.transpose("x", "y"))[0], clean_mask(mask)[0])

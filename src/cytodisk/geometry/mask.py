@@ -98,7 +98,8 @@ def parse_mask(mask: Any) -> BoolArray:
     Parameters
     ----------
     mask : array_like of shape (H, W)
-        Boolean, or numbers with at most one value beside 0 (for floats: exactly 0 and 1).
+        Boolean, or numbers with at most one value beside 0 (for floats: exactly 0 and 1). Of a DataArray the
+        dims y and x may come in any order.
 
     Returns
     -------
@@ -111,6 +112,8 @@ def parse_mask(mask: Any) -> BoolArray:
     EmptyMaskError
         No pixel belongs to the cell.
     """
+    if getattr(mask, "dims", None) == ("x", "y"):  # a DataArray goes by its names
+        mask = mask.transpose("y", "x")
     try:
         array = np.asarray(mask)
     except ValueError as error:
