@@ -1,6 +1,7 @@
 """`cytodisk movie`."""
 
 import sys
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from cytodisk.cli.console import RESUME, console_for, count, fail, progress_bar
@@ -53,10 +54,10 @@ def say_movie(console: "Console", inputs: "MovieInputs") -> None:
 
 def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int, again: str = RESUME) -> None:
     """Draw cells that have no figures yet, so that a run that was stopped while drawing goes on."""
+    from cytodisk.images.signal_files import load_image
     from cytodisk.pages.movie_pages import write_movie_figures
 
-    signal = inputs.signal
-    image = None if signal is None else lambda time: signal.frame(time)
+    image = partial(load_image, inputs.signal)
     cells = sorted(study.cells["cell"].unique())
     wanted = cells if figures < 0 else cells[:figures]
     missing = [cell for cell in wanted if not any((study.path / "figures").glob(f"cell_{cell:05d}*.gif"))]

@@ -5,24 +5,49 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any, Protocol
 
+import numpy as np
 import xarray as xr
 
 from cytodisk.errors import ReadError, SignalError, as_data
-from cytodisk.images.frames import FrameFile
 from cytodisk.images.mask_files import MaskSource
 from cytodisk.images.mask_names import base_name, image_stem, visible_files
+from cytodisk.scale import Scale
 
 _USUAL_ENDINGS = ("", "_img")
 _STARTS_OF_ENDINGS = ("_", "-", ".")
 
 
-def load_image(file: FrameFile | None, frame: int) -> xr.DataArray | ReadError | None:
+class FrameSource(Protocol):
+    """A movie that gives a frame at a time, as `cytodisk.images.frames.open_frames` returns it."""
+
+    @property
+    def n_frames(self) -> int:
+        """Number of frames."""
+        ...
+
+    @property
+    def image_shape(self) -> tuple[int, int]:
+        """(H, W) of a frame, in pixels."""
+        ...
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the channels."""
+        ...
+
+    def frame(self, number: int) -> np.ndarray[Any, Any]:
+        """Pixels of a frame, shape (C, H, W)."""
+        ...
+
+
+def load_image(file: FrameSource | None, frame: int) -> xr.DataArray | ReadError | None:
     """The image of a frame of the masks.
 
     Parameters
     ----------
-    file : FrameFile or None
+    file : FrameSource or None
         None where there is no signal. A single image goes with all frames of the masks.
     frame : int
         Of the masks.
@@ -39,7 +64,7 @@ def load_image(file: FrameFile | None, frame: int) -> xr.DataArray | ReadError |
     except ReadError as error:
         return as_data(error)
     coords = {"channel": list(file.channels)}
-    return xr.DataArray(values, dims=("channel", "y", "x"), coords=coords, attrs=file.scale.attrs)
+    return xr.DataArray(values, dims=("channel", "y", "x"), coords=coords, attrs=Scale.of(file).attrs)
 
 
 def pair_images(

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.arrays import FloatArray
+from cytodisk.errors import ReadError
 from cytodisk.pages.animation import write_animation
 from cytodisk.pages.consistency_page import consistency_sheet
 from cytodisk.pages.drawn_movie import HEADING_MM, LEFT_MM, DrawnMovie
@@ -23,7 +24,7 @@ from cytodisk.plot.time_raster import bar_beside
 from cytodisk.runs.channel_names import file_names
 from cytodisk.store.study import Study
 
-SignalAt = Callable[[int], FloatArray | None]
+SignalAt = Callable[[int], Any]
 Progress = Callable[[int, int], None]
 
 MOST_ANIMATED = 60  # frames; more make long files
@@ -219,9 +220,9 @@ def _limits(movie: DrawnMovie, signal: SignalAt | None) -> tuple[float, float] |
 
 
 def _background(signal: SignalAt | None, frame: int) -> FloatArray | None:
-    """First channel of a frame's image."""
+    """First channel of a frame's image, if it has one that can be read."""
     image = None if signal is None else signal(frame)
-    if image is None:
+    if image is None or isinstance(image, ReadError):
         return None
     values = np.asarray(image, dtype=np.float64)
     return values if values.ndim == 2 else values[0]

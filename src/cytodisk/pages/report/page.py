@@ -13,13 +13,14 @@ import numpy as np
 
 from cytodisk.errors import ParameterError, StudyError
 from cytodisk.files import replacing
+from cytodisk.images.signal_files import FrameSource
 from cytodisk.pages.report.bokeh_parts import bokeh, palette
 from cytodisk.pages.report.encode import json_for_script
 from cytodisk.pages.report.page_figures import figures_of, library_script
 from cytodisk.pages.report.pictures import MOST_BYTES, OUTSIDE, Pictures, box_around, encode_frames, size_of
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_correlations import pairs_of
-from cytodisk.pages.report.signal_file import FoundSignal, FrameSource, shown_signal
+from cytodisk.pages.report.signal_file import FoundSignal, shown_signal
 from cytodisk.pages.report.words import MOST_PLACES, page_words
 from cytodisk.plot.correlation.correlation_peaks import LAG_COLOURS
 from cytodisk.plot.style import DIVERGING_COLOURS

@@ -11,9 +11,9 @@ from scipy.ndimage import binary_dilation
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError
+from cytodisk.images.signal_files import FrameSource, load_image
 from cytodisk.pages.report.encode import grey_levels, pack_labels, pack_picture
 from cytodisk.pages.report.shown_cell import ShownCell
-from cytodisk.pages.report.signal_file import FrameSource
 
 MOST_BYTES = 10_000_000
 """Of pictures and labels together, as text; a longer movie is thinned out."""
@@ -185,10 +185,9 @@ class Pictures:
         return grey_levels(resampled(image, self.box), low, high)
 
     def _pixels(self, time: int) -> Any:
-        try:
-            return None if self.source is None else self.source.frame(time)
-        except ReadError:  # has its row and its flag in the study
-            return None
+        image = load_image(self.source, time)
+        # A damaged image has its row and its flag in the study.
+        return None if image is None or isinstance(image, ReadError) else image.to_numpy()
 
     def limits(self) -> list[tuple[float, float]]:
         """Black and white of each channel, from frames spread over the movie."""

@@ -5,37 +5,12 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
-
-import numpy as np
 
 from cytodisk.errors import ReadError, SignalError
 from cytodisk.images.frames import open_frames
+from cytodisk.images.signal_files import FrameSource
 from cytodisk.pages.report.shown_names import file_name
 from cytodisk.store.study import Study
-
-
-class FrameSource(Protocol):
-    """A movie that gives a frame at a time, as `cytodisk.images.frames.open_frames` returns it."""
-
-    @property
-    def n_frames(self) -> int:
-        """Number of frames."""
-        ...
-
-    @property
-    def image_shape(self) -> tuple[int, int]:
-        """(H, W) of a frame, in pixels."""
-        ...
-
-    @property
-    def channels(self) -> tuple[str, ...]:
-        """Names of the channels."""
-        ...
-
-    def frame(self, number: int) -> np.ndarray[Any, Any]:
-        """Pixels of a frame, shape (C, H, W)."""
-        ...
 
 
 @dataclass(frozen=True)
