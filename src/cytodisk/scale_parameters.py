@@ -8,7 +8,7 @@ class PixelSizeParameters(Parameters):
 
     pixel_size_um: float | None = parameter(
         None,
-        "Side of a pixel; without it that of the file or array counts.",
+        "Side of a pixel; without it the one in the file or array is used.",
         above=0,
         unit="µm",
         flag="pixel-size",
@@ -20,7 +20,7 @@ class ScaleParameters(PixelSizeParameters):
 
     frame_interval_s: float | None = parameter(
         None,
-        "Time between frames; without it that of the file or array counts.",
+        "Time between frames; without it the one in the file or array is used.",
         above=0,
         unit="s",
         flag="frame-interval",

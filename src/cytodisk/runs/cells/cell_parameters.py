@@ -18,7 +18,7 @@ class ChannelParameters(Parameters):
 
     channels: tuple[str, ...] | None = parameter(
         None,
-        "Names of the channels of the signal; without them those of the file count.",
+        "Names of the channels of the signal; without them those in the file are used.",
         words="names, such as Rac1,RhoA",
     )
 
