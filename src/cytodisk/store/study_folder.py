@@ -25,12 +25,28 @@ from cytodisk.store.study_kind import CELLS, FIGURES, MAPS, PARTS, StudyKind
 from cytodisk.store.study_room import is_left_over, make_room, remove_left_overs
 from cytodisk.store.tables import Columns, schema
 
+_DIGITS = (5, 6)  # of a cell or frame in a key; a folder never has a million
 _UNITS = ("length_unit", "velocity_unit")  # of the provenance
 
 
 def part_key(cell: int, frame: int | None = None) -> str:
     """Name of a part of a study: a cell, or a frame of a cell."""
     return f"{cell:05d}" if frame is None else f"{cell:05d}_t{frame:05d}"
+
+
+def part_patterns(name: str, frames: bool = False) -> tuple[str, ...]:
+    """Patterns of the files whose name holds the key of a part, which fit no other name.
+
+    Parameters
+    ----------
+    name : str
+        With "{}" for the key, as "maps/cell_{}.npz".
+    frames : bool
+        The parts are frames of cells.
+    """
+    cells = ["[0-9]" * digits for digits in _DIGITS]
+    keys = [f"{cell}_t{frame}" for cell in cells for frame in cells] if frames else cells
+    return tuple(name.format(key) for key in keys)
 
 
 class StudyFolder:

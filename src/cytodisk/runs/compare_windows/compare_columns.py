@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import pandas as pd
 
 BY_LAYER, BY_METHOD, THROUGH_TIME = "comparison.csv", "comparison_methods.csv", "comparison_movie.csv"
+COLUMNS_FILE = "comparison_columns.csv"
 _ALL = (BY_LAYER, BY_METHOD, THROUGH_TIME)
 _MEASURED = (BY_LAYER, BY_METHOD)
 

@@ -10,6 +10,12 @@ import xarray as xr
 
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import CytodiskError, MaskError, ReadError
+from cytodisk.runs.compare_windows.compare_columns import BY_LAYER as BY_LAYER_CSV
+from cytodisk.runs.compare_windows.compare_columns import BY_METHOD as BY_METHOD_CSV
+from cytodisk.runs.compare_windows.compare_columns import COLUMNS_FILE as COLUMNS_CSV
+from cytodisk.runs.compare_windows.compare_columns import THROUGH_TIME as THROUGH_TIME_CSV
+from cytodisk.runs.compare_windows.compare_parameters import TITLES
+from cytodisk.store.study_folder import part_patterns
 from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import (
     CELL,
@@ -76,9 +82,17 @@ _LAYERS: Columns = (CELL, FRAME, _METHOD, LAYER, *_BY_LAYER)
 _CONSISTENCY: Columns = (CELL, _METHOD, *CONSISTENCY_COLUMNS[1:])
 
 _READER = "look at comparison.csv and the figures, or read it with open_comparison"
-_FILES = ("comparison*.csv", "maps/windows_*.npz", "maps/activity_*.npz")
+_SUMMARIES = (BY_LAYER_CSV, BY_METHOD_CSV, COLUMNS_CSV)
+_ACTIVITIES = tuple(
+    pattern for method in TITLES for pattern in part_patterns(f"maps/activity_{{}}_{method}.npz")
+)
 COMPARED_CELLS = StudyKind(
-    "comparison", "cytodisk compare-windows", _READER, _CELLS, {"layers": _LAYERS}, _FILES
+    "comparison",
+    "cytodisk compare-windows",
+    _READER,
+    _CELLS,
+    {"layers": _LAYERS},
+    (*_SUMMARIES, *part_patterns("maps/windows_{}.npz")),
 )
 COMPARED_MOVIE = StudyKind(
     "movie comparison",
@@ -86,7 +100,7 @@ COMPARED_MOVIE = StudyKind(
     _READER,
     _CELLS,
     {"layers": _LAYERS, "consistency": _CONSISTENCY},
-    _FILES,
+    (*_SUMMARIES, THROUGH_TIME_CSV, *_ACTIVITIES),
 )
 
 

@@ -17,6 +17,7 @@ from cytodisk.files import replacing
 from cytodisk.runs.compare_windows.compare_columns import (
     BY_LAYER,
     BY_METHOD,
+    COLUMNS_FILE,
     THROUGH_TIME,
     describe_columns,
     units_of,
@@ -28,8 +29,6 @@ from cytodisk.store.study import CONSISTENCY
 from cytodisk.store.study_folder import part_key
 from cytodisk.store.study_kind import CELLS, MAPS
 from cytodisk.store.tables import read_table
-
-COLUMNS_FILE = "comparison_columns.csv"
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 """What `cytodisk map` writes."""
 
+from cytodisk.store.study_folder import part_patterns
 from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import SOURCE_COLUMNS, WINDOW_COLUMNS
 
@@ -9,5 +10,9 @@ MAP = StudyKind(
     "read it with open_study",
     SOURCE_COLUMNS,
     {"windows": WINDOW_COLUMNS},
-    ("maps/cell_*.npz", "maps/cell_*.geojson", "figures/cell_*.png"),
+    tuple(
+        pattern
+        for name in ("maps/cell_{}.npz", "maps/cell_{}.geojson", "figures/cell_{}.png")
+        for pattern in part_patterns(name)
+    ),
 )

@@ -1,6 +1,7 @@
 """What `cytodisk movie` writes."""
 
 from cytodisk.store.activity_store import ACTIVITY
+from cytodisk.store.study_folder import part_patterns
 from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import (
     CELL_COLUMNS,
@@ -16,5 +17,5 @@ MOVIE = StudyKind(
     "read it with open_study",
     (*CELL_COLUMNS, *TRACK_COLUMNS),
     {"windows": WINDOW_COLUMNS, "edge": EDGE_COLUMNS, "consistency": CONSISTENCY_COLUMNS},
-    (ACTIVITY, "maps/cell_*.npz"),
+    (ACTIVITY, *part_patterns("maps/cell_{}.npz", frames=True)),
 )
