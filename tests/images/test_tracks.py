@@ -9,7 +9,7 @@ from cytodisk.errors import MaskError, ReadError
 from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile, open_frames
 from cytodisk.images.mask_kinds import look_at
-from cytodisk.images.tracks import CellTrack, MissingLabel, list_tracks, read_frame
+from cytodisk.images.tracks import CellTrack, MissingLabel, TrackMasks, list_tracks, read_frame
 
 SHAPE = 30, 60
 PLACES = {1: np.s_[4:12, 4:12], 2: np.s_[15:25, 20:30], 3: np.s_[5:20, 40:55]}  # of cells that do not move
@@ -73,6 +73,17 @@ def test_a_label_that_is_missing_between_has_a_reason(tmp_path: Path) -> None:
     fault = track.mask_in(read_frame(file, 2), 2)
     assert isinstance(fault, MissingLabel)
     assert str(fault) == "label 3 is not in frame 2"
+
+
+def test_masks_of_a_track_are_those_of_its_frames(tmp_path: Path) -> None:
+    file = written(tmp_path, drawn({}, {1: 3}, {2: 7}, {1: 3}))
+    track = tracks_of(file, "labels", link=False)[0]
+    masks = TrackMasks(file, track)
+    assert len(masks) == 3
+    first, gap, last = masks
+    assert_array_equal(first, read_frame(file, 1) == 3)
+    assert_array_equal(last, masks[2])
+    assert isinstance(gap, MissingLabel)
 
 
 def test_linked_labels_follow_the_cell(tmp_path: Path) -> None:

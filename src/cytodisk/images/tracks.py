@@ -63,6 +63,31 @@ class CellTrack:
         return image == self.labels[frame]
 
 
+@dataclass(frozen=True)
+class TrackMasks:
+    """The masks of one cell from its first frame to its last, each read when it is asked for.
+
+    Attributes
+    ----------
+    file : FrameFile
+    track : CellTrack
+    """
+
+    file: FrameFile
+    track: CellTrack
+
+    def __len__(self) -> int:
+        return len(self.track.frames)
+
+    def __getitem__(self, index: int) -> Any:
+        """Mask of shape (H, W), counted from the cell's first frame; an error says why there is none."""
+        frame = self.track.frames[index]
+        return self.track.mask_in(read_frame(self.file, frame), frame)
+
+    def __iter__(self) -> Iterator[Any]:
+        return (self[index] for index in range(len(self)))
+
+
 class MissingLabel(MaskError):
     """A tracked cell is not in a frame between its first and its last."""
 

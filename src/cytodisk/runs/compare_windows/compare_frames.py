@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -109,12 +109,12 @@ def window_grid(followed: FollowedCell) -> Grid:
     return EdgeGrid(layers, sectors, depth)
 
 
-def usable(masks: Sequence[Any]) -> int:
+def usable(masks: Iterable[Any]) -> int:
     """How many masks are those of a cell; a map of the others cannot be asked for.
 
     Parameters
     ----------
-    masks : sequence of ndarray of shape (H, W), or CytodiskError
+    masks : iterable of ndarray of shape (H, W), or CytodiskError
 
     Returns
     -------

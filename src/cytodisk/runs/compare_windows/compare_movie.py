@@ -13,7 +13,7 @@ import numpy as np
 
 from cytodisk.errors import CytodiskError
 from cytodisk.files import replacing
-from cytodisk.images.tracks import CellTrack, read_frame
+from cytodisk.images.tracks import CellTrack, TrackMasks
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.map_movie import map_movie
 from cytodisk.motion.tracking_parameters import FollowingParameters
@@ -136,21 +136,21 @@ def _compare(
 ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
     """Row and tables of one cell by one method; a movie without any map has the reason in its row."""
     track, started = part.track, clock.perf_counter()
-    masks = [track.mask_in(read_frame(inputs.masks, frame), frame) for frame in track.frames]
+    masks = TrackMasks(inputs.masks, track)
     row: dict[str, Any] = {
         "cell": track.cell,
         "source": inputs.masks.path.name,
         "frame": track.first,
         "label": track.label,
         "method": part.method,
-        "frames": usable(masks),
     }
     with TemporaryDirectory(dir=folder, prefix=".", suffix=f".{os.getpid()}.tmp.maps") as maps:
         try:
             movie = _map(part.method, masks, inputs, parameters, maps, report)
         except CytodiskError as fault:
             seconds = (clock.perf_counter() - started) / len(masks)
-            return row | {"status": "no map", "reason": str(fault), "mapped": 0, "seconds": seconds}, {}
+            gone = {"status": "no map", "reason": str(fault), "mapped": 0, "seconds": seconds}
+            return row | {"frames": usable(masks)} | gone, {}
         followed = FollowedCell(track.cell, track.first, part.method, movie, inputs.signal, parameters)
         measured = measure_frames(followed)
     seconds = (clock.perf_counter() - started) / len(masks)
@@ -162,12 +162,16 @@ def _compare(
     reasons = [(track.first + frame, record.reason) for frame, record in enumerate(movie.records)]
     faults = "; ".join(f"frame {frame}: {reason}" for frame, reason in reasons if reason)
     outcome = {"status": "partly" if faults else "ok", "reason": faults, "seconds": seconds}
-    return row | measured.row | outcome, measured.tables
+    # A frame with a map had a mask: only those of the others are looked at again.
+    frames = int(movie.mapped.sum()) + usable(
+        masks[frame] for frame in np.flatnonzero(~movie.mapped).tolist()
+    )
+    return row | {"frames": frames} | measured.row | outcome, measured.tables
 
 
 def _map(
     method: str,
-    masks: list[Any],
+    masks: TrackMasks,
     inputs: MovieInputs,
     parameters: CompareMovieParameters,
     folder: str,
