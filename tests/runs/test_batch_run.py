@@ -289,3 +289,9 @@ def test_small_inputs_share_a_task(files: Path) -> None:
     assert [item for task in together for item in task.inputs] == list(inputs * 30)
     expected = [sum(map(expected_seconds, task.inputs)) for task in together]
     assert all(1.0 <= seconds < 2.0 for seconds in expected[:-1])
+
+
+def test_the_process_that_hands_out_inputs_loads_nothing_that_maps() -> None:
+    """It would take 100 MB beside the workers."""
+    code = "import sys, cytodisk.runs.batch.run_batch; print({'numba', 'skimage', 'zarr'} & set(sys.modules))"
+    assert subprocess.check_output([sys.executable, "-c", code], text=True).strip() == "set()"

@@ -52,9 +52,12 @@ class Processes:
     ----------
     largest_mb : float, optional
         A process that has been larger is not used again, so that its memory is given back.
+    module : str
+        What a process loads before it is ready; by default the module of its first task.
     """
 
-    def __init__(self, largest_mb: float = float("inf")) -> None:
+    def __init__(self, largest_mb: float = float("inf"), module: str = "") -> None:
+        self._module = module
         self._largest_mb = largest_mb
         self._lock = Lock()
         self._all: set[WorkerProcess] = set()
@@ -149,7 +152,7 @@ class Processes:
         for _ in range(_STARTS):
             with self._lock:
                 self._check_open()
-                process = _start(module)
+                process = _start(self._module or module)
                 self._all.add(process)
             if process.wait_until_ready():
                 return process
@@ -187,11 +190,14 @@ class Executor:
     apart : bool
         Use a process of its own for 1 worker, too, so that a task which crashes or hangs does no harm.
     largest_mb : float, optional
+    module : str
         See `Processes`.
     """
 
-    def __init__(self, workers: int, *, apart: bool = False, largest_mb: float = float("inf")) -> None:
-        self.processes = Processes(largest_mb)
+    def __init__(
+        self, workers: int, *, apart: bool = False, largest_mb: float = float("inf"), module: str = ""
+    ) -> None:
+        self.processes = Processes(largest_mb, module)
         self._here = workers == 1 and not apart
         self._at_most = 1 if self._here else _WAITING * workers
         self._threads = ThreadPoolExecutor(workers)

@@ -19,7 +19,6 @@ from cytodisk.windows.polar_windows import PolarGrid
 
 _FRAMES_PER_CHUNK = 64
 _ZARR: dict[str, Any] = {"zarr_format": 2, "consolidated": False}  # format 3 has no strings yet
-ACTIVITY = "activity.zarr"
 EDGE_VARIABLES = (
     "velocity",
     "velocity_cell_frame",

@@ -18,11 +18,11 @@ from cytodisk.errors import ReadError
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
 from cytodisk.motion.frame_file import load_boundary
 from cytodisk.scale import Scale
-from cytodisk.store.activity_store import ACTIVITY, open_activity
+from cytodisk.store.activity_store import open_activity
 from cytodisk.store.correlation_store import Correlation, list_correlations, read_correlation
 from cytodisk.store.provenance_file import read_complete
 from cytodisk.store.study_folder import part_key
-from cytodisk.store.study_kind import CELLS, MAPS
+from cytodisk.store.study_kind import ACTIVITY, CELLS, MAPS
 from cytodisk.store.tables import read_table
 
 WINDOWS, EDGE, CONSISTENCY = "windows.parquet", "edge.parquet", "consistency.parquet"

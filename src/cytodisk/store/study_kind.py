@@ -11,6 +11,7 @@ from cytodisk.store.tables import Columns
 PARAMETERS = "parameters.toml"
 CELLS = "cells.parquet"
 MAPS, FIGURES, PARTS = "maps", "figures", ".parts"
+ACTIVITY = "activity.zarr"
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from cytodisk.runs.batch.batch_folder import (
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.batch.batch_target import begin_run, open_store
 from cytodisk.runs.batch.batch_task import LARGE_MB, BatchTask, TaskResult, make_tasks, run_task
+from cytodisk.runs.batch.compute_input import RUNS
 from cytodisk.runs.batch.input_row import ROWS, InputRow, files_mark, read_row, row_key
 from cytodisk.runs.batch.merged_tables import merge_batch
 from cytodisk.runs.executor import Executor
@@ -151,7 +152,7 @@ def _take(results: Results, pending: int, total: int, report: Progress) -> None:
 
 def _run_here(tasks: Iterator[BatchTask], workers: int) -> Results:
     """Do tasks on this machine, as they come, each input in a process of its own."""
-    with Executor(workers, apart=True, largest_mb=LARGE_MB) as executor:
+    with Executor(workers, apart=True, largest_mb=LARGE_MB, module=RUNS) as executor:
         submitted = (executor.submit_thread(run_task, task, executor.processes) for task in tasks)
         yield from executor.results(submitted, in_order=False)
 

@@ -18,7 +18,7 @@ from cytodisk.errors import CytodiskError, StudyError, WriteError
 from cytodisk.images.frames import open_frames
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.batch.batch_target import is_latest, open_store
-from cytodisk.runs.batch.compute_input import CANNOT_WRITE, compute_input
+from cytodisk.runs.batch.compute_input import CANNOT_WRITE, RUNS, compute_input
 from cytodisk.runs.batch.input_row import InputRow, files_mark, study_key, write_row
 from cytodisk.runs.executor import Processes, WorkerDied
 from cytodisk.store.targets import Store
@@ -122,7 +122,7 @@ def expected_seconds(item: BatchInput) -> float:
     return file.n_frames * (_SECONDS_A_FRAME + _SECONDS_A_MEGAPIXEL * height * width / 1e6)
 
 
-_SHARED = Processes(LARGE_MB)
+_SHARED = Processes(LARGE_MB, RUNS)
 atexit.register(_SHARED.close)
 
 

@@ -5,20 +5,16 @@ from __future__ import annotations
 import errno
 import platform
 import traceback
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cytodisk.errors import CytodiskError, OtherRunError, WriteError
 from cytodisk.runs.batch.batch_input import BatchInput
-from cytodisk.runs.cells.cell_inputs import open_inputs
-from cytodisk.runs.map.map_study import map_study
-from cytodisk.runs.movie.movie_inputs import open_movie
-from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.movie.movie_study import movie_study
-from cytodisk.store.study import Study
 
+if TYPE_CHECKING:
+    from cytodisk.store.study import Study
+
+RUNS = "cytodisk.runs.batch.input_runs"  # not imported here: who only hands out inputs has no need of it
 CANNOT_WRITE = "cannot write"
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
@@ -65,17 +61,13 @@ def _cannot_write(error: BaseException | None) -> bool:
 
 
 def _compute(item: BatchInput, folder: Path) -> dict[str, Any]:
-    run = _run_of(item, folder)
+    from cytodisk.runs.batch.input_runs import run_of
+
+    run = run_of(item, folder)
     try:
         return _facts(run(resume=True))
     except OtherRunError:
         return _facts(run(overwrite=True))
-
-
-def _run_of(item: BatchInput, folder: Path) -> Callable[..., Study]:
-    if isinstance(item.parameters, MovieParameters):
-        return partial(movie_study, open_movie(item.masks, item.signal, item.parameters), folder)
-    return partial(map_study, open_inputs(item.masks, item.signal, item.parameters), folder)
 
 
 def _facts(study: Study) -> dict[str, Any]:

@@ -1,8 +1,7 @@
 """What `cytodisk movie` writes."""
 
-from cytodisk.store.activity_store import ACTIVITY
 from cytodisk.store.study_folder import part_patterns
-from cytodisk.store.study_kind import StudyKind
+from cytodisk.store.study_kind import ACTIVITY, StudyKind
 from cytodisk.store.tables import (
     CELL_COLUMNS,
     CONSISTENCY_COLUMNS,

@@ -15,8 +15,9 @@ from cytodisk.motion.registration import RigidTransform
 from cytodisk.runs.frame_rows import FramePlace
 from cytodisk.runs.movie.measured_frame import edge_columns
 from cytodisk.scale import Scale
-from cytodisk.store.activity_store import ACTIVITY, EDGE_VARIABLES, ActivityStore
+from cytodisk.store.activity_store import EDGE_VARIABLES, ActivityStore
 from cytodisk.store.study_folder import StudyFolder, part_key
+from cytodisk.store.study_kind import ACTIVITY
 from cytodisk.windows.polar_windows import PolarGrid
 
 
