@@ -45,10 +45,10 @@ class FrameResult:
         if self.mapped is not None:
             boundary = self.mapped.boundary
             return FrameRecord("ok", "", lambda: boundary)
-        return FrameRecord(status_of(self.fault), str(self.fault), None)
+        return FrameRecord(frame_status(self.fault), str(self.fault), None)
 
 
-def status_of(fault: CytodiskError | None) -> str:
+def frame_status(fault: CytodiskError | None) -> str:
     """Status of a frame in the tables: what kind of fault it had."""
     if fault is None:
         return "ok"

@@ -50,7 +50,7 @@ class FramePlace:
         }
 
 
-def status_of(fault: CytodiskError) -> str:
+def cell_status(fault: CytodiskError) -> str:
     """What the table of cells says of a row without results.
 
     Parameters

@@ -21,7 +21,12 @@ from cytodisk.images.mask_files import SourceCell
 from cytodisk.runs.cells.cell_inputs import CellInputs
 from cytodisk.runs.cells.cell_parts import CellRun, CellTask, Rows
 from cytodisk.runs.compare_windows.compare_parameters import CompareWindowsParameters
-from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS, layer_columns, status_of, windows_row
+from cytodisk.runs.compare_windows.compare_tables import (
+    COMPARED_CELLS,
+    layer_columns,
+    method_status,
+    windows_row,
+)
 from cytodisk.runs.compare_windows.comparison import Comparison, open_comparison, write_summaries
 from cytodisk.runs.frame_rows import FramePlace
 from cytodisk.runs.provenance import describe_run
@@ -117,7 +122,7 @@ def compare_cell(task: CellTask, parameters: CompareWindowsParameters, folder: P
             windows, disk = _lay(method, found, parameters)
         except CytodiskError as fault:
             seconds = clock.perf_counter() - started
-            gone = {"status": status_of(fault), "reason": str(fault), "mapped": 0, "seconds": seconds}
+            gone = {"status": method_status(fault), "reason": str(fault), "mapped": 0, "seconds": seconds}
             rows.append((row | gone, {}))
             continue
         seconds = clock.perf_counter() - started

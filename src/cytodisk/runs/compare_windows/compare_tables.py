@@ -104,8 +104,8 @@ COMPARED_MOVIE = StudyKind(
 )
 
 
-def status_of(fault: CytodiskError) -> str:
-    """Status of a cell without windows: "refused" if its mask is at fault, "no map" if the method is."""
+def method_status(fault: CytodiskError) -> str:
+    """Status of a cell that a method gave no windows: "refused" if the mask is at fault, or else "no map"."""
     if isinstance(fault, ReadError):
         return "unreadable"
     return "refused" if isinstance(fault, MaskError) else "no map"

@@ -14,7 +14,7 @@ from cytodisk.images.mask_files import SourceCell, read_source_cells
 from cytodisk.images.mask_names import without_name
 from cytodisk.runs.cells.cell_inputs import CellInputs
 from cytodisk.runs.cells.cell_parts import CellRun
-from cytodisk.runs.frame_rows import status_of
+from cytodisk.runs.frame_rows import cell_status
 from cytodisk.runs.map.map_kind import MAP
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_work import DrawCell, MapWork
@@ -102,7 +102,7 @@ class CheckedCell:
     ----------
     found : SourceCell
     status : str
-        "ok", or as `status_of` calls the fault.
+        "ok", or as `cell_status` calls the fault.
     reason : str
         Why it cannot be used; empty if it can.
     report : MaskReport or None
@@ -135,4 +135,4 @@ def check_cells(inputs: CellInputs) -> Iterator[CheckedCell]:
                 continue
             except CytodiskError as error:
                 fault = error
-        yield CheckedCell(replace(found, mask=None), status_of(fault), str(fault), None)
+        yield CheckedCell(replace(found, mask=None), cell_status(fault), str(fault), None)

@@ -19,7 +19,7 @@ from cytodisk.errors import CytodiskError
 from cytodisk.files import replacing
 from cytodisk.images.mask_files import SourceCell
 from cytodisk.runs.cells.cell_parts import CellTask, Rows
-from cytodisk.runs.frame_rows import FramePlace, measure_windows, status_of
+from cytodisk.runs.frame_rows import FramePlace, cell_status, measure_windows
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.scale import Scale
 from cytodisk.store.figures_folder import figures_folder
@@ -65,7 +65,9 @@ class MapWork:
             except CytodiskError as error:
                 fault = error
         if fault is not None:
-            return [(place.row | {"status": status_of(fault), "reason": str(fault)} | _seconds(started), {})]
+            return [
+                (place.row | {"status": cell_status(fault), "reason": str(fault)} | _seconds(started), {})
+            ]
         windows = polar_windows(**dict(self.parameters.part(GridParameters))).on(disk)
         row, columns = measure_windows(place, windows, task.signal, self.parameters.nan, found.corner)
         placed = windows

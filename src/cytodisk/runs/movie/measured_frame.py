@@ -14,7 +14,7 @@ from cytodisk.errors import CytodiskError
 from cytodisk.images.tracks import MissingLabel
 from cytodisk.motion.edge import EdgeMotion, edge_motion, mean_by_sector, normal_displacement
 from cytodisk.motion.frame_file import save_frame
-from cytodisk.motion.map_movie import status_of
+from cytodisk.motion.map_movie import frame_status
 from cytodisk.motion.mapped_frame import MappedFrame
 from cytodisk.runs.frame_rows import FramePlace, measure_windows
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
@@ -119,7 +119,7 @@ def unmapped_rows(place: FramePlace, fault: CytodiskError, seconds: float) -> Fr
     -------
     FrameRows
     """
-    status = "missing" if isinstance(fault, MissingLabel) else status_of(fault)
+    status = "missing" if isinstance(fault, MissingLabel) else frame_status(fault)
     return FrameRows(place.row | {"status": status, "reason": str(fault), "seconds": seconds}, {}, None)
 
 
