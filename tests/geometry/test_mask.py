@@ -145,7 +145,7 @@ def test_cleaning_leaves_one_piece_without_holes_and_its_counts_add_up(mask: np.
     assert (second.components, second.holes) == (1, 0)
 
 
-def test_doubtful_masks_are_said_to_be() -> None:
+def test_flagged_masks_are_said_to_be() -> None:
     good = np.zeros((40, 60), dtype=bool)
     good[5:25, 5:25] = True
     two = good.copy()

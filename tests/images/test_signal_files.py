@@ -54,12 +54,12 @@ def test_a_mask_is_never_its_own_image(tmp_path: Path) -> None:
     assert second == tmp_path / "b_img.tif"
 
 
-def test_a_missing_and_a_doubtful_pair_say_so(tmp_path: Path) -> None:
+def test_a_missing_and_an_ambiguous_pair_say_so(tmp_path: Path) -> None:
     images = fill(tmp_path / "images", "b.tif", "b_img.png", "c.tif")
     masks = sources(tmp_path, "a_masks.tif", "b_masks.tif", "c_masks.tif")
-    missing, doubtful, found = pair_images(masks, images)
+    missing, ambiguous, found = pair_images(masks, images)
     assert f"a_masks.tif has no image in {images}: a.tif or a_img.tif" in str(missing)
-    assert f"b_masks.tif has several images in {images} (b.tif, b_img.png)" in str(doubtful)
+    assert f"b_masks.tif has several images in {images} (b.tif, b_img.png)" in str(ambiguous)
     assert found == images / "c.tif"
 
 

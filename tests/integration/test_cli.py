@@ -440,7 +440,7 @@ def test_the_program_runs_as_a_module(mask: Path, tmp_path: Path) -> None:
     assert refused.stderr.count("\n") == 1
 
 
-def test_doubtful_cells_are_named(run: Run, tmp_path: Path) -> None:
+def test_cells_with_qc_flags_are_named(run: Run, tmp_path: Path) -> None:
     mask = np.zeros((30, 60), dtype=np.uint8)
     mask[5:25, 5:25] = mask[5:25, 35:50] = 1
     path = write(tmp_path / "mask.tif", mask)

@@ -1,8 +1,10 @@
 """The wheel alone, in a new environment without extras, does what needs none."""
 
 import os
+import re
 import subprocess
 import sys
+import tarfile
 from pathlib import Path
 
 import numpy as np
@@ -39,7 +41,11 @@ def environment(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("wheel")
     ends(sys.executable, "-m", "build", "--outdir", folder, ROOT, folder=folder)
     (wheel,) = folder.glob("*.whl")
-    assert list(folder.glob("*.tar.gz"))
+    (source,) = folder.glob("*.tar.gz")
+    with tarfile.open(source) as archive:
+        packed = {name.partition("/")[2] for name in archive.getnames()}
+    shown = set(re.findall(r"!\[[^]]*\]\(([^)]+)\)", (ROOT / "README.md").read_text(encoding="utf-8")))
+    assert "docs/images/real_cell.png" in shown <= packed
     assert f"-{cd.__version__}-" in wheel.name
     ends(sys.executable, "-m", "venv", folder / "venv", folder=folder)
     programs = folder / "venv" / "bin"

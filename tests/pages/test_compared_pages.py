@@ -107,6 +107,7 @@ def test_displacement_is_the_mean_over_layers_through_time() -> None:
         }
     )
     edge, newton = draw_displacement(axes(), rows, ("edge", "newton"), cd.Scale())
+    assert edge.axes.get_ylabel() == "movement of windows (px)"
     np.testing.assert_array_equal(edge.get_xdata(), [0.0, 1.0, 2.0])
     np.testing.assert_array_equal(edge.get_ydata(), [2.0, np.nan, 5.0])
     np.testing.assert_array_equal(newton.get_ydata(), [0.5, np.nan, 1.5])

@@ -145,7 +145,7 @@ def draw_displacement(
         # Only values that a line does not show get a mark: between gaps, or of a movie of two frames.
         style = METHOD_STYLES[method] | {"markevery": stands_alone(values)}
         lines += ax.plot(time, values, label=TITLES[method], **style)
-    ax.set(ylabel=f"centroid_displacement ({scale.length_unit})")
+    ax.set(ylabel=f"movement of windows ({scale.length_unit})")
     ax.set_ylim(bottom=0.0)
     ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
     return lines

@@ -118,7 +118,7 @@ def test_the_same_shape_drawn_larger_has_nearly_the_same_scale_free_features(
     assert_alike(numbers(lopsided(45)), numbers(lopsided(size)), spread)
 
 
-def test_curvature_and_roughness_of_a_cell_are_doubtful_below_75_px() -> None:
+def test_curvature_and_roughness_of_a_cell_are_flagged_below_75_px() -> None:
     table = cd.shape_features([star(5, 7, 0.45), ellipse(37, 37), ellipse(38, 38)], pixel_size_um=0.1)
     small, others = split_qc_flags(table["qc_flags"])
     assert small.tolist() == [True, True, False]
@@ -126,7 +126,7 @@ def test_curvature_and_roughness_of_a_cell_are_doubtful_below_75_px() -> None:
     diameter = 10 * table["equivalent_diameter"][0]
     assert table["qc_flags"][0].startswith("too small for curvature and roughness")
     assert f"D = {diameter:.3g} px, below 75 px" in table["qc_flags"][0]
-    assert (table["tips"][0], numbers(star(5, 70, 0.45))["tips"]) == (0, 5)  # so the doubt is well founded
+    assert (table["tips"][0], numbers(star(5, 70, 0.45))["tips"]) == (0, 5)  # so the flag is right
 
 
 def test_flags_of_size_stand_beside_others() -> None:

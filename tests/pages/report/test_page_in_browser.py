@@ -312,7 +312,7 @@ def test_choices_change_what_is_drawn(page: Page) -> None:
 
 def test_windows_that_are_not_significant_are_hatched(page: Page) -> None:
     """Layers 1 to 3 have q of 0.5."""
-    hatched = page.js("cytodisk.figures.peaks.select('doubtful')[0].indices")
+    hatched = page.js("cytodisk.figures.peaks.select('not_significant')[0].indices")
     assert hatched == list(range(SECTORS, LAYERS * SECTORS))
     assert page.text("peaks-key") == "hatched: not significant (q ≥ 0.05)"
 

@@ -60,7 +60,7 @@ def test_scales_may_be_unknown() -> None:
 @pytest.mark.parametrize(
     ("column", "value", "name", "note"),
     [
-        ("qc_flags", "a large fragment was dropped", "masks in doubt", "a large fragment was dropped"),
+        ("qc_flags", "a large fragment was dropped", "flagged masks", "a large fragment was dropped"),
         ("restarted", "the cell jumped", "tracking restarts", "the cell jumped"),
         ("tracking_residual", 0.6, "tracking residual", "0.6 µm"),
         ("order_violations", 3, "order violations", "3 points"),
@@ -160,7 +160,7 @@ def test_warnings_that_no_other_flag_tells() -> None:
     study = made(warnings=["cell 0, frame 4: odd", "the disk is nearly full"])
     assert only(study).what == "2 warnings of the run: cell 0, frame 4: odd; the disk is nearly full"
     study.cells.loc[4, "qc_flags"] = "odd"
-    assert [flag.name for flag in qc_flags(study)] == ["masks in doubt", "warnings"]
+    assert [flag.name for flag in qc_flags(study)] == ["flagged masks", "warnings"]
     assert qc_flags(study)[1].what == "1 warning of the run: the disk is nearly full"
 
 
@@ -178,7 +178,7 @@ def test_single_masks() -> None:
     flags = qc_flags(study)
     assert [(flag.name, where(flag)) for flag in flags] == [
         ("refused frames", [(1, None)]),
-        ("masks in doubt", [(2, None)]),
+        ("flagged masks", [(2, None)]),
         ("strong distortion", [(2, None)]),
     ]
     assert flags[0].what == "1 cell refused"

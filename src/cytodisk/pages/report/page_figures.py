@@ -65,7 +65,7 @@ def figures_of(cell: ShownCell, box: Box, *, correlated: bool) -> dict[str, Any]
         "velocity": velocity_map(cell, shared),
     }
     if correlated:
-        plots["peaks"] = _disk(cell, palette(DIVERGING_COLOURS), shared, doubtful=True)
+        plots["peaks"] = _disk(cell, palette(DIVERGING_COLOURS), shared, hatched=True)
         plots["curve"] = _curve(cell)
     units = cell.study.cells.attrs["units"]
     titles = {
@@ -127,7 +127,7 @@ def _scale_bar(plot: Any, box: Box, scale: Scale) -> None:
     )
 
 
-def _disk(cell: ShownCell, colours: Sequence[str], shared: dict[str, Any], *, doubtful: bool = False) -> Any:
+def _disk(cell: ShownCell, colours: Sequence[str], shared: dict[str, Any], *, hatched: bool = False) -> Any:
     """The unit disk, v down as y in the image; some windows can be pale and hatched."""
     plot = bare_figure((-1.16, 1.16), (1.16, -1.16), _SQUARE - 22, _SQUARE - 22)
     plot.axis.visible = False
@@ -138,9 +138,9 @@ def _disk(cell: ShownCell, colours: Sequence[str], shared: dict[str, Any], *, do
     lines = {"line_color": "white", "line_alpha": 0.3, "line_width": 0.6} if lined else {"line_color": None}
     fill = {"field": "value", "transform": mapper}
     plot.annular_wedge(*_WEDGE, source=source, fill_color=fill, **lines)
-    if doubtful:
+    if hatched:
         hatch = {"hatch_pattern": "right_diagonal_line", "hatch_color": "#9a9a9a", "hatch_scale": 8.0}
-        where = _where(bokeh().models.IndexFilter(name="doubtful", indices=[]))
+        where = _where(bokeh().models.IndexFilter(name="not_significant", indices=[]))
         style = {"fill_color": "white", "fill_alpha": 0.55, "line_color": None}
         plot.annular_wedge(*_WEDGE, source=source, view=where, **style, **hatch)
     for colour, width in (("black", 4.5), ("white", 2.0)):

@@ -239,11 +239,11 @@ def _mark_peak(ax: Axes, peak: pd.DataFrame, unit: LagUnit, colour: FloatArray) 
     if len(peak) != 1 or not np.isfinite(peak["correlation"].iloc[0]):
         return
     height, lag = float(peak["correlation"].iloc[0]), float(peak[unit.column].iloc[0])
-    doubtful = "q" in peak and bool(peak["q"].iloc[0] >= _ALPHA)
+    faint = "q" in peak and bool(peak["q"].iloc[0] >= _ALPHA)
     (dot,) = ax.plot([lag], [height], "o", color=colour, markersize=3.5, markeredgewidth=0.8, clip_on=False)
-    dot.set(markerfacecolor="white" if doubtful else colour, gid=PEAK_NAME, zorder=4)
+    dot.set(markerfacecolor="white" if faint else colour, gid=PEAK_NAME, zorder=4)
     words = f"{signed(height, '.2f')} at {unit.write(lag)}"
-    ax.set_title(words, loc="right", y=1.0, pad=2.0, fontsize=7.0, color="0.3" if doubtful else LINE_COLOUR)
+    ax.set_title(words, loc="right", y=1.0, pad=2.0, fontsize=7.0, color="0.3" if faint else LINE_COLOUR)
 
 
 def _share_axes(axes: Sequence[Axes], curves: pd.DataFrame, unit: LagUnit) -> None:

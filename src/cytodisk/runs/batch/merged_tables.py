@@ -30,7 +30,7 @@ INPUTS = "inputs"
 
 @dataclass(frozen=True)
 class _Done:
-    """An input with a study, the units of its tables, and how many of its cells are doubtful."""
+    """An input with a study, the units of its tables, and how many of its cells have QC flags."""
 
     item: BatchInput
     units: tuple[str, str]
@@ -85,9 +85,9 @@ def _remarks(done: Sequence[_Done]) -> Iterator[str]:
             "inputs have different units: the columns length_unit and velocity_unit say which row has which; "
             "give pixel_size_um and frame_interval_s to all inputs"
         )
-    doubtful = sum(one.qc_flags > 0 for one in done)
-    if doubtful:
-        have = "1 input has" if doubtful == 1 else f"{doubtful} inputs have"
+    flagged = sum(one.qc_flags > 0 for one in done)
+    if flagged:
+        have = "1 input has" if flagged == 1 else f"{flagged} inputs have"
         yield (
             f"{have} cells with QC flags: column qc_flags of inputs.csv counts them, that of cells.parquet "
             "says what they are"

@@ -97,8 +97,8 @@ def _above_zero(column: pd.Series[Any], _: Scale) -> pd.Series[bool]:
     return pd.to_numeric(column, errors="coerce").fillna(0) > 0
 
 
-masks_in_doubt = ColumnRule(
-    "masks in doubt",
+flagged_masks = ColumnRule(
+    "flagged masks",
     "{frames} may not be one whole cell",
     "Cleaning the mask changed much, or the cell is not where it was.",
     "Look at the mask; correct the segmentation or leave it out.",

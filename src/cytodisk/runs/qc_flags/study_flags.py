@@ -63,7 +63,7 @@ def _other_warnings(study: Study, found: Sequence[QCFlag]) -> Iterator[QCFlag]:
 
 _RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     column_flags.without_map,
-    column_flags.masks_in_doubt,
+    column_flags.flagged_masks,
     motion_flags.area_jumps,
     motion_flags.fast_edge,
     column_flags.tracking_residual,

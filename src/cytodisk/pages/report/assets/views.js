@@ -142,7 +142,7 @@
     const top = lagged ? largest(lags) * page.lagScale() || 1 : Math.ceil(10 * largest(values)) / 10 || 1;
     setColumns(part("peaks", "pixels"), { value: values });
     const pale = (q, k) => q >= 0.05 && Number.isFinite(values[k]);
-    part("peaks", "doubtful").indices = [...windows.q.values.keys()].filter((k) => pale(windows.q.values[k], k));
+    part("peaks", "not_significant").indices = [...windows.q.values.keys()].filter((k) => pale(windows.q.values[k], k));
     part("peaks", "colours").palette = page.data.palettes[peak];
     setColours("peaks", [-top, top], !lagged ? "correlation" : page.data.interval_s === null ? "frames" : "s");
     const tested = windows.q.values.some(Number.isFinite);
