@@ -7,7 +7,7 @@ import xarray as xr
 
 from cytodisk import DiskMovie, consecutive_correlation, map_movie, polar_windows, sample_movie, simulate
 from cytodisk.analysis.activity import STATISTICS
-from cytodisk.analysis.movie_signals import parse_signals
+from cytodisk.analysis.signal_frames import parse_signals
 from cytodisk.errors import SignalError
 from cytodisk.simulate import SimulatedMovie
 

@@ -330,3 +330,9 @@ def test_events_of_some_sectors_are_those_of_the_whole_edge(study: cd.Study) -> 
 def test_the_number_of_surrogates_is_that_which_was_made(study: cd.Study) -> None:
     shifted = correlate_study(study, "edge", max_lag=2, null="shift", surrogates=99, name="shift")
     assert shifted.settings["surrogates_made"] == shifted.cells["surrogates"].item() < 7
+
+
+def test_the_usual_lag_leaves_enough_pairs_of_frames(study: cd.Study) -> None:
+    frames = study.activity(0).sizes["time"]
+    found = correlate_study(study, "edge", name="short", min_pairs=frames - 2, **FEW)
+    assert found.settings["max_lag"] == 2

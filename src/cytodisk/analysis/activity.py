@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 import xarray as xr
 
-from cytodisk.analysis.movie_signals import parse_signals
+from cytodisk.analysis.signal_frames import parse_signals
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.motion.disk_movie import DiskMovie

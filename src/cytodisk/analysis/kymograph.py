@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.analysis.boundary_depth import places_at_depth
-from cytodisk.analysis.movie_signals import MovieSignals, parse_signals
+from cytodisk.analysis.signal_frames import MovieSignals, parse_signals
 from cytodisk.arrays import AnyArray, BoolArray, FloatArray
 from cytodisk.checks import number_between, positive_number, whole_number
 from cytodisk.errors import ParameterError, SignalError

@@ -118,7 +118,7 @@ def peaks_page(one: DrawnCorrelation) -> Sheet | None:
         bar = sheet.axes(lefts[1] + _PANEL + 3.0, top + 0.1 * height, 2.2, 0.8 * height)
         colour_bar(drawn, bar, label, extend=_cut_off(peaks, shown))
     foot = head + 2 * row + 3.0
-    sheet.text(LEFT_MM, foot + 2.0, "lag: " + sides(*one.first_names))
+    sheet.text(LEFT_MM, foot + 2.0, "lag: " + sides(*one.first_names, upright=True))
     if key:
         sheet.key(LEFT_MM, foot + 3.5, key, 2, **_KEY_STYLE)
     return sheet

@@ -119,6 +119,7 @@ def _draw_histogram(ax: Axes, distortion: FloatArray) -> None:
     )
     ax.axvline(float(np.median(distortion)), color="0.15", linewidth=0.8, linestyle=(0, (3, 2)))
     ax.set_title(f"area distortion, median {np.median(distortion):.3f} (dashed)")
+    ax.xaxis.set_major_locator(MaxNLocator(4))
     ax.yaxis.set_major_locator(MaxNLocator(5, integer=True))
     ax.set(xlabel=_DISTORTION, ylabel="cells")
 

@@ -20,7 +20,10 @@ class CorrelateParameters(PeakParameters, SkipLagsParameters, PairCorrelationPar
     """What decides the result of `cytodisk correlate`, beside the study and its two signals."""
 
     max_lag: int | None = parameter(
-        None, "Longest lag; without it a quarter of the movie, at most 20.", least=0, unit="frames"
+        None,
+        "Longest lag; without it a quarter of the movie, at most 20, or what leaves enough pairs of frames.",
+        least=0,
+        unit="frames",
     )
     against: Literal["window", "edge"] = parameter(
         "window",

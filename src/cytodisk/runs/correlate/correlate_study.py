@@ -63,7 +63,7 @@ def correlate_study(
     options = CorrelateParameters.chosen(parameters, settings)
     names = channels_of(study)
     _check_names(names, signal, with_, options)
-    max_lag = options.max_lag if options.max_lag is not None else _usual_lag(study, chosen)
+    max_lag = options.max_lag if options.max_lag is not None else _usual_lag(study, chosen, options.min_pairs)
     correlating = CellCorrelation(study, signal, with_, max_lag, options)
     found: dict[str, list[pd.DataFrame]] = {}
     rows = []
@@ -139,10 +139,10 @@ def _check_names(names: list[str], signal: str, with_: str, options: CorrelatePa
         )
 
 
-def _usual_lag(study: Study, cells: list[int]) -> int:
-    """A quarter of the longest cell's frames, at most twenty."""
+def _usual_lag(study: Study, cells: list[int], min_pairs: int) -> int:
+    """A quarter of the longest cell's frames, at most twenty, and what leaves enough pairs of frames."""
     frames = max(study.activity(cell).sizes["time"] for cell in cells)
-    return max(1, min(_LONGEST_LAG, frames // 4))
+    return max(1, min(_LONGEST_LAG, frames // 4, frames - min_pairs))
 
 
 def _percents(progress: Progress | None, place: int, cells: int) -> Progress | None:
