@@ -9,7 +9,7 @@ from curves import circle, lobed, masks_of, moved
 
 from cytodisk import DiskMovie, map_movie, map_to_disk, simulate
 from cytodisk.errors import MapError, MaskError, ParameterError, ReadError, StudyError
-from cytodisk.motion.map_movie import map_frames
+from cytodisk.motion.following import map_frames
 from cytodisk.motion.mapped_frame import MovieSettings
 from cytodisk.simulate import SimulatedMovie
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -13,95 +12,14 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.disk.disk_map import DiskMap, load_map
-from cytodisk.errors import CytodiskError, MapError, MaskError, ReadError, StudyError
+from cytodisk.errors import CytodiskError, MaskError, StudyError
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
-from cytodisk.motion.mapped_frame import MappedFrame, map_frame
-from cytodisk.motion.tracking_parameters import MovieMapParameters, MovieSettings
-from cytodisk.scale import UNKNOWN, Scale
+from cytodisk.motion.following import map_frames
+from cytodisk.motion.tracking_parameters import MovieMapParameters
+from cytodisk.scale import Scale
 from cytodisk.taking import takes
 
 _KEPT = 4  # maps that a movie on disk keeps in memory
-
-
-@dataclass(frozen=True, eq=False)
-class FrameResult:
-    """What became of one frame of a movie.
-
-    Attributes
-    ----------
-    frame : int
-    mapped : MappedFrame or None
-    fault : CytodiskError or None
-        Why there is no map.
-    """
-
-    frame: int
-    mapped: MappedFrame | None
-    fault: CytodiskError | None
-
-    @property
-    def record(self) -> FrameRecord:
-        """The frame without its map."""
-        if self.mapped is not None:
-            boundary = self.mapped.boundary
-            return FrameRecord("ok", "", lambda: boundary)
-        return FrameRecord(frame_status(self.fault), str(self.fault), None)
-
-
-def frame_status(fault: CytodiskError | None) -> str:
-    """Status of a frame in the tables: what kind of fault it had."""
-    if fault is None:
-        return "ok"
-    return "unreadable" if isinstance(fault, ReadError) else "refused"
-
-
-def map_frames(
-    masks: Sequence[Any], settings: MovieSettings, scale: Scale = UNKNOWN
-) -> Iterator[FrameResult]:
-    """Map the frames of a movie one by one; each is ready to be used and dropped before the next is read.
-
-    Parameters
-    ----------
-    masks : sequence of array_like of shape (H, W)
-        Masks of one cell. An entry may be an error of this package instead: the frame then has that fault.
-    settings : MovieSettings
-    scale : Scale
-
-    Yields
-    ------
-    FrameResult
-        In order; a frame that cannot be mapped has its fault, and the next one goes on from the last map.
-    """
-    last: MappedFrame | None = None
-    for frame in range(len(masks)):
-        result = map_one(frame, masks[frame], last, settings, scale)
-        last = result.mapped or last
-        yield result
-
-
-def map_one(
-    frame: int, mask: Any, last: MappedFrame | None, settings: MovieSettings, scale: Scale = UNKNOWN
-) -> FrameResult:
-    """Map one frame; a fault of its mask becomes part of the result.
-
-    Parameters
-    ----------
-    frame : int
-    mask : array_like of shape (H, W), or CytodiskError
-    last : MappedFrame or None
-    settings : MovieSettings
-    scale : Scale
-
-    Returns
-    -------
-    FrameResult
-    """
-    if isinstance(mask, CytodiskError):
-        return FrameResult(frame, None, mask)
-    try:
-        return FrameResult(frame, map_frame(frame, mask, last, settings, scale), None)
-    except (MaskError, MapError) as fault:
-        return FrameResult(frame, None, fault)
 
 
 @takes(MovieMapParameters)

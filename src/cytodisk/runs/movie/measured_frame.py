@@ -13,8 +13,8 @@ import xarray as xr
 from cytodisk.errors import CytodiskError
 from cytodisk.images.tracks import MissingLabel
 from cytodisk.motion.edge import EdgeMotion, edge_motion, mean_by_sector, normal_displacement
+from cytodisk.motion.following import frame_status
 from cytodisk.motion.frame_file import save_frame
-from cytodisk.motion.map_movie import frame_status
 from cytodisk.motion.mapped_frame import MappedFrame
 from cytodisk.runs.frame_rows import FramePlace, measure_windows
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters

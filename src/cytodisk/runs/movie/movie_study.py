@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time as clock
 from collections.abc import Iterator
 from concurrent.futures import Future
 from typing import Any
@@ -11,8 +10,8 @@ from typing import Any
 from cytodisk.errors import MaskError, ReadError
 from cytodisk.images.signal_files import load_image
 from cytodisk.images.tracks import CellTrack, read_frame
+from cytodisk.motion.following import FollowedFrame, map_cells
 from cytodisk.motion.frame_file import load_frame
-from cytodisk.motion.map_movie import FrameResult, map_one
 from cytodisk.motion.mapped_frame import MappedFrame
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.executor import Executor, finished
@@ -24,7 +23,6 @@ from cytodisk.runs.movie.movie_tables import finish_tables
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.run_options import Progress, RunOptions, silent
 from cytodisk.runs.study_run import StudyRun
-from cytodisk.scale import Scale
 from cytodisk.store.study import Study, open_study
 from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.taking import takes
@@ -87,8 +85,9 @@ class _Run:
         self._inputs = inputs
         self._folder = folder
         self._executor = executor
-        self._settings = inputs.parameters.part(MovieSettings)
+        self._tracks = {track.cell: track for track in inputs.tracks}
         self._last: dict[int, MappedFrame] = {}
+        self._signal: Any = None  # of the frame that is being mapped
         self._report = report
 
     def all_frames(self) -> None:
@@ -104,47 +103,47 @@ class _Run:
 
     def _frames(self) -> Iterator[Future[FrameRows]]:
         """Frames on their way to be measured."""
+        settings, submit = self._inputs.parameters.part(MovieSettings), self._executor.submit
+        masks, scale = self._pending_masks(), self._inputs.scale
+        return map(self._measured, map_cells(masks, settings, scale, last=self._last, submit=submit))
+
+    def _pending_masks(self) -> Iterator[tuple[int, Iterator[tuple[int, Any]]]]:
+        """Each frame that is not done, with the masks of its cells that are not."""
         for frame in range(self._inputs.masks.n_frames):
             present = [track for track in self._inputs.tracks if frame in track.frames]
             pending = [track for track in present if not self._folder.has(part_key(track.cell, frame))]
             if pending:
-                yield from self._one_frame(frame, pending)
+                yield frame, self._read(frame, pending)
             for track in present:
                 if frame == track.last:
                     self._last.pop(track.cell, None)
 
-    def _one_frame(self, frame: int, tracks: list[CellTrack]) -> Iterator[Future[FrameRows]]:
+    def _read(self, frame: int, tracks: list[CellTrack]) -> Iterator[tuple[int, Any]]:
+        """Cells with their masks; without the frame's signal there is none."""
         labels = read_frame(self._inputs.masks, frame)
-        signal = load_image(self._inputs.signal, frame)
-        mapping = []
+        signal = self._signal = load_image(self._inputs.signal, frame)
         for track in tracks:
             if track.cell not in self._last:
                 self._resume_from(track, frame)
             mask = signal if isinstance(signal, ReadError) else track.mask_in(labels, frame)
-            last = self._last.get(track.cell)
-            task = frame, mask, last, self._settings, self._inputs.scale
-            mapping.append((track, self._executor.submit(_map_timed, *task)))
-        for track, future in mapping:
-            yield self._measured(track, frame, *future.result(), signal)
+            yield track.cell, mask
 
-    def _measured(
-        self, track: CellTrack, frame: int, result: FrameResult, seconds: float, signal: Any
-    ) -> Future[FrameRows]:
+    def _measured(self, found: FollowedFrame) -> Future[FrameRows]:
+        result, last = found.result, found.last
+        track, frame = self._tracks[found.cell], result.frame
         place = FramePlace(track.cell, frame, track.label, self._inputs.scale.seconds(frame))
         if result.mapped is None:
-            return finished(unmapped_rows(place, result.fault or MaskError("no map"), seconds))
-        last = self._last.get(track.cell)
+            return finished(unmapped_rows(place, result.fault or MaskError("no map"), found.seconds))
         task = FrameTask(
             place,
             result.mapped,
             last if last is not None and last.frame == frame - 1 else None,
-            signal,
+            self._signal,
             self._inputs.grid,
             self._inputs.parameters,
             self._folder.map_path(part_key(track.cell, frame)),
-            seconds,
+            found.seconds,
         )
-        self._last[track.cell] = result.mapped
         return self._executor.submit(measure_frame, task)
 
     def _resume_from(self, track: CellTrack, frame: int) -> None:
@@ -154,13 +153,6 @@ class _Run:
         mapped = {t: path for t, path in paths.items() if path.exists()}
         if mapped:
             self._last[track.cell] = load_frame(mapped[max(mapped)], mapped)
-
-
-def _map_timed(
-    frame: int, mask: Any, last: MappedFrame | None, settings: MovieSettings, scale: Scale
-) -> tuple[FrameResult, float]:
-    started = clock.perf_counter()
-    return map_one(frame, mask, last, settings, scale), clock.perf_counter() - started
 
 
 def _warning(row: dict[str, Any]) -> str:
