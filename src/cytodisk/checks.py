@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Collection
 from typing import Any, TypeVar
 
@@ -86,3 +87,37 @@ def one_of(name: str, value: Any, choices: Collection[Word]) -> Word:
     if not (isinstance(value, str) and value in choices):
         raise ParameterError(f"{name} must be one of {', '.join(choices)}, got {value!r}")
     return chosen
+
+
+def instance_of(name: str, value: Any, kinds: type | tuple[type, ...], words: str, hint: str = "") -> None:
+    """Check that an argument is an object of one kind, or of a few.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument, for the message.
+    value : object
+    kinds : type or tuple of type
+    words : str
+        What it must be, such as "a DiskMovie".
+    hint : str
+        What to do, such as the order of the arguments.
+
+    Raises
+    ------
+    ParameterError
+        It is something else.
+    """
+    if not isinstance(value, kinds):
+        raise ParameterError(f"{name} must be {words}, got {type(value).__name__}{hint and f': {hint}'}")
+
+
+def is_path(name: str, value: Any) -> None:
+    """Check that an argument is a path.
+
+    Raises
+    ------
+    ParameterError
+        It is something else.
+    """
+    instance_of(name, value, (str, os.PathLike), "a path")

@@ -125,7 +125,7 @@ class Parameters(BaseModel):
     @classmethod
     def _check_exclusive(cls, values: Mapping[str, Any], names: Mapping[str, str]) -> None:
         for pair in cls.exclusive:
-            if all(values.get(name) is not None for name in pair):
+            if all(_is_given(values.get(name)) for name in pair):
                 shown = [names.get(name, name) for name in pair]
                 raise cls.fault(f"{shown[0]} and {shown[1]} exclude each other: pass one of them")
 
@@ -149,7 +149,7 @@ class Parameters(BaseModel):
         if not values:
             return self
         self._check_exclusive(values, {})
-        given = {name for name, value in values.items() if value is not None}
+        given = {name for name, value in values.items() if _is_given(value)}
         excluded = {name for pair in self.exclusive if given & set(pair) for name in pair}
         kept = {name: value for name, value in self if name not in excluded}
         return self._of_all(kept | values, {})
@@ -170,6 +170,11 @@ class Parameters(BaseModel):
         if wanted & {int, float, bool} and isinstance(plain, bool | str) and not is_meant:
             raise PydanticCustomError("no_number", "this is no number")
         return plain
+
+
+def _is_given(value: Any) -> bool:
+    """Whether a value excludes another: None and a switch that is off do not."""
+    return value is not None and value is not False
 
 
 def _fault_words(error: ValidationError, model: type[Parameters], names: Mapping[str, str]) -> str:

@@ -8,7 +8,7 @@ import xarray as xr
 from cytodisk import DiskMovie, consecutive_correlation, map_movie, polar_windows, sample_movie, simulate
 from cytodisk.analysis.activity import STATISTICS
 from cytodisk.analysis.signal_frames import parse_signals
-from cytodisk.errors import SignalError
+from cytodisk.errors import ParameterError, SignalError
 from cytodisk.simulate import SimulatedMovie
 
 GRID = polar_windows(3, 12)
@@ -204,3 +204,17 @@ def test_a_later_frame_that_does_not_fit_is_refused(
     assert frames[-1].shape != frames[0].shape
     with pytest.raises(SignalError):
         sample_movie(case.movie, GRID, frames)
+
+
+def test_swapped_arguments_are_told_their_order(case: Case) -> None:
+    order = r"the order is sample_movie\(movie, grid, signals\)"
+    with pytest.raises(ParameterError, match=f"movie must be a DiskMovie, .*, got PolarGrid: {order}"):
+        sample_movie(GRID, case.movie, case.signal)  # type: ignore[arg-type]
+    with pytest.raises(ParameterError, match=f"grid must be a PolarGrid, .*, got DataArray: {order}"):
+        sample_movie(case.movie, case.signal, GRID)  # type: ignore[arg-type]
+
+
+def test_two_channels_of_one_name_are_refused(case: Case) -> None:
+    signal = case.signal.assign_coords(channel=["Rac1", "Rac1"])
+    with pytest.raises(SignalError, match=r"signals: two channels have one name, got \('Rac1', 'Rac1'\)"):
+        sample_movie(case.movie, GRID, signal)

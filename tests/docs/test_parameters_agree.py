@@ -117,3 +117,16 @@ def test_positions_and_names_can_be_mixed_but_not_doubled() -> None:
     assert cd.polar_windows(3, sectors=7) == cd.polar_windows(layers=3, sectors=7, spacing="area")
     with pytest.raises(cd.errors.WindowError, match="layers is given twice"):
         cd.polar_windows(3, layers=3)
+
+
+@pytest.mark.parametrize("command", ["map", "movie", "shapes", "compare-windows"])
+def test_a_run_lists_its_parameters_and_options(command: str) -> None:
+    run, _ = COMMANDS[command]
+    with pytest.raises(cd.errors.ParameterError, match=r"no parameter 'bogus'.* workers, resume, overwrite"):
+        run("masks.tif", "out", bogus=2)
+    with pytest.raises(cd.errors.ParameterError, match=r"did you mean workers\?"):
+        run("masks.tif", "out", worker=2)
+    with pytest.raises(cd.errors.ParameterError, match="resume and overwrite exclude each other"):
+        run("masks.tif", "out", resume=True, overwrite=True)
+    with pytest.raises(cd.errors.ParameterError, match="masks must be a path, got NoneType"):
+        run(None, "out", resume=False, overwrite=True)

@@ -8,7 +8,7 @@ import tifffile
 from numpy.testing import assert_array_equal
 
 import cytodisk as cd
-from cytodisk.errors import ReadError
+from cytodisk.errors import ParameterError, ReadError
 from cytodisk.images.frames import FrameFile, open_frames
 
 STACK = np.random.default_rng(0).integers(0, 4000, (3, 2, 20, 31)).astype(np.uint16)  # T, C, Y, X
@@ -36,6 +36,13 @@ def test_an_unnamed_axis_is_what_the_caller_says(tmp_path: Path) -> None:
     movie = cd.read_image(tmp_path / "a.tif", unnamed="T")
     assert movie.dims == ("time", "y", "x")
     assert_array_equal(movie, STACK[:, 0])
+
+
+def test_arguments_that_are_none_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match="unnamed must be one of T, C, got '2'"):
+        cd.read_image(tmp_path / "a.tif", unnamed="2")
+    with pytest.raises(ParameterError, match="path must be a path, got NoneType"):
+        cd.read_image(None)  # type: ignore[arg-type]
 
 
 def test_ome_tiff_with_names_and_scale(tmp_path: Path) -> None:

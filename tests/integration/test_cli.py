@@ -145,7 +145,7 @@ def test_a_signal_of_another_shape(run: Run, mask: Path, tmp_path: Path) -> None
 @pytest.mark.parametrize("name", ["layers", "sectors"])
 def test_counts_below_1(run: Run, mask: Path, tmp_path: Path, name: str, value: str) -> None:
     result = run("map", mask, "-o", tmp_path / "out", f"--{name}", value)
-    assert_refused(result, f"--{name} must be a whole number of at least 1, got {value}")
+    assert_refused(result, f"--{name} must be a whole number from 1 to 100000, got {value}")
     assert not (tmp_path / "out").exists()
 
 

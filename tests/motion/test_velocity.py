@@ -310,13 +310,19 @@ def test_sectors_are_means_of_their_points_by_length(translating: DiskMovie, sec
     np.testing.assert_allclose(by_sector, total, atol=0.01)
 
 
-@pytest.mark.parametrize("sectors", [0, -1, 2.5, True, "many", None])
+@pytest.mark.parametrize("sectors", [0, -1, 2.5, True, "many", None, 10**12])
 @pytest.mark.parametrize("function", [edge_velocity, edge_changes])
 def test_bad_sectors_are_refused(
     gappy: DiskMovie, function: Callable[..., xr.DataArray], sectors: object
 ) -> None:
-    with pytest.raises(WindowError, match="sectors must be a whole number of at least 1"):
+    with pytest.raises(WindowError, match="sectors must be a whole number from 1 to 100000"):
         function(gappy, sectors)
+
+
+@pytest.mark.parametrize("function", [edge_velocity, boundary_velocity, edge_changes])
+def test_what_is_no_movie_is_refused(function: Callable[..., xr.DataArray]) -> None:
+    with pytest.raises(ParameterError, match=r"movie must be a DiskMovie, as map_movie .*, got ndarray"):
+        function(np.zeros((3, 9, 9), bool))
 
 
 @pytest.mark.parametrize("function", [edge_velocity, boundary_velocity, edge_changes])

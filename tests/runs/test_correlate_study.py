@@ -223,6 +223,7 @@ def test_some_frames_and_sectors(study: cd.Study) -> None:
     ("settings", "message"),
     [
         ({"frames": (90, 99)}, "frames 90:99 are not in the movie: it has 0:35"),
+        ({"frames": (0, 36)}, "frames 0:36 are not in the movie: it has 0:35"),
         ({"frames": (20, 10)}, "frames must go from the first to the last"),
         ({"without_frames": (3, 77)}, "without_frames has 77: the movie has 0:35"),
         ({"sectors": (0, 12)}, "sectors 0:12 are not on the edge: it has 0:11"),

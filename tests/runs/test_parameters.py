@@ -58,8 +58,8 @@ def test_given_values_overrule_the_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"layers": 0}, "layers must be a whole number of at least 1, got 0"),
-        ({"sectors": -2}, "sectors must be a whole number of at least 1, got -2"),
+        ({"layers": 0}, "layers must be a whole number from 1 to 100000, got 0"),
+        ({"sectors": -2}, "sectors must be a whole number from 1 to 100000, got -2"),
         ({"layers": 2.5}, "layers must be a whole number.*got 2.5"),
         ({"layers": True}, "layers must be a whole number.*got True"),
         ({"layers": 4000, "sectors": 4000}, "layers × sectors must be at most 10000000, got 4000 × 4000"),

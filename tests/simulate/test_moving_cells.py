@@ -199,3 +199,9 @@ def test_the_edge_channel_is_exact_in_the_first_and_last_frames() -> None:
 def test_bad_arguments_are_named(wrong: dict[str, object]) -> None:
     with pytest.raises(ParameterError, match=list(wrong)[-1]):
         movie(**wrong)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["speed_px", "protrusion_px", "jitter_px"])
+def test_motion_beyond_any_cell_is_refused(name: str) -> None:
+    with pytest.raises(ParameterError, match=f"{name} must be a number from 0 to 100, got"):
+        movie("fluctuating", **{name: 1e12})

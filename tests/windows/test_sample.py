@@ -172,3 +172,16 @@ def test_quantiles_that_are_none_are_refused(quantiles: object) -> None:
     windows = cd.polar_windows(1, 2).on(cd.map_to_disk(cd.simulate.disk(6.0)))
     with pytest.raises(ParameterError, match="quantiles must be a sequence of numbers"):
         cd.sample(windows, np.zeros(windows.mask.shape), quantiles=quantiles)  # type: ignore[arg-type]
+
+
+def test_swapped_arguments_are_told_their_order(windows: cd.CellWindows) -> None:
+    signal = np.zeros(windows.mask.shape)
+    with pytest.raises(ParameterError, match=r"windows must be .*, got ndarray: .*sample\(windows, signal\)"):
+        cd.sample(signal, windows)
+
+
+def test_two_channels_of_one_name_are_refused(windows: cd.CellWindows) -> None:
+    values = np.zeros((2, *windows.mask.shape))
+    signal = xr.DataArray(values, {"channel": ["Rac1", "Rac1"]}, ("channel", "y", "x"))
+    with pytest.raises(SignalError, match="two channels have one name"):
+        cd.sample(windows, signal)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 import xarray as xr
 
 from cytodisk.analysis.signal_frames import parse_signals
 from cytodisk.arrays import FloatArray
+from cytodisk.checks import instance_of
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.scale import Scale
@@ -23,6 +24,7 @@ GEOMETRY = ("area", "centroid_y", "centroid_x")
 STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
 
 
+@runtime_checkable
 class Grid(Protocol):
     """What `sample_movie` needs of a grid: `PolarGrid`, `EdgeGrid` or `RingGrid`."""
 
@@ -68,7 +70,9 @@ def sample_movie(
     Raises
     ------
     SignalError
-        The signals do not fit the movie.
+        The signals do not fit the movie, or two channels have one name.
+    ParameterError
+        `movie` is no DiskMovie, `grid` no grid, or `nan` is unknown.
 
     See Also
     --------
@@ -85,6 +89,9 @@ def sample_movie(
     {'time': 3, 'channel': 2, 'layer': 2, 'sector': 6}
     """
     how = dict(SampleParameters.of(**settings))
+    order = "the order is sample_movie(movie, grid, signals)"
+    instance_of("movie", movie, DiskMovie, "a DiskMovie, as map_movie returns it", order)
+    instance_of("grid", grid, Grid, "a PolarGrid, EdgeGrid or RingGrid", order)
     known = parse_signals(signals, len(movie), movie.image_shape)
     tables = ActivityTables(len(movie), known.channels, grid)
     for sampled in sample_frames(movie, grid, known.image, progress=progress, **how):

@@ -10,6 +10,7 @@ import xarray as xr
 
 from cytodisk.arrays import AnyArray
 from cytodisk.errors import SignalError
+from cytodisk.windows.sample import check_channel_names
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +86,7 @@ def parse_signals(signals: Any, n_frames: int, image_shape: tuple[int, int]) -> 
     Raises
     ------
     SignalError
-        They do not fit, or are not numbers.
+        They do not fit, are not numbers, or two channels have one name.
     """
     names: list[str] | None = None
     if isinstance(signals, xr.DataArray):
@@ -121,6 +122,7 @@ def parse_signals(signals: Any, n_frames: int, image_shape: tuple[int, int]) -> 
     count = first.shape[0] if first.ndim == 3 else 1
     if names is None or len(names) != count:
         names = [str(number) for number in range(count)]
+    check_channel_names("signals", names)
     return MovieSignals(signals, names, tuple(first.shape))
 
 

@@ -35,6 +35,7 @@ def batch_command(
     from cytodisk.runs.batch.batch_file import read_batch
 
     console = console_for(quiet)
+    options = given.options(BatchOptions)
     batch = read_batch(study)
     console.print(f"inputs: {len(batch.inputs)} ({_kinds(batch)})")
     if dry_run:
@@ -48,7 +49,7 @@ def batch_command(
             out,
             progress=progress,
             tell=console.print,
-            **dict(given.options(BatchOptions)),
+            **dict(options),
         )
     _finish(console, summary)
 

@@ -39,6 +39,7 @@ def map_command(
     from cytodisk.runs.map.map_study import map_study
 
     console = console_for(quiet)
+    options = given.options(MapOptions)
     inputs = open_inputs(masks, signal, given.of(MapParameters))
     say_inputs(console, inputs)
     with progress_bar(quiet, "cells") as progress:
@@ -48,7 +49,7 @@ def map_command(
             draw=write_cell_figures if figures else None,  # workers that draw nothing stay small
             draw_at_most=None if figures < 0 else figures,
             progress=progress,
-            **dict(given.options(MapOptions)),
+            **dict(options),
         )
     finish_map(console, study, figures, inputs.is_folder)
 

@@ -37,10 +37,11 @@ def movie_command(
     from cytodisk.runs.movie.movie_study import movie_study
 
     console = console_for(quiet)
+    options = given.options(RunOptions)
     inputs = open_movie(masks, signal, given.of(MovieParameters))
     say_movie(console, inputs)
     with progress_bar(quiet, "frames") as progress:
-        study = movie_study(inputs, out, progress=progress, **dict(given.options(RunOptions)))
+        study = movie_study(inputs, out, progress=progress, **dict(options))
     draw_movie(quiet, study, inputs, figures)
     finish_movie(console, study)
 

@@ -36,7 +36,7 @@ def shapes_command(
 ) -> None:
     from cytodisk.runs.shapes.shape_study import open_shape_inputs, shape_study
 
-    settings = given.of(ShapeParameters)
+    settings, options = given.of(ShapeParameters), given.options(RunOptions)
     console = console_for(quiet)
     inputs = open_shape_inputs(masks, settings)
     console.print(f"masks: {inputs.understood['masks']}")
@@ -44,7 +44,7 @@ def shapes_command(
     for remark in inputs.remarks:
         console.print(f"note: {remark}")
     with progress_bar(quiet, "cells") as progress:
-        table = shape_study(inputs, out, settings, progress=progress, **dict(given.options(RunOptions)))
+        table = shape_study(inputs, out, settings, progress=progress, **dict(options))
     _draw(inputs, table, out)
     _say(console, table, out)
 

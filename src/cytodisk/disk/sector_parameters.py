@@ -6,6 +6,7 @@ from cytodisk.errors import CytodiskError, WindowError
 from cytodisk.parameters import Parameters, parameter
 
 SECTORS = 60
+MOST = 100_000  # layers or sectors: beyond any image, and still within memory
 
 
 class SectorParameters(Parameters):
@@ -13,4 +14,4 @@ class SectorParameters(Parameters):
 
     fault: ClassVar[type[CytodiskError]] = WindowError
 
-    sectors: int = parameter(SECTORS, "Number of sectors around the cell.", least=1)
+    sectors: int = parameter(SECTORS, "Number of sectors around the cell.", least=1, most=MOST)

@@ -13,6 +13,7 @@ import imageio.v3 as imageio
 import numpy as np
 import xarray as xr
 
+from cytodisk.checks import is_path, one_of
 from cytodisk.errors import ReadError
 from cytodisk.images.metadata import channel_names, imagej_scale, named_axes, ome_metadata
 from cytodisk.images.npy import read_npy
@@ -120,7 +121,11 @@ def open_frames(path: str | os.PathLike[str], *, unnamed: str = "T") -> FrameFil
     ------
     ReadError
         The file is missing, is not an image, is damaged, or has axes that cannot be used (a z-stack).
+    ParameterError
+        `path` is no path, or `unnamed` is unknown.
     """
+    is_path("path", path)
+    one_of("unnamed", unnamed, ("T", "C"))
     file = Path(path)
     try:
         file.stat()
@@ -162,6 +167,8 @@ def read_image(path: str | os.PathLike[str], *, unnamed: str = "C") -> xr.DataAr
     ------
     ReadError
         The file is missing, is not an image, is damaged, or has axes that cannot be used.
+    ParameterError
+        `path` is no path, or `unnamed` is unknown.
 
     See Also
     --------

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cytodisk.checks import one_of
+from cytodisk.checks import instance_of, one_of
 from cytodisk.disk.sector_parameters import SECTORS, SectorParameters
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.edge import FRAMES, EdgeMotion, Frame, edge_motion, mean_by_sector, normal_displacement
@@ -39,9 +39,9 @@ def edge_velocity(movie: DiskMovie, sectors: int = SECTORS, *, frame: Frame = "l
     Raises
     ------
     WindowError
-        `sectors` is not a positive whole number.
+        `sectors` is not a whole number from 1 to 100 000.
     ParameterError
-        An unknown frame.
+        `movie` is no DiskMovie, or an unknown frame.
 
     See Also
     --------
@@ -63,6 +63,7 @@ def edge_velocity(movie: DiskMovie, sectors: int = SECTORS, *, frame: Frame = "l
     >>> 0.5 < velocity.mean().item() < 0.7
     True
     """
+    _check_movie(movie)
     sectors, frame = SectorParameters(sectors=sectors).sectors, one_of("frame", frame, FRAMES)
     values = np.full((len(movie), sectors), np.nan)
     for number, (here, there) in _pairs(movie):
@@ -88,7 +89,7 @@ def boundary_velocity(movie: DiskMovie, *, frame: Frame = "lab") -> xr.DataArray
     Raises
     ------
     ParameterError
-        An unknown frame.
+        `movie` is no DiskMovie, or an unknown frame.
 
     See Also
     --------
@@ -102,6 +103,7 @@ def boundary_velocity(movie: DiskMovie, *, frame: Frame = "lab") -> xr.DataArray
     >>> velocity.dims, 0.5 < velocity.mean().item() < 0.7
     (('time', 'point'), True)
     """
+    _check_movie(movie)
     frame = one_of("frame", frame, FRAMES)
     values = np.full((len(movie), movie.n_points), np.nan)
     for number, (here, there) in _pairs(movie):
@@ -156,6 +158,7 @@ def edge_changes(
     """
     sectors, frame = SectorParameters(sectors=sectors).sectors, one_of("frame", frame, FRAMES)
     jitter = JitterParameters.of(**settings)
+    _check_movie(movie)
     rows: dict[int, EdgeMotion] = {}
     for number, (here, there) in _pairs(movie):
         rows[number] = edge_motion(
@@ -182,6 +185,10 @@ def edge_changes(
             values[number] = convert(getattr(row, source))
         columns[name] = _labelled(movie, values, "sector", frame).assign_attrs(units=units)
     return xr.Dataset(columns, attrs={"frame": frame} | scale.attrs)
+
+
+def _check_movie(movie: Any) -> None:
+    instance_of("movie", movie, DiskMovie, "a DiskMovie, as map_movie returns it")
 
 
 def _pairs(movie: DiskMovie) -> Any:

@@ -1,10 +1,9 @@
 """Options of a run that do not change its results, beside what decides them."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, Self, TypeAlias
+from typing import Any, ClassVar, Self, TypeAlias
 
-from pydantic import model_validator
-
+from cytodisk.parameter_words import unknown_words
 from cytodisk.parameters import Parameters, parameter
 
 Progress: TypeAlias = Callable[[int, int], None]
@@ -18,15 +17,11 @@ def silent(done: int, total: int) -> None:
 class RunOptions(Parameters):
     """How a run is done."""
 
+    exclusive: ClassVar[tuple[tuple[str, str], ...]] = (("resume", "overwrite"),)
+
     workers: int = parameter(1, "Number of processes. The results do not depend on it.", least=1)
     resume: bool = parameter(False, "Go on with the same run in this folder.")
     overwrite: bool = parameter(False, "Replace the results in this folder.")
-
-    @model_validator(mode="after")
-    def _one_of_both(self) -> Self:
-        if self.resume and self.overwrite:
-            raise ValueError("resume and overwrite exclude each other: pass one of them")
-        return self
 
     @property
     def again(self) -> dict[str, bool]:
@@ -34,8 +29,17 @@ class RunOptions(Parameters):
         return {"resume": self.resume, "overwrite": self.overwrite}
 
     @classmethod
-    def split(cls, settings: Mapping[str, Any]) -> tuple[Self, dict[str, Any]]:
-        """These options out of some settings, and the settings that are left."""
+    def split(cls, settings: Mapping[str, Any], model: type[Parameters]) -> tuple[Self, dict[str, Any]]:
+        """These options out of some settings, and the settings that are left for a model.
+
+        Raises
+        ------
+        ParameterError
+            A name is neither an option nor one of the model's, or an option is out of its range.
+        """
+        known = [*model.model_fields, *cls.model_fields]
+        if unknown := [unknown_words(name, known) for name in settings if name not in known]:
+            raise cls.fault("; ".join(unknown))
         own = {name: value for name, value in settings.items() if name in cls.model_fields}
         return cls(**own), {name: value for name, value in settings.items() if name not in own}
 

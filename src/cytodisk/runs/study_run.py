@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, TypeVar
 
+from cytodisk.checks import is_path
 from cytodisk.parameters import Parameters
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.run_options import RunOptions
@@ -68,6 +69,7 @@ class StudyRun:
         StudyError
             The folder cannot be used, or results cannot be written.
         """
+        is_path("out", out)
         options, place = self.options, Path(out)
         with alone_in(out):
             if not (options.resume and StudyFolder.is_complete(out, self.provenance)):

@@ -8,6 +8,8 @@ from pydantic import Field, model_validator
 from cytodisk.parameters import Parameters, parameter
 from cytodisk.simulate.movie_kinds import HABITS, Habits, MovieKind
 
+_MOST_PX = 100.0  # speed, protrusions, jitter: beyond any cell, and the images stay within memory
+
 
 class HabitParameters(Parameters):
     """What a cell does, where it is not what all cells of its kind do."""
@@ -16,6 +18,7 @@ class HabitParameters(Parameters):
         None,
         'Speed of the whole cell, for "growing" of its edge; without it that of the kind.',
         least=0,
+        most=_MOST_PX,
         unit="px/frame",
     )
     turn_deg: float | None = parameter(
@@ -29,6 +32,7 @@ class HabitParameters(Parameters):
         'Height of the largest protrusion, for kinds that have protrusions; for "fluctuating" three standard '
         "deviations of the edge about its mean place. Without it that of the kind.",
         least=0,
+        most=_MOST_PX,
         unit="px",
     )
     jitter_px: float | None = parameter(
@@ -36,6 +40,7 @@ class HabitParameters(Parameters):
         "Standard deviation of the drawn outline about the true one, smooth along the edge and independent "
         "between frames; without it that of the kind.",
         least=0,
+        most=_MOST_PX,
         unit="px",
     )
     dropped: Annotated[float | None, Field(lt=1)] = parameter(

@@ -4,7 +4,7 @@ from typing import Literal, Self, TypeAlias
 
 from pydantic import model_validator
 
-from cytodisk.disk.sector_parameters import SectorParameters
+from cytodisk.disk.sector_parameters import MOST, SectorParameters
 from cytodisk.parameters import Parameters, parameter
 
 Spacing: TypeAlias = Literal["area", "radius"]
@@ -16,7 +16,7 @@ _MOST_WINDOWS = 10_000_000  # beyond any image, and still within memory
 class LayerParameters(Parameters):
     """How many layers there are."""
 
-    layers: int = parameter(10, "Number of layers; layer 0 is at the edge of the cell.", least=1)
+    layers: int = parameter(10, "Number of layers; layer 0 is at the edge of the cell.", least=1, most=MOST)
 
 
 class CountParameters(SectorParameters, LayerParameters):
@@ -55,7 +55,7 @@ class EdgeGridParameters(CountParameters):
 class RingGridParameters(CountParameters):
     """How a cell is divided into rings and wedges around its deepest point."""
 
-    sectors: int = parameter(8, "Number of wedges around the deepest point.", least=1)
+    sectors: int = parameter(8, "Number of wedges around the deepest point.", least=1, most=MOST)
 
 
 class SampleParameters(Parameters):

@@ -8,6 +8,7 @@ import xarray as xr
 from scipy import sparse
 
 from cytodisk.arrays import FloatArray
+from cytodisk.checks import instance_of
 from cytodisk.errors import ParameterError, SignalError
 from cytodisk.taking import takes
 from cytodisk.windows.grid_parameters import SampleParameters
@@ -46,9 +47,9 @@ def sample(
     Raises
     ------
     SignalError
-        The signal does not fit the mask or is not numeric.
+        The signal does not fit the mask or is not numeric, or two of its channels have one name.
     ParameterError
-        A quantile is outside 0 to 1, or `nan` is unknown.
+        `windows` are no windows on a cell, a quantile is outside 0 to 1, or `nan` is unknown.
 
     See Also
     --------
@@ -65,6 +66,8 @@ def sample(
     array([76.5, 39.8, 14.9])
     """
     nan = SampleParameters.of(**settings).nan
+    order = "the order is sample(windows, signal)"
+    instance_of("windows", windows, WindowsOnCell, "windows on a cell, as grid.on(disk) returns them", order)
     _check_quantiles(quantiles)
     values, channels = _parse_signal(signal, windows.mask.shape)
     weights = windows.weights
@@ -101,6 +104,18 @@ def _check_quantiles(quantiles: Sequence[float]) -> None:
         raise ParameterError(f"quantiles must be a sequence of numbers 0 to 1, got {quantiles!r}")
 
 
+def check_channel_names(signal: str, names: Sequence[str]) -> None:
+    """Check that the names of channels tell these apart.
+
+    Raises
+    ------
+    SignalError
+        Two have one name.
+    """
+    if len(set(names)) < len(names):
+        raise SignalError(f"{signal}: two channels have one name, got {tuple(names)}: rename one of them")
+
+
 def _parse_signal(signal: Any, shape: tuple[int, ...]) -> tuple[FloatArray, list[str] | None]:
     """Values of shape (C, H, W), and the channels' names if the signal has such a dim."""
     names: list[str] | None = None
@@ -113,6 +128,7 @@ def _parse_signal(signal: Any, shape: tuple[int, ...]) -> tuple[FloatArray, list
         signal = signal.transpose("channel", "y", "x", missing_dims="ignore")
         if "channel" in signal.dims:
             names = [str(name) for name in signal["channel"].to_numpy()]
+            check_channel_names("signal", names)
     array = np.asarray(signal)
     if np.ma.isMaskedArray(signal):
         array = np.ma.filled(signal.astype(np.float64), np.nan)

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from cytodisk.checks import is_path
 from cytodisk.errors import ReadError, SignalError, as_data
 from cytodisk.images.frames import FrameFile, open_frames
 from cytodisk.images.mask_files import MaskSource, open_mask_files
@@ -129,6 +130,7 @@ def open_inputs(
     ReadError, MaskError, SignalError, ParameterError
         A file is missing, damaged, or does not fit.
     """
+    is_path("masks", masks)
     if Path(masks).is_dir():
         return _open_folder(Path(masks), signal, parameters)
     sources = open_mask_files(masks, parameters.kind)

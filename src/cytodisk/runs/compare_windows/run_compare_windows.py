@@ -77,16 +77,17 @@ def run_compare_windows(
     >>> found.by_method["method"].tolist()
     ['newton', 'edge']
     """
-    options, values = RunOptions.split(settings)
     if movie or isinstance(parameters, CompareMovieParameters):
+        options, values = RunOptions.split(settings, CompareMovieParameters)
         of_movie = CompareMovieParameters.chosen(parameters, values)
         frames = open_movie(masks, signal, of_movie)
         return compare_opened_movie(frames, out, of_movie, progress=progress, **dict(options))
     if signal is not None:
         raise ParameterError("signal is sampled in movies only: pass movie=True too, or leave signal out")
     of_movies = CompareMovieParameters.model_fields.keys() - CompareWindowsParameters.model_fields.keys()
-    if beyond := [name for name in values if name in of_movies]:
+    if beyond := [name for name in settings if name in of_movies]:
         raise ParameterError(f"{', '.join(beyond)}: only with movie=True; pass that too, or leave it out")
+    options, values = RunOptions.split(settings, CompareWindowsParameters)
     of_cells = CompareWindowsParameters.chosen(parameters, values)
     cells = open_inputs(masks, None, of_cells.part(FileParameters))
     return compare_opened_cells(cells, out, of_cells, progress=progress, **dict(options))

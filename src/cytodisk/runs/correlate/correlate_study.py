@@ -63,6 +63,7 @@ def correlate_study(
     options = CorrelateParameters.chosen(parameters, settings)
     names = channels_of(study)
     _check_names(names, signal, with_, options)
+    _check_frames(study, options)
     max_lag = options.max_lag if options.max_lag is not None else _usual_lag(study, chosen, options.min_pairs)
     correlating = CellCorrelation(study, signal, with_, max_lag, options)
     found: dict[str, list[pd.DataFrame]] = {}
@@ -136,6 +137,16 @@ def _check_names(names: list[str], signal: str, with_: str, options: CorrelatePa
     if options.pairs and with_ in VELOCITIES:
         raise ParameterError(
             "pairs need two signals: velocity has no windows inside; pass with another signal"
+        )
+
+
+def _check_frames(study: Study, options: CorrelateParameters) -> None:
+    """Refuse frames beyond those of all cells; a cell that ends sooner is used as far as it goes."""
+    there = study.cells["frame"]
+    if options.frames is not None and options.frames[1] > there.max():
+        first, last = options.frames
+        raise ParameterError(
+            f"frames {first}:{last} are not in the movie: it has {there.min()}:{there.max()}"
         )
 
 

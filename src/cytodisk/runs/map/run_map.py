@@ -65,6 +65,6 @@ def run_map(
     >>> study.cells["status"].tolist(), len(study.windows)
     (['ok'], 8)
     """
-    options, values = MapOptions.split(settings)
+    options, values = MapOptions.split(settings, MapParameters)
     inputs = open_inputs(masks, signal, MapParameters.chosen(parameters, values))
     return map_study(inputs, out, progress=progress, **dict(options))

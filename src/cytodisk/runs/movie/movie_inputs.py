@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from cytodisk.checks import is_path
 from cytodisk.errors import CytodiskError, MaskError, ParameterError, SignalError
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.outline import trace_outline
@@ -166,6 +167,7 @@ def open_movie_files(
     ReadError, MaskError, SignalError, ParameterError
         A file is missing, damaged, or does not fit.
     """
+    is_path("masks", masks)
     mask_file = open_frames(masks, unnamed="T")
     _check_masks(mask_file)
     signal_file = None

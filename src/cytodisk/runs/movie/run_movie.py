@@ -66,6 +66,6 @@ def run_movie(
     >>> study.cells["status"].tolist(), len(study.edge)
     (['ok', 'ok', 'ok'], 12)
     """
-    options, values = RunOptions.split(settings)
+    options, values = RunOptions.split(settings, MovieParameters)
     inputs = open_movie(masks, signal, MovieParameters.chosen(parameters, values))
     return movie_study(inputs, out, progress=progress, **dict(options))

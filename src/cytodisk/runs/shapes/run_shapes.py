@@ -62,6 +62,6 @@ def run_shapes(
     >>> round(float(shapes["circularity"].iloc[0]), 1)
     1.0
     """
-    options, values = RunOptions.split(settings)
+    options, values = RunOptions.split(settings, ShapeParameters)
     chosen = ShapeParameters.chosen(parameters, values)
     return shape_study(open_shape_inputs(masks, chosen), out, chosen, progress=progress, **dict(options))
