@@ -1,10 +1,11 @@
 """Sphinx extension: write `reference/parameters.rst`, the parameters of each command, from their models."""
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from public_names import heading, write
-from sphinx.application import Sphinx
 
 from cytodisk.parameter_words import flag_of, range_words, unit_of, value_words
 from cytodisk.parameters import Parameters
@@ -14,6 +15,9 @@ from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.run_options import BatchOptions, MapOptions, RunOptions
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
 
 MODELS: dict[str, type[Parameters]] = {
     "cytodisk map": MapParameters,

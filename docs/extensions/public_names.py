@@ -4,15 +4,17 @@ A stub lists the public names in groups, each under a comment. The comment becom
 the reference shows every name, in the order of the stub.
 """
 
+from __future__ import annotations
+
 import re
 from pathlib import Path
-from typing import Any
-
-from sphinx.application import Sphinx
-from sphinx.errors import ExtensionError
+from typing import TYPE_CHECKING, Any
 
 import cytodisk
 from cytodisk import simulate
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
 
 PACKAGE = Path(cytodisk.__file__).parent
 NAMES_WORDS = "``import cytodisk as cd`` gives you all of these names, such as ``cd.map_to_disk``."
@@ -58,7 +60,7 @@ def groups(stub: Path) -> dict[str, list[str]]:
             title = line.removeprefix("# ")
         elif name := re.fullmatch(r"from \.\S+ import \w+ as (\w+)", line):
             if not title:
-                raise ExtensionError(f"{stub}: {name[1]} stands under no comment that names its group")
+                raise ValueError(f"{stub}: {name[1]} stands under no comment that names its group")
             found.setdefault(title, []).append(name[1])
     return found
 

@@ -3,7 +3,7 @@
 import pytest
 
 from cytodisk.errors import CytodiskError, EmptyMaskError, MapError, MaskError, ReadError, SignalError
-from cytodisk.motion.map_movie import frame_status
+from cytodisk.motion.following import frame_status
 from cytodisk.runs.compare_windows.compare_tables import method_status
 from cytodisk.runs.frame_rows import cell_status
 
