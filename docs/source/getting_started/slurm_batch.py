@@ -4,8 +4,7 @@ from pathlib import Path
 
 from dask_jobqueue import SLURMCluster
 
-from cytodisk.runs.batch.batch_file import read_batch
-from cytodisk.runs.batch.batch_study import batch_study
+import cytodisk as cd
 
 cluster = SLURMCluster(
     queue="standard",
@@ -19,8 +18,8 @@ cluster = SLURMCluster(
     scheduler_options={"dashboard_address": ":0"},
 )
 cluster.adapt(minimum_jobs=0, maximum_jobs=50)
-summary = batch_study(
-    read_batch(Path("study.toml")),
+summary = cd.run_batch(
+    "study.toml",
     "/shared/out",
     scheduler=cluster.scheduler_address,
     time_limit=3600,
