@@ -186,7 +186,7 @@ def test_an_input_that_hangs_or_crashes_has_a_row(tmp_path: Path, monkeypatch: p
     assert hung.reason == "took longer than the time limit of 4 s"
     assert not children()
     assert pd.read_parquet(out / "cells.parquet").empty
-    with pytest.raises(ReadError, match="holds a batch"):
+    with pytest.raises(ReadError, match="holds a run of cytodisk batch"):
         cd.open_study(out)
 
 

@@ -63,7 +63,7 @@ def test_slider_and_play(page: Page, browser: webdriver.Chrome) -> None:
     assert page.text("now") == "frame 3 · 15.0 s"
     assert page.js("cytodisk.figures.area.select('now')[0].location") == pytest.approx(15.0)
     page.control("play").click()
-    assert page.control("play").get_attribute("aria-pressed") == "true"
+    page.wait("document.getElementById('play').getAttribute('aria-pressed') === 'true'")
     page.wait("cytodisk.shown.index > 4 || cytodisk.shown.index < 3")
     page.control("play").click()
     stopped = page.js("cytodisk.state.index")
