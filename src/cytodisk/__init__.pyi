@@ -59,6 +59,8 @@ from .analysis.pairs.pair_correlation import correlate_pairs as correlate_pairs
 from .analysis.pairs.window_distances import window_distances as window_distances
 from .analysis.correlation.prepared_series import prepare_series as prepare_series
 from .analysis.correlation.jitter_mark import jitter_step as jitter_step
+from .analysis.controls.geometry_controls import geometry_controls as geometry_controls
+from .analysis.controls.without_controls import without_controls as without_controls
 from .analysis.events import edge_events as edge_events
 from .analysis.event_average import average_around as average_around
 

@@ -1,0 +1,175 @@
+"""`geometry_controls`: what each window would hold if the cell only moved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy import sparse
+
+from cytodisk.analysis.activity import Grid
+from cytodisk.analysis.controls.depth_profile import DepthProfile
+from cytodisk.analysis.controls.held_places import HeldPlaces
+from cytodisk.analysis.controls.lab_mean import LabMean
+from cytodisk.analysis.signal_frames import parse_signals
+from cytodisk.arrays import FloatArray
+from cytodisk.checks import instance_of, whole_number
+from cytodisk.errors import ParameterError
+from cytodisk.motion.disk_movie import DiskMovie
+
+LAB, DEPTH_PROFILE = "lab", "depth_profile"
+
+_LEAST_SHARE = 0.8  # of a window that must have a value in the lab
+
+
+def geometry_controls(
+    movie: DiskMovie,
+    grid: Grid,
+    signal: Any,
+    max_lag: int,
+    *,
+    frames: Sequence[int] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> xr.Dataset:
+    """Sample two images made from the movie itself: its mean in the lab, and its mean by depth.
+
+    A cell that moves over a still pattern, or a cortex that moves with the edge, makes signal and edge
+    velocity correlate without any signalling. These two controls change with the motion alone.
+
+    Parameters
+    ----------
+    movie : DiskMovie
+    grid : PolarGrid, EdgeGrid or RingGrid
+        The windows of the signal.
+    signal : array_like of shape (T, H, W) or (T, C, H, W), DataArray or sequence
+        As for `sample_movie`.
+    max_lag : int
+        Largest lag that will be looked at, in frames: so many before and after a frame are left out of its
+        mean in the lab.
+    frames : sequence of int, optional
+        Frames that are used, by their place in the movie; by default all that have a map.
+    progress : callable, optional
+        Called with (steps done, in all); a frame has three steps.
+
+    Returns
+    -------
+    Dataset with dims (time, channel, layer, sector), without channel if the signal has none
+        lab, the mean over time at each place of the image, over the frames in which the cell holds it;
+        depth_profile, the mean over the whole movie at each depth below the edge. Both are sampled as a
+        signal is, by the same windows and weights. lab is NaN where frames further away than `max_lag` hold
+        less than 80 % of the window, each place three times at least.
+
+    Raises
+    ------
+    SignalError
+        The signal does not fit the movie.
+    ParameterError
+        `movie` is no DiskMovie, `grid` no grid, `max_lag` no whole number, or none of `frames` has a map.
+
+    See Also
+    --------
+    without_controls : Takes them out of a signal.
+    cross_correlate : Correlates what is left with the motion of the edge.
+
+    Notes
+    -----
+    Images are read one at a time, each three times; what stays in memory is a sum over time of the part of
+    the image that the cell holds. The cell's own signal of neighbouring frames is left out of the lab mean,
+    because with it the control would follow the signal.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.movie("fluctuating", frames=40, radius_px=14)
+    >>> movie, grid = cd.map_movie(truth.masks), cd.polar_windows(layers=2, sectors=6)
+    >>> signal = truth.signal.sel(channel="edge")
+    >>> controls = cd.geometry_controls(movie, grid, signal, max_lag=5)
+    >>> left = cd.without_controls(cd.sample_movie(movie, grid, signal)["mean"].isel(channel=0), controls)
+    >>> dict(left.sizes)
+    {'time': 40, 'layer': 2, 'sector': 6}
+    """
+    instance_of("movie", movie, DiskMovie, "a DiskMovie, as map_movie returns it")
+    instance_of("grid", grid, Grid, "a PolarGrid, EdgeGrid or RingGrid")
+    lag = whole_number("max_lag", max_lag, 0)
+    known = parse_signals(signal, len(movie), movie.image_shape)
+    wanted = range(len(movie)) if frames is None else sorted(set(frames))
+    used = [int(frame) for frame in wanted if 0 <= frame < len(movie) and movie.mapped[frame]]
+    if not used:
+        raise ParameterError(f"frames: none of {len(wanted)} has a map")
+    steps = _Steps(progress, 3 * len(used))
+    places = HeldPlaces.of(steps.over((frame, movie[frame].mask) for frame in used))
+    run = _Sampling(movie, grid, places, lambda frame: places.cut(known.image(frame)), len(known.channels))
+    tables = run.tables(used, lag, steps)
+    dims = ("time", "channel", "layer", "sector")
+    coords: dict[str, Any] = {"channel": known.channels}
+    coords |= {"layer": np.arange(grid.layers), "sector": np.arange(grid.sectors)}
+    coords |= movie.scale.time_coords(np.arange(len(movie)))
+    data = {name: (dims, table, {"units": "a.u."}) for name, table in tables.items()}
+    attrs = movie.scale.attrs | {"max_lag": lag}
+    found = xr.Dataset(data, coords, attrs).set_xindex("frame")
+    return found if known.channel_names is not None else found.isel(channel=0, drop=True)
+
+
+class _Steps:
+    """Counts what is done."""
+
+    def __init__(self, progress: Callable[[int, int], None] | None, total: int):
+        self._progress, self._total, self._done = progress, total, 0
+
+    def over(self, items: Any) -> Any:
+        """The items, counted one by one."""
+        for item in items:
+            yield item
+            self._done += 1
+            if self._progress is not None:
+                self._progress(self._done, self._total)
+
+
+@dataclass(frozen=True, eq=False)
+class _Sampling:
+    """Windows laid on the controls of a movie, frame by frame."""
+
+    movie: DiskMovie
+    grid: Grid
+    places: HeldPlaces
+    image: Callable[[int], FloatArray]
+    channels: int
+
+    def tables(self, used: list[int], lag: int, steps: _Steps) -> dict[str, FloatArray]:
+        """Both controls, shape (T, C, L, S) each."""
+        places, image = self.places, self.image
+        shape = len(self.movie), self.channels, self.grid.layers, self.grid.sectors
+        lab, depth = np.full((2, *shape), np.nan)
+        mean = LabMean(self.channels, places.shape)
+        profile = DepthProfile(self.channels, max(places.shape))
+        for frame in steps.over(used):
+            pixels, mask = image(frame), places.mask(frame)
+            mean.add(pixels, mask)
+            profile.add(pixels, mask)
+        there = set(used)
+        for frame in [number for number in used if number < used[0] + lag]:
+            mean.remove(image(frame), places.mask(frame))
+        last = used[0] - 1
+        for frame in steps.over(used):
+            for step in range(last + 1, frame + 1):
+                for moved, change in ((step + lag, mean.remove), (step - lag - 1, mean.add)):
+                    if moved in there:
+                        change(image(moved), places.mask(moved))
+            last = frame
+            mask, weights = places.mask(frame), self.grid.on(self.movie[frame]).weights
+            lab[frame] = _in_windows(weights, mean.at(mask), _LEAST_SHARE).reshape(shape[1:])
+            depth[frame] = _in_windows(weights, profile.at(mask), 0.0).reshape(shape[1:])
+        return {LAB: lab, DEPTH_PROFILE: depth}
+
+
+def _in_windows(weights: sparse.csr_array, pixels: FloatArray, least_share: float) -> FloatArray:
+    """Mean of the known pixels (C, P) in each window, shape (C, windows); NaN where too few are known."""
+    known = np.isfinite(pixels)
+    area = np.asarray(weights.sum(axis=1)).ravel()
+    held = np.asarray(weights @ known.T.astype(np.float64)).T
+    total = np.asarray(weights @ np.where(known, pixels, 0.0).T).T
+    enough = (held > 0) & (held >= least_share * area)
+    return np.where(enough, total / np.where(held > 0, held, 1.0), np.nan)
