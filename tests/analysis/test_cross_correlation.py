@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 import xarray as xr
 from scipy.signal import lfilter
-from scipy.stats import binom, pearsonr
+from scipy.stats import binom, pearsonr, spearmanr
 
 import cytodisk as cd
 from cytodisk.analysis.correlation.confidence import effective_share, fisher_interval
 from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer, cross_correlate
 from cytodisk.analysis.correlation.peaks import peak_correlation
 from cytodisk.analysis.correlation.prepared_series import prepare_series
+from cytodisk.analysis.correlation.ranks import scored
 from cytodisk.analysis.correlation.surrogates import surrogates
 from cytodisk.errors import ParameterError, StationarityWarning
 from cytodisk.simulate import coupled_series, independent_series
@@ -75,6 +76,44 @@ def test_every_lag_of_every_window(in_a: float, in_b: float, offset: float) -> N
     low, high = fisher_interval(found["correlation"].to_numpy(), found["n_effective"].to_numpy(), 0.95)
     np.testing.assert_allclose(found["low"], low)
     np.testing.assert_allclose(found["high"], high)
+
+
+@pytest.mark.parametrize("missing", [0.0, 0.2])
+def test_ranks_in_place_of_values(missing: float) -> None:
+    a = noise(2, FRAMES, LAYERS, SECTORS, missing=missing)
+    b = noise(3, FRAMES, SECTORS)
+    found = cross_correlate(a, b, 4, statistic="spearman")
+    assert found.attrs["statistic"] == "spearman"
+    both = np.isfinite(a[:, 1, 2])
+    at = found["correlation"].isel(layer=1, sector=2)
+    expected = spearmanr(a[both, 1, 2], b[both, 2]).statistic
+    assert float(at.sel(lag=0)) == pytest.approx(expected, abs=1e-12 if not missing else 0.02)
+    again = spearmanr(a[:-4, 1, 2], b[4:, 2], nan_policy="omit").statistic
+    assert float(at.sel(lag=4)) == pytest.approx(again, abs=0.08)  # ranked once, not over these pairs
+    bent = cross_correlate(np.exp(3.0 * a), b**3, 4, statistic="spearman")
+    np.testing.assert_allclose(found["correlation"], bent["correlation"])
+
+
+def test_equal_values_share_a_rank_and_constants_have_no_correlation() -> None:
+    a = np.array([3.0, 1.0, 1.0, NAN, 7.0] * 6)
+    ranks = scored(a[:5], "spearman")
+    np.testing.assert_array_equal(ranks, [3.0, 1.5, 1.5, NAN, 4.0])
+    rounding = np.full(30, 0.1) + 1e-17 * np.arange(30)
+    found = cross_correlate(np.stack([a, rounding], axis=1), noise(0, 30, 2), 2, statistic="spearman")
+    assert np.isfinite(found["correlation"].isel(sector=0)).all()
+    assert np.isnan(found["correlation"].isel(sector=1)).all()
+
+
+def test_a_common_pulse_outweighs_values_and_not_ranks() -> None:
+    shares = {"pearson": 0.0, "spearman": 0.0}
+    for seed in range(1000, 1006):
+        a, b = independent_series("white", seed, 80, 2, 12)
+        pulse = 8.0 * (np.abs(a["frame"] - 40) < 2)
+        for statistic in ("pearson", "spearman"):
+            found = cross_correlate(a + pulse, b + pulse, 8, statistic=statistic, surrogates=99)
+            shares[statistic] += float((peak_correlation(found)["p"] <= 0.05).mean()) / 6
+    assert shares["pearson"] > 0.9
+    assert shares["spearman"] < 0.2
 
 
 @pytest.mark.parametrize("lag", [-3, 0, 4])

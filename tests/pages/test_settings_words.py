@@ -16,6 +16,7 @@ def test_what_differs_is_said() -> None:
         "“late”",
         "median detrending (41 frames)",
     ]
+    assert settings_words({"statistic": "spearman"}) == ["Spearman (ranks)"]
     words = settings_words({"skip_lags": [0], "difference": True, "rule": "largest", "null": "shift"})
     assert words == [
         "differences between frames",

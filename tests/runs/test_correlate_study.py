@@ -52,6 +52,18 @@ def test_tables_are_those_of_the_functions(study: cd.Study) -> None:
     np.testing.assert_allclose(found.windows["lag_s"], 5.0 * found.windows["lag"])
 
 
+def test_ranks_are_labelled(study: cd.Study) -> None:
+    found = correlate_study(study, "edge", max_lag=6, statistic="spearman", name="ranks", surrogates=19)
+    activity = study.activity(0)
+    expected = cd.cross_correlate(
+        activity["mean"].sel(channel="edge"), activity["velocity"], 6, statistic="spearman"
+    )
+    curves = found.curves.set_index(["layer", "sector", "lag"])["correlation"].to_xarray()
+    np.testing.assert_array_equal(curves, expected["correlation"].transpose(*curves.dims))
+    assert found.settings["statistic"] == "spearman"
+    assert found.cells["statistic"].tolist() == ["spearman"]
+
+
 def test_every_column_is_explained(study: cd.Study) -> None:
     found = correlate_study(study, "edge", max_lag=6, **FEW)
     signals = correlate_study(study, "edge", "material", max_lag=6, pairs=True, **FEW)

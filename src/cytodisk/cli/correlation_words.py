@@ -16,7 +16,8 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
     """Peaks by layer, and how many windows are significant."""
     settings = found.settings
     console.print(
-        f"signal {found.signal!r} with {found.with_}, lags to {settings['max_lag']} frames. "
+        f"signal {found.signal!r} with {found.with_}, {_of_what(settings)}lags to {settings['max_lag']} "
+        "frames. "
         f"Positive lag: {_what_comes(found.with_)} after the signal; negative lag: before it"
     )
     layers, windows = found.layers, found.windows
@@ -36,6 +37,10 @@ def _what_comes(with_: str) -> str:
     from cytodisk.runs.channel_names import VELOCITIES
 
     return "the edge moves" if with_ in VELOCITIES else f"{with_} comes"
+
+
+def _of_what(settings: dict[str, Any]) -> str:
+    return "" if settings.get("statistic", "pearson") == "pearson" else "Spearman correlation of ranks, "
 
 
 def say_replaced(console: "Console", before: dict[str, Any] | None, now: dict[str, Any]) -> None:

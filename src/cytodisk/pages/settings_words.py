@@ -27,6 +27,8 @@ def settings_words(settings: Mapping[str, Any]) -> list[str]:
         Such as "linear detrending" and "without lags −1, 0"; empty for the defaults.
     """
     facts = [f"“{settings['name']}”"] if settings.get("name") else []
+    if settings.get("statistic", "pearson") != "pearson":
+        facts.append("Spearman (ranks)")
     facts += detrending(settings)
     if settings.get("difference"):
         facts.append("differences between frames")

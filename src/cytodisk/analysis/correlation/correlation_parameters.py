@@ -5,6 +5,7 @@ from typing import Literal, TypeAlias
 from cytodisk.parameters import Parameters, parameter
 
 Detrend: TypeAlias = Literal["none", "linear", "median"]
+Statistic: TypeAlias = Literal["pearson", "spearman"]
 Null: TypeAlias = Literal["phase", "shift"]
 Rule: TypeAlias = Literal["nearest", "largest"]
 
@@ -29,8 +30,17 @@ class PrepareParameters(DetrendParameters):
 
     zscore: bool = parameter(
         False,
-        "Subtract the mean of each series and divide by its standard deviation. It changes no Pearson "
-        "correlation.",
+        "Subtract the mean of each series and divide by its standard deviation. It changes no correlation.",
+    )
+
+
+class StatisticParameters(Parameters):
+    """Which correlation is computed."""
+
+    statistic: Statistic = parameter(
+        "pearson",
+        '"pearson" correlates values, "spearman" their ranks: a pulse, or an episode in which both vary '
+        "more, then counts for little more than other frames.",
     )
 
 
@@ -53,7 +63,7 @@ class NullParameters(Parameters):
     seed: int = parameter(0, "Seed of the surrogates.", least=0)
 
 
-class PairCorrelationParameters(NullParameters, DetrendParameters):
+class PairCorrelationParameters(NullParameters, StatisticParameters, DetrendParameters):
     """What `cross_correlate` and `correlate_pairs` both take."""
 
 
@@ -79,7 +89,7 @@ class SkipLagsParameters(Parameters):
     )
 
 
-class CrossCorrelationParameters(SkipLagsParameters, NullParameters, PrepareParameters):
+class CrossCorrelationParameters(SkipLagsParameters, NullParameters, StatisticParameters, PrepareParameters):
     """How series are correlated."""
 
 

@@ -19,6 +19,7 @@ from cytodisk.analysis.correlation.prepared_series import (
     kpss,
     prepare_series,
 )
+from cytodisk.analysis.correlation.ranks import scored
 from cytodisk.analysis.correlation.surrogates import surrogates as make_surrogates
 from cytodisk.arrays import IntArray
 from cytodisk.checks import whole_number
@@ -35,7 +36,7 @@ def cross_correlate(
     progress: Callable[[int, int], None] | None = None,
     **settings: Any,
 ) -> xr.Dataset:
-    """Pearson correlation of `a` with `b` at every lag, for every window, and what chance would give.
+    """Correlation of `a` with `b` at every lag, for every window, and what chance would give.
 
     Parameters
     ----------
@@ -63,6 +64,8 @@ def cross_correlate(
         lag_s is there when `a` or `b` has time_s. Edge velocity stands at the start of its step, so it is
         half a frame later than its lag says.
 
+        The attrs are the settings; `statistic` says whether values or ranks were correlated.
+
     Raises
     ------
     ParameterError
@@ -82,7 +85,7 @@ def cross_correlate(
 
     References
     ----------
-    u-Unwrap, section 4.3, Fig. 5.
+    u-Unwrap, section 4.3, Fig. 5; for ranks Spearman (1904), doi:10.2307/1412159.
 
     Examples
     --------
@@ -101,6 +104,7 @@ def cross_correlate(
     first, second = (series.copy(data=prepare_series(series, **options)) for series in (first, second))
     attrs = {name: value for name, value in options.items() if value is not None}
     attrs |= {
+        "statistic": how.statistic,
         "max_lag": max_lag,
         "min_pairs": how.min_pairs,
         "skip_lags": list(how.skip_lags),
@@ -108,6 +112,7 @@ def cross_correlate(
         "seed": how.seed,
     }
     attrs |= drifting_shares(first, second)
+    first, second = (series.copy(data=scored(series.to_numpy(), how.statistic)) for series in (first, second))
     pair = paired(first, second)
     changed = (
         make_surrogates(how.null, len(pair.a), how.surrogates, how.seed, max_lag) if how.surrogates else None

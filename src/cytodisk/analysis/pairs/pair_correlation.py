@@ -14,6 +14,7 @@ from cytodisk.analysis.correlation.cross_correlation import drifting_shares, lag
 from cytodisk.analysis.correlation.lag_tables import ALPHA, with_units
 from cytodisk.analysis.correlation.pairing import named_series
 from cytodisk.analysis.correlation.prepared_series import default_frames, prepare_series
+from cytodisk.analysis.correlation.ranks import scored
 from cytodisk.analysis.correlation.surrogates import surrogates as make_surrogates
 from cytodisk.analysis.pairs.pair_blocks import DistanceBins, distributions
 from cytodisk.analysis.pairs.pair_chance import chance_of_pairs
@@ -37,7 +38,7 @@ def correlate_pairs(
     progress: Callable[[int, int], None] | None = None,
     **settings: Any,
 ) -> xr.Dataset:
-    """Pearson correlation of all windows of `a` with all windows of `b`, by their distance and the lag.
+    """Correlation of all windows of `a` with all windows of `b`, by their distance and the lag.
 
     Parameters
     ----------
@@ -108,6 +109,7 @@ def correlate_pairs(
     options = how.part(DetrendParameters).changed(detrend_frames=frames).model_dump()
     tables = [prepare_series(_flat(series), **options) for series in (first, second)]
     drifting = drifting_shares(*(xr.DataArray(table) for table in tables))
+    tables = [scored(table, how.statistic) for table in tables]
     apart, units, kind = _distances(distances, a, b, (first.sizes["layer"], first.sizes["sector"]))
     edges = _edges(list(apart.values()), how.bins)
     sorted_pairs = [DistanceBins.of(table, edges) for table in apart.values()]
@@ -129,6 +131,7 @@ def correlate_pairs(
         coords["lag_s"] = ("lag", lags * scale.frame_interval_s, {"units": "s"})
     count = changed.count if surrogates else 0
     attrs = {"distance": kind, "units": units, "surrogates": count, "null": how.null, "seed": how.seed}
+    attrs["statistic"] = how.statistic
     attrs |= {name: value for name, value in options.items() if value is not None}
     out = xr.Dataset(data, coords, attrs | drifting)
     out = with_units(out.assign(n=out["n"].astype(np.int64)))

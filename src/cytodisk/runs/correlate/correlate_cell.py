@@ -78,6 +78,7 @@ class CellCorrelation:
         if options.pairs:
             tables["pairs"] = self._pairs(cell, activity, a, second)
         row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "jitter": jitter}
+        row["statistic"] = options.statistic
         row["surrogates"] = correlations.attrs["surrogates"]
         row["pair_surrogates"] = tables["pairs"].attrs["surrogates"] if options.pairs else 0
         row["restarts"] = self._restarts(cell, activity["frame"].to_numpy())

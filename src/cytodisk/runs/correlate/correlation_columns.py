@@ -24,8 +24,8 @@ _P = Column(
 )
 _Q = Column("q", pa.float64(), "1", "p, adjusted for the number of rows of the cell (Benjamini and Hochberg)")
 _THRESHOLD = Column("threshold", pa.float64(), "1", "size of correlation that 5 % of the surrogates exceed")
-_CORRELATION = Column("correlation", pa.float64(), "1", "Pearson correlation at the peak")
-_AT_LAG = Column("correlation", pa.float64(), "1", "Pearson correlation at this lag")
+_CORRELATION = Column("correlation", pa.float64(), "1", "correlation at the peak")
+_AT_LAG = Column("correlation", pa.float64(), "1", "correlation at this lag")
 
 
 def _quartiles(over: str) -> Columns:
@@ -130,6 +130,7 @@ CORRELATION_TABLES: dict[str, Columns] = {
         CELL,
         Column("status", pa.string(), "", "ok or refused"),
         Column("reason", pa.string(), "", "why the cell is left out; empty if it is not"),
+        Column("statistic", pa.string(), "", "pearson: of values; spearman: of ranks"),
         Column("frames", pa.int64(), "", "number of frames that were used"),
         Column(
             "jitter",
