@@ -127,6 +127,25 @@ def relax_band(
 
 
 @njit(cache=True)
+def turn_ahead(
+    points: FloatArray,
+    target: Target,
+    places: FloatArray,
+    spacing: float,
+    smoothness: float,
+    motion: FloatArray,
+) -> float:
+    """Turn that one Gauss-Newton step makes with the rigid motion free, in radians; see `relax_band`."""
+    n = points.shape[0]
+    band = _Band(np.empty((n, 2)), np.empty(n), np.empty((n, 2)), np.zeros((n, 2, 3)))
+    band.by_motion[:, 0, 1] = -1.0
+    band.by_motion[:, 1, 2] = -1.0
+    _displace(points, target, places, motion, band)
+    _, moved = _newton_step(band, spacing, smoothness / spacing, True, 0.0, motion)
+    return float(moved[0])
+
+
+@njit(cache=True)
 def _energy(
     d: FloatArray, gaps: FloatArray, weight: float, stiffness: float, doubt: float, motion: FloatArray
 ) -> float:

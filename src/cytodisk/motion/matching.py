@@ -17,7 +17,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.geometry.polygon import signed_area
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.cyclic_path import cyclic_path
-from cytodisk.motion.elastic_band import Target, relax_band
+from cytodisk.motion.elastic_band import Target, relax_band, turn_ahead
 
 _COARSE_SAMPLES = 128
 _FINE_PX = 1.0
@@ -27,6 +27,7 @@ _PINNED = 1e12  # weight that holds a rotation at nothing
 # a degree a frame are nothing unusual.
 _NOISE_REACH_PX = 20.0
 _USUAL_TURN = math.radians(1.0)
+_LEADS_THERE = (0.12, 0.22)  # share of a turn that the first step makes: not believed, and believed
 _PIXEL_NOISE_PX2 = 0.04  # squared displacement that the pixels of a mask make of nothing
 
 
@@ -131,30 +132,36 @@ def rigid_motion(
     pivot, place : ndarray of shape (2,) and dtype float
         The motion takes x to R (x - pivot) + place.
     """
-    grid = _even_grid(here)
+    grid, target = _even_grid(here), _target(there)
     places = carry(grid, s, guess, here.length, there.length)
     points = here.at(grid)
     pivot = points.mean(axis=0)
     growth = math.sqrt(signed_area(there.points_yx) / signed_area(here.points_yx))
-    fits = []
-    doubt = _PINNED
-    for _ in range(3):
-        _, motion, left_over = relax_band(
-            growth * (points - pivot),
-            _target(there),
-            places,
-            growth * here.length / len(grid),
-            smoothness,
-            np.array([0.0, *pivot]),
-            True,
-            doubt,
-        )
-        fits.append((motion, left_over))
-        doubt = 0.0 if doubt == _PINNED else _NOISE_REACH_PX * left_over / _USUAL_TURN**2
-    (shifted, by_shift), (_, by_both), (turned, _) = fits
+    grown, spacing = growth * (points - pivot), growth * here.length / len(grid)
+    start = np.array([0.0, *pivot])
+
+    def fit(doubt: float) -> tuple[FloatArray, FloatArray, float]:
+        return relax_band(grown, target, places, spacing, smoothness, start, True, doubt)
+
+    slid, shifted, by_shift = fit(_PINNED)
+    _, free, by_both = fit(0.0)
+    _, turned, _ = fit(_NOISE_REACH_PX * by_both / _USUAL_TURN**2)
     explained = max(0.0, by_shift - by_both) / max(by_shift, _PIXEL_NOISE_PX2)
-    motion = shifted + explained * (turned - shifted)
+    ahead = turn_ahead(grown, target, slid, spacing, smoothness, shifted)
+    motion = shifted + explained * _within_reach(ahead, float(free[0])) * (turned - shifted)
     return float(motion[0]), pivot, motion[1:]
+
+
+def _within_reach(ahead: float, turn: float) -> float:
+    """How far a turn is one that the outlines themselves lead to, from 0 to 1.
+
+    A shape that did turn leads there: from no turn at all, one step of the fit goes a good part of the way. A
+    shape with lobes that grow where others shrink looks as if it had turned by half a lobe to one side or to
+    the other, and the step goes nowhere.
+    """
+    far, near = _LEADS_THERE
+    share = ahead / turn if turn else 1.0
+    return min(max((share - far) / (near - far), 0.0), 1.0)
 
 
 def _target(there: Contour) -> Target:

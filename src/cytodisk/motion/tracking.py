@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from scipy.spatial import KDTree
 
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.circle import boundary_angles
@@ -20,6 +22,9 @@ from cytodisk.motion.tracking_parameters import TrackingSettings
 
 _LEAST_POINTS = 256
 _LEAST_OVERLAP = 0.2  # of intersection and union, after registration, below which tracking starts anew
+_USUAL_TURN = math.radians(3.0)  # more in one frame must be seen from the last frame, too
+_LEAP = 3.0  # times the distance of the outlines, and
+_SLACK_PX = 4.0  # more, is as far as a point may move after registration
 _LEAST_GAP = 1e-6  # of the mean gap between neighbouring points, so that order is strict
 
 
@@ -130,8 +135,8 @@ def follow(
     Returns
     -------
     TrackedBoundary
-        With as many points as the last; if the outlines hardly overlap even after registration, or the
-        points do not go once around, tracking starts anew and says why.
+        With as many points as the last; if the outlines hardly overlap even after registration, points move
+        much farther than the outlines are apart, or do not go once around, tracking starts anew and says why.
     """
     here = last.transform.of(last.contour)
     smoothness = settings.smoothness_px2
@@ -140,7 +145,7 @@ def follow(
     transform = alignment = rough
     if settings.registration:
         fixed = reference.transform.of(reference.contour)
-        transform = register(contour, fixed, rough, reference.s, guess, smoothness)
+        transform = _registered(contour, last, reference, rough, guess, smoothness)
         moved = reference.alignment.after(reference.transform.undone())
         alignment = believable(
             last.alignment, moved.after(transform), contour, moved.of(fixed), reference.s, guess, smoothness
@@ -153,10 +158,46 @@ def follow(
         return _follow_demons(frame, contour, last, transform, settings.demons or DemonsParameters())
     here, there = last.alignment.of(last.contour), alignment.of(contour)
     s = match(here, there, last.s, guess, smoothness)
+    farthest = float(np.linalg.norm(there.at(s) - here.at(last.s), axis=1).max())
+    bound = _LEAP * outline_distance(here, there) + _SLACK_PX
+    if farthest > bound:
+        frames = f"frames {last.frame} and {frame}"
+        why = f"points would move {farthest:.0f} px, outlines allow {bound:.0f} ({frames})"
+        return _restart(frame, contour, transform, last, why)
     back = match(there, here, s, last.s, smoothness)
     residual = float(np.linalg.norm(here.at(back) - here.at(last.s), axis=1).mean())
     even = _towards_even(s, there.length, settings.tension)
     return TrackedBoundary(frame, contour, even, transform, alignment, residual)
+
+
+def _registered(
+    contour: Contour,
+    last: TrackedBoundary,
+    reference: TrackedBoundary,
+    rough: RigidTransform,
+    guess: FloatArray,
+    smoothness: float,
+) -> RigidTransform:
+    """Registration to the reference, in which a large turn must be seen from the last frame, too.
+
+    Several frames after the reference, the lobes of a cell may have grown and shrunk into the same shape,
+    turned; from frame to frame they did not turn.
+    """
+    to_reference = reference.transform.of(reference.contour)
+    found = register(contour, to_reference, rough, reference.s, guess, smoothness)
+    if reference is last or abs(found.angle - rough.angle) <= _USUAL_TURN:
+        return found
+    to_last = last.transform.of(last.contour)
+    since_last = register(contour, to_last, rough, last.s, guess, smoothness)
+    allowed = abs(since_last.angle - rough.angle) + _USUAL_TURN
+    return found if abs(found.angle - since_last.angle) <= allowed else since_last
+
+
+def outline_distance(here: Contour, there: Contour) -> float:
+    """Largest distance from a corner of either outline to the nearest corner of the other, in pixels."""
+    one, other = here.points_yx, there.points_yx
+    away, back = KDTree(other).query(one)[0], KDTree(one).query(other)[0]
+    return float(max(np.max(away), np.max(back)))
 
 
 def _follow_demons(
