@@ -44,10 +44,12 @@ from cytodisk.motion.matching import carry, first_guess, match
 from cytodisk.motion.tracking import TrackedBoundary, follow
 from cytodisk.motion.tracking_parameters import SMOOTHNESS_PX2, Tracker, TrackingSettings
 from cytodisk.motion.velocity import edge_velocity
-from cytodisk.simulate import MOVIE_KINDS, SimulatedMovie
+from cytodisk.simulate import EDGE_KINDS, SimulatedMovie
+from cytodisk.simulate import MOVIE_KINDS as ALL_KINDS
 from cytodisk.simulate.movie_kinds import MovieKind
 from cytodisk.windows.polar_windows import PolarGrid, polar_windows
 
+MOVIE_KINDS = tuple(kind for kind in ALL_KINDS if kind not in EDGE_KINDS)  # of whose matter all is known
 TRACKERS: tuple[Tracker, ...] = get_args(Tracker)
 HORIZONS = (1, 10, 50)
 GRIDS = {"5×24": polar_windows(5, 24), "10×60": polar_windows(10, 60)}

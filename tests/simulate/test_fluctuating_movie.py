@@ -11,7 +11,8 @@ from cytodisk.errors import ParameterError
 from cytodisk.simulate import SimulatedMovie, movie
 from cytodisk.simulate.coupling import TRANSITION_POINTS, coupled_stretch
 from cytodisk.simulate.fluctuation import random_fluctuation
-from cytodisk.simulate.movie_kinds import HABITS, MovieKind, plan_movie
+from cytodisk.simulate.movie_kinds import HABITS, MovieKind
+from cytodisk.simulate.movie_plans import plan_movie
 from cytodisk.simulate.paths import paths
 
 

@@ -2,7 +2,7 @@
 
 from cytodisk.simulate.cells import disk, dumbbell, ellipse, star
 from cytodisk.simulate.label_images import label_image
-from cytodisk.simulate.movie_kinds import MOVIE_KINDS
+from cytodisk.simulate.movie_kinds import EDGE_KINDS, MOVIE_KINDS
 from cytodisk.simulate.moving_cells import SimulatedMovie, movie
 from cytodisk.simulate.null_series import SERIES_KINDS, coupled_series, independent_series
 from cytodisk.simulate.random_cells import branching, migrating, random_smooth, random_spiky
@@ -10,6 +10,7 @@ from cytodisk.simulate.random_masks import KINDS, random_mask
 from cytodisk.simulate.signals import SimulatedCell, cell_with_signal, linear_signal, ring_signal
 
 __all__ = [
+    "EDGE_KINDS",
     "KINDS",
     "MOVIE_KINDS",
     "SERIES_KINDS",

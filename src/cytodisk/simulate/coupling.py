@@ -3,7 +3,7 @@
 import numpy as np
 
 from cytodisk.arrays import FloatArray
-from cytodisk.simulate.movie_kinds import Plan
+from cytodisk.simulate.movie_plans import Plan
 from cytodisk.simulate.paths import BOUNDARY_POINTS, normal_displacement, paths
 
 TRANSITION_POINTS = 30  # 1 % of the edge

@@ -1,4 +1,4 @@
-"""Draw masks on a pixel grid from strokes and from radii."""
+"""Draw masks on a pixel grid from strokes, radii and outlines."""
 
 from typing import Any
 
@@ -65,3 +65,56 @@ def _distance_to_segment(
     )
     share = np.clip(share, 0.0, 1.0)
     return np.asarray(np.hypot(row - start[0] - share * step_y, column - start[1] - share * step_x))
+
+
+def half_covered(outline_yx: FloatArray, shape: tuple[int, int]) -> BoolArray:
+    """Pixels of which an outline covers half or more; shape (H, W)."""
+    return np.asarray(coverage(outline_yx, shape) >= 0.5)
+
+
+def coverage(outline_yx: FloatArray, shape: tuple[int, int]) -> FloatArray:
+    """Share of each pixel's area that lies inside an outline, exactly.
+
+    Parameters
+    ----------
+    outline_yx : ndarray of shape (N, 2) and dtype float
+        Closed polygon that does not cross itself, (row, column) in pixels, pixel centres at integers; it may
+        leave the image.
+    shape : (int, int)
+        Rows and columns.
+
+    Returns
+    -------
+    ndarray of shape (H, W) and dtype float
+
+    Notes
+    -----
+    The outline is cut where it passes from a pixel to the next. By Green's theorem each part adds its height
+    to all pixels right of it, and a share of it to its own.
+    """
+    start = _cut(_cut(outline_yx + 0.5, 0), 1)
+    stop = np.roll(start, -1, axis=0)
+    height = stop[:, 0] - start[:, 0]
+    row, column = np.floor(0.5 * (start + stop)).astype(np.int64).T
+    share = 0.5 * (start + stop)[:, 1] - column
+    share[column < 0], column[column < 0] = 0.0, 0
+    shown = (row >= 0) & (row < shape[0]) & (column < shape[1])
+    place, height, share = (row * (shape[1] + 1) + column)[shown], height[shown], share[shown]
+    total = np.bincount(place, height * (1.0 - share), shape[0] * (shape[1] + 1) + 1)
+    total[1:] += np.bincount(place, height * share, shape[0] * (shape[1] + 1))[: total.size - 1]
+    return np.abs(total[:-1].reshape(shape[0], shape[1] + 1).cumsum(axis=1)[:, :-1])
+
+
+def _cut(outline_yx: FloatArray, axis: int) -> FloatArray:
+    """The same closed polygon with a point wherever a coordinate passes a whole number."""
+    step = np.roll(outline_yx, -1, axis=0) - outline_yx
+    start, stop = outline_yx[:, axis], np.roll(outline_yx[:, axis], -1)
+    first = np.floor(np.minimum(start, stop)) + 1.0
+    count = np.maximum(np.ceil(np.maximum(start, stop)) - first, 0.0).astype(np.int64)
+    edge = np.repeat(np.arange(len(start)), count)
+    whole = first[edge] + np.arange(edge.size) - np.repeat(np.cumsum(count) - count, count)
+    share = (whole - start[edge]) / step[edge, axis]
+    points = outline_yx[edge] + share[:, None] * step[edge]
+    points[:, axis] = whole
+    order = np.argsort(np.concatenate([np.arange(float(len(start))), edge + share]), kind="stable")
+    return np.concatenate([outline_yx, points])[order]

@@ -6,10 +6,10 @@ from scipy.ndimage import gaussian_filter1d
 from cytodisk.arrays import FloatArray
 from cytodisk.geometry.polygon import edge_lengths
 
-_LENGTH = 8.0  # pixels along the edge over which the correlation falls to exp(-1/2)
 
-
-def jittered(outlines_yx: FloatArray, jitter_px: float, random: np.random.Generator) -> FloatArray:
+def jittered(
+    outlines_yx: FloatArray, jitter_px: float, length_px: float, random: np.random.Generator
+) -> FloatArray:
     """Outlines displaced along their normals by noise, smooth along the edge, anew in each frame.
 
     Parameters
@@ -18,6 +18,8 @@ def jittered(outlines_yx: FloatArray, jitter_px: float, random: np.random.Genera
         Closed polygons, (row, column) in pixels.
     jitter_px : float
         Standard deviation of the noise, in pixels.
+    length_px : float
+        Length along the edge over which its correlation falls to exp(-1/2), in pixels.
     random : Generator
 
     Returns
@@ -27,7 +29,7 @@ def jittered(outlines_yx: FloatArray, jitter_px: float, random: np.random.Genera
     """
     if not jitter_px:
         return outlines_yx
-    return np.stack([_displaced(outline, jitter_px, random) for outline in outlines_yx])
+    return np.stack([_displaced(outline, jitter_px, length_px, random) for outline in outlines_yx])
 
 
 def evenly_spaced(outline_yx: FloatArray, count: int) -> FloatArray:
@@ -38,9 +40,11 @@ def evenly_spaced(outline_yx: FloatArray, count: int) -> FloatArray:
     return np.column_stack([np.interp(at, arc, closed[:, 0]), np.interp(at, arc, closed[:, 1])])
 
 
-def _displaced(outline_yx: FloatArray, jitter_px: float, random: np.random.Generator) -> FloatArray:
+def _displaced(
+    outline_yx: FloatArray, jitter_px: float, length_px: float, random: np.random.Generator
+) -> FloatArray:
     even = evenly_spaced(outline_yx, len(outline_yx))
-    width = _LENGTH / np.sqrt(2.0) / edge_lengths(even).mean()  # a filter of width w correlates over √2 w
+    width = length_px / np.sqrt(2.0) / edge_lengths(even).mean()  # a filter of width w correlates over √2 w
     noise = gaussian_filter1d(random.normal(size=len(even)), width, mode="wrap")
     noise *= jitter_px * np.sqrt(2.0 * width * np.sqrt(np.pi))  # what the filter takes of the deviation
     along = np.roll(even, -1, axis=0) - np.roll(even, 1, axis=0)

@@ -10,7 +10,8 @@ from scipy.ndimage import gaussian_filter, map_coordinates, spline_filter
 from scipy.spatial import cKDTree
 
 from cytodisk.arrays import BoolArray, FloatArray
-from cytodisk.simulate.movie_kinds import Plan
+from cytodisk.simulate.flow import Flow
+from cytodisk.simulate.movie_plans import Plan
 
 _CHANNELS = ["material", "edge"]
 _BACKGROUND = 20.0
@@ -67,7 +68,11 @@ def expected_counts(scene: Scene, random: np.random.Generator) -> xr.DataArray:
         inside = rasterised(scene.boundary_yx[frame], scene.shape)
         pixels = np.argwhere(inside).astype(np.float64)
         counts[frame] = _BACKGROUND
-        counts[frame, 0, inside] += material(back, scene.plan.pose.to_cell(pixels - scene.shift, frame))
+        points = scene.plan.pose.to_cell(pixels - scene.shift, frame)
+        if isinstance(scene.plan.flow, Flow):
+            counts[frame, 0, inside] += material(back, points)
+        else:
+            counts[frame, 0, inside] += material.at_start(scene.plan.flow.carry(points, frame, 0))
         counts[frame, 1, inside] += _edge(pixels, scene.boundary_yx[frame], scene.followed_px[frame])
     return xr.DataArray(counts, {"channel": _CHANNELS}, ("time", "channel", "y", "x"))
 
@@ -98,7 +103,14 @@ class _Material:
         """Pattern at points of the cell's frame; `back` are splines of how far back their start is."""
         at = (points_yx - self._low).T
         start = at + np.stack([map_coordinates(part, at, prefilter=False, mode="nearest") for part in back])
-        return np.asarray(map_coordinates(self._pattern, start, prefilter=False, mode="nearest"))
+        return self._at(start)
+
+    def at_start(self, points_yx: FloatArray) -> FloatArray:
+        """Pattern at points of the cell's frame in frame 0."""
+        return self._at((points_yx - self._low).T)
+
+    def _at(self, pixels: FloatArray) -> FloatArray:
+        return np.asarray(map_coordinates(self._pattern, pixels, prefilter=False, mode="nearest"))
 
 
 def _back_to_start(scene: Scene, grid_yx: FloatArray) -> Iterator[FloatArray]:
@@ -112,7 +124,7 @@ def _back_to_start(scene: Scene, grid_yx: FloatArray) -> Iterator[FloatArray]:
     yield back
     for frame in range(1, len(scene.places_yx)):
         places = scene.places_yx[frame]
-        if scene.plan.flow.moves:
+        if isinstance(scene.plan.flow, Flow) and scene.plan.flow.moves:
             before = scene.plan.flow.carry(np.concatenate([places, points]), frame, frame - 1)[len(places) :]
             at = (before - points[0]).T
             earlier = [map_coordinates(part, at, prefilter=False, mode="nearest") for part in back]

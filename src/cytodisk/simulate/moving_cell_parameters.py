@@ -16,7 +16,8 @@ class HabitParameters(Parameters):
 
     speed_px: float | None = parameter(
         None,
-        'Speed of the whole cell, for "growing" of its edge; without it that of the kind.',
+        'Speed of the whole cell, for "growing", "filopodium" and "lamellipodium" of the edge where it grows; '
+        "without it that of the kind.",
         least=0,
         most=_MOST_PX,
         unit="px/frame",
@@ -35,11 +36,24 @@ class HabitParameters(Parameters):
         most=_MOST_PX,
         unit="px",
     )
+    waves: int | None = parameter(
+        None,
+        'Number of waves or lobes around the cell, for "waving" (3 without it) and "lobes" (2, 4 or 5, drawn).',
+        least=2,
+        most=12,
+    )
     jitter_px: float | None = parameter(
         None,
         "Standard deviation of the drawn outline about the true one, smooth along the edge and independent "
         "between frames; without it that of the kind.",
         least=0,
+        most=_MOST_PX,
+        unit="px",
+    )
+    jitter_length_px: float | None = parameter(
+        None,
+        "Length along the edge over which jitter stays correlated, to exp(-1/2); without it 8.",
+        above=0,
         most=_MOST_PX,
         unit="px",
     )
@@ -56,13 +70,15 @@ class HabitParameters(Parameters):
         Raises
         ------
         ParameterError
-            A protrusion for a kind that has none.
+            A protrusion, or waves, for a kind that has none.
         """
         own = HABITS[kind]
         if self.protrusion_px is not None and own.protrusion_px is None:
             raise self.fault(
                 f"kind {kind!r} has no protrusions, got protrusion_px={self.protrusion_px!r}: leave it out"
             )
+        if self.waves is not None and own.waves is None:
+            raise self.fault(f"kind {kind!r} has no waves, got waves={self.waves!r}: leave it out")
         names = HabitParameters.model_fields
         given = {name: value for name in names if (value := getattr(self, name)) is not None}
         return replace(own, **given)

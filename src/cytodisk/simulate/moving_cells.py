@@ -1,6 +1,7 @@
 """Movies of one moving cell whose every material point is known, for tests of boundary trackers."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,11 @@ from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.checks import one_of, whole_number
 from cytodisk.scale import Scale
 from cytodisk.simulate.coupling import coupled_stretch, partly_followed
+from cytodisk.simulate.drawing import half_covered
+from cytodisk.simulate.growing_edges import swept_velocity
 from cytodisk.simulate.jittered_masks import jittered
-from cytodisk.simulate.movie_kinds import MOVIE_KINDS, MovieKind, plan_movie
+from cytodisk.simulate.movie_kinds import EDGE_KINDS, MOVIE_KINDS, MovieKind
+from cytodisk.simulate.movie_plans import plan_movie
 from cytodisk.simulate.movie_signals import Scene, camera, expected_counts, rasterised
 from cytodisk.simulate.moving_cell_parameters import MovingCellParameters
 from cytodisk.simulate.paths import normal_displacement, paths
@@ -28,8 +32,10 @@ class SimulatedMovie:
     ----------
     masks : ndarray of shape (T, H, W) and dtype bool
         Pixels whose centre lies inside the outline that is drawn: the true one, or one displaced by jitter.
+        For the kinds of `EDGE_KINDS` pixels of which it covers half or more.
     boundary_yx : ndarray of shape (T, N, 2) and dtype float
-        Material points of the true edge, from +x towards +y; evenly spaced in frame 0.
+        Material points of the true edge, from +x towards +y; evenly spaced in frame 0, for "filopodium" in
+        frame 15.
     interior_yx : ndarray of shape (T, P, 2) and dtype float
         Material points inside, one in two square pixels in frame 0.
     normal_displacement_px : ndarray of shape (T, N) and dtype float
@@ -56,6 +62,8 @@ class SimulatedMovie:
     >>> truth = cd.simulate.movie("growing", frames=3, radius_px=12.0)
     >>> truth.kind, truth.masks.shape[0], truth.boundary_yx.shape[2]
     ('growing', 3, 2)
+    >>> truth.velocity_px[0].round(3)[:2]
+    array([1., 1.])
     """
 
     masks: BoolArray
@@ -77,6 +85,16 @@ class SimulatedMovie:
         """Both sizes, as maps and arrays carry them."""
         return Scale(self.pixel_size_um, self.frame_interval_s)
 
+    @cached_property
+    def velocity_px(self) -> FloatArray:
+        """True velocity of each piece of the edge, from a boundary point to the next; shape (T, N).
+
+        The signed area that the piece sweeps until the next frame over the mean of its two lengths, in pixels
+        per frame, outward positive; NaN in the last frame. It has no bias where points slide along a curved
+        edge: velocities times mean lengths sum to the change of the cell's area.
+        """
+        return swept_velocity(self.boundary_yx)
+
 
 @takes(MovingCellParameters)
 def movie(kind: MovieKind = "migrating", seed: int = 0, **settings: Any) -> SimulatedMovie:
@@ -91,7 +109,10 @@ def movie(kind: MovieKind = "migrating", seed: int = 0, **settings: Any) -> Simu
         frames), "migrating", "neutrophil" (crawl; the second changes its whole shape), "translating",
         "turning" (rigid), "necking" (a waist closes to 5 px and opens), "spiky" (filopodia), "ruffling"
         (waves travel around the edge), "growing" (a disk), "still" (nothing moves, but masks jitter),
-        "fluctuating" (the edge moves by smooth noise that has no period, so that a lag can be told).
+        "fluctuating" (the edge moves by smooth noise that has no period, so that a lag can be told),
+        "filopodium" (a protrusion 5 px wide grows out of a disk), "waving" (a round cell with waves that
+        travel around it, 5° a frame), "lobes" (2, 4 or 5 lobes that stand, sink, and rise where the hollows
+        were), "lamellipodium" (one side of a disk grows while all inside stands still).
     seed : int
         Places, phases, widths and directions; the same arguments give the same movie.
     **settings
@@ -104,7 +125,7 @@ def movie(kind: MovieKind = "migrating", seed: int = 0, **settings: Any) -> Simu
     Raises
     ------
     ParameterError
-        An unknown kind, a number out of its range, or a protrusion for a kind that has none.
+        An unknown kind, a number out of its range, or protrusion or waves for a kind that has none.
 
     See Also
     --------
@@ -126,7 +147,9 @@ def movie(kind: MovieKind = "migrating", seed: int = 0, **settings: Any) -> Simu
     around = abs(lag) if how.signals else 0
     path = paths(plan, -around, frames + around + 1)
     shown = slice(around, around + frames)
-    drawn = jittered(path.boundary_yx[shown], habits.jitter_px, np.random.default_rng([seed, 1]))
+    drawn = jittered(
+        path.boundary_yx[shown], habits.jitter_px, habits.jitter_length_px, np.random.default_rng([seed, 1])
+    )
     shape, shift = _image_frame(drawn, how.margin)
     present = _present(frames, habits.dropped, np.random.default_rng([seed, 2]))
     displacement = normal_displacement(path.boundary_yx)
@@ -140,10 +163,11 @@ def movie(kind: MovieKind = "migrating", seed: int = 0, **settings: Any) -> Simu
         scene = Scene(plan, path.places_yx[shown], boundary, followed, shape, shift, present)
         truth = expected_counts(scene, np.random.default_rng([seed, 3])).assign_attrs(scale.attrs)
         signal = camera(truth, np.random.default_rng([seed, 4]))
+    draw = half_covered if kind in EDGE_KINDS else rasterised
     displacement = displacement[shown].copy()
     displacement[-1] = np.nan
     return SimulatedMovie(
-        masks=np.stack([rasterised(outline + shift, shape) for outline in drawn]) & present[:, None, None],
+        masks=np.stack([draw(outline + shift, shape) for outline in drawn]) & present[:, None, None],
         boundary_yx=boundary,
         interior_yx=path.interior_yx[shown] + shift,
         normal_displacement_px=displacement,

@@ -7,7 +7,8 @@ import shapely
 
 from cytodisk.arrays import FloatArray
 from cytodisk.simulate.jittered_masks import evenly_spaced
-from cytodisk.simulate.movie_kinds import Plan
+from cytodisk.simulate.flow import Flow
+from cytodisk.simulate.movie_plans import Plan
 
 BOUNDARY_POINTS = 3000
 _INTERIOR_SPACING = np.sqrt(2.0)  # pixels: one point in two square pixels
@@ -48,14 +49,15 @@ def paths(plan: Plan, first: int, stop: int, *, interior: bool = True) -> Paths:
     Returns
     -------
     Paths
-        The boundary is evenly spaced in the image in frame 0, and so is the interior.
+        The boundary is evenly spaced in the image in frame 0, that of a filopodium in frame 15; the interior
+        in frame 0.
     """
     points_yx = _at_start(plan, interior)
     later, earlier = [points_yx], [points_yx]
     for frame in range(stop - 1):
-        later.append(plan.flow.carry(later[-1], frame, frame + 1))
+        later.append(_carried(plan, later[-1], frame, frame + 1))
     for frame in range(0, first, -1):
-        earlier.append(plan.flow.carry(earlier[-1], frame, frame - 1))
+        earlier.append(_carried(plan, earlier[-1], frame, frame - 1))
     path = np.stack(earlier[:0:-1] + later)
     places = len(plan.places_yx)
     image = np.stack([plan.pose.to_image(path[k, places:], first + k) for k in range(len(path))])
@@ -81,11 +83,25 @@ def normal_displacement(boundary_yx: FloatArray) -> FloatArray:
     return np.asarray(outward / np.hypot(along[..., 0], along[..., 1]))
 
 
+def _carried(plan: Plan, points_yx: FloatArray, start: int, stop: int) -> FloatArray:
+    """Places, boundary points and interior points a frame later or earlier."""
+    if isinstance(plan.flow, Flow):
+        return plan.flow.carry(points_yx, start, stop)
+    edge, interior = points_yx[:BOUNDARY_POINTS], points_yx[BOUNDARY_POINTS:]
+    return np.concatenate([plan.flow.carry_edge(edge, start, stop), plan.flow.carry(interior, start, stop)])
+
+
 def _at_start(plan: Plan, interior: bool) -> FloatArray:
-    """Places, boundary points that are evenly spaced in the image, and interior points, in frame 0."""
-    pushed = plan.flow.shape_at_start(np.concatenate([plan.places_yx, plan.outline_yx]))
-    places, outline = pushed[: len(plan.places_yx)], pushed[len(plan.places_yx) :]
-    boundary = evenly_spaced(plan.pose.to_image(outline, 0.0), BOUNDARY_POINTS)
+    """Places, boundary points and interior points in frame 0, the latter two evenly spaced in the image."""
+    if isinstance(plan.flow, Flow):
+        pushed = plan.flow.shape_at_start(np.concatenate([plan.places_yx, plan.outline_yx]))
+        places, outline = pushed[: len(plan.places_yx)], pushed[len(plan.places_yx) :]
+        boundary = evenly_spaced(plan.pose.to_image(outline, 0.0), BOUNDARY_POINTS)
+    else:
+        even, places = plan.flow.even_frame, plan.places_yx
+        outline = plan.flow.carry_edge(plan.outline_yx, 0, even)
+        boundary = plan.flow.carry_edge(evenly_spaced(outline, BOUNDARY_POINTS), even, 0)
+        boundary = plan.pose.to_image(boundary, 0.0)
     points = np.concatenate([boundary, _inside(boundary)]) if interior else boundary
     return np.concatenate([places, plan.pose.to_cell(points, 0.0)])
 
