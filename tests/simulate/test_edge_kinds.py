@@ -73,7 +73,9 @@ def test_waves_travel_around_a_round_cell_at_five_degrees_a_frame(waves: int | N
     for frame in range(20):
         angle, reach = polar(shown, frame)
         order = np.argsort(angle)
-        waved = np.interp(np.linspace(-np.pi, np.pi, 720, endpoint=False), angle[order], reach[order], period=2 * np.pi)
+        waved = np.interp(
+            np.linspace(-np.pi, np.pi, 720, endpoint=False), angle[order], reach[order], period=2 * np.pi
+        )
         spectrum = np.fft.rfft(waved) / 360.0
         assert np.abs(spectrum[1:]).argmax() + 1 == (waves or 3)
         assert np.abs(spectrum[waves or 3]) == pytest.approx(height, rel=0.01)

@@ -2,34 +2,49 @@
 
 from cytodisk.simulate.cells import disk, dumbbell, ellipse, star
 from cytodisk.simulate.label_images import label_image
+from cytodisk.simulate.mask_faults import flipped_masks, scaled_up_masks
 from cytodisk.simulate.movie_kinds import EDGE_KINDS, MOVIE_KINDS
 from cytodisk.simulate.moving_cells import SimulatedMovie, movie
 from cytodisk.simulate.null_series import SERIES_KINDS, coupled_series, independent_series
+from cytodisk.simulate.passive_signals import PASSIVE_KINDS, passive_signal
 from cytodisk.simulate.random_cells import branching, migrating, random_smooth, random_spiky
 from cytodisk.simulate.random_masks import KINDS, random_mask
-from cytodisk.simulate.signals import SimulatedCell, cell_with_signal, linear_signal, ring_signal
+from cytodisk.simulate.signals import (
+    SimulatedCell,
+    cell_with_cortex,
+    cell_with_signal,
+    linear_signal,
+    ring_signal,
+)
+from cytodisk.simulate.stress_series import STRESS_KINDS
 
 __all__ = [
     "EDGE_KINDS",
     "KINDS",
     "MOVIE_KINDS",
+    "PASSIVE_KINDS",
     "SERIES_KINDS",
+    "STRESS_KINDS",
     "SimulatedCell",
     "SimulatedMovie",
     "branching",
+    "cell_with_cortex",
     "cell_with_signal",
     "coupled_series",
     "disk",
     "dumbbell",
     "ellipse",
+    "flipped_masks",
     "independent_series",
     "label_image",
     "linear_signal",
     "migrating",
     "movie",
+    "passive_signal",
     "random_mask",
     "random_smooth",
     "random_spiky",
     "ring_signal",
+    "scaled_up_masks",
     "star",
 ]

@@ -102,7 +102,7 @@ def coverage(outline_yx: FloatArray, shape: tuple[int, int]) -> FloatArray:
     place, height, share = (row * (shape[1] + 1) + column)[shown], height[shown], share[shown]
     total = np.bincount(place, height * (1.0 - share), shape[0] * (shape[1] + 1) + 1)
     total[1:] += np.bincount(place, height * share, shape[0] * (shape[1] + 1))[: total.size - 1]
-    return np.abs(total[:-1].reshape(shape[0], shape[1] + 1).cumsum(axis=1)[:, :-1])
+    return np.asarray(np.abs(total[:-1].reshape(shape[0], shape[1] + 1).cumsum(axis=1)[:, :-1]))
 
 
 def _cut(outline_yx: FloatArray, axis: int) -> FloatArray:

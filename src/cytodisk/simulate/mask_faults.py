@@ -92,7 +92,7 @@ def scaled_up_masks(masks: BoolArray, factor: int = 6) -> BoolArray:
     whole = np.zeros((frames, rows * factor, columns * factor))
     whole[:, :height, :width] = masks
     blocks = whole.reshape(frames, rows, factor, columns, factor).mean(axis=(2, 4)) >= 0.5
-    return blocks.repeat(factor, axis=1).repeat(factor, axis=2)[:, :height, :width]
+    return np.asarray(blocks.repeat(factor, axis=1).repeat(factor, axis=2)[:, :height, :width])
 
 
 def _movie_of(masks: BoolArray) -> BoolArray:

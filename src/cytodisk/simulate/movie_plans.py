@@ -16,6 +16,7 @@ from cytodisk.simulate.resting_shapes import ANGLE, egg, lobed, of_area, outward
 _WAVE_TURN = np.radians(5.0)  # a frame
 _LOBES_PERIOD = 20.0  # frames
 
+
 @dataclass(frozen=True, eq=False)
 class Plan:
     """A cell at rest and how it moves.
@@ -173,14 +174,21 @@ def _waving(random: np.random.Generator, radius: float, habits: Habits) -> _Moti
     turn = random.choice([-1.0, 1.0]) * _WAVE_TURN
     speed = count * turn * habits.height_px
     ruffles = Ruffles(
-        np.array([float(count)]), np.array([speed]), np.array([2.0 * np.pi / (count * turn)]), np.array([phase])
+        np.array([float(count)]),
+        np.array([speed]),
+        np.array([2.0 * np.pi / (count * turn)]),
+        np.array([phase]),
     )
     return _Motion(polar(radius + habits.height_px * np.cos(count * ANGLE + phase)), ruffles=ruffles)
 
 
 def _lobes(random: np.random.Generator, radius: float, habits: Habits) -> _Motion:
     """A round cell with lobes that stand, sink, and rise again where the hollows were."""
-    drawn, phase, time = random.choice([2, 4, 5]), random.uniform(-np.pi, np.pi), random.uniform(-np.pi, np.pi)
+    drawn, phase, time = (
+        random.choice([2, 4, 5]),
+        random.uniform(-np.pi, np.pi),
+        random.uniform(-np.pi, np.pi),
+    )
     count = float(habits.waves or drawn)
     speed = np.pi / _LOBES_PERIOD * habits.height_px
     ruffles = Ruffles(
@@ -200,7 +208,8 @@ def _growing(random: np.random.Generator, radius: float, habits: Habits) -> _Mot
 def _fluctuating(random: np.random.Generator, radius: float, habits: Habits) -> _Motion:
     directions = _spread(random, int(random.integers(14, 21)))
     return _Motion(
-        lobed(random, radius, 0.03), fluctuation=random_fluctuation(random, directions, habits.height_px / 3.0)
+        lobed(random, radius, 0.03),
+        fluctuation=random_fluctuation(random, directions, habits.height_px / 3.0),
     )
 
 

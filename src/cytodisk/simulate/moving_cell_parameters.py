@@ -16,8 +16,8 @@ class HabitParameters(Parameters):
 
     speed_px: float | None = parameter(
         None,
-        'Speed of the whole cell, for "growing", "filopodium" and "lamellipodium" of the edge where it grows; '
-        "without it that of the kind.",
+        'Speed of the whole cell, for "growing", "filopodium" and "lamellipodium" of the edge where it '
+        "grows; without it that of the kind.",
         least=0,
         most=_MOST_PX,
         unit="px/frame",
@@ -38,7 +38,8 @@ class HabitParameters(Parameters):
     )
     waves: int | None = parameter(
         None,
-        'Number of waves or lobes around the cell, for "waving" (3 without it) and "lobes" (2, 4 or 5, drawn).',
+        'Number of waves or lobes around the cell, for "waving" (3 without it) and "lobes" (without it '
+        "2, 4 or 5, drawn).",
         least=2,
         most=12,
     )

@@ -10,6 +10,7 @@ from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.checks import one_of, whole_number
 from cytodisk.errors import ParameterError
 from cytodisk.simulate.series_parameters import CouplingParameters, NeighbourParameters
+from cytodisk.simulate.stress_series import STRESS_KINDS, StressKind, stressed
 from cytodisk.taking import takes
 
 SeriesKind = Literal["white", "ar1", "slow", "smooth", "oscillating"]
@@ -23,16 +24,22 @@ _REACH = 4.0  # correlation lengths beyond which noise counts for nothing
 
 @takes(NeighbourParameters)
 def independent_series(
-    kind: SeriesKind, seed: int, frames: int, layers: int, sectors: int, **settings: Any
+    kind: SeriesKind | StressKind, seed: int, frames: int, layers: int, sectors: int, **settings: Any
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Activity and velocity that have nothing to do with each other: every correlation found is false.
 
     Parameters
     ----------
-    kind : {"white", "ar1", "slow", "smooth", "oscillating"}
-        Correlation through time: none; autoregressive of first order with 0.8, or with 0.95, from a frame to
-        the next; noise under a Gaussian of standard deviation 2 frames; autoregressive of second order with a
-        peak of its spectrum at a period of 10 frames.
+    kind : str
+        One of `SERIES_KINDS`, correlation through time: "white", none; "ar1" and "slow", autoregressive of
+        first order with 0.8, or with 0.95, from a frame to the next; "smooth", noise under a Gaussian of
+        standard deviation 2 frames; "oscillating", autoregressive of second order with a peak of its spectrum
+        at a period of 10 frames. Or one of `STRESS_KINDS`, white noise with what fools a correlation, at the
+        same frames in all windows and in the velocity: "pulse", 3 frames 4.5 standard deviations higher;
+        "restless", three times the standard deviation in a tenth of the frames; "rising", a standard
+        deviation that rises linearly to four times the first; "steady", oscillations of period 10 frames
+        that never lose their phase, half of the variance; "heavy tails", Student's t with 2.5 degrees of
+        freedom.
     seed : int
         At least 0; the same arguments give the same series.
     frames, layers, sectors : int
@@ -44,8 +51,8 @@ def independent_series(
     -------
     activity : DataArray with dims (time, layer, sector)
     velocity : DataArray with dims (time, sector)
-        Gaussian and stationary from the first frame to the last, of mean 0 and variance 1, without NaN: the
-        last frame has a velocity too, which a measured one has not.
+        Without NaN: the last frame has a velocity too, which a measured one has not. Those of `SERIES_KINDS`
+        are Gaussian and stationary from the first frame to the last, of mean 0 and variance 1.
 
     Raises
     ------
@@ -67,11 +74,18 @@ def independent_series(
     >>> activity, velocity = cd.simulate.independent_series("ar1", 0, frames=50, layers=2, sectors=6)
     >>> activity.shape, velocity.shape
     ((50, 2, 6), (50, 6))
+    >>> activity, velocity = cd.simulate.independent_series("pulse", 0, frames=50, layers=2, sectors=6)
+    >>> bool(velocity.mean("sector").max() > 3.0)  # the pulse
+    True
     """
     length = NeighbourParameters.of(**settings).correlation_length
-    _check(kind, seed, frames, layers, sectors)
-    velocity = _velocity(kind, seed, frames, sectors, length)
-    activity = _activity(kind, seed, frames, (layers, sectors), length)
+    kind = one_of("kind", kind, SERIES_KINDS + STRESS_KINDS)
+    _check_sizes(seed, frames, layers, sectors)
+    of_time = kind if kind in SERIES_KINDS else "white"
+    velocity = _velocity(of_time, seed, frames, sectors, length)
+    activity = _activity(of_time, seed, frames, (layers, sectors), length)
+    if kind in STRESS_KINDS:
+        activity, velocity = stressed(kind, seed, (activity, velocity))
     return _labelled(activity, velocity)
 
 
@@ -127,7 +141,8 @@ def coupled_series(
     ((50, 2, 6), (50, 6))
     """
     how = CouplingParameters.of(**settings)
-    _check(kind, seed, frames, layers, sectors)
+    one_of("kind", kind, SERIES_KINDS)
+    _check_sizes(seed, frames, layers, sectors)
     lag_frames = whole_number("lag_frames", lag_frames, -frames)
     coupled = np.asarray(windows)
     if coupled.dtype != bool or coupled.shape != (layers, sectors):
@@ -144,8 +159,7 @@ def coupled_series(
     return _labelled(np.where(coupled, mixed, noise), velocity)
 
 
-def _check(kind: SeriesKind, seed: int, frames: int, layers: int, sectors: int) -> None:
-    one_of("kind", kind, SERIES_KINDS)
+def _check_sizes(seed: int, frames: int, layers: int, sectors: int) -> None:
     whole_number("seed", seed, 0)
     for name, value in (("frames", frames), ("layers", layers), ("sectors", sectors)):
         whole_number(name, value, 1)

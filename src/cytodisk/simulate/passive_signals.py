@@ -84,8 +84,8 @@ def passive_signal(kind: PassiveKind, masks: BoolArray, seed: int = 0, **setting
     cell = np.asarray(masks, dtype=bool)
     if cell.ndim != 3 or not cell.any():
         raise MaskError(
-            f"masks must be 3D (frames, rows, columns) and hold a cell, got shape {cell.shape}: pass those of "
-            "a movie"
+            f"masks must be 3D (frames, rows, columns) and hold a cell, got shape {cell.shape}: pass "
+            "those of a movie"
         )
     random = np.random.default_rng([seed, 7])
     expected = how.peak * _PATTERNS[kind](cell, random)

@@ -6,8 +6,8 @@ import numpy as np
 import shapely
 
 from cytodisk.arrays import FloatArray
-from cytodisk.simulate.jittered_masks import evenly_spaced
 from cytodisk.simulate.flow import Flow
+from cytodisk.simulate.jittered_masks import evenly_spaced
 from cytodisk.simulate.movie_plans import Plan
 
 BOUNDARY_POINTS = 3000

@@ -3,16 +3,20 @@
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 import xarray as xr
 from scipy import ndimage
 
 from cytodisk.arrays import BoolArray, FloatArray
-from cytodisk.checks import number_between
+from cytodisk.checks import number_between, whole_number
 from cytodisk.errors import ParameterError
+from cytodisk.simulate.drawing import half_covered
 from cytodisk.simulate.random_cells import migrating
+from cytodisk.simulate.resting_shapes import lobed
 
 _CHANNELS = ["edge", "perinuclear"]
 _PIXEL_SIZE_UM = 0.16
+_MARGIN = 10  # px of background around a cell with a cortex
 
 
 def linear_signal(
@@ -180,7 +184,61 @@ def cell_with_signal(seed: int = 0) -> SimulatedCell:
     mask = migrating(seed)
     expected = np.stack([_leading_edge(mask), _around_nucleus(mask)]) + 20.0
     counts = np.random.default_rng([seed, 1]).poisson(expected).astype(np.uint16)
-    return SimulatedCell(mask, _image(counts), _image(expected))
+    signal, truth = (_image(values, _CHANNELS, _PIXEL_SIZE_UM) for values in (counts, expected))
+    return SimulatedCell(mask, signal, truth)
+
+
+def cell_with_cortex(
+    radius_um: float = 8.0, seed: int = 0, *, decay_um: float = 1.0, pixel_size_um: float = 0.16
+) -> SimulatedCell:
+    """A round cell with one cortex: cells of any size have the same signal at the same depth.
+
+    Parameters
+    ----------
+    radius_um : float
+        Of the disk of the same area, above 10 pixels.
+    seed : int
+        Shallow lobes of the outline, and noise.
+    decay_um : float
+        Depth at which 1/e of the cortex is left.
+    pixel_size_um : float
+
+    Returns
+    -------
+    SimulatedCell
+        Channel "cortex": 100 counts at the edge that decay exponentially with depth, without background.
+
+    Raises
+    ------
+    ParameterError
+        A number out of its range.
+
+    See Also
+    --------
+    cell_with_signal : A migrating cell.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> cell = cd.simulate.cell_with_cortex(4.0)
+    >>> cell.signal.dims, cell.signal.attrs["pixel_size_um"]
+    (('channel', 'y', 'x'), 0.16)
+    """
+    seed = whole_number("seed", seed, 0)
+    pixel_size_um = number_between("pixel_size_um", pixel_size_um, 1e-6)
+    radius = number_between("radius_um", radius_um, 10.0 * pixel_size_um) / pixel_size_um
+    decay = number_between("decay_um", decay_um, 1e-6) / pixel_size_um
+    outline = lobed(np.random.default_rng([seed, 2]), radius, 0.03)
+    outline = outline - np.floor(outline.min(axis=0)) + _MARGIN
+    height, width = np.ceil(outline.max(axis=0)).astype(int) + _MARGIN + 1
+    mask = half_covered(outline, (int(height), int(width)))
+    pixels = np.argwhere(mask).astype(np.float64)
+    expected = np.zeros((1, *mask.shape))
+    away = shapely.distance(shapely.LinearRing(outline), shapely.points(pixels))
+    expected[0, mask] = 100.0 * np.exp(-away / decay)
+    counts = np.random.default_rng([seed, 1]).poisson(expected).astype(np.uint16)
+    signal, truth = (_image(values, ["cortex"], pixel_size_um) for values in (counts, expected))
+    return SimulatedCell(mask, signal, truth)
 
 
 def _leading_edge(mask: BoolArray) -> FloatArray:
@@ -198,10 +256,12 @@ def _around_nucleus(mask: BoolArray) -> FloatArray:
     return np.asarray(np.where(mask, 40.0 + ring, 0.0))
 
 
-def _image(values: np.ndarray[tuple[int, ...], np.dtype[np.generic]]) -> xr.DataArray:
+def _image(
+    values: np.ndarray[tuple[int, ...], np.dtype[np.generic]], channels: list[str], pixel_size_um: float
+) -> xr.DataArray:
     return xr.DataArray(
         values,
         dims=("channel", "y", "x"),
-        coords={"channel": _CHANNELS},
-        attrs={"pixel_size_um": _PIXEL_SIZE_UM, "frame_interval_s": None},
+        coords={"channel": channels},
+        attrs={"pixel_size_um": pixel_size_um, "frame_interval_s": None},
     )

@@ -4,20 +4,23 @@ from collections.abc import Callable
 from typing import Literal, get_args
 
 import numpy as np
+from scipy.special import ndtr, stdtrit
 
 from cytodisk.arrays import FloatArray
 
 StressKind = Literal["pulse", "restless", "rising", "steady", "heavy tails"]
 STRESS_KINDS: tuple[StressKind, ...] = get_args(StressKind)
 
-PULSE_FRAMES, PULSE_HEIGHT = 3, 6.0  # standard deviations
-EPISODE_SHARE, EPISODE_GAIN = 0.2, 4.0  # of the frames; of the standard deviation
+PULSE_FRAMES, PULSE_HEIGHT = 3, 4.5  # standard deviations
+EPISODE_SHARE, EPISODE_GAIN = 0.1, 3.0  # of the frames; of the standard deviation
 RISE = 4.0  # times the first standard deviation at the end
-STEADY_PERIOD, STEADY_SHARE = 10.0, 0.9  # frames; of the variance
+STEADY_PERIOD, STEADY_SHARE = 10.0, 0.5  # frames; of the variance
 TAILS = 2.5  # degrees of freedom of Student's t
 
 
-def stressed(kind: StressKind, seed: int, series: tuple[FloatArray, ...]) -> tuple[FloatArray, ...]:
+def stressed(
+    kind: StressKind, seed: int, series: tuple[FloatArray, FloatArray]
+) -> tuple[FloatArray, FloatArray]:
     """Make stressed series of independent ones, at the same frames in all.
 
     Parameters
@@ -26,17 +29,18 @@ def stressed(kind: StressKind, seed: int, series: tuple[FloatArray, ...]) -> tup
         One of `STRESS_KINDS`.
     seed : int
         Draws when a pulse or an episode comes.
-    series : tuple of ndarray of shape (T, ...) and dtype float
-        Of variance 1.
+    series : two ndarrays of shape (T, ...) and dtype float
+        Activity and velocity, of variance 1.
 
     Returns
     -------
-    tuple of ndarray
+    two ndarrays
         In the shapes of `series`.
     """
     frames = len(series[0])
     share = np.random.default_rng([seed, 9]).uniform()
-    return tuple(_STRESSES[kind](values, frames, share) for values in series)
+    activity, velocity = (_STRESSES[kind](values, frames, share) for values in series)
+    return activity, velocity
 
 
 def _pulse(values: FloatArray, frames: int, share: float) -> FloatArray:
@@ -60,8 +64,8 @@ def _rising(values: FloatArray, frames: int, share: float) -> FloatArray:
 
 
 def _steady(values: FloatArray, frames: int, share: float) -> FloatArray:
-    """Oscillators of one period; a Hilbert pair of the noise's first frames gives smooth random phases."""
-    turn = 2.0 * np.pi * np.arange(frames) / STEADY_PERIOD
+    """Oscillators of one period. Noise of the last and first frame gives phases as smooth as the series."""
+    turn = np.asarray(2.0 * np.pi / STEADY_PERIOD * np.arange(float(frames)))
     phase = np.arctan2(values[-1], values[0])
     wave = np.sqrt(2.0) * np.cos(_down(turn, values) + phase)
     return np.asarray(np.sqrt(STEADY_SHARE) * wave + np.sqrt(1.0 - STEADY_SHARE) * values)
@@ -69,9 +73,7 @@ def _steady(values: FloatArray, frames: int, share: float) -> FloatArray:
 
 def _heavy(values: FloatArray, frames: int, share: float) -> FloatArray:
     """Gaussian numbers to those of Student's t at the same quantile, scaled to variance 1."""
-    from scipy.stats import norm, t  # slow to import
-
-    tails = t.ppf(norm.cdf(values), TAILS)
+    tails = stdtrit(TAILS, ndtr(values))
     return np.asarray(tails * np.sqrt((TAILS - 2.0) / TAILS))
 
 
