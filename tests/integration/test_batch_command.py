@@ -2,6 +2,7 @@
 
 import csv
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -99,3 +100,13 @@ def test_what_failed_is_said(
     ]
     assert "a refused: mask is empty\nb timed out: took longer\n… and 29 more" in errors
     assert ("no input went well" in errors) == (not ok)
+
+
+def test_qc_flags_of_the_inputs_are_counted(run: Run, study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    summary = BatchSummary("out")
+    for flags in ("area jumps; image border", "area jumps", ""):
+        summary.count(replace(row("c", "ok", ""), flags=flags))
+    monkeypatch.setattr(module, "batch_study", lambda *args, **options: summary)
+    said = run("batch", study, "-o", "out")[1]
+    words = "QC flags, by number of inputs: area jumps (2), image border (1); column 'flags' of inputs.csv"
+    assert words in said.splitlines()

@@ -446,4 +446,6 @@ def test_cells_with_qc_flags_are_named(run: Run, tmp_path: Path) -> None:
     path = write(tmp_path / "mask.tif", mask)
     assert "QC flag\tperhaps more than one cell" in run("check", path)[1]
     said = run("map", path, "-o", tmp_path / "out", "--figures", 0)[1]
-    assert "look at cell 0 (frame 0): perhaps more than one cell" in said
+    assert "QC flag flagged masks: 1 cell may not be one whole cell (cell 0, frame 0: perhaps more" in said
+    assert "QC flag warnings" not in said
+    assert "Look at the mask; correct the segmentation" in said

@@ -264,7 +264,8 @@ def test_a_cell_on_the_border_is_said(run: Run, tmp_path: Path) -> None:
     path = write(tmp_path / "m.tif", disks()[:, 12:])
     code, said, _ = run("movie", path, "-o", tmp_path / "out", *GRID)
     assert code == 0
-    assert "1 cell on the image's border in 5 frames: that part of the edge has no velocity" in said
+    assert "QC flag image border: the cell touches the image's border in 5 frames" in said
+    assert "Leave the sectors at the border out" in said
 
 
 def test_labels_that_change_are_linked(run: Run, tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cytodisk.cli.console import console_for, count, fail, progress_bar
+from cytodisk.cli.flag_words import MOST_FLAGS
 from cytodisk.cli.options import Given, Quiet, with_parameters
 from cytodisk.runs.run_options import BatchOptions
 
@@ -90,6 +91,10 @@ def _finish(console: "Console", summary: "BatchSummary") -> None:
     if total - done > len(summary.failed):
         rest = total - done - len(summary.failed)
         print(f"… and {rest} more: columns 'status' and 'reason' of inputs.csv", file=sys.stderr)
+    if summary.flags:
+        most = ", ".join(f"{name} ({number})" for name, number in summary.flags.most_common(MOST_FLAGS))
+        more = f", … {len(summary.flags) - MOST_FLAGS} more" if len(summary.flags) > MOST_FLAGS else ""
+        console.print(f"QC flags, by number of inputs: {most}{more}; column 'flags' of inputs.csv")
     for remark in summary.remarks:
         console.print(f"note: {remark}")
     if lost:

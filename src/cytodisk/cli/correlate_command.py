@@ -7,6 +7,7 @@ import typer
 
 from cytodisk.cli.console import console_for, progress_bar
 from cytodisk.cli.correlation_words import say_correlation, say_replaced
+from cytodisk.cli.flag_words import say_flags, say_study_flags
 from cytodisk.cli.options import Figures, Given, MovieStudy, Quiet, with_parameters
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 
@@ -49,6 +50,7 @@ def correlate_command(
     draw_correlation(quiet, there, found, figures, wanted)
     say_correlation(console, found)
     say_replaced(console, before, found.settings)
+    say_study_flags(console, open_study(study))
 
 
 def report_command(
@@ -84,11 +86,7 @@ def write_page(
     image = open_frames(signal) if signal is not None else None
     with progress_bar(quiet, "frames", stopped=NOTHING_CHANGED) as progress:
         page = write_report(study, out, cell=cell, signal=image, progress=progress)
-    flags = page_flags(study, image)
-    for flag in flags:
-        console.print(f"QC flag: {flag.what}")
-    if not flags:
-        console.print("no QC flags")
+    say_flags(console, page_flags(study, image), "they are first on the page")
     console.print(f"report: {page} ({page.stat().st_size / 1e6:.1f} MB), open it in a browser")
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from cytodisk.cli.console import count, fail
+from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.images.mask_names import without_name
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
             f"median {mapped['seconds'].median():.2f} s a cell; median area distortion (mean |log λ|) "
             f"{mapped['area_distortion'].median():.3f}; empty windows {int(mapped['empty_windows'].sum())}"
         )
-    _say_remarks(console, mapped, of_folder)
+    _say_remarks(console, mapped)
     if of_folder:
         numbers = [cell if label else None for cell, label in zip(lost["cell"], lost["label"], strict=True)]
         say_reasons(zip(numbers, lost["source"], lost["status"], lost["reason"], strict=True))
@@ -50,6 +51,7 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
         _say_lost(lost)
     if 0 < figures < len(mapped):
         console.print(f"figures drawn for the first {count(figures)}: --figures -1 draws all")
+    say_study_flags(console, study)
     console.print(f"results: {study.path}")
     unreadable = int((rows["status"] == "unreadable").sum())
     if not len(mapped):
@@ -102,16 +104,10 @@ def percent(part: int, whole: int) -> str:
     return f"{100 * part // whole} %"
 
 
-def _say_remarks(console: "Console", mapped: "pd.DataFrame", of_folder: bool) -> None:
+def _say_remarks(console: "Console", mapped: "pd.DataFrame") -> None:
     remarks = mapped[mapped["notes"] != ""]
     if len(remarks):
         console.print(f"{count(len(remarks))} with remarks: column 'notes' of cells.parquet")
-    flagged = mapped[mapped["qc_flags"] != ""]
-    for _, row in flagged.head(_MOST_LINES).iterrows():
-        place = row["source"] if of_folder else f"frame {row['frame']}"
-        console.print(f"look at cell {row['cell']} ({place}): {row['qc_flags']}")
-    if len(flagged) > _MOST_LINES:
-        console.print(f"… and at {len(flagged) - _MOST_LINES} more: column 'qc_flags' of cells.parquet")
 
 
 def _say_lost(lost: "pd.DataFrame") -> None:

@@ -5,6 +5,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from cytodisk.cli.console import RESUME, console_for, count, fail, progress_bar
+from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.cli.options import (
     Figures,
     Given,
@@ -84,6 +85,7 @@ def finish_movie(console: "Console", study: "Study") -> None:
             print(f"cell {row['cell']}, frame {row['frame']} {status}: {row['reason']}", file=sys.stderr)
         if len(lost) > 10:
             print(f"… and {len(lost) - 10} more {status}: column 'reason' of cells.parquet", file=sys.stderr)
+    say_study_flags(console, study)
     console.print(f"results: {study.path}")
     if not len(mapped):
         fail(f"no frame could be mapped: {frames['reason'].iloc[0]}")
@@ -105,18 +107,3 @@ def _say_measures(console: "Console", study: "Study", mapped: Any) -> None:
         f"window centroids move {study.consistency['centroid_displacement'].mean():.3g} {length} a frame; "
         f"{alike}empty windows {int(mapped['empty_windows'].sum())}"
     )
-    for name, words in (
-        ("restarted", "tracking started anew"),
-        ("qc_flags", "look at the mask"),
-    ):
-        marked = mapped[mapped[name] != ""]
-        for _, row in marked.head(10).iterrows():
-            console.print(f"cell {row['cell']}, frame {row['frame']}: {words}: {row[name]}")
-        if len(marked) > 10:
-            console.print(f"… and {len(marked) - 10} more frames: column '{name}' of cells.parquet")
-    border = mapped.groupby("cell")["touches_border"].sum()
-    if border.any():
-        console.print(
-            f"{count(int((border > 0).sum()))} on the image's border in {int(border.sum())} frames: "
-            "that part of the edge has no velocity"
-        )

@@ -9,7 +9,9 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.analysis.activity import STATISTICS, window_arrays
+from cytodisk.analysis.pixel_pileup import Pileup, pileup
 from cytodisk.errors import CytodiskError, EmptyMaskError, ReadError, SignalError
+from cytodisk.geometry.outline_step import outline_step
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
 from cytodisk.windows.polar_windows import CellWindows
 
@@ -110,6 +112,7 @@ def _cell_columns(windows: CellWindows, image: xr.DataArray | None) -> dict[str,
     centre = centroid(disk.outline_yx)
     smooth = smooth_closed(disk.outline_yx, _PERIMETER_SMOOTHING_PX)
     missing = int((~np.isfinite(image.to_numpy()[:, disk.mask])).sum()) if image is not None else 0
+    ends = pileup(image, disk.mask) if image is not None else Pileup()
     return {
         "notes": "; ".join(_notes(windows, missing)),
         "qc_flags": "; ".join(report.qc_flags),
@@ -124,7 +127,12 @@ def _cell_columns(windows: CellWindows, image: xr.DataArray | None) -> dict[str,
         "filled_px": report.filled_px,
         "touches_border": report.touches_border,
         "border_share": report.border_share,
+        "outline_step_px": outline_step(disk.outline_yx),
         "nan_px": missing,
+        "clipped_share": ends.clipped,
+        "clipped_channel": ends.clipped_channel,
+        "saturated_share": ends.saturated,
+        "saturated_channel": ends.saturated_channel,
         "certificate_valid": certificate.valid,
         "flipped": len(certificate.flipped_in_disk),
         "vertices": len(disk.vertices_yx),

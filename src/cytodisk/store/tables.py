@@ -80,8 +80,29 @@ CELL_COLUMNS: Columns = (
     TOUCHES_BORDER,
     Column("border_share", pa.float64(), "1", "share of the outline that lies on the border of the image"),
     Column(
+        "outline_step_px",
+        pa.int64(),
+        "px",
+        "length of the steps in the outline: 1, or more for a mask that was drawn small and scaled up",
+    ),
+    Column(
         "nan_px", pa.int64(), "px²", "pixels of the mask that were not a number; they count as background"
     ),
+    Column(
+        "clipped_share",
+        pa.float64(),
+        "1",
+        "share of the cell's pixels that are cut off at the smallest value, in the worst channel; "
+        "0 if the zeros are no more than a dim image has",
+    ),
+    Column("clipped_channel", pa.string(), "", "that channel; empty if the share is 0"),
+    Column(
+        "saturated_share",
+        pa.float64(),
+        "1",
+        "share of the cell's pixels that are cut off at the largest value, in the channel with most of them",
+    ),
+    Column("saturated_channel", pa.string(), "", "that channel; empty if the share is 0"),
     Column("certificate_valid", pa.bool_(), "", "whether the map is proven to be one to one"),
     Column("flipped", pa.int64(), "", "number of triangles that the map turns over; 0 in a valid map"),
     Column("vertices", pa.int64(), "", "number of vertices of the mesh"),

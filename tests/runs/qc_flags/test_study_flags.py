@@ -182,3 +182,27 @@ def test_single_masks() -> None:
         ("strong distortion", [(2, None)]),
     ]
     assert flags[0].what == "1 cell refused"
+
+
+@pytest.mark.parametrize(
+    ("columns", "name", "note"),
+    [
+        ({"clipped_share": 0.75, "clipped_channel": "VASP"}, "clipped signal", "VASP: 75% of the cell"),
+        (
+            {"saturated_share": 0.034, "saturated_channel": "A"},
+            "saturated signal",
+            "A: 3.4% of the cell",
+        ),
+        ({"outline_step_px": 4}, "coarse outline", "steps of 4 px"),
+    ],
+)
+def test_faults_of_what_came_in(columns: dict[str, object], name: str, note: str) -> None:
+    study = made()
+    fine = {"clipped_share": 0.1, "saturated_share": 0.01, "outline_step_px": 1}
+    for column, value in (fine | {"clipped_channel": "", "saturated_channel": ""}).items():
+        study.cells[column] = value
+    assert qc_flags(study) == []
+    for column, value in columns.items():
+        study.cells.loc[[3, 4], column] = value
+    flag = only(study)
+    assert (flag.name, where(flag), flag.places[0].note) == (name, [(0, 3), (0, 4)], note)

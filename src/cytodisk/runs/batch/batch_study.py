@@ -55,16 +55,20 @@ class BatchSummary:
         The first twenty that are not "ok".
     remarks : list of str
         What else the user should know.
+    flags : Counter of str
+        Number of inputs by the name of a QC flag that their study has.
     """
 
     out: str
     statuses: Counter[str] = field(default_factory=Counter)
     failed: list[InputRow] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
+    flags: Counter[str] = field(default_factory=Counter)
 
     def count(self, row: InputRow) -> None:
         """Take an input into account."""
         self.statuses[row.status] += 1
+        self.flags.update(filter(None, row.flags.split("; ")))
         if row.status != "ok" and len(self.failed) < _MOST_FAILED:
             self.failed.append(row)
 

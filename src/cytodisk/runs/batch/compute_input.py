@@ -71,6 +71,8 @@ def _compute(item: BatchInput, folder: Path) -> dict[str, Any]:
 
 
 def _facts(study: Study) -> dict[str, Any]:
+    from cytodisk.runs.qc_flags.study_flags import qc_flags
+
     rows, provenance = study.cells, study.provenance
     mapped = int((rows["status"] == "ok").sum())
     facts = {
@@ -79,6 +81,7 @@ def _facts(study: Study) -> dict[str, Any]:
         "frames": len(rows),
         "mapped": mapped,
         "qc_flags": int((rows["qc_flags"].fillna("") != "").sum()),
+        "flags": "; ".join(flag.name for flag in qc_flags(study)),
         "pixel_size_um": provenance["pixel_size_um"],
         "frame_interval_s": provenance["frame_interval_s"],
         "length_unit": provenance["length_unit"],

@@ -38,6 +38,8 @@ class InputRow:
         Cells; for a movie frames of all cells, else the same; and how many of them have a map.
     qc_flags : int
         Cells (of a movie frames of all cells) whose mask has a QC flag.
+    flags : str
+        Names of the study's QC flags, with semicolons between, the gravest first.
     pixel_size_um, frame_interval_s : float or None
     length_unit, velocity_unit : str
         Units of its tables.
@@ -60,6 +62,7 @@ class InputRow:
     frames: int = 0
     mapped: int = 0
     qc_flags: int = 0
+    flags: str = ""
     pixel_size_um: float | None = None
     frame_interval_s: float | None = None
     length_unit: str = ""

@@ -7,42 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted, frames_of, mapped_rows
+from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted, frames_of
 from cytodisk.runs.qc_flags.signal_drift import signal_drifts
 from cytodisk.store.study import Study
 
-LARGEST_AREA_STEP = 0.05
-"""Relative change of area from a frame to the next that is never flagged."""
-AREA_STEP_SPREADS = 6.0
-"""Changes of area beyond so many robust standard deviations of the cell's own are flagged."""
 VELOCITY_SPREADS = 15.0
 """Edge velocities beyond so many robust standard deviations of the cell's own are flagged."""
 SMALLEST_FAST_STEP_PX = 3.0
 """Motion of the edge in a frame, in px, that is never flagged."""
 
 _MAD_TO_SD = 1.4826  # of a normal distribution
-
-
-def area_jumps(study: Study) -> Iterator[QCFlag]:
-    if not study.is_movie:
-        return
-    places: list[Place] = []
-    for cell, rows in mapped_rows(study).groupby("cell"):
-        time, area = rows["frame"].to_numpy(), np.log(rows["area"].to_numpy(dtype=np.float64))
-        step = np.where(np.diff(time) == 1, np.diff(area), np.nan)
-        bar = max(float(np.log1p(LARGEST_AREA_STEP)), AREA_STEP_SPREADS * _spread(step))
-        at = np.flatnonzero(np.abs(step) > bar)
-        places += [
-            Place(int(str(cell)), int(time[k + 1]), f"{np.expm1(step[k]):+.0%}".replace("-", "−")) for k in at
-        ]
-    if places:
-        yield QCFlag(
-            "area jumps",
-            f"the mask's area jumps in {frames_of(study, len(places))}",
-            "Cells do not gain or lose so much at once: the mask did. Windows and velocity are wrong there.",
-            "Look at the mask; correct the segmentation or leave the frames out.",
-            tuple(places),
-        )
 
 
 def fast_edge(study: Study) -> Iterator[QCFlag]:

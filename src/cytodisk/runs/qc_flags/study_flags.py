@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from cytodisk.runs.qc_flags import column_flags, correlation_flags, motion_flags
+from cytodisk.runs.qc_flags import area_jumps, column_flags, correlation_flags, input_flags, motion_flags
 from cytodisk.runs.qc_flags.qc_flag import QCFlag, counted
 from cytodisk.store.study import Study
 
@@ -30,7 +30,7 @@ def qc_flags(study: Study) -> list[QCFlag]:
     -----
     A frame is compared with the other frames of its own cell where cells differ by nature (area, velocity),
     by the median of absolute values, so that the faults themselves do not raise the bar; the thresholds are
-    the constants of `column_flags`, `motion_flags`, `signal_drift` and `correlation_flags`.
+    the constants of the modules beside this one.
 
     Examples
     --------
@@ -49,7 +49,7 @@ def qc_flags(study: Study) -> list[QCFlag]:
 def _other_warnings(study: Study, found: Sequence[QCFlag]) -> Iterator[QCFlag]:
     """Warnings of the run that no other flag tells already."""
     told = {(place.cell, place.frame) for flag in found for place in flag.places}
-    heads = tuple(f"cell {cell}, frame {frame}:" for cell, frame in told)
+    heads = tuple(head for cell, frame in told for head in _heads(study, cell, frame))
     warnings = [str(words) for words in study.provenance.get("warnings", [])]
     other = [words for words in warnings if not words.startswith(heads)]
     if other:
@@ -61,10 +61,25 @@ def _other_warnings(study: Study, found: Sequence[QCFlag]) -> Iterator[QCFlag]:
         )
 
 
+def _heads(study: Study, cell: int, frame: int | None) -> Iterator[str]:
+    """How a run's warning about a cell may start."""
+    if study.is_movie:
+        yield f"cell {cell}, frame {frame}:"
+        return
+    yield f"cell {cell}:"
+    if "source" in study.cells:
+        (source,) = study.cells.loc[study.cells["cell"] == cell, "source"]
+        yield f"cell {cell} of {source}:"
+        yield f"{source}:"  # a file without a cell
+
+
 _RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     column_flags.without_map,
     column_flags.flagged_masks,
-    motion_flags.area_jumps,
+    area_jumps.area_jumps,
+    input_flags.clipped_signal,
+    input_flags.saturated_signal,
+    input_flags.coarse_outline,
     motion_flags.fast_edge,
     column_flags.tracking_residual,
     column_flags.order_violations,

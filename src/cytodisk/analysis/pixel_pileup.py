@@ -1,0 +1,134 @@
+"""Pixels that pile up at the smallest or the largest value of a cell: clipped and saturated signals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cytodisk.arrays import IntArray
+
+FEWEST_PIXELS = 25
+"""Levels beside the end of the range are pooled until they hold so many pixels."""
+
+_LEAST_SHARE = 0.005  # of the cell's pixels; less is not looked at
+_PHOTON_LOSS = 4.0  # zeros of dim, uneven images: so many times a series through the next levels at most
+_ABOVE_NEIGHBOURS = 4.0  # times the levels below it that a pile at the top must hold
+_ABOVE_AT_CEILING = 2.0  # the same where the value is one at which cameras end
+_CEILINGS = (255.0, 1023.0, 4095.0, 16383.0, 65535.0)
+_NEARLY_ALL = 0.99
+
+
+@dataclass(frozen=True)
+class Pileup:
+    """How much of a cell is at the ends of a signal's range, in the channel that is worst.
+
+    Attributes
+    ----------
+    clipped, saturated : float
+        Share of the cell's pixels that pile up at the smallest and at the largest value.
+    clipped_channel, saturated_channel : str
+        Channel of that share; empty if it is 0.
+    """
+
+    clipped: float = 0.0
+    clipped_channel: str = ""
+    saturated: float = 0.0
+    saturated_channel: str = ""
+
+
+def pileup(image: Any, inside: Any) -> Pileup:
+    """Shares of the channel that is clipped most and of the one that is saturated most.
+
+    Parameters
+    ----------
+    image : DataArray with dims (channel, y, x)
+    inside : ndarray of shape (H, W) and dtype bool
+        The cell.
+
+    Returns
+    -------
+    Pileup
+    """
+    clipped, saturated = (0.0, ""), (0.0, "")
+    for name, values in zip(image["channel"].to_numpy(), image.to_numpy()[:, inside], strict=True):
+        known = values[np.isfinite(values)]
+        clipped = max(clipped, (clipped_share(known), str(name)), key=lambda found: found[0])
+        saturated = max(saturated, (saturated_share(known), str(name)), key=lambda found: found[0])
+    return Pileup(*clipped, *saturated)
+
+
+def clipped_share(values: Any) -> float:
+    """Share of values that were cut off at the smallest one.
+
+    A dim image has many zeros too, as many pixels get no photon. There the levels above fall off like a
+    series: 0.74, 0.22, 0.03. A clipped signal has one high level, and few values at each of the next ones.
+
+    Parameters
+    ----------
+    values : ndarray of shape (N,)
+        Finite.
+
+    Returns
+    -------
+    float
+        0 for zeros that the levels above explain, and for a cell that has one value other than 0.
+    """
+    if not values.size:
+        return 0.0
+    lowest = values.min()
+    share = float(np.mean(values == lowest))
+    if share < _LEAST_SHARE:
+        return 0.0
+    if share == 1.0:
+        return 1.0 if lowest == 0 else 0.0
+    counts = np.unique(values, return_counts=True)[1]
+    near, next_, levels = _pooled(counts[1:])
+    if levels == 0:
+        return share if share > _NEARLY_ALL else 0.0
+    explained = np.inf if next_ == 0 else _PHOTON_LOSS * near**2 / next_ / levels
+    return share if counts[0] > explained else 0.0
+
+
+def saturated_share(values: Any) -> float:
+    """Share of values that were cut off at the largest one.
+
+    Parameters
+    ----------
+    values : ndarray of shape (N,)
+        Finite.
+
+    Returns
+    -------
+    float
+        0 for a largest value that is no more frequent than those just below it.
+    """
+    if not values.size:
+        return 0.0
+    highest = values.max()
+    share = float(np.mean(values == highest))
+    at_ceiling = float(highest) in _CEILINGS
+    if share < _LEAST_SHARE:
+        return 0.0
+    if share == 1.0:
+        return 1.0 if at_ceiling else 0.0
+    counts = np.unique(values, return_counts=True)[1][::-1]
+    near, _, levels = _pooled(counts[1:])
+    if levels == 0:
+        return share if at_ceiling else 0.0
+    bar = _ABOVE_AT_CEILING if at_ceiling else _ABOVE_NEIGHBOURS
+    return share if counts[0] > bar * near / levels else 0.0
+
+
+def _pooled(counts: IntArray) -> tuple[float, float, int]:
+    """Pixels in the fewest next levels that hold `FEWEST_PIXELS`, in as many after them, and their number.
+
+    The number is 0 if all levels together hold fewer.
+    """
+    total = np.cumsum(counts)
+    levels = 1 + int(np.searchsorted(total, FEWEST_PIXELS))
+    if levels > len(counts):
+        return 0.0, 0.0, 0
+    near = float(total[levels - 1])
+    return near, float(total[min(2 * levels, len(counts)) - 1]) - near, levels

@@ -1,0 +1,69 @@
+"""The QC flags of a study in lines of the console: what is wrong, where, and what to do."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag
+    from cytodisk.store.study import Study
+
+MOST_FLAGS = 8
+_MOST_PLACES = 3
+_LONGEST_NOTE = 160
+
+
+def say_study_flags(console: "Console", study: "Study") -> None:
+    """Print the QC flags of a study."""
+    from cytodisk.runs.qc_flags.study_flags import qc_flags
+
+    page = f"cytodisk report {study.path}" if study.is_movie else "cytodisk.qc_flags(study) in Python"
+    cells = study.cells
+    many = "source" in cells and cells["source"].nunique() > 1
+    files = dict(zip(cells["cell"], cells["source"], strict=True)) if many else {}
+    say_flags(console, qc_flags(study), f"see {page}", files)
+
+
+def say_flags(
+    console: "Console", flags: Sequence["QCFlag"], where_all: str, files: Mapping[int, str] | None = None
+) -> None:
+    """Print QC flags, a line each, the gravest first.
+
+    Parameters
+    ----------
+    console : Console
+    flags : sequence of QCFlag
+        As `qc_flags` sorts them.
+    where_all : str
+        Where those stand for which there is no room.
+    files : mapping of int to str, optional
+        Name of the file of each cell, where they come from several.
+    """
+    for line in flag_lines(flags, where_all, files or {}):
+        console.print(line)
+
+
+def flag_lines(flags: Sequence["QCFlag"], where_all: str, files: Mapping[int, str]) -> Iterator[str]:
+    """The lines of `say_flags`."""
+    for flag in flags[:MOST_FLAGS]:
+        places = f" ({places_words(flag.places, files)})" if flag.places else ""
+        yield f"QC flag {flag.name}: {flag.what}{places}. {flag.advice}"
+    if len(flags) > MOST_FLAGS:
+        yield f"… and {len(flags) - MOST_FLAGS} more QC flags: {where_all}"
+    if not flags:
+        yield "no QC flags"
+
+
+def places_words(places: Sequence["Place"], files: Mapping[int, str]) -> str:
+    """The first places of a flag, as "cell 0, frame 12: +9%; cell 0, frame 40: +12%; … 7 more"."""
+    words = [_place(place, files) for place in places[:_MOST_PLACES]]
+    more = len(places) - _MOST_PLACES
+    return "; ".join([*words, f"… {more} more"] if more > 0 else words)
+
+
+def _place(place: "Place", files: Mapping[int, str]) -> str:
+    where = f"cell {place.cell}" + (f" of {files[place.cell]}" if place.cell in files else "")
+    where += "" if place.frame is None else f", frame {place.frame}"
+    note = place.note if len(place.note) <= _LONGEST_NOTE else place.note[:_LONGEST_NOTE] + "…"
+    return f"{where}: {note}" if note else where

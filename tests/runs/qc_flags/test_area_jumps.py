@@ -1,0 +1,61 @@
+"""Leaps of a mask's area, put into series that waver, grow or pulse by themselves."""
+
+import numpy as np
+import pytest
+
+from cytodisk.runs.qc_flags.area_jumps import leaps
+
+FRAMES = 60
+AT = [12, 25, 41]
+
+
+def growth(name: str, random: np.random.Generator) -> np.ndarray:
+    """Change of ln(area) from frame to frame of a cell without fault."""
+    noise = random.normal(0.0, 0.004, FRAMES - 1)
+    time = np.arange(FRAMES - 1)
+    drift = {
+        "still": 0.0 * time,
+        "growing": np.full(FRAMES - 1, 0.025),
+        "pulsing": 0.02 * np.sin(2 * np.pi * time / 20),
+        "a protrusion": np.where((time > 10) & (time < 30), 0.03, 0.0),
+        "a wavering edge": 0.008 * random.normal(size=FRAMES - 1),
+    }
+    return drift[name] + noise
+
+
+KINDS = ("still", "growing", "pulsing", "a protrusion", "a wavering edge")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_leap_in_cells_without_fault(kind: str) -> None:
+    found = [leaps(growth(kind, np.random.default_rng(seed))) for seed in range(1000, 1050)]
+    assert sum(map(bool, found)) <= 1
+
+
+@pytest.mark.parametrize("comes_back", [False, True])
+@pytest.mark.parametrize("kind", KINDS)
+def test_three_leaps_of_different_size_are_all_found(kind: str, comes_back: bool) -> None:
+    missed = 0
+    for seed in range(1000, 1020):
+        step = growth(kind, np.random.default_rng(seed))
+        for at, share in zip(AT, (0.08, 0.12, 0.16), strict=True):
+            step[at] += np.log1p(share)
+            if comes_back:
+                step[at + 1] -= np.log1p(share)
+        missed += len(set(AT) - set(leaps(step)))
+    assert missed <= (12 if kind == "a wavering edge" else 0)
+
+
+def test_leaps_close_together() -> None:
+    step = growth("growing", np.random.default_rng(1000))
+    for at, share in zip(range(20, 26), (0.1, -0.09, 0.12, 0.1, -0.15, -0.08), strict=True):
+        step[at] = np.log1p(share)
+    assert leaps(step) == [20, 21, 22, 23, 24, 25]
+
+
+def test_a_gap_and_a_short_movie() -> None:
+    step = growth("still", np.random.default_rng(1000))
+    step[20] = np.nan
+    assert leaps(step) == []
+    assert leaps(np.array([])) == leaps(np.array([np.nan])) == []
+    assert leaps(np.array([0.0, 0.01, 0.2, 0.0])) == [2]
