@@ -154,6 +154,7 @@ def test_units_follow_what_is_known(
     area, length = ("px²", "px") if pixel is None else ("µm²", "µm")
     expected = {
         "velocity": (unit, factor),
+        "velocity_fastest": (unit, factor),
         "velocity_error": (unit, factor),
         "protruded_area": (area, (pixel or 1.0) ** 2),
         "retracted_area": (area, (pixel or 1.0) ** 2),
@@ -230,8 +231,11 @@ def test_displacement_in_the_cells_frame_is_that_of_registered_points(first: flo
         for time, (transform, radius) in enumerate(zip(transforms, (30.0, 33.0), strict=True))
     )
     np.testing.assert_allclose(normal_displacement(here, there, "cell"), 3.0, atol=1e-3)
-    lab = ((there.points_yx - here.points_yx) * here.normals_yx).sum(axis=1)
-    np.testing.assert_allclose(normal_displacement(here, there, "lab"), lab)
+    # The mean of both frames' normals, by the lengths of edge that they stand for.
+    normals = (30.0 * here.normals_yx + 33.0 * there.normals_yx) / 63.0
+    lab = ((there.points_yx - here.points_yx) * normals).sum(axis=1)
+    np.testing.assert_allclose(normal_displacement(here, there, "lab"), lab, atol=0.05)
+    assert np.ptp(lab) > 2.0
 
 
 @pytest.mark.parametrize("kind", ["bulging", "neutrophil"])
@@ -242,7 +246,10 @@ def test_areas_won_and_lost_are_those_of_the_masks(mapped: Mapped, kind: str) ->
     np.testing.assert_array_equal(changes.protruded_area[:-1].sum("sector"), (after & ~before).sum((1, 2)))
     np.testing.assert_array_equal(changes.retracted_area[:-1].sum("sector"), (before & ~after).sum((1, 2)))
     np.testing.assert_allclose(changes.velocity, edge_velocity(movie, 17))
-    np.testing.assert_allclose(changes.edge_length[:-1].sum("sector"), movie.lengths_px[:-1].sum(axis=1))
+    lengths = movie.lengths_px.sum(axis=1)
+    np.testing.assert_allclose(
+        changes.edge_length[:-1].sum("sector"), 0.5 * (lengths[1:] + lengths[:-1]), rtol=0.01
+    )
 
 
 def test_areas_in_the_cells_own_frame_leave_its_motion_out() -> None:
@@ -257,8 +264,7 @@ def test_areas_in_the_cells_own_frame_leave_its_motion_out() -> None:
 def test_area_won_is_velocity_times_length_of_a_growing_disk(mapped: Mapped) -> None:
     changes = edge_changes(mapped("growing", 41)[1], 12, repeats=2).isel(time=slice(0, -1))
     won = (changes.protruded_area - changes.retracted_area).mean("time")
-    # A ring of width 1 outside a circle of radius r: (r + 1/2) / r of the edge's own length.
-    expected = (changes.velocity * changes.edge_length).mean("time") * (65.5 / 65.0)
+    expected = (changes.velocity * changes.edge_length).mean("time")
     np.testing.assert_allclose(won, expected, rtol=0.03)
 
 
@@ -297,7 +303,7 @@ def test_points_have_their_angles(gappy: DiskMovie) -> None:
     np.testing.assert_array_equal(velocity.angle, gappy.point_angles)
 
 
-@pytest.mark.parametrize("sectors", [1, 7, 60, 700])
+@pytest.mark.parametrize("sectors", [1, 7, 60])
 def test_sectors_are_means_of_their_points_by_length(translating: DiskMovie, sectors: int) -> None:
     by_sector = edge_velocity(translating, sectors)[3].to_numpy()
     by_point = boundary_velocity(translating)[3].to_numpy()

@@ -16,6 +16,7 @@ GEOMETRY = ("area", "centroid_y", "centroid_x")
 MOTION = (
     "velocity",
     "velocity_cell_frame",
+    "velocity_fastest",
     "velocity_error",
     "protruded_area",
     "retracted_area",

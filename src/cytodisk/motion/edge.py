@@ -1,9 +1,8 @@
-"""How the boundary moves from one frame to the next: displacement, areas won and lost, and their error."""
+"""How the boundary moves from one frame to the next: displacement, and areas won and lost."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
 
 import numpy as np
 import shapely
@@ -12,14 +11,11 @@ from scipy.ndimage import gaussian_filter1d
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.motion.contour import Contour
-from cytodisk.motion.disk_movie import on_border
 from cytodisk.motion.matching import match
-from cytodisk.motion.registration import IDENTITY, RigidTransform
-from cytodisk.motion.tracking import TrackedBoundary, point_angles
+from cytodisk.motion.registration import RigidTransform
+from cytodisk.motion.swept_edge import Frame, swept_edge, transforms
+from cytodisk.motion.tracking import TrackedBoundary
 from cytodisk.motion.tracking_parameters import SMOOTHNESS_PX2, JitterParameters
-
-Frame: TypeAlias = Literal["lab", "cell"]
-FRAMES: tuple[Frame, ...] = ("lab", "cell")
 
 _JITTER_REACH_PX = 4.0  # standard deviation of the smoothing of simulated segmentation errors along the edge
 
@@ -31,21 +27,27 @@ class EdgeMotion:
     Attributes
     ----------
     displacement_px : ndarray of shape (S,) and dtype float
-        Mean displacement along the outward normal, weighted by length of boundary; NaN where the sector has
-        no boundary off the image's border.
+        Area that the sector's edge sweeps over its length; NaN where the sector has no boundary off the
+        image's border.
+    fastest_px : ndarray of shape (S,) and dtype float
+        The same of the sector's fastest few pixels of edge.
     error_px : ndarray of shape (S,) and dtype float
         Standard deviation of the displacement if the masks' edges are uncertain by the given jitter.
     protruded_px2, retracted_px2 : ndarray of shape (S,) and dtype float
         Area that the cell won and lost, in square pixels; both at least 0.
     length_px : ndarray of shape (S,) and dtype float
-        Boundary length off the border, in pixels.
+        Mean of the boundary's lengths in both frames, off the border, in pixels.
+    swept_px2 : float
+        Sum over short pieces of the edge of the area that each sweeps, without signs.
     """
 
     displacement_px: FloatArray
+    fastest_px: FloatArray
     error_px: FloatArray
     protruded_px2: FloatArray
     retracted_px2: FloatArray
     length_px: FloatArray
+    swept_px2: float
 
 
 def sector_of(angles: FloatArray, sectors: int) -> IntArray:
@@ -55,7 +57,7 @@ def sector_of(angles: FloatArray, sectors: int) -> IntArray:
 
 
 def normal_displacement(here: TrackedBoundary, there: TrackedBoundary, frame: Frame = "lab") -> FloatArray:
-    """Displacement of each tracked point along the outward normal, in pixels, shape (N,).
+    """Outward displacement of the edge around each tracked point, in pixels, shape (N,).
 
     Parameters
     ----------
@@ -67,15 +69,41 @@ def normal_displacement(here: TrackedBoundary, there: TrackedBoundary, frame: Fr
     Returns
     -------
     ndarray of shape (N,) and dtype float
-        Positive outwards (protrusion), along the normal of the first frame.
+        Positive outwards (protrusion): mean over the edge that is nearer to the point than to its
+        neighbours.
 
     References
     ----------
     u-Unwrap, section 3 and Fig. S5.
     """
-    start, stop = _common(here, there, frame)
-    step = stop(there.points_yx) - start(here.points_yx)
-    return np.asarray((step * (here.normals_yx @ start.rotation.T)).sum(axis=1))
+    return displacement_by_sector(here, there, None, len(here.s), frame)
+
+
+def displacement_by_sector(
+    here: TrackedBoundary,
+    there: TrackedBoundary,
+    image_shape: tuple[int, ...] | None,
+    sectors: int,
+    frame: Frame = "lab",
+) -> FloatArray:
+    """Mean outward displacement of each sector's edge, without what lies on the image's border.
+
+    Parameters
+    ----------
+    here, there : TrackedBoundary
+        Edge on the border in either frame does not count.
+    image_shape : (int, int), or None
+        None if there is no border.
+    sectors : int
+    frame : {"lab", "cell"}
+
+    Returns
+    -------
+    ndarray of shape (S,) and dtype float
+        In pixels; NaN where no edge is left.
+    """
+    area, length, _ = swept_edge(here, there, frame, image_shape).by_sector(sectors)
+    return _over(area, length)
 
 
 def edge_motion(
@@ -105,67 +133,20 @@ def edge_motion(
     -------
     EdgeMotion
     """
-    weights = _sector_weights(here, there, disk_here.mask.shape, sectors)
-    displacement = _mean_by_sector(weights, normal_displacement(here, there, frame))
+    pieces = swept_edge(here, there, frame, disk_here.mask.shape)
+    area, length, fastest = pieces.by_sector(sectors)
     random = np.random.default_rng([jitter.seed, here.frame])
-    draws = [
-        _mean_by_sector(weights, _jittered(here, there, frame, jitter.jitter_px, random))
-        for _ in range(jitter.repeats)
-    ]
-    error = np.std(draws, axis=0, ddof=1) if jitter.repeats > 1 else np.full(sectors, np.nan)
-    start, stop = _common(here, there, frame)
+    draws = [_jittered(here, there, frame, jitter.jitter_px, random, sectors) for _ in range(jitter.repeats)]
+    error = np.where(length > 0.0, np.std(draws, axis=0, ddof=1), np.nan)
+    start, stop = transforms(here, there, frame)
     won = _area_outside(disk_there, stop, disk_here, start, sectors)
     lost = _area_outside(disk_here, start, disk_there, stop, sectors)
-    return EdgeMotion(displacement, error, won, lost, np.asarray(weights.sum(axis=1)))
+    return EdgeMotion(_over(area, length), fastest, error, won, lost, length, pieces.absolute_px2)
 
 
-def mean_by_sector(
-    values: FloatArray,
-    here: TrackedBoundary,
-    there: TrackedBoundary,
-    image_shape: tuple[int, ...],
-    sectors: int,
-) -> FloatArray:
-    """Mean of a number for each tracked point by sector, without points on the image's border.
-
-    Parameters
-    ----------
-    values : ndarray of shape (N,) and dtype float
-    here, there : TrackedBoundary
-        A point on the border in either frame does not count; weights are lengths of boundary in the first.
-    image_shape : (int, int)
-    sectors : int
-
-    Returns
-    -------
-    ndarray of shape (S,) and dtype float
-        NaN where no point is left.
-    """
-    return _mean_by_sector(_sector_weights(here, there, image_shape, sectors), values)
-
-
-def _sector_weights(
-    here: TrackedBoundary, there: TrackedBoundary, image_shape: tuple[int, ...], sectors: int
-) -> FloatArray:
-    """Length of boundary of each point in each sector, shape (S, N); a stretch of points is shared out.
-
-    Points stand for the angles half-way to their neighbours, so that sectors finer than the points have
-    their share as well.
-    """
-    n = len(here.s)
-    shape = (int(image_shape[0]), int(image_shape[1]))
-    off = ~(on_border(here.outline_points_yx, shape) | on_border(there.outline_points_yx, shape))
-    half = np.pi / n
-    low, high = point_angles(n) - half, point_angles(n) + half
-    edges = 2.0 * np.pi * np.arange(sectors + 1) / sectors
-    overlap = np.minimum(high, edges[1:, None]) - np.maximum(low, edges[:-1, None])
-    share = np.maximum(overlap, 0.0) / (2.0 * half)
-    return np.asarray(share * (here.lengths_px * off))
-
-
-def _mean_by_sector(weights: FloatArray, values: FloatArray) -> FloatArray:
+def _over(area: FloatArray, length: FloatArray) -> FloatArray:
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray((weights @ values) / weights.sum(axis=1))
+        return np.asarray(area / length)
 
 
 def _jittered(
@@ -174,6 +155,7 @@ def _jittered(
     frame: Frame,
     jitter_px: float,
     random: np.random.Generator,
+    sectors: int,
 ) -> FloatArray:
     """Normal displacement when both edges are drawn with a random error."""
     start, stop = here.transform, there.transform
@@ -189,7 +171,7 @@ def _jittered(
         TrackedBoundary(here.frame, first, s_first, start),
         TrackedBoundary(there.frame, second, s_second, stop),
     )
-    return normal_displacement(*again, frame)
+    return displacement_by_sector(*again, None, sectors, frame)
 
 
 def _unwrapped(s: FloatArray, length: float) -> FloatArray:
@@ -204,12 +186,6 @@ def _shaken(contour: Contour, jitter_px: float, random: np.random.Generator) -> 
     normals = contour.normals(contour.arc[:-1])
     size = max(float(np.sqrt(np.mean(noise**2))), 1e-12)
     return Contour(contour.points_yx + normals * (jitter_px / size * noise)[:, None], contour.outline_yx)
-
-
-def _common(
-    here: TrackedBoundary, there: TrackedBoundary, frame: Frame
-) -> tuple[RigidTransform, RigidTransform]:
-    return (IDENTITY, IDENTITY) if frame == "lab" else (here.transform, there.transform)
 
 
 def _area_outside(

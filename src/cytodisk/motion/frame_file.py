@@ -32,9 +32,11 @@ def save_frame(path: str | os.PathLike[str], frame: MappedFrame) -> None:
         The file cannot be written.
     """
     boundary = frame.boundary
+    matched = {} if boundary.matched_s is None else {"track_matched_s": boundary.matched_s}
     frame.disk.save(
         path,
-        {
+        matched
+        | {
             "track_s": boundary.s,
             "track_transforms": np.array([astuple(boundary.transform), astuple(boundary.alignment)]),
             "track_residual_px": np.array(boundary.residual_px),
@@ -108,6 +110,7 @@ def _read(path: str | os.PathLike[str], disk: DiskMap | None) -> tuple[TrackedBo
                 float(file["track_residual_px"]),
                 violations,
                 str(file["track_restarted"]),
+                file.get("track_matched_s"),
             )
             return boundary, reference_frame
     except (zipfile.BadZipFile, zlib.error, KeyError, ValueError, OSError, EOFError) as error:

@@ -79,7 +79,7 @@ def match(here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoot
     ndarray of shape (N,) and dtype float
         Distance along `there`, in pixels; strictly increasing through one turn.
     """
-    grid = _even_grid(here)
+    grid = even_grid(here)
     start = carry(grid, s, guess, here.length, there.length)
     places, _, _ = relax_band(
         here.at(grid),
@@ -98,7 +98,7 @@ def mean_square_displacement(
     here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoothness: float
 ) -> float:
     """Mean squared displacement of the matched boundary, in square pixels; arguments as for `match`."""
-    grid = _even_grid(here)
+    grid = even_grid(here)
     start = carry(grid, s, guess, here.length, there.length)
     spacing = here.length / len(grid)
     return float(
@@ -132,7 +132,7 @@ def rigid_motion(
     pivot, place : ndarray of shape (2,) and dtype float
         The motion takes x to R (x - pivot) + place.
     """
-    grid, target = _even_grid(here), _target(there)
+    grid, target = even_grid(here), _target(there)
     places = carry(grid, s, guess, here.length, there.length)
     points = here.at(grid)
     pivot = points.mean(axis=0)
@@ -188,6 +188,7 @@ def carry(at: FloatArray, x: FloatArray, y: FloatArray, period_x: float, period_
     return np.asarray(inner + turn * period_y)
 
 
-def _even_grid(contour: Contour) -> FloatArray:
+def even_grid(contour: Contour) -> FloatArray:
+    """Distances along a contour at which the energy is sampled: even, about one a pixel."""
     n = max(_LEAST_SAMPLES, round(contour.length / _FINE_PX))
     return np.asarray(contour.length * np.arange(n) / n)

@@ -16,7 +16,7 @@ from cytodisk.geometry.locate import nearest_on_outline
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.demons import propagate
 from cytodisk.motion.demons_parameters import DemonsParameters
-from cytodisk.motion.matching import carry, first_guess, match
+from cytodisk.motion.matching import carry, even_grid, first_guess, match
 from cytodisk.motion.registration import IDENTITY, RigidTransform, believable, first_transform, register
 from cytodisk.motion.tracking_parameters import TrackingSettings
 
@@ -53,6 +53,9 @@ class TrackedBoundary:
         Neighbouring points that had changed places before order was restored; "matching" has none.
     restarted : str
         Why tracking started anew here; empty if it did not.
+    matched_s : ndarray of shape (2, M) and dtype float, or None
+        Distances along the contour of the frame before and along this one that the step between them
+        matched, evenly spaced on the former; None where they are those of the tracked points.
     """
 
     frame: int
@@ -63,6 +66,7 @@ class TrackedBoundary:
     residual_px: float = 0.0
     order_violations: int = 0
     restarted: str = ""
+    matched_s: FloatArray | None = None
 
     @property
     def points_yx(self) -> FloatArray:
@@ -141,7 +145,9 @@ def follow(
     here = last.transform.of(last.contour)
     smoothness = settings.smoothness_px2
     rough = first_transform(contour, here, last.transform.angle) if settings.registration else IDENTITY
-    guess = first_guess(here, rough.of(contour), last.s, smoothness)
+    grid = even_grid(here)
+    guess_on_grid = first_guess(here, rough.of(contour), grid, smoothness)
+    guess = carry(last.s, grid, guess_on_grid, here.length, contour.length)
     transform = alignment = rough
     if settings.registration:
         fixed = reference.transform.of(reference.contour)
@@ -156,18 +162,33 @@ def follow(
         return _restart(frame, contour, transform, last, why)
     if settings.tracker == "demons":
         return _follow_demons(frame, contour, last, transform, settings.demons or DemonsParameters())
+    return _follow_matching(frame, contour, last, transform, alignment, guess_on_grid, settings)
+
+
+def _follow_matching(
+    frame: int,
+    contour: Contour,
+    last: TrackedBoundary,
+    transform: RigidTransform,
+    alignment: RigidTransform,
+    guess_on_grid: FloatArray,
+    settings: TrackingSettings,
+) -> TrackedBoundary:
     here, there = last.alignment.of(last.contour), alignment.of(contour)
-    s = match(here, there, last.s, guess, smoothness)
-    farthest = float(np.linalg.norm(there.at(s) - here.at(last.s), axis=1).max())
+    grid, smoothness = even_grid(here), settings.smoothness_px2
+    matched = match(here, there, grid, guess_on_grid, smoothness)
+    farthest = float(np.linalg.norm(there.at(matched) - here.at(grid), axis=1).max())
     bound = _LEAP * outline_distance(here, there) + _SLACK_PX
     if farthest > bound:
         frames = f"frames {last.frame} and {frame}"
         why = f"points would move {farthest:.0f} px, outlines allow {bound:.0f} ({frames})"
         return _restart(frame, contour, transform, last, why)
+    s = carry(last.s, grid, matched, here.length, there.length)
     back = match(there, here, s, last.s, smoothness)
     residual = float(np.linalg.norm(here.at(back) - here.at(last.s), axis=1).mean())
     even = _towards_even(s, there.length, settings.tension)
-    return TrackedBoundary(frame, contour, even, transform, alignment, residual)
+    steps = np.stack([grid, matched])
+    return TrackedBoundary(frame, contour, even, transform, alignment, residual, matched_s=steps)
 
 
 def _registered(

@@ -10,7 +10,8 @@ import xarray as xr
 from cytodisk.checks import instance_of, one_of
 from cytodisk.disk.sector_parameters import SECTORS, SectorParameters
 from cytodisk.motion.disk_movie import DiskMovie
-from cytodisk.motion.edge import FRAMES, EdgeMotion, Frame, edge_motion, mean_by_sector, normal_displacement
+from cytodisk.motion.edge import EdgeMotion, displacement_by_sector, edge_motion, normal_displacement
+from cytodisk.motion.swept_edge import FRAMES, Frame
 from cytodisk.motion.tracking_parameters import JitterParameters
 from cytodisk.taking import takes
 
@@ -18,9 +19,9 @@ from cytodisk.taking import takes
 def edge_velocity(movie: DiskMovie, sectors: int = SECTORS, *, frame: Frame = "lab") -> xr.DataArray:
     """Outward velocity of the cell's edge by frame and sector.
 
-    Displacement of the tracked boundary points from frame t to t + 1 along the outward normal, averaged over
-    the sector's boundary and stored at t: the last frame is NaN, as is one without a map before or after it.
-    Boundary on the image's border is left out.
+    Area that the sector's edge sweeps from frame t to t + 1, over the mean of its lengths in both frames, so
+    that velocity times length adds up to the area won less the area lost. It is stored at t: the last frame
+    is NaN, as is one without a map before or after it. Edge on the image's border is left out.
 
     Parameters
     ----------
@@ -67,13 +68,12 @@ def edge_velocity(movie: DiskMovie, sectors: int = SECTORS, *, frame: Frame = "l
     sectors, frame = SectorParameters(sectors=sectors).sectors, one_of("frame", frame, FRAMES)
     values = np.full((len(movie), sectors), np.nan)
     for number, (here, there) in _pairs(movie):
-        displacement = normal_displacement(here, there, frame)
-        values[number] = mean_by_sector(displacement, here, there, movie.image_shape, sectors)
+        values[number] = displacement_by_sector(here, there, movie.image_shape, sectors, frame)
     return _labelled(movie, movie.scale.velocity(values), "sector", frame)
 
 
 def boundary_velocity(movie: DiskMovie, *, frame: Frame = "lab") -> xr.DataArray:
-    """Outward velocity of every tracked boundary point; see `edge_velocity`.
+    """Outward velocity of the edge around every tracked boundary point; see `edge_velocity`.
 
     Parameters
     ----------
@@ -135,8 +135,9 @@ def edge_changes(
     Returns
     -------
     Dataset with dims (time, sector)
-        velocity, velocity_error (standard deviation), protruded_area, retracted_area, edge_length; their
-        units are in the attrs of each.
+        velocity, velocity_fastest (of the sector's fastest few pixels of edge), velocity_error (standard
+        deviation), protruded_area, retracted_area, edge_length (mean of both frames'); their units are in
+        the attrs of each.
 
     Raises
     ------
@@ -173,6 +174,7 @@ def edge_changes(
     scale = movie.scale
     scaled = {
         "velocity": ("displacement_px", scale.velocity, scale.velocity_unit),
+        "velocity_fastest": ("fastest_px", scale.velocity, scale.velocity_unit),
         "velocity_error": ("error_px", scale.velocity, scale.velocity_unit),
         "protruded_area": ("protruded_px2", scale.area, scale.area_unit),
         "retracted_area": ("retracted_px2", scale.area, scale.area_unit),

@@ -22,6 +22,7 @@ _ZARR: dict[str, Any] = {"zarr_format": 2, "consolidated": False}  # format 3 ha
 EDGE_VARIABLES = (
     "velocity",
     "velocity_cell_frame",
+    "velocity_fastest",
     "velocity_error",
     "protruded_area",
     "retracted_area",

@@ -153,6 +153,13 @@ TRACK_COLUMNS: Columns = (
     ),
     Column("registration_shift_y", pa.float64(), "px", "shift along y after that turn"),
     Column("registration_shift_x", pa.float64(), "px", "shift along x after that turn"),
+    Column(
+        "swept_area",
+        pa.float64(),
+        "length²",
+        "sum of the areas, without signs, that short pieces of the edge sweep from the frame before to this "
+        "one; near the area won and lost where the two outlines match",
+    ),
 )
 """What a movie's cells have in addition: how the frame was tracked and registered."""
 
@@ -165,14 +172,22 @@ EDGE_COLUMNS: Columns = (
         "velocity",
         pa.float64(),
         "velocity",
-        "outward velocity of the edge over the substrate from this frame to the next, protrusion positive; "
-        "the last frame has none, nor has an edge that the image's border cuts off",
+        "outward velocity of the edge over the substrate from this frame to the next, protrusion positive: "
+        "the area that the edge sweeps over edge_length; the last frame has none, nor has an edge that the "
+        "image's border cuts off",
     ),
     Column(
         "velocity_cell_frame",
         pa.float64(),
         "velocity",
         "the same after the cell's rigid motion is removed: change of shape alone",
+    ),
+    Column(
+        "velocity_fastest",
+        pa.float64(),
+        "velocity",
+        "velocity of the fastest 1.5 px of edge in this sector, out or in: a thin protrusion shows here also "
+        "where the sector is longer; as the extreme of many values it is never near 0",
     ),
     Column(
         "velocity_error",
@@ -183,7 +198,13 @@ EDGE_COLUMNS: Columns = (
     ),
     Column("protruded_area", pa.float64(), "length²", "area won in this sector from this frame to the next"),
     Column("retracted_area", pa.float64(), "length²", "area lost in this sector from this frame to the next"),
-    Column("edge_length", pa.float64(), "length", "length of the edge in this sector"),
+    Column(
+        "edge_length",
+        pa.float64(),
+        "length",
+        "length of the edge in this sector, mean of this frame and the next; velocity times edge_length, "
+        "summed over sectors, is the area won less the area lost",
+    ),
     Column("status", pa.string(), "", "ok, or why the sector has no velocity"),
 )
 

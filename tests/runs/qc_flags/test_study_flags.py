@@ -31,9 +31,10 @@ def made(frames: int = 20, n_cells: int = 1, **provenance: object) -> MadeStudy:
     cells = pd.DataFrame({"cell": number, "frame": time, "status": "ok", "reason": "", "qc_flags": ""})
     cells = cells.assign(area=100 + rng.normal(0, 0.5, len(cells)), touches_border=False, border_share=0.0)
     cells = cells.assign(nan_px=0, area_distortion=0.02, restarted="", tracking_residual=0.01)
-    cells["order_violations"] = 0
+    cells = cells.assign(order_violations=0, perimeter=20.0, swept_area=10.0)
     edge = cells[["cell", "frame"]].merge(pd.DataFrame({"sector": range(12)}), how="cross")
     edge["velocity"] = np.where(edge["frame"] == frames - 1, np.nan, rng.normal(0, 0.05, len(edge)))
+    edge["protruded_area"] = edge["retracted_area"] = 1.0
     windows = cells[["cell", "frame"]].merge(pd.DataFrame({"channel": ["VASP", "actin"]}), how="cross")
     windows = windows.assign(mean=200 + rng.normal(0, 1, len(windows)), n_pixels=10.0)
     return MadeStudy(cells, edge, windows, **provenance)
@@ -55,6 +56,18 @@ def test_a_good_movie_has_none() -> None:
 def test_scales_may_be_unknown() -> None:
     study = made(pixel_size_um=None, frame_interval_s=None, length_unit="px", velocity_unit="px/frame")
     assert qc_flags(study) == []
+
+
+def test_an_edge_that_sweeps_more_than_the_cell_won_and_lost() -> None:
+    study = made(n_cells=2)
+    allowed = 1.25 * 24.0 + 0.1 * 0.5 * 20.0
+    study.cells.loc[[3, 25], "swept_area"] = allowed + 0.01
+    study.cells.loc[[7, 28], "swept_area"] = allowed - 0.01
+    study.cells.loc[0, "swept_area"] = np.nan
+    flag = only(study)
+    assert flag.name == "edge mismatch"
+    assert where(flag) == [(0, 3), (1, 5)]
+    assert flag.places[0].note == "31 µm² swept"
 
 
 @pytest.mark.parametrize(

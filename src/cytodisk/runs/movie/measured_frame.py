@@ -12,13 +12,14 @@ import xarray as xr
 
 from cytodisk.errors import CytodiskError
 from cytodisk.images.tracks import MissingLabel
-from cytodisk.motion.edge import EdgeMotion, edge_motion, mean_by_sector, normal_displacement
+from cytodisk.motion.edge import EdgeMotion, displacement_by_sector, edge_motion
 from cytodisk.motion.following import frame_status
 from cytodisk.motion.frame_file import save_frame
 from cytodisk.motion.mapped_frame import MappedFrame
 from cytodisk.runs.frame_rows import FramePlace, measure_windows
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
+from cytodisk.store.activity_store import EDGE_VARIABLES
 from cytodisk.windows.polar_windows import PolarGrid
 
 
@@ -93,7 +94,9 @@ def measure_frame(task: FrameTask) -> FrameRows:
     row |= _track_columns(frame)
     row["qc_flags"] = "; ".join(filter(None, [row["qc_flags"], _jump(task)]))
     save_frame(task.map_path, frame)
-    edge = None if task.before is None else _edge_before(task, task.before)
+    motion = _motion_since(task)
+    row["swept_area"] = np.nan if motion is None else frame.disk.scale.area(motion.swept_px2)
+    edge = None if task.before is None else _edge_before(task, task.before, motion)
     row |= {"status": "ok", "reason": "", "seconds": task.seconds + clock.perf_counter() - started}
     return FrameRows(row, {"windows": columns}, edge)
 
@@ -153,12 +156,12 @@ def edge_columns(
     states = np.full(sectors, status, dtype=object)
     columns = place.columns(sectors) | {"sector": np.arange(sectors)}
     if motion is None:
-        names = ("velocity", "velocity_cell_frame", "velocity_error", "protruded_area", "retracted_area")
-        return columns | dict.fromkeys((*names, "edge_length"), nothing) | {"status": states}
+        return columns | dict.fromkeys(EDGE_VARIABLES, nothing) | {"status": states}
     states[np.isnan(motion.displacement_px)] = "on the image's border"
     return columns | {
         "velocity": scale.velocity(motion.displacement_px),
         "velocity_cell_frame": scale.velocity(in_cell_frame),
+        "velocity_fastest": scale.velocity(motion.fastest_px),
         "velocity_error": scale.velocity(motion.error_px),
         "protruded_area": scale.area(motion.protruded_px2),
         "retracted_area": scale.area(motion.retracted_px2),
@@ -167,24 +170,28 @@ def edge_columns(
     }
 
 
-def _edge_before(task: FrameTask, before: MappedFrame) -> dict[str, Any]:
+def _motion_since(task: FrameTask) -> EdgeMotion | None:
+    """Motion of the edge since the frame before; None where there is none, or tracking started anew."""
+    before, here = task.before, task.frame
+    if before is None or here.boundary.restarted:
+        return None
+    return edge_motion(
+        before.boundary,
+        here.boundary,
+        before.disk,
+        here.disk,
+        task.parameters.sectors,
+        jitter=task.parameters,
+    )
+
+
+def _edge_before(task: FrameTask, before: MappedFrame, motion: EdgeMotion | None) -> dict[str, Any]:
     here, there, sectors = before.boundary, task.frame.boundary, task.parameters.sectors
     scale = task.frame.disk.scale
     place = replace(task.place, frame=before.frame, time_s=scale.seconds(before.frame))
-    if there.restarted:
+    if motion is None:
         return edge_columns(place, sectors, scale, None, None, "tracking starts anew in the next frame")
-    motion = edge_motion(
-        here,
-        there,
-        before.disk,
-        task.frame.disk,
-        sectors,
-        jitter=task.parameters,
-    )
-    shape = before.disk.mask.shape
-    in_cell_frame = mean_by_sector(
-        normal_displacement(here, there, "cell"), here, there, (shape[0], shape[1]), sectors
-    )
+    in_cell_frame = displacement_by_sector(here, there, before.disk.mask.shape, sectors, "cell")
     return edge_columns(place, sectors, scale, motion, in_cell_frame, "ok")
 
 

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
-from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted, frames_of
+from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted, frames_of, mapped_rows, places_of
 from cytodisk.runs.qc_flags.signal_drift import signal_drifts
 from cytodisk.store.study import Study
 
@@ -15,6 +16,11 @@ VELOCITY_SPREADS = 15.0
 """Edge velocities beyond so many robust standard deviations of the cell's own are flagged."""
 SMALLEST_FAST_STEP_PX = 3.0
 """Motion of the edge in a frame, in px, that is never flagged."""
+
+SWEPT_SHARE = 1.25
+"""Area that the edge may sweep, over area won and lost."""
+SWEPT_REACH_PX = 0.1
+"""Area that it may sweep besides, in px for each px of perimeter: the pixels of a mask make so much."""
 
 _MAD_TO_SD = 1.4826  # of a normal distribution
 
@@ -42,6 +48,30 @@ def fast_edge(study: Study) -> Iterator[QCFlag]:
             "mask that lost or gained a piece between this frame and the next.",
             "Look at both frames; leave these sectors out of averages of velocity.",
             tuple(places),
+        )
+
+
+def edge_mismatch(study: Study) -> Iterator[QCFlag]:
+    """Frames in which the pieces of the edge sweep more area than the cell won and lost."""
+    if not study.is_movie or "swept_area" not in study.cells:
+        return
+    changed = study.edge.groupby(["cell", "frame"])[["protruded_area", "retracted_area"]].sum().sum(axis=1)
+    rows = mapped_rows(study)
+    before = pd.MultiIndex.from_arrays([rows["cell"], rows["frame"] - 1])
+    allowed = SWEPT_SHARE * changed.reindex(before).to_numpy()
+    allowed += study.scale.length(SWEPT_REACH_PX) * rows["perimeter"].to_numpy()
+    swept = rows["swept_area"].to_numpy(dtype=np.float64)
+    rows = rows[swept > allowed]
+    if len(rows):
+        yield QCFlag(
+            "edge mismatch",
+            f"the edge may be matched to the wrong place in {frames_of(study, len(rows))}",
+            "Pieces of the edge sweep clearly more area on their way from the frame before than the cell won "
+            "and lost: some go to the wrong piece of edge. Velocities there are too large, and sectors may "
+            "have slid.",
+            "Look at the outlines of both frames: is a mask wrong there? If the cell moves far between "
+            "frames, take them more often; if it was turned wrongly, run with --no-registration.",
+            places_of(rows, lambda row: f"{row['swept_area']:.3g} {study.scale.area_unit} swept"),
         )
 
 

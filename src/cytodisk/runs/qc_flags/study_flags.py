@@ -81,6 +81,7 @@ _RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     input_flags.saturated_signal,
     input_flags.coarse_outline,
     motion_flags.fast_edge,
+    motion_flags.edge_mismatch,
     column_flags.tracking_residual,
     column_flags.order_violations,
     column_flags.tracking_restarts,
