@@ -55,6 +55,7 @@ from .analysis.kymograph import line_kymograph as line_kymograph
 from .analysis.correlation.cross_correlation import cross_correlate as cross_correlate
 from .analysis.correlation.peaks import peak_correlation as peak_correlation
 from .analysis.correlation.cross_correlation import correlation_by_layer as correlation_by_layer
+from .analysis.correlation.clusters import correlation_clusters as correlation_clusters
 from .analysis.pairs.pair_correlation import correlate_pairs as correlate_pairs
 from .analysis.pairs.window_distances import window_distances as window_distances
 from .analysis.correlation.prepared_series import prepare_series as prepare_series

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 
+from cytodisk.analysis.correlation.prepared_series import prepare_series
 from cytodisk.analysis.correlation.surrogates import circularly_shifted, phase_randomised, surrogates
 from cytodisk.errors import ParameterError
 
@@ -55,6 +56,10 @@ def test_spectrum_is_that_of_the_mirrored_series(frames: int) -> None:
     assert not np.allclose(first, series - series.mean(), atol=0.1)
 
 
+def without_line(series: Any) -> Any:
+    return prepare_series(series, detrend="linear")
+
+
 def test_autocorrelation_is_kept_in_the_mean() -> None:
     series = slow(3, 40)
     found = surrogates("phase", 40, 40_000, 0).alone(series)
@@ -66,8 +71,8 @@ def test_autocorrelation_is_kept_in_the_mean() -> None:
 
 def test_what_series_have_in_common_stays_at_every_lag_and_with_its_sign() -> None:
     """Covariances over lags are those of the series, divided by the frames: one follows the other."""
-    first = slow(4, 60)
-    second = np.roll(first, 5) + 0.5 * slow(6, 60)
+    first = without_line(slow(4, 60))
+    second = without_line(np.roll(first, 5) + 0.5 * slow(6, 60))
     make = surrogates("phase", 60, 20_000, 1).together
     one, two = make(first), make(second)
     x, y = first - first.mean(), second - second.mean()
@@ -78,6 +83,15 @@ def test_what_series_have_in_common_stays_at_every_lag_and_with_its_sign() -> No
     np.testing.assert_allclose(make(3.0 * first - 7.0), 3.0 * one, atol=1e-10)
     other = surrogates("phase", 60, 20_000, 2).together(second)
     assert abs(np.mean((one[:-5] * other[5:]).mean(axis=0))) < 0.03 * x.std() * y.std()
+
+
+def test_straight_lines_stay_with_one_sign_for_all_series() -> None:
+    time = np.linspace(-1.0, 1.0, 50)
+    make = surrogates("phase", 50, 500, 1).together
+    up, down = make(3.0 + 2.0 * time), make(-time)
+    np.testing.assert_allclose(up, -2.0 * down, atol=1e-9)
+    np.testing.assert_allclose(np.abs(up), 2.0 * np.abs(time)[:, None].repeat(500, axis=1), atol=1e-9)
+    assert 0.4 < (up[-1] > 0).mean() < 0.6
 
 
 def test_a_series_that_starts_late_stays_like_its_neighbour() -> None:

@@ -89,8 +89,28 @@ class SkipLagsParameters(Parameters):
     )
 
 
-class CrossCorrelationParameters(SkipLagsParameters, NullParameters, StatisticParameters, PrepareParameters):
+class ClusterParameters(Parameters):
+    """Whether neighbouring windows are tested together."""
+
+    clusters: bool = parameter(
+        False,
+        "Also find clusters: neighbouring windows that agree at a lag. They need surrogates, of which 499 at "
+        "most are used.",
+    )
+
+
+class CrossCorrelationParameters(
+    ClusterParameters, SkipLagsParameters, NullParameters, StatisticParameters, PrepareParameters
+):
     """How series are correlated."""
+
+    edge_sectors: int | None = parameter(
+        None,
+        "Number of sectors of the whole edge, where only some are passed: its last one is the neighbour of "
+        "sector 0. Without it, sectors numbered from 0 without a gap are the whole edge.",
+        least=1,
+        unit="sectors",
+    )
 
 
 class PeakParameters(Parameters):

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cytodisk.analysis.correlation.cluster_fields import WindowRing
 from cytodisk.analysis.correlation.correlation_parameters import CrossCorrelationParameters, PrepareParameters
 from cytodisk.analysis.correlation.lag_tables import SECTOR, LagTables, with_units
-from cytodisk.analysis.correlation.pairing import named_series, paired
+from cytodisk.analysis.correlation.pairing import Pair, named_series, paired
 from cytodisk.analysis.correlation.prepared_series import (
     DRIFTING_SHARE,
     default_frames,
@@ -60,9 +61,9 @@ def cross_correlate(
         they are worth given the autocorrelations; low and high, the 95 % confidence interval by it. With
         surrogates also null, the largest |correlation| of each at any lag, and threshold, which 5 % of them
         exceed; with sectors mean_null and mean_threshold, those of the mean over sectors, for
-        `correlation_by_layer`. The coordinate
-        lag_s is there when `a` or `b` has time_s. Edge velocity stands at the start of its step, so it is
-        half a frame later than its lag says.
+        `correlation_by_layer`; with `clusters` cluster_null and cluster_spread, for `correlation_clusters`.
+        The coordinate lag_s is there when `a` or `b` has time_s. Edge velocity stands at the start of its
+        step, so it is half a frame later than its lag says.
 
         The attrs are the settings; `statistic` says whether values or ranks were correlated.
 
@@ -81,6 +82,7 @@ def cross_correlate(
     --------
     peak_correlation : The peak of each window with its p and q.
     correlation_by_layer : Means over sectors.
+    correlation_clusters : Neighbouring windows that agree.
     correlate_pairs : All windows with all others, by distance.
 
     References
@@ -119,6 +121,10 @@ def cross_correlate(
     )
     attrs["surrogates"] = changed.count if changed else 0
     run = LagTables(pair, lags, np.isin(lags, how.skip_lags), how.min_pairs, attrs["surrogates"])
+    if how.clusters and changed:
+        ring = _ring(pair, how.edge_sectors)
+        run.keep_clusters(ring)
+        attrs["edge_sectors"] = ring.count
     run.correlate(changed, progress)
     order = [str(dim) for dim in (*first.dims, *second.dims) if dim != "time"]
     return run.dataset(list(dict.fromkeys(order)), scale).assign_attrs(attrs)
@@ -189,6 +195,20 @@ def lags_within(max_lag: int, min_pairs: int, frames: int) -> IntArray:
             f"min_pairs {min_pairs}: {advice}"
         )
     return np.arange(-max_lag, max_lag + 1)
+
+
+def _ring(pair: Pair, edge_sectors: int | None) -> WindowRing:
+    """Sectors of two series on the edge."""
+    if SECTOR not in pair.own:
+        raise ParameterError("clusters need sectors: pass series with the dim sector, or clusters=False")
+    sectors = pair.a.shape[1 + pair.own.index(SECTOR)]
+    numbers = np.asarray(pair.coords.get(SECTOR, np.arange(sectors)))
+    if edge_sectors is not None and edge_sectors <= numbers.max():
+        raise ParameterError(
+            f"edge_sectors is {edge_sectors}, but there is a sector {numbers.max()}: pass the number of "
+            "sectors of the whole edge"
+        )
+    return WindowRing.of(numbers, edge_sectors)
 
 
 def _check_skipped(skipped: Sequence[int], lags: IntArray) -> None:

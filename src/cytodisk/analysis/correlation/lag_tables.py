@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cytodisk.analysis.correlation.cluster_fields import WindowRing
+from cytodisk.analysis.correlation.cluster_null import ClusterNull
 from cytodisk.analysis.correlation.confidence import effective_share, fisher_interval
 from cytodisk.analysis.correlation.lagged import LaggedSeries
 from cytodisk.analysis.correlation.pairing import Pair
@@ -34,6 +36,12 @@ class LagTables:
             self._merged = tuple(n for k, n in enumerate(windows) if k != self._sector)
             shape = (*self._merged[: own - 1], len(lags), *self._merged[own - 1 :], surrogates)
             self._total, self._known = np.zeros((2, *shape))
+        self._clusters: ClusterNull | None = None
+
+    def keep_clusters(self, ring: WindowRing) -> None:
+        """Ask for what chance gives for clusters of windows, before the tables are filled."""
+        windows = dict(zip(self._pair.dims, self._pair.a.shape[1:], strict=True))
+        self._clusters = ClusterNull(len(self._lags), windows, len(self._null), ring)
 
     def correlate(self, surrogates: Surrogates | None, progress: Callable[[int, int], None] | None) -> None:
         """Fill the tables."""
@@ -49,7 +57,10 @@ class LagTables:
                 chance = self._by_chance(lagged, surrogates.alone(b))
                 self._null[(slice(None), *place)] = np.moveaxis(_largest(chance), -1, 0)
                 if self._sector is not None:
-                    self._add_to_mean(place, self._by_chance(lagged, surrogates.together(b)))
+                    chance = self._by_chance(lagged, surrogates.together(b))
+                    self._add_to_mean(place, chance)
+                    if self._clusters is not None:
+                        self._clusters.put(place, chance)
             if progress is not None:
                 progress(done + 1, int(np.prod(own)))
 
@@ -67,11 +78,12 @@ class LagTables:
             "high": high,
         }
         data: dict[str, Any] = {name: (("lag", *dims), values) for name, values in by_lag.items()}
-        data |= self._chance()
+        data |= self._chance() | self._cluster_chance(n_effective)
         coords: dict[str, Any] = {"lag": ("lag", self._lags, {"units": "frame"})} | pair.coords
         if scale.frame_interval_s is not None:
             coords["lag_s"] = ("lag", self._lags * scale.frame_interval_s, {"units": "s"})
-        found = xr.Dataset(data, coords).transpose("surrogate", *order, "lag", missing_dims="ignore")
+        found = xr.Dataset(data, coords)
+        found = found.transpose("surrogate", "cluster_surrogate", *order, "lag", missing_dims="ignore")
         return with_units(found.assign(n=found["n"].astype(np.int64)))
 
     def _series(self, place: tuple[Any, ...]) -> FloatArray:
@@ -109,6 +121,17 @@ class LagTables:
             data["mean_null"] = (("surrogate", *rest), null)
             data["mean_threshold"] = (rest, _threshold(null))
         return data
+
+    def _cluster_chance(self, n_effective: FloatArray) -> dict[str, Any]:
+        """What surrogates gave, of clusters of windows."""
+        if self._clusters is None:
+            return {}
+        largest, spread = self._clusters.masses(n_effective)
+        rest = [dim for dim in self._pair.dims if dim not in ("layer", SECTOR)]
+        return {
+            "cluster_null": (("cluster_surrogate", *rest), largest),
+            "cluster_spread": (self._pair.dims, spread),
+        }
 
 
 def with_units(table: xr.Dataset) -> xr.Dataset:

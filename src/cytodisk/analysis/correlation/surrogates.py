@@ -156,7 +156,9 @@ def filtered_noise(series: FloatArray, noise: NDArray[np.complex128]) -> FloatAr
     Notes
     -----
     Two series x, y that filter the same noise have the covariances Σ x(t) y(t + lag) of the series
-    themselves, at every lag and with its sign; zeros behind the series keep its ends apart.
+    themselves, at every lag and with its sign; zeros behind the series keep its ends apart. That holds beside
+    their straight lines. Those stay lines, with one random sign for all series: what goes one way through the
+    movie in all windows would else be taken for noise, and two signals that both do would seem coupled.
 
     References
     ----------
@@ -170,10 +172,20 @@ def filtered_noise(series: FloatArray, noise: NDArray[np.complex128]) -> FloatAr
     span = slice(known[0], known[-1] + 1)
     whole = np.zeros(2 * len(series))
     filled = interpolated(series[span, None])[:, 0]
-    whole[span] = filled - filled.mean()
+    line = _straight_line(filled)
+    whole[span] = filled - filled.mean() - line
     turned = np.fft.rfft(whole)[:, None] * noise
-    found[present] = np.fft.irfft(turned, len(whole), axis=0)[: len(series)][present]
-    return np.asarray(found / np.sqrt(len(filled)))
+    drawn = np.fft.irfft(turned, len(whole), axis=0)[: len(series)] / np.sqrt(len(filled))
+    drawn[span] += line[:, None] * np.sign(noise[0].real)  # the spectrum has nothing there
+    found[present] = drawn[present]
+    return found
+
+
+def _straight_line(series: FloatArray) -> FloatArray:
+    """Straight line of least squares through a series, without its mean."""
+    time = np.arange(len(series)) - 0.5 * (len(series) - 1)
+    square = float(time @ time)
+    return np.asarray(time * (float(time @ series) / square if square else 0.0))
 
 
 def circularly_shifted(series: FloatArray, shifts: IntArray) -> FloatArray:
