@@ -30,6 +30,7 @@ def made(frames: int = 20, n_cells: int = 1, **provenance: object) -> MadeStudy:
     number, time = np.divmod(np.arange(n_cells * frames), frames)
     cells = pd.DataFrame({"cell": number, "frame": time, "status": "ok", "reason": "", "qc_flags": ""})
     cells = cells.assign(area=100 + rng.normal(0, 0.5, len(cells)), touches_border=False, border_share=0.0)
+    cells["perimeter"] = np.sqrt(4 * np.pi * cells["area"])
     cells = cells.assign(nan_px=0, area_distortion=0.02, restarted="", tracking_residual=0.01)
     cells = cells.assign(order_violations=0, perimeter=20.0, swept_area=10.0)
     edge = cells[["cell", "frame"]].merge(pd.DataFrame({"sector": range(12)}), how="cross")
@@ -167,6 +168,17 @@ def test_bleaching() -> None:
     (place,) = flag.places
     assert (place.cell, place.frame) == (0, None)
     assert place.note in ("VASP −35% over the movie", "VASP −36% over the movie")
+
+
+def test_an_edge_that_is_as_bright_as_before_around_a_cell_that_grows_is_no_drift() -> None:
+    study = made()
+    radius = 1 + 0.8 * study.cells["frame"] / 19
+    study.cells["area"] *= radius**2
+    study.cells["perimeter"] *= radius
+    study.windows["mean"] /= 1 + 0.8 * study.windows["frame"] / 19
+    assert qc_flags(study) == []
+    study.windows["mean"] *= 1 - 0.4 * study.windows["frame"] / 19  # and fades
+    assert only(study).name == "signal drift"
 
 
 def test_warnings_that_no_other_flag_tells() -> None:

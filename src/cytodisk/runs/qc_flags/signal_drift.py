@@ -94,6 +94,9 @@ def relative_trend(time: FloatArray, mean: FloatArray) -> float:
 def signal_drifts(study: Study) -> list[Drift]:
     """Channels of cells whose mean changes steadily by more than `LARGEST_CHANGE`.
 
+    In a cell that grows, the mean of a signal at its edge falls though nothing fades. So the signal by length
+    of the edge has to change the same way; the smaller change of both counts.
+
     Parameters
     ----------
     study : Study
@@ -104,13 +107,21 @@ def signal_drifts(study: Study) -> list[Drift]:
     list of Drift
         By cell, then channel; empty without a signal.
     """
-    return list(_drifts(study.windows)) if "mean" in study.windows else []
+    return list(_drifts(study)) if "mean" in study.windows else []
 
 
-def _drifts(windows: pd.DataFrame) -> Iterator[Drift]:
-    means = mean_by_frame(windows).rename("mean").reset_index()
+def _drifts(study: Study) -> Iterator[Drift]:
+    means = mean_by_frame(study.windows).rename("mean").reset_index()
+    means = means.merge(_area_by_edge(study.cells), on=["cell", "frame"], how="left")
     for (cell, channel), rows in means.groupby(["cell", "channel"]):
-        time, mean = (np.asarray(rows[name], dtype=np.float64) for name in ("frame", "mean"))
-        change = relative_trend(time, mean)
+        time, mean, width = (np.asarray(rows[name], dtype=np.float64) for name in ("frame", "mean", "width"))
+        by_area, by_edge = relative_trend(time, mean), relative_trend(time, mean * width)
+        change = min(by_area, by_edge, key=abs) if by_area * by_edge > 0 else 0.0
         if abs(change) > LARGEST_CHANGE:
             yield Drift(int(str(cell)), str(channel), change)
+
+
+def _area_by_edge(cells: pd.DataFrame) -> pd.DataFrame:
+    """Area by length of the edge, by cell and frame."""
+    width = cells["area"] / cells["perimeter"]
+    return cells[["cell", "frame"]].assign(width=width)
