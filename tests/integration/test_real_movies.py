@@ -14,7 +14,7 @@ from cytodisk.runs.movie.movie_study import movie_study
 
 GRID = MovieParameters(layers=8, sectors=36)
 STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
-GEOMETRY = ("area", "centroid_y", "centroid_x")
+GEOMETRY = ("area", "centroid_y", "centroid_x", "depth", "depth_p5", "depth_p95")
 
 
 def shortened(source: Path, target: Path, frames: int, axes: str = "TYX") -> Path:

@@ -12,7 +12,7 @@ from cytodisk.windows.polar_windows import polar_windows
 
 GRID = polar_windows(2, 3)
 STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
-GEOMETRY = ("area", "centroid_y", "centroid_x")
+GEOMETRY = ("area", "centroid_y", "centroid_x", "depth", "depth_p5", "depth_p95")
 MOTION = (
     "velocity",
     "velocity_cell_frame",

@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 import cytodisk as cd
 from cytodisk.errors import WindowError
+from cytodisk.geometry.outline import trace_outline
 from cytodisk.geometry.polygon import signed_area
 from cytodisk.simulate import KINDS, random_mask
 
@@ -101,6 +102,10 @@ class Bands(cd.WindowsOnCell):
     @property
     def mask(self) -> np.ndarray:
         return self.box
+
+    @property
+    def outline_yx(self) -> np.ndarray:
+        return trace_outline(self.box)
 
     def windows_of_subpixels(self, pixels_yx: np.ndarray) -> np.ndarray:
         return 2 * (pixels_yx[:, :1] - 1000) + np.repeat([0, 0, 1, 1], 4)

@@ -16,11 +16,12 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.scale import Scale
 from cytodisk.taking import takes
+from cytodisk.windows.depths import DEPTHS
 from cytodisk.windows.grid_parameters import SampleParameters
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.sample import sample
 
-GEOMETRY = ("area", "centroid_y", "centroid_x")
+GEOMETRY = ("area", "centroid_y", "centroid_x", *DEPTHS)
 STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
 
 
@@ -62,7 +63,8 @@ def sample_movie(
     Returns
     -------
     Dataset with dims (time, channel, layer, sector)
-        mean, sd, min, max, n_pixels, n_nan as for `sample`; area of the windows and status, reason by frame;
+        mean, sd, min, max, n_pixels, n_nan as for `sample`; area and depth of the windows (depth, depth_p5,
+        depth_p95: their distance to the cell's edge) and status, reason by frame;
         centroid_y and centroid_x of the windows as coordinates, which go with any of the others. A frame
         without a map is NaN with its reason. The coordinate time_s is
         there when the frame interval is known; units are in the attrs of each variable.
@@ -167,9 +169,10 @@ def window_arrays(windows: WindowsOnCell, image: Any, **settings: Any) -> dict[s
     Returns
     -------
     dict of str to ndarray
-        Statistics of shape (C, L, S); area in square pixels, centroid_y and centroid_x of shape (L, S).
+        Statistics of shape (C, L, S); of shape (L, S) area in square pixels, and centroid_y, centroid_x,
+        depth, depth_p5 and depth_p95 in pixels.
     """
-    arrays = {"area": windows.areas}
+    arrays = {"area": windows.areas} | windows.depth_columns
     arrays["centroid_y"], arrays["centroid_x"] = np.moveaxis(windows.centroids_yx, -1, 0)
     if image is None:
         return arrays
@@ -220,8 +223,8 @@ def activity_dataset(
 
     Parameters
     ----------
-    tables : dict of str to ndarray of shape (T, C, L, S), or (T, L, S) for area and centroids
-        Areas in square pixels; they become µm² where the pixel size is known.
+    tables : dict of str to ndarray of shape (T, C, L, S), or (T, L, S) for area, depths and centroids
+        Areas in square pixels, depths in pixels; they become µm² and µm where the pixel size is known.
     channels, status, reasons : list of str
         The first by channel, the others by frame.
     scale : Scale
@@ -240,9 +243,13 @@ def activity_dataset(
         "centroid_x": "px",
         "n_pixels": "px²",
         "n_nan": "px²",
-    }
+    } | dict.fromkeys(DEPTHS, scale.length_unit)
     for name, values in tables.items():
-        scaled = scale.area(values) if name == "area" else values
+        scaled = values
+        if name == "area":
+            scaled = scale.area(values)
+        elif name in DEPTHS:
+            scaled = scale.length(values)
         data[name] = (dims[values.ndim], scaled, {"units": units.get(name, "a.u.")})
     data["status"] = ("time", np.array(status, dtype=str))
     data["reason"] = ("time", np.array(reasons, dtype=str))

@@ -9,7 +9,7 @@ import shapely
 
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.motion.disk_movie import on_border
+from cytodisk.geometry.outline import on_border
 
 _RAY_PLACES = 200  # on a radius: half a pixel apart in a cell 200 px wide
 _TOLERANCE_PX = 1e-3  # of the depth

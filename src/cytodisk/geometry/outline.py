@@ -7,6 +7,8 @@ from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import MaskError
 from cytodisk.geometry.polygon import signed_area
 
+_BORDER_PX = 0.25  # outlines lie half a pixel outside the first row if they are cut off, inside if not
+
 
 def trace_outline(mask: BoolArray) -> FloatArray:
     """Outline of a cleaned mask: its iso-line at 0.5, half-way between inner and outer pixels.
@@ -36,3 +38,17 @@ def trace_outline(mask: BoolArray) -> FloatArray:
         raise MaskError(f"mask has {len(contours)} outlines, not one: pass it through clean_mask first")
     outline: FloatArray = contours[0][:-1] - 1.0
     return outline if signed_area(outline) > 0 else outline[::-1].copy()
+
+
+def on_border(points_yx: FloatArray, image_shape: tuple[int, int]) -> BoolArray:
+    """Whether points of an outline lie where the image's border cuts a cell off, shape (N,); NaN does not.
+
+    Parameters
+    ----------
+    points_yx : ndarray of shape (N, 2) and dtype float
+        (row, column) in pixels.
+    image_shape : (int, int)
+        (H, W).
+    """
+    last = np.array(image_shape) - 1.0
+    return np.asarray(((points_yx < _BORDER_PX) | (points_yx > last - _BORDER_PX)).any(axis=-1))

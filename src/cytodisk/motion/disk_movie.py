@@ -12,11 +12,10 @@ import numpy as np
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import MapError, ParameterError
+from cytodisk.geometry.outline import on_border
 from cytodisk.motion.registration import RigidTransform
 from cytodisk.motion.tracking import TrackedBoundary, point_angles
 from cytodisk.scale import Scale
-
-_BORDER_PX = 0.25  # outlines lie half a pixel outside the first row if they are cut off, inside if not
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,17 +184,3 @@ class DiskMovie(Sequence[DiskMap]):
             if found is not None:
                 out[frame] = value(found)
         return out
-
-
-def on_border(points_yx: FloatArray, image_shape: tuple[int, int]) -> BoolArray:
-    """Whether points of an outline lie where the image's border cuts a cell off, shape (N,); NaN does not.
-
-    Parameters
-    ----------
-    points_yx : ndarray of shape (N, 2) and dtype float
-        (row, column) in pixels.
-    image_shape : (int, int)
-        (H, W).
-    """
-    last = np.array(image_shape) - 1.0
-    return np.asarray(((points_yx < _BORDER_PX) | (points_yx > last - _BORDER_PX)).any(axis=-1))

@@ -9,8 +9,8 @@ import numpy as np
 from numba import njit
 
 from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.geometry.outline import on_border
 from cytodisk.motion.contour import Contour
-from cytodisk.motion.disk_movie import on_border
 from cytodisk.motion.matching import carry
 from cytodisk.motion.registration import IDENTITY, RigidTransform
 from cytodisk.motion.tracking import TrackedBoundary, point_angles

@@ -13,6 +13,7 @@ from cytodisk.analysis.pixel_pileup import Pileup, pileup
 from cytodisk.errors import CytodiskError, EmptyMaskError, ReadError, SignalError
 from cytodisk.geometry.outline_step import outline_step
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
+from cytodisk.windows.depths import DEPTHS
 from cytodisk.windows.polar_windows import CellWindows
 
 _PERIMETER_SMOOTHING_PX = 1.0
@@ -182,6 +183,7 @@ def _window_columns(
         "sector": sector,
         **{name: arrays[name].ravel() if name in arrays else nothing for name in STATISTICS},
         "area": np.tile(windows.scale.area(arrays["area"]).ravel(), repeats),
+        **{name: np.tile(windows.scale.length(arrays[name]).ravel(), repeats) for name in DEPTHS},
         "centroid_y": np.tile(arrays["centroid_y"].ravel(), repeats),
         "centroid_x": np.tile(arrays["centroid_x"].ravel(), repeats),
         "eccentricity": np.tile(windows.eccentricities.ravel(), repeats),

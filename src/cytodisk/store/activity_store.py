@@ -153,7 +153,7 @@ class CellActivity:
     def _unit(self, name: str) -> str:
         if name.startswith("velocity"):
             return self._scale.velocity_unit
-        if name == "edge_length":
+        if name == "edge_length" or name.startswith("depth"):
             return self._scale.length_unit
         if name.endswith("area"):
             return self._scale.area_unit

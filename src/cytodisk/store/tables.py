@@ -249,6 +249,15 @@ WINDOW_COLUMNS: Columns = (
     ),
     Column("n_nan", pa.float64(), "px²", "number of pixels in the window without a value, counted likewise"),
     Column("area", pa.float64(), "length²", "area of the window in the cell"),
+    Column(
+        "depth",
+        pa.float64(),
+        "length",
+        "median distance of the window's subpixels to the cell's edge; the border of the image is no edge: "
+        "beside it, the distance to the nearest edge in the image",
+    ),
+    Column("depth_p5", pa.float64(), "length", "5th percentile of that distance"),
+    Column("depth_p95", pa.float64(), "length", "95th percentile of that distance"),
     _CENTROID_Y,
     _CENTROID_X,
     Column(

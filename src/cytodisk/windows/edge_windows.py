@@ -204,6 +204,11 @@ class EdgeWindows(WindowsOnCell):
         return self.edge.mask
 
     @property
+    def outline_yx(self) -> FloatArray:
+        """Outline of the cell, shape (B, 2), (row, column) in pixels."""
+        return self.edge.outline_yx
+
+    @property
     def scale(self) -> Scale:
         """Scale of the cell's image."""
         return self.edge.scale

@@ -10,9 +10,11 @@ import numpy as np
 from scipy import sparse
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.geometry.edge_distance import EdgeDistance
 from cytodisk.scale import UNKNOWN, Scale
+from cytodisk.windows.depths import DEPTHS, window_depths
 from cytodisk.windows.pieces import pieces_by_window
-from cytodisk.windows.shares import PER_SIDE, WindowShares, shares_by_strips, strips
+from cytodisk.windows.shares import PER_SIDE, Subpixels, WindowShares, shares_by_strips, strips
 
 
 class Grid(Protocol):
@@ -37,6 +39,11 @@ class WindowsOnCell(ABC):
     @abstractmethod
     def mask(self) -> BoolArray:
         """The cell's mask, shape (H, W) and dtype bool."""
+
+    @property
+    @abstractmethod
+    def outline_yx(self) -> FloatArray:
+        """Outline of the cell, shape (B, 2) and dtype float, (row, column) in pixels."""
 
     @property
     def scale(self) -> Scale:
@@ -135,6 +142,31 @@ class WindowsOnCell(ABC):
     def centroids_yx(self) -> FloatArray:
         """Centre of each window's area, shape (layers, sectors, 2), (row, column) in pixels, or NaN."""
         return self._mean_moments[..., :2] + self.shares.origin_yx
+
+    @cached_property
+    def depths(self) -> FloatArray:
+        """Median, 5th and 95th percentile of the distance of each window's subpixels to the cell's edge.
+
+        Shape (layers, sectors, 3), in pixels; NaN if empty. The border of the image is no edge of the cell:
+        beside it, the distance is that to the nearest edge in the image, and NaN if there is none.
+        """
+        pixels = np.argwhere(self.mask)
+        subpixels = self.shares.subpixels
+        if not subpixels:
+            share = np.full(len(pixels), 1.0 / PER_SIDE**2)
+            subpixels = [Subpixels(np.arange(len(pixels)), self.subpixel_windows, share)]
+        found = window_depths(self.edge_distance, pixels, subpixels, self.layers * self.sectors)
+        return found.reshape(self.layers, self.sectors, len(DEPTHS))
+
+    @property
+    def depth_columns(self) -> dict[str, FloatArray]:
+        """`depths` by name, each of shape (layers, sectors): depth, depth_p5, depth_p95, in pixels."""
+        return dict(zip(DEPTHS, np.moveaxis(self.depths, -1, 0), strict=True))
+
+    @cached_property
+    def edge_distance(self) -> EdgeDistance:
+        """Distance to the cell's edge from anywhere in it."""
+        return EdgeDistance(self.mask, self.outline_yx)
 
     @cached_property
     def eccentricities(self) -> FloatArray:

@@ -113,6 +113,11 @@ class CellWindows(WindowsOnCell):
         return self.disk.mask
 
     @property
+    def outline_yx(self) -> FloatArray:
+        """Outline of the cell, shape (B, 2), (row, column) in pixels."""
+        return self.disk.outline_yx
+
+    @property
     def scale(self) -> Scale:
         """Scale of the map."""
         return self.disk.scale

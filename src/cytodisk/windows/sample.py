@@ -42,7 +42,9 @@ def sample(
         mean, sd (of the pixels, weighted), min, max (over pixels with any share in the window), n_pixels (sum
         of pixel shares that were sampled, so Σ n_pixels · mean is the intensity of all that lies in windows:
         the whole cell, but for edge windows of a given depth), n_nan (sum of pixel shares that are NaN or
-        infinite), area (square pixels); on request quantile with its own dim.
+        infinite), area (square pixels); depth, depth_p5 and depth_p95: median, 5th and 95th percentile of the
+        distance of the window's subpixels to the cell's edge (µm, or px without a scale); on request quantile
+        with its own dim.
 
     Raises
     ------
@@ -83,6 +85,8 @@ def sample(
         stacked = np.stack([table["quantile"] for table in tables]).reshape(*shape, len(quantiles))
         data["quantile"] = ((*dims, "q"), stacked, {"units": "a.u."})
     data["area"] = (("layer", "sector"), windows.areas, {"units": "px²"})
+    for name, depth in windows.depth_columns.items():
+        data[name] = (("layer", "sector"), windows.scale.length(depth), {"units": windows.scale.length_unit})
     coords: dict[str, Any] = {"layer": np.arange(shape[1]), "sector": np.arange(shape[2])}
     if quantiles:
         coords["q"] = list(quantiles)

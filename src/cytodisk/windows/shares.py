@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,11 +29,14 @@ class WindowShares:
         Places are relative to `origin_yx`.
     origin_yx : ndarray of shape (2,) and dtype int
         First row and column of the mask's box, so that moments do not depend on where in an image a cell is.
+    subpixels : sequence of Subpixels
+        What the shares were gathered from; empty where it is not kept.
     """
 
     weights: sparse.csr_array
     moments: FloatArray
     origin_yx: IntArray
+    subpixels: Sequence[Subpixels] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +56,13 @@ class Subpixels:
     pixel: IntArray
     window: IntArray | Int32Array
     share: FloatArray
+
+    @property
+    def blocks(self) -> Iterator[Subpixels]:
+        """The same, a few pixels at a time."""
+        for first in range(0, len(self.pixel), PIXELS_AT_ONCE):
+            block = slice(first, first + PIXELS_AT_ONCE)
+            yield Subpixels(self.pixel[block], self.window[block], self.share[block])
 
 
 def strips(pixels_yx: IntArray) -> Iterator[tuple[IntArray, IntArray]]:
@@ -96,6 +106,7 @@ def gather_shares(pixels_yx: IntArray, n_windows: int, subpixels: Iterable[Subpi
         (row, column) of the mask's pixels in row-major order.
     n_windows : int
     subpixels : iterable of Subpixels
+        A sequence is kept.
 
     Returns
     -------
@@ -105,12 +116,14 @@ def gather_shares(pixels_yx: IntArray, n_windows: int, subpixels: Iterable[Subpi
     moments = np.zeros((n_windows, 5))
     entries = [
         _gather(some.pixel, pixels_yx[some.pixel] - origin, some.window, some.share, moments)
-        for some in subpixels
+        for all_of_them in subpixels
+        for some in all_of_them.blocks
     ]
     window, pixel, share = (np.concatenate(column) for column in zip(*entries, strict=True))
     shape = (n_windows, len(pixels_yx))
     weights = sparse.csr_array(sparse.coo_array((share, (window, pixel)), shape=shape))
-    return WindowShares(weights, moments, origin)
+    kept = subpixels if isinstance(subpixels, Sequence) else ()
+    return WindowShares(weights, moments, origin, kept)
 
 
 @njit(cache=True)

@@ -1,8 +1,5 @@
 """Shares of pixels in the polar windows of a cell, none of which is left empty."""
 
-from collections.abc import Iterator
-from itertools import chain
-
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -39,7 +36,8 @@ def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:
         coarse: IntArray | Int32Array = windows_of_subpixels(grid, disk, pixels, PER_SIDE)
     else:
         coarse = windows_of_all_subpixels(grid, disk, pixels, PER_SIDE)
-    shares = gather_shares(pixels, grid.n_windows, _blocks(np.arange(len(pixels)), coarse))
+    whole = [Subpixels(np.arange(len(pixels)), coarse, np.full(len(pixels), 1.0 / PER_SIDE**2))]
+    shares = gather_shares(pixels, grid.n_windows, whole)
     empty = np.flatnonzero(np.diff(shares.weights.indptr) == 0)
     if not empty.size:
         return shares
@@ -52,9 +50,8 @@ def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:
     counts = np.full(len(pixels), PER_SIDE**2)
     counts[near] = _FINE**2
     counts += np.bincount(extra, minlength=len(pixels))
-    share = 1.0 / counts
     sizes = (kept, coarse), (near, fine), (extra, empty[:, None])
-    subpixels = chain.from_iterable(_blocks(pixel, window, share) for pixel, window in sizes)
+    subpixels = [Subpixels(pixel, window, 1.0 / counts[pixel]) for pixel, window in sizes]
     return gather_shares(pixels, grid.n_windows, subpixels)
 
 
@@ -80,17 +77,6 @@ def windows_of_subpixels(grid: PolarLayout, disk: DiskMap, pixels_yx: IntArray, 
         points = subpixel_places(pixels_yx[block], per_side).reshape(-1, 2)
         window[block] = grid.window_of(disk.to_disk(points, outside="nearest")).reshape(-1, per_side**2)
     return window
-
-
-def _blocks(
-    pixel: IntArray, window: IntArray | Int32Array, share: FloatArray | None = None
-) -> Iterator[Subpixels]:
-    """The same subpixels, a few pixels at a time."""
-    if share is None:
-        share = np.full(len(pixel), 1.0 / window.shape[1])
-    for first in range(0, len(pixel), PIXELS_AT_ONCE):
-        block = slice(first, first + PIXELS_AT_ONCE)
-        yield Subpixels(pixel[block], window[block], share[pixel[block]])
 
 
 def _held(grid: PolarLayout, window: IntArray | Int32Array) -> IntArray:

@@ -11,7 +11,8 @@ from matplotlib.quiver import Quiver
 from cytodisk.arrays import FloatArray
 from cytodisk.checks import one_of, positive_number, whole_number
 from cytodisk.errors import ParameterError
-from cytodisk.motion.disk_movie import DiskMovie, on_border
+from cytodisk.geometry.outline import on_border
+from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.edge import normal_displacement
 from cytodisk.motion.tracking import TrackedBoundary
 from cytodisk.plot.field_of_view import field_of_view, frame_field
