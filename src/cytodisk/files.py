@@ -9,7 +9,7 @@ import uuid
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import IO
 
 from cytodisk.errors import CytodiskError, WriteError
@@ -128,3 +128,8 @@ def _can_be_written(folder: Path) -> bool:
             return True
     except OSError:
         return False
+
+
+def file_name(path: str) -> str:
+    """Last part of a path of any system: folders are nobody's business but the owner's."""
+    return PureWindowsPath(path).name or path

@@ -15,11 +15,11 @@ from cytodisk.errors import MissingPartError, ParameterError, SignalError, Study
 from cytodisk.images.frames import open_frames
 from cytodisk.pages.report import page
 from cytodisk.pages.report.page import page_flags, write_report
-from cytodisk.pages.report.signal_file import find_signal
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.runs.qc_flags.study_flags import qc_flags
+from cytodisk.runs.study_signal import find_signal
 from cytodisk.simulate.moving_cells import SimulatedMovie
 from cytodisk.store.study import Study, open_study
 

@@ -20,12 +20,12 @@ from cytodisk.pages.report.page_figures import figures_of, library_script
 from cytodisk.pages.report.pictures import MOST_BYTES, OUTSIDE, Pictures, box_around, encode_frames, size_of
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_correlations import pairs_of
-from cytodisk.pages.report.signal_file import FoundSignal, shown_signal
 from cytodisk.pages.report.words import MOST_PLACES, page_words
 from cytodisk.plot.correlation.correlation_peaks import LAG_COLOURS
 from cytodisk.plot.style import DIVERGING_COLOURS
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.study_flags import qc_flags
+from cytodisk.runs.study_signal import FoundSignal, shown_signal
 from cytodisk.store.provenance_file import record_files
 from cytodisk.store.study import Study
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import PureWindowsPath
 from typing import Any
 
+from cytodisk.files import file_name
 from cytodisk.pages.settings_words import settings_words
 from cytodisk.runs.channel_names import correlation_name
 from cytodisk.store.study import Study
@@ -49,11 +49,6 @@ def differences(settings: Mapping[str, Any]) -> str:
     if settings.get("against", "window") != "window":
         facts.append(f"against the {settings['against']}")
     return ", ".join(facts)
-
-
-def file_name(path: str) -> str:
-    """Last part of a path of any system: folders are nobody's business but the owner's."""
-    return PureWindowsPath(path).name or path
 
 
 def without_folders(text: str, study: Study) -> str:

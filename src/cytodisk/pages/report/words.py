@@ -10,12 +10,13 @@ from typing import Any
 
 import pandas as pd
 
+from cytodisk.files import file_name
 from cytodisk.pages.report.pictures import Box
 from cytodisk.pages.report.shown_cell import ShownCell
-from cytodisk.pages.report.shown_names import file_name, without_folders
-from cytodisk.pages.report.signal_file import FoundSignal
+from cytodisk.pages.report.shown_names import without_folders
 from cytodisk.runs.channel_names import correlation_name
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
+from cytodisk.runs.study_signal import FoundSignal
 from cytodisk.store.study import Study
 
 MOST_PLACES = 30

@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -20,10 +21,12 @@ from cytodisk.analysis.pairs.window_distances import window_distances
 from cytodisk.arrays import IntArray
 from cytodisk.errors import ParameterError, StationarityWarning
 from cytodisk.runs.channel_names import VELOCITIES
+from cytodisk.runs.correlate.cell_controls import CellControls
 from cytodisk.runs.correlate.chosen_series import chosen_sectors, chosen_series
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.correlate.correlation_tables import as_table, tables_of
 from cytodisk.runs.correlate.event_tables import event_tables
+from cytodisk.runs.correlate.partial_correlation import Partial, partial_correlation
 from cytodisk.runs.run_options import Progress
 from cytodisk.store.study import Study
 from cytodisk.windows.polar_windows import polar_windows
@@ -67,20 +70,24 @@ class CellCorrelation:
         if not (np.isfinite(a).any() and np.isfinite(b).any()):
             empty = self.signal if not np.isfinite(a).any() else with_
             raise ParameterError(f"cell {cell} has no values of {empty}")
-        first, second = _phases(progress, 2 if options.pairs else 1)
+        asked = self._controls.asked
+        phases = _phases(progress, 1 + 2 * asked + options.pairs)
         common = dict(options.part(PairCorrelationParameters))
         with _shares_in_the_table():
             correlations = cross_correlate(
-                a, b, self.max_lag, skip_lags=options.skip_lags, progress=first, **common
+                a, b, self.max_lag, skip_lags=options.skip_lags, progress=phases[0], **common
             )
             jitter = _jitter(a, b, options) if with_ in VELOCITIES else 0.0
-        tables = tables_of(correlations, options)
+            partial, not_tested = self._partial(cell, activity, (a, b), phases) if asked else (None, "")
+        tables = tables_of(correlations, options, partial)
         if options.pairs:
-            tables["pairs"] = self._pairs(cell, activity, a, second)
+            tables["pairs"] = self._pairs(cell, activity, a, phases[-1])
         row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "jitter": jitter}
         row["statistic"] = options.statistic
         row["surrogates"] = correlations.attrs["surrogates"]
         row["pair_surrogates"] = tables["pairs"].attrs["surrogates"] if options.pairs else 0
+        row["partial_frames"] = partial.frames if partial is not None else np.nan
+        row["geometry_not_tested"] = not_tested
         row["restarts"] = self._restarts(cell, activity["frame"].to_numpy())
         row |= {f"drifting_{name}": correlations.attrs[f"drifting_{side}"] for name, side in _SIDES}
         row |= {"no_events_because": "", "event_threshold": np.nan, "event_noise": np.nan}
@@ -94,6 +101,30 @@ class CellCorrelation:
                 tables |= events
                 row |= {f"event_{name}": events["events"].attrs[name] for name in ("threshold", "noise")}
         return tables, row
+
+    @cached_property
+    def _controls(self) -> CellControls:
+        return CellControls(self.study, self.max_lag, self.options)
+
+    def _partial(
+        self,
+        cell: int,
+        activity: xr.Dataset,
+        series: tuple[xr.DataArray, xr.DataArray],
+        phases: list[Progress | None],
+    ) -> tuple[Partial, str]:
+        """The correlation without controls, and why geometry is not among them."""
+        signals = [self.signal, *(name for name in (self.with_,) if name not in (*VELOCITIES, self.signal))]
+        found = self._controls.of(cell, activity, signals, phases[1])
+        if not found.there:
+            return Partial(None, np.nan), found.not_tested
+        of_a = found.by_channel[self.signal]
+        of_b = found.by_channel.get(self.with_, xr.Dataset())
+        if self.options.against == "edge" and len(of_b):
+            of_b = of_b.isel(layer=0, drop=True)
+        a, b = (series[0], of_a), (series[1], of_b)
+        partial = partial_correlation(a, b, self.max_lag, self.options, phases[2])
+        return partial, found.not_tested or (partial.too_few if self.options.geometry else "")
 
     def _restarts(self, cell: int, times: IntArray) -> int:
         """How often tracking started anew within frames: a sector may then be another place of the cell."""
@@ -127,14 +158,15 @@ def _shares_in_the_table() -> Iterator[None]:
         yield
 
 
-def _phases(progress: Progress | None, phases: int) -> tuple[Progress | None, Progress | None]:
-    """What to call with the steps done, and all steps, of two phases; they count alike."""
+def _phases(progress: Progress | None, phases: int) -> list[Progress | None]:
+    """What to call with the steps done, and all steps, of each phase; they count alike."""
     if progress is None:
-        return None, None
-    return (
-        lambda done, steps: progress(done, phases * steps),
-        lambda done, steps: progress(steps + done, phases * steps),
-    )
+        return [None] * phases
+
+    def phase(place: int) -> Progress:
+        return lambda done, steps: progress(place * steps + done, phases * steps)
+
+    return [phase(place) for place in range(phases)]
 
 
 def _other(activity: xr.Dataset, with_: str, options: CorrelateParameters) -> xr.DataArray:

@@ -36,6 +36,16 @@ class CorrelateParameters(PeakParameters, SkipLagsParameters, PairCorrelationPar
         "could not reach 0.05 with fewer.",
         least=0,
     )
+    geometry: bool = parameter(
+        True,
+        "Also correlate what is left without what geometry alone would give: the movie's mean in the lab and "
+        "its mean by depth. It reads the maps and the signal again.",
+    )
+    control: tuple[str, ...] = parameter(
+        (),
+        "Channels that are regressed out too, window by window, such as a volume marker.",
+        words="names of channels with commas between",
+    )
     pairs: bool = parameter(
         False, "Also correlate every window of one signal with every window of the other, by distance."
     )

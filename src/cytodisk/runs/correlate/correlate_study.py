@@ -134,6 +134,10 @@ def _check_names(names: list[str], signal: str, with_: str, options: CorrelatePa
             f"signal {signal!r} with itself in the same window is 1: pass against 'edge' to compare it "
             "with that of the outermost layer"
         )
+    for name in options.control:
+        if name not in names or name in (signal, with_):
+            others = ", ".join(repr(other) for other in names if other not in (signal, with_)) or "none"
+            raise ParameterError(f"control {name!r} is no other channel of the study: there is {others}")
     if options.pairs and with_ in VELOCITIES:
         raise ParameterError(
             "pairs need two signals: velocity has no windows inside; pass with another signal"

@@ -26,6 +26,20 @@ _Q = Column("q", pa.float64(), "1", "p, adjusted for the number of rows of the c
 _THRESHOLD = Column("threshold", pa.float64(), "1", "size of correlation that 5 % of the surrogates exceed")
 _CORRELATION = Column("correlation", pa.float64(), "1", "correlation at the peak")
 _AT_LAG = Column("correlation", pa.float64(), "1", "correlation at this lag")
+_WITHOUT = "once the controls are regressed out; empty if they could not be made"
+_PARTIAL: Columns = (
+    Column("correlation_partial", pa.float64(), "1", f"correlation at its own peak, {_WITHOUT}"),
+    Column("lag_partial", pa.int64(), "frame", "lag of correlation_partial"),
+    Column("p_partial", pa.float64(), "1", "p of correlation_partial"),
+    Column("q_partial", pa.float64(), "1", "q of correlation_partial"),
+    Column(
+        "geometry",
+        pa.bool_(),
+        "",
+        "q < 0.05, but not without the controls, or they leave less than half of the correlation at its lag",
+    ),
+)
+_PARTIAL_AT_LAG = Column("correlation_partial", pa.float64(), "1", f"correlation at this lag, {_WITHOUT}")
 
 
 def _quartiles(over: str) -> Columns:
@@ -50,6 +64,7 @@ CORRELATION_TABLES: dict[str, Columns] = {
         _P,
         _Q,
         _THRESHOLD,
+        *_PARTIAL,
     ),
     "layers": (
         CELL,
@@ -60,8 +75,9 @@ CORRELATION_TABLES: dict[str, Columns] = {
         _P,
         _Q,
         _THRESHOLD,
+        *_PARTIAL,
     ),
-    "curves": (CELL, LAYER, SECTOR, _LAG, _LAG_S, _AT_LAG, _N, _N_EFFECTIVE, _LOW, _HIGH),
+    "curves": (CELL, LAYER, SECTOR, _LAG, _LAG_S, _AT_LAG, _N, _N_EFFECTIVE, _LOW, _HIGH, _PARTIAL_AT_LAG),
     "layer_curves": (
         CELL,
         LAYER,
@@ -70,6 +86,7 @@ CORRELATION_TABLES: dict[str, Columns] = {
         _AT_LAG._replace(meaning="mean over the layer's sectors of the correlation at this lag"),
         *_quartiles("the layer's sectors"),
         _THRESHOLD,
+        _PARTIAL_AT_LAG,
     ),
     "pairs": (
         CELL,
@@ -140,6 +157,18 @@ CORRELATION_TABLES: dict[str, Columns] = {
         ),
         Column("surrogates", pa.int64(), "", "number of surrogates of the windows and layers"),
         Column("pair_surrogates", pa.int64(), "", "number of surrogates of the pairs"),
+        Column(
+            "partial_frames",
+            pa.float64(),
+            "",
+            "frames in which a window's signal and controls have values, median over windows",
+        ),
+        Column(
+            "geometry_not_tested",
+            pa.string(),
+            "",
+            "why geometry could not be regressed out; empty if it was, or was not to be",
+        ),
         Column("restarts", pa.int64(), "", "number of frames in which tracking started anew"),
         Column("drifting_signal", pa.float64(), "1", "share of the signal's series that drift"),
         Column("drifting_with", pa.float64(), "1", "share of the other series that drift"),

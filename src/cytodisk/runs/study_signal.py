@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cytodisk.errors import ReadError, SignalError
+from cytodisk.files import file_name
 from cytodisk.images.frames import open_frames
 from cytodisk.images.signal_files import FrameSource
-from cytodisk.pages.report.shown_names import file_name
 from cytodisk.store.study import Study
 
 
