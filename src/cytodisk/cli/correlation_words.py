@@ -21,11 +21,13 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
         f"Positive lag: {_what_comes(found.with_)} after the signal; negative lag: before it"
     )
     layers, windows = found.layers, found.windows
+    outs = _regressed_out(found)
     for cell, rows in layers.groupby("cell"):
         of_cell = windows[windows["cell"] == cell]
         console.print(f"cell {cell}, mean over sectors by layer:")
         for layer in rows.itertuples():
-            console.print(_layer_words(layer, of_cell[of_cell["layer"] == layer.layer]))
+            console.print(_layer_words(layer, of_cell[of_cell["layer"] == layer.layer], outs[cell]))
+    _say_geometry(console, found, outs)
     for _, row in found.cells.iterrows():
         for words in _cautions(row, settings):
             console.print(f"cell {row['cell']}{words}")
@@ -60,6 +62,11 @@ def _cautions(row: Any, settings: dict[str, Any]) -> Iterator[str]:
     if row["status"] != "ok":
         yield f" left out: {row['reason']}"
         return
+    if row["geometry_not_tested"]:
+        yield (
+            f": geometry not tested ({row['geometry_not_tested']}): a still pattern under the cell, or a "
+            "cortex that moves with its edge, may have made the correlation"
+        )
     if row["restarts"]:
         yield (
             f": tracking started anew {row['restarts']:.0f} times; sectors need not be the same places "
@@ -81,6 +88,20 @@ def _cautions(row: Any, settings: dict[str, Any]) -> Iterator[str]:
         )
 
 
+def _say_geometry(console: "Console", found: "Correlation", outs: dict[Any, str]) -> None:
+    """Which layers do not survive, and what that means."""
+    from cytodisk.runs.qc_flags.geometry_flags import lost_layers
+
+    for cell, rows in found.layers[lost_layers(found.layers)].groupby("cell"):
+        numbers = ", ".join(str(layer) for layer in rows["layer"])
+        out = outs[cell]
+        meaning = "a still pattern under the cell, or a cortex that moves with its edge, may have made it"
+        console.print(
+            f"cell {cell}: the correlation in layer{'s' * (len(rows) > 1)} {numbers} does not survive "
+            f"without {out}{f': {meaning}' if 'geometry' in out else ''}"
+        )
+
+
 def _say_power(console: "Console", cells: Any, windows: Any) -> None:
     """How many windows must be beyond all surrogates for any q to be below 0.05."""
     surrogates = int(cells["surrogates"].max())
@@ -99,7 +120,19 @@ def _say_power(console: "Console", cells: Any, windows: Any) -> None:
         )
 
 
-def _layer_words(row: Any, windows: Any) -> str:
+def _regressed_out(found: "Correlation") -> dict[Any, str]:
+    """What was regressed out, by cell, in words."""
+    from cytodisk.runs.correlate.partial_words import regressed_out
+
+    rows = found.cells
+    reasons = rows["geometry_not_tested"] if "geometry_not_tested" in rows else [""] * len(rows)
+    return {
+        cell: regressed_out(found.settings, reason if isinstance(reason, str) else "")
+        for cell, reason in zip(rows["cell"], reasons, strict=True)
+    }
+
+
+def _layer_words(row: Any, windows: Any, out: str) -> str:
     layer = f"  layer {row.layer:>2}"
     if not math.isfinite(row.correlation):
         return f"{layer}  no correlation: too few frames, or a signal that does not vary"
@@ -108,4 +141,12 @@ def _layer_words(row: Any, windows: Any) -> str:
     if "q" not in windows:
         return words
     share = (windows["q"] < 0.05).mean()
-    return f"{words}, q = {row.q:.2g}; q < 0.05 in {share:.0%} of its windows"
+    words = f"{words}, q = {row.q:.2g}; q < 0.05 in {share:.0%} of its windows"
+    if not math.isfinite(getattr(row, "correlation_partial", math.nan)):
+        return words
+    left = (windows["q_partial"] < 0.05).mean()
+    lost = ": it does not survive" if row.geometry else ""
+    return (
+        f"{words}; without {out} {row.correlation_partial:+.2f} at lag {row.lag_partial:+.0f}, "
+        f"q = {row.q_partial:.2g}, {left:.0%} of its windows{lost}"
+    )

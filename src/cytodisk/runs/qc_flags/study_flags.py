@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from cytodisk.runs.qc_flags import area_jumps, column_flags, correlation_flags, input_flags, motion_flags
+from cytodisk.runs.qc_flags import (
+    area_jumps,
+    column_flags,
+    correlation_flags,
+    geometry_flags,
+    input_flags,
+    motion_flags,
+)
 from cytodisk.runs.qc_flags.qc_flag import QCFlag, counted
 from cytodisk.store.study import Study
 
@@ -89,7 +96,9 @@ _RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     motion_flags.drift,
     column_flags.distortion,
     column_flags.nan_pixels,
+    geometry_flags.geometry,
     correlation_flags.jitter,
     correlation_flags.drifting_series,
+    geometry_flags.geometry_not_tested,
     correlation_flags.left_out,
 )

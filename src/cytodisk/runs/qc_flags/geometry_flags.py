@@ -1,0 +1,77 @@
+"""QC flags of correlations that the motion of the cell alone would give."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pandas as pd
+
+from cytodisk.runs.channel_names import correlation_name
+from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted
+from cytodisk.store.correlation_store import Correlation
+from cytodisk.store.study import Study
+
+
+def geometry(study: Study) -> Iterator[QCFlag]:
+    """Correlations of layers that are significant, but not once geometry is regressed out."""
+    places = [
+        Place(int(row.cell), None, f"{name}: {_layers(lost)}")
+        for name, found in _tested(study)
+        for _, row in found.cells.iterrows()
+        if row["geometry_not_tested"] == ""
+        and len(lost := found.layers[(found.layers["cell"] == row.cell) & lost_layers(found.layers)])
+    ]
+    if places:
+        yield QCFlag(
+            "geometry",
+            f"{counted(len(places), 'correlation')} may come from the cell's motion alone",
+            "A pattern that stands still under a moving cell, or a cortex that moves with the edge, "
+            "correlates without any signalling. With both regressed out, these layers have no significant "
+            "correlation left, or less than half of it at its lag.",
+            "Read p_partial, q_partial and correlation_partial of these layers, not p, q and correlation.",
+            tuple(places),
+        )
+
+
+def geometry_not_tested(study: Study) -> Iterator[QCFlag]:
+    """Correlations for which geometry could not be regressed out."""
+    places = [
+        Place(int(row.cell), None, f"{name}: {row['geometry_not_tested']}")
+        for name, found in _tested(study)
+        for _, row in found.cells.iterrows()
+        if row["status"] == "ok" and row["geometry_not_tested"]
+    ]
+    if places:
+        yield QCFlag(
+            "geometry not tested",
+            f"what geometry alone would give is not known of {counted(len(places), 'correlation')}",
+            "The signal or the maps could not be read again, or too few frames show the same places: a still "
+            "pattern or a cortex that moves with the edge may have made the correlation.",
+            "Put the signal where it was and correlate again, or pass a smaller --max-lag.",
+            tuple(places),
+        )
+
+
+def lost_layers(layers: pd.DataFrame) -> pd.Series[bool]:
+    """Which rows of a table of layers, or of windows, do not survive; none without surrogates."""
+    if "geometry" not in layers:
+        return pd.Series(False, index=layers.index)
+    return layers["geometry"].fillna(False).astype(bool)
+
+
+def _layers(lost: pd.DataFrame) -> str:
+    """As "layer 0 +0.41 at lag −2 → +0.02 at lag 5", the partial correlation behind the arrow."""
+    words = [
+        f"layer {row.layer} {row.correlation:+.2f} at lag {row.lag:.0f} → {row.correlation_partial:+.2f} "
+        f"at lag {row.lag_partial:.0f}"
+        for row in lost.itertuples()
+    ]
+    return ", ".join(words).replace("-", "−")
+
+
+def _tested(study: Study) -> Iterator[tuple[str, Correlation]]:
+    """Correlations that geometry was to be regressed out of, with their names."""
+    for names in study.correlations:
+        found = study.correlation(*names)
+        if found.settings.get("geometry") and "geometry_not_tested" in found.cells:
+            yield correlation_name(names), found
