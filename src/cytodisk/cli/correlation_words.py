@@ -27,7 +27,6 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
         console.print(f"cell {cell}, mean over sectors by layer:")
         for layer in rows.itertuples():
             console.print(_layer_words(layer, of_cell[of_cell["layer"] == layer.layer], outs[cell]))
-    _say_geometry(console, found, outs)
     for _, row in found.cells.iterrows():
         for words in _cautions(row, settings):
             console.print(f"cell {row['cell']}{words}")
@@ -62,11 +61,6 @@ def _cautions(row: Any, settings: dict[str, Any]) -> Iterator[str]:
     if row["status"] != "ok":
         yield f" left out: {row['reason']}"
         return
-    if row["geometry_not_tested"]:
-        yield (
-            f": geometry not tested ({row['geometry_not_tested']}): a still pattern under the cell, or a "
-            "cortex that moves with its edge, may have made the correlation"
-        )
     if row["restarts"]:
         yield (
             f": tracking started anew {row['restarts']:.0f} times; sectors need not be the same places "
@@ -85,20 +79,6 @@ def _cautions(row: Any, settings: dict[str, Any]) -> Iterator[str]:
             f": the level drifts, as by bleaching, in {row['drifting_signal']:.0%} of the signal's series "
             f"and {row['drifting_with']:.0%} of the others: see whether --detrend linear "
             "or --difference says the same"
-        )
-
-
-def _say_geometry(console: "Console", found: "Correlation", outs: dict[Any, str]) -> None:
-    """Which layers do not survive, and what that means."""
-    from cytodisk.runs.qc_flags.geometry_flags import lost_layers
-
-    for cell, rows in found.layers[lost_layers(found.layers)].groupby("cell"):
-        numbers = ", ".join(str(layer) for layer in rows["layer"])
-        out = outs[cell]
-        meaning = "a still pattern under the cell, or a cortex that moves with its edge, may have made it"
-        console.print(
-            f"cell {cell}: the correlation in layer{'s' * (len(rows) > 1)} {numbers} does not survive "
-            f"without {out}{f': {meaning}' if 'geometry' in out else ''}"
         )
 
 
