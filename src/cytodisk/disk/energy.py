@@ -1,8 +1,8 @@
 """The relaxation energy of one map, its gradient and its projected Hessian: Numba kernels.
 
-E = Σ_t a_t ψ(σ₁, σ₂), ψ = L² + w (σ₁/σ₂ + σ₂/σ₁ - 2), L = log(σ₁ σ₂), where σ are the singular values of the
-Jacobian J_t from the cell, scaled to the area of the disk, to the disk, and a_t the area share of triangle t
-in the cell. E is infinite where det J ≤ 0.
+E = Σ_t a_t ψ(σ₁, σ₂), ψ = g L² + w (σ₁/σ₂ + σ₂/σ₁ - 2), L = log(σ₁ σ₂), where σ are the singular values of
+the Jacobian J_t from the cell, scaled to the area of the disk, to the disk, and a_t the area share of triangle
+t in the cell. E is infinite where det J ≤ 0. g is 1, or 0 where areas do not count.
 
 The Hessian with respect to J has four eigenvectors that are known in closed form (Smith, de Goes & Kim 2019,
 doi:10.1145/3241041): twist, flip and two stretches; negative eigenvalues are raised to 0.
@@ -27,11 +27,14 @@ class Elements(NamedTuple):
         Gradients of their hat functions in the cell, scaled to the area of the disk.
     share : ndarray of shape (F,) and dtype float
         Their shares of the area.
+    area_weight : float
+        g, the weight of the area term.
     """
 
     triangles: IntArray
     hats: FloatArray
     share: FloatArray
+    area_weight: float = 1.0
 
 
 @njit(cache=True)
@@ -48,7 +51,14 @@ def jacobian(uv: FloatArray, triangle: IntArray, hats: FloatArray) -> tuple[floa
 
 
 @njit(cache=True)
-def energy(uv: FloatArray, triangles: IntArray, hats: FloatArray, share: FloatArray, weight: float) -> float:
+def energy(
+    uv: FloatArray,
+    triangles: IntArray,
+    hats: FloatArray,
+    share: FloatArray,
+    area_weight: float,
+    weight: float,
+) -> float:
     """E of a map; infinite if any triangle is not positive."""
     total = 0.0
     for t in range(triangles.shape[0]):
@@ -58,7 +68,7 @@ def energy(uv: FloatArray, triangles: IntArray, hats: FloatArray, share: FloatAr
             return np.inf
         log_det = math.log(det)
         norm = a * a + b * b + c * c + d * d
-        total += share[t] * (log_det * log_det + weight * (norm / det - 2.0))
+        total += share[t] * (area_weight * log_det * log_det + weight * (norm / det - 2.0))
     return total
 
 
@@ -90,7 +100,7 @@ def _singular_frame(
 
 @njit(cache=True, error_model="numpy")
 def _projected(
-    s1: float, s2: float, log_det: float, weight: float
+    s1: float, s2: float, log_det: float, area_weight: float, weight: float
 ) -> tuple[float, float, float, float, float]:
     """Projected Hessian in the frame of the singular vectors.
 
@@ -102,9 +112,10 @@ def _projected(
         Half the sum, and half the difference, of the eigenvalues of flip and twist.
     """
     det = s1 * s2
-    p = (2.0 - 2.0 * log_det) / (s1 * s1) + 2.0 * weight * s2 / (s1 * s1 * s1)
-    r = (2.0 - 2.0 * log_det) / (s2 * s2) + 2.0 * weight * s1 / (s2 * s2 * s2)
-    q = 2.0 / det - weight * (1.0 / (s1 * s1) + 1.0 / (s2 * s2))
+    slope, curvature = 2.0 * area_weight * log_det, 2.0 * area_weight
+    p = (curvature - slope) / (s1 * s1) + 2.0 * weight * s2 / (s1 * s1 * s1)
+    r = (curvature - slope) / (s2 * s2) + 2.0 * weight * s1 / (s2 * s2 * s2)
+    q = curvature / det - weight * (1.0 / (s1 * s1) + 1.0 / (s2 * s2))
     half, mean = 0.5 * (p - r), 0.5 * (p + r)
     root = math.sqrt(half * half + q * q)
     if mean < root:
@@ -113,8 +124,8 @@ def _projected(
         along = 0.5 * (high - low) / root if root > 0.0 else 0.0
         p, q, r = middle + along * half, along * q, middle - along * half
     # (ψ₁ + ψ₂) / (σ₁ + σ₂) and (ψ₁ - ψ₂) / (σ₁ - σ₂) with the division carried out
-    twist = max(2.0 * log_det / det - weight * ((s1 - s2) / det) ** 2, 0.0)
-    flip = max(-2.0 * log_det / det + weight * ((s1 + s2) / det) ** 2, 0.0)
+    twist = max(slope / det - weight * ((s1 - s2) / det) ** 2, 0.0)
+    flip = max(-slope / det + weight * ((s1 + s2) / det) ** 2, 0.0)
     return p, q, r, 0.5 * (flip + twist), 0.5 * (flip - twist)
 
 
@@ -134,7 +145,7 @@ def derivatives(
     With `gauss` the area term counts with its Gauss-Newton Hessian, 2 ∇L ∇Lᵀ, which leaves out L ∇²L.
     `unknown` and `place` say where a vertex and a pair of corners belong, as in `blocks.BlockSystem`.
     """
-    triangles, hats, share = cell
+    triangles, hats, share, area_weight = cell
     gradient[:] = 0.0
     blocks[:] = 0.0
     x, y = np.empty(3), np.empty(3)  # hat gradients in the frame of the singular vectors
@@ -142,9 +153,10 @@ def derivatives(
         a, b, c, d = jacobian(uv, triangles[t], hats[t])
         s1, s2, cu, su, cv, sv = _singular_frame(a, b, c, d)
         log_det = math.log(s1 * s2)
-        p, q, r, even, odd = _projected(s1, s2, 0.0 if gauss else log_det, weight)
-        slope1 = 2.0 * log_det / s1 + weight * (1.0 / s2 - s2 / (s1 * s1))
-        slope2 = 2.0 * log_det / s2 + weight * (1.0 / s1 - s1 / (s2 * s2))
+        p, q, r, even, odd = _projected(s1, s2, 0.0 if gauss else log_det, area_weight, weight)
+        slope = 2.0 * area_weight * log_det
+        slope1 = slope / s1 + weight * (1.0 / s2 - s2 / (s1 * s1))
+        slope2 = slope / s2 + weight * (1.0 / s1 - s1 / (s2 * s2))
         p, q, r, even, odd = share[t] * p, share[t] * q, share[t] * r, share[t] * even, share[t] * odd
         cc, ss, cs = cu * cu, su * su, cu * su
         for k in range(3):

@@ -81,6 +81,34 @@ def harmonic_extension(
     return weighted_means(mesh, _cotangents(mesh), boundary_values, system or BlockSystem(mesh))
 
 
+def fading_extension(
+    mesh: Mesh, boundary_values: FloatArray, fade_px: float, system: BlockSystem | None = None
+) -> FloatArray:
+    """Values at all vertices that are given at the boundary and fade inwards, as exp(-depth / fade).
+
+    Solves f = fade² Δf (the screened Laplace equation).
+
+    Parameters
+    ----------
+    mesh : Mesh
+    boundary_values : ndarray of shape (B, 2) and dtype float
+        Two numbers a boundary vertex, such as a displacement.
+    fade_px : float
+        In the unit of the mesh.
+    system : BlockSystem, optional
+        Of this mesh, if there is one already.
+
+    Returns
+    -------
+    ndarray of shape (V, 2) and dtype float
+    """
+    corner_area = np.repeat(triangle_areas(mesh.vertices_yx, mesh.triangles) / 3.0, 3)
+    areas = np.bincount(mesh.triangles.ravel(), corner_area, minlength=len(mesh.vertices_yx))
+    return weighted_means(
+        mesh, _cotangents(mesh), boundary_values, system or BlockSystem(mesh), areas / fade_px**2
+    )
+
+
 def _cotangents(mesh: Mesh) -> FloatArray:
     """Half the cotangent opposite each edge of each triangle, edge k → k + 1 of triangle t in row k F + t."""
     hats = hat_gradients(mesh.vertices_yx, mesh.triangles)
@@ -89,7 +117,11 @@ def _cotangents(mesh: Mesh) -> FloatArray:
 
 
 def weighted_means(
-    mesh: Mesh, edge_weights: FloatArray, boundary_uv: FloatArray, system: BlockSystem
+    mesh: Mesh,
+    edge_weights: FloatArray,
+    boundary_uv: FloatArray,
+    system: BlockSystem,
+    pull_to_zero: FloatArray | None = None,
 ) -> FloatArray:
     """Positions with every interior vertex at the weighted mean of its neighbours.
 
@@ -101,6 +133,8 @@ def weighted_means(
     boundary_uv : ndarray of shape (B, 2) and dtype float
     system : BlockSystem
         Of this mesh; u and v are two copies of one system.
+    pull_to_zero : ndarray of shape (V,) and dtype float, optional
+        Weight of a neighbour at zero that each vertex has besides.
 
     Returns
     -------
@@ -111,6 +145,9 @@ def weighted_means(
     weights = edge_weights.reshape(3, -1)
     right = np.zeros((len(system.vertex), 2))
     _fill_laplacian(mesh.triangles, weights, out, system.unknown, system.place, system.blocks, right)
+    if pull_to_zero is not None:
+        for axis in (0, 1):
+            system.blocks[system.diagonal, axis, axis] += pull_to_zero[system.vertex]
     system.factorise()
     out[system.vertex] = system.solve(right)
     return out

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.advection import advect
 from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.disk_map import DiskMap, Start
 from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.disk.mapping_parameters import Align, MappingParameters, MapToDiskParameters
-from cytodisk.disk.newton import relax
+from cytodisk.disk.newton import Relaxed, relax
 from cytodisk.disk.untangle import untangled
 from cytodisk.errors import MapError
 from cytodisk.geometry.mask import MaskReport, clean_mask
@@ -183,29 +183,60 @@ def map_mesh(
     method, shape_weight = parameters.method, parameters.shape_weight
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
     uv, start = _start(cell, circle, None if method == "advection" else anchor_uv)
-    triangles, steps, converged = cell.mesh.triangles, 0, True
     if method == "newton":
         relaxed = relax(cell.mesh, uv, shape_weight, anchor_uv, inertia, cell.system)
-        uv, steps, converged = relaxed.vertices_uv, relaxed.steps, relaxed.converged
-    elif method == "advection":
+        return disk_map(cell, relaxed, start, parameters)
+    if method == "advection":
         advected = advect(cell.mesh, uv)
-        uv, triangles, steps = advected.vertices_uv, advected.triangles, advected.steps
+        made = Relaxed(advected.vertices_uv, advected.steps, True)
+        return disk_map(cell, made, start, parameters, advected.triangles)
+    return disk_map(cell, Relaxed(uv, 0, True), start, parameters)
+
+
+def disk_map(
+    cell: CellMesh,
+    relaxed: Relaxed,
+    start: Start,
+    parameters: MappingParameters,
+    triangles: IntArray | None = None,
+) -> DiskMap:
+    """Map of a cell from where its vertices lie in the disk.
+
+    Parameters
+    ----------
+    cell : CellMesh
+    relaxed : Relaxed
+    start : str
+        What the relaxation started from.
+    parameters : MappingParameters
+    triangles : ndarray of shape (F, 3) and dtype int, optional
+        Where they are not those of the mesh.
+
+    Returns
+    -------
+    DiskMap
+
+    Raises
+    ------
+    MapError
+        The certificate is not valid; the method "advection" alone may return such a map.
+    """
     disk = DiskMap(
         vertices_yx=cell.mesh.vertices_yx + cell.corner,
-        vertices_uv=uv,
-        triangles=triangles,
+        vertices_uv=relaxed.vertices_uv,
+        triangles=cell.mesh.triangles if triangles is None else triangles,
         boundary=cell.mesh.boundary,
         mask=cell.mask,
         report=cell.report,
-        method=method,
+        method=parameters.method,
         start=start,
-        shape_weight=shape_weight,
+        shape_weight=parameters.shape_weight,
         edge_length=cell.edge_length,
-        steps=steps,
-        converged=converged,
+        steps=relaxed.steps,
+        converged=relaxed.converged,
         scale=cell.scale,
     )
-    if method != "advection" and not disk.certificate.valid:
+    if parameters.method != "advection" and not disk.certificate.valid:
         raise MapError(f"no valid map was found: {'; '.join(disk.certificate.faults)}")
     return disk
 

@@ -57,6 +57,7 @@ def relax(
     anchor_uv: FloatArray | None = None,
     inertia: float = 0.0,
     system: BlockSystem | None = None,
+    area_weight: float = 1.0,
 ) -> Relaxed:
     """Move the interior vertices of a valid map until its triangles have their share of the area.
 
@@ -73,6 +74,8 @@ def relax(
         Weight of the mean squared distance from there, over the disk's area, that is added to the energy.
     system : BlockSystem, optional
         Of this mesh, if there is one already.
+    area_weight : float
+        0 leaves areas out: what remains is the shape term, which still keeps triangles from turning over.
 
     Returns
     -------
@@ -89,7 +92,8 @@ def relax(
     doi:10.1145/3241041
     """
     anchored = (start_uv, 0.0) if anchor_uv is None else (anchor_uv, inertia)
-    problem = _Problem(mesh, system or BlockSystem(mesh), start_uv, shape_weight, *anchored)
+    weights = shape_weight, area_weight
+    problem = _Problem(mesh, system or BlockSystem(mesh), start_uv, weights, *anchored)
     uv, value, last = start_uv, problem.energy(start_uv), None
     if not np.isfinite(value):
         raise MapError("relaxation needs a start without flipped triangles")
@@ -118,15 +122,15 @@ class _Problem:
         mesh: Mesh,
         system: BlockSystem,
         uv: FloatArray,
-        shape_weight: float,
+        weights: tuple[float, float],
         anchor_uv: FloatArray,
         inertia: float,
     ):
         areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
         scale = np.sqrt(triangle_areas(uv[:, ::-1], mesh.triangles).sum() / areas.sum())
         hats = hat_gradients(mesh.vertices_yx * scale, mesh.triangles)
-        self._cell = Elements(mesh.triangles, hats, areas / areas.sum())
-        self._weight = shape_weight
+        self._weight, area_weight = weights
+        self._cell = Elements(mesh.triangles, hats, areas / areas.sum(), area_weight)
         self._system = system
         self._anchor = anchor_uv
         corner_share = np.repeat(self._cell.share / 3.0, 3)

@@ -15,6 +15,7 @@ from cytodisk.disk.disk_map import DiskMap, load_map
 from cytodisk.errors import CytodiskError, MaskError, StudyError
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
 from cytodisk.motion.following import map_frames
+from cytodisk.motion.still_interior import fade_in_px
 from cytodisk.motion.tracking_parameters import MovieMapParameters
 from cytodisk.scale import Scale
 from cytodisk.taking import takes
@@ -81,6 +82,7 @@ def map_movie(
     """
     given = MovieMapParameters.of(**settings)
     scale = Scale.of(masks).given(given.pixel_size_um, given.frame_interval_s)
+    fade_in_px(given, scale)
     frames = parse_masks(masks)
     store: _Memory | _Folder = _Memory() if folder is None else _Folder(Path(folder))
     records: list[FrameRecord] = []

@@ -9,6 +9,7 @@ from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import CellMesh, map_mesh, mesh_cell
 from cytodisk.motion.contour import Contour
+from cytodisk.motion.still_interior import fade_in_px, still_map
 from cytodisk.motion.temporal import carried_inside, tracked_angles
 from cytodisk.motion.tracking import (
     TrackedBoundary,
@@ -30,11 +31,14 @@ class MappedFrame:
     boundary : TrackedBoundary
     reference : TrackedBoundary
         What this frame was registered to; itself in a first frame and where tracking started anew.
+    interior_restarted : str
+        With interior "still", why the inside could not go on from the last map; empty if it did.
     """
 
     disk: DiskMap
     boundary: TrackedBoundary
     reference: TrackedBoundary
+    interior_restarted: str = ""
 
     @property
     def frame(self) -> int:
@@ -80,11 +84,15 @@ def map_frame(
     reference = last.boundary if renewed else last.reference
     boundary = follow(frame, contour, last.boundary, reference, settings)
     angles = tracked_angles(contour, boundary.s, point_angles(len(boundary.s)))
+    reference = boundary if boundary.restarted else reference
+    if settings.interior == "still" and not boundary.restarted:
+        still = still_map(cell, angles, last.disk, settings, fade_in_px(settings, scale))
+        return MappedFrame(still.disk, boundary, reference, still.restarted)
     anchor = None
     if not boundary.restarted and settings.method == "newton":
         anchor = carried_inside(cell, contour, boundary.s, last.disk, last.boundary.contour, last.boundary.s)
     disk = _map(cell, angles, settings, anchor)
-    return MappedFrame(disk, boundary, boundary if boundary.restarted else reference)
+    return MappedFrame(disk, boundary, reference, boundary.restarted if settings.interior == "still" else "")
 
 
 def _map(cell: CellMesh, angles: Any, settings: MovieSettings, anchor_uv: Any = None) -> DiskMap:

@@ -8,6 +8,7 @@ from cytodisk.parameters import Parameters, parameter
 from cytodisk.scale_parameters import ScaleParameters
 
 Tracker: TypeAlias = Literal["matching", "demons"]
+Interior: TypeAlias = Literal["area", "still"]
 
 SMOOTHNESS_PX2 = 64.0
 
@@ -60,7 +61,24 @@ class FollowingParameters(TrackingParameters, MeshParameters):
     )
 
 
-class MovieMappingParameters(FollowingParameters, MappingParameters):
+class InteriorParameters(Parameters):
+    """What the inside of a cell does while its edge moves."""
+
+    interior: Interior = parameter(
+        "area",
+        'What is assumed of the inside, method "newton". "area": each place keeps its share of the area on '
+        'the way from the edge to the centre. "still": it keeps its place in the lab; only near the edge it '
+        "moves with the edge.",
+    )
+    fade_um: float | None = parameter(
+        None,
+        'For interior "still": depth over which the motion of the edge fades; without it 4 px.',
+        above=0,
+        unit="µm",
+    )
+
+
+class MovieMappingParameters(FollowingParameters, InteriorParameters, MappingParameters):
     """How the frames of a movie are mapped."""
 
 

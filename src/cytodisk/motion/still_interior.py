@@ -1,0 +1,144 @@
+"""Disk map of a later frame whose inside keeps its place in the lab; only near the edge it moves with it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from cytodisk.arrays import FloatArray
+from cytodisk.disk.disk_map import DiskMap, Start
+from cytodisk.disk.harmonic import fading_extension, harmonic_map
+from cytodisk.disk.mapping import CellMesh, disk_map
+from cytodisk.disk.newton import relax
+from cytodisk.disk.untangle import untangled
+from cytodisk.errors import ParameterError
+from cytodisk.geometry.mesh import triangle_areas
+from cytodisk.motion.tracking_parameters import MovieSettings
+from cytodisk.scale import Scale
+
+FADE_PX = 4.0
+_LONGEST_STEP = 0.5  # of the fade: how far the edge moves at once
+_HALVINGS = 4  # of the steps, if they turn triangles of the mesh over
+_PULL = 1e5  # towards the carried places
+_SHAPE_WEIGHT = 0.02
+_ON_CIRCLE = 1.0 - 1e-12  # just inside, so that it has a place in the cell
+
+
+class StillMap(NamedTuple):
+    """Map of a frame, and why its inside could not go on from the frame before; empty if it did."""
+
+    disk: DiskMap
+    restarted: str
+
+
+def fade_in_px(settings: MovieSettings, scale: Scale) -> float:
+    """Depth in pixels over which the motion of the edge fades.
+
+    Parameters
+    ----------
+    settings : MovieSettings
+    scale : Scale
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ParameterError
+        `fade_um` is given, but not the size of a pixel, or not interior "still"; or the method relaxes no
+        interior.
+    """
+    if settings.interior == "area":
+        if settings.fade_um is not None:
+            raise ParameterError('fade_um is for interior "still": pass --interior still (interior="still")')
+        return FADE_PX
+    if settings.method != "newton":
+        raise ParameterError(f'interior "still" needs method "newton", got {settings.method!r}')
+    if settings.fade_um is None:
+        return FADE_PX
+    if scale.pixel_size_um is None:
+        raise ParameterError("fade_um needs a pixel size: pass it as --pixel-size (pixel_size_um=…)")
+    return settings.fade_um / scale.pixel_size_um
+
+
+def still_map(
+    cell: CellMesh, angles: FloatArray, previous: DiskMap, settings: MovieSettings, fade_px: float
+) -> StillMap:
+    """Map a frame so that what is far from the edge keeps its place in the lab since the frame before.
+
+    The displacement of the edge fades inwards as exp(-depth / fade), in steps of at most half the fade. The
+    last map is read where each vertex came from. Flipped triangles push their corners apart; then the
+    vertices are pulled to the places they had, under a barrier that no triangle passes. Areas do not count.
+
+    Parameters
+    ----------
+    cell : CellMesh
+        This frame.
+    angles : ndarray of shape (B,) and dtype float
+        Angle of each boundary vertex, in radians, strictly increasing within one turn.
+    previous : DiskMap
+        The last frame's.
+    settings : MovieSettings
+    fade_px : float
+
+    Returns
+    -------
+    StillMap
+        With a valid certificate.
+
+    Raises
+    ------
+    MapError
+        No valid map was found.
+    """
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    origin = origins(cell, previous.to_cell(circle * _ON_CIRCLE), fade_px)
+    anchor = previous.to_disk(origin, outside="nearest")
+    anchor[: len(circle)] = circle
+    uv, restarted = untangled(cell.mesh, anchor), ""
+    start: Start = "previous"
+    if uv is None:
+        uv, start = harmonic_map(cell.mesh, circle, cell.system)
+        restarted = (
+            "the map of the frame before could not be carried on: the inside starts from a harmonic map"
+        )
+    relaxed = relax(cell.mesh, uv, _SHAPE_WEIGHT, anchor, _PULL, cell.system, area_weight=0.0)
+    return StillMap(disk_map(cell, relaxed, start, settings), restarted)
+
+
+def origins(cell: CellMesh, boundary_yx: FloatArray, fade_px: float) -> FloatArray:
+    """Where each vertex of a mesh was, if its boundary was elsewhere and its inside moved as little as it can.
+
+    Parameters
+    ----------
+    cell : CellMesh
+    boundary_yx : ndarray of shape (B, 2) and dtype float
+        Where the boundary vertices were, in the image.
+    fade_px : float
+
+    Returns
+    -------
+    ndarray of shape (V, 2) and dtype float
+    """
+    moved = boundary_yx - cell.corner - cell.outline
+    steps = max(1, math.ceil(float(np.linalg.norm(moved, axis=1).max()) / (_LONGEST_STEP * fade_px)))
+    for _ in range(_HALVINGS):
+        found, whole = _back(cell, moved, fade_px, steps)
+        if whole:
+            break
+        steps *= 2
+    return found + cell.corner
+
+
+def _back(cell: CellMesh, moved: FloatArray, fade_px: float, steps: int) -> tuple[FloatArray, bool]:
+    """Vertices moved with the boundary in so many steps, and whether no triangle was turned over."""
+    mesh, whole = cell.mesh, True
+    for _ in range(steps):
+        step = fading_extension(mesh, moved / steps, fade_px, cell.system)
+        mesh = replace(mesh, vertices_yx=mesh.vertices_yx + step)
+        whole = whole and bool((triangle_areas(mesh.vertices_yx, mesh.triangles) > 0.0).all())
+    return mesh.vertices_yx, whole
