@@ -135,6 +135,13 @@ def test_energy_is_the_sum_over_triangles(problem: dict) -> None:
     np.testing.assert_allclose(jacobian(uv, mesh.triangles[5], cell.hats[5]), jacobians[5].ravel())
 
 
+def test_without_areas_a_larger_map_has_the_same_energy(problem: dict) -> None:
+    uv, cell = problem["uv"], problem["cell"]._replace(area_weight=0.0)
+    assert energy(3.0 * uv, *cell, 0.005) == pytest.approx(energy(uv, *cell, 0.005), rel=1e-10)
+    assert energy(3.0 * uv, *problem["cell"], 0.005) > energy(uv, *problem["cell"], 0.005)
+    assert energy(uv[:, ::-1], *cell, 0.005) == np.inf
+
+
 def test_energy_of_a_flipped_triangle_is_infinite(problem: dict) -> None:
     uv, cell = problem["uv"], problem["cell"]
     flipped = uv.copy()
@@ -142,8 +149,10 @@ def test_energy_of_a_flipped_triangle_is_infinite(problem: dict) -> None:
     assert energy(flipped, *cell, 0.005) == np.inf
 
 
-def test_the_gradient_agrees_with_finite_differences(problem: dict) -> None:
-    mesh, uv, cell = (problem[key] for key in ("mesh", "uv", "cell"))
+@pytest.mark.parametrize("area_weight", [1.0, 0.3, 0.0])
+def test_the_gradient_agrees_with_finite_differences(problem: dict, area_weight: float) -> None:
+    mesh, uv = problem["mesh"], problem["uv"]
+    cell = problem["cell"]._replace(area_weight=area_weight)
     system = BlockSystem(mesh)
     gradient = np.empty((len(system.vertex), 2))
     derivatives(

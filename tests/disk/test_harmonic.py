@@ -1,10 +1,12 @@
 import numpy as np
 import pytest
+from scipy.special import iv
 
 from cytodisk import simulate
-from cytodisk.disk.harmonic import harmonic_map
+from cytodisk.disk.harmonic import fading_extension, harmonic_extension, harmonic_map
 from cytodisk.disk.mapping import map_to_disk
 from cytodisk.geometry.mesh import mesh_inside
+from cytodisk.geometry.outline import trace_outline
 
 SEMI_Y, SEMI_X = 30.0, 60.0
 
@@ -89,3 +91,27 @@ def test_the_harmonic_map_is_a_weighted_mean_so_it_stays_inside(kind: str) -> No
     inner = np.hypot(*disk.vertices_uv[len(disk.boundary) :].T)
     assert disk.certificate.valid
     assert inner.max() < 1.0
+
+
+@pytest.mark.parametrize("fade", [3.0, 8.0])
+def test_a_shift_of_the_edge_fades_inwards_as_a_bessel_function(fade: float) -> None:
+    mask = simulate.disk(25)
+    mesh = mesh_inside(trace_outline(mask), mask, edge_length=0.7)
+    radius = np.sqrt(mask.sum() / np.pi)
+    shift = np.broadcast_to([2.0, -1.0], (mesh.n_boundary, 2))
+    values = fading_extension(mesh, shift, fade)
+    middle = np.argwhere(mask).mean(axis=0)
+    depth = np.linalg.norm(mesh.vertices_yx - middle, axis=1)
+    expected = iv(0, depth / fade) / iv(0, radius / fade)
+    np.testing.assert_array_equal(values[: mesh.n_boundary], shift)
+    np.testing.assert_allclose(values[mesh.n_boundary :, 0], 2.0 * expected[mesh.n_boundary :], atol=0.2)
+    np.testing.assert_allclose(values[:, 1], -0.5 * values[:, 0], atol=1e-12)
+
+
+def test_what_fades_slowly_is_harmonic() -> None:
+    mask = simulate.random_smooth(2, radius=20.0)
+    mesh = mesh_inside(trace_outline(mask), mask, edge_length=1.5)
+    at_edge = np.random.default_rng(0).normal(size=(mesh.n_boundary, 2))
+    np.testing.assert_allclose(
+        fading_extension(mesh, at_edge, 1e4), harmonic_extension(mesh, at_edge), atol=1e-3
+    )

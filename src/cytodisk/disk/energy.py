@@ -1,8 +1,8 @@
 """The relaxation energy of one map, its gradient and its projected Hessian: Numba kernels.
 
 E = Σ_t a_t ψ(σ₁, σ₂), ψ = g L² + w (σ₁/σ₂ + σ₂/σ₁ - 2), L = log(σ₁ σ₂), where σ are the singular values of
-the Jacobian J_t from the cell, scaled to the area of the disk, to the disk, and a_t the area share of triangle
-t in the cell. E is infinite where det J ≤ 0. g is 1, or 0 where areas do not count.
+the Jacobian J_t from the cell, scaled to the area of the disk, to the disk, and a_t the area share of
+triangle t in the cell. E is infinite where det J ≤ 0. g is 1, or 0 where areas do not count.
 
 The Hessian with respect to J has four eigenvectors that are known in closed form (Smith, de Goes & Kim 2019,
 doi:10.1145/3241041): twist, flip and two stretches; negative eigenvalues are raised to 0.

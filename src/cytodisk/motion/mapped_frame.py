@@ -82,17 +82,18 @@ def map_frame(
         return MappedFrame(disk, boundary, boundary)
     renewed = frame // settings.renew_every > last.frame // settings.renew_every
     reference = last.boundary if renewed else last.reference
-    boundary = follow(frame, contour, last.boundary, reference, settings)
+    still = settings.interior == "still"
+    boundary = follow(frame, contour, last.boundary, reference, settings, in_lab=still)
     angles = tracked_angles(contour, boundary.s, point_angles(len(boundary.s)))
     reference = boundary if boundary.restarted else reference
-    if settings.interior == "still" and not boundary.restarted:
-        still = still_map(cell, angles, last.disk, settings, fade_in_px(settings, scale))
-        return MappedFrame(still.disk, boundary, reference, still.restarted)
+    if still and not boundary.restarted:
+        found = still_map(cell, angles, last.disk, settings, fade_in_px(settings, scale))
+        return MappedFrame(found.disk, boundary, reference, found.restarted)
     anchor = None
     if not boundary.restarted and settings.method == "newton":
         anchor = carried_inside(cell, contour, boundary.s, last.disk, last.boundary.contour, last.boundary.s)
     disk = _map(cell, angles, settings, anchor)
-    return MappedFrame(disk, boundary, reference, boundary.restarted if settings.interior == "still" else "")
+    return MappedFrame(disk, boundary, reference, boundary.restarted if still else "")
 
 
 def _map(cell: CellMesh, angles: Any, settings: MovieSettings, anchor_uv: Any = None) -> DiskMap:

@@ -21,7 +21,6 @@ from cytodisk.scale import Scale
 
 FADE_PX = 4.0
 _LONGEST_STEP = 0.5  # of the fade: how far the edge moves at once
-_HALVINGS = 4  # of the steps, if they turn triangles of the mesh over
 _PULL = 1e5  # towards the carried places
 _SHAPE_WEIGHT = 0.02
 _ON_CIRCLE = 1.0 - 1e-12  # just inside, so that it has a place in the cell
@@ -103,15 +102,13 @@ def still_map(
     start: Start = "previous"
     if uv is None:
         uv, start = harmonic_map(cell.mesh, circle, cell.system)
-        restarted = (
-            "the map of the frame before could not be carried on: the inside starts from a harmonic map"
-        )
+        restarted = "the last map could not be carried on: the inside starts from a harmonic map"
     relaxed = relax(cell.mesh, uv, _SHAPE_WEIGHT, anchor, _PULL, cell.system, area_weight=0.0)
     return StillMap(disk_map(cell, relaxed, start, settings), restarted)
 
 
 def origins(cell: CellMesh, boundary_yx: FloatArray, fade_px: float) -> FloatArray:
-    """Where each vertex of a mesh was, if its boundary was elsewhere and its inside moved as little as it can.
+    """Where each vertex of a mesh was, if its boundary was elsewhere and its inside hardly moved.
 
     Parameters
     ----------
@@ -126,19 +123,10 @@ def origins(cell: CellMesh, boundary_yx: FloatArray, fade_px: float) -> FloatArr
     """
     moved = boundary_yx - cell.corner - cell.outline
     steps = max(1, math.ceil(float(np.linalg.norm(moved, axis=1).max()) / (_LONGEST_STEP * fade_px)))
-    for _ in range(_HALVINGS):
-        found, whole = _back(cell, moved, fade_px, steps)
-        if whole:
-            break
-        steps *= 2
-    return found + cell.corner
-
-
-def _back(cell: CellMesh, moved: FloatArray, fade_px: float, steps: int) -> tuple[FloatArray, bool]:
-    """Vertices moved with the boundary in so many steps, and whether no triangle was turned over."""
-    mesh, whole = cell.mesh, True
+    places, mesh = cell.mesh.vertices_yx, cell.mesh
     for _ in range(steps):
-        step = fading_extension(mesh, moved / steps, fade_px, cell.system)
-        mesh = replace(mesh, vertices_yx=mesh.vertices_yx + step)
-        whole = whole and bool((triangle_areas(mesh.vertices_yx, mesh.triangles) > 0.0).all())
-    return mesh.vertices_yx, whole
+        places = places + fading_extension(mesh, moved / steps, fade_px, cell.system)
+        # Where the edge passed itself, triangles are turned over: the equation stays that of the mesh before.
+        if (triangle_areas(places, mesh.triangles) > 0.0).all():
+            mesh = replace(mesh, vertices_yx=places)
+    return places + cell.corner

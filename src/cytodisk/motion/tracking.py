@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -121,6 +121,8 @@ def follow(
     last: TrackedBoundary,
     reference: TrackedBoundary,
     settings: TrackingSettings,
+    *,
+    in_lab: bool = False,
 ) -> TrackedBoundary:
     """Carry tracked points to the next frame.
 
@@ -135,6 +137,8 @@ def follow(
     reference : TrackedBoundary
         Boundary of the frame that registration refers to.
     settings : TrackingSettings
+    in_lab : bool
+        Match the outlines as they lie in the image, not as registered: points move as little as they can.
 
     Returns
     -------
@@ -162,6 +166,9 @@ def follow(
         return _restart(frame, contour, transform, last, why)
     if settings.tracker == "demons":
         return _follow_demons(frame, contour, last, transform, settings.demons or DemonsParameters())
+    if in_lab:
+        last, alignment = replace(last, alignment=IDENTITY), IDENTITY
+        guess_on_grid = first_guess(last.contour, contour, grid, smoothness)
     return _follow_matching(frame, contour, last, transform, alignment, guess_on_grid, settings)
 
 

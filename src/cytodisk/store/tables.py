@@ -136,6 +136,18 @@ SOURCE_COLUMNS: Columns = (CELL, SOURCE, *CELL_COLUMNS[1:])
 TRACK_COLUMNS: Columns = (
     Column("restarted", pa.string(), "", "why tracking started anew in this frame; empty if it went on"),
     Column(
+        "interior_restarted",
+        pa.string(),
+        "",
+        "with interior still: why the inside could not go on from the last map; empty if it did",
+    ),
+    Column(
+        "smallest_window_share",
+        pa.float64(),
+        "1",
+        "with interior still: area of the smallest window over the area that it has in a map of equal areas",
+    ),
+    Column(
         "tracking_residual",
         pa.float64(),
         "length",

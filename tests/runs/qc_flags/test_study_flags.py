@@ -32,6 +32,7 @@ def made(frames: int = 20, n_cells: int = 1, **provenance: object) -> MadeStudy:
     cells = cells.assign(area=100 + rng.normal(0, 0.5, len(cells)), touches_border=False, border_share=0.0)
     cells["perimeter"] = np.sqrt(4 * np.pi * cells["area"])
     cells = cells.assign(nan_px=0, area_distortion=0.02, restarted="", tracking_residual=0.01)
+    cells = cells.assign(interior_restarted="", smallest_window_share=np.nan)
     cells = cells.assign(order_violations=0, perimeter=20.0, swept_area=10.0)
     edge = cells[["cell", "frame"]].merge(pd.DataFrame({"sector": range(12)}), how="cross")
     edge["velocity"] = np.where(edge["frame"] == frames - 1, np.nan, rng.normal(0, 0.05, len(edge)))
@@ -76,6 +77,8 @@ def test_an_edge_that_sweeps_more_than_the_cell_won_and_lost() -> None:
     [
         ("qc_flags", "a large fragment was dropped", "flagged masks", "a large fragment was dropped"),
         ("restarted", "the cell jumped", "tracking restarts", "the cell jumped"),
+        ("interior_restarted", "the edge leapt", "interior restarts", "the edge leapt"),
+        ("smallest_window_share", 0.09, "small still windows", "0.09 of its share"),
         ("tracking_residual", 0.6, "tracking residual", "0.6 µm"),
         ("order_violations", 3, "order violations", "3 points"),
         ("area_distortion", 0.3, "strong distortion", "30%"),

@@ -16,11 +16,12 @@ from cytodisk.motion.edge import EdgeMotion, displacement_by_sector, edge_motion
 from cytodisk.motion.following import frame_status
 from cytodisk.motion.frame_file import save_frame
 from cytodisk.motion.mapped_frame import MappedFrame
+from cytodisk.motion.tracking_parameters import InteriorParameters
 from cytodisk.runs.frame_rows import FramePlace, measure_windows
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
 from cytodisk.store.activity_store import EDGE_VARIABLES
-from cytodisk.windows.polar_windows import PolarGrid
+from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +92,7 @@ def measure_frame(task: FrameTask) -> FrameRows:
     frame = task.frame
     windows = task.grid.on(frame.disk)
     row, columns = measure_windows(task.place, windows, task.signal, task.parameters.nan)
-    row |= _track_columns(frame)
+    row |= _track_columns(frame) | {"smallest_window_share": _smallest_share(windows, task.parameters)}
     row["qc_flags"] = "; ".join(filter(None, [row["qc_flags"], _jump(task)]))
     save_frame(task.map_path, frame)
     motion = _motion_since(task)
@@ -99,6 +100,14 @@ def measure_frame(task: FrameTask) -> FrameRows:
     edge = None if task.before is None else _edge_before(task, task.before, motion)
     row |= {"status": "ok", "reason": "", "seconds": task.seconds + clock.perf_counter() - started}
     return FrameRows(row, {"windows": columns}, edge)
+
+
+def _smallest_share(windows: CellWindows, parameters: FollowedCellParameters) -> float:
+    """Area of the smallest window over that in a map of equal areas; NaN unless the interior stands still."""
+    if parameters.part(InteriorParameters).interior != "still":
+        return np.nan
+    by_layer = -np.diff(windows.grid.radii**2) / windows.grid.sectors
+    return float((windows.areas / (by_layer[:, None] * windows.areas.sum())).min())
 
 
 def _jump(task: FrameTask) -> str:
@@ -199,6 +208,7 @@ def _track_columns(frame: MappedFrame) -> dict[str, Any]:
     boundary, transform = frame.boundary, frame.boundary.transform
     return {
         "restarted": boundary.restarted,
+        "interior_restarted": frame.interior_restarted,
         "tracking_residual": frame.disk.scale.length(boundary.residual_px),
         "order_violations": boundary.order_violations,
         "registration_angle": float(np.degrees(transform.angle)),

@@ -16,6 +16,8 @@ from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile, open_frames
 from cytodisk.images.mask_kinds import look_at
 from cytodisk.images.tracks import CellTrack, list_tracks, read_frame
+from cytodisk.motion.still_interior import fade_in_px
+from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.cells.cell_inputs import check_signal
 from cytodisk.runs.channel_names import name_channels
 from cytodisk.runs.file_scales import agreed
@@ -138,6 +140,7 @@ def open_movie(
     """
     files = open_movie_files(masks, signal, parameters)
     mask_file, scale = files.masks, files.scale
+    fade_in_px(parameters.part(MovieSettings), scale)
     look = look_at(mask_file, parameters.kind)
     tracks = tuple(list_tracks(mask_file, look, parameters.link))
     layers, depth_um = parameters.layers, None

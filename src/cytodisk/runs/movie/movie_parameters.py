@@ -3,7 +3,7 @@
 from typing import ClassVar
 
 from cytodisk.images.file_parameters import MovieKindParameters
-from cytodisk.motion.tracking_parameters import FollowingParameters, JitterParameters
+from cytodisk.motion.tracking_parameters import FollowingParameters, InteriorParameters, JitterParameters
 from cytodisk.parameters import parameter
 from cytodisk.runs.cells.cell_parameters import CellParameters
 from cytodisk.runs.map.map_parameters import MapParameters
@@ -16,7 +16,7 @@ class FollowedCellParameters(
     """What all runs over movies have, whatever the method of the map."""
 
 
-class MovieParameters(FollowedCellParameters, MapParameters):
+class MovieParameters(FollowedCellParameters, InteriorParameters, MapParameters):
     """What decides the result of `cytodisk movie`, beside the input files."""
 
     exclusive: ClassVar[tuple[tuple[str, str], ...]] = (("layers", "depth_um"),)

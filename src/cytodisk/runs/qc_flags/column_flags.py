@@ -89,7 +89,8 @@ def without_map(study: Study) -> Iterator[QCFlag]:
             yield QCFlag(f"{status} frames", f"{frames_of(study, len(rows))} {status}", *words, places)
 
 
-def _said(column: pd.Series[Any], _: Scale) -> pd.Series[bool]:
+def said(column: pd.Series[Any], _: Scale) -> pd.Series[bool]:
+    """Which values of a column are words."""
     return column.fillna("").astype(str) != ""
 
 
@@ -103,7 +104,7 @@ flagged_masks = ColumnRule(
     "Cleaning the mask changed much, or the cell is not where it was.",
     "Look at the mask; correct the segmentation or leave it out.",
     "qc_flags",
-    _said,
+    said,
     lambda value, row, scale: str(value),
     mapped=False,
 )
@@ -163,6 +164,6 @@ tracking_restarts = ColumnRule(
     "unknown across the restart.",
     "Compare sectors within the stretches between restarts.",
     "restarted",
-    _said,
+    said,
     lambda value, row, scale: str(value),
 )

@@ -10,6 +10,7 @@ from cytodisk.runs.qc_flags import (
     correlation_flags,
     geometry_flags,
     input_flags,
+    interior_flags,
     motion_flags,
 )
 from cytodisk.runs.qc_flags.qc_flag import QCFlag, counted
@@ -92,6 +93,8 @@ _RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     column_flags.tracking_residual,
     column_flags.order_violations,
     column_flags.tracking_restarts,
+    interior_flags.interior_restarts,
+    interior_flags.small_still_windows,
     column_flags.image_border,
     motion_flags.drift,
     column_flags.distortion,

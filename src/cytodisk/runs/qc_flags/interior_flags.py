@@ -1,0 +1,27 @@
+"""QC flags of movies whose interior stands still (`interior="still"`)."""
+
+from cytodisk.runs.qc_flags.column_flags import ColumnRule, said
+
+SMALLEST_STILL_SHARE = 0.1
+"""Share of its area in a map of equal areas below which a window is squeezed."""
+
+interior_restarts = ColumnRule(
+    "interior restarts",
+    "the interior starts anew in {frames}",
+    "The edge moved so far at once that places inside are the same before and after only as far as the shape "
+    "tells.",
+    "Compare windows within the stretches between restarts, or run again with --interior area.",
+    "interior_restarted",
+    said,
+    lambda value, row, scale: str(value),
+)
+small_still_windows = ColumnRule(
+    "small still windows",
+    "windows are squeezed to less than a tenth of their share of the cell in {frames}",
+    "The interior stands still and the edge has come close: a cell that migrates or shrinks cannot stand "
+    "still for ever. The means of these windows come from few pixels.",
+    "Use the frames before, start the movie later, or run again with --interior area.",
+    "smallest_window_share",
+    lambda column, scale: column < SMALLEST_STILL_SHARE,
+    lambda value, row, scale: f"{value:.2g} of its share",
+)
