@@ -91,12 +91,14 @@ def test_an_edge_that_passes_itself_is_mapped_and_told(tmp_path: Path) -> None:
     movie = cd.map_movie(masks, interior="still")
     assert movie[1].certificate.valid
     tifffile.imwrite(tmp_path / "masks.tif", masks.astype(np.uint8), metadata={"axes": "TYX"})
-    cells = cd.run_movie(
-        tmp_path / "masks.tif", tmp_path / "out", interior="still", layers=2, sectors=6
-    ).cells
+    study = cd.run_movie(tmp_path / "masks.tif", tmp_path / "out", interior="still", layers=2, sectors=6)
+    cells = study.cells
     assert movie[1].start != "previous"
     assert "starts from a harmonic map" in cells["interior_restarted"][1]
-    assert movie.records[1].boundary.restarted == ""
+    boundary = movie.records[1].boundary
+    assert boundary is not None
+    assert boundary.restarted == ""
+    assert "interior restarts" in {flag.name for flag in cd.qc_flags(study)}
 
 
 @pytest.mark.parametrize("speed", [2.0, 9.0])
