@@ -60,7 +60,7 @@ def map_to_disk(
 
     See Also
     --------
-    map_movie : The cell of a movie, with the same place in all frames.
+    map_movie : The cell of a movie, with maps that correspond through time.
     certify : The proof alone.
     load_map : Read a map from a file.
 

@@ -49,7 +49,9 @@ class FrameRecord:
 
 @dataclass(frozen=True, eq=False)
 class DiskMovie(Sequence[DiskMap]):
-    """Maps of one cell through time: a point of the disk is the same place of the cell in every frame.
+    """Maps of one cell through time: a point of the disk corresponds to one place of the cell in every frame.
+
+    On the edge that is tracked. Inside it is an assumption, which `interior` of `map_movie` chooses.
 
     `movie[t]` is the `DiskMap` of frame t, read when asked for; a frame without one raises `MapError` with
     the reason.

@@ -34,7 +34,9 @@ def map_movie(
     """Map every frame of a movie of one cell onto the disk, in correspondence through time.
 
     The boundary is tracked from frame to frame, so that each place of the edge keeps its angle on the disk;
-    the inside starts from where the last frame put it. A frame that cannot be mapped (empty, damaged) is a
+    the inside starts from where the last frame put it. What the inside did meanwhile, a mask does not show:
+    with `interior="area"` each place keeps its share of the area on the way from the edge, with "still" it
+    keeps its position in the lab. A frame that cannot be mapped (empty, damaged) is a
     gap with a reason, and the movie goes on after it.
 
     Parameters
