@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import cytodisk as cd
-from cytodisk.errors import ParameterError
 from cytodisk.motion.map_movie import map_movie
-from cytodisk.motion.velocity import edge_changes, edge_velocity
+from cytodisk.motion.velocity import edge_velocity
 
 QUICK = {"edge_length": 3.0, "method": "harmonic"}
 
@@ -102,13 +101,6 @@ def test_an_iterator_is_no_movie() -> None:
 
     with pytest.raises(cd.errors.MaskError, match="masks must be an array"):
         map_movie(frames())
-
-
-@pytest.mark.parametrize(("name", "value"), [("seed", -1), ("seed", 1.5), ("seed", None), ("jitter_px", 1e9)])
-def test_arguments_of_the_error_bar_are_checked(name: str, value: object) -> None:
-    movie = map_movie([drop(0.0)] * 2, **QUICK)
-    with pytest.raises(ParameterError, match=f"{name} must be"):
-        edge_changes(movie, 8, **{name: value})
 
 
 def test_parameters_of_demons_reach_it() -> None:

@@ -150,7 +150,7 @@ def test_units_follow_what_is_known(
         assert ("time_s" in one.coords) == (interval is not None)
     if interval is not None:
         np.testing.assert_array_equal(one.time_s, 4.0 * np.arange(5))
-    changes, plain_changes = (edge_changes(each, 8, repeats=2) for each in (movie, plain))
+    changes, plain_changes = (edge_changes(each, 8) for each in (movie, plain))
     area, length = ("px²", "px") if pixel is None else ("µm²", "µm")
     expected = {
         "velocity": (unit, factor),
@@ -168,7 +168,7 @@ def test_units_follow_what_is_known(
 
 def test_the_last_frame_and_those_beside_a_gap_are_nan(gappy: DiskMovie) -> None:
     whole = [True, False, False, True, True, False]
-    changes = edge_changes(gappy, 12, repeats=2)
+    changes = edge_changes(gappy, 12)
     for table in (edge_velocity(gappy, 12), boundary_velocity(gappy), *changes.data_vars.values()):
         np.testing.assert_array_equal(np.isfinite(table).all(axis=1), whole)
         np.testing.assert_array_equal(np.isfinite(table).any(axis=1), whole)
@@ -199,7 +199,7 @@ def test_boundary_on_the_border_is_left_out(growth: float) -> None:
     inner = velocity[:-1].to_numpy()
     # What is off the border moves by a pixel a frame.
     assert float(np.nanmedian(inner)) == pytest.approx(growth, abs=0.1)
-    changes = edge_changes(movie, 24, repeats=2)
+    changes = edge_changes(movie, 24)
     np.testing.assert_array_equal(changes.edge_length[:-1] == 0.0, np.isnan(inner))
 
 
@@ -241,7 +241,7 @@ def test_displacement_in_the_cells_frame_is_that_of_registered_points(first: flo
 @pytest.mark.parametrize("kind", ["bulging", "neutrophil"])
 def test_areas_won_and_lost_are_those_of_the_masks(mapped: Mapped, kind: str) -> None:
     shown, movie = mapped(kind, 12)
-    changes = edge_changes(movie, 17, repeats=2)
+    changes = edge_changes(movie, 17)
     before, after = shown.masks[:-1], shown.masks[1:]
     np.testing.assert_array_equal(changes.protruded_area[:-1].sum("sector"), (after & ~before).sum((1, 2)))
     np.testing.assert_array_equal(changes.retracted_area[:-1].sum("sector"), (before & ~after).sum((1, 2)))
@@ -255,44 +255,17 @@ def test_areas_won_and_lost_are_those_of_the_masks(mapped: Mapped, kind: str) ->
 def test_areas_in_the_cells_own_frame_leave_its_motion_out() -> None:
     outlines = [moved(lobed(30.0), 0.0, (0.0, 3.0 * time)) for time in range(3)]
     movie = map_movie(masks_of(outlines, (121, 121)), **QUICK)
-    lab, cell = (edge_changes(movie, 8, frame=frame, repeats=2) for frame in ("lab", "cell"))
+    lab, cell = (edge_changes(movie, 8, frame=frame) for frame in ("lab", "cell"))
     assert float(lab.protruded_area[:-1].sum()) > 250.0
     assert float(cell.protruded_area[:-1].sum()) < 30.0
     assert cell.attrs["frame"] == "cell"
 
 
 def test_area_won_is_velocity_times_length_of_a_growing_disk(mapped: Mapped) -> None:
-    changes = edge_changes(mapped("growing", 41)[1], 12, repeats=2).isel(time=slice(0, -1))
+    changes = edge_changes(mapped("growing", 41)[1], 12).isel(time=slice(0, -1))
     won = (changes.protruded_area - changes.retracted_area).mean("time")
     expected = (changes.velocity * changes.edge_length).mean("time")
     np.testing.assert_allclose(won, expected, rtol=0.03)
-
-
-def test_the_error_grows_with_the_jitter_and_is_0_without(small: np.ndarray) -> None:
-    movie = map_movie(small, **QUICK)
-    errors = [
-        float(edge_changes(movie, 12, jitter_px=jitter, repeats=6).velocity_error.mean())
-        for jitter in (0.0, 0.25, 0.5, 1.0)
-    ]
-    assert errors[0] == pytest.approx(0.0, abs=1e-9)
-    assert errors == sorted(errors)
-    assert errors[3] > 2.0 * errors[1]
-
-
-def test_the_error_is_that_of_repeated_segmentation() -> None:
-    shown = simulate.movie("still", 2, frames=25, jitter_px=0.5, signals=False)
-    movie = map_movie(shown.masks, registration=False, **QUICK)
-    changes = edge_changes(movie, 40, jitter_px=0.5, repeats=8)
-    scatter = changes.velocity[:-1].std()
-    assert 0.5 < float(changes.velocity_error[:-1].mean() / scatter) < 1.6
-
-
-def test_the_error_depends_on_nothing_but_the_seed(small: np.ndarray) -> None:
-    movie = map_movie(small, **QUICK)
-    one, again, other = (edge_changes(movie, 12, repeats=3, seed=seed) for seed in (4, 4, 5))
-    assert one.identical(again)
-    assert not np.allclose(one.velocity_error[:-1], other.velocity_error[:-1])
-    assert one.velocity.identical(other.velocity)
 
 
 def test_points_have_their_angles(gappy: DiskMovie) -> None:
@@ -335,12 +308,3 @@ def test_what_is_no_movie_is_refused(function: Callable[..., xr.DataArray]) -> N
 def test_an_unknown_frame_is_refused(gappy: DiskMovie, function: Callable[..., xr.DataArray]) -> None:
     with pytest.raises(ParameterError, match=r"frame.*'moon'"):
         function(gappy, frame="moon")
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [("jitter_px", -0.1), ("jitter_px", np.nan), ("jitter_px", "much"), ("repeats", 1), ("repeats", 2.5)],
-)
-def test_bad_jitter_is_refused(gappy: DiskMovie, name: str, value: object) -> None:
-    with pytest.raises(ParameterError, match=f"{name} must be .*got {value!r}"):
-        edge_changes(gappy, **{name: value})

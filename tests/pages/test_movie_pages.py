@@ -54,7 +54,7 @@ def _study(folder: Path, signal: FloatArray | None, **scale: float) -> Study:
         path = folder / "signal.ome.tif"
         names = {"Channel": {"Name": ["Rac/1 $a$", "rac 1 $a$"]}}
         tifffile.imwrite(path, signal, metadata={"axes": "TCYX"} | names)
-    parameters = MovieParameters(kind="labels", layers=3, sectors=12, repeats=2, **scale)
+    parameters = MovieParameters(kind="labels", layers=3, sectors=12, **scale)
     return movie_study(open_movie(folder / "masks.tif", path, parameters), folder / "study")
 
 

@@ -67,9 +67,10 @@ plt.show()
 # %%
 # Error bars
 # ----------
-# The edge of a mask is uncertain by a fraction of a pixel. ``edge_changes`` computes
-# the error of velocity that follows, and the areas won and lost, for each sector.
-changes = cd.edge_changes(movie, sectors=60, jitter_px=0.5)
+# The edge of a mask is uncertain by a fraction of a pixel. ``edge_changes`` estimates
+# the error of velocity that follows from how the edge jitters, and the areas won and
+# lost, for each sector.
+changes = cd.edge_changes(movie, sectors=60)
 sector = 10
 figure, ax = plt.subplots(figsize=(5, 2.4), layout="constrained")
 ax.errorbar(

@@ -6,18 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from scipy.ndimage import gaussian_filter1d
 
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.motion.contour import Contour
-from cytodisk.motion.matching import match
 from cytodisk.motion.registration import RigidTransform
 from cytodisk.motion.swept_edge import Frame, swept_edge, transforms
 from cytodisk.motion.tracking import TrackedBoundary
-from cytodisk.motion.tracking_parameters import SMOOTHNESS_PX2, JitterParameters
-
-_JITTER_REACH_PX = 4.0  # standard deviation of the smoothing of simulated segmentation errors along the edge
 
 
 @dataclass(frozen=True)
@@ -31,8 +25,6 @@ class EdgeMotion:
         image's border.
     fastest_px : ndarray of shape (S,) and dtype float
         The same of the sector's fastest few pixels of edge.
-    error_px : ndarray of shape (S,) and dtype float
-        Standard deviation of the displacement if the masks' edges are uncertain by the given jitter.
     protruded_px2, retracted_px2 : ndarray of shape (S,) and dtype float
         Area that the cell won and lost, in square pixels; both at least 0.
     length_px : ndarray of shape (S,) and dtype float
@@ -43,7 +35,6 @@ class EdgeMotion:
 
     displacement_px: FloatArray
     fastest_px: FloatArray
-    error_px: FloatArray
     protruded_px2: FloatArray
     retracted_px2: FloatArray
     length_px: FloatArray
@@ -114,7 +105,6 @@ def edge_motion(
     sectors: int,
     *,
     frame: Frame = "lab",
-    jitter: JitterParameters,
 ) -> EdgeMotion:
     """Motion of the boundary by sector.
 
@@ -126,8 +116,6 @@ def edge_motion(
         Theirs.
     sectors : int
     frame : {"lab", "cell"}
-    jitter : JitterParameters
-        For the error.
 
     Returns
     -------
@@ -135,57 +123,15 @@ def edge_motion(
     """
     pieces = swept_edge(here, there, frame, disk_here.mask.shape)
     area, length, fastest = pieces.by_sector(sectors)
-    random = np.random.default_rng([jitter.seed, here.frame])
-    draws = [_jittered(here, there, frame, jitter.jitter_px, random, sectors) for _ in range(jitter.repeats)]
-    error = np.where(length > 0.0, np.std(draws, axis=0, ddof=1), np.nan)
     start, stop = transforms(here, there, frame)
     won = _area_outside(disk_there, stop, disk_here, start, sectors)
     lost = _area_outside(disk_here, start, disk_there, stop, sectors)
-    return EdgeMotion(_over(area, length), fastest, error, won, lost, length, pieces.absolute_px2)
+    return EdgeMotion(_over(area, length), fastest, won, lost, length, pieces.absolute_px2)
 
 
 def _over(area: FloatArray, length: FloatArray) -> FloatArray:
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray(area / length)
-
-
-def _jittered(
-    here: TrackedBoundary,
-    there: TrackedBoundary,
-    frame: Frame,
-    jitter_px: float,
-    random: np.random.Generator,
-    sectors: int,
-) -> FloatArray:
-    """Normal displacement when both edges are drawn with a random error."""
-    start, stop = here.transform, there.transform
-    first, second = (_shaken(boundary.contour, jitter_px, random) for boundary in (here, there))
-    # Arc length changes a little with the jitter: points keep their share between outline points.
-    s_first, s_second = (
-        np.interp(boundary.s % boundary.contour.length, boundary.contour.arc, shaken.arc)
-        for boundary, shaken in ((here, first), (there, second))
-    )
-    s_first, s_second = _unwrapped(s_first, first.length), _unwrapped(s_second, second.length)
-    s_second = match(here.alignment.of(first), there.alignment.of(second), s_first, s_second, SMOOTHNESS_PX2)
-    again = (
-        TrackedBoundary(here.frame, first, s_first, start),
-        TrackedBoundary(there.frame, second, s_second, stop),
-    )
-    return displacement_by_sector(*again, None, sectors, frame)
-
-
-def _unwrapped(s: FloatArray, length: float) -> FloatArray:
-    return s + length * np.concatenate([[0.0], np.cumsum(np.diff(s) < 0.0)])
-
-
-def _shaken(contour: Contour, jitter_px: float, random: np.random.Generator) -> Contour:
-    spacing = contour.length / len(contour.points_yx)
-    noise = gaussian_filter1d(
-        random.standard_normal(len(contour.points_yx)), _JITTER_REACH_PX / spacing, mode="wrap"
-    )
-    normals = contour.normals(contour.arc[:-1])
-    size = max(float(np.sqrt(np.mean(noise**2))), 1e-12)
-    return Contour(contour.points_yx + normals * (jitter_px / size * noise)[:, None], contour.outline_yx)
 
 
 def _area_outside(

@@ -1,4 +1,4 @@
-"""Parameters of `map_movie` and `edge_changes`."""
+"""Parameters of `map_movie`."""
 
 from typing import Literal, TypeAlias
 
@@ -88,17 +88,3 @@ class MovieSettings(MovieMappingParameters, TrackingSettings):
 
 class MovieMapParameters(MovieSettings, ScaleParameters):
     """What `map_movie` takes."""
-
-
-class JitterParameters(Parameters):
-    """How the error of the edge velocity is estimated."""
-
-    jitter_px: float = parameter(
-        0.5,
-        "Uncertainty of the edge of the masks (standard deviation), for the error of the velocity.",
-        least=0,
-        most=10,
-        unit="px",
-    )
-    repeats: int = parameter(8, "Number of times the edge is shaken for that error.", least=2)
-    seed: int = parameter(0, "Seed of the random numbers.", least=0)

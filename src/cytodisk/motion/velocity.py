@@ -10,10 +10,9 @@ import xarray as xr
 from cytodisk.checks import instance_of, one_of
 from cytodisk.disk.sector_parameters import SECTORS, SectorParameters
 from cytodisk.motion.disk_movie import DiskMovie
-from cytodisk.motion.edge import EdgeMotion, displacement_by_sector, edge_motion, normal_displacement
+from cytodisk.motion.edge import displacement_by_sector, edge_motion, normal_displacement
 from cytodisk.motion.swept_edge import FRAMES, Frame
-from cytodisk.motion.tracking_parameters import JitterParameters
-from cytodisk.taking import takes
+from cytodisk.motion.velocity_error import velocity_error
 
 
 def edge_velocity(movie: DiskMovie, sectors: int = SECTORS, *, frame: Frame = "lab") -> xr.DataArray:
@@ -114,13 +113,11 @@ def boundary_velocity(movie: DiskMovie, *, frame: Frame = "lab") -> xr.DataArray
     return labelled.assign_coords(angle=("point", movie.point_angles))
 
 
-@takes(JitterParameters)
 def edge_changes(
     movie: DiskMovie,
     sectors: int = SECTORS,
     *,
     frame: Frame = "lab",
-    **settings: Any,
 ) -> xr.Dataset:
     """Edge velocity with its error bar, and the areas that the cell won and lost, by frame and sector.
 
@@ -129,8 +126,6 @@ def edge_changes(
     movie : DiskMovie
     sectors : int
     frame : {"lab", "cell"}
-    **settings
-        See `JitterParameters`.
 
     Returns
     -------
@@ -158,19 +153,16 @@ def edge_changes(
     True
     """
     sectors, frame = SectorParameters(sectors=sectors).sectors, one_of("frame", frame, FRAMES)
-    jitter = JitterParameters.of(**settings)
     _check_movie(movie)
-    rows: dict[int, EdgeMotion] = {}
+    found = {
+        name: np.full((len(movie), sectors), np.nan)
+        for name in ("displacement_px", "fastest_px", "protruded_px2", "retracted_px2", "length_px")
+    }
     for number, (here, there) in _pairs(movie):
-        rows[number] = edge_motion(
-            here,
-            there,
-            movie[number],
-            movie[number + 1],
-            sectors,
-            frame=frame,
-            jitter=jitter,
-        )
+        motion = edge_motion(here, there, movie[number], movie[number + 1], sectors, frame=frame)
+        for name, values in found.items():
+            values[number] = getattr(motion, name)
+    found["error_px"] = velocity_error(found["displacement_px"], found["length_px"])
     scale = movie.scale
     scaled = {
         "velocity": ("displacement_px", scale.velocity, scale.velocity_unit),
@@ -180,12 +172,10 @@ def edge_changes(
         "retracted_area": ("retracted_px2", scale.area, scale.area_unit),
         "edge_length": ("length_px", scale.length, scale.length_unit),
     }
-    columns = {}
-    for name, (source, convert, units) in scaled.items():
-        values = np.full((len(movie), sectors), np.nan)
-        for number, row in rows.items():
-            values[number] = convert(getattr(row, source))
-        columns[name] = _labelled(movie, values, "sector", frame).assign_attrs(units=units)
+    columns = {
+        name: _labelled(movie, convert(found[source]), "sector", frame).assign_attrs(units=units)
+        for name, (source, convert, units) in scaled.items()
+    }
     return xr.Dataset(columns, attrs={"frame": frame} | scale.attrs)
 
 

@@ -171,7 +171,7 @@ def edge_columns(
         "velocity": scale.velocity(motion.displacement_px),
         "velocity_cell_frame": scale.velocity(in_cell_frame),
         "velocity_fastest": scale.velocity(motion.fastest_px),
-        "velocity_error": scale.velocity(motion.error_px),
+        "velocity_error": nothing,  # told by the whole movie, at its end
         "protruded_area": scale.area(motion.protruded_px2),
         "retracted_area": scale.area(motion.retracted_px2),
         "edge_length": scale.length(motion.length_px),
@@ -190,7 +190,6 @@ def _motion_since(task: FrameTask) -> EdgeMotion | None:
         before.disk,
         here.disk,
         task.parameters.sectors,
-        jitter=task.parameters,
     )
 
 

@@ -3,16 +3,14 @@
 from typing import ClassVar
 
 from cytodisk.images.file_parameters import MovieKindParameters
-from cytodisk.motion.tracking_parameters import FollowingParameters, InteriorParameters, JitterParameters
+from cytodisk.motion.tracking_parameters import FollowingParameters, InteriorParameters
 from cytodisk.parameters import parameter
 from cytodisk.runs.cells.cell_parameters import CellParameters
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.scale_parameters import ScaleParameters
 
 
-class FollowedCellParameters(
-    MovieKindParameters, JitterParameters, FollowingParameters, ScaleParameters, CellParameters
-):
+class FollowedCellParameters(MovieKindParameters, FollowingParameters, ScaleParameters, CellParameters):
     """What all runs over movies have, whatever the method of the map."""
 
 

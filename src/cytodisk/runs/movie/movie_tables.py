@@ -12,6 +12,7 @@ from cytodisk.analysis.activity import GEOMETRY, STATISTICS
 from cytodisk.analysis.consistency import correlation_over_sectors, displacement_between
 from cytodisk.images.tracks import CellTrack
 from cytodisk.motion.registration import RigidTransform
+from cytodisk.motion.velocity_error import velocity_error
 from cytodisk.runs.frame_rows import FramePlace
 from cytodisk.runs.movie.measured_frame import edge_columns
 from cytodisk.scale import Scale
@@ -59,12 +60,12 @@ def _finish_track(
     store: ActivityStore,
 ) -> None:
     before: dict[str, Any] | None = None
+    _complete_edges(folder, track, grid.sectors, scale, rows)
     cell = store.cell(track.cell, track.label, grid, channels, scale)
     for frame in track.frames:
         key, row = part_key(track.cell, frame), rows[track.cell, frame]
         here = _frame_arrays(folder, key, grid, row, channels) if row["status"] == "ok" else None
         if here is not None:
-            _complete_edge(folder, track, frame, grid.sectors, scale, rows)
             here |= _edge_arrays(folder, key)
         if before is not None:
             there = None if row.get("restarted") else here
@@ -97,22 +98,36 @@ def _edge_arrays(folder: StudyFolder, key: str) -> dict[str, Any]:
     return {name: part.column(name).to_numpy() for name in EDGE_VARIABLES}
 
 
-def _complete_edge(
+def _complete_edges(
     folder: StudyFolder,
     track: CellTrack,
-    frame: int,
     sectors: int,
     scale: Scale,
     rows: dict[tuple[int, int], dict[str, Any]],
 ) -> None:
-    """Give a frame without a next one its rows of the edge table, with the reason."""
-    key = part_key(track.cell, frame)
-    if folder.has_table(key, "edge"):
-        return
-    following = rows.get((track.cell, frame + 1))
-    status = "last frame" if following is None else f"the next frame has no map: {following['reason']}"
-    place = FramePlace(track.cell, frame, track.label, scale.seconds(frame))
-    folder.add_table(key, "edge", edge_columns(place, sectors, scale, None, None, status))
+    """Give frames without a next one their rows of the edge table, with the reason, and all their error."""
+    mapped = [frame for frame in track.frames if rows[track.cell, frame]["status"] == "ok"]
+    for frame in mapped:
+        key = part_key(track.cell, frame)
+        if folder.has_table(key, "edge"):
+            continue
+        following = rows.get((track.cell, frame + 1))
+        status = "last frame" if following is None else f"the next frame has no map: {following['reason']}"
+        place = FramePlace(track.cell, frame, track.label, scale.seconds(frame))
+        folder.add_table(key, "edge", edge_columns(place, sectors, scale, None, None, status))
+    displacement = np.full((len(track.frames), sectors), np.nan)
+    length = displacement.copy()
+    for frame in mapped:
+        edge = _edge_arrays(folder, part_key(track.cell, frame))
+        displacement[frame - track.first] = edge["velocity"] / scale.velocity(1.0)
+        length[frame - track.first] = edge["edge_length"] / scale.length(1.0)
+    error = scale.velocity(velocity_error(displacement, length))
+    for frame in mapped:
+        key = part_key(track.cell, frame)
+        part = folder.part_table(key, "edge")
+        columns: dict[str, Any] = {name: part.column(name) for name in part.column_names}
+        columns["velocity_error"] = error[frame - track.first]
+        folder.add_table(key, "edge", columns)
 
 
 def _add_consistency(

@@ -1,0 +1,122 @@
+"""Error of the edge velocity, from how the velocity of a movie jitters."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import nnls
+
+from cytodisk.arrays import FloatArray
+
+_LAGS = 8
+_STEPS_TO_TELL = 15  # steps between frames from which jitter is told from real changes of velocity
+_CLEAN_PX = 0.11  # error in a short sector that the pixels of a mask make, were it right to the pixel
+_CLEAN_REACH_PX = 12.0  # length of edge over which that error averages out
+_OUTLIER_SPREADS = 5.0
+_MAD_TO_SD = 1.4826  # of a normal distribution
+_FEWEST_SECTORS = 4  # from which pairs of neighbours tell over what length of edge the error averages out
+_REACHES = np.geomspace(0.05, 20.0, 16)  # of the mean length of a sector, that are tried for that length
+
+
+def velocity_error(displacement_px: FloatArray, length_px: FloatArray) -> FloatArray:
+    """Standard deviation of the displacement of each sector's edge between frames, from the movie itself.
+
+    An error of one outline makes the edge leap and come back: the displacement to that frame is too large by
+    as much as the one from it is too small. Lags of the autocovariance show it, pooled over sectors; what
+    velocity has that lasts from frame to frame is told from it. The error of a mask that is right to the
+    pixel comes on top.
+
+    Parameters
+    ----------
+    displacement_px : ndarray of shape (T, S) and dtype float
+        Mean outward displacement by step between frames, and sector; NaN where there is none.
+    length_px : ndarray of shape (T, S) and dtype float
+        Length of each sector's edge.
+
+    Returns
+    -------
+    ndarray of shape (T, S) and dtype float
+        NaN where the displacement is, and everywhere if no two steps follow one another.
+
+    Notes
+    -----
+    With outline errors e that are independent from frame to frame, the displacement is v + e(t + 1) − e(t).
+    Its first differences have the autocovariance 6, −4, 1, 0, … times var(e), plus that of the differences of
+    v. The latter is fitted, with weights of at least 0, by those of processes that decay with a correlation
+    of at least 0.5 from step to step, exponentially or as a Gaussian. With fewer than 15 steps they cannot be
+    told apart: all change of velocity from one step to the next is counted as error, an upper bound.
+
+    Errors of neighbouring sectors may be alike or not, so that the error falls with the sector's length or
+    does not. The variance of jitter is taken to be v / (1 + length / reach), with the reach at which sectors
+    and pairs of neighbours have the same v.
+    """
+    variance, reach = _by_length(displacement_px, length_px)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        jitter = variance / (1.0 + length_px / reach)
+        clean = _CLEAN_PX**2 / (1.0 + length_px / _CLEAN_REACH_PX)
+        return np.where(np.isfinite(displacement_px), np.sqrt(jitter + clean), np.nan)
+
+
+def _by_length(displacement: FloatArray, length: FloatArray) -> tuple[float, float]:
+    """Variance of jitter in a very short sector, and length over which it averages out (may be infinite)."""
+    sectors = displacement.shape[1]
+    plain = _jitter_variance(displacement)
+    if not plain > 0.0 or sectors < _FEWEST_SECTORS:
+        return plain, np.inf
+    held = np.where(np.isfinite(displacement) & (length > 0.0), length, np.nan)
+    pairs = (each[:, : sectors // 2 * 2].reshape(len(each), -1, 2) for each in (displacement * held, held))
+    swept, lengths = (each.sum(axis=2) for each in pairs)
+    best, found = np.inf, (plain, np.inf)
+    for reach in np.append(float(np.nanmean(held)) * _REACHES, np.inf):
+        one = _jitter_variance(displacement * np.sqrt(1.0 + held / reach))
+        of_pairs = _jitter_variance(swept / lengths * np.sqrt(1.0 + lengths / reach))
+        unlike = abs(np.log(one / of_pairs)) if one > 0.0 and of_pairs > 0.0 else np.inf
+        if unlike < best:
+            best, found = unlike, (one, float(reach))
+    return found
+
+
+def _jitter_variance(displacement: FloatArray) -> float:
+    """Variance of e(t + 1) − e(t); NaN if no two steps follow one another."""
+    change = np.diff(displacement, axis=0)
+    finite = change[np.isfinite(change)]
+    if not finite.size:
+        return float("nan")
+    spread = _OUTLIER_SPREADS * _MAD_TO_SD * float(np.median(np.abs(finite)))
+    if spread > 0.0:
+        change = np.clip(change, -spread, spread)
+    if np.isfinite(displacement).any(axis=1).sum() < _STEPS_TO_TELL:
+        return float(np.nanmean(change**2)) / 3.0
+    found, weights = _autocovariance(change)
+    fitted, _ = nnls(weights[:, None] * _AUTOCOVARIANCES[: len(found)], weights * found)
+    return 2.0 * float(fitted[0])
+
+
+def _autocovariance(change: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Mean product at each lag, and the root of its share of pairs, up to the last lag that has any."""
+    found, pairs = [], []
+    for lag in range(min(_LAGS, len(change) - 1) + 1):
+        product = change[lag:] * change[: len(change) - lag]
+        finite = np.isfinite(product)
+        if not finite.any():
+            break
+        found.append(float(product[finite].mean()))
+        pairs.append(int(finite.sum()))
+    return np.array(found), np.sqrt(np.array(pairs) / pairs[0])
+
+
+def _differenced(covariance: FloatArray) -> FloatArray:
+    """Autocovariance of first differences, at one lag less."""
+    before = np.concatenate([covariance[1:2], covariance])
+    return np.asarray(2.0 * covariance[:-1] - before[: len(covariance) - 1] - covariance[1:])
+
+
+def _autocovariances() -> FloatArray:
+    """One column for jitter, then those of velocities that last, shape (lags, columns)."""
+    lags = np.arange(_LAGS + 2, dtype=np.float64)
+    jitter = np.where(lags == 0, 2.0, np.where(lags == 1, -1.0, 0.0))
+    exponential = [share**lags for share in (0.5, 0.7, 0.9)]
+    gaussian = [np.exp(-0.5 * (lags / width) ** 2) for width in (2.0, 4.0, 8.0, 16.0)]
+    return np.column_stack([_differenced(each) for each in (jitter, *exponential, *gaussian)])
+
+
+_AUTOCOVARIANCES = _autocovariances()
