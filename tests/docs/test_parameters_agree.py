@@ -39,7 +39,6 @@ FUNCTIONS = (
     cd.sample,
     cd.sample_movie,
     cd.map_movie,
-    cd.edge_changes,
     cd.prepare_series,
     cd.cross_correlate,
     cd.peak_correlation,
