@@ -1,6 +1,6 @@
 """Whether correlations are found where they are and only there, and what it costs.
 
-Prints four Markdown tables.
+Prints five parts as Markdown tables.
 
 1. False positives: simulated activity and velocity that have nothing to do with each other, 3 layers × 12
    sectors, 199 surrogates: share of windows with p <= 0.05 and with q <= 0.05, and of layers (means over
@@ -19,9 +19,18 @@ Prints four Markdown tables.
    outline lies beside the true one by so many pixels (standard deviation). Mean correlation of layer 0
    with velocity at lags -1 and 0, what `jitter_step` makes of it, and the share of its windows with p < 0.05
    with all lags and without these two, in percent.
+5. Clusters: series of 10 layers × 60 sectors, of which layers 0 and 1 in half of the sectors follow the
+   velocity with r = 0.3; what neighbours have of their own falls to exp(-1/2) over the given number of
+   windows (0: independent). "alone": coupled windows with p, with q < 0.05; "in clusters": coupled windows in
+   a cluster with p <= 0.05 whose lag is within one frame of the truth; "movies": with any of these; "not
+   coupled": windows of true clusters that are not coupled; "false": movies with a cluster that lies wholly
+   where nothing is. Then movies with any cluster where nothing is coupled, 4 layers × 24 sectors. All in
+   percent, 199 surrogates. Last, time and memory of 600 windows at 41 lags of 500 frames.
 
 Ends with status 1 if the default, "phase", has not between 3 % and 7 % false windows in each row, or if
-"nearest" finds less than 95 % of the lags, or 5 % or more of the windows that are not coupled.
+"nearest" finds less than 95 % of the lags, or 5 % or more of the windows that are not coupled; if clusters
+find less than 60 % of the coupled windows in 120 frames of any kind, or if more than 5 % of all movies in
+which nothing is coupled, or 8 % of those of a row, have one.
 """
 
 import argparse
@@ -40,8 +49,10 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
+from cluster_tables import cluster_rows
 from cytodisk.analysis.accuracy import share_by_sector
 from cytodisk.analysis.activity import sample_movie
+from cytodisk.analysis.correlation.clusters import correlation_clusters
 from cytodisk.analysis.correlation.correlation_parameters import Null
 from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer, cross_correlate
 from cytodisk.analysis.correlation.jitter_mark import JITTERED_LAGS, jitter_step
@@ -306,6 +317,59 @@ def jitter(movies: int, workers: int) -> None:
             print_row([size, *means, *map(percent, found[:, 3:].T)])
 
 
+def clusters(movies: int, workers: int) -> bool:
+    """Print what clusters find, and how often one is false; whether that is good enough."""
+    heads = ["kind", "own noise", "frames"]
+    failures, false = [], []
+    print(f"\nClusters, {movies // 5} movies a row\n")
+    coupled = ["alone: p", "alone: q", "in clusters", "movies", "not coupled", "false"]
+    print_row([*heads, *coupled], head=True)
+    with pool(workers) as processes:
+        for kind, length, frames, found in cluster_rows(
+            processes, True, movies // 5, (_LAYERS, _SECTORS), 199
+        ):
+            print_row([kind, f"{length:g}", frames, *map(percent, found.T)])
+            if frames == 120 and found[:, 2].mean() < 0.6:
+                failures.append(f"{kind}, {length:g}: {found[:, 2].mean():.1%} of windows found")
+        print(f"\nMovies with a false cluster, {movies} a row\n")
+        print_row([*heads, "false"], head=True)
+        for kind, length, frames, found in cluster_rows(processes, False, movies, (4, 24), 199):
+            print_row([kind, f"{length:g}", frames, *map(percent, found.T)])
+            false.append(float(found.mean()))
+            if false[-1] > 0.08:
+                failures.append(f"{kind}, {length:g}, {frames} frames: {false[-1]:.1%} false")
+    good = not failures and float(np.mean(false)) <= ALPHA
+    print(f"\n{verdict(good)}: clusters, {np.mean(false):.1%} of movies with a false one (required: 5 %)")
+    print(*failures, sep="\n")
+    return good
+
+
+def cost_of_clusters(with_clusters: bool) -> tuple[float, float, float]:
+    """Seconds of one run of 600 windows with 1999 surrogates, and memory before it and at its peak, in MB."""
+    random = np.random.default_rng(0)
+    a, b = random.normal(size=(500, _LAYERS, _SECTORS)), random.normal(size=(500, _SECTORS))
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+    start = time.perf_counter()
+    found = cross_correlate(a, b, _MAX_LAG, surrogates=1999, clusters=with_clusters)
+    if with_clusters:
+        correlation_clusters(found)
+    return (
+        time.perf_counter() - start,
+        before,
+        resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0,
+    )
+
+
+def costs_of_clusters() -> None:
+    """Print what clusters cost."""
+    print("\n600 windows, 41 lags, 500 frames, 1999 surrogates (499 of clusters)\n")
+    print_row(["clusters", "seconds", "MB before", "MB at the peak"], head=True)
+    for name, wanted in (("no", False), ("yes", True)):
+        with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as process:
+            figures = process.submit(cost_of_clusters, wanted).result()
+        print_row([name, *(f"{figure:.0f}" for figure in figures)])
+
+
 def verdict(good: bool) -> str:
     """What to print before a required figure."""
     return "ok" if good else "FAILED"
@@ -321,7 +385,9 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--image-movies", type=int, default=8, help="of images a lag (default 8)")
     parser.add_argument("--frames", type=int, default=150, help="of a movie of images (default 150)")
     parser.add_argument("--cache", type=Path, help="folder that keeps the series of the movies of images")
-    parser.add_argument("--only", choices=("false", "detection", "pairs", "jitter"), help="one table")
+    parser.add_argument(
+        "--only", choices=("false", "detection", "pairs", "jitter", "clusters"), help="one table"
+    )
     parser.add_argument("--quick", action="store_true", help="20 movies of series, 2 of images, 300 windows")
     return parser.parse_args()
 
@@ -341,6 +407,9 @@ def main() -> int:
         pairs(500, windows)
     if arguments.only in (None, "jitter"):
         jitter(min(image_movies, 4), arguments.workers)
+    if arguments.only in (None, "clusters"):
+        good &= clusters(movies, arguments.workers)
+        costs_of_clusters()
     return 0 if good else 1
 
 
