@@ -42,6 +42,8 @@ def test_a_signal_with_velocity(run: Run, study: Path) -> None:
     assert "Positive lag: the edge moves after the signal" in said
     assert "layer  0  +0." in said
     assert "at lag +3, q = " in said
+    assert "cell 0, clusters of neighbouring windows, p <= 0.05" in said
+    assert "lag +3 frames: the edge moves after the signal, +0." in said
     found = cd.open_study(study).correlation("edge", "velocity")
     assert found.layers.set_index("layer").loc[0, "lag"] == 3  # the signal leads by three frames
     assert np.isnan(found.windows["lag_s"]).all()  # the interval is not known

@@ -10,6 +10,7 @@ from movie_files import write_masks, write_movie
 
 import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError, StudyError
+from cytodisk.runs.correlate.cluster_rows import ranges_in_words
 from cytodisk.runs.correlate.correlate_study import correlate_study
 from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.movie.movie_inputs import open_movie
@@ -62,6 +63,55 @@ def test_ranks_are_labelled(study: cd.Study) -> None:
     np.testing.assert_array_equal(curves, expected["correlation"].transpose(*curves.dims))
     assert found.settings["statistic"] == "spearman"
     assert found.cells["statistic"].tolist() == ["spearman"]
+
+
+def test_clusters_are_those_of_the_function_with_their_places_in_words(study: cd.Study) -> None:
+    found = correlate_study(study, "edge", max_lag=6, **FEW)
+    activity = study.activity(0)
+    correlations = cd.cross_correlate(
+        activity["mean"].sel(channel="edge"), activity["velocity"], 6, clusters=True, **FEW
+    )
+    expected = cd.correlation_clusters(correlations)
+    clusters = found.clusters
+    assert clusters is not None
+    assert len(clusters) == expected.sizes["cluster"] > 0
+    for name in ("cluster", "lag", "sign", "correlation", "mass", "p"):
+        np.testing.assert_array_equal(clusters[name], expected[name], name)
+    first = clusters.iloc[0]
+    assert (first["lag"], first["sign"], first["lag_s"]) == (-2, 1, -10.0)
+    assert first["layers"].startswith("0")
+    numbers = found.windows.set_index(["layer", "sector"])["cluster"].to_xarray()
+    member = expected["member"].isel(cluster=0).to_numpy()
+    np.testing.assert_array_equal((numbers == 1).transpose("layer", "sector").to_numpy(), member)
+    assert found.cells["cluster_surrogates"].tolist() == [FEW["surrogates"]]
+    assert clusters.attrs["units"]["lag_s"] == "s"
+
+
+def test_clusters_can_be_left_out_or_be_none(study: cd.Study) -> None:
+    for options in ({"clusters": False, "surrogates": 19}, {"surrogates": 0}):
+        found = correlate_study(study, "edge", max_lag=3, name="plain", **options)
+        assert found.clusters is None
+        assert "cluster" not in found.windows
+        assert found.cells["cluster_surrogates"].tolist() == [0]
+    none = correlate_study(study, "material", max_lag=3, name="none", surrogates=19, sectors=(2, 3)).clusters
+    assert none is not None
+    assert list(none.columns)[:2] == ["cell", "cluster"]
+
+
+@pytest.mark.parametrize(
+    ("numbers", "count", "words"),
+    [
+        ([0, 1, 2], None, "0–2"),
+        ([3, 1, 7, 8], None, "1, 3, 7–8"),
+        ([58, 59, 0, 1], 60, "58–1"),
+        ([59, 0, 4, 5, 30], 60, "4–5, 30, 59–0"),
+        ([0, 1, 2, 3], 4, "0–3"),
+        ([5, 6], 60, "5–6"),
+        ([], 60, ""),
+    ],
+)
+def test_places_in_words(numbers: list[int], count: int | None, words: str) -> None:
+    assert ranges_in_words(numbers, count) == words
 
 
 def test_every_column_is_explained(study: cd.Study) -> None:

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
     from cytodisk.store.correlation_store import Correlation
 
+_MOST_CLUSTERS = 5  # of a cell that are listed
+
 
 def say_correlation(console: "Console", found: "Correlation") -> None:
     """Peaks by layer, and how many windows are significant."""
@@ -27,6 +29,8 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
         console.print(f"cell {cell}, mean over sectors by layer:")
         for layer in rows.itertuples():
             console.print(_layer_words(layer, of_cell[of_cell["layer"] == layer.layer], outs[cell]))
+        for words in _cluster_words(found, cell):
+            console.print(words)
     for _, row in found.cells.iterrows():
         for words in _cautions(row, settings):
             console.print(f"cell {row['cell']}{words}")
@@ -98,6 +102,35 @@ def _say_power(console: "Console", cells: Any, windows: Any) -> None:
             f"of {tested} windows, q < 0.05 takes {fewest} beyond all {surrogates} surrogates; a smaller "
             "patch needs more --surrogates, or --sectors"
         )
+
+
+def _cluster_words(found: "Correlation", cell: Any) -> Iterator[str]:
+    """The clusters of a cell, the largest first."""
+    if found.clusters is None:
+        return
+    clusters = found.clusters[found.clusters["cell"] == cell]
+    if clusters.empty:
+        yield f"cell {cell}, clusters of neighbouring windows: none with p <= 0.05"
+        return
+    yield f"cell {cell}, clusters of neighbouring windows, p <= 0.05 (their borders are not exact):"
+    for one in clusters.head(_MOST_CLUSTERS).itertuples():
+        yield _cluster_line(one, found.with_)
+    if len(clusters) > _MOST_CLUSTERS:
+        yield f"  and {len(clusters) - _MOST_CLUSTERS} smaller: clusters.parquet has them all"
+
+
+def _cluster_line(row: Any, with_: str) -> str:
+    lag = f"{row.lag_s:+.4g} s" if math.isfinite(row.lag_s) else f"{row.lag:+d} frames"
+    return (
+        f"  sectors {row.sectors}, layers {row.layers}, lag {lag}: {_which_first(row.lag, with_)}, "
+        f"{row.correlation:+.2f} in {count(row.windows, 'window')}, p = {row.p:.2g}"
+    )
+
+
+def _which_first(lag: int, with_: str) -> str:
+    if not lag:
+        return f"{_what_comes(with_)} with the signal"
+    return f"{_what_comes(with_)} {'after' if lag > 0 else 'before'} the signal"
 
 
 def _regressed_out(found: "Correlation") -> dict[Any, str]:

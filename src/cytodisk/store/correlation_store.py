@@ -63,6 +63,11 @@ class Correlation:
         return self._table("layers")
 
     @cached_property
+    def clusters(self) -> pd.DataFrame | None:
+        """One row a cluster: lag, sign, p, its layers and sectors in words; None when they were not made."""
+        return self._optional("clusters")
+
+    @cached_property
     def curves(self) -> pd.DataFrame:
         """One row a window and lag."""
         return self._table("curves")

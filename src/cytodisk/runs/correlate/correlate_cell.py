@@ -23,6 +23,7 @@ from cytodisk.errors import ParameterError, StationarityWarning
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.correlate.cell_controls import CellControls
 from cytodisk.runs.correlate.chosen_series import chosen_sectors, chosen_series
+from cytodisk.runs.correlate.cluster_rows import with_clusters
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.correlate.correlation_tables import as_table, tables_of
 from cytodisk.runs.correlate.event_tables import event_tables
@@ -75,16 +76,23 @@ class CellCorrelation:
         common = dict(options.part(PairCorrelationParameters))
         with _shares_in_the_table():
             correlations = cross_correlate(
-                a, b, self.max_lag, skip_lags=options.skip_lags, progress=phases[0], **common
+                a,
+                b,
+                self.max_lag,
+                skip_lags=options.skip_lags,
+                progress=phases[0],
+                **common,
+                **self._clusters(cell),
             )
             jitter = _jitter(a, b, options) if with_ in VELOCITIES else 0.0
             partial, not_tested = self._partial(cell, activity, (a, b), phases) if asked else (None, "")
-        tables = tables_of(correlations, options, partial)
+        tables = with_clusters(tables_of(correlations, options, partial), correlations)
         if options.pairs:
             tables["pairs"] = self._pairs(cell, activity, a, phases[-1])
         row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "jitter": jitter}
         row["statistic"] = options.statistic
         row["surrogates"] = correlations.attrs["surrogates"]
+        row["cluster_surrogates"] = correlations.sizes.get("cluster_surrogate", 0)
         row["pair_surrogates"] = tables["pairs"].attrs["surrogates"] if options.pairs else 0
         row["partial_frames"] = partial.frames if partial is not None else np.nan
         row["geometry_not_tested"] = not_tested
@@ -125,6 +133,12 @@ class CellCorrelation:
         a, b = (series[0], of_a), (series[1], of_b)
         partial = partial_correlation(a, b, self.max_lag, self.options, phases[2])
         return partial, found.not_tested or (partial.too_few if self.options.geometry else "")
+
+    def _clusters(self, cell: int) -> dict[str, Any]:
+        """What to ask for about clusters: sectors may be a part of the edge."""
+        if not (self.options.clusters and self.options.surrogates):
+            return {}
+        return {"clusters": True, "edge_sectors": self.study.activity(cell).sizes["sector"]}
 
     def _restarts(self, cell: int, times: IntArray) -> int:
         """How often tracking started anew within frames: a sector may then be another place of the cell."""

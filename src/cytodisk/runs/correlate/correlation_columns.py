@@ -65,6 +65,27 @@ CORRELATION_TABLES: dict[str, Columns] = {
         _Q,
         _THRESHOLD,
         *_PARTIAL,
+        Column(
+            "cluster",
+            pa.int64(),
+            "",
+            "number of the cluster the window is in, of several that of the largest mass; 0 for none",
+        ),
+    ),
+    "clusters": (
+        CELL,
+        Column("cluster", pa.int64(), "", "number of the cluster, from 1, the largest mass first"),
+        _LAG,
+        _LAG_S,
+        Column("sign", pa.int64(), "", "1 where the correlation is positive, -1 where it is negative"),
+        _AT_LAG._replace(meaning="mean correlation of its windows at this lag"),
+        Column("windows", pa.int64(), "", "number of windows"),
+        Column(
+            "mass", pa.float64(), "1", "sum over its windows of what their scores exceed the threshold by"
+        ),
+        _P._replace(meaning="share of surrogates with a cluster of at least this mass anywhere, at any lag"),
+        Column("layers", pa.string(), "", "its layers, such as 0–2"),
+        Column("sectors", pa.string(), "", "its sectors, such as 12–25; 50–5 goes on over the last"),
     ),
     "layers": (
         CELL,
@@ -156,6 +177,9 @@ CORRELATION_TABLES: dict[str, Columns] = {
             "step of the correlation between lags -1 and 0, as jitter of the masks makes it; 0 for none",
         ),
         Column("surrogates", pa.int64(), "", "number of surrogates of the windows and layers"),
+        Column(
+            "cluster_surrogates", pa.int64(), "", "number of surrogates of the clusters; 0 for no clusters"
+        ),
         Column("pair_surrogates", pa.int64(), "", "number of surrogates of the pairs"),
         Column(
             "partial_frames",

@@ -11,6 +11,8 @@ from cytodisk.analysis.correlation.peaks import peak_correlation
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.correlate.partial_correlation import Partial, curves_of, with_curve, with_partial
 
+_OF_CHANCE = ("null", "threshold", "mean_null", "mean_threshold", "cluster_null", "cluster_spread")
+
 
 def tables_of(
     correlations: xr.Dataset, options: CorrelateParameters, partial: Partial | None = None
@@ -37,7 +39,7 @@ def tables_of(
         layers = with_partial(layers, without_by_layer, options)
         correlations = with_curve(correlations, without)
         by_layer = with_curve(by_layer, without_by_layer)
-    curves = correlations.drop_vars(["null", "threshold", "mean_null", "mean_threshold"], errors="ignore")
+    curves = correlations.drop_vars(_OF_CHANCE, errors="ignore")
     mean = by_layer.drop_vars("null", errors="ignore")
     return {
         "windows": as_table(peaks, ("layer", "sector")),
