@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import tifffile
-from curves import circle, masks_of
+from curves import circle, masks_of, polar
 from scipy import ndimage
 
 import cytodisk as cd
@@ -85,20 +85,20 @@ def test_vertices_come_from_where_they_are_but_near_the_edge() -> None:
     assert radius.max() < 0.8 * 30.9
 
 
-def test_an_edge_that_passes_itself_is_mapped_and_told(tmp_path: Path) -> None:
-    one, other = circle(14.0, centre=np.array([20.0, 18.0])), circle(14.0, centre=np.array([20.0, 42.0]))
-    masks = masks_of([one, other], (40, 60))
-    movie = cd.map_movie(masks, interior="still")
-    assert movie[1].certificate.valid
+def test_arms_that_come_where_others_go_are_mapped_and_told(tmp_path: Path) -> None:
+    angle = 2.0 * np.pi * np.arange(1440) / 1440
+    outlines = [polar(30.0 + sign * 18.0 * np.cos(3.0 * angle)) for sign in (1.0, -1.0)]
+    masks = masks_of(outlines, (121, 121))
     tifffile.imwrite(tmp_path / "masks.tif", masks.astype(np.uint8), metadata={"axes": "TYX"})
     study = cd.run_movie(tmp_path / "masks.tif", tmp_path / "out", interior="still", layers=2, sectors=6)
-    cells = study.cells
-    assert movie[1].start != "previous"
-    assert "starts from a harmonic map" in cells["interior_restarted"][1]
-    boundary = movie.records[1].boundary
-    assert boundary is not None
-    assert boundary.restarted == ""
+    row = study.cells.iloc[1]
+    assert row["certificate_valid"]
+    assert row["restarted"] == ""
+    assert row["relaxation_start"] != "previous"
+    assert "interior relaxed from a harmonic map" in row["notes"]
+    assert "of the diameter from where the last map has them" in row["interior_restarted"]
     assert "interior restarts" in {flag.name for flag in cd.qc_flags(study)}
+    assert study.cells["interior_restarted"][0] == ""
 
 
 @pytest.mark.parametrize("speed", [2.0, 9.0])
@@ -138,6 +138,8 @@ def test_a_study_of_still_interiors_tells_and_reads_back(tmp_path: Path) -> None
     assert 0.8 < shares[0] <= 1.0
     assert shares.iloc[-1] < 0.1
     flags = {flag.name: flag for flag in cd.qc_flags(study)}
+    assert "strong distortion" not in flags
+    assert (study.cells["area_distortion"] > 0.15).any()
     squeezed = [place.frame for place in flags["small still windows"].places]
     assert squeezed == study.cells["frame"][shares < 0.1].tolist()
     read = cd.open_study(tmp_path / "out")

@@ -102,11 +102,14 @@ def fading_extension(
     -------
     ndarray of shape (V, 2) and dtype float
     """
+    pull = vertex_areas(mesh) / fade_px**2
+    return weighted_means(mesh, _cotangents(mesh), boundary_values, system or BlockSystem(mesh), pull)
+
+
+def vertex_areas(mesh: Mesh) -> FloatArray:
+    """A third of the triangles around each vertex, shape (V,); the sum is the area of the mesh."""
     corner_area = np.repeat(triangle_areas(mesh.vertices_yx, mesh.triangles) / 3.0, 3)
-    areas = np.bincount(mesh.triangles.ravel(), corner_area, minlength=len(mesh.vertices_yx))
-    return weighted_means(
-        mesh, _cotangents(mesh), boundary_values, system or BlockSystem(mesh), areas / fade_px**2
-    )
+    return np.asarray(np.bincount(mesh.triangles.ravel(), corner_area, minlength=len(mesh.vertices_yx)))
 
 
 def _cotangents(mesh: Mesh) -> FloatArray:

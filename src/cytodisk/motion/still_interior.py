@@ -10,7 +10,7 @@ import numpy as np
 
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap, Start
-from cytodisk.disk.harmonic import fading_extension, harmonic_map
+from cytodisk.disk.harmonic import fading_extension, harmonic_map, vertex_areas
 from cytodisk.disk.mapping import CellMesh, disk_map
 from cytodisk.disk.newton import relax
 from cytodisk.disk.untangle import untangled
@@ -21,13 +21,14 @@ from cytodisk.scale import Scale
 
 FADE_PX = 4.0
 _LONGEST_STEP = 0.5  # of the fade: how far the edge moves at once
+_MOST_AWAY = 0.01  # of the diameter: places farther from the last map than that have lost it
 _PULL = 1e5  # towards the carried places
 _SHAPE_WEIGHT = 0.02
 _ON_CIRCLE = 1.0 - 1e-12  # just inside, so that it has a place in the cell
 
 
 class StillMap(NamedTuple):
-    """Map of a frame, and why its inside could not go on from the frame before; empty if it did."""
+    """Map of a frame, and why its inside did not go on from the frame before; empty if it did."""
 
     disk: DiskMap
     restarted: str
@@ -98,13 +99,22 @@ def still_map(
     origin = origins(cell, previous.to_cell(circle * _ON_CIRCLE), fade_px)
     anchor = previous.to_disk(origin, outside="nearest")
     anchor[: len(circle)] = circle
-    uv, restarted = untangled(cell.mesh, anchor), ""
+    uv = untangled(cell.mesh, anchor)
     start: Start = "previous"
     if uv is None:
         uv, start = harmonic_map(cell.mesh, circle, cell.system)
-        restarted = "the last map could not be carried on: the inside starts from a harmonic map"
     relaxed = relax(cell.mesh, uv, _SHAPE_WEIGHT, anchor, _PULL, cell.system, area_weight=0.0)
-    return StillMap(disk_map(cell, relaxed, start, settings), restarted)
+    away = 0.5 * _distance_of_most(cell, relaxed.vertices_uv - anchor)
+    why = f"places inside lie {away:.1%} of the diameter from where the last map has them"
+    return StillMap(disk_map(cell, relaxed, start, settings), why if away > _MOST_AWAY else "")
+
+
+def _distance_of_most(cell: CellMesh, moved_uv: FloatArray) -> float:
+    """Distance in the disk that 95 % of a cell's area have not moved beyond."""
+    distance = np.linalg.norm(moved_uv, axis=1)
+    order = np.argsort(distance)
+    share = np.cumsum(vertex_areas(cell.mesh)[order])
+    return float(distance[order][np.searchsorted(share, 0.95 * share[-1])])
 
 
 def origins(cell: CellMesh, boundary_yx: FloatArray, fade_px: float) -> FloatArray:

@@ -139,7 +139,7 @@ TRACK_COLUMNS: Columns = (
         "interior_restarted",
         pa.string(),
         "",
-        "with interior still: why the inside could not go on from the last map; empty if it did",
+        "with interior still: why places inside did not go on from the last map; empty if they did",
     ),
     Column(
         "smallest_window_share",

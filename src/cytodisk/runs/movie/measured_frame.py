@@ -93,6 +93,7 @@ def measure_frame(task: FrameTask) -> FrameRows:
     windows = task.grid.on(frame.disk)
     row, columns = measure_windows(task.place, windows, task.signal, task.parameters.nan)
     row |= _track_columns(frame) | {"smallest_window_share": _smallest_share(windows, task.parameters)}
+    row["notes"] = "; ".join(filter(None, [row["notes"], _interior_note(frame, task)]))
     row["qc_flags"] = "; ".join(filter(None, [row["qc_flags"], _jump(task)]))
     save_frame(task.map_path, frame)
     motion = _motion_since(task)
@@ -108,6 +109,14 @@ def _smallest_share(windows: CellWindows, parameters: FollowedCellParameters) ->
         return np.nan
     by_layer = -np.diff(windows.grid.radii**2) / windows.grid.sectors
     return float((windows.areas / (by_layer[:, None] * windows.areas.sum())).min())
+
+
+def _interior_note(frame: MappedFrame, task: FrameTask) -> str:
+    """Remark on an interior that stands still, but was not reached from the last map."""
+    goes_on = (
+        task.parameters.part(InteriorParameters).interior == "still" and frame.reference is not frame.boundary
+    )
+    return "interior relaxed from a harmonic map" if goes_on and frame.disk.start != "previous" else ""
 
 
 def _jump(task: FrameTask) -> str:

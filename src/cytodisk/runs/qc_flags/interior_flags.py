@@ -1,15 +1,20 @@
 """QC flags of movies whose interior stands still (`interior="still"`)."""
 
+from collections.abc import Iterator
+
+from cytodisk.runs.qc_flags import column_flags
 from cytodisk.runs.qc_flags.column_flags import ColumnRule, said
+from cytodisk.runs.qc_flags.qc_flag import QCFlag
+from cytodisk.store.study import Study
 
 SMALLEST_STILL_SHARE = 0.1
 """Share of its area in a map of equal areas below which a window is squeezed."""
 
 interior_restarts = ColumnRule(
     "interior restarts",
-    "the interior starts anew in {frames}",
-    "The edge moved so far at once that places inside are the same before and after only as far as the shape "
-    "tells.",
+    "the interior leaps in {frames}",
+    "The edge moved so far at once that places inside could not be carried on from the frame before, or "
+    "tracking started anew.",
     "Compare windows within the stretches between restarts, or run again with --interior area.",
     "interior_restarted",
     said,
@@ -25,3 +30,9 @@ small_still_windows = ColumnRule(
     lambda column, scale: column < SMALLEST_STILL_SHARE,
     lambda value, row, scale: f"{value:.2g} of its share",
 )
+
+
+def distortion(study: Study) -> Iterator[QCFlag]:
+    """Windows that differ much in area, in a study that asked for equal areas."""
+    if study.provenance.get("parameters", {}).get("interior") != "still":
+        yield from column_flags.distortion(study)

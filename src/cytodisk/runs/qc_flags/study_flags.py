@@ -97,7 +97,7 @@ _RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     interior_flags.small_still_windows,
     column_flags.image_border,
     motion_flags.drift,
-    column_flags.distortion,
+    interior_flags.distortion,
     column_flags.nan_pixels,
     geometry_flags.geometry,
     correlation_flags.jitter,
