@@ -44,7 +44,7 @@ def curves_page(one: DrawnCorrelation) -> Sheet | None:
     heading = one.heading(SINGLE_COLUMN_MM, f"{one.signal_name} with {one.with_words}")
     head = heading.height_mm
     count = len(shown_layers(int(curves["layer"].nunique())))
-    first = head + 10.5
+    first = head + (10.5 if not one.partial_words else 10.5 + _LINE)
     sheet = Sheet(first + count * (_CURVE + _CURVE_GAP) + 7.5, SINGLE_COLUMN_MM)
     heading.write(sheet)
     axes = [
@@ -60,7 +60,8 @@ def curves_page(one: DrawnCorrelation) -> Sheet | None:
         with_=one.first_names[1],
     )
     chance = "threshold" in curves and bool(curves["threshold"].notna().any())
-    sheet.key(LEFT_MM, head - 2.0, curve_key(chance=chance), 2, **_KEY_STYLE)
+    key = curve_key(chance=chance, partial=one.partial_words, lost=bool(one.lost.any()))
+    sheet.key(LEFT_MM, head - 2.0, key, 2, **_KEY_STYLE)
     return sheet
 
 

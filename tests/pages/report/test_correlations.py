@@ -74,3 +74,19 @@ def test_cell_that_was_not_correlated(study: Study, plain: ShownCell) -> None:
     pairs, notes = pairs_of(plain)
     assert pairs == []
     assert notes == [f"correlation of {NAMES[1]} with velocity, which this cell has not"]
+
+
+def test_the_partial_correlation_is_beside_the_raw_one(study: Study, plain: ShownCell) -> None:
+    tables = correlated()
+    assert pairs_of(plain)[0][0]["without"] == ""
+    tables["layers"] = tables["layers"].assign(correlation_partial=0.01, q_partial=0.8)
+    tables["layer_curves"] = tables["layer_curves"].assign(correlation_partial=0.02)
+    tables["cells"] = tables["cells"].assign(geometry_not_tested="")
+    for table in tables.values():
+        table.attrs["units"] = dict.fromkeys(table, "")
+    settings = {"geometry": True, "control": ["volume"]}
+    write_correlation(study.path, NAMES[1], "velocity", tables, settings)
+    (pair,), _ = pairs_of(plain)
+    assert pair["without"] == "without geometry and volume"
+    np.testing.assert_allclose(pair["layer_partial"], np.full((LAYERS, len(LAGS)), 0.02))
+    np.testing.assert_allclose(pair["layers"]["q_partial"], 0.8)

@@ -15,6 +15,8 @@ from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer
 from cytodisk.analysis.correlation.peaks import peak_correlation
 from cytodisk.errors import ParameterError
 from cytodisk.plot.correlation.correlation_curves import (
+    LOST_NAME,
+    PARTIAL_NAME,
     PEAK_NAME,
     curve_key,
     draw_correlation_curves,
@@ -184,3 +186,20 @@ def test_maps_of_other_frames_are_refused() -> None:
         draw_map_pair(stack(2), np.ones((5, 4)), np.ones((5, 3)))
     with pytest.raises(ParameterError, match=r"axes.*1"):
         draw_map_pair(stack(1), np.ones((5, 4)), np.ones((5, 4)))
+
+
+def test_what_does_not_survive_is_drawn() -> None:
+    """The partial correlation is a line of its own, and a lost peak a cross in place of the dot."""
+    table = curves()
+    table["correlation_partial"] = 0.03 * table["lag"]
+    axes = stack(4)
+    lost = peaks(table).assign(q=0.01, geometry=table["layer"] == 0)
+    draw_correlation_curves(axes, table, cell=1, peaks=lost)
+    for ax, layer in zip(axes, (0, 2, 3, 5), strict=True):
+        (thin,) = (line for line in ax.lines if line.get_gid() == PARTIAL_NAME)
+        np.testing.assert_allclose(thin.get_ydata(), 0.03 * LAGS)
+        assert len(dots(ax)) == (layer != 0)
+        assert len([line for line in ax.lines if line.get_gid() == LOST_NAME]) == (layer == 0)
+    labels = [handle.get_label() for handle in curve_key(partial="without geometry", lost=True)]
+    assert "without geometry" in labels
+    assert "lost without geometry" in labels

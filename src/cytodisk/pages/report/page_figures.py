@@ -180,6 +180,7 @@ def _curve(cell: ShownCell) -> Any:
         ("null", ("lag", "low", "high")),
         ("band", ("lag", "low", "high")),
         ("layer", ("lag", "r")),
+        ("without", ("lag", "r")),
         ("window", ("lag", "r")),
         ("peak", ("lag", "r")),
     ):
@@ -199,6 +200,8 @@ def _curve_glyph(plot: Any, name: str, source: Any) -> None:
         plot.varea("lag", "low", "high", source=source, fill_color=_WINDOW, fill_alpha=0.22)
     elif name == "layer":
         plot.line("lag", "r", source=source, line_color=LINE_COLOUR, line_width=2, line_dash="dashed")
+    elif name == "without":
+        plot.line("lag", "r", source=source, line_color=LINE_COLOUR, line_width=1, line_dash="dotted")
     elif name == "window":
         plot.line("lag", "r", source=source, line_color=_WINDOW, line_width=2)
     else:

@@ -13,13 +13,14 @@ from cytodisk.pages.report.encode import pack_floats
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_names import differences, labels_of
 from cytodisk.runs.channel_names import correlation_name, shown_name
+from cytodisk.runs.correlate.partial_words import regressed_out
 from cytodisk.store.correlation_store import Correlation
 
 MOST_CURVE_NUMBERS = 900_000
 """Of curves of single windows that a page holds; beyond, only peaks and the layers' curves are shown."""
 
 _PEAK = ("correlation", "lag", "p", "q", "threshold")  # low and high hold for a lag chosen beforehand
-_LAYER_PEAK = ("correlation", "lag", "p", "q", "threshold")
+_LAYER_PEAK = (*_PEAK, "correlation_partial", "q_partial")
 _CURVE = ("correlation", "low", "high")
 
 
@@ -72,7 +73,18 @@ def _pair(cell: ShownCell, found: Correlation, with_curves: bool) -> dict[str, A
         "curves": None if curves is None else dict(_curves(cell, curves, lags)),
         "layers": {name: pack_floats(_layer(cell, layers, name)) for name in _LAYER_PEAK},
         "layer_curves": pack_floats(_curve(cell, layer_curves, "correlation", lags)),
+        "layer_partial": pack_floats(_curve(cell, layer_curves, "correlation_partial", lags)),
+        "without": partial_words(cell, found),
     }
+
+
+def partial_words(cell: ShownCell, found: Correlation) -> str:
+    """What the partial correlation is, as "without geometry"; empty if there is none of the cell."""
+    rows = _of(cell, found.cells)
+    if "geometry_not_tested" not in rows or not len(rows):
+        return ""
+    words = regressed_out(found.settings, str(rows["geometry_not_tested"].iloc[0] or ""))
+    return f"without {words}" if words else ""
 
 
 def _curves(cell: ShownCell, curves: pd.DataFrame, lags: Any) -> Iterator[tuple[str, Any]]:
@@ -106,5 +118,6 @@ def _curve(cell: ShownCell, table: pd.DataFrame, name: str, lags: Any) -> FloatA
         axes.insert(1, table["sector"].to_numpy())
         shape.insert(1, cell.grid.sectors)
     values = np.full(shape, np.nan)
-    values[tuple(axes)] = table[name].to_numpy(dtype=np.float64)
+    if name in table:
+        values[tuple(axes)] = table[name].to_numpy(dtype=np.float64)
     return values

@@ -22,11 +22,13 @@ from cytodisk.plot.style import CHANCE_COLOUR, CHANCE_LINE, LINE_COLOUR
 from cytodisk.plot.time_axis import TICK_STEPS, stands_alone
 from cytodisk.scale import Scale
 
-PEAK_NAME = "peak"
+PEAK_NAME, LOST_NAME, PARTIAL_NAME = "peak", "peak that does not survive", "without controls"
 
 _BAND_OPACITY = 0.3
 _LEAST_REACH = 0.1  # of the correlation's axis, so that noise alone does not fill it
 _ROOM = 1.08  # of that axis over what it holds
+_PARTIAL_LOOK: Any = {"linewidth": 0.6, "linestyle": (0, (3, 1.2))}
+_LOST_LOOK: Any = {"marker": "x", "markersize": 4.5, "markeredgewidth": 1.2}
 _ALPHA = 0.05  # share of false discoveries that is accepted
 _CURVES = {"cell", "layer", "lag", "correlation", "lower_quartile", "upper_quartile"}
 _PEAKS = {"cell", "layer", "lag", "correlation"}
@@ -49,17 +51,19 @@ def draw_correlation_curves(
         From top to bottom, one for each of `shown_layers`.
     by_layer : DataFrame
         `layer_curves` of a study's correlation: cell, layer, lag, correlation, lower_quartile and
-        upper_quartile; lag_s, seconds, and threshold where they are known.
+        upper_quartile; lag_s, seconds, threshold and correlation_partial where they are known.
     cell : int
     peaks : DataFrame, optional
-        Its `layers`: the peak of each, an open dot where q, over all layers and cells, is 0.05 or more.
+        Its `layers`: the peak of each, an open dot where q, over all layers and cells, is 0.05 or more; a
+        cross where the column geometry says that it does not survive.
     signal, with_ : str
         Names for the words at the lags: at a positive lag the signal comes first.
 
     Returns
     -------
     list of Line2D
-        The means, one a layer, dark for the edge. Coloured bands are the quartiles over sectors; the grey
+        The means, one a layer, dark for the edge; a thin broken line beside each is the partial correlation,
+        with controls regressed out. Coloured bands are the quartiles over sectors; the grey
         one, from -threshold to threshold, holds the whole curve of 95 of 100 surrogates of that layer by
         itself: a peak beyond it can still have q of 0.05 or more, as one layer in twenty is by chance.
 
@@ -99,6 +103,7 @@ def draw_correlation_curves(
     for ax, layer, name, colour in zip(axes, layers, names, layer_colours(layers), strict=True):
         one = curves[curves["layer"] == layer].sort_values("lag")
         lines.append(_draw_curve(ax, one, unit, colour))
+        _draw_partial(ax, one, unit, colour)
         ax.set_title(name, loc="left", y=1.0, pad=2.0)
         if marks is not None:
             _mark_peak(ax, marks[marks["layer"] == layer], unit, colour)
@@ -107,13 +112,17 @@ def draw_correlation_curves(
     return lines
 
 
-def curve_key(*, peaks: bool = True, chance: bool = True) -> list[Any]:
+def curve_key(*, peaks: bool = True, chance: bool = True, partial: str = "", lost: bool = False) -> list[Any]:
     """Handles of a legend for `draw_correlation_curves`.
 
     Parameters
     ----------
     peaks, chance : bool
         Whether they are drawn.
+    partial : str
+        What the thin line is, such as "without geometry"; empty for none.
+    lost : bool
+        Whether a peak does not survive.
 
     Returns
     -------
@@ -136,6 +145,8 @@ def curve_key(*, peaks: bool = True, chance: bool = True) -> list[Any]:
         Line2D([], [], color=dark, linewidth=1.0, label="mean of sectors"),
         Patch(color=band, linewidth=0, label="quartiles of sectors"),
     ]
+    if partial:
+        handles.insert(1, Line2D([], [], color=dark, label=partial, **_PARTIAL_LOOK))
     if chance:
         handles.append(
             Patch(
@@ -148,6 +159,8 @@ def curve_key(*, peaks: bool = True, chance: bool = True) -> list[Any]:
     if peaks:
         words = f"peak, q < {_ALPHA:g} (○ q ≥ {_ALPHA:g})" if chance else "peak"
         handles.append(Line2D([], [], color=dark, marker="o", markersize=3.5, linewidth=0, label=words))
+    if lost:
+        handles.append(Line2D([], [], color=dark, linewidth=0, label=f"lost {partial}", **_LOST_LOOK))
     return handles
 
 
@@ -234,21 +247,32 @@ def _draw_curve(ax: Axes, curve: pd.DataFrame, unit: LagUnit, colour: FloatArray
     return line
 
 
+def _draw_partial(ax: Axes, curve: pd.DataFrame, unit: LagUnit, colour: FloatArray) -> None:
+    """A thin line for the correlation with controls regressed out, where there is one."""
+    if "correlation_partial" not in curve or not curve["correlation_partial"].notna().any():
+        return
+    lag, left = (curve[name].to_numpy(dtype=np.float64) for name in (unit.column, "correlation_partial"))
+    (line,) = ax.plot(lag, left, color=colour, **_PARTIAL_LOOK)
+    line.set_gid(PARTIAL_NAME)
+
+
 def _mark_peak(ax: Axes, peak: pd.DataFrame, unit: LagUnit, colour: FloatArray) -> None:
-    """A dot at the peak, open where q is not small, and its numbers above the axes."""
+    """A dot at the peak, open where q is not small, a cross where it is lost; its numbers above the axes."""
     if len(peak) != 1 or not np.isfinite(peak["correlation"].iloc[0]):
         return
     height, lag = float(peak["correlation"].iloc[0]), float(peak[unit.column].iloc[0])
     faint = "q" in peak and bool(peak["q"].iloc[0] >= _ALPHA)
-    (dot,) = ax.plot([lag], [height], "o", color=colour, markersize=3.5, markeredgewidth=0.8, clip_on=False)
-    dot.set(markerfacecolor="white" if faint else colour, gid=PEAK_NAME, zorder=4)
+    lost = "geometry" in peak and peak["geometry"].iloc[0] in (True, 1)
+    look: Any = _LOST_LOOK if lost else {"marker": "o", "markersize": 3.5, "markeredgewidth": 0.8}
+    (dot,) = ax.plot([lag], [height], color=colour, linewidth=0, clip_on=False, **look)
+    dot.set(markerfacecolor="white" if faint else colour, gid=LOST_NAME if lost else PEAK_NAME, zorder=4)
     words = f"{signed(height, '.2f')} at {unit.write(lag)}"
     ax.set_title(words, loc="right", y=1.0, pad=2.0, fontsize=7.0, color="0.3" if faint else LINE_COLOUR)
 
 
 def _share_axes(axes: Sequence[Axes], curves: pd.DataFrame, unit: LagUnit) -> None:
     """The same lags and correlations in all axes, lags written below the last."""
-    columns = ["correlation", "lower_quartile", "upper_quartile", "threshold"]
+    columns = ["correlation", "lower_quartile", "upper_quartile", "threshold", "correlation_partial"]
     largest = curves[[name for name in columns if name in curves]].abs().to_numpy(dtype=np.float64)
     reach = max(_ROOM * float(np.nanmax(largest, initial=0.0)), _LEAST_REACH)
     lags = curves[unit.column].to_numpy(dtype=np.float64)

@@ -159,7 +159,7 @@
   };
 
   const drawCurve = () => {
-    const { lags, layers, layer_curves: layerCurves, curves, windows } = page.pair();
+    const { lags, layers, layer_curves: layerCurves, layer_partial: partial, without, curves, windows } = page.pair();
     const at = page.focus();
     const layer = at?.layer ?? page.state.layer;
     const lag = lags.map((value) => value * page.lagScale());
@@ -171,6 +171,7 @@
     const none = { lag: [], r: [], low: [], high: [] };
     const [low, high] = known ? [of(curves.low), of(curves.high)] : [[], []];
     part("curve", "layer").data = { lag, r: mean };
+    part("curve", "without").data = without ? { lag, r: page.row(partial, layer) } : { lag: [], r: [] };
     part("curve", "null").data = { lag, low: lag.map(() => -bar), high: lag.map(() => bar) };
     part("curve", "window").data = known ? { lag, r: of(curves.correlation) } : none;
     part("curve", "band").data = known ? { lag, low, high } : none;
@@ -186,7 +187,9 @@
     const band = known ? ", band: 95 % at each lag by itself" : "";
     text("curve-window", !at ? "point at a window" : correlated ? `${name}${band}` : `${name}: not correlated`);
     const [r, peak, q] = ["correlation", "lag", "q"].map((key) => layers[key].values[layer]);
-    const found = `r ${page.fixed(r)} at ${page.lagSeconds(peak) || page.frameWords(peak)}, q ${page.chance(q)}`;
+    const [left, qLeft] = ["correlation_partial", "q_partial"].map((key) => layers[key].values[layer]);
+    const rest = Number.isFinite(left) ? `; dotted: ${without}, r ${page.fixed(left)}, q ${page.chance(qLeft)}` : "";
+    const found = `r ${page.fixed(r)} at ${page.lagSeconds(peak) || page.frameWords(peak)}, q ${page.chance(q)}${rest}`;
     text("curve-layer", `mean of layer ${layer}: ${Number.isFinite(r) ? found : "not correlated"}`);
     const chance = Number.isFinite(bar) ? ", 95 % over all lags" : ": not known";
     text("curve-null", `chance for the ${at ? "window" : "mean"}${chance}`);
