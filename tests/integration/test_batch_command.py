@@ -69,8 +69,8 @@ channels = ["C"]
     first, second, _ = csv.DictReader(said.splitlines())
     assert (first["pixel_size_um"], first["channels"], first["sectors"]) == ("0.2", "A; B", "12")
     assert (first["layers"], first["parameters"], first["fault"]) == ("10", 'nan = "omit"', "")
-    assert (second["frame_interval_s"], second["layers"], second["channels"]) == ("5.0", "", "C")
-    assert second["parameters"] == 'nan = "omit"; depth_um = 2.0'
+    assert (second["frame_interval_s"], second["layers"], second["channels"]) == ("5.0", "2", "C")
+    assert second["parameters"] == 'nan = "omit"; depth_um = [2.0]'
     assert "there is no signal" in second["fault"]
     assert code == 2
     assert "2 of 3 inputs cannot be used" in errors

@@ -167,13 +167,12 @@ def test_without_registration_nothing_is_taken_out(run: Run, masks: Path, tmp_pa
     assert (without["registration_angle"] == 0).all()
 
 
-def test_the_depth_of_the_first_layer(run: Run, masks: Path, tmp_path: Path) -> None:
+def test_layers_by_depth(run: Run, masks: Path, tmp_path: Path) -> None:
     flags = ("--sectors", 8, "--figures", 0, "--depth-um", 0.7)
     code, said, _ = run("movie", masks, "-o", tmp_path / "out", *flags, "--pixel-size", 0.5)
     assert code == 0
-    layers = cd.open_study(tmp_path / "out").provenance["layers"]
-    assert f"windows: layers {layers}, sectors 8; the first layer is about 0.7" in said
-    assert layers in (4, 5)  # 11 px of radius, 1.4 px of depth
+    assert "windows: layers 0–0.7 µm deep and the rest inside, sectors 8" in said
+    assert cd.open_study(tmp_path / "out").provenance["layers"] == 2
     assert_refused(run("movie", masks, "-o", tmp_path / "other", *flags), "depth_um needs a pixel size")
     both = run("movie", masks, "-o", tmp_path / "other", *flags, "--layers", 3, "--pixel-size", 0.5)
     assert_refused(both, "--layers and --depth-um exclude each other")
@@ -183,12 +182,12 @@ def test_the_depth_of_the_first_layer(run: Run, masks: Path, tmp_path: Path) -> 
 def test_given_layers_overrule_the_depth_of_a_parameters_file(run: Run, masks: Path, tmp_path: Path) -> None:
     (tmp_path / "p.toml").write_text("depth_um = 0.7\npixel_size_um = 0.5\nsectors = 8\n")
     common = ("movie", masks, "-o", tmp_path / "out", "--figures", 0, "--parameters", tmp_path / "p.toml")
-    assert run(*common, "--layers", 2)[0] == 0
-    assert set(cd.open_study(tmp_path / "out").windows["layer"]) == {0, 1}
+    assert run(*common, "--layers", 3)[0] == 0
+    assert set(cd.open_study(tmp_path / "out").windows["layer"]) == {0, 1, 2}
 
 
 def test_parameters_of_a_study_reproduce_it(run: Run, masks: Path, signal: Path, tmp_path: Path) -> None:
-    flags = ("--depth-um", 0.9, "--sectors", 7, "--pixel-size", 0.5, "--frame-interval", 3, "--tension", 0.2)
+    flags = ("--depth-um", "0.9,2", "--sectors", 7, "--pixel-size", 0.5, "--frame-interval", 3)
     common = ("movie", masks, "--signal", signal, "--figures", 0)
     first, second = tmp_path / "first", tmp_path / "second"
     assert run(*common, "-o", first, *flags, "--no-registration")[0] == 0

@@ -270,11 +270,11 @@ def test_a_row_overrules_what_excludes_its_own_parameter(folder: Path, of_all: s
     text = f"[parameters]\n{of_all}\n[[inputs]]\nmasks = 'drug/cell1_masks.tif'\nparameters = {{{own}}}"
     found = batch_of(folder, text).inputs[0].parameters
     assert isinstance(found, MovieParameters)
-    assert (found.layers, found.depth_um) == ((10, 1.5) if "depth" in own else (4, None))
+    assert (found.layers, found.depth_um) == ((10, (1.5,)) if "depth" in own else (4, None))
 
 
 def test_of_both_in_the_file_the_depth_counts_as_in_a_studys_parameters(folder: Path) -> None:
     text = "[parameters]\nlayers = 4\ndepth_um = 1.5\n[[inputs]]\nmasks = 'drug/cell1_masks.tif'"
     found = batch_of(folder, text).inputs[0].parameters
     assert isinstance(found, MovieParameters)
-    assert (found.layers, found.depth_um) == (10, 1.5)
+    assert (found.layers, found.depth_um) == (10, (1.5,))

@@ -22,6 +22,7 @@ from cytodisk.store.tables import (
     TRACK_COLUMNS,
     WINDOW_COLUMNS,
 )
+from cytodisk.windows.polar_windows import polar_grid_of
 
 FRAMES, GAP = 8, 6
 PIXEL_UM, INTERVAL_S = 0.16, 5.0
@@ -224,16 +225,30 @@ def test_a_given_scale_overrules_that_of_the_files(files: tuple[Path, Path]) -> 
     assert (scale.pixel_size_um, scale.frame_interval_s) == (0.5, 60.0)
 
 
-def test_the_depth_decides_the_layers(files: tuple[Path, Path], tmp_path: Path) -> None:
-    """About 20 px of radius at 0.16 µm: 0.4 µm is an eighth of it, which four or so rings have."""
-    inputs = open_movie(*files, SMALL.model_copy(update={"depth_um": 0.4}))
-    assert inputs.grid.layers in (3, 4, 5)
-    assert (
-        "the first layer is about 0.42 µm deep in the first frame of the first cell (wanted 0.4 µm)"
-        in inputs.understood["windows"]
-    )
-    half = open_movie(*files, SMALL.model_copy(update={"depth_um": 0.2}))
-    assert half.grid.layers == pytest.approx(2 * inputs.grid.layers, abs=1)
+def test_layers_by_depth_are_as_deep_in_every_frame(files: tuple[Path, Path], tmp_path: Path) -> None:
+    """About 20 px of radius at 0.16 µm: no place is 9 µm deep."""
+    inputs = open_movie(*files, SMALL.model_copy(update={"depth_um": (0.4, 1.0, 9.0, 11.0)}))
+    assert inputs.understood["windows"].startswith("layers 0–0.4, 0.4–1, 1–9, 9–11 µm deep and the rest")
+    study = movie_study(inputs, tmp_path / "out")
+    windows = study.windows
+    for (_, layer), depth in windows.groupby(["frame", "layer"])["depth"]:
+        if layer < 2:
+            assert ((0, 0.4)[layer] < depth).all()
+            assert depth.median() == pytest.approx((0.2, 0.7)[layer], abs=0.08)
+    beyond = windows[windows["layer"] >= 3]
+    assert set(beyond["status"]) == {"deeper than the cell"}
+    assert (beyond["area"] == 0).all()
+    assert beyond[["mean", "depth", "centroid_y"]].isna().all(axis=None)
+    assert set(windows.loc[windows["layer"] < 3, "status"]) == {"ok"}
+    by_frame = windows[windows["channel"] == windows["channel"].iloc[0]].groupby("frame")["area"].sum()
+    assert by_frame.to_numpy() == pytest.approx(study.cells["area"].dropna().to_numpy(), rel=1e-9)
+    assert (study.cells["empty_windows"] == 0).all()
+    consistency = study.consistency
+    assert (consistency.loc[consistency["layer"] < 3, "completeness"] == 1).all()
+    assert consistency.loc[consistency["layer"] >= 3, "completeness"].isna().all()
+    again = polar_grid_of(study.provenance["parameters"]).on(study.movie(0)[2])
+    first = windows[(windows["frame"] == 2) & (windows["channel"] == windows["channel"].iloc[0])]
+    assert again.scale.area(again.areas).ravel() == pytest.approx(first["area"].to_numpy(), rel=1e-12)
 
 
 @pytest.mark.slow

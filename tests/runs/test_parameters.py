@@ -46,7 +46,7 @@ def test_parameters_survive_the_file(
 def test_every_parameter_that_is_set_stands_in_the_file(tmp_path: Path) -> None:
     write_parameters(MapParameters(), tmp_path / "a.toml")
     names = set(tomllib.loads((tmp_path / "a.toml").read_text(encoding="utf-8")))
-    assert names == set(MapParameters.model_fields) - {"pixel_size_um", "channels"}
+    assert names == set(MapParameters.model_fields) - {"pixel_size_um", "channels", "depth_um"}
 
 
 def test_given_values_overrule_the_file(tmp_path: Path) -> None:
@@ -134,7 +134,7 @@ def test_a_given_parameter_overrules_the_one_that_it_excludes() -> None:
     by_depth = MovieParameters.of(depth_um=2.0)
     assert by_depth.changed(layers=5).depth_um is None
     assert MovieParameters.of(layers=5).changed(depth_um=2.0).layers == MovieParameters().layers
-    assert by_depth.changed(sectors=7).depth_um == 2.0
+    assert by_depth.changed(sectors=7).depth_um == (2.0,)
     with pytest.raises(ParameterError, match="exclude each other"):
         by_depth.changed(layers=5, depth_um=1.0)
 
@@ -143,12 +143,12 @@ def test_the_constructor_takes_one_of_two_that_exclude_each_other() -> None:
     with pytest.raises(ParameterError, match="layers and depth_um exclude each other: pass one of them"):
         MovieParameters(layers=10, depth_um=2.0)  # the default counts, too, where it is given
     assert MovieParameters(layers=4, depth_um=None).layers == 4
-    assert MovieParameters(depth_um=2.0).changed(sectors=9).depth_um == 2.0
+    assert MovieParameters(depth_um=2.0).changed(sectors=9).depth_um == (2.0,)
     assert MovieParameters(depth_um=2.0).part(MapParameters).layers == MapParameters().layers
 
 
 def test_a_file_with_the_default_layers_and_a_depth_can_be_fed_back(tmp_path: Path) -> None:
     path, written = tmp_path / "parameters.toml", MovieParameters(depth_um=2.0, sectors=8)
     write_parameters(written, path)
-    assert {"layers = 10", "depth_um = 2.0"} <= set(path.read_text().splitlines())
+    assert {"layers = 10", "depth_um = [2.0]"} <= set(path.read_text().splitlines())
     assert parameters_from({}, path, MovieParameters) == written

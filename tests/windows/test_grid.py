@@ -3,9 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import cytodisk as cd
 from cytodisk.errors import WindowError
-from cytodisk.windows.polar_layout import layers_for_depth
 from cytodisk.windows.polar_windows import PolarGrid, polar_windows
 
 SPACINGS = ("area", "radius")
@@ -96,42 +94,3 @@ def test_an_unknown_spacing_is_refused() -> None:
 def first_thickness(layers: int, spacing: str) -> float:
     """Thickness of the first of so many rings, over the radius of the disk."""
     return 1.0 - float(polar_windows(layers, 1, spacing).radii[1])
-
-
-DEPTHS = (1 / 10, 1 / 8, 1 / 6, 1 / 5, 1 / 4)
-
-
-@pytest.mark.parametrize("spacing", SPACINGS)
-@pytest.mark.parametrize("depth", DEPTHS)
-def test_the_first_layer_of_a_disk_has_the_wanted_depth(spacing: str, depth: float) -> None:
-    """Within 15 %, or as near as a whole number of layers comes."""
-    radius = 37.0
-    layers = layers_for_depth(depth * radius, np.pi * radius**2, 2.0 * np.pi * radius, spacing)
-    off = abs(first_thickness(layers, spacing) - depth)
-    nearest = min(abs(first_thickness(count, spacing) - depth) for count in range(1, 100))
-    assert off <= max(0.15 * depth, nearest + 1e-12)
-
-
-@pytest.mark.parametrize("spacing", SPACINGS)
-def test_the_first_layer_of_a_mapped_disk_has_the_wanted_depth(spacing: str) -> None:
-    mask = cd.simulate.disk(40)
-    area, depth = float(mask.sum()), 5.0
-    radius = np.sqrt(area / np.pi)
-    layers = layers_for_depth(depth, area, 2.0 * np.pi * radius, spacing)
-    windows = cd.polar_windows(layers, 24, spacing).on(cd.map_to_disk(mask))
-    inner = np.sqrt((area - windows.areas[0].sum()) / np.pi)
-    assert radius - inner == pytest.approx(depth, rel=0.15)
-
-
-@pytest.mark.parametrize("spacing", SPACINGS)
-def test_a_depth_beyond_the_cell_is_one_layer_and_a_small_one_many(spacing: str) -> None:
-    assert layers_for_depth(1e6, 100.0, 40.0, spacing) == 1
-    counts = [layers_for_depth(depth, 5000.0, 250.0, spacing) for depth in (8.0, 4.0, 2.0, 1.0, 0.5)]
-    assert counts == sorted(counts)
-    assert counts[-1] == pytest.approx(2 * counts[-2], rel=0.05)
-
-
-@pytest.mark.parametrize("depth", [0.0, -1.0, np.inf, np.nan])
-def test_a_depth_that_is_not_above_0_is_refused(depth: float) -> None:
-    with pytest.raises(WindowError, match="depth must be above 0, got "):
-        layers_for_depth(depth, 100.0, 40.0)

@@ -23,7 +23,8 @@ def window_measures(windows: WindowsOnCell) -> xr.Dataset:
     Dataset with dims (layer, sector)
         area in square pixels, 0 for an empty window; eccentricity of the ellipse with the window's second
         moments, 0 to 1, NaN for an empty one; pieces that the window falls into, 0 for an empty one. With the
-        dim layer alone: layer_pieces, the pieces that the windows of a layer fall into together. The attr
+        dim layer alone: layer_pieces, the pieces that the windows of a layer fall into together, and
+        completeness, the share of windows that hold signal, NaN for a layer deeper than the cell. The attr
         coverage is the share of the cell's area that lies in a window.
 
     See Also
@@ -46,6 +47,7 @@ def window_measures(windows: WindowsOnCell) -> xr.Dataset:
             "eccentricity": (by_window, windows.eccentricities, {"units": "1"}),
             "pieces": (by_window, windows.pieces, {"units": "1"}),
             "layer_pieces": ("layer", windows.layer_pieces, {"units": "1"}),
+            "completeness": ("layer", windows.completeness, {"units": "1"}),
         },
         {"layer": np.arange(windows.layers), "sector": np.arange(windows.sectors)},
         attrs={"coverage": windows.coverage} | windows.scale.attrs,
@@ -88,7 +90,7 @@ def measures_by_layer(windows: WindowsOnCell | xr.Dataset) -> xr.Dataset:
     held = measures["area"] > 0
     area, pieces = measures["area"].where(held), measures["pieces"].where(held)
     table = {
-        "completeness": held.mean("sector"),
+        "completeness": measures["completeness"],
         "area": area.mean("sector"),
         "area_cv": _variation(area),
         "eccentricity": measures["eccentricity"].mean("sector"),

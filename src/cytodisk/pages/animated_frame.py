@@ -80,8 +80,11 @@ class AnimatedFrames:
         SignalError
             The signal has another shape than the mask.
         """
-        if windows.grid != self._grid:
+        if windows.grid.of_any_cell != self._grid.of_any_cell:
             raise ParameterError(f"frames have the grids {self._grid} and {windows.grid}: pass one for all")
+        if windows.grid != self._grid:  # layers by depth have other radii in each frame
+            self._grid = windows.grid
+            self._fixed.clear()
         image = None if signal is None else fitting_image(signal, windows.mask, "signal")
         with paper_style():
             self._moving.clear(stamp)

@@ -114,7 +114,7 @@ def peaks_page(one: DrawnCorrelation) -> Sheet | None:
     for number, (shown, label) in enumerate(_shown(peaks)):
         top = head + 4.0 + number * row
         disk, cell = (sheet.axes(left, top, _PANEL, height) for left in lefts)
-        drawn = draw_peaks_on_disk(disk, peaks, movie.grid, shown)
+        drawn = draw_peaks_on_disk(disk, peaks, movie.disk_grid, shown)
         draw_peaks_on_cell(cell, peaks, windows, shown, scale=movie.scale)
         bar = sheet.axes(lefts[1] + _PANEL + 3.0, top + 0.1 * height, 2.2, 0.8 * height)
         colour_bar(drawn, bar, label, extend=_cut_off(peaks, shown))

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
 import xarray as xr
 
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.scale import Scale
 from cytodisk.store.study import Study
-from cytodisk.windows.polar_windows import PolarGrid, polar_windows
+from cytodisk.windows.polar_windows import PolarGrid, polar_grid_of
+
+_FRAMES = 9  # from which the radii of layers by depth are taken, at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,9 +51,19 @@ class MovieCell:
 
     @cached_property
     def grid(self) -> PolarGrid:
-        """The windows on the disk."""
-        sizes = self.activity.sizes
-        return polar_windows(sizes["layer"], sizes["sector"], self.study.provenance["parameters"]["spacing"])
+        """The windows on the disk; with layers by depth, their radii are those of a frame."""
+        return polar_grid_of(self.study.provenance["parameters"])
+
+    @cached_property
+    def disk_grid(self) -> PolarGrid:
+        """The windows on the disk as they are drawn: layers by depth with their median radii over frames."""
+        if self.grid.depth_um is None:
+            return self.grid
+        mapped = np.flatnonzero(self.maps.mapped)
+        places = np.linspace(0, len(mapped) - 1, min(_FRAMES, len(mapped)))
+        maps = [self.maps[int(mapped[place])] for place in np.unique(places.round().astype(int))]
+        radii = np.median([self.grid.on(disk).grid.radii for disk in maps], axis=0)
+        return replace(self.grid, borders=tuple(radii[1:-1].tolist()))
 
     def unit(self, name: str) -> str:
         """Unit of a variable of the activity."""

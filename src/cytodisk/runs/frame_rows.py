@@ -143,7 +143,7 @@ def _cell_columns(windows: CellWindows, image: xr.DataArray | None) -> dict[str,
         "area_ratio_p99": distortion.area_percentiles[99],
         "angle_distortion": distortion.angle,
         "angle_distortion_p95": distortion.angle_percentiles[95],
-        "empty_windows": int((windows.areas <= 0).sum()),
+        "empty_windows": windows.n_empty,
         "relaxation_start": disk.start,
         "steps": disk.steps,
         "converged": disk.converged,
@@ -172,9 +172,9 @@ def _window_columns(
     n_windows = windows.grid.n_windows
     channels = [None] if image is None else [str(name) for name in image["channel"].to_numpy()]
     repeats = len(channels)
-    status = ["no signal"] * n_windows
-    if image is not None:
-        status = np.where(np.isnan(arrays["mean"]), "NaN in signal", "ok").ravel().tolist()
+    missing = np.isnan(arrays["mean"]) if image is not None else np.zeros((1, *windows.areas.shape), bool)
+    status = np.where(missing, "NaN in signal", "no signal" if image is None else "ok").astype(object)
+    status[:, ~windows.grid.present] = "deeper than the cell"
     layer, sector = np.divmod(np.tile(np.arange(n_windows), repeats), windows.grid.sectors)
     nothing = np.full(n_windows * repeats, np.nan)
     return place.columns(n_windows * repeats) | {
@@ -187,5 +187,5 @@ def _window_columns(
         "centroid_y": np.tile(arrays["centroid_y"].ravel(), repeats),
         "centroid_x": np.tile(arrays["centroid_x"].ravel(), repeats),
         "eccentricity": np.tile(windows.eccentricities.ravel(), repeats),
-        "status": status,
+        "status": status.ravel().tolist(),
     }

@@ -276,7 +276,12 @@ WINDOW_COLUMNS: Columns = (
     Column(
         "eccentricity", pa.float64(), "1", "form of the window in the cell: 0 is round, near 1 is a sliver"
     ),
-    Column("status", pa.string(), "", "ok; NaN in signal; or no signal, if the run had no image"),
+    Column(
+        "status",
+        pa.string(),
+        "",
+        "ok; NaN in signal; no signal, if the run had no image; or deeper than the cell, for layers by depth",
+    ),
 )
 
 

@@ -1,9 +1,11 @@
 """Parameters of grids of windows, and of sampling in them."""
 
-from typing import Literal, Self, TypeAlias
+from itertools import pairwise
+from typing import Any, ClassVar, Literal, Self, TypeAlias
 
-from pydantic import model_validator
+from pydantic import field_validator, model_validator
 
+from cytodisk.checks import is_number
 from cytodisk.disk.sector_parameters import MOST, SectorParameters
 from cytodisk.parameters import Parameters, parameter
 
@@ -38,6 +40,36 @@ class GridParameters(CountParameters):
         '"area": all windows have the same area of disk, so nearly the same area of cell. "radius": layers '
         "of equal width on the disk, as in the paper.",
     )
+
+
+class PolarGridParameters(GridParameters):
+    """How the disk is divided into windows, by shares of the disk or by depth."""
+
+    exclusive: ClassVar[tuple[tuple[str, str], ...]] = (("layers", "depth_um"), ("spacing", "depth_um"))
+
+    depth_um: tuple[float, ...] | None = parameter(
+        None,
+        "Depths of the borders between layers below the cell's edge, in place of a number of layers: in each "
+        "cell and frame the circles of the disk with that median depth. What lies deeper is one more layer. "
+        "Needs the pixel size.",
+        unit="µm",
+        words="a depth above 0 or several that increase, such as 0.5,1,2",
+    )
+
+    @field_validator("depth_um", mode="before")
+    @classmethod
+    def _several(cls, depth_um: Any) -> Any:
+        return (depth_um,) if is_number(depth_um) else depth_um
+
+    @field_validator("depth_um")
+    @classmethod
+    def _increasing(cls, depth_um: tuple[float, ...] | None) -> tuple[float, ...] | None:
+        if depth_um is None:
+            return None
+        borders = (0.0, *depth_um)
+        if not depth_um or len(depth_um) >= MOST or any(a >= b for a, b in pairwise(borders)):
+            raise ValueError("must be a depth above 0 or several that increase, such as 0.5,1,2")
+        return depth_um
 
 
 class EdgeGridParameters(CountParameters):

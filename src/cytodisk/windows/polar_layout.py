@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.errors import WindowError
 from cytodisk.windows.grid_parameters import Spacing
-
-_MOST_LAYERS = 1000  # that a depth is turned into
 
 
 @dataclass(frozen=True)
@@ -24,11 +21,18 @@ class PolarLayout:
     ----------
     layers, sectors : int
     spacing : {"area", "radius"}
+    depth_um : tuple of float or None
+        Depths of the borders between layers in µm, one less than there are layers; then the radii differ from
+        cell to cell.
+    borders : tuple of float or None
+        Radii of these borders in one cell, decreasing; 0 for layers that are deeper than the cell.
     """
 
     layers: int
     sectors: int
     spacing: Spacing = "area"
+    depth_um: tuple[float, ...] | None = None
+    borders: tuple[float, ...] | None = None
 
     @property
     def n_windows(self) -> int:
@@ -37,9 +41,29 @@ class PolarLayout:
 
     @property
     def radii(self) -> FloatArray:
-        """Radii between layers, from 1 at the edge to 0 at the centre, shape (layers + 1,)."""
+        """Radii between layers, from 1 at the edge to 0 at the centre, shape (layers + 1,).
+
+        Raises
+        ------
+        WindowError
+            The borders between layers are given by their depth, and the grid is not on a cell yet.
+        """
+        if self.borders is not None:
+            return np.array([1.0, *self.borders, 0.0])
+        if self.depth_um is not None:
+            raise WindowError(
+                "the radii of a grid by depth_um differ from cell to cell: take the grid of the windows on "
+                "one, grid.on(disk).grid"
+            )
         steps = np.linspace(1.0, 0.0, self.layers + 1)
         return np.sqrt(steps) if self.spacing == "area" else steps
+
+    @property
+    def present(self) -> BoolArray:
+        """Whether each layer is one of the cell, not deeper than it, shape (layers,)."""
+        if self.borders is None:
+            return np.ones(self.layers, dtype=bool)
+        return np.asarray(self.radii[:-1] > 0.0)
 
     @property
     def angles(self) -> FloatArray:
@@ -71,53 +95,3 @@ class PolarLayout:
         turn = np.arctan2(points_uv[:, 1], points_uv[:, 0]) / (2.0 * np.pi)
         sector = np.floor(np.mod(turn, 1.0) * self.sectors).astype(np.int64)
         return np.asarray(layer * self.sectors + np.minimum(sector, self.sectors - 1))
-
-
-def layers_for_depth(depth: float, area: float, perimeter: float, spacing: Spacing = "area") -> int:
-    """Number of layers whose first is about so thick on a cell.
-
-    A band of thickness d along the edge is taken to have the area P d - π d², with P the perimeter: exact for
-    convex cells, as long as the band does not fill them (Steiner's formula).
-
-    Parameters
-    ----------
-    depth : float
-        Thickness of the first layer, above 0.
-    area, perimeter : float
-        Area and perimeter of the cell, in the same unit of length.
-    spacing : {"area", "radius"}
-
-    Returns
-    -------
-    int
-        At least 1.
-
-    Raises
-    ------
-    WindowError
-        `depth` is not above 0.
-    """
-    if not 0 < depth < np.inf:
-        raise WindowError(f"depth must be above 0, got {depth!r}")
-    counts = np.arange(1, _MOST_LAYERS + 1)
-    return int(counts[np.abs(first_depth(counts, area, perimeter, spacing) - depth).argmin()])
-
-
-def first_depth(layers: Any, area: float, perimeter: float, spacing: Spacing = "area") -> Any:
-    """Thickness of the first of so many layers on a cell; see `layers_for_depth`.
-
-    Parameters
-    ----------
-    layers : int, or ndarray of int
-    area, perimeter : float
-        Area and perimeter of the cell.
-    spacing : {"area", "radius"}
-
-    Returns
-    -------
-    float or ndarray of float
-        In the unit of the perimeter.
-    """
-    share = 1.0 / layers if spacing == "area" else 1.0 - (1.0 - 1.0 / layers) ** 2
-    root = np.sqrt(np.maximum(perimeter**2 - 4.0 * np.pi * share * area, 0.0))
-    return (perimeter - root) / (2.0 * np.pi)

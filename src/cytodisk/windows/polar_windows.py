@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -11,9 +12,11 @@ import numpy as np
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
+from cytodisk.geometry.edge_distance import EdgeDistance
 from cytodisk.scale import Scale
 from cytodisk.taking import takes
-from cytodisk.windows.grid_parameters import GridParameters
+from cytodisk.windows.depth_borders import radii_at_depths
+from cytodisk.windows.grid_parameters import PolarGridParameters
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.outlines import window_polygons
 from cytodisk.windows.polar_layout import PolarLayout
@@ -31,6 +34,11 @@ class PolarGrid(PolarLayout):
     ----------
     layers, sectors : int
     spacing : {"area", "radius"}
+    depth_um : tuple of float or None
+        Depths of the borders between layers in µm, one less than there are layers; then the radii differ from
+        cell to cell.
+    borders : tuple of float or None
+        Radii of these borders in one cell, decreasing; 0 for layers that are deeper than the cell.
 
     Examples
     --------
@@ -53,21 +61,40 @@ class PolarGrid(PolarLayout):
         Returns
         -------
         CellWindows
-            No window is empty, whatever the grid.
+            No window is empty, whatever the grid, but for layers by depth that are deeper than the cell. Its
+            grid has the radii of this cell.
 
         Raises
         ------
         WindowError
-            `disk` is not a map.
+            `disk` is not a map; or layers are by depth, and its scale is unknown or the image shows no edge.
         """
         if not isinstance(disk, DiskMap):
             raise WindowError(f"disk must be a DiskMap, got {type(disk).__name__}: pass map_to_disk(mask)")
-        return CellWindows(self, disk)
+        if self.depth_um is None:
+            return CellWindows(self, disk)
+        pixel_size_um = disk.scale.pixel_size_um
+        if pixel_size_um is None:
+            raise WindowError(
+                "depth_um needs the scale of the map: pass pixel_size_um to map_to_disk or map_movie"
+            )
+        distance = EdgeDistance(disk.mask, disk.outline_yx)
+        radii = radii_at_depths(disk, distance, [depth / pixel_size_um for depth in self.depth_um])
+        windows = CellWindows(replace(self, borders=tuple(radii.tolist())), disk)
+        windows.__dict__["edge_distance"] = distance  # which took some time
+        return windows
+
+    @property
+    def of_any_cell(self) -> PolarGrid:
+        """The same grid without the radii of one cell."""
+        return replace(self, borders=None)
 
 
 @dataclass(frozen=True, eq=False)
 class CellWindows(WindowsOnCell):
     """Polar windows in the cell: none is empty, and their areas sum to the mask's.
+
+    Layers by depth that are deeper than the cell are none of it: their windows have the area 0.
 
     Attributes
     ----------
@@ -122,6 +149,16 @@ class CellWindows(WindowsOnCell):
         """Scale of the map."""
         return self.disk.scale
 
+    @property
+    def n_empty(self) -> int:
+        """Number of windows that hold nothing of the cell; layers deeper than the cell do not count."""
+        return int((self.areas == 0)[self.grid.present].sum())
+
+    @property
+    def completeness(self) -> FloatArray:
+        """Share of windows that hold signal, by layer, shape (layers,); NaN if deeper than the cell."""
+        return np.where(self.grid.present, super().completeness, np.nan)
+
     def polygons(self) -> list[FloatArray]:
         """Outline of each window in the cell, by window number.
 
@@ -129,6 +166,7 @@ class CellWindows(WindowsOnCell):
         -------
         list of ndarray of shape (N, 2) and dtype float
             Closed polygons, (row, column) in pixels, last point not repeated; neighbours share their points.
+            Without points for layers deeper than the cell.
         """
         return window_polygons(self.grid, self.disk)
 
@@ -159,6 +197,8 @@ class CellWindows(WindowsOnCell):
         features = []
         for number, polygon in enumerate(self.polygons()):
             layer, sector = divmod(number, self.grid.sectors)
+            if not self.grid.present[layer]:
+                continue
             ring = np.concatenate([polygon, polygon[:1]])[:, ::-1].tolist()
             numbers = {name: _number(array[layer, sector]) for name, array in columns.items()}
             properties = {"layer": layer, "sector": sector, "area_px": float(self.areas[layer, sector])}
@@ -172,14 +212,14 @@ class CellWindows(WindowsOnCell):
         return {"type": "FeatureCollection", "features": features}
 
 
-@takes(GridParameters)
+@takes(PolarGridParameters)
 def polar_windows(*in_order: Any, **settings: Any) -> PolarGrid:
     """Grid of windows on the unit disk.
 
     Parameters
     ----------
     **settings
-        See `GridParameters`.
+        See `PolarGridParameters`.
 
     Returns
     -------
@@ -188,7 +228,7 @@ def polar_windows(*in_order: Any, **settings: Any) -> PolarGrid:
     Raises
     ------
     WindowError
-        A count is not a positive whole number, or the spacing is unknown.
+        A count is not a positive whole number, the spacing is unknown, or depths do not increase.
 
     See Also
     --------
@@ -207,9 +247,28 @@ def polar_windows(*in_order: Any, **settings: Any) -> PolarGrid:
     >>> windows = grid.on(cd.map_to_disk(cd.simulate.dumbbell(radius=12)))
     >>> windows.n_empty, round(windows.coverage, 6)
     (0, 1.0)
+
+    Layers by depth, the same in cells of all sizes:
+
+    >>> grid = cd.polar_windows(sectors=8, depth_um=(0.5, 1.0))
+    >>> windows = grid.on(cd.map_to_disk(cd.simulate.disk(30), pixel_size_um=0.1))
+    >>> windows.layers, windows.depths[:, :, 2].mean(axis=1).round()  # in pixels: the last one is the rest
+    (3, array([ 5., 10., 25.]))
     """
-    grid = GridParameters.of(*in_order, **settings)
-    return PolarGrid(grid.layers, grid.sectors, grid.spacing)
+    return polar_grid(PolarGridParameters.of(*in_order, **settings))
+
+
+def polar_grid(parameters: PolarGridParameters) -> PolarGrid:
+    """The grid that some parameters describe."""
+    layers = parameters.layers if parameters.depth_um is None else len(parameters.depth_um) + 1
+    return PolarGrid(layers, parameters.sectors, parameters.spacing, parameters.depth_um)
+
+
+def polar_grid_of(parameters: Mapping[str, Any]) -> PolarGrid:
+    """The grid of a study, from the parameters in its provenance."""
+    left_out = ("depth_um",) if parameters.get("depth_um") is None else ("layers", "spacing")
+    known = PolarGridParameters.model_fields.keys() & parameters.keys()
+    return polar_windows(**{name: parameters[name] for name in known if name not in left_out})
 
 
 def _number(value: Any) -> float | None:

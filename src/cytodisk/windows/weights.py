@@ -29,7 +29,7 @@ def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:
     Returns
     -------
     WindowShares
-        Columns of the weights sum to 1, and no row is empty.
+        Columns of the weights sum to 1, and no row is empty but those of layers deeper than the cell.
     """
     pixels = np.argwhere(disk.mask)
     if disk.method == "advection":
@@ -38,14 +38,15 @@ def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:
         coarse = windows_of_all_subpixels(grid, disk, pixels, PER_SIDE)
     whole = [Subpixels(np.arange(len(pixels)), coarse, np.full(len(pixels), 1.0 / PER_SIDE**2))]
     shares = gather_shares(pixels, grid.n_windows, whole)
-    empty = np.flatnonzero(np.diff(shares.weights.indptr) == 0)
+    present = np.repeat(grid.present, grid.sectors)
+    empty = np.flatnonzero((np.diff(shares.weights.indptr) == 0) & present)
     if not empty.size:
         return shares
     near = np.unique(_pixels_at(disk, pixels, grid.centres_uv[empty]))
     kept = np.delete(np.arange(len(pixels)), near)
     coarse = coarse[kept]
     fine = windows_of_subpixels(grid, disk, pixels[near], _FINE)
-    empty = np.flatnonzero(_held(grid, coarse) + _held(grid, fine) == 0)
+    empty = np.flatnonzero((_held(grid, coarse) + _held(grid, fine) == 0) & present)
     extra = _pixels_at(disk, pixels, grid.centres_uv[empty])
     counts = np.full(len(pixels), PER_SIDE**2)
     counts[near] = _FINE**2

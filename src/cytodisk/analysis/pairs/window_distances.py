@@ -107,6 +107,7 @@ def disk_distances(layers: int, sectors: int) -> FloatArray:
 
 def _distances_on(disk: DiskMap, grid: PolarGrid) -> dict[str, FloatArray]:
     """Distances of one map in pixels, each of shape (W, W)."""
+    grid = grid.on(disk).grid
     centres_uv = _centres_uv(grid)
     centres_yx = disk.to_cell(centres_uv.reshape(-1, 2))
     straight = cdist(centres_yx, centres_yx)

@@ -119,7 +119,8 @@ def window_labels(cell: ShownCell, box: Box, time: int) -> Any:
     uv = disk.to_disk(np.column_stack([y[row], x[column]]))
     inside = np.isfinite(uv[:, 0])
     labels = np.full(box.shape, OUTSIDE, dtype=np.uint16)
-    labels[row[inside], column[inside]] = np.minimum(cell.grid.window_of(uv[inside]), OUTSIDE - 1)
+    grid = cell.grid.on(disk).grid  # with the radii of this frame
+    labels[row[inside], column[inside]] = np.minimum(grid.window_of(uv[inside]), OUTSIDE - 1)
     return labels
 
 

@@ -84,7 +84,7 @@ class ShownCell(MovieCell):
             "time_step": self.times.per_frame,
             "layers": self.grid.layers,
             "sectors": self.grid.sectors,
-            "radii": self.grid.radii.tolist(),
+            "radii": self.disk_grid.radii.tolist(),
             "units": {name: self.unit(name) for name in ("area", "velocity")},
             "channels": list(self._channels()),
             "velocity": pack_floats(self.shown["velocity"]),

@@ -57,7 +57,7 @@ def shared_parts(cell: ShownCell) -> dict[str, Any]:
 
 def wedges_of(cell: ShownCell) -> dict[str, Any]:
     """The windows as wedges; angles run against the clock in Bokeh, on a page where v goes down."""
-    grid = cell.grid
+    grid = cell.disk_grid
     layer, sector = np.divmod(np.arange(grid.n_windows), grid.sectors)
     radii, angles = grid.radii.astype(np.float32), grid.angles.astype(np.float32)
     return {

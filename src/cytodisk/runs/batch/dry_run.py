@@ -10,10 +10,14 @@ from cytodisk.errors import CytodiskError
 from cytodisk.runs.batch.batch_file_rows import SCALE
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.cells.cell_inputs import open_inputs
+from cytodisk.runs.depth_layers import check_depths
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_inputs import open_movie_files
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.parameters_file import toml_lines
+from cytodisk.scale import Scale
+from cytodisk.windows.grid_parameters import PolarGridParameters
+from cytodisk.windows.polar_windows import PolarGrid, polar_grid
 
 _APART = ("layers", "sectors", *SCALE)  # what has a column of its own
 
@@ -30,8 +34,8 @@ class Understood:
         As given, or else as the files say.
     channels : str
         Names of the signal's channels.
-    layers : int or None
-        None where `depth_um` takes their place.
+    layers : int
+        One more than there are depths where `depth_um` takes their place.
     sectors : int
     parameters : str
         Others that are not the default ones, as TOML.
@@ -43,7 +47,7 @@ class Understood:
     pixel_size_um: float | None
     frame_interval_s: float | None
     channels: str
-    layers: int | None
+    layers: int
     sectors: int
     parameters: str
     fault: str = ""
@@ -67,7 +71,7 @@ def understand(item: BatchInput) -> Understood:
         pixel_size_um=parameters.pixel_size_um,
         frame_interval_s=own.frame_interval_s if own else None,
         channels=_together(parameters.channels or ()),
-        layers=None if own and own.depth_um is not None else parameters.layers,
+        layers=_grid(parameters).layers,
         sectors=parameters.sectors,
         parameters=_together(toml_lines(_not_default(parameters))),
     )
@@ -85,8 +89,13 @@ def _with_files(given: Understood, item: BatchInput) -> Understood:
     else:
         inputs = open_inputs(item.masks, item.signal, item.parameters)
         signal, pixel_size_um = next(iter(inputs.signal_files), None), inputs.scale.pixel_size_um
+    check_depths(_grid(item.parameters), Scale(pixel_size_um))
     channels = signal.channels if signal is not None else ()
     return replace(given, pixel_size_um=pixel_size_um, channels=_together(channels))
+
+
+def _grid(parameters: MapParameters) -> PolarGrid:
+    return polar_grid(parameters.part(PolarGridParameters))
 
 
 def _together(words: Sequence[str]) -> str:

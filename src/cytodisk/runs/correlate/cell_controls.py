@@ -19,7 +19,7 @@ from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.run_options import Progress
 from cytodisk.runs.study_signal import FoundSignal, find_signal
 from cytodisk.store.study import Study
-from cytodisk.windows.polar_windows import polar_windows
+from cytodisk.windows.polar_windows import polar_grid_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,9 +123,7 @@ class CellControls:
 
     @property
     def _grid(self) -> Any:
-        provenance = self.study.provenance
-        parameters = provenance["parameters"]
-        return polar_windows(provenance["layers"], parameters["sectors"], parameters["spacing"])
+        return polar_grid_of(self.study.provenance["parameters"])
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,7 +30,7 @@ from cytodisk.runs.correlate.event_tables import event_tables
 from cytodisk.runs.correlate.partial_correlation import Partial, partial_correlation
 from cytodisk.runs.run_options import Progress
 from cytodisk.store.study import Study
-from cytodisk.windows.polar_windows import polar_windows
+from cytodisk.windows.polar_windows import polar_grid_of
 
 _LEAST_LAG_FOR_JITTER, _LAG_FOR_JITTER = 6, 10
 _SIDES = (("signal", "a"), ("with", "b"))
@@ -150,8 +150,7 @@ class CellCorrelation:
         self, cell: int, activity: xr.Dataset, a: xr.DataArray, progress: Progress | None
     ) -> pd.DataFrame:
         study, options = self.study, self.options
-        parameters = study.provenance["parameters"]
-        grid = polar_windows(study.provenance["layers"], parameters["sectors"], parameters["spacing"])
+        grid = polar_grid_of(study.provenance["parameters"])
         b = activity["mean"].sel(channel=self.with_).load()
         surrogates = {"surrogates": min(options.surrogates, _PAIRED_SURROGATES)}
         common = dict(options.part(PairCorrelationParameters)) | surrogates

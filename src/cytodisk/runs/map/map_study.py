@@ -14,6 +14,7 @@ from cytodisk.images.mask_files import SourceCell, read_source_cells
 from cytodisk.images.mask_names import without_name
 from cytodisk.runs.cells.cell_inputs import CellInputs
 from cytodisk.runs.cells.cell_parts import CellRun
+from cytodisk.runs.depth_layers import check_depths
 from cytodisk.runs.frame_rows import cell_status
 from cytodisk.runs.map.map_kind import MAP
 from cytodisk.runs.map.map_parameters import MapParameters
@@ -24,6 +25,8 @@ from cytodisk.runs.study_run import StudyRun
 from cytodisk.store.study import Study, open_study
 from cytodisk.store.study_folder import StudyFolder
 from cytodisk.taking import takes
+from cytodisk.windows.grid_parameters import PolarGridParameters
+from cytodisk.windows.polar_windows import polar_grid
 
 _CELLS_AT_ONCE = 8  # of one image, which go to a worker and into a file together
 
@@ -68,6 +71,7 @@ def map_study(
         The folder cannot be used.
     """
     options = MapOptions.of(**settings)
+    check_depths(polar_grid(inputs.parameters.part(PolarGridParameters)), inputs.scale)
     provenance = describe_run(inputs.paths, inputs.parameters, inputs.understood, inputs.scale)
 
     def work(folder: StudyFolder) -> tuple[list[str], list[str]]:

@@ -24,8 +24,8 @@ from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.scale import Scale
 from cytodisk.store.figures_folder import figures_folder
 from cytodisk.store.study_folder import StudyFolder, part_key
-from cytodisk.windows.grid_parameters import GridParameters
-from cytodisk.windows.polar_windows import CellWindows, polar_windows
+from cytodisk.windows.grid_parameters import PolarGridParameters
+from cytodisk.windows.polar_windows import CellWindows, polar_grid
 
 DrawCell: TypeAlias = Callable[[Path, str, CellWindows, xr.DataArray | None], list[Path]]
 
@@ -62,17 +62,17 @@ class MapWork:
         if fault is None:
             try:
                 disk = self._map(found)
+                windows = polar_grid(self.parameters.part(PolarGridParameters)).on(disk)
             except CytodiskError as error:
                 fault = error
         if fault is not None:
             return [
                 (place.row | {"status": cell_status(fault), "reason": str(fault)} | _seconds(started), {})
             ]
-        windows = polar_windows(**dict(self.parameters.part(GridParameters))).on(disk)
         row, columns = measure_windows(place, windows, task.signal, self.parameters.nan, found.corner)
         placed = windows
         if self.maps or self.geojson or task.drawn:  # in pixels of the whole image
-            placed = windows.grid.on(disk.placed(found.corner, found.image_shape))
+            placed = CellWindows(windows.grid, disk.placed(found.corner, found.image_shape))
             self._write(placed, self.folder.map_path(part_key(found.cell)))
         row |= {"status": "ok", "reason": ""} | _seconds(started)
         if task.drawn and self.draw is not None:

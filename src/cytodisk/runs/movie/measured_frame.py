@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cytodisk.errors import CytodiskError
+from cytodisk.errors import CytodiskError, WindowError
 from cytodisk.images.tracks import MissingLabel
 from cytodisk.motion.edge import EdgeMotion, displacement_by_sector, edge_motion
 from cytodisk.motion.following import frame_status
@@ -90,7 +90,10 @@ def measure_frame(task: FrameTask) -> FrameRows:
     """
     started = clock.perf_counter()
     frame = task.frame
-    windows = task.grid.on(frame.disk)
+    try:
+        windows = task.grid.on(frame.disk)
+    except WindowError as fault:  # layers by depth, and no edge of the cell in the image
+        return unmapped_rows(task.place, fault, task.seconds + clock.perf_counter() - started)
     row, columns = measure_windows(task.place, windows, task.signal, task.parameters.nan)
     row |= _track_columns(frame) | {"smallest_window_share": _smallest_share(windows, task.parameters)}
     row["notes"] = "; ".join(filter(None, [row["notes"], _interior_note(frame, task)]))

@@ -3,30 +3,26 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from cytodisk.checks import is_path
-from cytodisk.errors import CytodiskError, MaskError, ParameterError, SignalError
-from cytodisk.geometry.mask import clean_mask
-from cytodisk.geometry.outline import trace_outline
-from cytodisk.geometry.polygon import edge_lengths, smooth_closed
+from cytodisk.errors import MaskError, SignalError
 from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frames import FrameFile, open_frames
 from cytodisk.images.mask_kinds import look_at
-from cytodisk.images.tracks import CellTrack, list_tracks, read_frame
+from cytodisk.images.tracks import CellTrack, list_tracks
 from cytodisk.motion.still_interior import fade_in_px
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.cells.cell_inputs import check_signal
 from cytodisk.runs.channel_names import name_channels
+from cytodisk.runs.depth_layers import check_depths, depth_words
 from cytodisk.runs.file_scales import agreed
-from cytodisk.runs.movie.movie_parameters import FollowedCellParameters, MovieParameters
+from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
 from cytodisk.store.study_folder import part_key
-from cytodisk.windows.grid_parameters import Spacing
-from cytodisk.windows.polar_layout import first_depth, layers_for_depth
-from cytodisk.windows.polar_windows import PolarGrid, polar_windows
+from cytodisk.windows.grid_parameters import PolarGridParameters
+from cytodisk.windows.polar_windows import PolarGrid, polar_grid
 
 
 @dataclass(frozen=True)
@@ -62,10 +58,6 @@ class MovieInputs:
     grid : PolarGrid
     scale : Scale
         The given one, or else the files' own.
-    first_depth_um : float or None
-        Thickness of the first layer in the first frame of the first cell, where one was asked for.
-    wanted_depth_um : float or None
-        The thickness that was asked for.
     """
 
     masks: FrameFile
@@ -75,8 +67,6 @@ class MovieInputs:
     parameters: FollowedCellParameters
     grid: PolarGrid
     scale: Scale
-    first_depth_um: float | None = None
-    wanted_depth_um: float | None = None
 
     @property
     def understood(self) -> dict[str, str]:
@@ -92,12 +82,8 @@ class MovieInputs:
             words["signal"] = (
                 f"channels {names}; {self.signal.n_frames} frames ({self.signal.axes}, {self.signal.dtype})"
             )
-        if self.wanted_depth_um is not None:
-            words["windows"] = (
-                f"layers {self.grid.layers}, sectors {self.grid.sectors}; the first layer is about "
-                f"{self.first_depth_um:.2g} µm deep in the first frame of the first cell (wanted "
-                f"{self.wanted_depth_um:g} µm)"
-            )
+        if self.grid.depth_um is not None:
+            words["windows"] = depth_words(self.grid)
         return words
 
     @property
@@ -143,12 +129,9 @@ def open_movie(
     fade_in_px(parameters.part(MovieSettings), scale)
     look = look_at(mask_file, parameters.kind)
     tracks = tuple(list_tracks(mask_file, look, parameters.link))
-    layers, depth_um = parameters.layers, None
-    wanted = parameters.depth_um if isinstance(parameters, MovieParameters) else None
-    if wanted is not None:
-        layers, depth_um = _layers(mask_file, tracks, wanted, parameters.spacing, scale)
-    grid = polar_windows(layers, parameters.sectors, parameters.spacing)
-    return MovieInputs(mask_file, look.kind, tracks, files.signal, parameters, grid, scale, depth_um, wanted)
+    grid = polar_grid(parameters.part(PolarGridParameters))
+    check_depths(grid, scale)
+    return MovieInputs(mask_file, look.kind, tracks, files.signal, parameters, grid, scale)
 
 
 def open_movie_files(
@@ -215,27 +198,3 @@ def _check_frames(masks: FrameFile, signal: FrameFile) -> None:
         f"signal {signal.path} was understood as {signal.n_frames} frames of {len(signal.channels)} channels "
         f"({signal.axes} {signal.shape}), the masks have {masks.n_frames} frames: {hint}"
     )
-
-
-def _layers(
-    masks: FrameFile, tracks: tuple[CellTrack, ...], depth_um: float, spacing: Spacing, scale: Scale
-) -> tuple[int, float]:
-    """Layers for the wanted depth, and the depth they give, on the first frame that can be used."""
-    if scale.pixel_size_um is None:
-        raise ParameterError("depth_um needs a pixel size: pass it as --pixel-size, or layers instead")
-    for track, frame in _first_frames(tracks):
-        try:
-            mask, report = clean_mask(track.mask_in(read_frame(masks, frame), frame))
-        except CytodiskError:
-            continue  # has its row in the run; the next frame serves as well
-        perimeter = float(edge_lengths(smooth_closed(trace_outline(mask), 1.0)).sum())
-        cell = report.area_px, perimeter, spacing
-        layers = layers_for_depth(depth_um / scale.pixel_size_um, *cell)
-        return layers, float(first_depth(layers, *cell)) * scale.pixel_size_um
-    raise MaskError(f"no frame of {masks.path} can be used")
-
-
-def _first_frames(tracks: tuple[CellTrack, ...]) -> Iterator[tuple[CellTrack, int]]:
-    for track in tracks:
-        for frame in track.frames:
-            yield track, frame

@@ -4,7 +4,6 @@ from typing import ClassVar
 
 from cytodisk.images.file_parameters import MovieKindParameters
 from cytodisk.motion.tracking_parameters import FollowingParameters, InteriorParameters
-from cytodisk.parameters import parameter
 from cytodisk.runs.cells.cell_parameters import CellParameters
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.scale_parameters import ScaleParameters
@@ -17,11 +16,4 @@ class FollowedCellParameters(MovieKindParameters, FollowingParameters, ScalePara
 class MovieParameters(FollowedCellParameters, InteriorParameters, MapParameters):
     """What decides the result of `cytodisk movie`, beside the input files."""
 
-    exclusive: ClassVar[tuple[tuple[str, str], ...]] = (("layers", "depth_um"),)
-
-    depth_um: float | None = parameter(
-        None,
-        "Thickness of the first layer in the first frame, in place of a number of layers.",
-        above=0,
-        unit="µm",
-    )
+    exclusive: ClassVar[tuple[tuple[str, str], ...]] = MapParameters.exclusive

@@ -154,9 +154,15 @@ def _add_consistency(
         "layer": np.tile(np.arange(layers), len(channels)),
         "correlation": correlation.ravel(),
         "centroid_displacement": np.tile(moved, len(channels)),
-        "completeness": np.tile((here["area"] > 0).mean(axis=-1), len(channels)),
+        "completeness": np.tile(_completeness(here["area"]), len(channels)),
     }
     folder.add_table(part_key(cell, frame), "consistency", columns)
+
+
+def _completeness(areas: Any) -> Any:
+    """Share of windows with an area, by layer; NaN for a layer that is deeper than the cell: it has none."""
+    held = areas > 0
+    return np.where(held.any(axis=-1), held.mean(axis=-1), np.nan)
 
 
 def _registered(arrays: dict[str, Any]) -> Any:

@@ -1,0 +1,26 @@
+"""Layers by depth in a run: what they need, and what they are in words."""
+
+from itertools import pairwise
+
+from cytodisk.errors import ParameterError
+from cytodisk.scale import Scale
+from cytodisk.windows.polar_windows import PolarGrid
+
+
+def check_depths(grid: PolarGrid, scale: Scale) -> None:
+    """Check that depths in µm can be found in the images of a run.
+
+    Raises
+    ------
+    ParameterError
+        The layers are by depth, and the pixel size is unknown.
+    """
+    if grid.depth_um is not None and scale.pixel_size_um is None:
+        raise ParameterError("depth_um needs a pixel size: pass it as --pixel-size, or layers instead")
+
+
+def depth_words(grid: PolarGrid) -> str:
+    """A grid of layers by depth in words, as "layers 0–0.5, 0.5–1 µm deep and the rest inside"."""
+    borders = [f"{depth:g}" for depth in (0.0, *(grid.depth_um or ()))]
+    layers = ", ".join(f"{outer}–{inner}" for outer, inner in pairwise(borders))
+    return f"layers {layers} µm deep and the rest inside, sectors {grid.sectors}"
