@@ -110,8 +110,9 @@ def _smallest_share(windows: CellWindows, parameters: FollowedCellParameters) ->
     """Area of the smallest window over that in a map of equal areas; NaN unless the interior stands still."""
     if parameters.part(InteriorParameters).interior != "still":
         return np.nan
-    by_layer = -np.diff(windows.grid.radii**2) / windows.grid.sectors
-    return float((windows.areas / (by_layer[:, None] * windows.areas.sum())).min())
+    present = windows.grid.present
+    by_layer = -np.diff(windows.grid.radii**2)[present] / windows.grid.sectors
+    return float((windows.areas[present] / (by_layer[:, None] * windows.areas.sum())).min())
 
 
 def _interior_note(frame: MappedFrame, task: FrameTask) -> str:
