@@ -59,6 +59,7 @@ def study_of(kind: str, seed: int, folder: Path, correlate: bool) -> cd.Study:
         "TimeIncrement": truth.frame_interval_s,
         "TimeIncrementUnit": "s",
     }
+    assert truth.signal is not None
     tifffile.imwrite(signal, truth.signal.to_numpy(), metadata=metadata, photometric="minisblack", ome=True)
     study = cd.run_movie(masks, folder / "out", signal=signal, parameters=GRID)
     if correlate:

@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import cytodisk as cd
 from cytodisk.analysis.correlation.cluster_fields import CLUSTER_THRESHOLD, WindowRing
+from cytodisk.analysis.correlation.clusters import p_of_regions
 
 STRENGTH, LAG = 0.3, 4
 
@@ -170,6 +171,19 @@ def test_clusters_of_series_by_sector_alone_and_of_channels_one_by_one() -> None
     both = [cd.correlation_clusters(correlations.isel(channel=k)) for k in (0, 1)]
     assert both[0].equals(clusters_of(a, b))
     assert both[1].sizes["cluster"] == 0
+
+
+def test_a_region_is_significant_in_other_correlations_where_they_agree() -> None:
+    a, b = coupled(1050, np.arange(8, 28))
+    with_coupling, without = (
+        cd.cross_correlate(series, b, 8, surrogates=99, clusters=True)
+        for series in (a, cd.simulate.independent_series("white", 1051, 120, 4, 40)[0])
+    )
+    clusters = cd.correlation_clusters(with_coupling)
+    assert_allclose(p_of_regions(clusters, with_coupling), clusters["p"])
+    assert p_of_regions(clusters, without)[0] > 0.05
+    turned = cd.cross_correlate(-a, b, 8, surrogates=99, clusters=True)
+    assert p_of_regions(clusters, turned)[0] > 0.05
 
 
 def test_clusters_of_two_signals_by_window() -> None:

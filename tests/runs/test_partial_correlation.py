@@ -54,6 +54,9 @@ def test_a_still_pattern_does_not_survive(study: Study) -> None:
     assert (layers["q"] < 0.05).any()
     assert layers["geometry"].tolist() == (layers["q"] < 0.05).tolist()
     assert (layers["q_partial"] >= 0.05).all()
+    assert found.clusters is not None
+    assert len(found.clusters) > 0
+    assert (found.clusters["p_partial"] >= 0.05).all()
     assert found.cells["partial_frames"].iloc[0] > 50
     flags = {flag.name: flag for flag in cd.qc_flags(study)}
     assert "geometry" in flags

@@ -29,7 +29,7 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
         console.print(f"cell {cell}, mean over sectors by layer:")
         for layer in rows.itertuples():
             console.print(_layer_words(layer, of_cell[of_cell["layer"] == layer.layer], outs[cell]))
-        for words in _cluster_words(found, cell):
+        for words in _cluster_words(found, cell, outs[cell]):
             console.print(words)
     for _, row in found.cells.iterrows():
         for words in _cautions(row, settings):
@@ -104,7 +104,7 @@ def _say_power(console: "Console", cells: Any, windows: Any) -> None:
         )
 
 
-def _cluster_words(found: "Correlation", cell: Any) -> Iterator[str]:
+def _cluster_words(found: "Correlation", cell: Any, out: str) -> Iterator[str]:
     """The clusters of a cell, the largest first."""
     if found.clusters is None:
         return
@@ -114,16 +114,19 @@ def _cluster_words(found: "Correlation", cell: Any) -> Iterator[str]:
         return
     yield f"cell {cell}, clusters of neighbouring windows, p <= 0.05 (their borders are not exact):"
     for one in clusters.head(_MOST_CLUSTERS).itertuples():
-        yield _cluster_line(one, found.with_)
+        yield _cluster_line(one, found.with_, out)
     if len(clusters) > _MOST_CLUSTERS:
         yield f"  and {len(clusters) - _MOST_CLUSTERS} smaller: clusters.parquet has them all"
 
 
-def _cluster_line(row: Any, with_: str) -> str:
+def _cluster_line(row: Any, with_: str, out: str) -> str:
     lag = f"{row.lag_s:+.4g} s" if math.isfinite(row.lag_s) else f"{row.lag:+d} frames"
+    partial = getattr(row, "p_partial", math.nan)
+    lost = ": it does not survive" if partial >= 0.05 else ""
+    without = f"; without {out} p = {partial:.2g}{lost}" if math.isfinite(partial) else ""
     return (
         f"  sectors {row.sectors}, layers {row.layers}, lag {lag}: {_which_first(row.lag, with_)}, "
-        f"{row.correlation:+.2f} in {count(row.windows, 'window')}, p = {row.p:.2g}"
+        f"{row.correlation:+.2f} in {count(row.windows, 'window')}, p = {row.p:.2g}{without}"
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ import xarray as xr
 from cytodisk.analysis.correlation.cluster_fields import SIGNS, WindowRing
 from cytodisk.analysis.correlation.lag_tables import ALPHA, SECTOR
 from cytodisk.analysis.correlation.peaks import p_value
-from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.errors import ParameterError
 
 _SAME = 0.5  # share of its windows above which a cluster is a larger one's at another lag
@@ -85,18 +86,66 @@ def correlation_clusters(correlations: xr.Dataset) -> xr.Dataset:
     >>> clusters["lag"].to_numpy(), clusters["p"].to_numpy()
     (array([-3]), array([0.01]))
     """
-    _check(correlations)
-    shown = [dim for dim in ("layer", SECTOR) if dim in correlations["cluster_spread"].dims]
-    curves, worth = (_field(correlations[name], ("lag", *shown)) for name in ("correlation", "n_effective"))
-    spread = _field(correlations["cluster_spread"], shown)
-    numbers = np.asarray(correlations[SECTOR])
-    ring = WindowRing.of(numbers, correlations.attrs["edge_sectors"])
-    found = _told(_clusters(ring, ring.averaged_scores(curves, worth) / spread))
-    p = p_value(
-        np.array([cluster.mass for cluster in found]), correlations["cluster_null"].to_numpy()[:, None]
-    )
+    field = _Field.of(correlations)
+    found = _told(_clusters(field))
+    p = p_value(np.array([cluster.mass for cluster in found]), field.null)
     kept = [cluster for cluster, chance in zip(found, p, strict=True) if chance <= ALPHA]
-    return _table(kept, p[: len(kept)], curves, correlations, shown)
+    return _table(kept, p[: len(kept)], field, correlations)
+
+
+def p_of_regions(clusters: xr.Dataset, correlations: xr.Dataset) -> FloatArray:
+    """How significant other correlations are where clusters are, such as those with controls regressed out.
+
+    Parameters
+    ----------
+    clusters : Dataset
+        Of `correlation_clusters`.
+    correlations : Dataset
+        Of `cross_correlate` with clusters, of the same windows and lags.
+
+    Returns
+    -------
+    ndarray of shape (clusters,) and dtype float
+        p of the heaviest cluster of these correlations that has the same sign and lag as the cluster and
+        shares a window with it; 1 where there is none.
+    """
+    field = _Field.of(correlations)
+    others = _clusters(field)
+    masses = []
+    for number in range(clusters.sizes["cluster"]):
+        one = clusters.isel(cluster=number)
+        member = _layered(one["member"].transpose(*field.dims).to_numpy(), field.dims)
+        place = int(np.flatnonzero(field.lags == int(one["lag"]))[0])
+        alike = [other for other in others if (other.place, other.sign) == (place, int(one["sign"]))]
+        masses.append(max((other.mass for other in alike if (other.member & member).any()), default=0.0))
+    return p_value(np.array(masses), field.null)
+
+
+@dataclass(frozen=True, eq=False)
+class _Field:
+    """Averaged scores of correlations, by lag, layer and sector, and what clusters chance gives."""
+
+    scores: FloatArray
+    curves: FloatArray
+    lags: IntArray
+    null: FloatArray
+    ring: WindowRing
+    dims: tuple[str, ...]
+
+    @classmethod
+    def of(cls, correlations: xr.Dataset) -> _Field:
+        _check(correlations)
+        dims = tuple(dim for dim in ("layer", SECTOR) if dim in correlations["cluster_spread"].dims)
+        curves, worth = (
+            _layered(correlations[name].transpose("lag", *dims).to_numpy(), dims)
+            for name in ("correlation", "n_effective")
+        )
+        spread = _layered(correlations["cluster_spread"].transpose(*dims).to_numpy(), dims)
+        numbers = np.asarray(correlations[SECTOR])
+        ring = WindowRing.of(numbers, correlations.attrs["edge_sectors"])
+        scores = ring.averaged_scores(curves, worth) / spread
+        null = correlations["cluster_null"].to_numpy()[:, None]
+        return cls(scores, curves, correlations["lag"].to_numpy(), null, ring, dims)
 
 
 def _check(correlations: xr.Dataset) -> None:
@@ -112,17 +161,16 @@ def _check(correlations: xr.Dataset) -> None:
         )
 
 
-def _field(values: xr.DataArray, dims: list[str] | tuple[str, ...]) -> FloatArray:
-    """Values by layer, of which there may be one alone, and sector."""
-    table = values.transpose(*dims).to_numpy()
+def _layered(table: Any, dims: tuple[str, ...]) -> Any:
+    """A table by layer, of which there may be one alone, and sector."""
     return table if "layer" in dims else table[..., None, :]
 
 
-def _clusters(ring: WindowRing, scores: FloatArray) -> list[_Cluster]:
-    """All clusters of scores (K, L, S), the one of the largest mass first."""
+def _clusters(field: _Field) -> list[_Cluster]:
+    """All clusters, the one of the largest mass first."""
     found = []
     for sign in SIGNS:
-        labels, masses = ring.masses(scores, sign)
+        labels, masses = field.ring.masses(field.scores, sign)
         for number in np.flatnonzero(masses):
             chosen = labels == number
             place = int(np.flatnonzero(chosen.any(axis=(1, 2)))[0])
@@ -141,24 +189,23 @@ def _told(clusters: list[_Cluster]) -> list[_Cluster]:
     return kept
 
 
-def _table(
-    clusters: list[_Cluster], p: FloatArray, curves: FloatArray, correlations: xr.Dataset, shown: list[str]
-) -> xr.Dataset:
-    lags = correlations["lag"].to_numpy()
+def _table(clusters: list[_Cluster], p: FloatArray, field: _Field, correlations: xr.Dataset) -> xr.Dataset:
     places = np.array([cluster.place for cluster in clusters], dtype=np.int64)
-    members = np.array([cluster.member for cluster in clusters], dtype=bool).reshape(-1, *curves.shape[1:])
-    means = [curves[cluster.place][cluster.member].mean() for cluster in clusters]
+    members = np.array([cluster.member for cluster in clusters], dtype=bool).reshape(
+        -1, *field.curves.shape[1:]
+    )
+    means = [field.curves[cluster.place][cluster.member].mean() for cluster in clusters]
     data: dict[str, Any] = {
-        "lag": ("cluster", lags[places], {"units": "frame"}),
+        "lag": ("cluster", field.lags[places], {"units": "frame"}),
         "sign": ("cluster", np.array([cluster.sign for cluster in clusters], dtype=np.int64)),
         "correlation": ("cluster", np.array(means, dtype=np.float64), {"units": "1"}),
         "size": ("cluster", members.sum(axis=(1, 2)), {"units": "windows"}),
         "mass": ("cluster", np.array([cluster.mass for cluster in clusters]), {"units": "1"}),
         "p": ("cluster", p, {"units": "1"}),
-        "member": (("cluster", *shown), members if "layer" in shown else members[:, 0]),
+        "member": (("cluster", *field.dims), members if "layer" in field.dims else members[:, 0]),
     }
     if "lag_s" in correlations.coords:
         data["lag_s"] = ("cluster", correlations["lag_s"].to_numpy()[places], {"units": "s"})
-    coords: dict[str, Any] = {name: correlations[name] for name in shown if name in correlations.coords}
+    coords: dict[str, Any] = {name: correlations[name] for name in field.dims if name in correlations.coords}
     coords["cluster"] = np.arange(1, len(clusters) + 1)
     return xr.Dataset(data, coords, attrs=correlations.attrs)

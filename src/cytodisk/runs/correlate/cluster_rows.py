@@ -8,14 +8,17 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cytodisk.analysis.correlation.clusters import correlation_clusters
+from cytodisk.analysis.correlation.clusters import correlation_clusters, p_of_regions
 from cytodisk.arrays import IntArray
+from cytodisk.runs.correlate.partial_correlation import Partial
 
 _UNITS = {"lag": "frame", "lag_s": "s", "correlation": "1", "mass": "1", "p": "1"}
 _NAMES = ("cluster", "lag", "lag_s", "sign", "correlation", "windows", "mass", "p", "layers", "sectors")
 
 
-def with_clusters(tables: dict[str, pd.DataFrame], correlations: xr.Dataset) -> dict[str, pd.DataFrame]:
+def with_clusters(
+    tables: dict[str, pd.DataFrame], correlations: xr.Dataset, partial: Partial | None
+) -> dict[str, pd.DataFrame]:
     """Tables of a cell with that of its clusters, and the cluster of each window in the table of windows.
 
     Parameters
@@ -24,6 +27,8 @@ def with_clusters(tables: dict[str, pd.DataFrame], correlations: xr.Dataset) -> 
         Of `tables_of`.
     correlations : Dataset
         Of `cross_correlate`, with clusters or without.
+    partial : Partial, optional
+        The same without controls; None if nothing was to be regressed out.
 
     Returns
     -------
@@ -39,7 +44,14 @@ def with_clusters(tables: dict[str, pd.DataFrame], correlations: xr.Dataset) -> 
         numbers.to_series().reindex(pd.MultiIndex.from_frame(windows[["layer", "sector"]])).to_numpy()
     )
     windows.attrs = {"units": units | {"cluster": ""}}
-    return tables | {"windows": windows, "clusters": _table(clusters)}
+    table = _table(clusters)
+    if partial is not None:
+        without = partial.correlations
+        p = np.full(len(table), np.nan) if without is None else p_of_regions(clusters, without)
+        units = table.attrs["units"]
+        table = table.assign(p_partial=p)
+        table.attrs = {"units": units | {"p_partial": "1"}}
+    return tables | {"windows": windows, "clusters": table}
 
 
 def _number_of_each(clusters: xr.Dataset) -> xr.DataArray:

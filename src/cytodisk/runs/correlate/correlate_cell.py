@@ -86,7 +86,7 @@ class CellCorrelation:
             )
             jitter = _jitter(a, b, options) if with_ in VELOCITIES else 0.0
             partial, not_tested = self._partial(cell, activity, (a, b), phases) if asked else (None, "")
-        tables = with_clusters(tables_of(correlations, options, partial), correlations)
+        tables = with_clusters(tables_of(correlations, options, partial), correlations, partial)
         if options.pairs:
             tables["pairs"] = self._pairs(cell, activity, a, phases[-1])
         row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "jitter": jitter}
@@ -131,7 +131,7 @@ class CellCorrelation:
         if self.options.against == "edge" and len(of_b):
             of_b = of_b.isel(layer=0, drop=True)
         a, b = (series[0], of_a), (series[1], of_b)
-        partial = partial_correlation(a, b, self.max_lag, self.options, phases[2])
+        partial = partial_correlation(a, b, self.max_lag, self.options, phases[2], self._clusters(cell))
         return partial, found.not_tested or (partial.too_few if self.options.geometry else "")
 
     def _clusters(self, cell: int) -> dict[str, Any]:

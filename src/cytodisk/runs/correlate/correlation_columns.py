@@ -86,6 +86,12 @@ CORRELATION_TABLES: dict[str, Columns] = {
         _P._replace(meaning="share of surrogates with a cluster of at least this mass anywhere, at any lag"),
         Column("layers", pa.string(), "", "its layers, such as 0–2"),
         Column("sectors", pa.string(), "", "its sectors, such as 12–25; 50–5 goes on over the last"),
+        Column(
+            "p_partial",
+            pa.float64(),
+            "1",
+            "p of the cluster there, at its lag, with controls regressed out; 1 if there is none",
+        ),
     ),
     "layers": (
         CELL,

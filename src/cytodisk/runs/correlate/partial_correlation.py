@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -57,6 +59,7 @@ def partial_correlation(
     max_lag: int,
     options: CorrelateParameters,
     progress: Progress | None,
+    clusters: Mapping[str, Any],
 ) -> Partial:
     """Correlate two signals from which controls are taken out, window by window.
 
@@ -68,6 +71,8 @@ def partial_correlation(
     max_lag : int
     options : CorrelateParameters
     progress : callable, optional
+    clusters : dict
+        Parameters of `cross_correlate` about clusters.
 
     Returns
     -------
@@ -77,7 +82,7 @@ def partial_correlation(
     frames = min(float(series.count("time").median()) for series in (first, second))
     if frames < FEWEST_FRAMES:
         return Partial(None, frames)
-    how = dict(options.part(NullParameters)) | {"statistic": options.statistic}
+    how = dict(options.part(NullParameters)) | {"statistic": options.statistic} | dict(clusters)
     found = cross_correlate(first, second, max_lag, skip_lags=options.skip_lags, progress=progress, **how)
     return Partial(found, frames)
 

@@ -1,0 +1,1 @@
+"""Cases of the page "What can go wrong": each draws its picture and gives the words of a real run."""
