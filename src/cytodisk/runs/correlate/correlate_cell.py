@@ -28,6 +28,7 @@ from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.correlate.correlation_tables import as_table, tables_of
 from cytodisk.runs.correlate.event_tables import event_tables
 from cytodisk.runs.correlate.partial_correlation import Partial, partial_correlation
+from cytodisk.runs.correlate.stress_columns import stress_row
 from cytodisk.runs.run_options import Progress
 from cytodisk.store.study import Study
 from cytodisk.windows.polar_windows import polar_grid_of
@@ -98,6 +99,7 @@ class CellCorrelation:
         row["geometry_not_tested"] = not_tested
         row["restarts"] = self._restarts(cell, activity["frame"].to_numpy())
         row |= {f"drifting_{name}": correlations.attrs[f"drifting_{side}"] for name, side in _SIDES}
+        row |= stress_row(a, b, self.max_lag, options)
         row |= {"no_events_because": "", "event_threshold": np.nan, "event_noise": np.nan}
         if with_ in VELOCITIES:
             try:

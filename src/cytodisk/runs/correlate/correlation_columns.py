@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pyarrow as pa
 
+from cytodisk.runs.correlate.stress_columns import STRESS_COLUMNS
 from cytodisk.store.tables import CELL, LAYER, SECTOR, Column, Columns
 
 _LAG = Column("lag", pa.int64(), "frame", "lag in frames; positive: what stands after --with comes later")
@@ -202,6 +203,7 @@ CORRELATION_TABLES: dict[str, Columns] = {
         Column("restarts", pa.int64(), "", "number of frames in which tracking started anew"),
         Column("drifting_signal", pa.float64(), "1", "share of the signal's series that drift"),
         Column("drifting_with", pa.float64(), "1", "share of the other series that drift"),
+        *STRESS_COLUMNS,
         Column("no_events_because", pa.string(), "", "why there are no events; empty if there are"),
         Column("event_threshold", pa.float64(), "velocity", "smallest peak velocity of an event"),
         Column("event_noise", pa.float64(), "velocity", "standard deviation of the velocity's noise"),

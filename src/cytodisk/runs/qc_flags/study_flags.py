@@ -12,6 +12,7 @@ from cytodisk.runs.qc_flags import (
     input_flags,
     interior_flags,
     motion_flags,
+    stress_flags,
 )
 from cytodisk.runs.qc_flags.qc_flag import QCFlag, counted
 from cytodisk.store.study import Study
@@ -101,6 +102,7 @@ _RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     column_flags.nan_pixels,
     geometry_flags.geometry,
     correlation_flags.jitter,
+    *stress_flags.STRESS_RULES,
     correlation_flags.drifting_series,
     geometry_flags.geometry_not_tested,
     correlation_flags.left_out,

@@ -1,0 +1,128 @@
+"""QC flags of correlations whose p-values are too small: pulses, episodes, oscillations, heavy tails."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+
+from cytodisk.analysis.stress.stress_marks import (
+    COMMON_PULSE,
+    HEAVY_TAILS,
+    RESTLESS_EPISODE,
+    STEADY_OSCILLATION,
+    VARIANCE_CHANGE,
+)
+from cytodisk.runs.channel_names import correlation_name
+from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted
+from cytodisk.store.study import Study
+
+_TRUE_TOO = " A true signal can do this, too: the flag says that p is too small, not that nothing is there."
+
+
+@dataclass(frozen=True)
+class StressRule:
+    """A flag of correlations that have a stress mark.
+
+    Attributes
+    ----------
+    name, meaning : str
+        As of `QCFlag`.
+    what : str
+        With {count} where the number of correlations goes.
+    advice : callable
+        Of the row of the first place.
+    note : callable
+        What stands beside a place: (row).
+    ranks_help : bool
+        Whether a correlation of ranks needs no flag.
+    """
+
+    name: str
+    what: str
+    meaning: str
+    advice: Callable[[Any], str]
+    note: Callable[[Any], str]
+    ranks_help: bool = True
+
+    def __call__(self, study: Study) -> Iterator[QCFlag]:
+        found = [one for one in _rows(study) if self._raised(one[1])]
+        if found:
+            yield QCFlag(
+                self.name,
+                self.what.format(count=counted(len(found), "correlation")),
+                self.meaning + _TRUE_TOO,
+                self.advice(found[0][1]),
+                tuple(Place(int(row["cell"]), None, f"{names}: {self.note(row)}") for names, row in found),
+            )
+
+    def _raised(self, row: pd.Series[Any]) -> bool:
+        cured = self.ranks_help and row.get("statistic") == "spearman"
+        return self.name in str(row.get("stress") or "").split(", ") and not cured
+
+
+def _rows(study: Study) -> Iterator[tuple[str, pd.Series[Any]]]:
+    """Correlated cells of all correlations that looked for stress, with the names of what was correlated."""
+    for names in study.correlations:
+        cells = study.correlation(*names).cells
+        if "stress" in cells:
+            for _, row in cells[cells["status"] == "ok"].iterrows():
+                yield correlation_name(names), row
+
+
+common_pulse = StressRule(
+    COMMON_PULSE,
+    "three frames make much of {count}",
+    "Signal and edge leap in the same few frames, in many windows at once, as after a jolt, a change of "
+    "focus or one fast move: these frames outweigh all others.",
+    lambda row: (
+        f"See what cytodisk correlate … --without-frames {row['pulse_frames']} says, and "
+        "--statistic spearman."
+    ),
+    lambda row: f"frames {row['pulse_frames']} hold {row['pulse_share']:.0%} of the joint energy",
+)
+restless_episode = StressRule(
+    RESTLESS_EPISODE,
+    "both series vary most in one episode in {count}",
+    "While a cell is restless, edge and signal both vary more, whatever one has to do with the other: the "
+    "episode counts as a few observations, p counts all frames.",
+    lambda row: (
+        "See what cytodisk correlate … --statistic spearman says, and --frames with the calm part alone."
+    ),
+    lambda row: (
+        f"frames {row['episode_frames'].replace(':', '–')} vary {row['episode_ratio']:.1f} times as much"
+    ),
+)
+variance_change = StressRule(
+    VARIANCE_CHANGE,
+    "the variance of both series changes in the same direction in {count}",
+    "The part of the movie with the larger variance outweighs the rest, so there are fewer observations "
+    "than p counts.",
+    lambda row: "See what cytodisk correlate … --statistic spearman says.",
+    lambda row: f"variance of the second half {row['variance_ratio']:.2g} times that of the first",
+)
+steady_oscillation = StressRule(
+    STEADY_OSCILLATION,
+    "both series oscillate at one period in {count}",
+    "Two oscillators of one period correlate at some lag, whether or not they have to do with each other.",
+    lambda row: "It is only evidence if many cells have it at the same lag: compare the lags of cells.",
+    lambda row: f"{row['line_share']:.0%} of the variance at a period of {row['line_period']:.3g} frames",
+    ranks_help=False,
+)
+heavy_tails = StressRule(
+    HEAVY_TAILS,
+    "single values lie far out in {count}",
+    "A few extreme values in both series decide the correlation.",
+    lambda row: "See what cytodisk correlate … --statistic spearman says.",
+    lambda row: f"kurtosis {row['kurtosis']:.1f}, 3 of a normal distribution",
+)
+
+STRESS_RULES: tuple[StressRule, ...] = (
+    common_pulse,
+    restless_episode,
+    variance_change,
+    steady_oscillation,
+    heavy_tails,
+)
