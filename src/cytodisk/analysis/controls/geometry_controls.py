@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -14,13 +14,17 @@ from cytodisk.analysis.activity import Grid
 from cytodisk.analysis.controls.depth_profile import DepthProfile
 from cytodisk.analysis.controls.held_places import HeldPlaces
 from cytodisk.analysis.controls.lab_mean import LabMean
+from cytodisk.analysis.controls.slow_level import brightness, slow_level
 from cytodisk.analysis.signal_frames import parse_signals
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.checks import instance_of, whole_number
 from cytodisk.errors import ParameterError
 from cytodisk.motion.disk_movie import DiskMovie
 
 LAB, DEPTH_PROFILE = "lab", "depth_profile"
+
+Levels: TypeAlias = dict[int, FloatArray]
+"""Level of each frame by channel, shape (C, 1, 1)."""
 
 _LEAST_SHARE = 0.8  # of a window that must have a value in the lab
 
@@ -52,7 +56,7 @@ def geometry_controls(
     frames : sequence of int, optional
         Frames that are used, by their place in the movie; by default all that have a map.
     progress : callable, optional
-        Called with (steps done, in all); a frame has three steps.
+        Called with (steps done, in all); a frame has five steps.
 
     Returns
     -------
@@ -76,7 +80,11 @@ def geometry_controls(
 
     Notes
     -----
-    Images are read one at a time, each three times; what stays in memory is a sum over time of the part of
+    Both means fade with the movie: each frame counts divided by its level, a parabola in time through how
+    bright it is against the mean at the same places or depths, and the control is multiplied by it again.
+    Without that a still pattern that bleaches would not be explained by its mean.
+
+    Images are read one at a time, each five times; what stays in memory is a sum over time of the part of
     the image that the cell holds. The cell's own signal of neighbouring frames is left out of the lab mean,
     because with it the control would follow the signal.
 
@@ -99,7 +107,7 @@ def geometry_controls(
     used = [int(frame) for frame in wanted if 0 <= frame < len(movie) and movie.mapped[frame]]
     if not used:
         raise ParameterError(f"frames: none of {len(wanted)} has a map")
-    steps = _Steps(progress, 3 * len(used))
+    steps = _Steps(progress, 5 * len(used))
     places = HeldPlaces.of(steps.over((frame, movie[frame].mask) for frame in used))
     run = _Sampling(movie, grid, places, lambda frame: places.cut(known.image(frame)), len(known.channels))
     tables = run.tables(used, lag, steps)
@@ -143,26 +151,52 @@ class _Sampling:
         places, image = self.places, self.image
         shape = len(self.movie), self.channels, self.grid.layers, self.grid.sectors
         lab, depth = np.full((2, *shape), np.nan)
-        mean = LabMean(self.channels, places.shape)
-        profile = DepthProfile(self.channels, max(places.shape))
-        for frame in steps.over(used):
-            pixels, mask = image(frame), places.mask(frame)
-            mean.add(pixels, mask)
-            profile.add(pixels, mask)
+        in_lab, by_depth = self._levels(used, lag, steps)
+        mean, profile = self._sums(used, in_lab, by_depth, steps)
         there = set(used)
-        for frame in [number for number in used if number < used[0] + lag]:
-            mean.remove(image(frame), places.mask(frame))
+
+        def change(frame: int, how: Callable[[FloatArray, BoolArray], None]) -> None:
+            if frame in there:
+                how(image(frame) / in_lab[frame], places.mask(frame))
+
+        for frame in range(used[0], used[0] + lag):
+            change(frame, mean.remove)
         last = used[0] - 1
         for frame in steps.over(used):
             for step in range(last + 1, frame + 1):
-                for moved, change in ((step + lag, mean.remove), (step - lag - 1, mean.add)):
-                    if moved in there:
-                        change(image(moved), places.mask(moved))
+                change(step + lag, mean.remove)
+                change(step - lag - 1, mean.add)
             last = frame
             mask, weights = places.mask(frame), self.grid.on(self.movie[frame]).weights
-            lab[frame] = _in_windows(weights, mean.at(mask), _LEAST_SHARE).reshape(shape[1:])
-            depth[frame] = _in_windows(weights, profile.at(mask), 0.0).reshape(shape[1:])
+            held = mean.at(mask) * in_lab[frame][..., 0], profile.at(mask) * by_depth[frame][..., 0]
+            lab[frame] = _in_windows(weights, held[0], _LEAST_SHARE).reshape(shape[1:])
+            depth[frame] = _in_windows(weights, held[1], 0.0).reshape(shape[1:])
         return {LAB: lab, DEPTH_PROFILE: depth}
+
+    def _sums(
+        self, used: list[int], in_lab: Levels, by_depth: Levels, steps: _Steps
+    ) -> tuple[LabMean, DepthProfile]:
+        """Both sums over all frames, each frame divided by its level."""
+        mean = LabMean(self.channels, self.places.shape)
+        profile = DepthProfile(self.channels, max(self.places.shape))
+        for frame in steps.over(used):
+            pixels, mask = self.image(frame), self.places.mask(frame)
+            mean.add(pixels / in_lab[frame], mask)
+            profile.add(pixels / by_depth[frame], mask)
+        return mean, profile
+
+    def _levels(self, used: list[int], lag: int, steps: _Steps) -> tuple[Levels, Levels]:
+        """How bright each frame is against either mean, slow changes alone."""
+        even: Levels = dict.fromkeys(used, np.ones((self.channels, 1, 1)))
+        mean, profile = self._sums(used, even, even, steps)
+        ratios = np.empty((len(used), 2, self.channels))
+        for place, frame in enumerate(steps.over(used)):
+            mask = self.places.mask(frame)
+            pixels = self.image(frame)[:, mask]
+            ratios[place] = brightness(pixels, mean.at(mask)), brightness(pixels, profile.at(mask))
+        found = (slow_level(np.array(used), ratios[:, which], lag) for which in (0, 1))
+        in_lab, by_depth = (dict(zip(used, level[..., None, None], strict=True)) for level in found)
+        return in_lab, by_depth
 
 
 def _in_windows(weights: sparse.csr_array, pixels: FloatArray, least_share: float) -> FloatArray:
