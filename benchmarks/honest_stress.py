@@ -3,10 +3,9 @@
 import warnings
 from collections.abc import Iterator
 
-from cytodisk.analysis.stress.stress_marks import stress_marks
-
 from cytodisk.analysis.correlation.cross_correlation import cross_correlate
 from cytodisk.analysis.correlation.peaks import peak_correlation
+from cytodisk.analysis.stress.stress_marks import stress_marks
 from cytodisk.errors import StationarityWarning
 from cytodisk.simulate import independent_series
 from figure import Figure
