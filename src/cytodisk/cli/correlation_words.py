@@ -58,8 +58,7 @@ def say_replaced(console: "Console", before: dict[str, Any] | None, now: dict[st
 
 
 def _cautions(row: Any, settings: dict[str, Any]) -> Iterator[str]:
-    """What speaks against a cell's correlations."""
-    from cytodisk.analysis.correlation.prepared_series import DRIFTING_SHARE
+    """What speaks against a cell's correlations, beside the QC flags."""
     from cytodisk.runs.channel_names import VELOCITIES
 
     if row["status"] != "ok":
@@ -72,18 +71,6 @@ def _cautions(row: Any, settings: dict[str, Any]) -> Iterator[str]:
         )
     if settings["with"] in VELOCITIES and not math.isfinite(row["jitter"]):
         yield ": too few frames to see whether masks jitter, which correlates by itself at lags -1 and 0"
-    elif abs(row["jitter"]) > 0:
-        lags = "-2,-1,0,1" if settings["difference"] else "-1,0"
-        yield (
-            f": masks that jitter make {row['jitter']:+.2f} of the correlation at lag 0, and "
-            f"{-row['jitter']:+.2f} at lag -1, in some layer: see what --skip-lags={lags} says"
-        )
-    if max(row["drifting_signal"], row["drifting_with"]) > DRIFTING_SHARE:
-        yield (
-            f": the level drifts, as by bleaching, in {row['drifting_signal']:.0%} of the signal's series "
-            f"and {row['drifting_with']:.0%} of the others: see whether --detrend linear "
-            "or --difference says the same"
-        )
 
 
 def _say_power(console: "Console", cells: Any, windows: Any) -> None:

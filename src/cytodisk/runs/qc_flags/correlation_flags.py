@@ -20,12 +20,16 @@ def jitter(study: Study) -> Iterator[QCFlag]:
         if abs(row.jitter) > 0
     ]
     if places:
+        differences = any(
+            study.correlation(*names).settings.get("difference") for names in study.correlations
+        )
+        lags = "-2,-1,0,1" if differences else "-1,0"
         yield QCFlag(
             "jitter",
             f"masks that jitter show in {counted(len(places), 'correlation')} with velocity",
             "Noise of the outline moves edge and windows at once: it correlates by itself, at lags −1 and 0, "
             "with opposite signs.",
-            "Look at the other lags: cytodisk correlate … --skip-lags=-1,0.",
+            f"Look at the other lags: cytodisk correlate … --skip-lags={lags}.",
             tuple(places),
         )
 
