@@ -20,10 +20,8 @@ def jitter(study: Study) -> Iterator[QCFlag]:
         if abs(row.jitter) > 0
     ]
     if places:
-        differences = any(
-            study.correlation(*names).settings.get("difference") for names in study.correlations
-        )
-        lags = "-2,-1,0,1" if differences else "-1,0"
+        settings = [study.correlation(*names).settings for names in study.correlations]
+        lags = "-2,-1,0,1" if any(one.get("difference") for one in settings) else "-1,0"
         yield QCFlag(
             "jitter",
             f"masks that jitter show in {counted(len(places), 'correlation')} with velocity",
