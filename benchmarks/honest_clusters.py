@@ -53,7 +53,7 @@ def clustered(job: tuple[str, int, int]) -> FloatArray:
 
 def clusters(trials: Trials) -> Iterator[Figure]:
     """Coupled windows that are found together, and false clusters."""
-    seeds = trials.seeds(200, 10)
+    seeds = trials.seeds(100, 10)
     cases = [*(("coupled", frames) for frames in FRAMES), ("independent", JUDGED_FRAMES)]
     jobs = [(kind, frames, seed) for kind, frames in cases for seed in seeds]
     found = np.array(trials.run("clusters", clustered, jobs)).reshape(len(cases), len(seeds), 4)

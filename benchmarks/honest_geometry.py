@@ -24,12 +24,12 @@ from cytodisk.windows.polar_windows import polar_windows
 from figure import Figure
 from honest_trials import Trials, percent, quiet_study
 
-CASES: tuple[PassiveKind, ...] = ("still", "cortex", "ring", "uniform")
+CASES: tuple[PassiveKind, ...] = ("still", "cortex", "ring")
 JUDGED = ("still", "cortex")
 GRID = {"layers": 5, "sectors": 24}
 SMALL_CELL: dict[str, Any] = {"frames": 100, "radius_px": 22.0, "protrusion_px": 7.0, "signals": False}
 MAX_LAG = 10
-SURROGATES = 499
+SURROGATES = 199
 ALPHA = 0.05
 COUPLED_LAGS = (-4, 3, 0)
 COUPLED_LAYERS = 2
@@ -57,7 +57,9 @@ def passive_movie(seed: int) -> dict[str, Passive]:
     found = {}
     with quiet_study(masks, channels, **GRID) as study:
         for kind in CASES:
-            correlation = run_correlate(study, kind, max_lag=MAX_LAG, surrogates=SURROGATES, seed=seed)
+            correlation = run_correlate(
+                study, kind, max_lag=MAX_LAG, surrogates=SURROGATES, seed=seed, clusters=False
+            )
             layers = correlation.layers
             flags = [flag for flag in qc_flags(study) if flag.name.startswith("geometry")]
             here = {
@@ -99,7 +101,7 @@ def coupled_movie(job: tuple[int, int]) -> FloatArray:
     with quiet_study(
         truth.masks, {"edge": truth.signal.sel(channel="edge").to_numpy()}, layers=10, sectors=60
     ) as study:
-        windows = run_correlate(study, "edge", max_lag=20, surrogates=999, seed=seed).windows
+        windows = run_correlate(study, "edge", max_lag=20, surrogates=999, seed=seed, clusters=False).windows
     raw, partial = windows["q"] < ALPHA, windows["q_partial"] < ALPHA
     near = (windows["lag_partial"] + lag).abs() <= 1.0
     of_sector = windows["sector"].map(dict(enumerate(share)))
