@@ -7,38 +7,30 @@ import numpy as np
 
 from cytodisk.runs.correlate.run_correlate import run_correlate
 from cytodisk.runs.qc_flags.study_flags import qc_flags
-from cytodisk.simulate import movie
+from cytodisk.simulate import MOVIE_KINDS, movie
 from cytodisk.simulate.movie_kinds import MovieKind
 from figure import Figure
 from honest_trials import Trials, quiet_study
 
-# The others jitter, drop frames, or have protrusions as thin as a window. All but "fluctuating" move with a
-# period, so they are not correlated: a flag that says so is right.
+SMALLEST_PX2 = 10.0  # of the median window; files without a scale give areas in pixels
+NOT_CLEAN = ("still", "dropping")
+"""Kinds whose masks jitter, or are missing in some frames."""
 KINDS: tuple[MovieKind, ...] = (
-    "fluctuating",
-    "migrating",
-    "fluctuating",
-    "bulging",
-    "fluctuating",
-    "neutrophil",
-    "fluctuating",
-    "translating",
-    "ruffling",
-    "turning",
+    *(kind for kind in MOVIE_KINDS if kind not in NOT_CLEAN),
+    *("fluctuating",) * 6,
 )
+"""All but "fluctuating" move with a period or steadily, so they are not correlated: a flag would be right."""
 
 
 def flags_of_movie(job: tuple[MovieKind, int]) -> list[str]:
     """Flags of a study of a clean movie; of one whose edge fluctuates, after correlating, too."""
     kind, seed = job
-    truth = movie(kind, seed, frames=60)
+    truth = movie(kind, seed, frames=60 if kind == "fluctuating" else 40)
     assert truth.signal is not None
     channels = {name: truth.signal.sel(channel=name).to_numpy() for name in ("material", "edge")}
     with quiet_study(truth.masks, channels, layers=5, sectors=24) as study:
-        windows = study.windows
-        smallest = windows.loc[windows["channel"] == windows["channel"].iloc[0], "area"].min()
-        if smallest < 10.0:
-            return [f"window of {smallest:.1f} px"]
+        if study.windows["area"].median() < SMALLEST_PX2:
+            raise ValueError(f"windows of {kind}, seed {seed}, are smaller than {SMALLEST_PX2:g} px")
         if kind == "fluctuating":
             run_correlate(study, "edge", max_lag=12, surrogates=499, seed=seed)
         return [f"{flag.name} ({flag.what})" for flag in qc_flags(study)]
