@@ -20,8 +20,8 @@ from cytodisk.store.tables import (
     CONSISTENCY_COLUMNS,
     EDGE_COLUMNS,
     TRACK_COLUMNS,
-    WINDOW_COLUMNS,
 )
+from cytodisk.store.window_columns import WINDOW_COLUMNS, WINDOW_SIZE_COLUMNS
 from cytodisk.windows.polar_windows import polar_grid_of
 
 FRAMES, GAP = 8, 6
@@ -88,7 +88,7 @@ def test_tables_have_a_row_for_all_there_is(study: cd.Study) -> None:
 
 def test_columns_and_units_are_those_of_the_tables(study: cd.Study) -> None:
     wanted = {
-        "cells": (*CELL_COLUMNS, *TRACK_COLUMNS),
+        "cells": (*CELL_COLUMNS, *WINDOW_SIZE_COLUMNS, *TRACK_COLUMNS),
         "windows": WINDOW_COLUMNS,
         "edge": EDGE_COLUMNS,
         "consistency": CONSISTENCY_COLUMNS,

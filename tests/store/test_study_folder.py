@@ -11,7 +11,8 @@ from cytodisk.store.figures_folder import figure_path
 from cytodisk.store.provenance_file import differences, record_files
 from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_kind import StudyKind
-from cytodisk.store.tables import SOURCE_COLUMNS, WINDOW_COLUMNS
+from cytodisk.store.tables import SOURCE_COLUMNS
+from cytodisk.store.window_columns import WINDOW_COLUMNS
 
 KIND = StudyKind(
     "map", "cytodisk map", "", SOURCE_COLUMNS, {"windows": WINDOW_COLUMNS}, ("maps/cell_*.npz", "extra.csv")

@@ -24,7 +24,7 @@ def demo_command(
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.runs.correlate.correlate_study import correlate_study
-    from cytodisk.runs.demo_input import compare_with_truth, write_demo_input
+    from cytodisk.runs.demo_input import LAYERS, compare_with_truth, write_demo_input
     from cytodisk.runs.executor import Executor
     from cytodisk.runs.movie.movie_inputs import open_movie
     from cytodisk.runs.movie.movie_parameters import MovieParameters
@@ -37,8 +37,11 @@ def demo_command(
         console.print(
             f"A simulated cell in {len(truth.masks)} frames, with two signals, is in {masks.parent}."
         )
-        console.print(f"The same by hand: cytodisk movie {masks} --signal {signal} -o {out / 'mine'}\n")
-        inputs = open_movie(masks, signal, MovieParameters())
+        console.print(
+            f"The same by hand: cytodisk movie {masks} --signal {signal} -o {out / 'mine'} "
+            f"--layers {LAYERS}\n"
+        )
+        inputs = open_movie(masks, signal, MovieParameters(layers=LAYERS))
         say_movie(console, inputs)
         with progress_bar(quiet, "frames", again=_AGAIN) as progress:
             study = movie_study(
@@ -74,11 +77,12 @@ def _load_drawing() -> None:
 
 
 def _draw_movie(masks: Path, signal: Path, study: Path) -> None:
+    from cytodisk.runs.demo_input import LAYERS
     from cytodisk.runs.movie.movie_inputs import open_movie
     from cytodisk.runs.movie.movie_parameters import MovieParameters
     from cytodisk.store.study import open_study
 
-    draw_movie(True, open_study(study), open_movie(masks, signal, MovieParameters()), 1)
+    draw_movie(True, open_study(study), open_movie(masks, signal, MovieParameters(layers=LAYERS)), 1)
 
 
 def _draw_correlation(study: Path) -> None:

@@ -22,6 +22,7 @@ from cytodisk.simulate.moving_cells import SimulatedMovie, movie
 from cytodisk.store.study import Study
 
 FRAMES = 40
+LAYERS = 8  # of windows of 10 px at least
 _COUPLED = 0.5  # share of the edge along which the signal follows its velocity
 _MOSTLY = 0.95  # share of a sector that must be coupled, or not, for it to count
 

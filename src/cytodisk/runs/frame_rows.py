@@ -15,6 +15,7 @@ from cytodisk.geometry.outline_step import outline_step
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
 from cytodisk.windows.depths import DEPTHS
 from cytodisk.windows.polar_windows import CellWindows
+from cytodisk.windows.window_sizes import window_sizes
 
 _PERIMETER_SMOOTHING_PX = 1.0
 
@@ -144,6 +145,7 @@ def _cell_columns(windows: CellWindows, image: xr.DataArray | None) -> dict[str,
         "angle_distortion": distortion.angle,
         "angle_distortion_p95": distortion.angle_percentiles[95],
         "empty_windows": windows.n_empty,
+        **window_sizes(windows),
         "relaxation_start": disk.start,
         "steps": disk.steps,
         "converged": disk.converged,

@@ -55,7 +55,7 @@ QC_FLAGS = Column(
 )
 TOUCHES_BORDER = Column("touches_border", pa.bool_(), "", "whether the cell touches the border of the image")
 SECONDS = Column("seconds", pa.float64(), "s", "computing time of this row; it differs from run to run")
-_CENTROID_Y, _CENTROID_X = (
+CENTROID_Y, CENTROID_X = (
     Column(f"centroid_{axis}", pa.float64(), "px", f"{axis} of the centroid in the image") for axis in "yx"
 )
 
@@ -70,8 +70,8 @@ CELL_COLUMNS: Columns = (
     QC_FLAGS,
     Column("area", pa.float64(), "length²", "area of the cell"),
     Column("perimeter", pa.float64(), "length", "length of the cell's outline"),
-    _CENTROID_Y,
-    _CENTROID_X,
+    CENTROID_Y,
+    CENTROID_X,
     Column("area_px", pa.int64(), "px²", "area of the cleaned mask in pixels"),
     Column("components", pa.int64(), "", "number of separate pieces in the mask as it came"),
     Column("dropped_px", pa.int64(), "px²", "area of the pieces that cleaning dropped"),
@@ -240,48 +240,6 @@ CONSISTENCY_COLUMNS: Columns = (
         "mean distance that the centroids of the layer's windows move to the next frame",
     ),
     Column("completeness", pa.float64(), "1", "share of the layer's windows that hold pixels"),
-)
-
-WINDOW_COLUMNS: Columns = (
-    CELL,
-    FRAME,
-    TIME_S,
-    CHANNEL,
-    LAYER,
-    SECTOR,
-    Column("mean", pa.float64(), "a.u.", "mean of the signal in the window"),
-    Column("sd", pa.float64(), "a.u.", "standard deviation of the signal over the window's pixels"),
-    Column("min", pa.float64(), "a.u.", "smallest value of the signal in the window"),
-    Column("max", pa.float64(), "a.u.", "largest value of the signal in the window"),
-    Column(
-        "n_pixels",
-        pa.float64(),
-        "px²",
-        "number of pixels in the window, as the sum of their shares, so it need not be whole; times mean, it "
-        "is the window's total intensity",
-    ),
-    Column("n_nan", pa.float64(), "px²", "number of pixels in the window without a value, counted likewise"),
-    Column("area", pa.float64(), "length²", "area of the window in the cell"),
-    Column(
-        "depth",
-        pa.float64(),
-        "length",
-        "median distance of the window's subpixels to the cell's edge; the border of the image is no edge: "
-        "beside it, the distance to the nearest edge in the image",
-    ),
-    Column("depth_p5", pa.float64(), "length", "5th percentile of that distance"),
-    Column("depth_p95", pa.float64(), "length", "95th percentile of that distance"),
-    _CENTROID_Y,
-    _CENTROID_X,
-    Column(
-        "eccentricity", pa.float64(), "1", "form of the window in the cell: 0 is round, near 1 is a sliver"
-    ),
-    Column(
-        "status",
-        pa.string(),
-        "",
-        "ok; NaN in signal; no signal, if the run had no image; or deeper than the cell, for layers by depth",
-    ),
 )
 
 

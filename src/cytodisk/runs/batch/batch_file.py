@@ -22,11 +22,12 @@ from cytodisk.store.tables import (
     EDGE_COLUMNS,
     SOURCE_COLUMNS,
     TRACK_COLUMNS,
-    WINDOW_COLUMNS,
 )
+from cytodisk.store.window_columns import WINDOW_COLUMNS, WINDOW_SIZE_COLUMNS
 
 _SIZES = ("pixel_size_um", "frame_interval_s")
-_TABLES = (SOURCE_COLUMNS, TRACK_COLUMNS, WINDOW_COLUMNS, EDGE_COLUMNS, CONSISTENCY_COLUMNS)
+_CELLS = (*SOURCE_COLUMNS, *TRACK_COLUMNS, *WINDOW_SIZE_COLUMNS)
+_TABLES = (_CELLS, WINDOW_COLUMNS, EDGE_COLUMNS, CONSISTENCY_COLUMNS)
 _WHOLE = r"[+-]?(0|[1-9][0-9]*)"
 _NUMBER = _WHOLE + r"(\.[0-9]*)?([eE][+-]?[0-9]+)?"
 _TAKEN = {*KEYS, *OWN_COLUMNS, *(column.name for columns in _TABLES for column in columns)}

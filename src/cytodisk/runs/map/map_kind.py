@@ -2,13 +2,14 @@
 
 from cytodisk.store.study_folder import part_patterns
 from cytodisk.store.study_kind import StudyKind
-from cytodisk.store.tables import SOURCE_COLUMNS, WINDOW_COLUMNS
+from cytodisk.store.tables import SOURCE_COLUMNS
+from cytodisk.store.window_columns import WINDOW_COLUMNS, WINDOW_SIZE_COLUMNS
 
 MAP = StudyKind(
     "map",
     "cytodisk map",
     "read it with open_study",
-    SOURCE_COLUMNS,
+    (*SOURCE_COLUMNS, *WINDOW_SIZE_COLUMNS),
     {"windows": WINDOW_COLUMNS},
     tuple(
         pattern

@@ -7,14 +7,14 @@ from cytodisk.store.tables import (
     CONSISTENCY_COLUMNS,
     EDGE_COLUMNS,
     TRACK_COLUMNS,
-    WINDOW_COLUMNS,
 )
+from cytodisk.store.window_columns import WINDOW_COLUMNS, WINDOW_SIZE_COLUMNS
 
 MOVIE = StudyKind(
     "movie",
     "cytodisk movie",
     "read it with open_study",
-    (*CELL_COLUMNS, *TRACK_COLUMNS),
+    (*CELL_COLUMNS, *WINDOW_SIZE_COLUMNS, *TRACK_COLUMNS),
     {"windows": WINDOW_COLUMNS, "edge": EDGE_COLUMNS, "consistency": CONSISTENCY_COLUMNS},
     (ACTIVITY, *part_patterns("maps/cell_{}.npz", frames=True)),
 )

@@ -13,6 +13,7 @@ from cytodisk.runs.qc_flags import (
     interior_flags,
     motion_flags,
     stress_flags,
+    window_flags,
 )
 from cytodisk.runs.qc_flags.qc_flag import QCFlag, counted
 from cytodisk.store.study import Study
@@ -98,6 +99,7 @@ _RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     interior_flags.small_still_windows,
     column_flags.image_border,
     motion_flags.drift,
+    window_flags.small_windows,
     interior_flags.distortion,
     column_flags.nan_pixels,
     geometry_flags.geometry,

@@ -1,0 +1,47 @@
+"""How large the windows in a cell are, in pixels."""
+
+import numpy as np
+
+from cytodisk.arrays import IntArray
+from cytodisk.windows.polar_windows import CellWindows
+
+FEW_PX = 10.0
+"""Pixels of a window from which on its mean is worth something by itself."""
+
+
+def window_sizes(windows: CellWindows) -> dict[str, float | int]:
+    """Sizes of a cell's windows; layers deeper than the cell do not count.
+
+    Parameters
+    ----------
+    windows : CellWindows
+
+    Returns
+    -------
+    dict
+        median_window_px and smallest_window_px, areas in square pixels; windows_below_10px and
+        windows_below_1px, shares of the windows; windows_between_pixels, the number of windows that hold the
+        centre of no pixel.
+    """
+    areas = windows.areas[windows.grid.present]
+    return {
+        "median_window_px": float(np.median(areas)),
+        "smallest_window_px": float(areas.min()),
+        "windows_below_10px": float((areas < FEW_PX).mean()),
+        "windows_below_1px": float((areas < 1.0).mean()),
+        "windows_between_pixels": len(between_pixels(windows)),
+    }
+
+
+def between_pixels(windows: CellWindows) -> IntArray:
+    """Numbers of the windows that hold the centre of no pixel."""
+    weights, grid = windows.weights, windows.grid
+    window = np.repeat(np.arange(weights.shape[0]), np.diff(weights.indptr))
+    known = np.zeros(weights.shape[0], dtype=bool)
+    known[window[weights.data > 1.0 - 1e-9]] = True  # the whole pixel
+    open_ = np.flatnonzero(~known & np.repeat(grid.present, grid.sectors))
+    if not open_.size:
+        return open_
+    shared = np.unique(weights[open_].indices)
+    centres = np.argwhere(windows.mask)[shared].astype(np.float64)
+    return np.setdiff1d(open_, grid.window_of(windows.disk.to_disk(centres, outside="nearest")))

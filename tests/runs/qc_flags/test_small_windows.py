@@ -1,0 +1,93 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tifffile
+
+import cytodisk as cd
+from cytodisk.runs.qc_flags.finest_grid import finest_grid
+from cytodisk.runs.qc_flags.qc_flag import QCFlag
+from cytodisk.windows.window_sizes import between_pixels, window_sizes
+
+
+def flags_of(masks: np.ndarray, folder: Path, movie: bool = True, **settings: object) -> dict[str, QCFlag]:
+    tifffile.imwrite(
+        folder / "masks.tif",
+        masks.astype("uint8"),
+        metadata={"axes": "TYX" if movie else "YX"},
+        photometric="minisblack",
+    )
+    run = cd.run_movie if movie else cd.run_map
+    study = run(folder / "masks.tif", folder / "out", **settings)
+    return {flag.name: flag for flag in cd.qc_flags(study)}
+
+
+def disks(radius: float, frames: int = 3) -> np.ndarray:
+    return np.stack([np.pad(cd.simulate.disk(radius), 3)] * frames)
+
+
+def grid_in(words: str) -> dict[str, int]:
+    """Numbers behind the flags in an advice."""
+    parts = words.split("…")[1].rstrip(".").split(";")[0].split()
+    return {name.removeprefix("--"): int(value) for name, value in zip(parts[::2], parts[1::2], strict=True)}
+
+
+@pytest.mark.parametrize("movie", [True, False])
+def test_small_windows_are_flagged_with_a_grid_that_is_not(tmp_path: Path, movie: bool) -> None:
+    masks = disks(20.0) if movie else disks(20.0)[0]
+    flag = flags_of(masks, tmp_path, movie, layers=10, sectors=30)["small windows"]
+    assert f"in {3 if movie else 1} {'frames' if movie else 'cell'}" in flag.what
+    assert "median down to 4.2 px" in flag.what
+    assert f"cytodisk {'movie' if movie else 'map'} …" in flag.advice
+    wanted = grid_in(flag.advice)
+    assert 1257 / 13 < wanted["layers"] * wanted["sectors"] < 1257 / 10
+    (tmp_path / "again").mkdir()
+    assert "small windows" not in flags_of(masks, tmp_path / "again", movie, **wanted)
+
+
+def test_windows_of_ten_pixels_are_not_flagged(tmp_path: Path) -> None:
+    assert "small windows" not in flags_of(disks(20.0), tmp_path, layers=4, sectors=30)
+
+
+def test_layers_by_depth_keep_their_number_in_the_advice(tmp_path: Path) -> None:
+    settings = {"depth_um": (1.0, 3.0), "pixel_size_um": 1.0}
+    flag = flags_of(disks(20.0), tmp_path, sectors=90, **settings)["small windows"]
+    (tmp_path / "again").mkdir()
+    wanted = grid_in(flag.advice)
+    assert list(wanted) == ["sectors"]
+    assert "small windows" not in flags_of(disks(20.0), tmp_path / "again", **wanted, **settings)
+
+
+def test_a_window_below_a_pixel_is_flagged_where_the_median_is_large(tmp_path: Path) -> None:
+    masks = np.stack([np.pad(cd.simulate.star(arms=5, body_radius=14, arm_length=40, arm_width=2), 3)] * 2)
+    found = flags_of(masks, tmp_path, layers=3, sectors=20)
+    cells = cd.open_study(tmp_path / "out").cells
+    assert (cells["median_window_px"] > 10).all()
+    assert ("small windows" in found) == bool((cells["smallest_window_px"] < 1).any())
+
+
+def test_sizes_are_those_of_the_windows() -> None:
+    windows = cd.polar_windows(6, 40).on(cd.map_to_disk(np.pad(cd.simulate.migrating(seed=3, size=0.3), 2)))
+    found = window_sizes(windows)
+    areas = windows.areas
+    assert found["median_window_px"] == pytest.approx(np.median(areas))
+    assert found["smallest_window_px"] == pytest.approx(areas.min())
+    assert found["windows_below_10px"] == pytest.approx((areas < 10).mean())
+    assert found["windows_below_1px"] == pytest.approx((areas < 1).mean())
+
+
+@pytest.mark.parametrize(("layers", "sectors"), [(4, 12), (30, 80)])
+def test_windows_between_pixels_hold_the_centre_of_none(layers: int, sectors: int) -> None:
+    windows = cd.polar_windows(layers, sectors).on(cd.map_to_disk(np.pad(cd.simulate.disk(12), 2)))
+    centres = np.argwhere(windows.mask).astype(float)
+    held = windows.grid.window_of(windows.disk.to_disk(centres, outside="nearest"))
+    expected = np.setdiff1d(np.arange(layers * sectors), held)
+    np.testing.assert_array_equal(between_pixels(windows), expected)
+    assert bool(expected.size) == (layers == 30)
+
+
+def test_the_finest_grid_of_even_windows() -> None:
+    even = [np.full((6, 40), 5.0)]  # 1200 px
+    layers, sectors = finest_grid(even, 10.0, 1.0) or (0, 0)
+    assert 0.8 * 1200 / 11 <= layers * sectors <= 1200 / 11
+    assert finest_grid([np.full((2, 2), 1.0)], 10.0, 1.0) is None
