@@ -107,12 +107,13 @@ def _cluster_words(found: "Correlation", cell: Any, out: str) -> Iterator[str]:
 
 
 def _cluster_line(row: Any, with_: str, out: str) -> str:
-    lag = f"{row.lag_s:+.4g} s" if math.isfinite(row.lag_s) else f"{row.lag:+d} frames"
+    from cytodisk.runs.correlate.cluster_words import cluster_place
+
     partial = getattr(row, "p_partial", math.nan)
     lost = ": it does not survive" if partial >= 0.05 else ""
     without = f"; without {out} p = {partial:.2g}{lost}" if math.isfinite(partial) else ""
     return (
-        f"  sectors {row.sectors}, layers {row.layers}, lag {lag}: {_which_first(row.lag, with_)}, "
+        f"  {cluster_place(row)}: {_which_first(row.lag, with_)}, "
         f"{row.correlation:+.2f} in {count(row.windows, 'window')}, p = {row.p:.2g}{without}"
     )
 

@@ -24,6 +24,7 @@ from cytodisk.plot.layer_looks import shown_layers
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM, colour_bar
 from cytodisk.plot.time_axis import time_stamp
 from cytodisk.plot.time_raster import bar_beside, cut_off
+from cytodisk.runs.correlate.cluster_words import cluster_place
 
 _CURVE, _CURVE_GAP, _CURVE_LEFT = 17.0, 5.5, 14.0  # mm
 _PANEL, _PANEL_GAP, _TALLEST = 29.5, 4.0, 1.45  # mm, mm, height over width
@@ -34,6 +35,7 @@ _KEY, _KEY_POINTS = 10.0, 31.0  # height of the key above the average in mm, and
 _KEY_LEFT = -0.05  # of the axes of the average: its key is wider than they are
 _KEY_STYLE: Any = {"borderaxespad": 0.0, "handlelength": 1.6, "columnspacing": 1.2, "labelspacing": 0.3}
 _LINE = 3.6  # mm
+_MOST_CLUSTERS = 3  # that are told below the peaks
 
 
 def curves_page(one: DrawnCorrelation) -> Sheet | None:
@@ -105,7 +107,8 @@ def peaks_page(one: DrawnCorrelation) -> Sheet | None:
     key = peak_key(peaks)
     row = height + 9.0
     key_rows = -(-len(key) // 2)  # legends fill columns first: two of them
-    sheet = Sheet(head + 2 * row + 7.5 + 4.0 * key_rows, SINGLE_COLUMN_MM)
+    notes = _cluster_notes(one)
+    sheet = Sheet(head + 2 * row + 7.5 + 4.0 * key_rows + _LINE * len(notes), SINGLE_COLUMN_MM)
     heading.write(sheet)
     lefts = (LEFT_MM, LEFT_MM + _PANEL + _PANEL_GAP)
     stamp = f"on the cell, {time_stamp(time, movie.scale)}"
@@ -122,7 +125,15 @@ def peaks_page(one: DrawnCorrelation) -> Sheet | None:
     sheet.text(LEFT_MM, foot + 2.0, "lag: " + sides(*one.first_names, upright=True))
     if key:
         sheet.key(LEFT_MM, foot + 3.5, key, 2, **_KEY_STYLE)
+    for number, words in enumerate(notes):
+        sheet.text(LEFT_MM, foot + 6.0 + 4.0 * key_rows + _LINE * number, words, color="0.3")
     return sheet
+
+
+def _cluster_notes(one: DrawnCorrelation) -> list[str]:
+    """The largest clusters with their places."""
+    rows = one.rows(one.correlation.clusters).head(_MOST_CLUSTERS).itertuples()
+    return [f"cluster {row.cluster}: {cluster_place(row)}, p = {row.p:.2g}".replace("-", "−") for row in rows]
 
 
 def pairs_page(one: DrawnCorrelation) -> Sheet | None:

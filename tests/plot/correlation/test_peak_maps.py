@@ -12,6 +12,7 @@ from matplotlib.patches import PathPatch
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError, WindowError
 from cytodisk.plot.correlation.peak_maps import (
+    CLUSTER_NAME,
     OUTLINE_NAME,
     PALE_NAME,
     PeakMap,
@@ -68,6 +69,23 @@ def test_windows_have_the_colours_of_their_peaks(ax: Axes, draw: Draw) -> None:
     assert lags.get_clim() == (-15.0, 15.0)
     assert lags.get_cmap().name != drawn.get_cmap().name
     assert draw(ax, peaks, limit=1.0).get_clim() == (-1.0, 1.0)
+
+
+def test_clusters_have_a_bold_outline_and_their_number(ax: Axes, draw: Draw) -> None:
+    number = np.where(np.arange(24) % 8 >= 6, 1, np.where(np.arange(24) == 3, 2, 0))
+    number[[0, 8]] = 1  # over the last sector
+    peaks = PeakMap.of(table(cluster=number), GRID, cell=3)
+    draw(ax, peaks)
+    outlined = patch(ax, CLUSTER_NAME)
+    assert len(outlined) == 2
+    assert all(len(one.get_path().to_polygons()) == 1 for one in outlined)
+    texts = [text for text in ax.texts if text.get_gid() == CLUSTER_NAME]
+    assert [text.get_text() for text in texts] == ["1", "2"]
+    for line, text in zip(outlined, texts, strict=True):
+        assert line.get_path().contains_point(text.get_position())
+    assert any("cluster" in str(handle.get_label()) for handle in peak_key(peaks))
+    plain = PeakMap.of(table(), GRID, cell=3)
+    assert not any("cluster" in str(handle.get_label()) for handle in peak_key(plain))
 
 
 def test_windows_that_are_not_significant_are_pale_and_hatched(ax: Axes, draw: Draw) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.colors import Colormap
 
-from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.checks import one_of, positive_number
 from cytodisk.errors import ParameterError
 from cytodisk.plot.correlation.lag_axis import LagUnit, rows_of_cell
@@ -37,6 +37,8 @@ class PeakMap:
         Where q is below `alpha`; None when it was not tested.
     lag_unit : LagUnit
     alpha : float
+    cluster : ndarray of shape (layers, sectors) and dtype int, or None
+        Number of each window's cluster, 0 for none; None when there are no clusters in the table.
 
     Examples
     --------
@@ -53,6 +55,7 @@ class PeakMap:
     significant: BoolArray | None
     lag_unit: LagUnit
     alpha: float
+    cluster: IntArray | None = None
 
     @classmethod
     def of(cls, windows: pd.DataFrame, grid: PolarGrid, *, cell: int = 0, alpha: float = 0.05) -> PeakMap:
@@ -61,8 +64,8 @@ class PeakMap:
         Parameters
         ----------
         windows : DataFrame
-            `windows` of a study's correlation: cell, layer, sector, correlation, lag; lag_s and q where they
-            are known.
+            `windows` of a study's correlation: cell, layer, sector, correlation, lag; lag_s, q and cluster
+            where they are known.
         grid : PolarGrid
         cell : int
         alpha : float
@@ -90,7 +93,11 @@ class PeakMap:
                 tables[name][layer, sector] = rows[name].to_numpy(dtype=np.float64)
         tested = bool(np.isfinite(tables["q"]).any())
         significant = tables["q"] < alpha if tested else None
-        return cls(tables["correlation"], tables[unit.column], significant, unit, alpha)
+        cluster = None
+        if "cluster" in rows:
+            cluster = np.zeros((grid.layers, grid.sectors), dtype=np.int64)
+            cluster[layer, sector] = rows["cluster"].to_numpy(dtype=np.int64)
+        return cls(tables["correlation"], tables[unit.column], significant, unit, alpha, cluster)
 
     @property
     def pale(self) -> BoolArray:

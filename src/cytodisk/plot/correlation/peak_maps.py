@@ -1,7 +1,7 @@
 """Draw the peak of each window's correlation, and its lag, on the disk and on the cell.
 
-Windows that chance could explain are pale and hatched, regions of others have an outline; windows
-without a correlation are grey.
+Windows that chance could explain are pale and hatched, regions of others have an outline, clusters a bold
+one; windows without a correlation are grey.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
 from shapely import Polygon, get_parts, unary_union
 
 from cytodisk.arrays import FloatArray
@@ -26,10 +27,13 @@ from cytodisk.scale import Scale
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
 PALE_NAME, OUTLINE_NAME, SECTOR_NAME = "not significant", "significant", "sector"
+CLUSTER_NAME = "cluster"
 
 _PALE = 0.4  # how far windows that are not significant let the page's white through
 _HATCH, _HATCH_COLOUR = "/////", "0.5"
 _NUMBER_AWAY, _NUMBER_SIZE = 7.0, 6.0  # points: of a sector's number from the edge, and its height
+_BOLD = 1.2  # points
+_ROUNDING = 1e-10  # of the disk or of pixels: the last sector ends where the first begins
 _MOST_VECTOR = 3000  # windows; more become pixels inside vector files
 
 
@@ -57,7 +61,8 @@ def draw_peaks_on_disk(
     PolyCollection
         One polygon a window, by window number, for a colour bar. Windows that are not significant are
         translucent, and covered by a hatch with the gid "not significant"; the outline of the others has
-        the gid "significant". Four sectors have their numbers.
+        the gid "significant", that of each cluster, with its number, "cluster". Four sectors have their
+        numbers.
 
     Raises
     ------
@@ -85,6 +90,7 @@ def draw_peaks_on_disk(
     values, colours, limits = peaks.picture(shown, limit)
     drawn = draw_disk_means(ax, grid, values, cmap=colours, limits=limits, number_sectors=True)
     _fade(ax, disk_polygons(grid), peaks, drawn)
+    _outline_clusters(ax, disk_polygons(grid), peaks)
     return drawn
 
 
@@ -147,6 +153,7 @@ def draw_peaks_on_cell(
     values, colours, limits = peaks.picture(shown, limit)
     drawn = draw_window_means(ax, windows, values, cmap=colours, limits=limits, scale=scale)
     _fade(ax, window_polygons(windows), peaks, drawn)
+    _outline_clusters(ax, window_polygons(windows), peaks)
     _number_sectors(ax, windows)
     return drawn
 
@@ -184,6 +191,9 @@ def peak_key(peaks: PeakMap) -> list[Any]:
         handles.append(Patch(label=words, hatch=_HATCH, **frame | {"edgecolor": _HATCH_COLOUR}))
         if pale < known:
             handles.append(Patch(label=f"q < {peaks.alpha:g}", **frame | {"edgecolor": LINE_COLOUR}))
+    if peaks.cluster is not None and peaks.cluster.any():
+        bold: Any = {"facecolor": "none", "edgecolor": "black", "linewidth": _BOLD}
+        handles.append(Patch(label="cluster, p ≤ 0.05", **bold))
     if known < peaks.correlation.size:
         handles.append(Patch(facecolor=MISSING_COLOUR, linewidth=0, label="none, or not used"))
     return handles
@@ -206,6 +216,22 @@ def _fade(ax: Axes, polygons_xy: Sequence[FloatArray], peaks: PeakMap, drawn: Po
     if others:
         framed: Any = {"fill": False, "edgecolor": LINE_COLOUR, "linewidth": 0.6, "zorder": 2.5}
         ax.add_artist(PathPatch(_region(others), gid=OUTLINE_NAME, **framed))
+
+
+def _outline_clusters(ax: Axes, polygons_xy: Sequence[FloatArray], peaks: PeakMap) -> None:
+    """A bold line with a white rim around each cluster, and its number in its largest piece."""
+    if peaks.cluster is None:
+        return
+    rim = withStroke(linewidth=2.2 * _BOLD, foreground="white")
+    style: Any = {"fill": False, "edgecolor": "black", "linewidth": _BOLD, "gid": CLUSTER_NAME}
+    for number in np.unique(peaks.cluster[peaks.cluster > 0]).tolist():
+        members = np.flatnonzero(peaks.cluster.ravel() == number).tolist()
+        covered = [polygons_xy[member] for member in members]
+        ax.add_artist(PathPatch(_region(covered), zorder=2.7, path_effects=[rim], **style))
+        largest = max(_pieces(covered), key=lambda piece: piece.area)
+        place = largest.representative_point()
+        words: Any = {"fontsize": _NUMBER_SIZE + 1.0, "fontweight": "bold", "ha": "center", "va": "center"}
+        ax.text(place.x, place.y, str(number), zorder=2.8, gid=CLUSTER_NAME, path_effects=[rim], **words)
 
 
 def _number_sectors(ax: Axes, windows: CellWindows) -> None:
@@ -233,7 +259,16 @@ def _number_sectors(ax: Axes, windows: CellWindows) -> None:
 
 def _region(polygons_xy: Sequence[FloatArray]) -> Path:
     """What windows cover together, with a line around neighbours and none between them."""
-    region = unary_union([Polygon(polygon).buffer(0) for polygon in polygons_xy])
-    parts = [part for part in get_parts(region) if isinstance(part, Polygon)]
-    rings = [ring for part in parts for ring in (part.exterior, *part.interiors) if not ring.is_empty]
+    rings = [
+        ring
+        for part in _pieces(polygons_xy)
+        for ring in (part.exterior, *part.interiors)
+        if not ring.is_empty
+    ]
     return Path.make_compound_path(*(Path(np.asarray(ring.coords), closed=True) for ring in rings))
+
+
+def _pieces(polygons_xy: Sequence[FloatArray]) -> list[Polygon]:
+    """The pieces of what windows cover together."""
+    region = unary_union([Polygon(polygon).buffer(0) for polygon in polygons_xy], grid_size=_ROUNDING)
+    return [part for part in get_parts(region) if isinstance(part, Polygon)]

@@ -1,0 +1,27 @@
+"""A cluster of windows in words."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+
+def cluster_place(row: Any) -> str:
+    """Where a cluster lies, and its lag.
+
+    Parameters
+    ----------
+    row : object
+        A row of the table of clusters, as of `itertuples`.
+
+    Returns
+    -------
+    str
+        As "sectors 12–25, layers 0–2, lag -20 s".
+    """
+    lag = f"{row.lag_s:+.4g} s" if math.isfinite(row.lag_s) else f"{row.lag:+d} frames"
+    return f"{_named('sector', row.sectors)}, {_named('layer', row.layers)}, lag {lag}"
+
+
+def _named(name: str, numbers: str) -> str:
+    return f"{name} {numbers}" if numbers.isdecimal() else f"{name}s {numbers}"
