@@ -39,6 +39,16 @@ def test_jitter_is_told_from_velocities_that_last(share: float, size: float) -> 
     assert found.mean() == pytest.approx(root_mean_square(error), rel=0.15)
 
 
+@pytest.mark.parametrize("width", [1.5, 3.0])
+@pytest.mark.parametrize("size", [0.1, 0.5])
+def test_jitter_is_told_from_an_edge_that_goes_out_and_comes_back(width: float, size: float) -> None:
+    random = np.random.default_rng(1008)
+    velocity = np.diff(gaussian_filter1d(random.normal(size=(61, 60)), width / np.sqrt(2.0), axis=0), axis=0)
+    error = size * jitter(60, 60, random)
+    found = velocity_error(0.8 * velocity / velocity.std() + error, np.full((60, 60), 120.0))
+    assert found.mean() == pytest.approx(root_mean_square(error), rel=0.25)
+
+
 def test_velocities_that_last_are_no_error() -> None:
     random = np.random.default_rng(1002)
     velocity = gaussian_filter1d(random.normal(size=(60, 40)), 4.0, axis=0)

@@ -24,7 +24,7 @@ class EdgeMotion:
         Area that the sector's edge sweeps over its length; NaN where the sector has no boundary off the
         image's border.
     fastest_px : ndarray of shape (S,) and dtype float
-        The same of the sector's fastest few pixels of edge.
+        The same of the sector's fastest half pixel of edge.
     protruded_px2, retracted_px2 : ndarray of shape (S,) and dtype float
         Area that the cell won and lost, in square pixels; both at least 0.
     length_px : ndarray of shape (S,) and dtype float

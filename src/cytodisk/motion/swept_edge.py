@@ -20,9 +20,7 @@ FRAMES: tuple[Frame, ...] = ("lab", "cell")
 
 _PIECE_PX = 0.5  # length of a piece in the first frame
 _LANDED_PX = 0.7  # where a piece comes to lie longer than this in the second frame, it is divided
-_FASTEST_PX = (
-    1.5  # length of edge over which the fastest motion is averaged, beside the smoothing of the contour
-)
+_FASTEST_PX = 0.5  # length of edge over which the fastest motion is averaged; contours are smooth over 4 px
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +53,7 @@ class SweptEdge:
     def by_sector(self, sectors: int) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Swept area, length and displacement of the fastest stretch of each sector, off the border.
 
-        A piece that lies in several sectors is shared out by its angle. A stretch is 1.5 px of edge
+        A piece that lies in several sectors is shared out by its angle. A stretch is half a pixel of edge
         around a piece of the sector, and may reach over the sector's ends.
 
         Parameters

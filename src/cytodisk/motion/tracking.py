@@ -148,7 +148,7 @@ def follow(
     """
     here = last.transform.of(last.contour)
     smoothness = settings.smoothness_px2
-    rough = first_transform(contour, here, last.transform.angle) if settings.registration else IDENTITY
+    rough = _rough_transform(contour, here, last) if settings.registration else IDENTITY
     grid = even_grid(here)
     guess_on_grid = first_guess(here, rough.of(contour), grid, smoothness)
     guess = carry(last.s, grid, guess_on_grid, here.length, contour.length)
@@ -170,6 +170,15 @@ def follow(
         last, alignment = replace(last, alignment=IDENTITY), IDENTITY
         guess_on_grid = first_guess(last.contour, contour, grid, smoothness)
     return _follow_matching(frame, contour, last, transform, alignment, guess_on_grid, settings)
+
+
+def _rough_transform(contour: Contour, here: Contour, last: TrackedBoundary) -> RigidTransform:
+    """Either the centroid stays where it was, or the cell: what makes the outlines overlap more.
+
+    A thin cell that draws in an arm has its centroid elsewhere, and is where it was.
+    """
+    moved, stayed = first_transform(contour, here, last.transform.angle), last.transform
+    return max(moved, stayed, key=lambda transform: _overlap(here, transform.of(contour)))
 
 
 def _follow_matching(

@@ -130,7 +130,7 @@ def edge_changes(
     Returns
     -------
     Dataset with dims (time, sector)
-        velocity, velocity_fastest (of the sector's fastest few pixels of edge), velocity_error (standard
+        velocity, velocity_fastest (of the sector's fastest half pixel of edge), velocity_error (standard
         deviation), protruded_area, retracted_area, edge_length (mean of both frames'); their units are in
         the attrs of each.
 

@@ -41,8 +41,9 @@ def velocity_error(displacement_px: FloatArray, length_px: FloatArray) -> FloatA
     -----
     With outline errors e that are independent from frame to frame, the displacement is v + e(t + 1) − e(t).
     Its first differences have the autocovariance 6, −4, 1, 0, … times var(e), plus that of the differences of
-    v. The latter is fitted, with weights of at least 0, by those of processes that decay with a correlation
-    of at least 0.5 from step to step, exponentially or as a Gaussian. With fewer than 15 steps they cannot be
+    v. The latter is fitted, with weights of at least 0, by those of processes that last: their correlation
+    decays exponentially, to no less than half in a step, or as a Gaussian, or they are velocities of an edge
+    whose position is such a Gaussian process, so that it comes back. With fewer than 15 steps they cannot be
     told apart: all change of velocity from one step to the next is counted as error, an upper bound.
 
     Errors of neighbouring sectors may be alike or not, so that the error falls with the sector's length or
@@ -115,8 +116,13 @@ def _autocovariances() -> FloatArray:
     lags = np.arange(_LAGS + 2, dtype=np.float64)
     jitter = np.where(lags == 0, 2.0, np.where(lags == 1, -1.0, 0.0))
     exponential = [share**lags for share in (0.5, 0.7, 0.9)]
-    gaussian = [np.exp(-0.5 * (lags / width) ** 2) for width in (2.0, 4.0, 8.0, 16.0)]
-    return np.column_stack([_differenced(each) for each in (jitter, *exponential, *gaussian)])
+    gaussian = [np.exp(-0.5 * (lags / width) ** 2) for width in (1.5, 2.0, 3.0, 5.0, 8.0, 16.0)]
+    returning = [
+        (1.0 - (lags / width) ** 2) * np.exp(-0.5 * (lags / width) ** 2)
+        for width in (1.5, 2.0, 3.0, 4.0, 6.0, 10.0)
+    ]
+    every = (jitter, *exponential, *gaussian, *returning)
+    return np.column_stack([_differenced(each) for each in every])
 
 
 _AUTOCOVARIANCES = _autocovariances()

@@ -198,8 +198,8 @@ EDGE_COLUMNS: Columns = (
         "velocity_fastest",
         pa.float64(),
         "velocity",
-        "velocity of the fastest 1.5 px of edge in this sector, out or in: a thin protrusion shows here also "
-        "where the sector is longer; as the extreme of many values it is never near 0",
+        "velocity of the fastest half pixel of edge in this sector, out or in: a thin protrusion shows here "
+        "also where the sector is longer; as the extreme of many values it is never near 0",
     ),
     Column(
         "velocity_error",
