@@ -24,7 +24,7 @@ from cytodisk.plot.layer_looks import shown_layers
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM, colour_bar
 from cytodisk.plot.time_axis import time_stamp
 from cytodisk.plot.time_raster import bar_beside, cut_off
-from cytodisk.runs.correlate.cluster_words import cluster_place
+from cytodisk.runs.correlate.cluster_words import cluster_line
 
 _CURVE, _CURVE_GAP, _CURVE_LEFT = 17.0, 5.5, 14.0  # mm
 _PANEL, _PANEL_GAP, _TALLEST = 29.5, 4.0, 1.45  # mm, mm, height over width
@@ -133,7 +133,7 @@ def peaks_page(one: DrawnCorrelation) -> Sheet | None:
 def _cluster_notes(one: DrawnCorrelation) -> list[str]:
     """The largest clusters with their places."""
     rows = one.rows(one.correlation.clusters).head(_MOST_CLUSTERS).itertuples()
-    return [f"cluster {row.cluster}: {cluster_place(row)}, p = {row.p:.2g}".replace("-", "−") for row in rows]
+    return [cluster_line(row).replace("-", "−") for row in rows]
 
 
 def pairs_page(one: DrawnCorrelation) -> Sheet | None:

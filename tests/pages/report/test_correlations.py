@@ -1,6 +1,7 @@
 import shutil
 
 import numpy as np
+import pandas as pd
 import pytest
 from report_study import LAGS, LAYERS, NAMES, SECTORS, correlated
 
@@ -29,6 +30,22 @@ def test_tables_become_arrays(plain: ShownCell) -> None:
     np.testing.assert_allclose(pair["curves"]["correlation"][1, 5], 0.1 * LAGS)
     np.testing.assert_allclose(pair["layer_curves"], np.full((LAYERS, len(LAGS)), 0.05))
     np.testing.assert_allclose(pair["layers"]["threshold"], 0.25)
+
+
+def test_the_largest_clusters_are_listed(study: Study, plain: ShownCell) -> None:
+    assert pairs_of(plain)[0][0]["clusters"] == []  # they were not looked for
+    row = {"cell": 0, "lag": -4, "lag_s": -20.0, "sign": 1, "correlation": 0.31, "windows": 30, "mass": 40.0}
+    row |= {"p": 0.002, "layers": "0–2", "sectors": "50–5"}
+    five = pd.DataFrame([row | {"cluster": number} for number in range(1, 6)])
+    for table, expected in (
+        (five, ["cluster 1: sectors 50–5, layers 0–2, lag −20 s, r +0.31, p = 0.002"]),
+        (five[:1].assign(layers="3", lag_s=np.nan), ["cluster 1: sectors 50–5, layer 3, lag −4 frames, r"]),
+        (five[:0], ["no cluster of neighbouring windows"]),
+    ):
+        write_correlation(study.path, NAMES[1], "velocity", correlated() | {"clusters": table}, {})
+        (pair,), _ = pairs_of(plain)
+        assert pair["clusters"][0].startswith(expected[0])
+        assert len(pair["clusters"]) == min(max(len(table), 1), 4)
 
 
 def test_variants_of_the_same_names_are_told_apart(study: Study, plain: ShownCell) -> None:

@@ -13,11 +13,15 @@ from cytodisk.pages.report.encode import pack_floats
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_names import differences, labels_of
 from cytodisk.runs.channel_names import correlation_name, shown_name
+from cytodisk.runs.correlate.cluster_words import cluster_line
 from cytodisk.runs.correlate.partial_words import regressed_out
 from cytodisk.store.correlation_store import Correlation
 
 MOST_CURVE_NUMBERS = 900_000
 """Of curves of single windows that a page holds; beyond, only peaks and the layers' curves are shown."""
+
+MOST_CLUSTERS = 3
+"""Clusters that are listed; the table has them all."""
 
 _PEAK = ("correlation", "lag", "p", "q", "threshold")  # low and high hold for a lag chosen beforehand
 _LAYER_PEAK = (*_PEAK, "correlation_partial", "q_partial")
@@ -69,6 +73,7 @@ def _pair(cell: ShownCell, found: Correlation, with_curves: bool) -> dict[str, A
         "signal": shown_name(found.signal),
         "with": shown_name(found.with_),
         "lags": lags.tolist(),
+        "clusters": _clusters(cell, found),
         "windows": {name: pack_floats(_grid(cell, windows, name)) for name in _PEAK},
         "curves": None if curves is None else dict(_curves(cell, curves, lags)),
         "layers": {name: pack_floats(_layer(cell, layers, name)) for name in _LAYER_PEAK},
@@ -90,6 +95,18 @@ def partial_words(cell: ShownCell, found: Correlation) -> str:
 def _curves(cell: ShownCell, curves: pd.DataFrame, lags: Any) -> Iterator[tuple[str, Any]]:
     for name in _CURVE:
         yield name, pack_floats(_curve(cell, curves, name, lags))
+
+
+def _clusters(cell: ShownCell, found: Correlation) -> list[str]:
+    """The largest clusters in words; empty where they were not looked for."""
+    if found.clusters is None:
+        return []
+    clusters = _of(cell, found.clusters)
+    if clusters.empty:
+        return ["no cluster of neighbouring windows with p ≤ 0.05"]
+    rows = list(clusters.itertuples())
+    lines = [cluster_line(row).replace("-", "−") for row in rows[:MOST_CLUSTERS]]
+    return [*lines, f"and {len(rows) - MOST_CLUSTERS} smaller"] if len(rows) > MOST_CLUSTERS else lines
 
 
 def _of(cell: ShownCell, table: pd.DataFrame) -> pd.DataFrame:

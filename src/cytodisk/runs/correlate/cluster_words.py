@@ -23,5 +23,21 @@ def cluster_place(row: Any) -> str:
     return f"{_named('sector', row.sectors)}, {_named('layer', row.layers)}, lag {lag}"
 
 
+def cluster_line(row: Any) -> str:
+    """Where a cluster lies, its lag, how strong and how significant it is.
+
+    Parameters
+    ----------
+    row : object
+        A row of the table of clusters.
+
+    Returns
+    -------
+    str
+        As "cluster 1: sectors 12–25, layers 0–2, lag -20 s, r +0.31, p = 0.002".
+    """
+    return f"cluster {row.cluster}: {cluster_place(row)}, r {row.correlation:+.2f}, p = {row.p:.2g}"
+
+
 def _named(name: str, numbers: str) -> str:
     return f"{name} {numbers}" if numbers.isdecimal() else f"{name}s {numbers}"
