@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from cytodisk import DiskMovie, edge_changes, map_movie
 from cytodisk.arrays import FloatArray
+from cytodisk.motion.edge import sector_of
 from cytodisk.motion.following import map_frames
 from cytodisk.motion.frame_file import load_boundary, save_frame
 from cytodisk.motion.swept_edge import SweptEdge, swept_edge
@@ -142,3 +143,39 @@ def test_the_match_is_read_back_as_it_was(tmp_path: Path) -> None:
     np.testing.assert_array_equal(
         swept_edge(here, there).area_px2, swept_edge(here_again, there_again).area_px2
     )
+
+
+@pytest.mark.parametrize("sectors", [1, 5, 40, 333])
+def test_sectors_hold_what_a_sum_over_finely_cut_pieces_gives(sectors: int) -> None:
+    random = np.random.default_rng(1009)
+    n, cuts = 60, 400
+    gaps = random.uniform(0.05, 1.0, n)
+    angles = random.uniform(-7.0, 7.0) + 2.0 * np.pi * (np.cumsum(gaps) - gaps) / gaps.sum()
+    edge = SweptEdge(random.normal(size=n), random.uniform(0.2, 0.8, n), angles, random.random(n) > 0.3)
+    area, length, fastest = edge.by_sector(sectors)
+    parts = angles[:, None] + (np.arange(cuts) + 0.5) / cuts * (2.0 * np.pi * gaps / gaps.sum())[:, None]
+    sector = sector_of(parts, sectors)
+    weight = np.repeat(edge.free / cuts, cuts)
+    for found, values in ((area, edge.area_px2), (length, edge.length_px)):
+        known = np.bincount(sector.ravel(), weight * np.repeat(values, cuts), sectors)
+        np.testing.assert_allclose(found, known, atol=0.02)
+        assert found.sum() == pytest.approx(values[edge.free].sum())
+    for number in range(sectors):
+        inside = edge.free & (sector == number).any(axis=1)
+        # A stretch of half a pixel is one piece, or a few short ones.
+        means = [mean_around(edge, piece, 0.25) for piece in np.flatnonzero(inside)]
+        assert np.isnan(fastest[number]) == (not means)
+        if means:
+            assert abs(fastest[number]) == pytest.approx(np.abs(means).max())
+
+
+def mean_around(edge: SweptEdge, piece: int, reach: float) -> float:
+    """Swept area over length of the pieces around one, to either side as far as the reach or the border."""
+    n, taken = len(edge.free), [piece]
+    for step in (1, -1):
+        gone, other = 0.5 * edge.length_px[piece], (piece + step) % n
+        while gone < reach and edge.free[other]:
+            taken.append(other)
+            gone += edge.length_px[other]
+            other = (other + step) % n
+    return float(edge.area_px2[taken].sum() / edge.length_px[taken].sum())

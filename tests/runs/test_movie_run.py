@@ -142,6 +142,23 @@ def test_velocity_is_that_of_the_movie(study: cd.Study) -> None:
             assert_allclose(table(study.edge, column, time), known[time], rtol=1e-12, atol=1e-15)
 
 
+def test_edge_is_what_edge_changes_finds_in_the_maps(study: cd.Study) -> None:
+    changes = cd.edge_changes(study.movie(0), SECTORS)
+    for name in ("velocity_fastest", "velocity_error", "edge_length"):
+        assert changes[name].attrs["units"] == study.edge.attrs["units"][name]
+        for time in MAPPED:
+            assert_allclose(table(study.edge, name, time), changes[name][time], rtol=1e-9)
+    swept = study.cells["swept_area"].to_numpy()
+    area = (changes["velocity"] * changes["edge_length"] * INTERVAL_S).sum("sector").to_numpy()
+    assert np.isnan(swept[[0, GAP, GAP + 1]]).all()
+    for time in range(1, GAP):  # pieces of edge go out and in: their areas, without signs, are more
+        assert (
+            abs(area[time - 1])
+            <= swept[time]
+            < 1.25 * abs(area[time - 1]) + 0.1 * study.cells["perimeter"][time]
+        )
+
+
 def test_area_won_less_area_lost_is_the_change_of_the_cells_area(study: cd.Study) -> None:
     area = study.cells["area"]
     for time in range(GAP - 1):
