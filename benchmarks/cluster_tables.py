@@ -130,8 +130,8 @@ def measured(trial: ClusterTrial) -> list[float]:
     if not trial.coupled:
         return [float(clusters.sizes["cluster"] > 0)]
     peaks = peak_correlation(correlations)
-    alone = np.mean([peaks[name].to_numpy()[where] < ALPHA for name in ("p", "q")], axis=1)
-    return [*alone.tolist(), *_of_clusters(clusters, where)]
+    alone = float((peaks["p"].to_numpy()[where] < ALPHA).mean())
+    return [alone, *_of_clusters(clusters, where)]
 
 
 def _of_clusters(clusters: xr.Dataset, where: BoolArray) -> list[float]:

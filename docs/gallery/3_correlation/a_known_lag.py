@@ -30,7 +30,7 @@ velocity = cd.edge_velocity(movie, sectors=32)
 # negative. Surrogates of the velocity, with the same spectrum and random phases, show
 # what chance gives.
 warnings.simplefilter("ignore", cd.errors.StationarityWarning)
-lags = cd.cross_correlate(signal, velocity, max_lag=15, surrogates=499)
+lags = cd.cross_correlate(signal, velocity, max_lag=15, surrogates=499, clusters=True)
 peaks = cd.peak_correlation(lags)
 significant = peaks["q"] < 0.05
 print("lag of the simulation:", -truth.lag_frames, "frames")
@@ -61,10 +61,20 @@ ax.legend(frameon=False)
 plt.show()
 
 # %%
+# Neighbouring windows that agree at a lag have more power, too: they are a cluster. The
+# cluster is real, its borders are not exact.
+clusters = cd.correlation_clusters(lags)
+for number in clusters["cluster"].to_numpy():
+    one = clusters.sel(cluster=number)
+    lag, size, p = (one[name].item() for name in ("lag", "size", "p"))
+    print(f"cluster {number}: lag {lag}, {size} windows, p = {p:.3f}")
+
+# %%
 # The truth, the peak of each window, and its lag. Windows that are not significant are
-# pale.
+# pale, clusters have a bold outline.
 frame = 30
-table = peaks.to_dataframe().reset_index().assign(cell=0)
+number = clusters["cluster"].where(clusters["member"]).min("cluster").fillna(0)
+table = peaks.assign(cluster=number).to_dataframe().reset_index().assign(cell=0)
 shown = cd.plot.PeakMap.of(table, grid)
 windows = grid.on(movie[frame])
 figure, axes = plt.subplots(1, 3, figsize=(6.4, 2.6), layout="constrained")
