@@ -194,7 +194,9 @@ def _follow_matching(
     grid, smoothness = even_grid(here), settings.smoothness_px2
     matched = match(here, there, grid, guess_on_grid, smoothness)
     farthest = float(np.linalg.norm(there.at(matched) - here.at(grid), axis=1).max())
-    bound = _LEAP * outline_distance(here, there) + _SLACK_PX
+    bound = _SLACK_PX
+    if farthest > bound:
+        bound += _LEAP * outline_distance(here, there)
     if farthest > bound:
         frames = f"frames {last.frame} and {frame}"
         why = f"points would move {farthest:.0f} px, outlines allow {bound:.0f} ({frames})"
