@@ -127,22 +127,28 @@ def relax_band(
 
 
 @njit(cache=True)
-def turn_ahead(
+def energy_and_slope(
     points: FloatArray,
     target: Target,
     places: FloatArray,
     spacing: float,
     smoothness: float,
     motion: FloatArray,
-) -> float:
-    """Turn that one Gauss-Newton step makes with the rigid motion free, in radians; see `relax_band`."""
+) -> tuple[float, float]:
+    """Energy of a band, without doubt, and its derivative by the angle of the motion; see `relax_band`."""
     n = points.shape[0]
+    stiffness = smoothness / spacing
     band = _Band(np.empty((n, 2)), np.empty(n), np.empty((n, 2)), np.zeros((n, 2, 3)))
-    band.by_motion[:, 0, 1] = -1.0
-    band.by_motion[:, 1, 2] = -1.0
     _displace(points, target, places, motion, band)
-    _, moved = _newton_step(band, spacing, smoothness / spacing, True, 0.0, motion)
-    return float(moved[0])
+    d, by_motion = band.d, band.by_motion
+    slope = 0.0
+    for i in range(n):
+        after = i + 1 if i < n - 1 else 0
+        for k in range(2):
+            step = by_motion[after, k, 0] - by_motion[i, k, 0]
+            slope += 2.0 * spacing * by_motion[i, k, 0] * d[i, k]
+            slope += 2.0 * stiffness * step * (d[after, k] - d[i, k])
+    return _energy(d, band.gaps, spacing, stiffness, 0.0, motion), slope
 
 
 @njit(cache=True)

@@ -17,7 +17,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.geometry.polygon import signed_area
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.cyclic_path import cyclic_path
-from cytodisk.motion.elastic_band import Target, relax_band, turn_ahead
+from cytodisk.motion.elastic_band import Target, energy_and_slope, relax_band
 
 _COARSE_SAMPLES = 128
 _FINE_PX = 1.0
@@ -27,7 +27,7 @@ _PINNED = 1e12  # weight that holds a rotation at nothing
 # a degree a frame are nothing unusual.
 _NOISE_REACH_PX = 20.0
 _USUAL_TURN = math.radians(1.0)
-_LEADS_THERE = (0.12, 0.22)  # share of a turn that the first step makes: not believed, and believed
+_FORESEEN = (0.25, 0.4)  # share of a turn's gain that the slope at no turn foresees: not believed, believed
 _PIXEL_NOISE_PX2 = 0.04  # squared displacement that the pixels of a mask make of nothing
 
 
@@ -144,23 +144,24 @@ def rigid_motion(
         return relax_band(grown, target, places, spacing, smoothness, start, True, doubt)
 
     slid, shifted, by_shift = fit(_PINNED)
-    _, free, by_both = fit(0.0)
+    turned_places, free, by_both = fit(0.0)
     _, turned, _ = fit(_NOISE_REACH_PX * by_both / _USUAL_TURN**2)
     explained = max(0.0, by_shift - by_both) / max(by_shift, _PIXEL_NOISE_PX2)
-    ahead = turn_ahead(grown, target, slid, spacing, smoothness, shifted)
-    motion = shifted + explained * _within_reach(ahead, float(free[0])) * (turned - shifted)
+    before, slope = energy_and_slope(grown, target, slid, spacing, smoothness, shifted)
+    after, _ = energy_and_slope(grown, target, turned_places, spacing, smoothness, free)
+    motion = shifted + explained * _downhill(before - after, -slope * float(free[0])) * (turned - shifted)
     return float(motion[0]), pivot, motion[1:]
 
 
-def _within_reach(ahead: float, turn: float) -> float:
+def _downhill(gain: float, foreseen: float) -> float:
     """How far a turn is one that the outlines themselves lead to, from 0 to 1.
 
-    A shape that did turn leads there: from no turn at all, one step of the fit goes a good part of the way. A
-    shape with lobes that grow where others shrink looks as if it had turned by half a lobe to one side or to
-    the other, and the step goes nowhere.
+    A shape that did turn leads there: the energy falls from no turn at all, nearly as a parabola, whose slope
+    foresees twice its gain. A shape with lobes that grow where others shrink looks as if it had turned by
+    half a lobe to one side or to the other, and the energy has no slope to either.
     """
-    far, near = _LEADS_THERE
-    share = ahead / turn if turn else 1.0
+    far, near = _FORESEEN
+    share = foreseen / (2.0 * gain) if gain > 0.0 else 1.0
     return min(max((share - far) / (near - far), 0.0), 1.0)
 
 
