@@ -67,7 +67,7 @@ def consistency_sheet(movie: DrawnMovie) -> Sheet | None:
         draw_by_layer(ax, measure.values, layers, measure.label, scale=movie.scale)
         ax.set_ylim(measure.low, measure.high)
         ax.set_title(measure.title, loc="left", parse_math=False)
-    _write_key(sheet, layers, movie.grid.layers)
+    _write_key(sheet, layers, movie)
     return sheet
 
 
@@ -111,8 +111,9 @@ def _by_frame(movie: DrawnMovie, rows: pd.DataFrame, name: str) -> xr.DataArray:
     return xr.DataArray(values, {"frame": ("time", list(frames))}, ("time", "layer"))
 
 
-def _write_key(sheet: Sheet, layers: Sequence[int], count: int) -> None:
-    colours, names = layer_colours(layers), layer_names(layers, count)
+def _write_key(sheet: Sheet, layers: Sequence[int], movie: DrawnMovie) -> None:
+    names = layer_names(layers, movie.grid.layers, movie.activity["depth"])
+    colours = layer_colours(layers)
     handles = [
         Line2D([], [], color=colour, linewidth=1.5, label=name)
         for colour, name in zip(colours, names, strict=True)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import matplotlib as mpl
 import numpy as np
+import xarray as xr
 
 from cytodisk.arrays import FloatArray
 from cytodisk.plot.style import LAYER_COLOURS
@@ -30,21 +31,32 @@ def shown_layers(layers: int) -> list[int]:
     return [int(layer) for layer in np.unique(chosen)]
 
 
-def layer_names(layers: Sequence[int], count: int) -> list[str]:
-    """Names of layers, with what the first and last are.
+def layer_names(layers: Sequence[int], count: int, depths: xr.DataArray | None = None) -> list[str]:
+    """Names of layers, with what the first and last are, and how deep they lie.
 
     Parameters
     ----------
     layers : sequence of int
     count : int
         Number of all layers.
+    depths : DataArray with the dim layer, optional
+        As `activity["depth"]`, with its unit; the median over all other dims is told.
 
     Returns
     -------
     list of str
+        As "layer 0 (edge), 0.4 µm deep".
     """
     places = {count - 1: " (centre)", 0: " (edge)"}
-    return [f"layer {layer}{places.get(layer, '')}" for layer in layers]
+    deep = dict.fromkeys(layers, "")
+    if depths is not None:
+        deep = {layer: depth_words(float(depths.sel(layer=layer).median()), depths) for layer in layers}
+    return [f"layer {layer}{places.get(layer, '')}{deep[layer]}" for layer in layers]
+
+
+def depth_words(depth: float, depths: xr.DataArray) -> str:
+    """A depth as ", 0.4 µm deep"; empty where it is NaN."""
+    return f", {depth:.2g} {depths.attrs.get('units', 'px')} deep" if np.isfinite(depth) else ""
 
 
 def layer_colours(layers: Sequence[int]) -> FloatArray:

@@ -15,6 +15,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.pages.movie_cell import MovieCell
 from cytodisk.pages.report.encode import pack_floats
 from cytodisk.pages.report.shown_names import without_folders
+from cytodisk.plot.layer_looks import depth_words
 from cytodisk.plot.style import signal_limits
 from cytodisk.plot.time_axis import FrameTimes
 from cytodisk.runs.channel_names import shown_name
@@ -23,7 +24,7 @@ MOST_ARRAY_BYTES = 5_000_000
 """Of numbers by frame and window; more frames are thinned out."""
 
 _BY_WINDOW = ("mean", "sd")
-_SHOWN = (*_BY_WINDOW, "n_pixels", "area", "velocity", "velocity_error", "status", "reason")
+_SHOWN = (*_BY_WINDOW, "n_pixels", "area", "depth", "velocity", "velocity_error", "status", "reason")
 _STRIP_MARGIN = 0.12  # of the range, above and below
 _QUALITY = ("area", "tracking_residual", "area_distortion")
 
@@ -65,7 +66,7 @@ class ShownCell(MovieCell):
     def thinned(self) -> ShownCell:
         """The same with so many frames that the numbers by window stay below `MOST_ARRAY_BYTES`."""
         sizes = self.activity.sizes
-        arrays = len(_BY_WINDOW) * len(self.channels) + 1
+        arrays = len(_BY_WINDOW) * len(self.channels) + 2
         size = 4 * arrays * sizes["time"] * sizes["layer"] * sizes["sector"]
         return self.every_frames(max(self.every, int(np.ceil(size / MOST_ARRAY_BYTES))))
 
@@ -85,12 +86,20 @@ class ShownCell(MovieCell):
             "layers": self.grid.layers,
             "sectors": self.grid.sectors,
             "radii": self.disk_grid.radii.tolist(),
-            "units": {name: self.unit(name) for name in ("area", "velocity")},
+            "units": {name: self.unit(name) for name in ("area", "depth", "velocity")},
             "channels": list(self._channels()),
             "velocity": pack_floats(self.shown["velocity"]),
             "velocity_error": pack_floats(self.shown["velocity_error"]),
             "area": pack_floats(self.shown["area"]),
+            "depth": pack_floats(self.shown["depth"]),
+            "layer_depths": self.layer_depths,
         }
+
+    @property
+    def layer_depths(self) -> list[str]:
+        """How deep each layer lies in the median, in words as ", 0.4 µm deep"."""
+        depths = self.activity["depth"]
+        return [depth_words(float(depth), depths) for depth in depths.median(("time", "sector"))]
 
     @cached_property
     def reasons(self) -> list[str]:

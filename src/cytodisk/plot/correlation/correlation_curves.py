@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
@@ -42,6 +43,7 @@ def draw_correlation_curves(
     peaks: pd.DataFrame | None = None,
     signal: str = "signal",
     with_: str = "velocity",
+    depths: xr.DataArray | None = None,
 ) -> list[Line2D]:
     """Draw the mean correlation of layers against lag under each other, with quartiles and what chance gives.
 
@@ -58,6 +60,8 @@ def draw_correlation_curves(
         cross where the column geometry says that it does not survive.
     signal, with_ : str
         Names for the words at the lags: at a positive lag the signal comes first.
+    depths : DataArray with the dim layer, optional
+        As `activity["depth"]`: the names of layers say how deep they lie in the median.
 
     Returns
     -------
@@ -98,7 +102,7 @@ def draw_correlation_curves(
     layers = [int(numbers[place]) for place in shown_layers(len(numbers))]
     if len(axes) != len(layers):
         raise ParameterError(f"axes must be {len(layers)}, got {len(axes)}: pass one for each layer shown")
-    unit, names = LagUnit.of(curves), layer_names(layers, len(numbers))
+    unit, names = LagUnit.of(curves), layer_names(layers, len(numbers), depths)
     lines = []
     for ax, layer, name, colour in zip(axes, layers, names, layer_colours(layers), strict=True):
         one = curves[curves["layer"] == layer].sort_values("lag")

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 from matplotlib.ticker import MaxNLocator
@@ -141,6 +142,7 @@ def draw_layers(
     label: str = "mean",
     limits: tuple[float, float] | None = None,
     scale: Scale | None = None,
+    depths: xr.DataArray | None = None,
 ) -> list[AxesImage]:
     """Draw activity maps of layers under each other, with the same colours and one time axis.
 
@@ -158,6 +160,8 @@ def draw_layers(
     scale : Scale, optional
         Of plain numbers: the unit of velocity and the time between frames. Unknown, they are in px/frame and
         frames.
+    depths : DataArray with the dim layer, optional
+        As `activity["depth"]`: the names of layers say how deep they lie in the median.
 
     Returns
     -------
@@ -192,7 +196,7 @@ def draw_layers(
         drawn.append(draw_velocity_map(top, velocity, scale=scale))
         _name(top, "edge velocity: protrusion red, retraction blue")
     common, times = limits or signal_limits(table), FrameTimes.of(values, "values", scale)
-    for ax, layer, name in zip(maps, layers, layer_names(layers, table.shape[1]), strict=True):
+    for ax, layer, name in zip(maps, layers, layer_names(layers, table.shape[1], depths), strict=True):
         drawn.append(_draw_map(ax, table[:, layer], times, SIGNAL_COLOURS, common))
         _name(ax, name)
     ends = cut_off(table[:, layers], common)

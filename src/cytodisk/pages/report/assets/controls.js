@@ -148,8 +148,9 @@
     const { data } = page;
     const number = page.windowOf(layer, sector);
     const { mean, sd, unit } = page.channel();
-    const [area, speed, error] = [
+    const [area, depth, speed, error] = [
       page.row(data.area, index)[number],
+      page.row(data.depth, index)[number],
       page.row(data.velocity, index)[sector],
       page.row(data.velocity_error, index)[sector],
     ];
@@ -158,6 +159,7 @@
       window: `layer ${layer}, sector ${sector}`,
       mean: mean ? spread(page.row(mean, index)[number], page.row(sd, index)[number], unit) : "–",
       area: page.withUnit(area, data.units.area),
+      depth: page.withUnit(depth, data.units.depth),
       velocity: Number.isFinite(speed) ? spread(speed, error, data.units.velocity) : "–",
     };
     if (!data.pairs.length) return words;
@@ -183,7 +185,7 @@
     page.write("spoken", state.playing ? "playing" : words.join(", "));
   };
 
-  const READ = ["window", "mean", "area", "velocity", "correlation", "lag", "p", "q"];
+  const READ = ["window", "mean", "area", "depth", "velocity", "correlation", "lag", "p", "q"];
   const stampOf = (number, time) => (time ? `${number} · ${time}` : `${number}`);
 
   page.drawControls = () => {

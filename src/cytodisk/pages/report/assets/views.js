@@ -99,7 +99,7 @@
     const { limits, layer_limits: byLayer, unit } = page.channel();
     setImage("activity", "pixels", map, [sectors, frames.length]);
     setColours("activity", colours === "all" ? limits : byLayer[layer], unit);
-    text("activity-title", `${channelWords()}, layer ${layer}${layer === 0 ? " (edge)" : ""}`);
+    text("activity-title", `${channelWords()}, layer ${layer}${layer === 0 ? " (edge)" : ""}${page.data.layer_depths[layer]}`);
   };
 
   const drawIntensity = () => {
