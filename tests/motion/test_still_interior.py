@@ -147,6 +147,13 @@ def test_a_study_of_still_interiors_tells_and_reads_back(tmp_path: Path) -> None
     np.testing.assert_array_equal(read.map(0, frame=19).vertices_uv, movie[19].vertices_uv)
 
 
+def test_a_run_refuses_a_fade_without_a_scale_before_it_writes(tmp_path: Path) -> None:
+    tifffile.imwrite(tmp_path / "masks.tif", grown(2, 1.0).astype(np.uint8), metadata={"axes": "TYX"})
+    with pytest.raises(ParameterError, match="fade_um needs a pixel size: pass it as --pixel-size"):
+        cd.run_movie(tmp_path / "masks.tif", tmp_path / "out", interior="still", fade_um=1.0)
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_study_of_equal_areas_has_no_still_windows(tmp_path: Path) -> None:
     masks = grown(2, 2.0, radius=12.0)
     tifffile.imwrite(tmp_path / "masks.tif", masks.astype(np.uint8), metadata={"axes": "TYX"})
