@@ -27,7 +27,7 @@ Examples:
 
   cytodisk movie masks.tif --signal movie.ome.tif -o out/ --layers 10 --sectors 60 --workers 2
 
-  cytodisk movie masks.tif --signal movie.tif -o out/ --pixel-size 0.16 --frame-interval 5 --depth-um 1.6
+  cytodisk movie masks.tif --signal movie.tif -o out/ --pixel-size 0.16 --frame-interval 5 --depth-um 0.5,1,2
 
   cytodisk movie labels.tif -o out/ --link --resume
 

@@ -159,7 +159,7 @@
       window: `layer ${layer}, sector ${sector}`,
       mean: mean ? spread(page.row(mean, index)[number], page.row(sd, index)[number], unit) : "–",
       area: page.withUnit(area, data.units.area),
-      depth: page.withUnit(depth, data.units.depth),
+      depth: Number.isFinite(depth) ? `, ${page.withUnit(depth, data.units.depth)} deep` : "",
       velocity: Number.isFinite(speed) ? spread(speed, error, data.units.velocity) : "–",
     };
     if (!data.pairs.length) return words;
@@ -185,7 +185,7 @@
     page.write("spoken", state.playing ? "playing" : words.join(", "));
   };
 
-  const READ = ["window", "mean", "area", "depth", "velocity", "correlation", "lag", "p", "q"];
+  const READ = ["window", "mean", "area", "velocity", "correlation", "lag", "p", "q"];
   const stampOf = (number, time) => (time ? `${number} · ${time}` : `${number}`);
 
   page.drawControls = () => {
@@ -193,6 +193,7 @@
     const at = page.focus();
     const words = at ? numbersOf(at) : {};
     for (const name of READ) page.write(`read-${name}`, words[name] ?? "–");
+    page.write("read-depth", words.depth ?? "");
     const index = at?.index ?? state.index;
     page.write("read-frame", stampOf(data.frames[index], page.timeOf(index)));
     page.write("read-channel", page.channel().mean ? `${page.channel().name}, mean ± sd` : "signal");
