@@ -1,6 +1,7 @@
 """Recorded movies, shortened: every frame is mapped one to one or has its reason, and no window is empty."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -8,6 +9,7 @@ import pytest
 import tifffile
 
 import cytodisk as cd
+from cytodisk.runs.correlate.correlate_study import correlate_study
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_study import movie_study
@@ -91,6 +93,23 @@ def test_dictyostelium(data_dir: Path, tmp_path: Path) -> None:
     for time in range(15):
         inside = study.map(0, time).mask
         assert sums[time] == pytest.approx(values[time][inside].sum(dtype=float), rel=1e-10)
+
+
+@pytest.mark.slow
+def test_masks_that_jitter_are_flagged(data_dir: Path, tmp_path: Path) -> None:
+    folder = data_dir / "dictyostelium_rac1"
+    masks = shortened(folder / "mask.tif", tmp_path / "masks.tif", 90)
+    signal = shortened(folder / "rac1.tif", tmp_path / "rac1.tif", 90)
+    given = GRID.model_copy(update={"layers": 4, "sectors": 36})
+    study = movie_study(open_movie(masks, signal, given), tmp_path / "out")
+    settings: dict[str, Any] = {"max_lag": 10, "surrogates": 0, "geometry": False}
+    found = correlate_study(study, "0", **settings)
+    assert found.cells["velocity_jitter"].item() > 0.1
+    assert found.cells["jitter"].item() > 0.02
+    (flag,) = [flag for flag in cd.qc_flags(study) if flag.name == "jitter"]
+    assert "--skip-lags=-1,0" in flag.advice
+    without = correlate_study(study, "0", skip_lags=(-1, 0), **settings)
+    assert without.cells["jitter"].item() == 0.0
 
 
 @pytest.mark.parametrize(

@@ -60,7 +60,7 @@ def velocity_error(displacement_px: FloatArray, length_px: FloatArray) -> FloatA
 def _by_length(displacement: FloatArray, length: FloatArray) -> tuple[float, float]:
     """Variance of jitter in a very short sector, and length over which it averages out (may be infinite)."""
     sectors = displacement.shape[1]
-    plain = _jitter_variance(displacement)
+    plain = jitter_variance(displacement)
     if not plain > 0.0 or sectors < _FEWEST_SECTORS:
         return plain, np.inf
     held = np.where(np.isfinite(displacement) & (length > 0.0), length, np.nan)
@@ -68,16 +68,27 @@ def _by_length(displacement: FloatArray, length: FloatArray) -> tuple[float, flo
     swept, lengths = (each.sum(axis=2) for each in pairs)
     best, found = np.inf, (plain, np.inf)
     for reach in np.append(float(np.nanmean(held)) * _REACHES, np.inf):
-        one = _jitter_variance(displacement * np.sqrt(1.0 + held / reach))
-        of_pairs = _jitter_variance(swept / lengths * np.sqrt(1.0 + lengths / reach))
+        one = jitter_variance(displacement * np.sqrt(1.0 + held / reach))
+        of_pairs = jitter_variance(swept / lengths * np.sqrt(1.0 + lengths / reach))
         unlike = abs(np.log(one / of_pairs)) if one > 0.0 and of_pairs > 0.0 else np.inf
         if unlike < best:
             best, found = unlike, (one, float(reach))
     return found
 
 
-def _jitter_variance(displacement: FloatArray) -> float:
-    """Variance of e(t + 1) − e(t); NaN if no two steps follow one another."""
+def jitter_variance(displacement: FloatArray) -> float:
+    """Variance that errors e of the outline give displacements, that of e(t + 1) − e(t).
+
+    Parameters
+    ----------
+    displacement : ndarray of shape (T, S) and dtype float
+        By step and sector, in any unit.
+
+    Returns
+    -------
+    float
+        NaN if no two steps follow one another; an upper bound in fewer than 15 steps.
+    """
     change = np.diff(displacement, axis=0)
     finite = change[np.isfinite(change)]
     if not finite.size:

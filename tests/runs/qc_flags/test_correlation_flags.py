@@ -33,6 +33,11 @@ def test_a_good_correlation_has_none(tmp_path: Path) -> None:
     ("faults", "name", "note"),
     [
         ({"jitter": -0.12}, "jitter", "VASP with velocity: −0.12 at lag 0"),
+        (
+            {"jitter": 0.05, "velocity_jitter": 0.25},
+            "jitter",
+            "VASP with velocity: +0.05 at lag 0, 25% of velocity's variance",
+        ),
         ({"drifting_signal": 0.6}, "drifting series", "VASP with velocity: 60% of the series"),
         ({"drifting_with": 0.3}, "drifting series", "VASP with velocity: 30% of the series"),
         ({"status": "refused", "reason": "too short"}, "not correlated", "VASP with velocity: too short"),

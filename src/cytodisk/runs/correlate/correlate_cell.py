@@ -15,7 +15,12 @@ import xarray as xr
 
 from cytodisk.analysis.correlation.correlation_parameters import PairCorrelationParameters
 from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer, cross_correlate
-from cytodisk.analysis.correlation.jitter_mark import JITTERED_DIFFERENCES, JITTERED_LAGS, jitter_step
+from cytodisk.analysis.correlation.jitter_mark import (
+    JITTERED_DIFFERENCES,
+    JITTERED_LAGS,
+    jitter_step,
+    velocity_jitter,
+)
 from cytodisk.analysis.pairs.pair_correlation import correlate_pairs
 from cytodisk.analysis.pairs.window_distances import window_distances
 from cytodisk.arrays import IntArray
@@ -85,12 +90,14 @@ class CellCorrelation:
                 **common,
                 **self._clusters(cell),
             )
-            jitter = _jitter(a, b, options) if with_ in VELOCITIES else 0.0
+            share = velocity_jitter(b.transpose("time", ...)) if with_ in VELOCITIES else np.nan
+            jitter = _jitter(a, b, share, options) if with_ in VELOCITIES else 0.0
             partial, not_tested = self._partial(cell, activity, (a, b), phases) if asked else (None, "")
         tables = with_clusters(tables_of(correlations, options, partial), correlations, partial)
         if options.pairs:
             tables["pairs"] = self._pairs(cell, activity, a, phases[-1])
         row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "jitter": jitter}
+        row["velocity_jitter"] = share
         row["statistic"] = options.statistic
         row["surrogates"] = correlations.attrs["surrogates"]
         row["cluster_surrogates"] = correlations.sizes.get("cluster_surrogate", 0)
@@ -192,7 +199,7 @@ def _other(activity: xr.Dataset, with_: str, options: CorrelateParameters) -> xr
     return other.isel(layer=0, drop=True) if options.against == "edge" else other
 
 
-def _jitter(a: xr.DataArray, b: xr.DataArray, options: CorrelateParameters) -> float:
+def _jitter(a: xr.DataArray, b: xr.DataArray, share: float, options: CorrelateParameters) -> float:
     """Largest mark of jitter in any layer; 0 for none, or where its lags are left out; NaN if unknown."""
     marked = JITTERED_LAGS if not options.difference else JITTERED_DIFFERENCES
     if set(marked) <= set(options.skip_lags):
@@ -201,5 +208,5 @@ def _jitter(a: xr.DataArray, b: xr.DataArray, options: CorrelateParameters) -> f
     if lag < _LEAST_LAG_FOR_JITTER:
         return float("nan")
     found = cross_correlate(a, b, lag, detrend=options.detrend, min_pairs=options.min_pairs)
-    steps = jitter_step(correlation_by_layer(found)).to_numpy()
+    steps = jitter_step(correlation_by_layer(found), velocity_share=share).to_numpy()
     return float(steps[np.abs(steps).argmax()])

@@ -183,6 +183,12 @@ CORRELATION_TABLES: dict[str, Columns] = {
             "1",
             "step of the correlation between lags -1 and 0, as jitter of the masks makes it; 0 for none",
         ),
+        Column(
+            "velocity_jitter",
+            pa.float64(),
+            "1",
+            "share of velocity's variance that jitter of the masks makes; empty for signals, or few frames",
+        ),
         Column("surrogates", pa.int64(), "", "number of surrogates of the windows and layers"),
         Column(
             "cluster_surrogates", pa.int64(), "", "number of surrogates of the clusters; 0 for no clusters"

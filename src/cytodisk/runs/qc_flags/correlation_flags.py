@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import pandas as pd
 
+from cytodisk.analysis.correlation.jitter_mark import JITTERING_SHARE
 from cytodisk.analysis.correlation.prepared_series import DRIFTING_SHARE
 from cytodisk.runs.channel_names import correlation_name
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted
@@ -15,7 +16,7 @@ from cytodisk.store.study import Study
 def jitter(study: Study) -> Iterator[QCFlag]:
     """Correlations with velocity that jitter of the masks made part of."""
     places = [
-        Place(int(row.cell), None, f"{names}: {row.jitter:+.2f} at lag 0".replace("-", "−"))
+        Place(int(row.cell), None, f"{names}: {row.jitter:+.2f} at lag 0".replace("-", "−") + _jitters(row))
         for names, row in _rows(study)
         if abs(row.jitter) > 0
     ]
@@ -30,6 +31,12 @@ def jitter(study: Study) -> Iterator[QCFlag]:
             f"Look at the other lags: cytodisk correlate … --skip-lags={lags}.",
             tuple(places),
         )
+
+
+def _jitters(row: pd.Series[float]) -> str:
+    """How much of velocity is jitter, where that is known and not little."""
+    share = row.get("velocity_jitter", 0.0)
+    return f", {share:.0%} of velocity's variance" if share >= JITTERING_SHARE else ""
 
 
 def drifting_series(study: Study) -> Iterator[QCFlag]:
