@@ -65,6 +65,15 @@ def test_a_filopodium_keeps_its_width_and_its_tip_runs_at_its_speed() -> None:
     assert rest.buffer(-2.51).is_empty
 
 
+@pytest.mark.parametrize("heading", [0.0, 90.0, -135.0])
+def test_a_filopodium_grows_in_the_direction_that_is_told(heading: float) -> None:
+    shown = movie("filopodium", 4, frames=3, radius_px=20.0, heading_deg=heading, signals=False)
+    step = shown.boundary_yx[1] - shown.boundary_yx[0]
+    tip = step[np.hypot(*step.T).argmax()]
+    grown = np.degrees(np.arctan2(*tip))
+    assert (grown - heading + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1e-6)
+
+
 @pytest.mark.parametrize(("waves", "height"), [(None, 6.0), (5, 3.0)])
 def test_waves_travel_around_a_round_cell_at_five_degrees_a_frame(waves: int | None, height: float) -> None:
     options = {} if waves is None else {"waves": waves}

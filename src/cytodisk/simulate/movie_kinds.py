@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Literal, get_args
 
+import numpy as np
+
 MovieKind = Literal[
     "bulging",
     "migrating",
@@ -37,6 +39,8 @@ class Habits:
         whole cell else.
     turn_deg : float
         In degrees per frame.
+    heading_deg : float or None
+        Direction of the cell in frame 0, in degrees from +x towards +y; None to draw it.
     protrusion_px : float or None
         Height of the largest protrusion, in pixels; None for a kind that has none. For "fluctuating" three
         standard deviations of the edge about its mean place.
@@ -52,11 +56,16 @@ class Habits:
 
     speed_px: float = 0.0
     turn_deg: float = 0.0
+    heading_deg: float | None = None
     protrusion_px: float | None = None
     jitter_px: float = 0.0
     jitter_length_px: float = 8.0
     dropped: float = 0.0
     waves: int | None = None
+
+    def heading(self, drawn: float) -> float:
+        """Direction of the cell in frame 0, in radians, for one that was drawn."""
+        return drawn if self.heading_deg is None else float(np.radians(self.heading_deg))
 
     @property
     def height_px(self) -> float:

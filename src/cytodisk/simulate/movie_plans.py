@@ -71,7 +71,9 @@ def plan_movie(kind: MovieKind, random: np.random.Generator, radius: float, habi
     """
     if kind in _GROWTHS:
         growth = _GROWTHS[kind](radius, habits.speed_px)
-        pose = Pose(radius, heading=random.uniform(-np.pi, np.pi), turn=np.radians(habits.turn_deg))
+        pose = Pose(
+            radius, heading=habits.heading(random.uniform(-np.pi, np.pi)), turn=np.radians(habits.turn_deg)
+        )
         return Plan(growth.outline_yx, np.zeros((0, 2)), growth, pose)
     motion = _MAKERS[kind](random, radius, habits)
     y, x = motion.outline_yx.T
@@ -89,7 +91,7 @@ def plan_movie(kind: MovieKind, random: np.random.Generator, radius: float, habi
     )
     pose = Pose(
         radius=radius,
-        heading=random.uniform(-np.pi, np.pi),
+        heading=habits.heading(random.uniform(-np.pi, np.pi)),
         turn=np.radians(habits.turn_deg),
         speed=0.0 if growing else habits.speed_px,
         neck=motion.neck,

@@ -28,6 +28,14 @@ class HabitParameters(Parameters):
         least=-180,
         unit="degrees/frame",
     )
+    heading_deg: float | None = parameter(
+        None,
+        "Direction of the cell in frame 0, from +x towards +y: where it crawls, or where a filopodium or a "
+        "lamellipodium grows; without it drawn from the seed.",
+        least=-360,
+        most=360,
+        unit="degrees",
+    )
     protrusion_px: float | None = parameter(
         None,
         'Height of the largest protrusion, for kinds that have protrusions; for "fluctuating" three standard '
