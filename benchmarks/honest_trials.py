@@ -52,11 +52,13 @@ class Trials:
     def run(self, name: str, work: Callable[[Job], Result], jobs: Sequence[Job]) -> list[Result]:
         """Results of all jobs in their order, with progress on the error stream."""
         context = multiprocessing.get_context("spawn")
-        found = []
-        with ProcessPoolExecutor(self.workers, context, max_tasks_per_child=_MOVIES_A_PROCESS) as pool:
-            for number, result in enumerate(pool.map(work, jobs), 1):
-                found.append(result)
-                print(f"{name}: {number}/{len(jobs)}", end="\033[K\r", file=sys.stderr, flush=True)
+        found: list[Result] = []
+        size = _MOVIES_A_PROCESS * self.workers
+        for first in range(0, len(jobs), size):  # an executor that renews its processes itself can hang
+            with ProcessPoolExecutor(self.workers, context) as pool:
+                for result in pool.map(work, jobs[first : first + size]):
+                    found.append(result)
+                    print(f"{name}: {len(found)}/{len(jobs)}", end="\033[K\r", file=sys.stderr, flush=True)
         return found
 
 
