@@ -7,28 +7,28 @@ from collections.abc import Iterator
 import pandas as pd
 
 from cytodisk.runs.channel_names import correlation_name
+from cytodisk.runs.correlate.partial_correlation import SIGNIFICANT
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted
 from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.study import Study
 
 
 def geometry(study: Study) -> Iterator[QCFlag]:
-    """Correlations of layers that are significant, but not once geometry is regressed out."""
+    """Correlations of layers or clusters that are significant, but not once geometry is regressed out."""
     places = [
-        Place(int(row.cell), None, f"{name}: {_layers(lost)}")
+        Place(int(row.cell), None, f"{name}: {lost}")
         for name, found in _tested(study)
         for _, row in found.cells.iterrows()
-        if row["geometry_not_tested"] == ""
-        and len(lost := found.layers[(found.layers["cell"] == row.cell) & lost_layers(found.layers)])
+        if row["geometry_not_tested"] == "" and (lost := _lost(found, int(row.cell)))
     ]
     if places:
         yield QCFlag(
             "geometry",
             f"{counted(len(places), 'correlation')} may come from the cell's motion alone",
             "A pattern that stands still under a moving cell, or a cortex that moves with the edge, "
-            "correlates without any signalling. With both regressed out, these layers have no significant "
-            "correlation left, or less than half of it at its lag.",
-            "Read p_partial, q_partial and correlation_partial of these layers, not p, q and correlation.",
+            "correlates without any signalling. With both regressed out, these layers and clusters have no "
+            "significant correlation left, or less than half of it at its lag.",
+            "Read p_partial, q_partial and correlation_partial there, not p, q and correlation.",
             tuple(places),
         )
 
@@ -57,6 +57,17 @@ def lost_layers(layers: pd.DataFrame) -> pd.Series[bool]:
     if "geometry" not in layers:
         return pd.Series(False, index=layers.index)
     return layers["geometry"].fillna(False).astype(bool)
+
+
+def _lost(found: Correlation, cell: int) -> str:
+    """Layers and clusters of a cell that do not survive, in words; empty for none."""
+    layers = found.layers[(found.layers["cell"] == cell) & lost_layers(found.layers)]
+    words = [_layers(layers)] if len(layers) else []
+    if found.clusters is not None and "p_partial" in found.clusters:
+        of_cell = found.clusters[found.clusters["cell"] == cell]
+        lost = of_cell[of_cell["p_partial"] > SIGNIFICANT]  # those in the table all have p <= 0.05
+        words += [f"cluster {number}" for number in lost["cluster"]]
+    return ", ".join(words)
 
 
 def _layers(lost: pd.DataFrame) -> str:

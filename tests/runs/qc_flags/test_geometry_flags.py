@@ -1,0 +1,55 @@
+"""The flag of geometry says which layers and clusters do not survive."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pandas as pd
+import pytest
+
+from cytodisk.runs.qc_flags import geometry_flags
+from cytodisk.runs.qc_flags.geometry_flags import geometry, geometry_not_tested
+
+
+class _Found:
+    """Tables of a correlation in which layer 1 and cluster 2 do not survive."""
+
+    def __init__(self, not_tested: str = "", asked: bool = True) -> None:
+        self.settings = {"geometry": asked}
+        self.cells = pd.DataFrame({"cell": [0], "status": "ok", "geometry_not_tested": not_tested})
+        self.layers = pd.DataFrame({"cell": 0, "layer": [0, 1], "correlation": [0.5, -0.4], "lag": [1, -2]})
+        self.layers = self.layers.assign(correlation_partial=[0.5, 0.1], lag_partial=[1, 7])
+        self.layers["geometry"] = [False, True]
+        self.clusters = pd.DataFrame({"cell": 0, "cluster": [1, 2], "p_partial": [0.01, 0.6]})
+
+
+class _Study:
+    def __init__(self, found: Any) -> None:
+        self.correlations = [("VASP", "velocity")]
+        self.found = found
+
+    def correlation(self, *names: str) -> Any:
+        return self.found
+
+
+def test_what_is_lost_is_named() -> None:
+    study: Any = _Study(_Found())
+    (flag,) = geometry(study)
+    (place,) = flag.places
+    assert flag.name == "geometry"
+    assert place.note == "VASP with velocity: layer 1 −0.40 at lag −2 → +0.10 at lag 7, cluster 2"
+    assert not list(geometry_not_tested(study))
+
+
+@pytest.mark.parametrize("change", ["not tested", "not asked for"])
+def test_nothing_is_lost_that_was_not_tested(change: str) -> None:
+    found = _Found("the signal is gone" if change == "not tested" else "", change == "not tested")
+    study: Any = _Study(found)
+    assert not list(geometry(study))
+    notes = [flag.places[0].note for flag in geometry_not_tested(study)]
+    assert notes == (["VASP with velocity: the signal is gone"] if change == "not tested" else [])
+
+
+def test_without_surrogates_nothing_is_lost() -> None:
+    layers = pd.DataFrame({"layer": [0, 1]})
+    assert not geometry_flags.lost_layers(layers).any()
