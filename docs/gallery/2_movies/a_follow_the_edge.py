@@ -85,5 +85,5 @@ ax.errorbar(
 )
 ax.plot(changes["time_s"], true[:, sector], color="0.15", linewidth=0.8, label="true")
 ax.set(xlabel="time (s)", ylabel="velocity (µm/s)", title=f"sector {sector}")
-ax.legend(frameon=False)
+ax.legend(frameon=False, loc="upper right")
 plt.show()
