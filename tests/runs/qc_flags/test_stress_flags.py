@@ -10,7 +10,8 @@ from cytodisk.runs.qc_flags.stress_flags import STRESS_RULES
 from cytodisk.store.correlation_store import write_correlation
 from cytodisk.store.study import Study
 
-NUMBERS = {
+NUMBERS: dict[str, object] = {
+    "frames": 300,
     "pulse_share": 0.62,
     "pulse_frames": "17,18,19",
     "episode_ratio": 4.0,
@@ -42,7 +43,7 @@ def flags(folder: Path, stress: str | None, statistic: str = "pearson") -> list[
             "variance of the second half 0.4 times that of the first",
             "--statistic spearman",
         ),
-        ("steady oscillation", "50% of the variance at a period of 10 frames", "many cells"),
+        ("steady oscillation", "50% of the variance at a period of 10 frames", "--max-lag 6"),
         ("heavy tails", "kurtosis 7.5, 3 of a normal distribution", "--statistic spearman"),
     ],
 )
@@ -54,6 +55,15 @@ def test_each_mark_has_its_flag(tmp_path: Path, name: str, note: str, remedy: st
     assert "not that nothing is there" in flag.meaning
     ranks = flags(tmp_path / "ranks", name, "spearman")
     assert bool(ranks) == (name == "steady oscillation")
+
+
+def test_a_short_movie_of_oscillators_has_too_few_shifts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(NUMBERS, "frames", 60)
+    (flag,) = flags(tmp_path, "steady oscillation")
+    assert "longer movie" in flag.advice
+    assert "--max-lag" not in flag.advice
 
 
 def test_several_marks_and_none(tmp_path: Path) -> None:

@@ -22,6 +22,9 @@ from cytodisk.store.study import Study
 _TRUE_TOO = " A true signal can do this, too: the flag says that p is too small, not that nothing is there."
 
 
+_SHIFTS_FOR_P = 21.0  # runs of 2 max_lag + 1 frames that leave 19 shifts, which p = 0.05 takes
+
+
 @dataclass(frozen=True)
 class StressRule:
     """A flag of correlations that have a stress mark.
@@ -61,6 +64,20 @@ class StressRule:
     def _raised(self, row: pd.Series[Any]) -> bool:
         cured = self.ranks_help and row.get("statistic") == "spearman"
         return self.name in str(row.get("stress") or "").split(", ") and not cured
+
+
+def _shifted(row: Any) -> str:
+    """What to do about oscillators: circular shifts keep their period whole, but take many frames."""
+    lag = int((row["frames"] / _SHIFTS_FOR_P - 1.0) // 2.0)
+    if lag < 1:
+        return (
+            "Surrogates by circular shift stand this, but need a longer movie; else compare cells: a true "
+            "correlation has the same lag in all of them."
+        )
+    return (
+        f"See what p by window cytodisk correlate … --null shift --max-lag {lag} gives: shifts keep the "
+        "oscillation whole. And compare cells: a true correlation has the same lag in all of them."
+    )
 
 
 def _rows(study: Study) -> Iterator[tuple[str, pd.Series[Any]]]:
@@ -107,7 +124,7 @@ steady_oscillation = StressRule(
     STEADY_OSCILLATION,
     "both series oscillate at one period in {count}",
     "Two oscillators of one period correlate at some lag, whether or not they have to do with each other.",
-    lambda row: "It is only evidence if many cells have it at the same lag: compare the lags of cells.",
+    lambda row: _shifted(row),
     lambda row: f"{row['line_share']:.0%} of the variance at a period of {row['line_period']:.3g} frames",
     ranks_help=False,
 )
