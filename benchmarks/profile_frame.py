@@ -68,6 +68,8 @@ FRAME_STAGES = (
     Stage("windows", "where parts of pixels lie", ("cytodisk.disk.disk_map:DiskMap.to_disk",)),
     Stage("windows", "weights", ("cytodisk.windows.weights:window_shares",)),
     Stage("sampling", "two channels", ("cytodisk.windows.sample:sample",)),
+    Stage("sampling", "depth of windows", ("cytodisk.windows.depths:window_depths",)),
+    Stage("sampling", "size of windows", ("cytodisk.windows.window_sizes:window_sizes",)),
     Stage("measures", "edge motion", ("cytodisk.motion.edge:edge_motion",)),
     Stage("measures", "distortion", ("cytodisk.disk.distortion:distortion_of",)),
     Stage("measures", "rows", ("cytodisk.runs.movie.measured_frame:measure_frame",)),

@@ -16,7 +16,11 @@ DEPTHS = ("depth", "depth_p5", "depth_p95")
 _PERCENTILES = (0.5, 0.05, 0.95)
 _BINS = 256  # between the least and the greatest depth of a window
 _NEAR_PX = 1.5  # deeper than this the distance is as good as linear within a pixel
-_BEND_PX = 0.25  # neighbours whose distance is so much less than it would be in a plane are looked at closely
+_BEND_PX = (
+    0.25  # where the neighbours' distances are so much less than in a plane, two parts of the edge meet
+)
+_DEEP_PX = 3.0  # for pixels deeper than this two places do
+_SPREAD = math.sqrt(1.0 / 12.0)  # standard deviation of a place in a pixel, along an axis
 _SPARSE = np.array([(-1.0, -3.0), (3.0, -1.0), (1.0, 3.0), (-3.0, 1.0)]) / 8.0  # a turned 2×2 lattice
 
 
@@ -31,7 +35,8 @@ def window_depths(
     pixels_yx : ndarray of shape (P, 2) and dtype int
         (row, column) of the mask's pixels in row-major order.
     subpixels : sequence of Subpixels
-        Of all these pixels. Where a pixel lies in one window as a whole, four places stand for its subpixels.
+        Of all these pixels. Where a pixel lies in one window as a whole, two or four places stand for its
+        subpixels.
     n_windows : int
 
     Returns
@@ -40,15 +45,16 @@ def window_depths(
         In pixels; NaN for a window without subpixels, and where the image shows no edge of the cell.
     """
     counts = np.zeros(n_windows, dtype=np.int64)
-    for some in subpixels:
-        _count(some.window, counts)
+    places = [pixels_yx[some.pixel] for some in subpixels]
+    for pixels, some in zip(places, subpixels, strict=True):
+        _count(pixels, some.window, distance.pixels, counts)
     start = np.concatenate([[0], np.cumsum(counts)])
     depth, weight = np.empty(start[-1], dtype=np.float32), np.empty(start[-1], dtype=np.float32)
     free = start[:-1].copy()
-    for some in subpixels:
+    for pixels, some in zip(places, subpixels, strict=True):
         per_side = math.isqrt(some.window.shape[1])
         _measure(
-            pixels_yx[some.pixel],
+            pixels,
             some.window,
             some.share,
             (_SPARSE, _lattice(per_side)),
@@ -79,13 +85,22 @@ def _whole(window: IntArray | Int32Array, pixel: int) -> bool:
 
 
 @njit(cache=True, error_model="numpy")
-def _count(window: IntArray | Int32Array, counts: IntArray) -> None:
+def _n_places(window: IntArray | Int32Array, pixel: int, depth: float) -> int:
+    """Number of places that stand for the subpixels of a pixel."""
+    if not _whole(window, pixel):
+        return int(window.shape[1])
+    return 2 if depth > _DEEP_PX else 4
+
+
+@njit(cache=True, error_model="numpy")
+def _count(pixels: IntArray, window: IntArray | Int32Array, distance: FloatArray, counts: IntArray) -> None:
     """Add the number of places in each window."""
     for pixel in range(window.shape[0]):
-        if _whole(window, pixel):
-            counts[window[pixel, 0]] += 4
+        n_places = _n_places(window, pixel, distance[pixels[pixel, 0] + 1, pixels[pixel, 1] + 1])
+        if n_places < window.shape[1]:
+            counts[window[pixel, 0]] += n_places
             continue
-        for place in range(window.shape[1]):
+        for place in range(n_places):
             if window[pixel, place] >= 0:
                 counts[window[pixel, place]] += 1
 
@@ -105,19 +120,24 @@ def _measure(
     sparse, lattice = lattices
     among = np.empty(MOST_AROUND, dtype=np.int64)
     for pixel in range(pixels.shape[0]):
-        row, column = pixels[pixel, 0], pixels[pixel, 1]
-        i = nearest[row + 1, column + 1]
-        if i < 0:
+        row, column = pixels[pixel, 0] + 1, pixels[pixel, 1] + 1
+        if nearest[row, column] < 0:
             continue
-        whole = _whole(window, pixel)
-        n_places = len(sparse) if whole else window.shape[1]
+        middle = distance[row, column]
+        n_places = _n_places(window, pixel, middle)
+        whole = n_places < window.shape[1]
         area = share[pixel] * (window.shape[1] / n_places)
-        middle = distance[row + 1, column + 1]
-        down, right = _away_from(row, column, edges, i, middle)
-        bent = _is_bent(row + 1, column + 1, down, right, distance)
+        down, right, bent = _slope(row, column, distance)
+        if n_places == 2 and not bent:  # as far from the middle as subpixels are on average
+            here = window[pixel, 0]
+            spread, first = _SPREAD * math.sqrt(down * down + right * right), free[here]
+            depth[first], depth[first + 1] = middle - spread, middle + spread
+            weight[first], weight[first + 1] = area, area
+            free[here] += 2
+            continue
         close = 0
         if bent or middle < _NEAR_PX:
-            close = edges_around(row + 1, column + 1, 1 if bent else 0, edge, among)
+            close = edges_around(row, column, 1 if bent else 0, edge, among)
         for place in range(n_places):
             here = window[pixel, place]
             if here < 0:
@@ -126,7 +146,7 @@ def _measure(
             if whole:
                 y, x = sparse[place, 0], sparse[place, 1]
             if close > 0:
-                found = depth_below(row + y, column + x, among, close, edges)
+                found = depth_below(row - 1 + y, column - 1 + x, among, close, edges)
             else:
                 found = middle + down * y + right * x
             depth[free[here]], weight[free[here]] = found, area
@@ -134,24 +154,12 @@ def _measure(
 
 
 @njit(cache=True, error_model="numpy")
-def _away_from(row: int, column: int, edges: FloatArray, i: int, away: float) -> tuple[float, float]:
-    """Direction from the nearest point of an edge to a pixel's centre, as a unit vector."""
-    dy, dx = row - edges[i, 0], column - edges[i, 1]
-    share = min(max((dy * edges[i, 2] + dx * edges[i, 3]) * edges[i, 4], 0.0), 1.0)
-    length = max(away, 1e-12)
-    return (dy - share * edges[i, 2]) / length, (dx - share * edges[i, 3]) / length
-
-
-@njit(cache=True, error_model="numpy")
-def _is_bent(row: int, column: int, down: float, right: float, distance: FloatArray) -> bool:
-    """Whether a pixel at the side is nearer to another part of the edge."""
-    least = distance[row, column] - _BEND_PX
-    return bool(
-        distance[row + 1, column] < least + down
-        or distance[row - 1, column] < least - down
-        or distance[row, column + 1] < least + right
-        or distance[row, column - 1] < least - right
-    )
+def _slope(row: int, column: int, distance: FloatArray) -> tuple[float, float, bool]:
+    """How the distance grows by row and by column, and whether it does not grow evenly."""
+    twice = 2.0 * distance[row, column] - _BEND_PX
+    above, below = distance[row - 1, column], distance[row + 1, column]
+    left, right = distance[row, column - 1], distance[row, column + 1]
+    return 0.5 * (below - above), 0.5 * (right - left), above + below < twice or left + right < twice
 
 
 @njit(cache=True, error_model="numpy")
