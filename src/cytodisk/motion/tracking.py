@@ -25,6 +25,7 @@ _LEAST_OVERLAP = 0.2  # of intersection and union, after registration, below whi
 _USUAL_TURN = math.radians(3.0)  # more in one frame must be seen from the last frame, too
 _LEAP = 3.0  # times the distance of the outlines, and
 _SLACK_PX = 4.0  # more, is as far as a point may move after registration
+_NEAR_PX = 1.0  # starts of the registration that lie nearer to each other are not compared
 _LEAST_GAP = 1e-6  # of the mean gap between neighbouring points, so that order is strict
 
 
@@ -178,6 +179,8 @@ def _rough_transform(contour: Contour, here: Contour, last: TrackedBoundary) -> 
     A thin cell that draws in an arm has its centroid elsewhere, and is where it was.
     """
     moved, stayed = first_transform(contour, here, last.transform.angle), last.transform
+    if np.linalg.norm(moved.shift - stayed.shift) < _NEAR_PX:
+        return moved
     return max(moved, stayed, key=lambda transform: _overlap(here, transform.of(contour)))
 
 
