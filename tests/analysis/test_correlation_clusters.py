@@ -92,7 +92,7 @@ def test_windows_are_averaged_around_the_edge_only() -> None:
 
 def test_a_weak_coupling_is_found_over_the_last_sector_at_its_lag() -> None:
     shares = []
-    for seed in range(1000, 1002):
+    for seed in range(1000, 1001):
         sectors = np.arange(32, 48) % 40
         a, b = coupled(seed, sectors)
         correlations = cd.cross_correlate(a, b, 8, surrogates=99, clusters=True)
@@ -128,9 +128,9 @@ def test_two_regions_are_two_clusters_with_their_signs_and_lags() -> None:
 
 @pytest.mark.parametrize("kind", ["white", "trend", "gaps"])
 def test_without_a_coupling_there_is_rarely_a_cluster(kind: str) -> None:
-    """Of 16 movies with 5 % false ones each, more than 4 come in 0.1 %."""
+    """Of 10 movies with 5 % false ones each, more than 3 come in 0.1 %."""
     false = 0
-    for seed in range(2000, 2016):
+    for seed in range(2000, 2010):
         a, b = cd.simulate.independent_series("white" if kind == "trend" else "smooth", seed, 50, 2, 16)
         if kind == "trend":
             a, b = (
@@ -143,7 +143,7 @@ def test_without_a_coupling_there_is_rarely_a_cluster(kind: str) -> None:
             a[:, 1, 4] = np.nan
         with pytest.warns(cd.errors.StationarityWarning) if kind == "trend" else nullcontext():
             false += clusters_of(a, b, seed=seed, surrogates=39).sizes["cluster"]
-    assert false <= 4
+    assert false <= 3
 
 
 def test_windows_without_values_are_in_no_cluster_and_part_of_the_edge_will_do() -> None:
