@@ -7,7 +7,7 @@ import tifffile
 from command_line import Run
 
 import cytodisk as cd
-from cytodisk.cli.flag_words import MOST_FLAGS, flag_lines
+from cytodisk.cli.flag_words import MOST_FLAGS, flag_lines, places_words
 from cytodisk.runs.batch import compute_input
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag
 
@@ -71,3 +71,8 @@ def test_many_flags_are_cut_short() -> None:
     assert lines[-1] == "… and 3 more QC flags: see the page"
     assert len(lines) == MOST_FLAGS + 1
     assert list(flag_lines([], "", {})) == ["no QC flags"]
+
+
+def test_a_long_note_ends_between_words() -> None:
+    words = places_words([Place(0, None, " ".join(["layer"] * 40))], {})
+    assert words == f"cell 0: {' '.join(['layer'] * 26)} …"

@@ -16,6 +16,8 @@ _MOST_CLUSTERS = 5  # of a cell that are listed
 
 def say_correlation(console: "Console", found: "Correlation") -> None:
     """Peaks by layer, and how many windows are significant."""
+    from cytodisk.runs.correlate.partial_words import without_words
+
     settings = found.settings
     console.print(
         f"signal {found.signal!r} with {found.with_}, {_of_what(settings)}lags to {settings['max_lag']} "
@@ -23,13 +25,12 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
         f"Positive lag: {_what_comes(found.with_)} after the signal; negative lag: before it"
     )
     layers, windows = found.layers, found.windows
-    outs = _regressed_out(found)
     for cell, rows in layers.groupby("cell"):
-        of_cell = windows[windows["cell"] == cell]
+        of_cell, without = windows[windows["cell"] == cell], without_words(found, int(str(cell)))
         console.print(f"cell {cell}, mean over sectors by layer:")
         for layer in rows.itertuples():
-            console.print(_layer_words(layer, of_cell[of_cell["layer"] == layer.layer], outs[cell]))
-        for words in _cluster_words(found, cell, outs[cell]):
+            console.print(_layer_words(layer, of_cell[of_cell["layer"] == layer.layer], without))
+        for words in _cluster_words(found, cell, without):
             console.print(words)
     for _, row in found.cells.iterrows():
         for words in _cautions(row, settings):
@@ -91,7 +92,7 @@ def _say_power(console: "Console", cells: Any, windows: Any) -> None:
         )
 
 
-def _cluster_words(found: "Correlation", cell: Any, out: str) -> Iterator[str]:
+def _cluster_words(found: "Correlation", cell: Any, without: str) -> Iterator[str]:
     """The clusters of a cell, the largest first."""
     if found.clusters is None:
         return
@@ -101,21 +102,20 @@ def _cluster_words(found: "Correlation", cell: Any, out: str) -> Iterator[str]:
         return
     yield f"cell {cell}, clusters of neighbouring windows, p <= 0.05 (their borders are not exact):"
     for one in clusters.head(_MOST_CLUSTERS).itertuples():
-        yield _cluster_line(one, found.with_, out)
+        yield _cluster_line(one, found.with_, without)
     if len(clusters) > _MOST_CLUSTERS:
         yield f"  and {len(clusters) - _MOST_CLUSTERS} smaller: clusters.parquet has them all"
 
 
-def _cluster_line(row: Any, with_: str, out: str) -> str:
+def _cluster_line(row: Any, with_: str, without: str) -> str:
     from cytodisk.runs.correlate.cluster_words import cluster_place
+    from cytodisk.runs.correlate.partial_words import region_left
 
-    partial = getattr(row, "p_partial", math.nan)
-    lost = ": it does not survive" if partial >= 0.05 else ""
-    without = f"; without {out} p = {partial:.2g}{lost}" if math.isfinite(partial) else ""
-    return (
+    words = (
         f"  {cluster_place(row)}: {_which_first(row.lag, with_)}, "
-        f"{row.correlation:+.2f} in {count(row.windows, 'window')}, p = {row.p:.2g}{without}"
+        f"{row.correlation:+.2f} in {count(row.windows, 'window')}, p = {row.p:.2g}"
     )
+    return "; ".join(filter(None, [words, region_left(row, without)]))
 
 
 def _which_first(lag: int, with_: str) -> str:
@@ -124,19 +124,7 @@ def _which_first(lag: int, with_: str) -> str:
     return f"{_what_comes(with_)} {'after' if lag > 0 else 'before'} the signal"
 
 
-def _regressed_out(found: "Correlation") -> dict[Any, str]:
-    """What was regressed out, by cell, in words."""
-    from cytodisk.runs.correlate.partial_words import regressed_out
-
-    rows = found.cells
-    reasons = rows["geometry_not_tested"] if "geometry_not_tested" in rows else [""] * len(rows)
-    return {
-        cell: regressed_out(found.settings, reason if isinstance(reason, str) else "")
-        for cell, reason in zip(rows["cell"], reasons, strict=True)
-    }
-
-
-def _layer_words(row: Any, windows: Any, out: str) -> str:
+def _layer_words(row: Any, windows: Any, without: str) -> str:
     layer = f"  layer {row.layer:>2}"
     if not math.isfinite(row.correlation):
         return f"{layer}  no correlation: too few frames, or a signal that does not vary"
@@ -146,11 +134,13 @@ def _layer_words(row: Any, windows: Any, out: str) -> str:
         return words
     share = (windows["q"] < 0.05).mean()
     words = f"{words}, q = {row.q:.2g}; q < 0.05 in {share:.0%} of its windows"
-    if not math.isfinite(getattr(row, "correlation_partial", math.nan)):
+    if not without:
         return words
+    if not math.isfinite(row.correlation_partial):
+        return f"{words}; {without} not known: too few frames"
     left = (windows["q_partial"] < 0.05).mean()
     lost = ": it does not survive" if row.geometry else ""
     return (
-        f"{words}; without {out} {row.correlation_partial:+.2f} at lag {row.lag_partial:+.0f}, "
+        f"{words}; {without} {row.correlation_partial:+.2f} at lag {row.lag_partial:+.0f}, "
         f"q = {row.q_partial:.2g}, {left:.0%} of its windows{lost}"
     )

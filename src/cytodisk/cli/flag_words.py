@@ -65,5 +65,7 @@ def places_words(places: Sequence["Place"], files: Mapping[int, str]) -> str:
 def _place(place: "Place", files: Mapping[int, str]) -> str:
     where = f"cell {place.cell}" + (f" of {files[place.cell]}" if place.cell in files else "")
     where += "" if place.frame is None else f", frame {place.frame}"
-    note = place.note if len(place.note) <= _LONGEST_NOTE else place.note[:_LONGEST_NOTE] + "…"
+    note = place.note
+    if len(note) > _LONGEST_NOTE:
+        note = note[:_LONGEST_NOTE].rpartition(" ")[0] + " …"
     return f"{where}: {note}" if note else where

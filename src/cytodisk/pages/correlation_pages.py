@@ -25,6 +25,7 @@ from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM, colour_bar
 from cytodisk.plot.time_axis import time_stamp
 from cytodisk.plot.time_raster import bar_beside, cut_off
 from cytodisk.runs.correlate.cluster_words import cluster_line
+from cytodisk.runs.correlate.partial_words import region_left, windows_lost
 
 _CURVE, _CURVE_GAP, _CURVE_LEFT = 17.0, 5.5, 14.0  # mm
 _PANEL, _PANEL_GAP, _TALLEST = 29.5, 4.0, 1.45  # mm, mm, height over width
@@ -108,7 +109,7 @@ def peaks_page(one: DrawnCorrelation) -> Sheet | None:
     key = peak_key(peaks)
     row = height + 9.0
     key_rows = -(-len(key) // 2)  # legends fill columns first: two of them
-    notes = _cluster_notes(one)
+    notes = _notes_on_peaks(one)
     sheet = Sheet(head + 2 * row + 7.5 + 4.0 * key_rows + _LINE * len(notes), SINGLE_COLUMN_MM)
     heading.write(sheet)
     lefts = (LEFT_MM, LEFT_MM + _PANEL + _PANEL_GAP)
@@ -131,10 +132,13 @@ def peaks_page(one: DrawnCorrelation) -> Sheet | None:
     return sheet
 
 
-def _cluster_notes(one: DrawnCorrelation) -> list[str]:
-    """The largest clusters with their places."""
-    rows = one.rows(one.correlation.clusters).head(_MOST_CLUSTERS).itertuples()
-    return [cluster_line(row).replace("-", "−") for row in rows]
+def _notes_on_peaks(one: DrawnCorrelation) -> list[str]:
+    """The largest clusters with their places, and what does not survive without the controls."""
+    without = one.partial_words
+    lines = []
+    for row in one.rows(one.correlation.clusters).head(_MOST_CLUSTERS).itertuples():
+        lines += [cluster_line(row).replace("-", "−"), region_left(row, without)]
+    return [line for line in (*lines, windows_lost(one.rows(one.correlation.windows), without)) if line]
 
 
 def pairs_page(one: DrawnCorrelation) -> Sheet | None:

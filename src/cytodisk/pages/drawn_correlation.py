@@ -15,8 +15,7 @@ from cytodisk.pages.drawn_movie import LEFT_MM, DrawnMovie
 from cytodisk.pages.settings_words import settings_words, used_windows
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.correlation.correlation_peaks import PeakMap
-from cytodisk.runs.correlate.partial_words import regressed_out
-from cytodisk.runs.qc_flags.geometry_flags import lost_layers
+from cytodisk.runs.correlate.partial_words import lost_rows, without_words
 from cytodisk.store.correlation_store import Correlation
 
 VELOCITY_NAMES = {"velocity": "velocity", "velocity_cell_frame": "velocity (cell frame)"}
@@ -84,16 +83,15 @@ class DrawnCorrelation:
     @property
     def partial_words(self) -> str:
         """What the partial correlation is, as "without geometry"; empty if there is none of this cell."""
-        rows = self.rows(self.correlation.cells)
         curves = self.rows(self.correlation.layer_curves)
         if "correlation_partial" not in curves or not curves["correlation_partial"].notna().any():
             return ""
-        return f"without {regressed_out(self.correlation.settings, str(rows['geometry_not_tested'].iloc[0]))}"
+        return without_words(self.correlation, self.cell)
 
     @property
     def lost(self) -> pd.Series[bool]:
         """Which layers do not survive once the controls are regressed out."""
-        return lost_layers(self.rows(self.correlation.layers))
+        return lost_rows(self.rows(self.correlation.layers))
 
     @cached_property
     def used(self) -> BoolArray:

@@ -33,7 +33,7 @@ def test_tables_become_arrays(plain: ShownCell) -> None:
 
 
 def test_the_largest_clusters_are_listed(study: Study, plain: ShownCell) -> None:
-    assert pairs_of(plain)[0][0]["clusters"] == []  # they were not looked for
+    assert pairs_of(plain)[0][0]["peak_notes"] == []  # they were not looked for
     row = {"cell": 0, "lag": -4, "lag_s": -20.0, "sign": 1, "correlation": 0.31, "windows": 30, "mass": 40.0}
     row |= {"p": 0.002, "layers": "0–2", "sectors": "50–5"}
     five = pd.DataFrame([row | {"cluster": number} for number in range(1, 6)])
@@ -44,8 +44,8 @@ def test_the_largest_clusters_are_listed(study: Study, plain: ShownCell) -> None
     ):
         write_correlation(study.path, NAMES[1], "velocity", correlated() | {"clusters": table}, {})
         (pair,), _ = pairs_of(plain)
-        assert pair["clusters"][0].startswith(expected[0])
-        assert len(pair["clusters"]) == min(max(len(table), 1), 4)
+        assert pair["peak_notes"][0].startswith(expected[0])
+        assert len(pair["peak_notes"]) == min(max(len(table), 1), 4)
 
 
 def test_variants_of_the_same_names_are_told_apart(study: Study, plain: ShownCell) -> None:

@@ -301,7 +301,9 @@ def test_correlation_of_some_sectors(browser: webdriver.Chrome, study: Study, tm
 def test_choices_change_what_is_drawn(page: Page) -> None:
     Select(page.control("layer")).select_by_value("2")
     page.settle()
-    assert page.text("activity-title") == f"mean {NAMES[0]}, layer 2"
+    deep = page.js("cytodisk.data.layer_depths[2]")
+    assert deep.endswith(" deep")
+    assert page.text("activity-title") == f"mean {NAMES[0]}, layer 2{deep}"
     shared = page.js("cytodisk.figures.activity.select('colours')[0].low")
     Select(page.control("colours")).select_by_value("layer")
     page.settle()

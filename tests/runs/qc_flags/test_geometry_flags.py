@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import pytest
 
-from cytodisk.runs.qc_flags import geometry_flags
+from cytodisk.runs.correlate.partial_words import lost_rows, region_left, windows_lost, without_words
 from cytodisk.runs.qc_flags.geometry_flags import geometry, geometry_not_tested
 
 
@@ -50,6 +51,45 @@ def test_nothing_is_lost_that_was_not_tested(change: str) -> None:
     assert notes == (["VASP with velocity: the signal is gone"] if change == "not tested" else [])
 
 
+def test_significant_layers_without_enough_frames_are_not_tested() -> None:
+    found = _Found()
+    found.layers = found.layers.assign(q=[0.01, 0.01], correlation_partial=[np.nan, 0.1])
+    (flag,) = geometry_not_tested(_Study(found))  # type: ignore[arg-type]
+    assert [place.note for place in flag.places] == ["VASP with velocity: too few frames in layer 0"]
+    found.layers = found.layers.assign(q=[0.2, 0.01])
+    assert not list(geometry_not_tested(_Study(found)))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("geometry", "not_tested", "control", "words"),
+    [
+        (True, "", (), "without geometry"),
+        (True, "", ("volume", "actin"), "without geometry, volume and actin"),
+        (True, "the signal is gone", ("volume",), "without volume"),
+        (True, None, (), ""),
+        (False, "", (), ""),
+    ],
+)
+def test_what_was_regressed_out_in_words(
+    geometry: bool, not_tested: Any, control: tuple[str, ...], words: str
+) -> None:
+    found: Any = _Found(not_tested, geometry)
+    found.settings["control"] = control
+    assert without_words(found, 0) == words
+
+
+def test_what_is_left_of_clusters_and_windows_in_words() -> None:
+    kept, lost = _Found().clusters.assign(p_partial=[0.05, 0.051]).itertuples()
+    assert region_left(kept, "without volume") == "without volume p = 0.05"
+    assert region_left(lost, "without volume") == "without volume p = 0.051: it does not survive"
+    assert region_left(pd.DataFrame({"p": [0.01]}), "") == ""
+    windows = pd.DataFrame({"q": [0.01, 0.02, 0.3], "geometry": [True, False, False]})
+    assert windows_lost(windows, "without volume") == (
+        "1 of 2 windows with q < 0.05 do not survive without volume"
+    )
+    assert windows_lost(windows[1:], "without volume") == ""
+
+
 def test_without_surrogates_nothing_is_lost() -> None:
     layers = pd.DataFrame({"layer": [0, 1]})
-    assert not geometry_flags.lost_layers(layers).any()
+    assert not lost_rows(layers).any()

@@ -14,7 +14,7 @@ from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_names import differences, labels_of
 from cytodisk.runs.channel_names import correlation_name, shown_name
 from cytodisk.runs.correlate.cluster_words import cluster_line
-from cytodisk.runs.correlate.partial_words import regressed_out
+from cytodisk.runs.correlate.partial_words import region_left, windows_lost, without_words
 from cytodisk.store.correlation_store import Correlation
 
 MOST_CURVE_NUMBERS = 900_000
@@ -73,23 +73,14 @@ def _pair(cell: ShownCell, found: Correlation, with_curves: bool) -> dict[str, A
         "signal": shown_name(found.signal),
         "with": shown_name(found.with_),
         "lags": lags.tolist(),
-        "clusters": _clusters(cell, found),
+        "peak_notes": [*_clusters(cell, found), *_lost(cell, found)],
         "windows": {name: pack_floats(_grid(cell, windows, name)) for name in _PEAK},
         "curves": None if curves is None else dict(_curves(cell, curves, lags)),
         "layers": {name: pack_floats(_layer(cell, layers, name)) for name in _LAYER_PEAK},
         "layer_curves": pack_floats(_curve(cell, layer_curves, "correlation", lags)),
         "layer_partial": pack_floats(_curve(cell, layer_curves, "correlation_partial", lags)),
-        "without": partial_words(cell, found),
+        "without": without_words(found, cell.cell),
     }
-
-
-def partial_words(cell: ShownCell, found: Correlation) -> str:
-    """What the partial correlation is, as "without geometry"; empty if there is none of the cell."""
-    rows = _of(cell, found.cells)
-    if "geometry_not_tested" not in rows or not len(rows):
-        return ""
-    words = regressed_out(found.settings, str(rows["geometry_not_tested"].iloc[0] or ""))
-    return f"without {words}" if words else ""
 
 
 def _curves(cell: ShownCell, curves: pd.DataFrame, lags: Any) -> Iterator[tuple[str, Any]]:
@@ -104,9 +95,18 @@ def _clusters(cell: ShownCell, found: Correlation) -> list[str]:
     clusters = _of(cell, found.clusters)
     if clusters.empty:
         return ["no cluster of neighbouring windows with p ≤ 0.05"]
-    rows = list(clusters.itertuples())
-    lines = [cluster_line(row).replace("-", "−") for row in rows[:MOST_CLUSTERS]]
-    return [*lines, f"and {len(rows) - MOST_CLUSTERS} smaller"] if len(rows) > MOST_CLUSTERS else lines
+    without = without_words(found, cell.cell)
+    told = list(clusters.head(MOST_CLUSTERS).itertuples())
+    parts = [(cluster_line(row).replace("-", "−"), region_left(row, without)) for row in told]
+    lines = ["; ".join(filter(None, part)) for part in parts]
+    more = len(clusters) - len(told)
+    return [*lines, f"and {more} smaller"] if more else lines
+
+
+def _lost(cell: ShownCell, found: Correlation) -> list[str]:
+    """How many windows do not survive without the controls, in words; nothing if all do."""
+    words = windows_lost(_of(cell, found.windows), without_words(found, cell.cell))
+    return [words] if words else []
 
 
 def _of(cell: ShownCell, table: pd.DataFrame) -> pd.DataFrame:

@@ -1,28 +1,88 @@
-"""What was regressed out of a correlation, in words."""
+"""What was regressed out of a correlation, and what that left, in words."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
+import pandas as pd
+
 from cytodisk.runs.channel_names import shown_name
+from cytodisk.runs.correlate.partial_correlation import SIGNIFICANT
+from cytodisk.store.correlation_store import Correlation
 
 
-def regressed_out(settings: Mapping[str, Any], not_tested: str = "") -> str:
-    """What was regressed out of the signals.
+def without_words(found: Correlation, cell: int) -> str:
+    """What was regressed out of a cell's signals.
 
     Parameters
     ----------
-    settings : dict
-        Of a study's correlation.
-    not_tested : str
-        Why geometry is not among it; empty if it is.
+    found : Correlation
+    cell : int
 
     Returns
     -------
     str
-        As "geometry and volume"; empty for nothing.
+        As "without geometry and volume"; empty for nothing.
     """
-    names = ["geometry"] if settings.get("geometry") and not not_tested else []
-    names += [shown_name(name) for name in settings.get("control") or ()]
-    return " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+    settings, cells = found.settings, found.cells
+    names = [shown_name(name) for name in settings.get("control") or ()]
+    if settings.get("geometry") and "geometry_not_tested" in cells:
+        reasons = cells.loc[cells["cell"] == cell, "geometry_not_tested"]
+        names = ["geometry"] * bool((reasons == "").any()) + names
+    words = " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+    return f"without {words}" if words else ""
+
+
+def lost_rows(rows: pd.DataFrame) -> pd.Series[bool]:
+    """Which rows of a table of layers, or of windows, do not survive; none without surrogates."""
+    if "geometry" not in rows:
+        return pd.Series(False, index=rows.index)
+    return rows["geometry"].fillna(False).astype(bool)
+
+
+def region_lost(p_partial: Any) -> Any:
+    """Whether a cluster does not survive: those that are told all have p <= 0.05; False where it is NaN."""
+    return p_partial > SIGNIFICANT
+
+
+def region_left(row: Any, without: str) -> str:
+    """How significant a cluster is once the controls are regressed out.
+
+    Parameters
+    ----------
+    row : object
+        A row of the table of clusters, as of `itertuples`.
+    without : str
+        Of `without_words`.
+
+    Returns
+    -------
+    str
+        As "without geometry p = 0.4: it does not survive"; empty where that is not known.
+    """
+    p = getattr(row, "p_partial", None)
+    if p is None or pd.isna(p):
+        return ""
+    return f"{without} p = {p:.2g}{': it does not survive' if region_lost(p) else ''}"
+
+
+def windows_lost(windows: pd.DataFrame, without: str) -> str:
+    """How many windows of a cell do not survive.
+
+    Parameters
+    ----------
+    windows : DataFrame
+        Its rows of the table of windows.
+    without : str
+        Of `without_words`.
+
+    Returns
+    -------
+    str
+        As "12 of 61 windows with q < 0.05 do not survive without geometry"; empty if all do.
+    """
+    lost = int(lost_rows(windows).sum())
+    if not lost:
+        return ""
+    found = int((windows["q"] < SIGNIFICANT).sum())
+    return f"{lost} of {found} windows with q < {SIGNIFICANT:g} do not survive {without}"

@@ -8,6 +8,7 @@ import pandas as pd
 
 from cytodisk.runs.channel_names import correlation_name
 from cytodisk.runs.correlate.partial_correlation import SIGNIFICANT
+from cytodisk.runs.correlate.partial_words import lost_rows, region_lost
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted
 from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.study import Study
@@ -34,12 +35,12 @@ def geometry(study: Study) -> Iterator[QCFlag]:
 
 
 def geometry_not_tested(study: Study) -> Iterator[QCFlag]:
-    """Correlations for which geometry could not be regressed out."""
+    """Correlations for which geometry could not be regressed out, or not where they are significant."""
     places = [
-        Place(int(row.cell), None, f"{name}: {row['geometry_not_tested']}")
+        Place(int(row.cell), None, f"{name}: {why}")
         for name, found in _tested(study)
         for _, row in found.cells.iterrows()
-        if row["status"] == "ok" and row["geometry_not_tested"]
+        if row["status"] == "ok" and (why := row["geometry_not_tested"] or _unknown(found, int(row.cell)))
     ]
     if places:
         yield QCFlag(
@@ -52,22 +53,25 @@ def geometry_not_tested(study: Study) -> Iterator[QCFlag]:
         )
 
 
-def lost_layers(layers: pd.DataFrame) -> pd.Series[bool]:
-    """Which rows of a table of layers, or of windows, do not survive; none without surrogates."""
-    if "geometry" not in layers:
-        return pd.Series(False, index=layers.index)
-    return layers["geometry"].fillna(False).astype(bool)
-
-
 def _lost(found: Correlation, cell: int) -> str:
     """Layers and clusters of a cell that do not survive, in words; empty for none."""
-    layers = found.layers[(found.layers["cell"] == cell) & lost_layers(found.layers)]
+    layers = found.layers[(found.layers["cell"] == cell) & lost_rows(found.layers)]
     words = [_layers(layers)] if len(layers) else []
     if found.clusters is not None and "p_partial" in found.clusters:
         of_cell = found.clusters[found.clusters["cell"] == cell]
-        lost = of_cell[of_cell["p_partial"] > SIGNIFICANT]  # those in the table all have p <= 0.05
+        lost = of_cell[region_lost(of_cell["p_partial"])]
         words += [f"cluster {number}" for number in lost["cluster"]]
     return ", ".join(words)
+
+
+def _unknown(found: Correlation, cell: int) -> str:
+    """Significant layers of a cell of which no window has enough frames, in words; empty for none."""
+    layers = found.layers
+    if "q" not in layers or "correlation_partial" not in layers:
+        return ""
+    unknown = (layers["cell"] == cell) & (layers["q"] < SIGNIFICANT) & layers["correlation_partial"].isna()
+    names = ", ".join(f"layer {layer}" for layer in layers.loc[unknown, "layer"])
+    return f"too few frames in {names}" if names else ""
 
 
 def _layers(lost: pd.DataFrame) -> str:

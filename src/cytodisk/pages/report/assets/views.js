@@ -135,7 +135,7 @@
   const largest = (values) => values.reduce((top, value) => Math.max(top, Math.abs(value) || 0), 0);
 
   const drawPeaks = () => {
-    const { windows, lags, signal, with: other, differs, label, clusters } = page.pair();
+    const { windows, lags, signal, with: other, differs, label, peak_notes: notes } = page.pair();
     const { peak } = page.state;
     const lagged = peak === "lag";
     const values = windows[peak].values.map((value) => value * (lagged ? page.lagScale() : 1));
@@ -149,7 +149,7 @@
     const missing = !windows.correlation.values.every(Number.isFinite);
     const key = tested ? "hatched: not significant (q ≥ 0.05)" : "significance was not computed";
     text("peaks-key", missing ? `${key}; grey: not correlated` : key);
-    text("clusters", clusters.join("\n"));
+    text("peak-notes", notes.join("\n"));
     text("peaks-name", lagged ? "Lag of the peak" : "Peak correlation");
     document.getElementById("pair").title = label; // which may be longer than the list is wide
     for (const name of ["peaks", "curve"]) {
