@@ -89,14 +89,16 @@ class SkipLagsParameters(Parameters):
     )
 
 
+CLUSTERS = (
+    "Also find clusters: neighbouring windows that agree at a lag. They need surrogates, of which 499 at "
+    "most are used."
+)
+
+
 class ClusterParameters(Parameters):
     """Whether neighbouring windows are tested together."""
 
-    clusters: bool = parameter(
-        False,
-        "Also find clusters: neighbouring windows that agree at a lag. They need surrogates, of which 499 at "
-        "most are used.",
-    )
+    clusters: bool = parameter(False, CLUSTERS)
 
 
 class CrossCorrelationParameters(

@@ -5,6 +5,7 @@ from typing import Literal
 from pydantic import field_validator
 
 from cytodisk.analysis.correlation.correlation_parameters import (
+    CLUSTERS,
     PairCorrelationParameters,
     PeakParameters,
     SkipLagsParameters,
@@ -46,11 +47,7 @@ class CorrelateParameters(PeakParameters, SkipLagsParameters, PairCorrelationPar
         "Channels that are regressed out too, window by window, such as a volume marker.",
         words="names of channels with commas between",
     )
-    clusters: bool = parameter(
-        True,
-        "Also find clusters: neighbouring windows that agree at a lag. They need surrogates, of which 499 at "
-        "most are used.",
-    )
+    clusters: bool = parameter(True, CLUSTERS)
     pairs: bool = parameter(
         False, "Also correlate every window of one signal with every window of the other, by distance."
     )

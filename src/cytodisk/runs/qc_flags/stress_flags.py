@@ -20,8 +20,6 @@ from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted
 from cytodisk.store.study import Study
 
 _TRUE_TOO = " A true signal can do this, too: the flag says that p is too small, not that nothing is there."
-
-
 _SHIFTS_FOR_P = 21.0  # runs of 2 max_lag + 1 frames that leave 19 shifts, which p = 0.05 takes
 
 
@@ -91,9 +89,9 @@ def _rows(study: Study) -> Iterator[tuple[str, pd.Series[Any]]]:
 
 common_pulse = StressRule(
     COMMON_PULSE,
-    "three frames make much of {count}",
-    "Signal and edge leap in the same few frames, in many windows at once, as after a jolt, a change of "
-    "focus or one fast move: these frames outweigh all others.",
+    "three frames outweigh all others in {count}",
+    "Both series leap in the same few frames, in many windows at once, as after a jolt, a change of focus or "
+    "one fast move of the cell.",
     lambda row: (
         f"See what cytodisk correlate … --without-frames {row['pulse_frames']} says, and "
         "--statistic spearman."
@@ -103,8 +101,8 @@ common_pulse = StressRule(
 restless_episode = StressRule(
     RESTLESS_EPISODE,
     "both series vary most in one episode in {count}",
-    "While a cell is restless, edge and signal both vary more, whatever one has to do with the other: the "
-    "episode counts as a few observations, p counts all frames.",
+    "While a cell is restless, both series vary more, whatever one has to do with the other: the episode "
+    "counts as a few observations, p counts all frames.",
     lambda row: (
         "See what cytodisk correlate … --statistic spearman says, and --frames with the calm part alone."
     ),
@@ -124,7 +122,7 @@ steady_oscillation = StressRule(
     STEADY_OSCILLATION,
     "both series oscillate at one period in {count}",
     "Two oscillators of one period correlate at some lag, whether or not they have to do with each other.",
-    lambda row: _shifted(row),
+    _shifted,
     lambda row: f"{row['line_share']:.0%} of the variance at a period of {row['line_period']:.3g} frames",
     ranks_help=False,
 )
