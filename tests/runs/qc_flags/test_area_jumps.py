@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cytodisk.runs.qc_flags.area_jumps import leaps
+from cytodisk.runs.qc_flags.area_jumps import leaps, without_returns
 
 FRAMES = 60
 AT = [12, 25, 41]
@@ -51,6 +51,17 @@ def test_leaps_close_together() -> None:
     for at, share in zip(range(20, 26), (0.1, -0.09, 0.12, 0.1, -0.15, -0.08), strict=True):
         step[at] = np.log1p(share)
     assert leaps(step) == [20, 21, 22, 23, 24, 25]
+
+
+def test_a_mask_that_is_right_again_is_not_named() -> None:
+    step = np.zeros(30)
+    step[[5, 6]] = 0.12, -0.11  # one wrong mask
+    step[[10, 14]] = -0.2, 0.2  # four wrong masks
+    step[[20, 21]] = 0.1, 0.1  # a mask that takes two steps
+    step[[25, 26]] = 0.2, -0.08  # only a part of it goes back
+    found = leaps(step)
+    assert found == [5, 6, 10, 14, 20, 21, 25, 26]
+    assert without_returns(found, step) == [5, 10, 14, 20, 21, 25, 26]
 
 
 def test_a_gap_and_a_short_movie() -> None:

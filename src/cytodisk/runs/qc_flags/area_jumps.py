@@ -17,6 +17,7 @@ AREA_STEP_SPREADS = 5.0
 
 _NEAR = 3  # steps before and after that tell the trend of a step
 _FEWEST_NEAR = 3
+_BACK = 0.5  # of a leap that may be left when the next step has taken it back
 _QUIET_SHARE = 0.4  # of steps that tell the spread: leaps are among the others
 _QUIET_SDS = 0.5244  # standard deviations that so many of a normal distribution stay below
 
@@ -31,7 +32,7 @@ def area_jumps(study: Study) -> Iterator[QCFlag]:
         step = np.where(np.diff(frame) == 1, np.diff(np.log(area)), np.nan)
         places += [
             Place(int(str(cell)), int(frame[k + 1]), f"{np.expm1(step[k]):+.0%}".replace("-", "−"))
-            for k in leaps(step)
+            for k in without_returns(leaps(step), step)
         ]
     if places:
         yield QCFlag(
@@ -65,6 +66,28 @@ def leaps(step: FloatArray) -> list[int]:
     spread = float(np.quantile(known, _QUIET_SHARE)) / _QUIET_SDS
     bar = max(float(np.log1p(LARGEST_AREA_STEP)), AREA_STEP_SPREADS * spread)
     return [int(k) for k in np.flatnonzero(np.minimum(off, np.abs(step)) > bar)]
+
+
+def without_returns(found: list[int], step: FloatArray) -> list[int]:
+    """Leaps without those that take back the one before: the mask is right again then.
+
+    Parameters
+    ----------
+    found : list of int
+        Of `leaps`.
+    step : ndarray of shape (T - 1,) and dtype float
+
+    Returns
+    -------
+    list of int
+    """
+    own = step - _trend(step)
+    kept: list[int] = []
+    for k in found:
+        after_leap = bool(kept) and kept[-1] == k - 1
+        if not (after_leap and abs(own[k - 1] + own[k]) < _BACK * abs(own[k - 1])):
+            kept.append(k)
+    return kept
 
 
 def _trend(step: FloatArray) -> FloatArray:
