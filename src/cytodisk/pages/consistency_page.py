@@ -112,7 +112,7 @@ def _by_frame(movie: DrawnMovie, rows: pd.DataFrame, name: str) -> xr.DataArray:
 
 
 def _write_key(sheet: Sheet, layers: Sequence[int], movie: DrawnMovie) -> None:
-    names = layer_names(layers, movie.grid.layers, movie.activity["depth"])
+    names = layer_names(layers, movie.grid.layers, movie.depths)
     colours = layer_colours(layers)
     handles = [
         Line2D([], [], color=colour, linewidth=1.5, label=name)

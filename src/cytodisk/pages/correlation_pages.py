@@ -61,7 +61,7 @@ def curves_page(one: DrawnCorrelation) -> Sheet | None:
         peaks=one.correlation.layers,
         signal=one.first_names[0],
         with_=one.first_names[1],
-        depths=one.movie.activity["depth"],
+        depths=one.movie.depths,
     )
     chance = "threshold" in curves and bool(curves["threshold"].notna().any())
     key = curve_key(chance=chance, partial=one.partial_words, lost=bool(one.lost.any()))

@@ -34,6 +34,14 @@ class MovieCell:
         """The signal and the edge in all frames, dims (time, channel, layer, sector)."""
         return self.study.activity(self.cell)
 
+    @property
+    def depths(self) -> xr.DataArray:
+        """Depth of the windows in all frames; NaN in a study that was made before windows had one."""
+        if "depth" in self.activity:
+            return self.activity["depth"]
+        unknown = xr.full_like(self.activity["area"], np.nan)
+        return unknown.assign_attrs(units=self.scale.length_unit)
+
     @cached_property
     def maps(self) -> DiskMovie:
         """Maps by number of the frame: frame 0 is the recording's, also if the cell enters later."""

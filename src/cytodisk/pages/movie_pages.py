@@ -147,7 +147,7 @@ def _activity_sheet(movie: DrawnMovie, channel: int) -> Sheet:
         movie.activity["velocity"],
         label=f"mean {name}",
         scale=movie.scale,
-        depths=movie.activity["depth"],
+        depths=movie.depths,
     )
     return sheet
 

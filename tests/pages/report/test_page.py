@@ -15,6 +15,7 @@ from cytodisk.errors import MissingPartError, ParameterError, SignalError, Study
 from cytodisk.images.frames import open_frames
 from cytodisk.pages.report import page
 from cytodisk.pages.report.page import page_flags, write_report
+from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_study import movie_study
@@ -207,3 +208,15 @@ def test_flags_of_a_run_name_its_gap_first(study: Study) -> None:
     assert first.name in ("refused frames", "missing frames")
     assert [(place.cell, place.frame) for place in first.places] == [(0, GAP)]
     assert all(place.frame is None or place.frame < FRAMES for flag in others for place in flag.places)
+
+
+def test_study_that_was_made_before_windows_had_a_depth(
+    study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = Study.activity
+    depths = ["depth", "depth_p5", "depth_p95"]
+    monkeypatch.setattr(Study, "activity", lambda self, cell=0: whole(self, cell).drop_vars(depths))
+    assert write_report(study, tmp_path / "old.html").stat().st_size > 100_000
+    shown = ShownCell(study, 0).as_json()
+    assert set(shown["layer_depths"]) == {""}
+    assert shown["units"]["depth"] == study.scale.length_unit

@@ -86,19 +86,23 @@ class ShownCell(MovieCell):
             "layers": self.grid.layers,
             "sectors": self.grid.sectors,
             "radii": self.disk_grid.radii.tolist(),
-            "units": {name: self.unit(name) for name in ("area", "depth", "velocity")},
+            "units": {
+                "area": self.unit("area"),
+                "depth": self.depths.attrs["units"],
+                "velocity": self.unit("velocity"),
+            },
             "channels": list(self._channels()),
             "velocity": pack_floats(self.shown["velocity"]),
             "velocity_error": pack_floats(self.shown["velocity_error"]),
             "area": pack_floats(self.shown["area"]),
-            "depth": pack_floats(self.shown["depth"]),
+            "depth": pack_floats(self.depths.isel(time=slice(None, None, self.every))),
             "layer_depths": self.layer_depths,
         }
 
     @property
     def layer_depths(self) -> list[str]:
         """How deep each layer lies in the median, in words as ", 0.4 µm deep"."""
-        depths = self.activity["depth"]
+        depths = self.depths
         return [depth_words(float(depth), depths) for depth in depths.median(("time", "sector"))]
 
     @cached_property
