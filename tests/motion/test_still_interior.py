@@ -123,6 +123,11 @@ def test_the_fade_needs_a_scale_and_a_still_interior() -> None:
         cd.map_movie(masks, fade_um=1.0, pixel_size_um=0.1)
     with pytest.raises(ParameterError, match='interior "still" needs method "newton", got \'harmonic\''):
         cd.map_movie(masks, interior="still", method="harmonic")
+    with pytest.raises(
+        ParameterError, match=r"fade_um must be at least the side of a pixel, 0.1 µm, got 0.05"
+    ):
+        cd.map_movie(masks, interior="still", fade_um=0.05, pixel_size_um=0.1)
+    assert fade_in_px(STILL.changed(fade_um=0.3), Scale(0.3)) == pytest.approx(1.0)
     assert fade_in_px(STILL, Scale()) == FADE_PX
     assert fade_in_px(STILL.changed(fade_um=1.5), Scale(0.1)) == pytest.approx(15.0)
 

@@ -20,6 +20,7 @@ from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.scale import Scale
 
 FADE_PX = 4.0
+_LEAST_FADE_PX = 1.0 - 1e-9  # the mesh shows no shorter one, and the edge would move in ever more steps
 _LONGEST_STEP = 0.5  # of the fade: how far the edge moves at once
 _MOST_AWAY = 0.01  # of the diameter: places farther from the last map than that have lost it
 _PULL = 1e5  # towards the carried places
@@ -49,8 +50,8 @@ def fade_in_px(settings: MovieSettings, scale: Scale) -> float:
     Raises
     ------
     ParameterError
-        `fade_um` is given, but not the size of a pixel, or not interior "still"; or the method relaxes no
-        interior.
+        `fade_um` is given, but not the size of a pixel, or not interior "still"; it is less than a pixel; or
+        the method relaxes no interior.
     """
     if settings.interior == "area":
         if settings.fade_um is not None:
@@ -62,7 +63,13 @@ def fade_in_px(settings: MovieSettings, scale: Scale) -> float:
         return FADE_PX
     if scale.pixel_size_um is None:
         raise ParameterError("fade_um needs a pixel size: pass it as --pixel-size (pixel_size_um=…)")
-    return settings.fade_um / scale.pixel_size_um
+    fade_px = settings.fade_um / scale.pixel_size_um
+    if fade_px < _LEAST_FADE_PX:
+        raise ParameterError(
+            f"fade_um must be at least the side of a pixel, {scale.pixel_size_um:g} µm, got "
+            f"{settings.fade_um:g}"
+        )
+    return fade_px
 
 
 def still_map(

@@ -72,7 +72,8 @@ class InteriorParameters(Parameters):
     )
     fade_um: float | None = parameter(
         None,
-        'For interior "still": depth over which the motion of the edge fades; without it 4 px.',
+        'For interior "still": depth over which the motion of the edge fades, at least a pixel; without it '
+        "4 px.",
         above=0,
         unit="µm",
     )

@@ -126,7 +126,6 @@ def open_movie(
     """
     files = open_movie_files(masks, signal, parameters)
     mask_file, scale = files.masks, files.scale
-    fade_in_px(parameters.part(MovieSettings), scale)
     look = look_at(mask_file, parameters.kind)
     tracks = tuple(list_tracks(mask_file, look, parameters.link))
     grid = polar_grid(parameters.part(PolarGridParameters))
@@ -168,6 +167,7 @@ def open_movie_files(
         parameters.pixel_size_um or agreed(opened, "pixel_size_um"),
         parameters.frame_interval_s or agreed(opened, "frame_interval_s"),
     )
+    fade_in_px(parameters.part(MovieSettings), scale)
     return MovieFiles(mask_file, signal_file, scale)
 
 
