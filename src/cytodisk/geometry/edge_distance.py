@@ -35,11 +35,23 @@ class EdgeDistance:
     outline_yx: FloatArray
 
     @cached_property
+    def box(self) -> tuple[slice, slice]:
+        """Rows and columns of the image that hold the cell, and the one beside them if there is one."""
+        held = (np.flatnonzero(self.mask.any(axis=axis)) for axis in (1, 0))
+        rows, columns = (slice(max(int(some[0]) - 1, 0), int(some[-1]) + 2) for some in held)
+        return rows, columns
+
+    @cached_property
+    def corner(self) -> IntArray:
+        """First row and column of the box."""
+        return np.array([part.start for part in self.box])
+
+    @cached_property
     def edges(self) -> FloatArray:
-        """Start, direction and 1 / length² of each edge of the outline, shape (B, 5)."""
+        """Start in the box, direction and 1 / length² of each edge of the outline, shape (B, 5)."""
         along = np.roll(self.outline_yx, -1, axis=0) - self.outline_yx
         squared = np.maximum((along * along).sum(axis=1), 1e-300)
-        return np.column_stack([self.outline_yx, along, 1.0 / squared])
+        return np.column_stack([self.outline_yx - self.corner, along, 1.0 / squared])
 
     @cached_property
     def counts(self) -> BoolArray:
@@ -49,7 +61,7 @@ class EdgeDistance:
 
     @property
     def nearest(self) -> Int32Array:
-        """Nearest edge of each pixel of the mask, shape (H + 2, W + 2), a margin of one pixel around; or -1.
+        """Nearest edge of each pixel of the cell, in the box with a margin of one pixel around; or -1.
 
         Pixels outside have one if they are next to an edge.
         """
@@ -62,14 +74,12 @@ class EdgeDistance:
 
     @property
     def arrays(self) -> Edge:
-        """All of it, for kernels."""
+        """All of it, for kernels, which count rows and columns from the corner."""
         return (*self._by_pixel, self.edges, self.counts)
 
     @cached_property
     def _by_pixel(self) -> tuple[Int32Array, FloatArray]:
-        rows, columns = (np.flatnonzero(self.mask.any(axis=axis)) for axis in (1, 0))
-        box = (int(rows[0]), int(rows[-1]) + 3, int(columns[0]), int(columns[-1]) + 3)
-        return _nearest_edges(np.pad(self.mask, 1), np.array(box), self.edges, self.counts)
+        return _nearest_edges(np.pad(self.mask[self.box], 1), self.edges, self.counts)
 
     def at(self, points_yx: FloatArray) -> FloatArray:
         """Distance to the edge of some places, 0 outside; infinite if the image shows no edge of the cell.
@@ -85,7 +95,7 @@ class EdgeDistance:
             In pixels; exact but for places between parts of the edge that are equally near, where it can be
             0.4 px too long.
         """
-        flat = np.ascontiguousarray(points_yx.reshape(-1, 2))
+        flat = points_yx.reshape(-1, 2) - self.corner
         return _depths(flat, self.arrays).reshape(points_yx.shape[:-1])
 
 
@@ -170,25 +180,23 @@ def _depths(points: FloatArray, edge: Edge) -> FloatArray:
 
 
 @njit(cache=True, error_model="numpy")
-def _nearest_edges(
-    inside: BoolArray, box: IntArray, edges: FloatArray, counts: BoolArray
-) -> tuple[Int32Array, FloatArray]:
+def _nearest_edges(inside: BoolArray, edges: FloatArray, counts: BoolArray) -> tuple[Int32Array, FloatArray]:
     """From the nearest pixel outside to the edge before it, and from there along the outline."""
-    top, bottom, left, right = box
+    height, width = inside.shape
     nearest, distance = _around_edges(inside.shape, edges, counts)
-    above = _outside_in_column(inside, box)
-    lowest = np.empty(right - left, dtype=np.int64)  # columns whose parabolas make up the lower envelope
-    begin = np.empty(right - left + 1)  # and where each of them begins
-    for row in range(top + 1, bottom - 1):
-        count = _envelope(row, above[row - top], lowest, begin)
+    outside = _outside_in_column(inside)
+    lowest = np.empty(width, dtype=np.int64)  # columns whose parabolas make up the lower envelope
+    begin = np.empty(width + 1)  # and where each of them begins
+    for row in range(1, height - 1):
+        count = _envelope(row, outside[row], lowest, begin)
         place = 0
-        for column in range(left + 1, right - 1):
-            while place < count - 1 and begin[place + 1] < column - left:
+        for column in range(1, width - 1):
+            while place < count - 1 and begin[place + 1] < column:
                 place += 1
             if not inside[row, column] or count == 0:
                 continue
-            down = above[row - top, lowest[place]] - row
-            aside = lowest[place] + left - column
+            down = outside[row, lowest[place]] - row
+            aside = lowest[place] - column
             steps = max(abs(down), abs(aside))
             before = (steps - 1.0) / steps  # of the way from here to that pixel
             y, x, found = row - 1.0, column - 1.0, nearest[row, column]
@@ -259,25 +267,21 @@ def _around_edges(
 
 
 @njit(cache=True, error_model="numpy")
-def _outside_in_column(inside: BoolArray, box: IntArray) -> IntArray:
-    """Nearest row of each pixel's column, within a box, that is outside of the mask; -1 if there is none.
+def _outside_in_column(inside: BoolArray) -> IntArray:
+    """Nearest row of each pixel's column that is outside of the mask, in its shape; -1 if there is none.
 
-    The margin around the image is no part of it.
+    The margin is no part of the image.
     """
-    top, bottom, left, right = box
     height, width = inside.shape
-    found = np.full((bottom - top, right - left), -1, dtype=np.int64)
-    for row in range(max(top, 1), min(bottom, height - 1)):
-        for column in range(max(left, 1), min(right, width - 1)):
-            if not inside[row, column]:
-                found[row - top, column - left] = row
-            elif row > top:
-                found[row - top, column - left] = found[row - top - 1, column - left]
-    for row in range(min(bottom, height - 1) - 2, max(top, 1) - 1, -1):
-        for column in range(max(left, 1), min(right, width - 1)):
-            below, own = found[row - top + 1, column - left], found[row - top, column - left]
+    found = np.full(inside.shape, -1, dtype=np.int64)
+    for row in range(1, height - 1):
+        for column in range(1, width - 1):
+            found[row, column] = found[row - 1, column] if inside[row, column] else row
+    for row in range(height - 3, 0, -1):
+        for column in range(1, width - 1):
+            below, own = found[row + 1, column], found[row, column]
             if below >= 0 and (own < 0 or below - row < row - own):
-                found[row - top, column - left] = below
+                found[row, column] = below
     return found
 
 

@@ -45,7 +45,7 @@ def window_depths(
         In pixels; NaN for a window without subpixels, and where the image shows no edge of the cell.
     """
     counts = np.zeros(n_windows, dtype=np.int64)
-    places = [pixels_yx[some.pixel] for some in subpixels]
+    places = [pixels_yx[some.pixel] - distance.corner for some in subpixels]
     for pixels, some in zip(places, subpixels, strict=True):
         _count(pixels, some.window, distance.pixels, counts)
     start = np.concatenate([[0], np.cumsum(counts)])

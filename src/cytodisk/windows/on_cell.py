@@ -150,12 +150,12 @@ class WindowsOnCell(ABC):
         Shape (layers, sectors, 3), in pixels; NaN if empty. The border of the image is no edge of the cell:
         beside it, the distance is that to the nearest edge in the image, and NaN if there is none.
         """
-        pixels = np.argwhere(self.mask)
-        subpixels = self.shares.subpixels
+        distance, subpixels = self.edge_distance, self.shares.subpixels
+        pixels = np.argwhere(self.mask[distance.box]) + distance.corner
         if not subpixels:
             share = np.full(len(pixels), 1.0 / PER_SIDE**2)
             subpixels = [Subpixels(np.arange(len(pixels)), self.subpixel_windows, share)]
-        found = window_depths(self.edge_distance, pixels, subpixels, self.layers * self.sectors)
+        found = window_depths(distance, pixels, subpixels, self.layers * self.sectors)
         return found.reshape(self.layers, self.sectors, len(DEPTHS))
 
     @property
