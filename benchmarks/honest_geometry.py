@@ -120,7 +120,7 @@ def coupled(trials: Trials) -> Iterator[Figure]:
             found[number * len(seeds) : (number + 1) * len(seeds)], axis=0
         )
         yield Figure(
-            f"edge follows by {lag} frames: coupled windows found raw that are found without geometry",
+            f"signal {lag:+d} frames after the edge: coupled windows found raw, found without geometry, too",
             100.0 * kept / max(raw, 1.0),
             "%",
             least=90.0,
