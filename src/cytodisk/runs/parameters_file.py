@@ -71,7 +71,7 @@ def _read(path: Path, of: type[Parameters]) -> dict[str, Any]:
     )
     raise ParameterError(
         f"parameters file {path} has names that are no parameters of this command ({', '.join(unknown)}): "
-        f"{origin}; use that command, or take these out"
+        f"{origin}, maybe of an earlier version: take these names out, or use that command"
     )
 
 
