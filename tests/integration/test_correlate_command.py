@@ -62,6 +62,24 @@ def test_two_signals_and_pairs(run: Run, study: Path) -> None:
     assert any("pairs" in path.name for path in (found.path / "figures").iterdir())
 
 
+def test_controls_that_cannot_be_taken_out_are_told(run: Run, study: Path) -> None:
+    command = (
+        "correlate",
+        study,
+        "--signal",
+        "edge",
+        "--control",
+        "material",
+        "--no-geometry",
+        "--name",
+        "short",
+    )
+    few = ("--frames", "0:17", "--max-lag", "4", "--surrogates", "19", "--figures", "0")
+    code, said, _ = run(*command, *few)
+    assert code == 0
+    assert "; without material not known: too few frames" in said
+
+
 def test_lags_may_be_left_out(run: Run, study: Path) -> None:
     code, _, _ = run("correlate", study, "--signal", "edge", *FEW, "--skip-lags=-1,0", "--figures", "0", "-q")
     assert code == 0

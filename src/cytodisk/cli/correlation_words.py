@@ -79,13 +79,13 @@ def _say_power(console: "Console", cells: Any, windows: Any) -> None:
     surrogates = int(cells["surrogates"].max())
     if not surrogates:
         return
-    tested = int(windows.groupby("cell").size().max())
+    tested = int(windows["q"].notna().groupby(windows["cell"]).sum().max())
     fewest = tested * 20 // (surrogates + 1) + 1  # q = tested / (number · (surrogates + 1)) < 1 / 20
-    if fewest > tested:
+    if fewest > tested > 0:
         console.print(
             f"{surrogates} surrogates are too few for any q below 0.05: see --surrogates and --null"
         )
-    elif fewest > 1:
+    elif tested and fewest > 1:
         console.print(
             f"of {tested} windows, q < 0.05 takes {fewest} beyond all {surrogates} surrogates; a smaller "
             "patch needs more --surrogates, or --sectors"
@@ -127,7 +127,7 @@ def _which_first(lag: int, with_: str) -> str:
 def _layer_words(row: Any, windows: Any, without: str) -> str:
     layer = f"  layer {row.layer:>2}"
     if not math.isfinite(row.correlation):
-        return f"{layer}  no correlation: too few frames, or a signal that does not vary"
+        return f"{layer}  no correlation: too few frames, deeper than the cell, or no change"
     seconds = f" ({row.lag_s:+.4g} s)" if math.isfinite(row.lag_s) else ""
     words = f"{layer}  {row.correlation:+.2f} at lag {row.lag:+.0f}{seconds}"
     if "q" not in windows:
