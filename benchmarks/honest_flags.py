@@ -13,8 +13,9 @@ from figure import Figure
 from honest_trials import Trials, quiet_study
 
 SMALLEST_PX2 = 10.0  # of the median window; files without a scale give areas in pixels
-NOT_CLEAN = ("still", "dropping")
-"""Kinds whose masks jitter, or are missing in some frames."""
+NOT_CLEAN = ("still", "dropping", "filopodium")
+"""Kinds whose masks jitter, or are missing in some frames, or whose windows are distorted: an arm that
+becomes three radii long raises "strong distortion", and that is right."""
 KINDS: tuple[MovieKind, ...] = (
     *(kind for kind in MOVIE_KINDS if kind not in NOT_CLEAN),
     *("fluctuating",) * 6,
