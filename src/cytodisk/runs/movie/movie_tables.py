@@ -115,19 +115,17 @@ def _complete_edges(
         status = "last frame" if following is None else f"the next frame has no map: {following['reason']}"
         place = FramePlace(track.cell, frame, track.label, scale.seconds(frame))
         folder.add_table(key, "edge", edge_columns(place, sectors, scale, None, None, status))
+    parts = {frame: folder.part_table(part_key(track.cell, frame), "edge") for frame in mapped}
     displacement = np.full((len(track.frames), sectors), np.nan)
     length = displacement.copy()
-    for frame in mapped:
-        edge = _edge_arrays(folder, part_key(track.cell, frame))
-        displacement[frame - track.first] = edge["velocity"] / scale.velocity(1.0)
-        length[frame - track.first] = edge["edge_length"] / scale.length(1.0)
+    for frame, part in parts.items():
+        displacement[frame - track.first] = part.column("velocity").to_numpy() / scale.velocity(1.0)
+        length[frame - track.first] = part.column("edge_length").to_numpy() / scale.length(1.0)
     error = scale.velocity(velocity_error(displacement, length))
-    for frame in mapped:
-        key = part_key(track.cell, frame)
-        part = folder.part_table(key, "edge")
+    for frame, part in parts.items():
         columns: dict[str, Any] = {name: part.column(name) for name in part.column_names}
         columns["velocity_error"] = error[frame - track.first]
-        folder.add_table(key, "edge", columns)
+        folder.add_table(part_key(track.cell, frame), "edge", columns)
 
 
 def _add_consistency(
