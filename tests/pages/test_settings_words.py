@@ -30,6 +30,11 @@ def test_what_differs_is_said() -> None:
     ]
 
 
+def test_geometry_that_was_not_tested_is_said() -> None:
+    assert settings_words({"geometry": False}) == ["geometry was not tested"]
+    assert settings_words({"geometry": True}) == []
+
+
 def test_numbers_in_a_row_are_a_range() -> None:
     assert scope_words({"sectors": [3, 20]}) == ["only sectors 3–20"]
     assert scope_words({"sectors": (7, 7), "frames": [50, 80]}) == ["only sectors 7", "only frames 50–80"]

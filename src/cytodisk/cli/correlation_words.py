@@ -16,7 +16,7 @@ _MOST_CLUSTERS = 5  # of a cell that are listed
 
 def say_correlation(console: "Console", found: "Correlation") -> None:
     """Peaks by layer, and how many windows are significant."""
-    from cytodisk.runs.correlate.partial_words import without_words
+    from cytodisk.runs.correlate.partial_words import not_tested, without_words
 
     settings = found.settings
     console.print(
@@ -35,6 +35,8 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
     for _, row in found.cells.iterrows():
         for words in _cautions(row, settings):
             console.print(f"cell {row['cell']}{words}")
+    if skipped := not_tested(found):
+        console.print(skipped)
     _say_power(console, found.cells, windows)
     console.print(f"{count(layers['cell'].nunique())} correlated: {found.path}")
 

@@ -106,7 +106,7 @@ def peaks_page(one: DrawnCorrelation) -> Sheet | None:
     windows = movie.windows(time)
     high, wide = np.ptp(windows.disk.outline_yx, axis=0)
     height = _PANEL * float(np.clip(high / wide, 1.0, _TALLEST))
-    key = peak_key(peaks)
+    key = peak_key(peaks, partial=one.partial_words)
     row = height + 9.0
     key_rows = -(-len(key) // 2)  # legends fill columns first: two of them
     notes = _notes_on_peaks(one)
@@ -137,7 +137,8 @@ def _notes_on_peaks(one: DrawnCorrelation) -> list[str]:
     without = one.partial_words
     lines = []
     for row in one.rows(one.correlation.clusters).head(_MOST_CLUSTERS).itertuples():
-        lines += [cluster_line(row).replace("-", "−"), region_left(row, without)]
+        parts = [part for part in (cluster_line(row), region_left(row, without)) if part]
+        lines += broken_lines(parts, "; ", SINGLE_COLUMN_MM - 2 * LEFT_MM)
     return [line for line in (*lines, windows_lost(one.rows(one.correlation.windows), without)) if line]
 
 

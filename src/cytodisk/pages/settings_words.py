@@ -42,6 +42,8 @@ def settings_words(settings: Mapping[str, Any]) -> list[str]:
         facts.append("surrogates by circular shift")
     if settings.get("surrogates") == 0:
         facts.append("no surrogates")
+    if settings.get("geometry") is False:
+        facts.append("geometry was not tested")
     if settings.get("min_pairs", _FEWEST_FRAMES) != _FEWEST_FRAMES:
         facts.append(f"{settings['min_pairs']} or more frames at a lag")
     return facts

@@ -88,6 +88,18 @@ def test_clusters_have_a_bold_outline_and_their_number(ax: Axes, draw: Draw) -> 
     assert not any("cluster" in str(handle.get_label()) for handle in peak_key(plain))
 
 
+def test_a_cluster_that_does_not_survive_has_a_thin_broken_outline(ax: Axes, draw: Draw) -> None:
+    number = np.where(np.arange(24) == 3, 2, np.where(np.arange(24) == 6, 1, 0))
+    peaks = PeakMap.of(table(cluster=number), GRID, cell=3, lost=[2])
+    draw(ax, peaks)
+    kept, lost = patch(ax, CLUSTER_NAME)
+    assert lost.get_linewidth() < kept.get_linewidth()
+    assert kept.get_linestyle() in ("-", "solid")
+    assert lost.get_linestyle() not in ("-", "solid")
+    labels = [str(handle.get_label()) for handle in peak_key(peaks, partial="without geometry")]
+    assert labels[-2:] == ["cluster, p ≤ 0.05", "cluster, not without geometry"]
+
+
 def test_windows_that_are_not_significant_are_pale_and_hatched(ax: Axes, draw: Draw) -> None:
     peaks = PeakMap.of(table(), GRID, cell=3)
     drawn = draw(ax, peaks)

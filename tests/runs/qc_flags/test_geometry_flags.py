@@ -81,7 +81,7 @@ def test_what_was_regressed_out_in_words(
 def test_what_is_left_of_clusters_and_windows_in_words() -> None:
     kept, lost = _Found().clusters.assign(p_partial=[0.05, 0.051]).itertuples()
     assert region_left(kept, "without volume") == "without volume p = 0.05"
-    assert region_left(lost, "without volume") == "without volume p = 0.051: it does not survive"
+    assert region_left(lost, "without volume") == "not without volume (p = 0.051)"
     assert region_left(pd.DataFrame({"p": [0.01]}), "") == ""
     windows = pd.DataFrame({"q": [0.01, 0.02, 0.3], "geometry": [True, False, False]})
     assert windows_lost(windows, "without volume") == (

@@ -14,7 +14,7 @@ from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_names import differences, labels_of
 from cytodisk.runs.channel_names import correlation_name, shown_name
 from cytodisk.runs.correlate.cluster_words import cluster_line
-from cytodisk.runs.correlate.partial_words import region_left, windows_lost, without_words
+from cytodisk.runs.correlate.partial_words import not_tested, region_left, windows_lost, without_words
 from cytodisk.store.correlation_store import Correlation
 
 MOST_CURVE_NUMBERS = 900_000
@@ -97,16 +97,16 @@ def _clusters(cell: ShownCell, found: Correlation) -> list[str]:
         return ["no cluster of neighbouring windows with p ≤ 0.05"]
     without = without_words(found, cell.cell)
     told = list(clusters.head(MOST_CLUSTERS).itertuples())
-    parts = [(cluster_line(row).replace("-", "−"), region_left(row, without)) for row in told]
+    parts = [(cluster_line(row), region_left(row, without)) for row in told]
     lines = ["; ".join(filter(None, part)) for part in parts]
     more = len(clusters) - len(told)
     return [*lines, f"and {more} smaller"] if more else lines
 
 
 def _lost(cell: ShownCell, found: Correlation) -> list[str]:
-    """How many windows do not survive without the controls, in words; nothing if all do."""
+    """How many windows do not survive without the controls, and whether geometry is one; often nothing."""
     words = windows_lost(_of(cell, found.windows), without_words(found, cell.cell))
-    return [words] if words else []
+    return [line for line in (words, not_tested(found)) if line]
 
 
 def _of(cell: ShownCell, table: pd.DataFrame) -> pd.DataFrame:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
@@ -39,6 +40,8 @@ class PeakMap:
     alpha : float
     cluster : ndarray of shape (layers, sectors) and dtype int, or None
         Number of each window's cluster, 0 for none; None when there are no clusters in the table.
+    lost : tuple of int
+        Numbers of the clusters that do not survive once the controls are regressed out.
 
     Examples
     --------
@@ -56,9 +59,18 @@ class PeakMap:
     lag_unit: LagUnit
     alpha: float
     cluster: IntArray | None = None
+    lost: tuple[int, ...] = ()
 
     @classmethod
-    def of(cls, windows: pd.DataFrame, grid: PolarGrid, *, cell: int = 0, alpha: float = 0.05) -> PeakMap:
+    def of(
+        cls,
+        windows: pd.DataFrame,
+        grid: PolarGrid,
+        *,
+        cell: int = 0,
+        alpha: float = 0.05,
+        lost: Sequence[int] = (),
+    ) -> PeakMap:
         """Peaks as tables by layer and sector.
 
         Parameters
@@ -70,6 +82,8 @@ class PeakMap:
         cell : int
         alpha : float
             Share of false discoveries that is accepted.
+        lost : sequence of int
+            Clusters that do not survive once the controls are regressed out.
 
         Raises
         ------
@@ -97,7 +111,7 @@ class PeakMap:
         if "cluster" in rows:
             cluster = np.zeros((grid.layers, grid.sectors), dtype=np.int64)
             cluster[layer, sector] = rows["cluster"].to_numpy(dtype=np.int64)
-        return cls(tables["correlation"], tables[unit.column], significant, unit, alpha, cluster)
+        return cls(tables["correlation"], tables[unit.column], significant, unit, alpha, cluster, tuple(lost))
 
     @property
     def pale(self) -> BoolArray:

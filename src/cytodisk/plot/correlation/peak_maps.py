@@ -1,7 +1,7 @@
 """Draw the peak of each window's correlation, and its lag, on the disk and on the cell.
 
 Windows that chance could explain are pale and hatched, regions of others have an outline, clusters a bold
-one; windows without a correlation are grey.
+one, or a thin broken one if they are lost without the controls; windows without a correlation are grey.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ CLUSTER_NAME = "cluster"
 _PALE = 0.4  # how far windows that are not significant let the page's white through
 _HATCH, _HATCH_COLOUR = "/////", "0.5"
 _NUMBER_AWAY, _NUMBER_SIZE = 7.0, 6.0  # points: of a sector's number from the edge, and its height
-_BOLD = 1.2  # points
+_BOLD, _THIN = 1.2, 0.7  # points
+_BROKEN = (0, (3.0, 2.0))
 _ROUNDING = 1e-10  # of the disk or of pixels: the last sector ends where the first begins
 _MOST_VECTOR = 3000  # windows; more become pixels inside vector files
 
@@ -158,12 +159,14 @@ def draw_peaks_on_cell(
     return drawn
 
 
-def peak_key(peaks: PeakMap) -> list[Any]:
+def peak_key(peaks: PeakMap, *, partial: str = "without controls") -> list[Any]:
     """Handles of a legend: what is pale, framed and grey, of windows that are there.
 
     Parameters
     ----------
     peaks : PeakMap
+    partial : str
+        What was regressed out, such as "without geometry".
 
     Returns
     -------
@@ -191,9 +194,11 @@ def peak_key(peaks: PeakMap) -> list[Any]:
         handles.append(Patch(label=words, hatch=_HATCH, **frame | {"edgecolor": _HATCH_COLOUR}))
         if pale < known:
             handles.append(Patch(label=f"q < {peaks.alpha:g}", **frame | {"edgecolor": LINE_COLOUR}))
-    if peaks.cluster is not None and peaks.cluster.any():
-        bold: Any = {"facecolor": "none", "edgecolor": "black", "linewidth": _BOLD}
-        handles.append(Patch(label="cluster, p ≤ 0.05", **bold))
+    drawn = set() if peaks.cluster is None else set(np.unique(peaks.cluster).tolist()) - {0}
+    for lost, words in ((False, "cluster, p ≤ 0.05"), (True, f"cluster, not {partial}")):
+        if drawn & set(peaks.lost) if lost else drawn - set(peaks.lost):
+            around: Any = {"facecolor": "none", "edgecolor": "black"} | _cluster_line(lost)
+            handles.append(Patch(label=words, **around))
     if known < peaks.correlation.size:
         handles.append(Patch(facecolor=MISSING_COLOUR, linewidth=0, label="none, or not used"))
     return handles
@@ -219,19 +224,24 @@ def _fade(ax: Axes, polygons_xy: Sequence[FloatArray], peaks: PeakMap, drawn: Po
 
 
 def _outline_clusters(ax: Axes, polygons_xy: Sequence[FloatArray], peaks: PeakMap) -> None:
-    """A bold line with a white rim around each cluster, and its number in its largest piece."""
+    """A line with a white rim around each cluster, bold if it survives, and its number."""
     if peaks.cluster is None:
         return
     rim = withStroke(linewidth=2.2 * _BOLD, foreground="white")
-    style: Any = {"fill": False, "edgecolor": "black", "linewidth": _BOLD, "gid": CLUSTER_NAME}
     for number in np.unique(peaks.cluster[peaks.cluster > 0]).tolist():
         members = np.flatnonzero(peaks.cluster.ravel() == number).tolist()
         covered = [polygons_xy[member] for member in members]
-        ax.add_artist(PathPatch(_region(covered), zorder=2.7, path_effects=[rim], **style))
+        style = {"fill": False, "edgecolor": "black", "zorder": 2.7} | _cluster_line(number in peaks.lost)
+        ax.add_artist(PathPatch(_region(covered), path_effects=[rim], gid=CLUSTER_NAME, **style))
         largest = max(_pieces(covered), key=lambda piece: piece.area)
         place = largest.representative_point()
-        words: Any = {"fontsize": _NUMBER_SIZE + 1.0, "fontweight": "bold", "ha": "center", "va": "center"}
+        weight = "normal" if number in peaks.lost else "bold"
+        words: Any = {"fontsize": _NUMBER_SIZE + 1.0, "fontweight": weight, "ha": "center", "va": "center"}
         ax.text(place.x, place.y, str(number), zorder=2.8, gid=CLUSTER_NAME, path_effects=[rim], **words)
+
+
+def _cluster_line(lost: bool) -> dict[str, Any]:
+    return {"linewidth": _THIN, "linestyle": _BROKEN} if lost else {"linewidth": _BOLD}
 
 
 def _number_sectors(ax: Axes, windows: CellWindows) -> None:

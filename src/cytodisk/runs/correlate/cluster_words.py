@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
+
+from cytodisk.runs.correlate.lag_words import lag_words
 
 
 def cluster_place(row: Any) -> str:
@@ -17,10 +18,10 @@ def cluster_place(row: Any) -> str:
     Returns
     -------
     str
-        As "sectors 12–25, layers 0–2, lag -20 s".
+        As "sectors 12–25, layers 0–2, lag −20 s".
     """
-    lag = f"{row.lag_s:+.4g} s" if math.isfinite(row.lag_s) else f"{row.lag:+d} frames"
-    return f"{_named('sector', row.sectors)}, {_named('layer', row.layers)}, lag {lag}"
+    lag = lag_words(row.lag, row.lag_s)
+    return f"{_named('sector', row.sectors)}, {_named('layer', row.layers)}, {lag}"
 
 
 def cluster_line(row: Any) -> str:
@@ -34,9 +35,10 @@ def cluster_line(row: Any) -> str:
     Returns
     -------
     str
-        As "cluster 1: sectors 12–25, layers 0–2, lag -20 s, r +0.31, p = 0.002".
+        As "cluster 1: sectors 12–25, layers 0–2, lag −20 s, r +0.31, p = 0.002".
     """
-    return f"cluster {row.cluster}: {cluster_place(row)}, r {row.correlation:+.2f}, p = {row.p:.2g}"
+    correlation = f"{row.correlation:+.2f}".replace("-", "−")
+    return f"cluster {row.cluster}: {cluster_place(row)}, r {correlation}, p = {row.p:.2g}"
 
 
 def _named(name: str, numbers: str) -> str:

@@ -33,6 +33,12 @@ def without_words(found: Correlation, cell: int) -> str:
     return f"without {words}" if words else ""
 
 
+def not_tested(found: Correlation) -> str:
+    """That geometry was not to be regressed out, in words; empty if it was."""
+    skipped = found.settings.get("geometry") is False
+    return "geometry was not tested (--no-geometry)" if skipped else ""
+
+
 def lost_rows(rows: pd.DataFrame) -> pd.Series[bool]:
     """Which rows of a table of layers, or of windows, do not survive; none without surrogates."""
     if "geometry" not in rows:
@@ -58,12 +64,19 @@ def region_left(row: Any, without: str) -> str:
     Returns
     -------
     str
-        As "without geometry p = 0.4: it does not survive"; empty where that is not known.
+        As "not without geometry (p = 0.4)" or "without geometry p = 0.01"; empty where that is not known.
     """
     p = getattr(row, "p_partial", None)
     if p is None or pd.isna(p):
         return ""
-    return f"{without} p = {p:.2g}{': it does not survive' if region_lost(p) else ''}"
+    return f"not {without} (p = {p:.2g})" if region_lost(p) else f"{without} p = {p:.2g}"
+
+
+def lost_clusters(clusters: pd.DataFrame) -> list[int]:
+    """Numbers of the clusters of a cell that do not survive."""
+    if "p_partial" not in clusters:
+        return []
+    return [int(number) for number in clusters.loc[region_lost(clusters["p_partial"]), "cluster"]]
 
 
 def windows_lost(windows: pd.DataFrame, without: str) -> str:
