@@ -54,7 +54,7 @@ def test_flags_reach_the_parameters(run: Run, mask: Path, tmp_path: Path) -> Non
         "layers": 3,
         "sectors": 8,
         "spacing": "radius",
-            "depth_um": None,
+        "depth_um": None,
         "nan": "omit",
         "pixel_size_um": 0.2,
     }

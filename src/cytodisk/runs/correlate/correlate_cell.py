@@ -70,12 +70,12 @@ class CellCorrelation:
         ParameterError
             The cell cannot be correlated.
         """
-        options, with_ = self.options, self.with_
+        options = self.options
         activity = chosen_series(self.study.activity(cell), options)
         a = activity["mean"].sel(channel=self.signal).load()
-        b = _other(activity, with_, options).load()
+        b = _other(activity, self.with_, options).load()
         if not (np.isfinite(a).any() and np.isfinite(b).any()):
-            empty = self.signal if not np.isfinite(a).any() else with_
+            empty = self.signal if not np.isfinite(a).any() else self.with_
             raise ParameterError(f"cell {cell} has no values of {empty}")
         asked = self._controls.asked
         phases = _phases(progress, 1 + 2 * asked + options.pairs)
@@ -90,14 +90,12 @@ class CellCorrelation:
                 **common,
                 **self._clusters(cell),
             )
-            share = velocity_jitter(b.transpose("time", ...)) if with_ in VELOCITIES else np.nan
-            jitter = _jitter(a, b, share, options) if with_ in VELOCITIES else 0.0
+            jitter = self._jitter_row(a, b)
             partial, not_tested = self._partial(cell, activity, (a, b), phases) if asked else (None, "")
         tables = with_clusters(tables_of(correlations, options, partial), correlations, partial)
         if options.pairs:
             tables["pairs"] = self._pairs(cell, activity, a, phases[-1])
-        row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"], "jitter": jitter}
-        row["velocity_jitter"] = share
+        row: dict[str, Any] = {"status": "ok", "reason": "", "frames": a.sizes["time"]}
         row["statistic"] = options.statistic
         row["surrogates"] = correlations.attrs["surrogates"]
         row["cluster_surrogates"] = correlations.sizes.get("cluster_surrogate", 0)
@@ -106,18 +104,28 @@ class CellCorrelation:
         row["geometry_not_tested"] = not_tested
         row["restarts"] = self._restarts(cell, activity["frame"].to_numpy())
         row |= {f"drifting_{name}": correlations.attrs[f"drifting_{side}"] for name, side in _SIDES}
-        row |= stress_row(a, b, self.max_lag, options)
-        row |= {"no_events_because": "", "event_threshold": np.nan, "event_noise": np.nan}
-        if with_ in VELOCITIES:
-            try:
-                edge = chosen_series(self.study.activity(cell), options.changed(sectors=None))
-                events = event_tables(edge, a, with_, self.max_lag, options)
-            except ParameterError as error:
-                row["no_events_because"] = str(error)
-            else:
-                tables |= events
-                row |= {f"event_{name}": events["events"].attrs[name] for name in ("threshold", "noise")}
-        return tables, row
+        events, of_events = self._events(cell, a)
+        return tables | events, row | jitter | stress_row(a, b, self.max_lag, options) | of_events
+
+    def _jitter_row(self, a: xr.DataArray, b: xr.DataArray) -> dict[str, float]:
+        """What jitter of the masks makes of the correlation and of velocity."""
+        if self.with_ not in VELOCITIES:
+            return {"jitter": 0.0, "velocity_jitter": np.nan}
+        share = velocity_jitter(b.transpose("time", ...))
+        return {"jitter": _jitter(a, b, share, self.options), "velocity_jitter": share}
+
+    def _events(self, cell: int, a: xr.DataArray) -> tuple[dict[str, pd.DataFrame], dict[str, Any]]:
+        """Tables of the events of the edge, and what the row says of them."""
+        row: dict[str, Any] = {"no_events_because": "", "event_threshold": np.nan, "event_noise": np.nan}
+        if self.with_ not in VELOCITIES:
+            return {}, row
+        try:
+            edge = chosen_series(self.study.activity(cell), self.options.changed(sectors=None))
+            tables = event_tables(edge, a, self.with_, self.max_lag, self.options)
+        except ParameterError as error:
+            return {}, row | {"no_events_because": str(error)}
+        known = tables["events"].attrs
+        return tables, row | {f"event_{name}": known[name] for name in ("threshold", "noise")}
 
     @cached_property
     def _controls(self) -> CellControls:
