@@ -128,7 +128,7 @@ def coupled(trials: Trials) -> Iterator[Figure]:
             f"{100 * near / max(kept, 1.0):.0f} % of those kept",
         )
         yield Figure(
-            f"edge follows by {lag} frames: windows that are not coupled, found without geometry",
+            f"signal {lag:+d} frames after the edge: windows that are not coupled, found without geometry",
             100.0 * false_kept / off,
             "%",
             most=100.0 * ALPHA,
