@@ -263,7 +263,7 @@ def test_layers_by_depth_are_as_deep_in_every_frame(files: tuple[Path, Path], tm
     consistency = study.consistency
     assert (consistency.loc[consistency["layer"] < 3, "completeness"] == 1).all()
     assert consistency.loc[consistency["layer"] >= 3, "completeness"].isna().all()
-    again = polar_grid_of(study.provenance["parameters"]).on(study.movie(0)[2])
+    again = polar_grid_of(study.provenance).on(study.movie(0)[2])
     first = windows[(windows["frame"] == 2) & (windows["channel"] == windows["channel"].iloc[0])]
     assert again.scale.area(again.areas).ravel() == pytest.approx(first["area"].to_numpy(), rel=1e-12)
 

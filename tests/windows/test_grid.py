@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cytodisk.errors import WindowError
-from cytodisk.windows.polar_windows import PolarGrid, polar_windows
+from cytodisk.windows.polar_windows import PolarGrid, polar_grid_of, polar_windows
 
 SPACINGS = ("area", "radius")
 JUST_BELOW_A_TURN = -1e-17  # its remainder modulo one turn rounds to a whole turn
@@ -94,3 +94,15 @@ def test_an_unknown_spacing_is_refused() -> None:
 def first_thickness(layers: int, spacing: str) -> float:
     """Thickness of the first of so many rings, over the radius of the disk."""
     return 1.0 - float(polar_windows(layers, 1, spacing).radii[1])
+
+
+@pytest.mark.parametrize(
+    ("parameters", "expected"),
+    [
+        ({"layers": 3, "sectors": 8, "spacing": "radius"}, polar_windows(3, 8, "radius")),
+        ({"layers": 10, "sectors": 8, "depth_um": [0.5, 1.0]}, polar_windows(sectors=8, depth_um=(0.5, 1.0))),
+        ({"layers": 10, "sectors": 8, "depth_um": 0.5}, polar_windows(4, 8)),  # of an earlier version
+    ],
+)
+def test_the_grid_of_a_study_is_that_of_its_provenance(parameters: dict, expected: PolarGrid) -> None:
+    assert polar_grid_of({"parameters": {"nan": "omit", **parameters}, "layers": 4}) == expected

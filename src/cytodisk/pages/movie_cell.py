@@ -60,7 +60,7 @@ class MovieCell:
     @cached_property
     def grid(self) -> PolarGrid:
         """The windows on the disk; with layers by depth, their radii are those of a frame."""
-        return polar_grid_of(self.study.provenance["parameters"])
+        return polar_grid_of(self.study.provenance)
 
     @cached_property
     def disk_grid(self) -> PolarGrid:

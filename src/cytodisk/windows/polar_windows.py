@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.checks import is_number
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
 from cytodisk.geometry.edge_distance import EdgeDistance
@@ -264,11 +265,18 @@ def polar_grid(parameters: PolarGridParameters) -> PolarGrid:
     return PolarGrid(layers, parameters.sectors, parameters.spacing, parameters.depth_um)
 
 
-def polar_grid_of(parameters: Mapping[str, Any]) -> PolarGrid:
-    """The grid of a study, from the parameters in its provenance."""
-    left_out = ("depth_um",) if parameters.get("depth_um") is None else ("layers", "spacing")
-    known = PolarGridParameters.model_fields.keys() & parameters.keys()
-    return polar_windows(**{name: parameters[name] for name in known if name not in left_out})
+def polar_grid_of(provenance: Mapping[str, Any]) -> PolarGrid:
+    """The grid of a study, from its provenance.
+
+    In movies of earlier versions `depth_um` is one number, the wanted thickness of the first layer; their
+    provenance says how many layers that gave.
+    """
+    known = {name: provenance["parameters"].get(name) for name in PolarGridParameters.model_fields}
+    if is_number(known["depth_um"]):
+        known |= {"depth_um": None, "layers": provenance["layers"]}
+    left_out = ("depth_um",) if known["depth_um"] is None else ("layers", "spacing")
+    given = {name: value for name, value in known.items() if value is not None and name not in left_out}
+    return polar_windows(**given)
 
 
 def _number(value: Any) -> float | None:

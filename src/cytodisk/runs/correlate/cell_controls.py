@@ -123,7 +123,7 @@ class CellControls:
 
     @property
     def _grid(self) -> Any:
-        return polar_grid_of(self.study.provenance["parameters"])
+        return polar_grid_of(self.study.provenance)
 
 
 @dataclass(frozen=True, eq=False)

@@ -167,7 +167,7 @@ class CellCorrelation:
         self, cell: int, activity: xr.Dataset, a: xr.DataArray, progress: Progress | None
     ) -> pd.DataFrame:
         study, options = self.study, self.options
-        grid = polar_grid_of(study.provenance["parameters"])
+        grid = polar_grid_of(study.provenance)
         b = activity["mean"].sel(channel=self.with_).load()
         surrogates = {"surrogates": min(options.surrogates, _PAIRED_SURROGATES)}
         common = dict(options.part(PairCorrelationParameters)) | surrogates
