@@ -17,6 +17,7 @@ view.el.scrollIntoView({ block: "center" });
 const { left, top } = view.el.getBoundingClientRect();
 return [left + view.frame.x_scale.compute(arguments[1]), top + view.frame.y_scale.compute(arguments[2])];
 """
+_TWO_FRAMES = "requestAnimationFrame(() => requestAnimationFrame(arguments[0]))"
 
 
 class Page:
@@ -46,6 +47,7 @@ class Page:
     def settle(self) -> None:
         """Until what was asked for is drawn."""
         time.sleep(0.05)
+        self.browser.execute_async_script(_TWO_FRAMES)  # the page draws in the next one
         self.wait("cytodisk.shown.index === cytodisk.state.index")
 
     def _mouse(self, kind: str, at: list[float], **more: Any) -> None:
