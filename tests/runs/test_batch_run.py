@@ -107,7 +107,7 @@ def test_inputs_are_merged_with_their_columns_in_front(quiet: Path) -> None:
     assert inputs["status"].tolist() == ["ok"] * 4 + ["refused"]
     assert "nothing could be mapped" in inputs["reason"].iloc[-1]
     assert inputs["mapped"].tolist() == [4, 4, 4, 2, 0]
-    assert inputs["qc_flags"].tolist() == [0, 0, 0, 1, 0]
+    assert inputs["qc_flags"].tolist() == [0, 0, 0, 1, 3]
     assert inputs["length_unit"].tolist() == ["px", "px", "px", "µm", "px"]
     assert inputs["velocity_unit"].tolist() == ["px/frame"] * 3 + ["", "px/frame"]
     assert read_table(quiet / "edge.parquet").attrs["units"]["velocity"] == "px/frame"

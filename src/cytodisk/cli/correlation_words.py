@@ -16,7 +16,7 @@ _MOST_CLUSTERS = 5  # of a cell that are listed
 
 def say_correlation(console: "Console", found: "Correlation") -> None:
     """Peaks by layer, and how many windows are significant."""
-    from cytodisk.runs.correlate.partial_words import not_tested, without_words
+    from cytodisk.runs.partial_words import not_tested, without_words
 
     settings = found.settings
     console.print(
@@ -111,7 +111,7 @@ def _cluster_words(found: "Correlation", cell: Any, without: str) -> Iterator[st
 
 def _cluster_line(row: Any, with_: str, without: str) -> str:
     from cytodisk.runs.correlate.cluster_words import cluster_place
-    from cytodisk.runs.correlate.partial_words import region_left
+    from cytodisk.runs.partial_words import region_left
 
     words = (
         f"  {cluster_place(row)}: {_which_first(row.lag, with_)}, "

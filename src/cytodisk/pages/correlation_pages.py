@@ -25,7 +25,7 @@ from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM, colour_bar
 from cytodisk.plot.time_axis import time_stamp
 from cytodisk.plot.time_raster import bar_beside, cut_off
 from cytodisk.runs.correlate.cluster_words import cluster_line
-from cytodisk.runs.correlate.partial_words import region_left, windows_lost
+from cytodisk.runs.partial_words import region_left, windows_lost
 
 _CURVE, _CURVE_GAP, _CURVE_LEFT = 17.0, 5.5, 14.0  # mm
 _PANEL, _PANEL_GAP, _TALLEST = 29.5, 4.0, 1.45  # mm, mm, height over width

@@ -15,7 +15,7 @@ from cytodisk.pages.drawn_movie import LEFT_MM, DrawnMovie
 from cytodisk.pages.settings_words import settings_words, used_windows
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.correlation.correlation_peaks import PeakMap
-from cytodisk.runs.correlate.partial_words import lost_clusters, lost_rows, without_words
+from cytodisk.runs.partial_words import lost_clusters, lost_rows, without_words
 from cytodisk.store.correlation_store import Correlation
 
 VELOCITY_NAMES = {"velocity": "velocity", "velocity_cell_frame": "velocity (cell frame)"}

@@ -117,7 +117,7 @@ def _cell_columns(windows: CellWindows, image: xr.DataArray | None) -> dict[str,
     ends = pileup(image, disk.mask) if image is not None else Pileup()
     return {
         "notes": "; ".join(_notes(windows, missing)),
-        "qc_flags": "; ".join(report.qc_flags),
+        "mask_remarks": "; ".join(report.qc_flags),
         "area": disk.scale.area(float(report.area_px)),
         "perimeter": disk.scale.length(float(edge_lengths(smooth).sum())),
         "centroid_y": float(centre[0]),

@@ -43,6 +43,7 @@ class StudyRun:
         out: str | os.PathLike[str],
         work: Callable[[StudyFolder], tuple[Sequence[str], Sequence[str]]],
         read: Callable[[Path], Result],
+        tables: Callable[[StudyFolder], None] | None = None,
         after: Callable[[Path], None] | None = None,
     ) -> Result:
         """Do the work in a folder and mark the study as complete, unless it is.
@@ -56,6 +57,8 @@ class StudyRun:
             the order of the tables, and warnings.
         read : callable
             Opens the complete study.
+        tables : callable, optional
+            Completes the tables when all parts are in them, before the study counts as complete.
         after : callable, optional
             Writes what follows from a complete study; called with its folder, also for one that was there.
 
@@ -78,7 +81,7 @@ class StudyRun:
                 keys, warnings = work(folder)
                 folder.note("warnings", list(warnings))
                 folder.note("finished", datetime.now(UTC).isoformat(timespec="seconds"))
-                folder.finish(list(keys))
+                folder.finish(list(keys), tables)
             if after is not None:
                 after(place)
             return read(place)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -229,13 +229,15 @@ class StudyFolder:
         """A part's rows for a table, as an Arrow table."""
         return pq.read_table(self._part(key, f"{table}.parquet"))
 
-    def finish(self, keys: list[str]) -> None:
+    def finish(self, keys: list[str], then: Callable[[StudyFolder], None] | None = None) -> None:
         """Merge the parts into the tables and mark the study as complete.
 
         Parameters
         ----------
         keys : list of str
             All parts of the run, in the order of the tables.
+        then : callable, optional
+            Called with this folder when the tables stand; a run that is killed in it can be resumed.
 
         Raises
         ------
@@ -248,6 +250,8 @@ class StudyFolder:
             parts = (self.part_table(key, name) for key in keys if self.has_table(key, name))
             with replacing(self.path / f"{name}.parquet") as temporary:
                 merge_tables(parts, self._schema(columns), temporary)
+        if then is not None:
+            then(self)
         self.note("status", "complete")
         shutil.rmtree(self.path / PARTS, ignore_errors=True)  # the tables stand; parts are only in the way
 

@@ -53,6 +53,11 @@ QC_FLAGS = Column(
     "",
     "what speaks against the mask being one whole cell, such as a large fragment that was dropped",
 )
+ALL_QC_FLAGS = QC_FLAGS._replace(
+    meaning="names of the QC flags of this row and of the cell as a whole, with ; between, as area jumps; "
+    "then mask_remarks"
+)
+MASK_REMARKS = QC_FLAGS._replace(name="mask_remarks")
 TOUCHES_BORDER = Column("touches_border", pa.bool_(), "", "whether the cell touches the border of the image")
 SECONDS = Column("seconds", pa.float64(), "s", "computing time of this row; it differs from run to run")
 CENTROID_Y, CENTROID_X = (
@@ -67,7 +72,8 @@ CELL_COLUMNS: Columns = (
     STATUS,
     REASON,
     NOTES,
-    QC_FLAGS,
+    ALL_QC_FLAGS,
+    MASK_REMARKS,
     Column("area", pa.float64(), "length²", "area of the cell"),
     Column("perimeter", pa.float64(), "length", "length of the cell's outline"),
     CENTROID_Y,

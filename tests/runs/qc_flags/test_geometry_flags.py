@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from cytodisk.runs.correlate.partial_words import lost_rows, region_left, windows_lost, without_words
+from cytodisk.runs.partial_words import lost_rows, region_left, windows_lost, without_words
 from cytodisk.runs.qc_flags.geometry_flags import geometry, geometry_not_tested
 
 

@@ -28,7 +28,7 @@ def made(frames: int = 20, n_cells: int = 1, **provenance: object) -> MadeStudy:
     """Cells without any fault: areas, velocities and signals that waver a little."""
     rng = np.random.default_rng(0)
     number, time = np.divmod(np.arange(n_cells * frames), frames)
-    cells = pd.DataFrame({"cell": number, "frame": time, "status": "ok", "reason": "", "qc_flags": ""})
+    cells = pd.DataFrame({"cell": number, "frame": time, "status": "ok", "reason": "", "mask_remarks": ""})
     cells = cells.assign(area=100 + rng.normal(0, 0.5, len(cells)), touches_border=False, border_share=0.0)
     cells["perimeter"] = np.sqrt(4 * np.pi * cells["area"])
     cells = cells.assign(nan_px=0, area_distortion=0.02, restarted="", tracking_residual=0.01)
@@ -75,7 +75,7 @@ def test_an_edge_that_sweeps_more_than_the_cell_won_and_lost() -> None:
 @pytest.mark.parametrize(
     ("column", "value", "name", "note"),
     [
-        ("qc_flags", "a large fragment was dropped", "flagged masks", "a large fragment was dropped"),
+        ("mask_remarks", "a large fragment was dropped", "flagged masks", "a large fragment was dropped"),
         ("restarted", "the cell jumped", "tracking restarts", "the cell jumped"),
         ("interior_restarted", "the edge leapt", "interior restarts", "the edge leapt"),
         ("smallest_window_share", 0.09, "small still windows", "0.09 of its share"),
@@ -120,7 +120,7 @@ def test_frames_without_a_map(status: str) -> None:
     study.cells.loc[7, ["status", "reason"]] = [status, "the mask is empty"]
     study.cells.loc[7, ["area", "tracking_residual", "nan_px", "border_share"]] = np.nan
     study.cells["touches_border"] = study.cells["touches_border"].astype(object)
-    study.cells.loc[7, ["restarted", "qc_flags", "touches_border"]] = None
+    study.cells.loc[7, ["restarted", "mask_remarks", "touches_border"]] = None
     flag = only(study)
     assert flag.name == f"{status} frames"
     assert flag.what == f"1 frame {status}"
@@ -187,7 +187,7 @@ def test_an_edge_that_is_as_bright_as_before_around_a_cell_that_grows_is_no_drif
 def test_warnings_that_no_other_flag_tells() -> None:
     study = made(warnings=["cell 0, frame 4: odd", "the disk is nearly full"])
     assert only(study).what == "2 warnings of the run: cell 0, frame 4: odd; the disk is nearly full"
-    study.cells.loc[4, "qc_flags"] = "odd"
+    study.cells.loc[4, "mask_remarks"] = "odd"
     assert [flag.name for flag in qc_flags(study)] == ["flagged masks", "warnings"]
     assert qc_flags(study)[1].what == "1 warning of the run: the disk is nearly full"
 
@@ -198,7 +198,7 @@ def test_single_masks() -> None:
             "cell": [0, 1, 2],
             "status": ["ok", "refused", "ok"],
             "reason": ["", "two cells", ""],
-            "qc_flags": ["", "", "mostly on the border"],
+            "mask_remarks": ["", "", "mostly on the border"],
             "area_distortion": [0.01, np.nan, 0.5],
         }
     )

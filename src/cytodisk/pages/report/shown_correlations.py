@@ -14,7 +14,7 @@ from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_names import differences, labels_of
 from cytodisk.runs.channel_names import correlation_name, shown_name
 from cytodisk.runs.correlate.cluster_words import cluster_line
-from cytodisk.runs.correlate.partial_words import not_tested, region_left, windows_lost, without_words
+from cytodisk.runs.partial_words import not_tested, region_left, windows_lost, without_words
 from cytodisk.store.correlation_store import Correlation
 
 MOST_CURVE_NUMBERS = 900_000

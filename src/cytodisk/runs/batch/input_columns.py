@@ -21,7 +21,7 @@ INPUT_COLUMNS: Columns = (
     Column("cells", pa.int64(), "", "number of cells"),
     Column("frames", pa.int64(), "", "number of frames of all cells of a movie; of a map the same as cells"),
     Column("mapped", pa.int64(), "", "number of those that have a map"),
-    Column("qc_flags", pa.int64(), "", "number of those whose mask has a QC flag"),
+    Column("qc_flags", pa.int64(), "", "number of those that a QC flag names"),
     Column("flags", pa.string(), "", "names of the QC flags of its study; empty if there are none"),
     Column("pixel_size_um", pa.float64(), "µm", "side of a pixel; empty if unknown"),
     Column("frame_interval_s", pa.float64(), "s", "time between frames; empty if unknown"),

@@ -37,7 +37,7 @@ class InputRow:
     cells, frames, mapped : int
         Cells; for a movie frames of all cells, else the same; and how many of them have a map.
     qc_flags : int
-        Cells (of a movie frames of all cells) whose mask has a QC flag.
+        Cells (of a movie frames of all cells) that a QC flag names.
     flags : str
         Names of the study's QC flags, with semicolons between, the gravest first.
     pixel_size_um, frame_interval_s : float or None

@@ -11,6 +11,8 @@ from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.correlate.correlate_cell import CellCorrelation
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.correlate.correlation_tables import merged, of_cell
+from cytodisk.runs.flagged_cells import flags_by_cell
+from cytodisk.runs.qc_flags.one_correlation import UnwrittenCorrelation
 from cytodisk.runs.run_options import Progress
 from cytodisk.runs.versions import installed
 from cytodisk.store.correlation_store import Correlation, write_correlation
@@ -83,6 +85,9 @@ def correlate_study(
     content["surrogates_made"] = max(int(row.get("surrogates", 0)) for row in rows)
     content["pair_surrogates"] = max(int(row.get("pair_surrogates", 0)) for row in rows)
     content["cytodisk"] = installed(("cytodisk",))["cytodisk"]
+    tables["cells"]["qc_flags"] = flags_by_cell(
+        study, UnwrittenCorrelation(study.path, signal, with_, options.name, content, tables)
+    )
     return write_correlation(study.path, signal, with_, tables, content, options.name)
 
 

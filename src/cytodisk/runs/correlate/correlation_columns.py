@@ -175,6 +175,12 @@ CORRELATION_TABLES: dict[str, Columns] = {
         CELL,
         Column("status", pa.string(), "", "ok or refused"),
         Column("reason", pa.string(), "", "why the cell is left out; empty if it is not"),
+        Column(
+            "qc_flags",
+            pa.string(),
+            "",
+            "names of the QC flags of this correlation that the cell has, with ; between, as jitter",
+        ),
         Column("statistic", pa.string(), "", "pearson: of values; spearman: of ranks"),
         Column("frames", pa.int64(), "", "number of frames that were used"),
         Column(

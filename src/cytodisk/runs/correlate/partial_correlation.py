@@ -20,9 +20,9 @@ from cytodisk.analysis.correlation.peaks import peak_correlation
 from cytodisk.analysis.correlation.prepared_series import default_frames, prepare_series
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
+from cytodisk.runs.partial_words import SIGNIFICANT
 from cytodisk.runs.run_options import Progress
 
-SIGNIFICANT = 0.05
 LEAST_LEFT = 0.5
 """Share of a correlation that must be left at its lag, else it was made by the controls for the most part."""
 

@@ -15,6 +15,7 @@ from cytodisk.images.mask_names import without_name
 from cytodisk.runs.cells.cell_inputs import CellInputs
 from cytodisk.runs.cells.cell_parts import CellRun
 from cytodisk.runs.depth_layers import check_depths
+from cytodisk.runs.flagged_cells import fill_flags
 from cytodisk.runs.frame_rows import cell_status
 from cytodisk.runs.map.map_kind import MAP
 from cytodisk.runs.map.map_parameters import MapParameters
@@ -85,11 +86,11 @@ def map_study(
         warnings = [words for row in rows if (words := _warning(row, inputs.is_folder))]
         return keys, [*inputs.remarks, *warnings]
 
-    return StudyRun(MAP, provenance, inputs.parameters, options).into(out, work, open_study)
+    return StudyRun(MAP, provenance, inputs.parameters, options).into(out, work, open_study, fill_flags)
 
 
 def _warning(row: dict[str, Any], of_many: bool) -> str:
-    words = row["reason"] or row.get("qc_flags")
+    words = row["reason"] or row.get("mask_remarks")
     if not words:
         return ""
     if not of_many:

@@ -97,7 +97,7 @@ def measure_frame(task: FrameTask) -> FrameRows:
     row, columns = measure_windows(task.place, windows, task.signal, task.parameters.nan)
     row |= _track_columns(frame) | {"smallest_window_share": _smallest_share(windows, task.parameters)}
     row["notes"] = "; ".join(filter(None, [row["notes"], _interior_note(frame, task)]))
-    row["qc_flags"] = "; ".join(filter(None, [row["qc_flags"], _jump(task)]))
+    row["mask_remarks"] = "; ".join(filter(None, [row["mask_remarks"], _jump(task)]))
     save_frame(task.map_path, frame)
     motion = _motion_since(task)
     row["swept_area"] = np.nan if motion is None else frame.disk.scale.area(motion.swept_px2)

@@ -15,6 +15,7 @@ from cytodisk.motion.frame_file import load_frame
 from cytodisk.motion.mapped_frame import MappedFrame
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.executor import Executor, finished
+from cytodisk.runs.flagged_cells import fill_flags
 from cytodisk.runs.frame_rows import FramePlace
 from cytodisk.runs.movie.measured_frame import FrameRows, FrameTask, measure_frame, unmapped_rows
 from cytodisk.runs.movie.movie_inputs import MovieInputs
@@ -72,7 +73,7 @@ def movie_study(
         finish_tables(folder, inputs.tracks, inputs.grid, inputs.scale, channels)
         return inputs.keys, [words for row in folder.rows() if (words := _warning(row))]
 
-    return StudyRun(MOVIE, provenance, inputs.parameters, options).into(out, work, open_study)
+    return StudyRun(MOVIE, provenance, inputs.parameters, options).into(out, work, open_study, fill_flags)
 
 
 class _Run:
@@ -156,6 +157,6 @@ class _Run:
 
 
 def _warning(row: dict[str, Any]) -> str:
-    remarks = [row.get(name) for name in ("reason", "qc_flags", "restarted")]
+    remarks = [row.get(name) for name in ("reason", "mask_remarks", "restarted")]
     words = "; ".join(str(remark) for remark in remarks if remark)
     return f"cell {row['cell']}, frame {row['frame']}: {words}" if words else ""

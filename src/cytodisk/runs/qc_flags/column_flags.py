@@ -103,7 +103,7 @@ flagged_masks = ColumnRule(
     "{frames} may not be one whole cell",
     "Cleaning the mask changed much, or the cell is not where it was.",
     "Look at the mask; correct the segmentation or leave it out.",
-    "qc_flags",
+    "mask_remarks",
     said,
     lambda value, row, scale: str(value),
     mapped=False,

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 import pandas as pd
 
 from cytodisk.runs.channel_names import correlation_name
-from cytodisk.runs.correlate.partial_correlation import SIGNIFICANT
-from cytodisk.runs.correlate.partial_words import lost_rows, region_lost
+from cytodisk.runs.partial_words import SIGNIFICANT, lost_rows, region_lost
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted
 from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.study import Study

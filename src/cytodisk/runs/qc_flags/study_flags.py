@@ -52,8 +52,18 @@ def qc_flags(study: Study) -> list[QCFlag]:
     >>> cd.qc_flags(study)  # nothing to doubt
     []
     """
-    found = [flag for rule in _RULES for flag in rule(study)]
+    found = [*run_flags(study), *correlation_flags_of(study)]
     return [*found, *_other_warnings(study, found)]
+
+
+def run_flags(study: Study) -> list[QCFlag]:
+    """Those of the run itself: masks, maps, motion, windows, signals."""
+    return [flag for rule in _RUN_RULES for flag in rule(study)]
+
+
+def correlation_flags_of(study: Study) -> list[QCFlag]:
+    """Those of the study's correlations."""
+    return [flag for rule in _CORRELATION_RULES for flag in rule(study)]
 
 
 def _other_warnings(study: Study, found: Sequence[QCFlag]) -> Iterator[QCFlag]:
@@ -83,7 +93,7 @@ def _heads(study: Study, cell: int, frame: int | None) -> Iterator[str]:
         yield f"{source}:"  # a file without a cell
 
 
-_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
+_RUN_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     column_flags.without_map,
     column_flags.flagged_masks,
     area_jumps.area_jumps,
@@ -102,6 +112,9 @@ _RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     window_flags.small_windows,
     interior_flags.distortion,
     column_flags.nan_pixels,
+)
+
+_CORRELATION_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     geometry_flags.geometry,
     correlation_flags.jitter,
     *stress_flags.STRESS_RULES,

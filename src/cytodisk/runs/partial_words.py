@@ -7,8 +7,9 @@ from typing import Any
 import pandas as pd
 
 from cytodisk.runs.channel_names import shown_name
-from cytodisk.runs.correlate.partial_correlation import SIGNIFICANT
 from cytodisk.store.correlation_store import Correlation
+
+SIGNIFICANT = 0.05
 
 
 def without_words(found: Correlation, cell: int) -> str:

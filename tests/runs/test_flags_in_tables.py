@@ -1,0 +1,77 @@
+"""Names of QC flags stand in the rows of the frames and cells that they name, and in no other."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from movie_files import SMALL, Stopped, stop_after, write_masks, write_movie
+
+import cytodisk as cd
+from cytodisk.runs.correlate.correlate_study import correlate_study
+from cytodisk.runs.flagged_cells import names_by_row
+from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
+from cytodisk.runs.movie.movie_study import movie_study
+from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag
+from cytodisk.simulate import disk, movie
+
+JUMPS = [4, 9]
+
+
+@pytest.fixture(scope="module")
+def leaping(tmp_path_factory: pytest.TempPathFactory) -> MovieInputs:
+    """A disk that is larger from frame 4 on, and smaller again from frame 9 on."""
+    masks = np.zeros((14, 70, 70), np.uint8)
+    for frame in range(14):
+        cell = disk(22.0 if 4 <= frame < 9 else 20.0)
+        low = 35 - cell.shape[0] // 2
+        masks[frame, low : low + cell.shape[0], low : low + cell.shape[1]] = cell
+    return open_movie(write_masks(tmp_path_factory.mktemp("leaping") / "m.tif", masks), None, SMALL)
+
+
+def flagged(study: cd.Study, name: str) -> list[int]:
+    names = study.cells["qc_flags"].str.split("; ")
+    return study.cells["frame"][[name in row for row in names]].tolist()
+
+
+def test_area_jumps_stand_in_the_rows_of_these_frames_alone(leaping: MovieInputs, tmp_path: Path) -> None:
+    study = movie_study(leaping, tmp_path / "out")
+    assert flagged(study, "area jumps") == JUMPS
+    assert "flagged masks" not in {flag.name for flag in cd.qc_flags(study)}
+    for flag in cd.qc_flags(study):
+        assert flagged(study, flag.name) == [place.frame for place in flag.places]
+    assert (study.cells["mask_remarks"] == "").all()
+
+
+def test_a_run_that_was_resumed_has_the_same(leaping: MovieInputs, tmp_path: Path) -> None:
+    whole = movie_study(leaping, tmp_path / "whole")
+    with pytest.raises(Stopped):
+        movie_study(leaping, tmp_path / "out", progress=stop_after(6))
+    resumed = movie_study(leaping, tmp_path / "out", resume=True)
+    pd.testing.assert_series_equal(resumed.cells["qc_flags"], whole.cells["qc_flags"])
+    assert flagged(resumed, "area jumps") == JUMPS
+    assert resumed.cells.attrs == whole.cells.attrs
+
+
+def test_a_flag_of_a_cell_stands_in_each_of_its_rows() -> None:
+    one = QCFlag("signal drift", "", "", "", (Place(1, None, "a"), Place(1, None, "b")))
+    other = QCFlag("area jumps", "", "", "", (Place(1, 3), Place(0, 2)))
+    rows = [(0, 2), (0, 3), (1, 2), (1, 3)]
+    assert names_by_row([one, other], rows) == ["area jumps", "", "signal drift", "signal drift; area jumps"]
+    assert names_by_row([one], [(0, None), (1, None)]) == ["", "signal drift"]
+
+
+def test_flags_of_a_correlation_stand_in_its_table_of_cells(tmp_path: Path) -> None:
+    truth = movie("fluctuating", 3, frames=24, radius_px=14)
+    growing = truth.signal * np.linspace(1.0, 4.0, 24)[:, None, None, None]
+    truth = replace(truth, signal=growing.astype(truth.signal.dtype))
+    study = movie_study(open_movie(*write_movie(tmp_path, truth), SMALL), tmp_path / "out")
+    found = correlate_study(study, "edge", max_lag=3, surrogates=19, geometry=False)
+    own = {flag.name for flag in cd.qc_flags(study) if any("edge with" in p.note for p in flag.places)}
+    assert "drifting series" in own
+    assert set(found.cells["qc_flags"].iloc[0].split("; ")) == own
+    detrended = correlate_study(
+        study, "edge", max_lag=3, surrogates=19, geometry=False, detrend="linear", name="x"
+    )
+    assert "drifting series" not in detrended.cells["qc_flags"].iloc[0].split("; ")
