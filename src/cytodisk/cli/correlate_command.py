@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 import typer
 
 from cytodisk.cli.console import console_for, progress_bar
-from cytodisk.cli.correlation_words import say_correlation, say_replaced
+from cytodisk.cli.correlation_words import say_correlation, say_replaced, say_verdicts
 from cytodisk.cli.flag_words import say_flags, say_study_flags
 from cytodisk.cli.options import Figures, Given, MovieStudy, Quiet, with_parameters
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
@@ -44,13 +44,13 @@ def correlate_command(
     there = open_study(study)
     chosen = signal if signal is not None else _only(channels_of(there))
     console = console_for(quiet)
-    before = earlier_settings(there, chosen, with_, settings.name)
+    say_replaced(console, earlier_settings(there, chosen, with_, settings.name), settings.model_dump())
     with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
         found = correlate_study(there, chosen, with_, cells=cell, progress=progress, parameters=settings)
     draw_correlation(quiet, there, found, figures, wanted)
-    say_correlation(console, found)
-    say_replaced(console, before, found.settings)
+    say_correlation(console, found, there)
     say_study_flags(console, open_study(study))
+    say_verdicts(console, found)
 
 
 def report_command(

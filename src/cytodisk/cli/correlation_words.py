@@ -5,16 +5,18 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from cytodisk.cli.console import count
+from cytodisk.cli.layer_lines import layer_lines, signed
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from cytodisk.store.correlation_store import Correlation
+    from cytodisk.store.study import Study
 
 _MOST_CLUSTERS = 5  # of a cell that are listed
 
 
-def say_correlation(console: "Console", found: "Correlation") -> None:
+def say_correlation(console: "Console", found: "Correlation", study: "Study") -> None:
     """Peaks by layer, and how many windows are significant."""
     from cytodisk.runs.partial_words import not_tested, without_words
 
@@ -25,11 +27,11 @@ def say_correlation(console: "Console", found: "Correlation") -> None:
         f"Positive lag: {_what_comes(found.with_)} after the signal; negative lag: before it"
     )
     layers, windows = found.layers, found.windows
-    for cell, rows in layers.groupby("cell"):
-        of_cell, without = windows[windows["cell"] == cell], without_words(found, int(str(cell)))
+    for cell in layers["cell"].unique().tolist():
+        without = without_words(found, cell)
         console.print(f"cell {cell}, mean over sectors by layer:")
-        for layer in rows.itertuples():
-            console.print(_layer_words(layer, of_cell[of_cell["layer"] == layer.layer], without))
+        for words in layer_lines(found, study, cell, without):
+            console.print(words)
         for words in _cluster_words(found, cell, without):
             console.print(words)
     for _, row in found.cells.iterrows():
@@ -51,13 +53,47 @@ def _of_what(settings: dict[str, Any]) -> str:
     return "" if settings.get("statistic", "pearson") == "pearson" else "Spearman correlation of ranks, "
 
 
+def say_verdicts(console: "Console", found: "Correlation") -> None:
+    """The last lines: what nothing known speaks against, and what waits for flags."""
+    from cytodisk.runs.correlate.verdict import verdict_words
+
+    for cell in found.cells["cell"].tolist():
+        if words := verdict_words(found, int(cell)):
+            console.print(f"cell {cell}. {words}")
+
+
 def say_replaced(console: "Console", before: dict[str, Any] | None, now: dict[str, Any]) -> None:
-    """Say which settings the replaced correlation had, if others."""
+    """Say which settings the correlation that will be replaced has, if others."""
     if before is None:
         return
-    changed = [f"{name} {before[name]!r}" for name in now if name in before and before[name] != now[name]]
-    if changed:
-        console.print(f"this replaced the correlation with {', '.join(changed)}: --name NAME keeps both")
+    usual = "max_lag" if now["max_lag"] is None else ""  # which that is, is known at the end
+    changed = [name for name in now if name in before and name != usual]
+    told = [_setting_words(name, before[name]) for name in changed if not _same(before[name], now[name])]
+    if told:
+        console.print(
+            f"The earlier correlation ({', '.join(told)}) will be replaced. To keep both, stop with Ctrl-C "
+            "and add --name NAME."
+        )
+
+
+def _same(before: Any, now: Any) -> bool:
+    """Whether settings are equal, of which those of a file have lists for tuples."""
+    both = [list(one) if isinstance(one, tuple | list) else one for one in (before, now)]
+    return bool(both[0] == both[1])
+
+
+def _setting_words(name: str, value: Any) -> str:
+    """A setting in words, as "all lags" or "--detrend none"."""
+    flag = f"--{name.replace('_', '-')}"
+    if value is None or value in ([], ()):
+        whole = {"skip_lags": "all lags", "sectors": "all sectors", "frames": "all frames"}
+        return (
+            f"with {whole.get(name, whole['frames'])}" if name in (*whole, "without_frames") else f"no {flag}"
+        )
+    if isinstance(value, bool):
+        return flag if value else f"--no-{flag[2:]}"
+    shown = ",".join(map(str, value)) if isinstance(value, tuple | list) else value
+    return f"{flag} {shown}"
 
 
 def _cautions(row: Any, settings: dict[str, Any]) -> Iterator[str]:
@@ -73,7 +109,7 @@ def _cautions(row: Any, settings: dict[str, Any]) -> Iterator[str]:
             "before and after, so correlate the stretches one by one with --frames"
         )
     if settings["with"] in VELOCITIES and not math.isfinite(row["jitter"]):
-        yield ": too few frames to see whether masks jitter, which correlates by itself at lags -1 and 0"
+        yield ": too few frames to see whether masks jitter, which correlates by itself at lags −1 and 0"
 
 
 def _say_power(console: "Console", cells: Any, windows: Any) -> None:
@@ -89,9 +125,14 @@ def _say_power(console: "Console", cells: Any, windows: Any) -> None:
         )
     elif tested and fewest > 1:
         console.print(
-            f"of {tested} windows, q < 0.05 takes {fewest} beyond all {surrogates} surrogates; a smaller "
-            "patch needs more --surrogates, or --sectors"
+            f"A patch of fewer than {fewest} windows cannot reach q < 0.05. To find one, use "
+            f"--surrogates {_enough(tested)} or fewer --sectors."
         )
+
+
+def _enough(tested: int) -> int:
+    """Surrogates with which two windows can have q below 0.05, as 1999, 4999 or 9999."""
+    return next((made for made in (999, 1999, 4999) if tested * 20 // (made + 1) < 2), 9999)
 
 
 def _cluster_words(found: "Correlation", cell: Any, without: str) -> Iterator[str]:
@@ -100,9 +141,9 @@ def _cluster_words(found: "Correlation", cell: Any, without: str) -> Iterator[st
         return
     clusters = found.clusters[found.clusters["cell"] == cell]
     if clusters.empty:
-        yield f"cell {cell}, clusters of neighbouring windows: none with p <= 0.05"
+        yield f"cell {cell}, clusters of neighbouring windows: none with p ≤ 0.05"
         return
-    yield f"cell {cell}, clusters of neighbouring windows, p <= 0.05 (their borders are not exact):"
+    yield f"cell {cell}, clusters of neighbouring windows, p ≤ 0.05 (their borders are not exact):"
     for one in clusters.head(_MOST_CLUSTERS).itertuples():
         yield _cluster_line(one, found.with_, without)
     if len(clusters) > _MOST_CLUSTERS:
@@ -115,7 +156,7 @@ def _cluster_line(row: Any, with_: str, without: str) -> str:
 
     words = (
         f"  {cluster_place(row)}: {_which_first(row.lag, with_)}, "
-        f"{row.correlation:+.2f} in {count(row.windows, 'window')}, p = {row.p:.2g}"
+        f"mean r {signed(row.correlation)} in {count(row.windows, 'window')}, p = {row.p:.2g}"
     )
     return "; ".join(filter(None, [words, region_left(row, without)]))
 
@@ -124,25 +165,3 @@ def _which_first(lag: int, with_: str) -> str:
     if not lag:
         return f"{_what_comes(with_)} with the signal"
     return f"{_what_comes(with_)} {'after' if lag > 0 else 'before'} the signal"
-
-
-def _layer_words(row: Any, windows: Any, without: str) -> str:
-    layer = f"  layer {row.layer:>2}"
-    if not math.isfinite(row.correlation):
-        return f"{layer}  no correlation: too few frames, deeper than the cell, or no change"
-    seconds = f" ({row.lag_s:+.4g} s)" if math.isfinite(row.lag_s) else ""
-    words = f"{layer}  {row.correlation:+.2f} at lag {row.lag:+.0f}{seconds}"
-    if "q" not in windows:
-        return words
-    share = (windows["q"] < 0.05).mean()
-    words = f"{words}, q = {row.q:.2g}; q < 0.05 in {share:.0%} of its windows"
-    if not without:
-        return words
-    if not math.isfinite(row.correlation_partial):
-        return f"{words}; {without} not known: too few frames"
-    left = (windows["q_partial"] < 0.05).mean()
-    lost = ": it does not survive" if row.geometry else ""
-    return (
-        f"{words}; {without} {row.correlation_partial:+.2f} at lag {row.lag_partial:+.0f}, "
-        f"q = {row.q_partial:.2g}, {left:.0%} of its windows{lost}"
-    )

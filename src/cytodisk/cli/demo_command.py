@@ -8,7 +8,7 @@ import typer
 
 from cytodisk.cli.console import console_for, progress_bar
 from cytodisk.cli.correlate_command import NOTHING_CHANGED, draw_correlation, write_page
-from cytodisk.cli.correlation_words import say_correlation
+from cytodisk.cli.correlation_words import say_correlation, say_verdicts
 from cytodisk.cli.movie_command import draw_movie, finish_movie, say_movie
 from cytodisk.cli.options import Quiet
 from cytodisk.errors import MissingPartError
@@ -57,11 +57,12 @@ def demo_command(
         with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
             found = correlate_study(study, "edge", "velocity", progress=progress)
         drawings.append(beside.submit(_draw_correlation, study.path))
-        say_correlation(console, found)
+        say_correlation(console, found, study)
         try:
             write_page(console, quiet, study)
         except MissingPartError as missing:
             console.print(f"no report: {missing}")
+        say_verdicts(console, found)
         with progress_bar(quiet, "drawings", total=len(drawings), again=_AGAIN) as progress:
             for number, drawing in enumerate(drawings):
                 drawing.result()

@@ -16,7 +16,25 @@ def check_depths(grid: PolarGrid, scale: Scale) -> None:
         The layers are by depth, and the pixel size is unknown.
     """
     if grid.depth_um is not None and scale.pixel_size_um is None:
-        raise ParameterError("depth_um needs a pixel size: pass it as --pixel-size, or layers instead")
+        raise ParameterError("--depth-um needs the pixel size: add --pixel-size, or use --layers")
+
+
+def layer_borders(grid: PolarGrid) -> list[str]:
+    """Borders of each layer by depth, as "0–0.5 µm" and "> 2 µm"; of other grids none.
+
+    Parameters
+    ----------
+    grid : PolarGrid
+
+    Returns
+    -------
+    list of str
+        One a layer, empty for layers that have no depths of their own.
+    """
+    if grid.depth_um is None:
+        return [""] * grid.layers
+    borders = [f"{depth:g}" for depth in (0.0, *grid.depth_um)]
+    return [*(f"{outer}–{inner} µm" for outer, inner in pairwise(borders)), f"> {borders[-1]} µm"]
 
 
 def depth_words(grid: PolarGrid) -> str:
