@@ -42,9 +42,9 @@ def test_each_layer_goes_where_it_belongs() -> None:
     ("cells", "words"),
     [
         ({"jitter": np.nan}, "layer 1 (jitter not known)"),
-        ({"stress": "common pulse"}, "layer 0 (common pulse), layer 1 (common pulse)"),
-        ({"drifting_signal": 0.9}, "layer 0 (drifting series)"),
-        ({"geometry_not_tested": "the signal is gone"}, "layer 0 (geometry not tested)"),
+        ({"stress": "common pulse"}, "layer 0, layer 1 (common pulse)"),
+        ({"drifting_signal": 0.9}, "layer 0, layer 1 (drifting series)"),
+        ({"geometry_not_tested": "the signal is gone"}, "layer 0, layer 1 (geometry not tested)"),
     ],
 )
 def test_doubts_are_named(cells: dict[str, Any], words: str) -> None:
@@ -53,7 +53,7 @@ def test_doubts_are_named(cells: dict[str, Any], words: str) -> None:
 
 def test_ranks_cure_a_pulse_but_not_an_oscillation() -> None:
     cured = correlation(stress="common pulse, steady oscillation", statistic="spearman")
-    assert "layer 0 (steady oscillation)" in verdict_words(cured, 0)
+    assert "layer 0, layer 1 (steady oscillation)" in verdict_words(cured, 0)
 
 
 def test_nothing_significant_and_nothing_tested() -> None:

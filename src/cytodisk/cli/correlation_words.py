@@ -126,13 +126,15 @@ def _say_power(console: "Console", cells: Any, windows: Any) -> None:
     elif tested and fewest > 1:
         console.print(
             f"A patch of fewer than {fewest} windows cannot reach q < 0.05. To find one, use "
-            f"--surrogates {_enough(tested)} or fewer --sectors."
+            f"--surrogates {_enough(tested, surrogates)} or fewer --sectors."
         )
 
 
-def _enough(tested: int) -> int:
-    """Surrogates with which two windows can have q below 0.05, as 1999, 4999 or 9999."""
-    return next((made for made in (999, 1999, 4999) if tested * 20 // (made + 1) < 2), 9999)
+def _enough(tested: int, surrogates: int) -> int:
+    """More surrogates, with which one or two windows can have q below 0.05, if that is not too many."""
+    number = tested * 20 // (surrogates + 1)
+    made = (count for count in (999, 1999, 4999, 9999) if tested * 20 // (count + 1) < min(number, 2))
+    return next(made, 5 * (surrogates + 1) - 1)
 
 
 def _cluster_words(found: "Correlation", cell: Any, without: str) -> Iterator[str]:

@@ -29,7 +29,7 @@ def layer_lines(found: "Correlation", study: "Study", cell: int, without: str) -
     from cytodisk.runs.depth_layers import layer_borders
     from cytodisk.windows.polar_windows import polar_grid_of
 
-    borders = layer_borders(polar_grid_of(study.provenance["parameters"]))
+    borders = layer_borders(polar_grid_of(study.provenance))
     interval = study.scale.frame_interval_s or math.nan
     rows = found.layers[found.layers["cell"] == cell]
     windows = found.windows[found.windows["cell"] == cell]

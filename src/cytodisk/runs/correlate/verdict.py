@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import groupby
+from operator import itemgetter
 from typing import Any
 
 import pandas as pd
@@ -54,19 +56,23 @@ def verdict_words(found: Correlation, cell: int) -> str:
     if row["status"] != "ok" or "q" not in found.layers:
         return ""
     general = list(_doubts(found, row))
-    clear, waiting, lost = [], [], []
+    clear: list[str] = []
+    lost: list[str] = []
+    waiting: list[tuple[str, str]] = []
     for name, lag, doubts, is_lost in _significant(found, cell):
         if is_lost:
             lost.append(name)
         elif every := [*general, *doubts]:
-            waiting.append(f"{name} ({', '.join(every)})")
+            waiting.append((name, ", ".join(every)))
         else:
             clear.append(f"{name} ({lag})")
     if not (clear or waiting or lost):
         return "No layer and no cluster is significant."
     words = f"Nothing speaks against: {', '.join(clear)}." if clear else "Nothing is free of doubt."
     if waiting:
-        words += f" Only after flags are settled: {', '.join(waiting)}."
+        alike = groupby(waiting, key=itemgetter(1))
+        told = [f"{', '.join(name for name, _ in some)} ({why})" for why, some in alike]
+        words += f" Only after flags are settled: {', '.join(told)}."
     return f"{words} Not {without_words(found, cell)}: {', '.join(lost)}." if lost else words
 
 
