@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cytodisk.runs.qc_flags.area_jumps import leaps, without_returns
+from cytodisk.runs.qc_flags.area_jumps import flickers, leaps, without_returns
 
 FRAMES = 60
 AT = [12, 25, 41]
@@ -70,3 +70,47 @@ def test_a_gap_and_a_short_movie() -> None:
     assert leaps(step) == []
     assert leaps(np.array([])) == leaps(np.array([np.nan])) == []
     assert leaps(np.array([0.0, 0.01, 0.2, 0.0])) == [2]
+
+
+def flickering(wrong: str, frames: int, seed: int) -> np.ndarray:
+    random = np.random.default_rng(seed)
+    bad = np.arange(frames) % 2 == 0
+    if wrong == "at random":
+        bad = random.permutation(bad)
+    size = 0.12 if wrong == "every second frame" else 0.2
+    area = np.exp(random.normal(0.0, 0.01, frames) + 0.02 * np.arange(frames))
+    return np.diff(np.log(area * np.where(bad, 1.0 + size, 1.0)))
+
+
+@pytest.mark.parametrize(("wrong", "frames", "missed"), [("every second frame", 12, 0), ("at random", 40, 3)])
+def test_flicker_does_not_explain_itself(wrong: str, frames: int, missed: int) -> None:
+    steps = [flickering(wrong, frames, seed) for seed in range(1000, 1050)]
+    assert sum(not flickers(step) or len(leaps(step)) < 0.3 * frames for step in steps) <= missed
+
+
+@pytest.mark.parametrize("kind", ["random walk", "breathing", "growing"])
+def test_no_flicker_in_cells_that_change_their_area_fast(kind: str) -> None:
+    told = 0
+    for seed in range(1000, 1050):
+        random = np.random.default_rng(seed)
+        change = {
+            "random walk": random.normal(0.0, 0.06, 30),
+            "breathing": 0.1 * np.cos(2.0 * np.pi * np.arange(30) / 6) + random.normal(0.0, 0.01, 30),
+            "growing": np.full(30, 0.1) + random.normal(0.0, 0.01, 30),
+        }[kind]
+        told += flickers(change)
+    assert told <= 3
+
+
+def test_a_large_step_is_a_leap_in_a_restless_cell_too() -> None:
+    step = 0.05 * np.sin(np.arange(40.0))
+    step[20] = np.log(1.35)
+    assert leaps(step) == [20]
+
+
+@pytest.mark.parametrize(
+    ("areas", "found"),
+    [((100, 256), [0]), ((100, 130, 100), [0, 1]), ((100, 107), []), ((1, 1.12, 1.25), [])],
+)
+def test_two_or_three_frames(areas: tuple[float, ...], found: list[int]) -> None:
+    assert leaps(np.diff(np.log(areas))) == found

@@ -132,11 +132,24 @@ def test_area_jumps_are_those_beyond_the_cells_own() -> None:
     study = made(n_cells=2)
     cells = study.cells
     cells.loc[10:19, "area"] *= 1.2
-    cells.loc[cells["cell"] == 1, "area"] *= np.where(np.arange(20) % 2, 1.2, 1.0)  # one that always does
+    restless = 1.0 + 0.15 * np.sin(2.0 * np.pi * np.arange(20) / 6)  # steps up to 16 %, each like the next
+    cells.loc[cells["cell"] == 1, "area"] *= restless
     flag = only(study)
     assert flag.name == "area jumps"
     assert where(flag) == [(0, 10)]
     assert flag.places[0].note in ("+19%", "+20%", "+21%")
+
+
+def test_area_that_flickers() -> None:
+    study = made()
+    study.cells["area"] *= np.where(np.arange(20) % 2, 1.2, 1.0)
+    flag = only(study)
+    assert flag.name == "area jumps"
+    assert where(flag) == [(0, frame) for frame in range(1, 20)]
+    assert flag.what == (
+        "the mask's area jumps in 19 frames; it flickers from frame to frame, "
+        "by ±20% in 19 of 19 steps of cell 0"
+    )
 
 
 def test_a_change_of_area_across_a_gap_is_no_jump() -> None:

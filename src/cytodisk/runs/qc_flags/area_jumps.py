@@ -1,4 +1,4 @@
-"""Leaps of a mask's area, told from growth and from the cell's own restlessness."""
+"""Leaps and flicker of a mask's area, told from growth and from the cell's own restlessness."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from cytodisk.arrays import FloatArray
-from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, frames_of, mapped_rows
+from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted, frames_of, mapped_rows
 from cytodisk.store.study import Study
 
 LARGEST_AREA_STEP = 0.05
@@ -15,8 +15,13 @@ LARGEST_AREA_STEP = 0.05
 AREA_STEP_SPREADS = 5.0
 """Changes beyond so many standard deviations of the cell's own about their trend are flagged."""
 
+_LARGEST_OWN = np.log1p(0.25)  # step off the trend that the cell's own spread may explain
+_FEW_STEPS = 3  # that tell no spread
+_LARGEST_OF_FEW = np.log1p(0.1)
+_FLICKER_SHARE = 0.25  # of steps that are large in a mask that flickers
+_FLICKER_MEMORY = -0.25  # correlation of neighbouring steps: −0.5 if each frame has an error of its own
+_CHANCE_SDS = 1.65  # that this correlation is below 0 by, at least
 _NEAR = 3  # steps before and after that tell the trend of a step
-_FEWEST_NEAR = 3
 _BACK = 0.5  # of a leap that may be left when the next step has taken it back
 _QUIET_SHARE = 0.4  # of steps that tell the spread: leaps are among the others
 _QUIET_SDS = 0.5244  # standard deviations that so many of a normal distribution stay below
@@ -27,17 +32,28 @@ def area_jumps(study: Study) -> Iterator[QCFlag]:
     if not study.is_movie:
         return
     places: list[Place] = []
+    flickering: list[tuple[float, str]] = []
     for cell, rows in mapped_rows(study).groupby("cell"):
         frame, area = rows["frame"].to_numpy(), rows["area"].to_numpy(dtype=np.float64)
         step = np.where(np.diff(frame) == 1, np.diff(np.log(area)), np.nan)
+        found = leaps(step)
+        if flickers(step):
+            size = float(np.expm1(np.median(np.abs(step[found]))))
+            steps = int(np.isfinite(step).sum())
+            flickering.append(
+                (size, f"by ±{size:.0%} in {len(found)} of {counted(steps, 'step')} of cell {cell}")
+            )
+        else:
+            found = without_returns(found, step)
         places += [
             Place(int(str(cell)), int(frame[k + 1]), f"{np.expm1(step[k]):+.0%}".replace("-", "−"))
-            for k in without_returns(leaps(step), step)
+            for k in found
         ]
     if places:
+        flicker = f"; it flickers from frame to frame, {max(flickering)[1]}" if flickering else ""
         yield QCFlag(
             "area jumps",
-            f"the mask's area jumps in {frames_of(study, len(places))}",
+            f"the mask's area jumps in {frames_of(study, len(places))}{flicker}",
             "Cells do not gain or lose so much at once: the mask did. Windows and velocity are wrong there.",
             "Look at the mask; correct the segmentation or leave the frames out.",
             tuple(places),
@@ -48,7 +64,9 @@ def leaps(step: FloatArray) -> list[int]:
     """Steps that neither the trend around them nor the spread of the others explains.
 
     A cell that grows by 3 % in each frame does not leap; one that grows by 3 % and then by 10 % does. The
-    spread comes from the quietest steps alone, so that several leaps do not hide each other.
+    spread comes from the quietest steps alone, so that several leaps do not hide each other. It explains no
+    step above 25 %, and none above 5 % in a mask that flickers. Three steps or fewer tell no spread: those
+    above 10 % are leaps.
 
     Parameters
     ----------
@@ -63,9 +81,43 @@ def leaps(step: FloatArray) -> list[int]:
     known = off[np.isfinite(off)]
     if not known.size:
         return []
-    spread = float(np.quantile(known, _QUIET_SHARE)) / _QUIET_SDS
-    bar = max(float(np.log1p(LARGEST_AREA_STEP)), AREA_STEP_SPREADS * spread)
+    least = float(np.log1p(LARGEST_AREA_STEP))
+    if known.size <= _FEW_STEPS:
+        bar = _LARGEST_OF_FEW
+    elif flickers(step):
+        bar = least
+    else:
+        spread = float(np.quantile(known, _QUIET_SHARE)) / _QUIET_SDS
+        bar = min(max(least, AREA_STEP_SPREADS * spread), _LARGEST_OWN)
     return [int(k) for k in np.flatnonzero(np.minimum(off, np.abs(step)) > bar)]
+
+
+def flickers(step: FloatArray) -> bool:
+    """Whether the area goes up and down from frame to frame again and again, as segmentation does.
+
+    A large share of the steps is above 5 %, and a step is followed by one of the opposite sign. In a cell
+    that grows, pulses or protrudes, steps that follow one another are alike.
+
+    Parameters
+    ----------
+    step : ndarray of shape (T - 1,) and dtype float
+        Change of ln(area) from each frame to the next; NaN where a frame is missing.
+
+    Returns
+    -------
+    bool
+    """
+    known = np.isfinite(step)
+    if known.sum() <= _FEW_STEPS:
+        return False
+    change = step - np.mean(step[known])
+    large = np.abs(change[known]) > np.log1p(LARGEST_AREA_STEP)
+    product = change[1:] * change[:-1]
+    product = product[np.isfinite(product)]
+    if large.mean() < _FLICKER_SHARE or not product.size:
+        return False
+    memory = float(product.mean() / np.mean(change[known] ** 2))
+    return memory < min(_FLICKER_MEMORY, -_CHANCE_SDS / float(np.sqrt(product.size)))
 
 
 def without_returns(found: list[int], step: FloatArray) -> list[int]:
@@ -91,11 +143,11 @@ def without_returns(found: list[int], step: FloatArray) -> list[int]:
 
 
 def _trend(step: FloatArray) -> FloatArray:
-    """Median of the steps around each one, without itself; 0 where there are few."""
+    """Median of the steps around each one, without itself; 0 where there is none."""
     trend = np.zeros(len(step))
     for k in range(len(step)):
         near = np.concatenate([step[max(0, k - _NEAR) : k], step[k + 1 : k + 1 + _NEAR]])
         near = near[np.isfinite(near)]
-        if near.size >= _FEWEST_NEAR:
+        if near.size:
             trend[k] = np.median(near)
     return trend
