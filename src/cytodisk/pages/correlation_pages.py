@@ -13,8 +13,9 @@ from cytodisk.pages.drawn_correlation import DrawnCorrelation, broken_lines
 from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.settings_words import detrending
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.correlation.correlation_curves import curve_key, draw_correlation_curves, draw_map_pair
+from cytodisk.plot.correlation.correlation_curves import draw_correlation_curves, draw_map_pair
 from cytodisk.plot.correlation.correlation_peaks import PeakMap, Shown
+from cytodisk.plot.correlation.curve_key import curve_key
 from cytodisk.plot.correlation.event_curves import band_key, draw_event_average, draw_events
 from cytodisk.plot.correlation.lag_axis import sides
 from cytodisk.plot.correlation.pair_curves import draw_pairs
@@ -36,6 +37,7 @@ _KEY, _KEY_POINTS = 10.0, 31.0  # height of the key above the average in mm, and
 _KEY_LEFT = -0.05  # of the axes of the average: its key is wider than they are
 _KEY_STYLE: Any = {"borderaxespad": 0.0, "handlelength": 1.6, "columnspacing": 1.2, "labelspacing": 0.3}
 _LINE = 3.6  # mm
+_LONGEST_LABEL = 62  # characters of two labels beside each other in one column
 _MOST_CLUSTERS = 3  # that are told below the peaks
 
 
@@ -47,7 +49,11 @@ def curves_page(one: DrawnCorrelation) -> Sheet | None:
     heading = one.heading(SINGLE_COLUMN_MM, f"{one.signal_name} with {one.with_words}")
     head = heading.height_mm
     count = len(shown_layers(int(curves["layer"].nunique())))
-    first = head + (10.5 if not one.partial_words else 10.5 + _LINE)
+    chance = "threshold" in curves and bool(curves["threshold"].notna().any())
+    lost, jittered = bool(one.lost.any()), bool(one.jittered[one.lost.index].any())
+    key = curve_key(chance=chance, partial=one.partial_words, lost=lost, jittered=jittered)
+    columns = 1 if _widest(key) > _LONGEST_LABEL else 2
+    first = head + 3.4 + _LINE * -(-len(key) // columns)
     sheet = Sheet(first + count * (_CURVE + _CURVE_GAP) + 7.5, SINGLE_COLUMN_MM)
     heading.write(sheet)
     axes = [
@@ -58,15 +64,20 @@ def curves_page(one: DrawnCorrelation) -> Sheet | None:
         axes,
         curves,
         cell=one.cell,
-        peaks=one.correlation.layers,
+        peaks=one.correlation.layers.assign(jittered=one.jittered),
         signal=one.first_names[0],
         with_=one.first_names[1],
         depths=one.movie.depths,
     )
-    chance = "threshold" in curves and bool(curves["threshold"].notna().any())
-    key = curve_key(chance=chance, partial=one.partial_words, lost=bool(one.lost.any()))
-    sheet.key(LEFT_MM, head - 2.0, key, 2, **_KEY_STYLE)
+    sheet.key(LEFT_MM, head - 2.0, key, columns, **_KEY_STYLE)
     return sheet
+
+
+def _widest(key: list[Any]) -> int:
+    """Characters of the longest labels of a key's two columns together; columns are filled downwards."""
+    labels = [len(str(handle.get_label())) for handle in key]
+    half = -(-len(labels) // 2)
+    return max(labels[:half]) + max(labels[half:], default=0)
 
 
 def maps_page(one: DrawnCorrelation) -> Sheet:

@@ -15,6 +15,7 @@ from cytodisk.pages.drawn_movie import LEFT_MM, DrawnMovie
 from cytodisk.pages.settings_words import settings_words, used_windows
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.correlation.correlation_peaks import PeakMap
+from cytodisk.runs.correlate.verdict import jittered_rows
 from cytodisk.runs.partial_words import lost_clusters, lost_rows, without_words
 from cytodisk.store.correlation_store import Correlation
 
@@ -93,6 +94,11 @@ class DrawnCorrelation:
     def lost(self) -> pd.Series[bool]:
         """Which layers do not survive once the controls are regressed out."""
         return lost_rows(self.rows(self.correlation.layers))
+
+    @property
+    def jittered(self) -> pd.Series[bool]:
+        """Which layers, of all cells, have their peak at a lag that jitter of the masks makes."""
+        return jittered_rows(self.correlation, self.correlation.layers)
 
     @cached_property
     def used(self) -> BoolArray:

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.motion.disk_movie import DiskMovie
+from cytodisk.runs.depth_layers import layer_borders
 from cytodisk.scale import Scale
 from cytodisk.store.study import Study
 from cytodisk.windows.polar_windows import PolarGrid, polar_grid_of
@@ -38,7 +39,7 @@ class MovieCell:
     def depths(self) -> xr.DataArray:
         """Depth of the windows in all frames; NaN in a study that was made before windows had one."""
         if "depth" in self.activity:
-            return self.activity["depth"]
+            return self.activity["depth"].assign_attrs(borders=layer_borders(self.grid))
         unknown = xr.full_like(self.activity["area"], np.nan)
         return unknown.assign_attrs(units=self.scale.length_unit)
 

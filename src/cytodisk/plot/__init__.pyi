@@ -33,7 +33,7 @@ from .movie.kymograph_lines import draw_boundary_kymograph as draw_boundary_kymo
 
 # Correlations and events
 from .correlation.correlation_curves import draw_correlation_curves as draw_correlation_curves
-from .correlation.correlation_curves import curve_key as curve_key
+from .correlation.curve_key import curve_key as curve_key
 from .correlation.correlation_curves import draw_map_pair as draw_map_pair
 from .correlation.pair_curves import draw_pairs as draw_pairs
 from .correlation.correlation_peaks import PeakMap as PeakMap

@@ -40,17 +40,24 @@ def layer_names(layers: Sequence[int], count: int, depths: xr.DataArray | None =
     count : int
         Number of all layers.
     depths : DataArray with the dim layer, optional
-        As `activity["depth"]`, with its unit; the median over all other dims is told.
+        As `activity["depth"]`, with its unit; the median over all other dims is told, or of layers by depth
+        their borders, where the attribute "borders" has them.
 
     Returns
     -------
     list of str
-        As "layer 0 (edge), 0.4 µm deep".
+        As "layer 0 (edge), 0.4 µm deep" or "layer 0 (edge), 0–0.5 µm".
     """
     places = {count - 1: " (centre)", 0: " (edge)"}
     deep = dict.fromkeys(layers, "")
     if depths is not None:
-        deep = {layer: depth_words(float(depths.sel(layer=layer).median()), depths) for layer in layers}
+        borders = depths.attrs.get("borders", [""] * count)
+        deep = {
+            layer: f", {borders[layer]}"
+            if borders[layer]
+            else depth_words(float(depths.sel(layer=layer).median()), depths)
+            for layer in layers
+        }
     return [f"layer {layer}{places.get(layer, '')}{deep[layer]}" for layer in layers]
 
 

@@ -27,7 +27,7 @@ DPI = 200
 
 SIGNAL_COLOURS = "viridis"
 DIVERGING_COLOURS = "RdBu_r"
-LAYER_COLOURS = "cividis"
+LAYER_COLOURS = "plasma"
 MISSING_COLOUR = "0.85"
 CHANCE_COLOUR, CHANCE_LINE = "0.93", "0.7"  # of the band that chance gives, and of its border
 LINE_COLOUR = "0.15"

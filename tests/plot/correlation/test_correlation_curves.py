@@ -15,13 +15,14 @@ from cytodisk.analysis.correlation.cross_correlation import correlation_by_layer
 from cytodisk.analysis.correlation.peaks import peak_correlation
 from cytodisk.errors import ParameterError
 from cytodisk.plot.correlation.correlation_curves import (
+    JITTER_NAME,
     LOST_NAME,
     PARTIAL_NAME,
     PEAK_NAME,
-    curve_key,
     draw_correlation_curves,
     draw_map_pair,
 )
+from cytodisk.plot.correlation.curve_key import curve_key
 from cytodisk.plot.correlation.lag_axis import sides
 from cytodisk.scale import Scale
 
@@ -203,3 +204,16 @@ def test_what_does_not_survive_is_drawn() -> None:
     labels = [handle.get_label() for handle in curve_key(partial="without geometry", lost=True)]
     assert "without geometry" in labels
     assert "lost without geometry" in labels
+
+
+def test_a_peak_at_a_lag_of_jitter_is_an_open_diamond() -> None:
+    table = curves()
+    axes = stack(4)
+    marks = peaks(table).assign(q=0.01, geometry=False, jittered=table["layer"] == 0)
+    draw_correlation_curves(axes, table, cell=1, peaks=marks)
+    for ax, layer in zip(axes, (0, 2, 3, 5), strict=True):
+        diamonds = [line for line in ax.lines if line.get_gid() == JITTER_NAME]
+        assert len(diamonds) == (layer == 0)
+        assert all(line.get_markerfacecolor() == "white" for line in diamonds)
+    labels = [handle.get_label() for handle in curve_key(jittered=True)]
+    assert labels[-1] == "jitter makes this lag"

@@ -74,7 +74,7 @@ def test_points_on_the_border_have_no_arrow(ax: Axes, circle: FloatArray) -> Non
 def test_scale_is_told(ax: Axes, circle: FloatArray) -> None:
     _arrows(ax, circle, np.full(40, 2.0), scale=Scale(0.5), stretch=3.0)
     words = [text.get_text() for text in ax.texts] + [key.text.get_text() for key in _keys(ax)]
-    assert words == ["5 µm", "1 µm per frame (× 3)"]
+    assert words == ["5 µm", "1 µm per frame\n(arrows 3 times as long)"]
 
 
 def test_small_steps_are_stretched_on_request(ax: Axes, circle: FloatArray) -> None:

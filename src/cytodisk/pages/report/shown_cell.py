@@ -19,6 +19,7 @@ from cytodisk.plot.layer_looks import depth_words
 from cytodisk.plot.style import signal_limits
 from cytodisk.plot.time_axis import FrameTimes
 from cytodisk.runs.channel_names import shown_name
+from cytodisk.runs.depth_layers import layer_borders
 
 MOST_ARRAY_BYTES = 5_000_000
 """Of numbers by frame and window; more frames are thinned out."""
@@ -101,8 +102,10 @@ class ShownCell(MovieCell):
 
     @property
     def layer_depths(self) -> list[str]:
-        """How deep each layer lies in the median, in words as ", 0.4 µm deep"."""
+        """How deep each layer lies, in words as ", 0–0.5 µm", or in the median as ", 0.4 µm deep"."""
         depths = self.depths
+        if borders := [border for border in layer_borders(self.grid) if border]:
+            return [f", {border}" for border in borders]
         return [depth_words(float(depth), depths) for depth in depths.median(("time", "sector"))]
 
     @cached_property

@@ -11,11 +11,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
+from cytodisk.plot.correlation.curve_key import ALPHA, BAND_OPACITY, JITTER_LOOK, LOST_LOOK, PARTIAL_LOOK
 from cytodisk.plot.correlation.lag_axis import LagUnit, rows_of_cell, sides, signed
 from cytodisk.plot.layer_looks import layer_colours, layer_names, shown_layers
 from cytodisk.plot.movie.activity_maps import draw_activity_map, draw_velocity_map
@@ -24,13 +24,10 @@ from cytodisk.plot.time_axis import TICK_STEPS, stands_alone
 from cytodisk.scale import Scale
 
 PEAK_NAME, LOST_NAME, PARTIAL_NAME = "peak", "peak that does not survive", "without controls"
+JITTER_NAME = "peak at a lag of jitter"
 
-_BAND_OPACITY = 0.3
 _LEAST_REACH = 0.1  # of the correlation's axis, so that noise alone does not fill it
 _ROOM = 1.08  # of that axis over what it holds
-_PARTIAL_LOOK: Any = {"linewidth": 0.6, "linestyle": (0, (3, 1.2))}
-_LOST_LOOK: Any = {"marker": "x", "markersize": 4.5, "markeredgewidth": 1.2}
-_ALPHA = 0.05  # share of false discoveries that is accepted
 _CURVES = {"cell", "layer", "lag", "correlation", "lower_quartile", "upper_quartile"}
 _PEAKS = {"cell", "layer", "lag", "correlation"}
 
@@ -57,7 +54,8 @@ def draw_correlation_curves(
     cell : int
     peaks : DataFrame, optional
         Its `layers`: the peak of each, an open dot where q, over all layers and cells, is 0.05 or more; a
-        cross where the column geometry says that it does not survive.
+        cross where the column geometry says that it does not survive; an open diamond where the column
+        jittered says that jitter of the masks makes its lag.
     signal, with_ : str
         Names for the words at the lags: at a positive lag the signal comes first.
     depths : DataArray with the dim layer, optional
@@ -114,58 +112,6 @@ def draw_correlation_curves(
     _share_axes(axes, curves[curves["layer"].isin(layers)], unit)
     axes[-1].set_xlabel(f"{unit.label}\n{sides(signal, with_)}", parse_math=False)
     return lines
-
-
-def curve_key(*, peaks: bool = True, chance: bool = True, partial: str = "", lost: bool = False) -> list[Any]:
-    """Handles of a legend for `draw_correlation_curves`.
-
-    Parameters
-    ----------
-    peaks, chance : bool
-        Whether they are drawn.
-    partial : str
-        What the thin line is, such as "without geometry"; empty for none.
-    lost : bool
-        Whether a peak does not survive.
-
-    Returns
-    -------
-    list of Artist
-
-    See Also
-    --------
-    draw_correlation_curves : Draws the curves.
-
-    Examples
-    --------
-    >>> import matplotlib.pyplot as plt
-    >>> import cytodisk as cd
-    >>> figure, ax = plt.subplots()
-    >>> legend = figure.legend(handles=cd.plot.curve_key())
-    """
-    dark = tuple(layer_colours([0])[0])
-    band = (*dark[:3], _BAND_OPACITY)
-    handles: list[Any] = [
-        Line2D([], [], color=dark, linewidth=1.0, label="mean of sectors"),
-        Patch(color=band, linewidth=0, label="quartiles of sectors"),
-    ]
-    if partial:
-        handles.insert(1, Line2D([], [], color=dark, label=partial, **_PARTIAL_LOOK))
-    if chance:
-        handles.append(
-            Patch(
-                facecolor=CHANCE_COLOUR,
-                edgecolor=CHANCE_LINE,
-                linewidth=0.4,
-                label="chance (95 %, each layer alone)",
-            )
-        )
-    if peaks:
-        words = f"peak, q < {_ALPHA:g} (○ q ≥ {_ALPHA:g})" if chance else "peak"
-        handles.append(Line2D([], [], color=dark, marker="o", markersize=3.5, linewidth=0, label=words))
-    if lost:
-        handles.append(Line2D([], [], color=dark, linewidth=0, label=f"lost {partial}", **_LOST_LOOK))
-    return handles
 
 
 def draw_map_pair(
@@ -244,7 +190,7 @@ def _draw_curve(ax: Axes, curve: pd.DataFrame, unit: LagUnit, colour: FloatArray
     ax.axhline(0.0, color="0.6", linewidth=0.4, zorder=0.5)
     ax.axvline(0.0, color="0.35", linewidth=0.5, linestyle=(0, (4, 3)), zorder=0.5)
     low, high = (curve[f"{name}_quartile"].to_numpy(dtype=np.float64) for name in ("lower", "upper"))
-    ax.fill_between(lag, low, high, color=colour, alpha=_BAND_OPACITY, linewidth=0)
+    ax.fill_between(lag, low, high, color=colour, alpha=BAND_OPACITY, linewidth=0)
     mean = curve["correlation"].to_numpy(dtype=np.float64)
     dots: Any = {"marker": ".", "markersize": 3.0, "markevery": stands_alone(mean)}
     (line,) = ax.plot(lag, mean, color=colour, linewidth=1.0, **dots)
@@ -256,20 +202,24 @@ def _draw_partial(ax: Axes, curve: pd.DataFrame, unit: LagUnit, colour: FloatArr
     if "correlation_partial" not in curve or not curve["correlation_partial"].notna().any():
         return
     lag, left = (curve[name].to_numpy(dtype=np.float64) for name in (unit.column, "correlation_partial"))
-    (line,) = ax.plot(lag, left, color=colour, **_PARTIAL_LOOK)
+    (line,) = ax.plot(lag, left, color=colour, **PARTIAL_LOOK)
     line.set_gid(PARTIAL_NAME)
 
 
 def _mark_peak(ax: Axes, peak: pd.DataFrame, unit: LagUnit, colour: FloatArray) -> None:
-    """A dot at the peak, open where q is not small, a cross where it is lost; its numbers above the axes."""
+    """A mark at the peak, a cross if it is lost, a diamond if it is jitter's; its numbers above the axes."""
     if len(peak) != 1 or not np.isfinite(peak["correlation"].iloc[0]):
         return
     height, lag = float(peak["correlation"].iloc[0]), float(peak[unit.column].iloc[0])
-    faint = "q" in peak and bool(peak["q"].iloc[0] >= _ALPHA)
+    faint = "q" in peak and bool(peak["q"].iloc[0] >= ALPHA)
     lost = "geometry" in peak and peak["geometry"].iloc[0] in (True, 1)
-    look: Any = _LOST_LOOK if lost else {"marker": "o", "markersize": 3.5, "markeredgewidth": 0.8}
+    jittered = "jittered" in peak and bool(peak["jittered"].iloc[0])
+    look: Any = {"marker": "o", "markersize": 3.5, "markeredgewidth": 0.8}
+    if lost or jittered:
+        look = LOST_LOOK if lost else JITTER_LOOK
     (dot,) = ax.plot([lag], [height], color=colour, linewidth=0, clip_on=False, **look)
-    dot.set(markerfacecolor="white" if faint else colour, gid=LOST_NAME if lost else PEAK_NAME, zorder=4)
+    name = LOST_NAME if lost else JITTER_NAME if jittered else PEAK_NAME
+    dot.set(markerfacecolor="white" if faint or jittered else colour, gid=name, zorder=4)
     words = f"{signed(height, '.2f')} at {unit.write(lag)}"
     ax.set_title(words, loc="right", y=1.0, pad=2.0, fontsize=7.0, color="0.3" if faint else LINE_COLOUR)
 

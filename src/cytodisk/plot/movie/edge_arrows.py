@@ -149,6 +149,12 @@ def _readable_stretch(step_yx: FloatArray, outline_yx: FloatArray) -> float:
     return nice_length(max(_LONGEST_ARROW * size / longest, 1.0)) if longest > 0 else 1.0
 
 
+def _longer_words(stretch: float) -> str:
+    """How much longer than the way an arrow is, in words; empty if it is not."""
+    times = {1.0: "", 2.0: "twice"}.get(stretch, f"{stretch:g} times")
+    return f"\n(arrows {times} as long)" if times else ""
+
+
 def _draw_key(ax: Axes, arrows: Quiver, step_yx: FloatArray, stretch: float, scale: Scale) -> None:
     """Above the cell what lines and colours mean, below it how far an arrow of known length goes."""
     handles = [
@@ -167,7 +173,7 @@ def _draw_key(ax: Axes, arrows: Quiver, step_yx: FloatArray, stretch: float, sca
     size = scale.length(1.0)
     room = _LONGEST_ARROW * abs(float(np.subtract(*ax.get_xlim()))) / stretch
     length = nice_length(size * min(longest, room))
-    words = f"{length:g} {scale.length_unit} per frame" + (f" (× {stretch:g})" if stretch != 1.0 else "")
+    words = f"{length:g} {scale.length_unit} per frame{_longer_words(stretch)}"
     ax.apply_aspect()
     below = -_KEY_BELOW / 72.0 * ax.figure.dpi / ax.get_window_extent().height
     ax.quiverkey(arrows, 0.64, below, length / size, words, labelpos="E", labelsep=0.04, color=LINE_COLOUR)

@@ -14,8 +14,7 @@ from cytodisk.analysis.correlation.jitter_mark import JITTERED_DIFFERENCES, JITT
 from cytodisk.analysis.correlation.prepared_series import DRIFTING_SHARE
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.correlate.lag_words import lag_words
-from cytodisk.runs.correlate.partial_correlation import SIGNIFICANT
-from cytodisk.runs.partial_words import lost_clusters, lost_rows, without_words
+from cytodisk.runs.partial_words import SIGNIFICANT, lost_clusters, lost_rows, without_words
 from cytodisk.store.correlation_store import Correlation
 
 _CURED_BY_RANKS = ("common pulse", "restless episode", "variance change", "heavy tails")
