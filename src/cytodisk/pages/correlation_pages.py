@@ -37,7 +37,7 @@ _KEY, _KEY_POINTS = 10.0, 31.0  # height of the key above the average in mm, and
 _KEY_LEFT = -0.05  # of the axes of the average: its key is wider than they are
 _KEY_STYLE: Any = {"borderaxespad": 0.0, "handlelength": 1.6, "columnspacing": 1.2, "labelspacing": 0.3}
 _LINE = 3.6  # mm
-_LONGEST_LABEL = 62  # characters of two labels beside each other in one column
+_LONGEST_LABELS = 53  # characters of two labels beside each other in one column
 _MOST_CLUSTERS = 3  # that are told below the peaks
 
 
@@ -52,7 +52,7 @@ def curves_page(one: DrawnCorrelation) -> Sheet | None:
     chance = "threshold" in curves and bool(curves["threshold"].notna().any())
     lost, jittered = bool(one.lost.any()), bool(one.jittered[one.lost.index].any())
     key = curve_key(chance=chance, partial=one.partial_words, lost=lost, jittered=jittered)
-    columns = 1 if _widest(key) > _LONGEST_LABEL else 2
+    columns = _columns(key)
     first = head + 3.4 + _LINE * -(-len(key) // columns)
     sheet = Sheet(first + count * (_CURVE + _CURVE_GAP) + 7.5, SINGLE_COLUMN_MM)
     heading.write(sheet)
@@ -73,11 +73,11 @@ def curves_page(one: DrawnCorrelation) -> Sheet | None:
     return sheet
 
 
-def _widest(key: list[Any]) -> int:
-    """Characters of the longest labels of a key's two columns together; columns are filled downwards."""
+def _columns(key: list[Any]) -> int:
+    """Two columns of a key, which are filled downwards, or one where two are wider than the page."""
     labels = [len(str(handle.get_label())) for handle in key]
     half = -(-len(labels) // 2)
-    return max(labels[:half]) + max(labels[half:], default=0)
+    return 2 if max(labels[:half], default=0) + max(labels[half:], default=0) <= _LONGEST_LABELS else 1
 
 
 def maps_page(one: DrawnCorrelation) -> Sheet:
@@ -119,7 +119,7 @@ def peaks_page(one: DrawnCorrelation) -> Sheet | None:
     height = _PANEL * float(np.clip(high / wide, 1.0, _TALLEST))
     key = peak_key(peaks, partial=one.partial_words)
     row = height + 9.0
-    key_rows = -(-len(key) // 2)  # legends fill columns first: two of them
+    key_rows = -(-len(key) // _columns(key))
     notes = _notes_on_peaks(one)
     sheet = Sheet(head + 2 * row + 7.5 + 4.0 * key_rows + _LINE * len(notes), SINGLE_COLUMN_MM)
     heading.write(sheet)
@@ -137,7 +137,7 @@ def peaks_page(one: DrawnCorrelation) -> Sheet | None:
     foot = head + 2 * row + 3.0
     sheet.text(LEFT_MM, foot + 2.0, "lag: " + sides(*one.first_names, upright=True))
     if key:
-        sheet.key(LEFT_MM, foot + 3.5, key, 2, **_KEY_STYLE)
+        sheet.key(LEFT_MM, foot + 3.5, key, _columns(key), **_KEY_STYLE)
     for number, words in enumerate(notes):
         sheet.text(LEFT_MM, foot + 6.0 + 4.0 * key_rows + _LINE * number, words, color="0.3")
     return sheet
