@@ -120,6 +120,17 @@ def keep_kernels(package: Path) -> None:
     )
 
 
+def has_kernels(package: Path) -> bool:
+    """Whether kernels were compiled before, else the first start does it, which takes minutes."""
+    from numba.misc.appdirs import user_cache_dir
+
+    kept = os.environ.get("NUMBA_CACHE_DIR")
+    folders = (
+        [Path(kept)] if kept else [package, Path(user_cache_dir("numba"))]  # type: ignore[no-untyped-call]
+    )
+    return any(next(folder.rglob("*.nbi"), None) is not None for folder in folders)
+
+
 def _can_be_written(folder: Path) -> bool:
     """Whether files can be made in a folder, tried as Numba does: rights alone do not tell."""
     try:

@@ -19,6 +19,30 @@ def test_a_log_gets_a_line_every_half_minute(
     ]
 
 
+def test_percents_have_no_rate(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    reads = iter([0.0, 0.0, 32.0])
+    monkeypatch.setattr(console.clock, "monotonic", lambda: next(reads))
+    lines = console.ProgressLines("percent")
+    for done in (0, 33):
+        lines.report(done, 99)
+    assert capsys.readouterr().err == "33 %, 64 s left\n"
+
+
+def test_no_time_is_left_before_the_third_frame(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    reads = iter([0.0, 40.0, 80.0, 120.0])
+    monkeypatch.setattr(console.clock, "monotonic", lambda: next(reads))
+    lines = console.ProgressLines("frames")
+    for done in (1, 2, 3):
+        lines.report(done, 4)
+    assert capsys.readouterr().err.splitlines() == [
+        "frames 1/4",
+        "frames 2/4, 0.75 frames/min",
+        "frames 3/4, 1 frames/min, 60 s left",
+    ]
+
+
 @pytest.mark.parametrize(
     ("a_second", "words"),
     [(1234.5, "1234 inputs/s"), (0.25, "0.25 inputs/s"), (0.05, "3 inputs/min"), (1 / 1800, "2 inputs/h")],

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 SECONDS_A_LINE = 30.0
+PERCENT = "percent"
+_FEWEST_FOR_TIME = 2  # steps after the first that was told
 _RATE_OVER_S = 600.0  # what is counted may take minutes each
 RESUME = "run it again with --resume"
 
@@ -59,29 +61,28 @@ def progress_bar(
         To call with (done, in all).
     """
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[rate]}"),
-        TimeRemainingColumn(),
-    )
+    percent = unit == PERCENT
+    done_of_all = TextColumn("{task.percentage:.0f} %") if percent else MofNCompleteColumn()
+    columns = (TextColumn("{task.description}"), BarColumn(), done_of_all, TextColumn("{task.fields[left]}"))
     console = Console(stderr=True)
     hidden = quiet or not console.is_terminal
     log = None if quiet or console.is_terminal else ProgressLines(unit)
     with Progress(
         *columns, console=console, disable=hidden, transient=True, speed_estimate_period=_RATE_OVER_S
     ) as bar:
-        task = bar.add_task(unit, total=total, rate="")
+        task = bar.add_task("" if percent else unit, total=total, left="")
+        first: int | None = None
 
         def report(done: int, total: int) -> None:
+            nonlocal first
             if log is not None:
                 log.report(done, total)
-            speed = bar.tasks[task].speed
-            rate = rate_words(speed, unit) if speed else ""
-            bar.update(task, completed=done, total=total, rate=rate)
+            first = done if first is None else first
+            speed = bar.tasks[task].speed or 0.0
+            words = ", ".join(speed_words(speed, unit, done - first, total - done))
+            bar.update(task, completed=done, total=total, left=words)
 
         try:
             yield report
@@ -102,6 +103,16 @@ def rate_words(a_second: float, unit: str) -> str:
     rates = {"s": a_second, "min": 60 * a_second, "h": 3600 * a_second}
     time, rate = next((pair for pair in rates.items() if pair[1] >= 0.1), ("h", rates["h"]))
     return f"{rate:{'.0f' if rate >= 10 else '.2g'}} {unit.split()[0]}/{time}"
+
+
+def speed_words(a_second: float, unit: str, done: int, left: int) -> Iterator[str]:
+    """The rate, and the time left: the first steps compile, and say nothing of those that follow."""
+    if not (done and a_second):
+        return
+    if unit != PERCENT:
+        yield rate_words(a_second, unit)
+    if left > 0 and done >= _FEWEST_FOR_TIME:
+        yield f"{_duration(left / a_second)} left"
 
 
 def _duration(seconds: float) -> str:
@@ -127,9 +138,11 @@ class ProgressLines:
         if now - self.said < SECONDS_A_LINE:
             return
         self.said = now
-        rate = (done - self.first) / (now - self.started)
-        left = f", {_duration((total - done) / rate)} left" if rate and done < total else ""
-        print(f"{self.unit} {done}/{total}, {rate_words(rate, self.unit)}{left}", file=sys.stderr, flush=True)
+        new = done - self.first
+        words = speed_words(new / (now - self.started), self.unit, new, total - done)
+        percent = f"{100 * done / total:.0f} %" if total else "0 %"
+        whole = percent if self.unit == PERCENT else f"{self.unit} {done}/{total}"
+        print(", ".join([whole, *words]), file=sys.stderr, flush=True)
 
 
 def _is_interrupt(error: BaseException | None) -> bool:

@@ -157,7 +157,7 @@ def _cluster_line(row: Any, with_: str, without: str) -> str:
     from cytodisk.runs.partial_words import region_left
 
     words = (
-        f"  {cluster_place(row)}: {_which_first(row.lag, with_)}, "
+        f"  cluster {row.cluster}, {cluster_place(row)}: {_which_first(row.lag, with_)}, "
         f"mean r {signed(row.correlation)} in {count(row.windows, 'window')}, p = {row.p:.2g}"
     )
     return "; ".join(filter(None, [words, region_left(row, without)]))
