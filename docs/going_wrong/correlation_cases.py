@@ -19,6 +19,11 @@ from cytodisk.plot.style import CHANCE_COLOUR, INWARD_COLOUR, OUTWARD_COLOUR
 from cytodisk.simulate.movie_signals import rasterised
 
 SEED = 1000
+ALPHA = 0.05
+APART = 4.0  # standard deviations between two curves and the middle
+Help = tuple[str, dict[str, Any]]
+RANKS: Help = ("ranks", {"statistic": "spearman"})
+SHIFTS: Help = ("shifts", {"null": "shift", "max_lag": 2})
 SECTORS, LAYERS = 24, 5
 RADIUS_PX, STEP_PX = 50.0, 0.25
 
@@ -27,12 +32,12 @@ def draw_curve(axes: Axes, study: cd.Study, signal: str, layer: int = 0) -> None
     """Correlation of a layer's mean by lag, over the band that chance gives."""
     rows = study.correlation(signal, "velocity").layer_curves
     rows = rows[rows["layer"] == layer].sort_values("lag")
-    for sign in (1, -1):
-        axes.fill_between(rows["lag"], 0, sign * rows["threshold"], color=CHANCE_COLOUR, linewidth=0)
+    height = rows["threshold"]
+    axes.fill_between(rows["lag"], -height, height, color=CHANCE_COLOUR, linewidth=0, label="95 % of chance")
     axes.plot(rows["lag"], rows["correlation"], ".-", color=OUTWARD_COLOUR, markersize=3, label="correlation")
     if "correlation_partial" in rows:
         axes.plot(rows["lag"], rows["correlation_partial"], color=INWARD_COLOUR, label="without geometry")
-        axes.legend(frameon=False)
+    axes.legend(frameon=False)
     axes.axhline(0.0, color="0.6", linewidth=0.5)
     axes.set(xlabel="lag (frames)", ylabel=f"correlation, layer {layer}", ylim=(-1, 1))
 
@@ -88,22 +93,39 @@ def drawn_series(kind: Any, frames: int = 120, seed: int = SEED) -> tuple[Any, F
     return masks, 200.0 + 20.0 * values + noise
 
 
-def _stressed(kind: Any, flag: str, figure: Figure, folder: Path) -> list[str]:
+def _stressed(kind: Any, flag: str, help_: Help, figure: Figure, folder: Path) -> list[str]:
     masks, signal = drawn_series(kind)
     study = correlated(study_of(folder, masks, {"signal": signal}), "signal")
-    series, graph = figure.subplots(1, 2, width_ratios=(1.4, 1))
-    activity = study.activity(0)
+    said = flags_said(study, flag)
+    windows = study.correlation("signal", "velocity").windows
+    name, settings = help_
+    with_help = correlated(study, "signal", name="helped", **settings)
+    helped = with_help.correlation("signal", "velocity", "helped").windows
+    series, bars = figure.subplots(1, 2, width_ratios=(1.6, 1))
+    _draw_window(series, study, windows.loc[windows["correlation"].abs().idxmax()])
+    shares = [100.0 * float((table["p"] < ALPHA).mean()) for table in (windows, helped)]
+    drawn = bars.bar(["values", name], shares, color=(OUTWARD_COLOUR, INWARD_COLOUR), width=0.6)
+    bars.bar_label(drawn, fmt="%.0f %%")
+    bars.axhline(100.0 * ALPHA, color="0.3", linewidth=0.7, linestyle="--", label="chance: 5 %")
+    bars.set(ylabel="windows with p < 0.05 (%)", ylim=(0, max(20.0, 1.35 * max(shares))))
+    bars.legend(frameon=False, loc="upper right")
+    return said
+
+
+def _draw_window(axes: Axes, study: cd.Study, row: Any) -> None:
+    """Velocity and signal of a window, one above the other, each in its own standard deviations."""
+    layer, sector = int(row["layer"]), int(row["sector"])
+    activity = study.activity(0).isel(sector=sector)
     pair = {
-        "velocity": (activity["velocity"].mean("sector"), OUTWARD_COLOUR, 3.0),
-        "signal, layer 0": (activity["mean"].isel(channel=0, layer=0).mean("sector"), INWARD_COLOUR, -3.0),
+        "velocity": (activity["velocity"], OUTWARD_COLOUR, APART),
+        "signal": (activity["mean"].isel(channel=0, layer=layer), INWARD_COLOUR, -APART),
     }
     for name, (values, colour, offset) in pair.items():
-        scaled = (values - values.mean()) / values.std()
-        series.plot(scaled + offset, color=colour, linewidth=0.7, label=name)
-    series.set(xlabel="frame", ylabel="mean of all sectors (sd)", ylim=(-9, 12))
-    series.legend(frameon=False, ncols=2, loc="upper left")
-    draw_curve(graph, study, "signal")
-    return flags_said(study, flag)
+        axes.plot((values - values.mean()) / values.std() + offset, color=colour, linewidth=0.7, label=name)
+    p = f"{row['correlation']:+.2f} at lag {row['lag']:.0f}, p = {row['p']:.2g}"
+    axes.set(xlabel="frame", ylabel="velocity and signal", yticks=[], title=f"one window: {p}")
+    axes.margins(y=0.25)
+    axes.legend(frameon=False, ncols=2, loc="upper left")
 
 
 def little_power(figure: Figure, folder: Path) -> list[str]:
@@ -137,10 +159,10 @@ CASES: dict[str, Case] = {
     "jitter": jitter,
     "still_pattern": partial(_by_geometry, "still"),
     "moving_cortex": partial(_by_geometry, "cortex"),
-    "common_pulse": partial(_stressed, "pulse", "common pulse"),
-    "restless_episode": partial(_stressed, "restless", "restless episode"),
-    "changing_variance": partial(_stressed, "rising", "variance change"),
-    "oscillators": partial(_stressed, "steady", "steady oscillation"),
+    "common_pulse": partial(_stressed, "pulse", "common pulse", RANKS),
+    "restless_episode": partial(_stressed, "restless", "restless episode", RANKS),
+    "changing_variance": partial(_stressed, "rising", "variance change", RANKS),
+    "oscillators": partial(_stressed, "steady", "steady oscillation", SHIFTS),
     "little_power": little_power,
-    "heavy_tails": partial(_stressed, "heavy tails", "heavy tails"),
+    "heavy_tails": partial(_stressed, "heavy tails", "heavy tails", RANKS),
 }
