@@ -59,7 +59,8 @@ def test_a_movie_from_end_to_end(run: Run, masks: Path, signal: Path, tmp_path: 
         assert words in said
     names = {path.name for path in out.iterdir()}
     tables = {"cells.parquet", *TABLES}
-    assert names == tables | {"activity.zarr", "maps", "figures", "parameters.toml", "provenance.json"}
+    others = {"activity.zarr", "columns.csv", "maps", "figures", "parameters.toml", "provenance.json"}
+    assert names == tables | others
     assert {path.name for path in (out / "maps").iterdir()} == {
         f"cell_00000_t{time:05d}.npz" for time in range(FRAMES)
     }

@@ -123,6 +123,12 @@ def test_every_column_is_explained(study: cd.Study) -> None:
     }
     for name, columns in CORRELATION_TABLES.items():
         assert set(tables[name].columns) == {column.name for column in columns}, name
+    told = pd.read_csv(found.path / "columns.csv", keep_default_na=False)
+    for name in set(CORRELATION_TABLES) - {"pairs"}:
+        rows = told[told["table"] == f"{name}.parquet"].set_index("column")
+        assert set(rows.index) == set(tables[name].columns)
+        units = tables[name].attrs["units"]  # without them in "cells"
+        assert all(unit in ("", rows.loc[column, "unit"]) for column, unit in units.items())
 
 
 def test_the_lag_that_was_simulated_is_found(study: cd.Study) -> None:
@@ -241,7 +247,7 @@ def test_short_cells_have_a_row_with_the_reason(tmp_path: Path) -> None:
 def test_names_that_no_file_can_have(tmp_path: Path) -> None:
     table = pd.DataFrame({"cell": [0]})
     for signal, with_ in (("a/b", "velocity"), ("a_b", "velocity"), ("β~γ", "../x"), ("β", "γ~../x")):
-        found = write_correlation(tmp_path, signal, with_, {"windows": table}, {})
+        found = write_correlation(tmp_path, signal, with_, {"windows": table}, CORRELATION_TABLES, {})
         assert found.path.parent == tmp_path / "correlation"
         assert (found.signal, found.with_) == (signal, with_)
     assert len(list_correlations(tmp_path)) == 4

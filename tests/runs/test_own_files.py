@@ -52,5 +52,5 @@ def test_overwrite_removes_what_the_run_wrote_and_nothing_else(
     left = {str(path.relative_to(out)) for path in out.rglob("*") if path.is_file()}
     assert set(THEIRS) <= left
     assert [path.name for path in ours if path.exists()] == [
-        path.name for path in ours if path.name in ("parameters.toml", "cells.parquet")
+        path.name for path in ours if path.name in ("parameters.toml", "cells.parquet", "columns.csv")
     ]

@@ -98,8 +98,8 @@ def test_the_files_of_a_study_say_what_their_columns_mean(folder: Path, tmp_path
     assert "seed = 4" in (out / "parameters.toml").read_text()
     assert pd.read_parquet(out / "cells.parquet")["status"].tolist() == table["status"].tolist()
     assert {path.name for path in out.iterdir()} == {
-        "cells.parquet", "features.csv", "parameters.toml", "provenance.json", "shapes.csv",
-        "shapes.parquet",
+        "cells.parquet", "columns.csv", "features.csv", "parameters.toml", "provenance.json",
+        "shapes.csv", "shapes.parquet",
     }  # fmt: skip
 
 

@@ -2,6 +2,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pyarrow.parquet as pq
 import pytest
 
@@ -52,10 +53,22 @@ def test_a_study_reads_back_what_was_added(tmp_path: Path) -> None:
     assert study.provenance["status"] == "complete"
 
 
+def test_each_column_of_each_table_is_explained(tmp_path: Path) -> None:
+    finished(tmp_path / "out", "µm")
+    told = pd.read_csv(tmp_path / "out" / "columns.csv", keep_default_na=False)
+    for name in ("cells", "windows"):
+        table = pq.read_schema(tmp_path / "out" / f"{name}.parquet")
+        rows = told[told["table"] == f"{name}.parquet"]
+        assert rows["column"].tolist() == table.names
+        assert rows["unit"].tolist() == [field.metadata[b"unit"].decode() for field in table]
+    assert told.set_index(["table", "column"]).loc[("windows.parquet", "area"), "unit"] == "µm²"
+    assert (told["meaning"].str.len() > 5).all()
+
+
 def test_no_temporary_file_is_left(tmp_path: Path) -> None:
     finished(tmp_path / "out")
     names = sorted(str(path.relative_to(tmp_path / "out")) for path in (tmp_path / "out").rglob("*"))
-    assert names == ["cells.parquet", "maps", "provenance.json", "windows.parquet"]
+    assert names == ["cells.parquet", "columns.csv", "maps", "provenance.json", "windows.parquet"]
 
 
 @pytest.mark.parametrize("unit", ["px", "µm"])
@@ -200,7 +213,7 @@ def test_the_provenance_names_all_that_a_run_writes(tmp_path: Path) -> None:
     figure_path(folder.path, "cell_00000.png").write_bytes(b"")
     patterns = cd.open_study(folder.path).provenance["files"]
     names = [path.relative_to(folder.path) for path in folder.path.rglob("*") if path.is_file()]
-    assert len(names) == 4
+    assert len(names) == 5
     assert all(any(name.match(pattern) for pattern in patterns) for name in names)
 
 

@@ -16,8 +16,9 @@ import pandas as pd
 import pyarrow as pa
 
 from cytodisk.errors import ReadError, StudyError
-from cytodisk.store.provenance_file import record_files
-from cytodisk.store.tables import read_table, write_table
+from cytodisk.store.columns_file import write_columns
+from cytodisk.store.provenance_file import read_provenance, record_files
+from cytodisk.store.tables import Columns, read_table, write_table
 
 CORRELATION = "correlation"
 SETTINGS = "settings.json"
@@ -113,6 +114,7 @@ def write_correlation(
     signal: str,
     with_: str,
     tables: Mapping[str, pd.DataFrame],
+    columns: Mapping[str, Columns],
     settings: dict[str, Any],
     name: str = "",
 ) -> Correlation:
@@ -124,6 +126,8 @@ def write_correlation(
     signal, with_ : str
     tables : dict of str to DataFrame
         With units in `attrs`.
+    columns : dict of str to tuple of Column
+        What the columns of these tables, and perhaps of others, mean.
     settings : dict
     name : str
         Name of a variant, which stands beside the others.
@@ -146,6 +150,11 @@ def write_correlation(
         temporary.mkdir(parents=True)
         for table_name, table in tables.items():
             write_table(table, temporary / f"{table_name}.parquet")
+        told = {
+            table_name: tuple(column for column in columns[table_name] if column.name in table)
+            for table_name, table in tables.items()
+        }
+        write_columns(temporary, told, read_provenance(study) or {})
         (temporary / SETTINGS).write_text(text + "\n", encoding="utf-8")
         _exchange(target, temporary)
         record_files(study, [f"{CORRELATION}/{target.name}"])

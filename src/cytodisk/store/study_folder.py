@@ -14,6 +14,7 @@ import pyarrow.parquet as pq
 
 from cytodisk.errors import StudyError, WriteError
 from cytodisk.files import replacing
+from cytodisk.store.columns_file import write_columns
 from cytodisk.store.merging import merge_tables, repeating, write_rows
 from cytodisk.store.provenance_file import (
     PROVENANCE,
@@ -252,6 +253,7 @@ class StudyFolder:
                 merge_tables(parts, self._schema(columns), temporary)
         if then is not None:
             then(self)
+        write_columns(self.path, self.kind.tables, self.provenance)
         self.note("status", "complete")
         shutil.rmtree(self.path / PARTS, ignore_errors=True)  # the tables stand; parts are only in the way
 

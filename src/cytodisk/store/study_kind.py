@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from cytodisk.store.columns_file import COLUMNS_CSV
 from cytodisk.store.provenance_file import FORMAT, PROVENANCE
 from cytodisk.store.tables import Columns
 
@@ -55,5 +56,5 @@ class StudyKind:
             "command": self.command,
             "reader": self.reader,
             "format": FORMAT,
-            "files": [PROVENANCE, PARAMETERS, *tables, *self.files, PARTS],
+            "files": [PROVENANCE, PARAMETERS, COLUMNS_CSV, *tables, *self.files, PARTS],
         }

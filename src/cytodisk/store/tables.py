@@ -265,16 +265,15 @@ def schema(columns: Columns, length_unit: str, velocity_unit: str = "") -> Any:
     """
     return pa.schema(
         [
-            pa.field(
-                column.name, column.kind, metadata={"unit": _unit(column.unit, length_unit, velocity_unit)}
-            )
+            pa.field(column.name, column.kind, metadata={"unit": unit_of(column, length_unit, velocity_unit)})
             for column in columns
         ]
     )
 
 
-def _unit(unit: str, length_unit: str, velocity_unit: str) -> str:
-    return unit.replace("length", length_unit).replace("velocity", velocity_unit)
+def unit_of(column: Column, length_unit: str, velocity_unit: str = "") -> str:
+    """Unit of a column in a run with these units."""
+    return column.unit.replace("length", length_unit).replace("velocity", velocity_unit)
 
 
 def read_table(path: Path) -> pd.DataFrame:

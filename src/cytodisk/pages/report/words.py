@@ -33,6 +33,7 @@ _FILES = {
     "maps/": "the map of each cell and frame",
     "correlation/": "correlations by window and layer, if any were computed",
     "figures/": "figures for print",
+    "columns.csv": "table, unit and meaning of each column of these tables",
     "parameters.toml": "the parameters, to be fed back with --parameters",
     "provenance.json": "versions, input files with their hashes, times, warnings",
 }

@@ -10,6 +10,7 @@ from cytodisk.errors import ParameterError, StudyError
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.correlate.correlate_cell import CellCorrelation
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
+from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.correlate.correlation_tables import merged, of_cell
 from cytodisk.runs.flagged_cells import flags_by_cell
 from cytodisk.runs.qc_flags.one_correlation import UnwrittenCorrelation
@@ -88,7 +89,7 @@ def correlate_study(
     tables["cells"]["qc_flags"] = flags_by_cell(
         study, UnwrittenCorrelation(study.path, signal, with_, options.name, content, tables)
     )
-    return write_correlation(study.path, signal, with_, tables, content, options.name)
+    return write_correlation(study.path, signal, with_, tables, CORRELATION_TABLES, content, options.name)
 
 
 def channels_of(study: Study) -> list[str]:
