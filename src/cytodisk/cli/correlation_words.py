@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from cytodisk.cli.console import count
-from cytodisk.cli.layer_lines import layer_lines, signed
+from cytodisk.cli.layer_peak_words import layer_lines, signed
 
 if TYPE_CHECKING:
     from rich.console import Console
