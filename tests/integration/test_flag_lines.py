@@ -41,7 +41,7 @@ def test_a_movie_with_faults_says_them_with_their_remedies(run: Run, tmp_path: P
     )
     assert "in 1 frame (cell 0, frame 2: VASP: 75% of the cell). Go back to the raw image" in clipped
     assert "in 5 frames (cell 0, frame 0: steps of 4 px;" in coarse
-    assert "… 2 more). Run with the masks as they were drawn" in coarse
+    assert "frame 4: steps of 4 px). Run with the masks as they were drawn" in coarse
     cells = cd.open_study(tmp_path / "out").cells
     assert cells["outline_step_px"].tolist() == [4] * 5
     assert cells["clipped_channel"].tolist() == ["", "", "VASP", "", ""]
@@ -60,13 +60,14 @@ def test_a_map_says_them_and_gives_them_to_the_row_of_a_batch(run: Run, tmp_path
 
 
 def test_many_flags_are_cut_short() -> None:
-    places = tuple(Place(0, frame, "odd") for frame in range(5))
+    places = tuple(Place(0, frame, "odd") for frame in range(10))
     names = [f"flag {number}" for number in range(MOST_FLAGS + 3)]
     flags = [QCFlag(name, "what", "meaning", "Do it.", places) for name in names]
     lines = list(flag_lines(flags, "see the page", {0: "a.tif"}))
     assert lines[0] == (
         "QC flag flag 0: what (cell 0 of a.tif, frame 0: odd; cell 0 of a.tif, frame 1: odd; "
-        "cell 0 of a.tif, frame 2: odd; … 2 more). Do it."
+        + "; ".join(f"cell 0 of a.tif, frame {frame}: odd" for frame in range(2, 8))
+        + "; … 2 more). Do it."
     )
     assert lines[-1] == "… and 3 more QC flags: see the page"
     assert len(lines) == MOST_FLAGS + 1

@@ -49,7 +49,7 @@ def correlate_command(
         found = correlate_study(there, chosen, with_, cells=cell, progress=progress, parameters=settings)
     draw_correlation(quiet, there, found, figures, wanted)
     say_correlation(console, found, there)
-    say_study_flags(console, open_study(study))
+    say_study_flags(console, open_study(study), found)
     say_verdicts(console, found)
 
 

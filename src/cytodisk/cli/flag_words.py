@@ -7,22 +7,31 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag
+    from cytodisk.store.correlation_store import Correlation
     from cytodisk.store.study import Study
 
 MOST_FLAGS = 8
-_MOST_PLACES = 3
+_MOST_PLACES = 8
 _LONGEST_NOTE = 160
 
 
-def say_study_flags(console: "Console", study: "Study") -> None:
-    """Print the QC flags of a study."""
+def say_study_flags(console: "Console", study: "Study", found: "Correlation | None" = None) -> None:
+    """Print the QC flags of a study; of its correlations those of one alone, if that is given."""
+    from cytodisk.runs.qc_flags.one_correlation import with_one
     from cytodisk.runs.qc_flags.study_flags import qc_flags
 
     page = f"cytodisk report {study.path}" if study.is_movie else "cytodisk.qc_flags(study) in Python"
     cells = study.cells
     many = "source" in cells and cells["source"].nunique() > 1
     files = dict(zip(cells["cell"], cells["source"], strict=True)) if many else {}
-    say_flags(console, qc_flags(study), f"see {page}", files)
+    shown = qc_flags(study if found is None else with_one(study, found))
+    say_flags(console, shown, f"see {page}", files)
+    if found is not None and _places(qc_flags(study)) - _places(shown):
+        console.print(f"flags of other results: {page}")
+
+
+def _places(flags: Sequence["QCFlag"]) -> set[tuple[str, "Place"]]:
+    return {(flag.name, place) for flag in flags for place in flag.places}
 
 
 def say_flags(
@@ -64,7 +73,7 @@ def places_words(places: Sequence["Place"], files: Mapping[int, str]) -> str:
 
 def _place(place: "Place", files: Mapping[int, str]) -> str:
     where = f"cell {place.cell}" + (f" of {files[place.cell]}" if place.cell in files else "")
-    where += "" if place.frame is None else f", frame {place.frame}"
+    where += f", {words}" if (words := place.frames_words) else ""
     note = place.note
     if len(note) > _LONGEST_NOTE:
         note = note[:_LONGEST_NOTE].rpartition(" ")[0] + " …"

@@ -51,12 +51,12 @@ def test_each_fault_has_its_flag(tmp_path: Path, faults: dict[str, object], name
     assert flag.advice
 
 
-@pytest.mark.parametrize(("difference", "lags"), [(False, "=-1,0."), (True, "=-2,-1,0,1.")])
+@pytest.mark.parametrize(("difference", "lags"), [(False, "=-1,0"), (True, "=-2,-1,0,1")])
 def test_lags_that_jitter_makes_are_named(tmp_path: Path, difference: bool, lags: str) -> None:
     cells = pd.DataFrame({"cell": [0], "status": "ok", "reason": "", "jitter": 0.2})
     write_correlation(tmp_path, "VASP", "velocity", {"cells": cells}, {"difference": difference})
     (flag,) = correlation_flags.jitter(Study(tmp_path, pd.DataFrame(), {"run": "movie"}))
-    assert flag.advice.endswith(f"--skip-lags{lags}")
+    assert flag.advice.endswith(f"--skip-lags{lags} --name without_jitter")
 
 
 def test_a_variant_is_told_by_its_name(tmp_path: Path) -> None:

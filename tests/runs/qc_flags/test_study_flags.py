@@ -78,7 +78,7 @@ def test_an_edge_that_sweeps_more_than_the_cell_won_and_lost() -> None:
         ("mask_remarks", "a large fragment was dropped", "flagged masks", "a large fragment was dropped"),
         ("restarted", "the cell jumped", "tracking restarts", "the cell jumped"),
         ("interior_restarted", "the edge leapt", "interior restarts", "the edge leapt"),
-        ("smallest_window_share", 0.09, "small still windows", "0.09 of its share"),
+        ("smallest_window_share", 0.09, "small still windows", "9 % of its usual area"),
         ("tracking_residual", 0.6, "tracking residual", "0.6 µm"),
         ("order_violations", 3, "order violations", "3 points"),
         ("area_distortion", 0.3, "strong distortion", "30%"),

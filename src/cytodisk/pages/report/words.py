@@ -22,7 +22,7 @@ from cytodisk.store.study import Study
 MOST_PLACES = 30
 """Frames that are listed of a flag and cell; the table has them all."""
 _MOST_GROUPS = 6
-_HEADING = ("signal", "with", "name", "unit")  # settings of a correlation that stand in its name
+_HEADING = ("signal", "with", "name", "unit", "given")  # settings of a correlation that stand in its name
 
 _FILES = {
     "cells.parquet": "one row a cell and frame: area, distortion, tracking, status and its reason",
@@ -98,7 +98,12 @@ def _facts(cell: ShownCell) -> Iterator[tuple[str, str]]:
 def _flag(flag: QCFlag, shown: int, study: Study) -> dict[str, Any]:
     """A flag's places gathered by cell and, where there are few, by what was found."""
     places = tuple(replace(place, note=without_folders(place.note, study)) for place in flag.places)
-    flag = replace(flag, what=without_folders(flag.what, study), places=places)
+    flag = replace(
+        flag,
+        what=without_folders(flag.what, study),
+        advice=without_folders(flag.advice, study),
+        places=places,
+    )
     cells = sorted({place.cell for place in flag.places}, key=lambda cell: (cell != shown, cell))
     groups = [group for cell in cells for group in _groups(flag, cell, shown)]
     more = sum(max(1, len(group["frames"])) for group in groups[_MOST_GROUPS:])

@@ -83,6 +83,7 @@ def correlate_study(
         raise ParameterError(f"no cell of {study.path} can be correlated: {rows[0]['reason']}")
     tables = {name: merged(parts) for name, parts in found.items()} | {"cells": pd.DataFrame(rows)}
     content: dict[str, Any] = options.model_dump() | {"max_lag": max_lag, "cells": chosen if cells else None}
+    content["given"] = options.model_dump(mode="json", exclude_defaults=True)
     content["surrogates_made"] = max(int(row.get("surrogates", 0)) for row in rows)
     content["pair_surrogates"] = max(int(row.get("pair_surrogates", 0)) for row in rows)
     content["cytodisk"] = installed(("cytodisk",))["cytodisk"]

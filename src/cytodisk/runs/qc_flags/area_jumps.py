@@ -8,6 +8,7 @@ import numpy as np
 
 from cytodisk.arrays import FloatArray
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted, frames_of, mapped_rows
+from cytodisk.runs.qc_flags.remedy import without_frames
 from cytodisk.store.study import Study
 
 LARGEST_AREA_STEP = 0.05
@@ -46,7 +47,13 @@ def area_jumps(study: Study) -> Iterator[QCFlag]:
         else:
             found = without_returns(found, step)
         places += [
-            Place(int(str(cell)), int(frame[k + 1]), f"{np.expm1(step[k]):+.0%}".replace("-", "−"))
+            Place(
+                int(str(cell)),
+                int(frame[k + 1]),
+                f"{np.expm1(step[k]):+.0%}".replace("-", "−"),
+                None,
+                int(frame[k]),
+            )
             for k in found
         ]
     if places:
@@ -55,7 +62,7 @@ def area_jumps(study: Study) -> Iterator[QCFlag]:
             "area jumps",
             f"the mask's area jumps in {frames_of(study, len(places))}{flicker}",
             "Cells do not gain or lose so much at once: the mask did. Windows and velocity are wrong there.",
-            "Look at the mask; correct the segmentation or leave the frames out.",
+            "Look at both masks, and correct the wrong one." + without_frames(study, places),
             tuple(places),
         )
 

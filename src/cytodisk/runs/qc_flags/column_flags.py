@@ -9,6 +9,7 @@ from typing import Any
 import pandas as pd
 
 from cytodisk.runs.qc_flags.qc_flag import QCFlag, counted, frames_of, mapped_rows, places_of
+from cytodisk.runs.qc_flags.remedy import run_again
 from cytodisk.scale import Scale
 from cytodisk.store.study import Study
 
@@ -51,6 +52,8 @@ class ColumnRule:
         What stands beside a frame: (value of the column, row).
     mapped : bool
         Only frames with a map count.
+    again : (str, str) or None
+        Parameter and value that the advice ends with, as the command of a run with it.
     """
 
     name: str
@@ -61,6 +64,7 @@ class ColumnRule:
     raised: Callable[[pd.Series[Any], Scale], pd.Series[bool]]
     note: Callable[[Any, Any, Scale], str]
     mapped: bool = True
+    again: tuple[str, str] | None = None
 
     def __call__(self, study: Study) -> Iterator[QCFlag]:
         rows = mapped_rows(study) if self.mapped else study.cells
@@ -74,9 +78,12 @@ class ColumnRule:
                 self.name,
                 self.what.format(frames=frames_of(study, len(rows))),
                 self.meaning.format(most=most),
-                self.advice,
+                self.advice + self._command(study),
                 places_of(rows, lambda row: self.note(row[self.column], row, scale)),
             )
+
+    def _command(self, study: Study) -> str:
+        return "" if self.again is None else run_again(study, self.again[1], **dict([self.again]))
 
 
 def without_map(study: Study) -> Iterator[QCFlag]:
@@ -152,10 +159,11 @@ order_violations = ColumnRule(
     "boundary points changed their order in {frames}",
     "The tracker put neighbouring points past each other; they were put back in order, which moves them "
     "along the edge.",
-    "Use --tracker matching, which keeps the order.",
+    "Use the tracker that keeps the order: ",
     "order_violations",
     _above_zero,
     lambda value, row, scale: counted(int(value), "point"),
+    again=("tracker", "matching"),
 )
 tracking_restarts = ColumnRule(
     "tracking restarts",

@@ -10,27 +10,33 @@ from cytodisk.analysis.correlation.jitter_mark import JITTERING_SHARE
 from cytodisk.analysis.correlation.prepared_series import DRIFTING_SHARE
 from cytodisk.runs.channel_names import correlation_name
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted
+from cytodisk.runs.qc_flags.remedy import correlate_again
 from cytodisk.store.study import Study
 
 
 def jitter(study: Study) -> Iterator[QCFlag]:
     """Correlations with velocity that jitter of the masks made part of."""
+    found = [(names, row) for names, row in _rows(study) if abs(row.jitter) > 0]
     places = [
-        Place(int(row.cell), None, f"{names}: {row.jitter:+.2f} at lag 0".replace("-", "−") + _jitters(row))
-        for names, row in _rows(study)
-        if abs(row.jitter) > 0
+        Place(int(row.cell), None, f"{correlation_name(names)}: {_step(row)}{_jitters(row)}")
+        for names, row in found
     ]
     if places:
-        settings = [study.correlation(*names).settings for names in study.correlations]
-        lags = "-2,-1,0,1" if any(one.get("difference") for one in settings) else "-1,0"
+        names = found[0][0]
+        lags = (-2, -1, 0, 1) if study.correlation(*names).settings.get("difference") else (-1, 0)
+        again = correlate_again(study, names, "without_jitter", skip_lags=lags)
         yield QCFlag(
             "jitter",
             f"masks that jitter show in {counted(len(places), 'correlation')} with velocity",
             "Noise of the outline moves edge and windows at once: it correlates by itself, at lags −1 and 0, "
             "with opposite signs.",
-            f"Look at the other lags: cytodisk correlate … --skip-lags={lags}.",
+            f"Look at the other lags: {again}",
             tuple(places),
         )
+
+
+def _step(row: pd.Series[float]) -> str:
+    return f"{row.jitter:+.2f} at lag 0".replace("-", "−")
 
 
 def _jitters(row: pd.Series[float]) -> str:
@@ -41,19 +47,31 @@ def _jitters(row: pd.Series[float]) -> str:
 
 def drifting_series(study: Study) -> Iterator[QCFlag]:
     """Correlations of series whose level drifts."""
-    places = []
+    places, drifting = [], []
     for names, row in _rows(study):
         share = max(row.drifting_signal, row.drifting_with)
         if share > DRIFTING_SHARE:
-            places.append(Place(int(row.cell), None, f"{names}: {share:.0%} of the series"))
+            drifting.append(names)
+            places.append(Place(int(row.cell), None, f"{correlation_name(names)}: {share:.0%} of the series"))
     if places:
         yield QCFlag(
             "drifting series",
             f"the level of many series drifts in {counted(len(places), 'correlation')}",
             "Two trends correlate whatever they come from, bleaching too.",
-            "See whether cytodisk correlate … --detrend linear, or --difference, says the same.",
+            _without_trend(study, drifting[0]),
             tuple(places),
         )
+
+
+def _without_trend(study: Study, names: tuple[str, ...]) -> str:
+    """What takes a trend out that is still there."""
+    settings = study.correlation(*names).settings
+    if settings.get("difference"):
+        return "Steps from frame to frame drift, too: compare cells, or correlate a calm part with --frames."
+    if settings.get("detrend", "none") == "none":
+        again = correlate_again(study, names, "without_trend", detrend="linear")
+        return f"See whether this says the same: {again}"
+    return f"See whether steps say the same: {correlate_again(study, names, 'steps', difference=True)}"
 
 
 def left_out(study: Study) -> Iterator[QCFlag]:
@@ -76,9 +94,9 @@ def left_out(study: Study) -> Iterator[QCFlag]:
         )
 
 
-def _rows(study: Study) -> Iterator[tuple[str, pd.Series[float]]]:
+def _rows(study: Study) -> Iterator[tuple[tuple[str, ...], pd.Series[float]]]:
     """Correlated cells of all correlations, with the names of what was correlated."""
     for names in study.correlations:
         cells = study.correlation(*names).cells
         for _, row in cells[cells["status"] == "ok"].iterrows():
-            yield correlation_name(names), row
+            yield names, row

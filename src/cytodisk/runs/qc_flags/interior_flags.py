@@ -15,20 +15,22 @@ interior_restarts = ColumnRule(
     "the interior leaps in {frames}",
     "The edge moved so far at once that places inside could not be carried on from the frame before, or "
     "tracking started anew.",
-    "Compare windows within the stretches between restarts, or run again with --interior area.",
+    "Compare windows within the stretches between restarts. Or with windows of equal area: ",
     "interior_restarted",
     said,
     lambda value, row, scale: str(value),
+    again=("interior", "area"),
 )
 small_still_windows = ColumnRule(
     "small still windows",
     "windows are squeezed to less than a tenth of their share of the cell in {frames}",
     "The interior stands still and the edge has come close: a cell that migrates or shrinks cannot stand "
     "still for ever. The means of these windows come from few pixels.",
-    "Use the frames before, start the movie later, or run again with --interior area.",
+    "Use the frames before, or start the movie later. Or with windows of equal area: ",
     "smallest_window_share",
     lambda column, scale: column < SMALLEST_STILL_SHARE,
-    lambda value, row, scale: f"{value:.2g} of its share",
+    lambda value, row, scale: f"{100 * value:.2g} % of its usual area",
+    again=("interior", "area"),
 )
 
 

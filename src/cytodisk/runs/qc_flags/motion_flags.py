@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted, frames_of, mapped_rows, places_of
+from cytodisk.runs.qc_flags.remedy import run_again, without_frames
 from cytodisk.runs.qc_flags.signal_drift import signal_drifts
 from cytodisk.store.study import Study
 
@@ -39,14 +40,14 @@ def fast_edge(study: Study) -> Iterator[QCFlag]:
             top = fast.iloc[int(np.abs(fast["velocity"].to_numpy()).argmax())]
             sector = int(top["sector"])
             note = f"up to {top['velocity']:+.2g} {scale.velocity_unit} in sector {sector}".replace("-", "−")
-            places.append(Place(int(str(cell)), int(str(frame)), note, sector))
+            places.append(Place(int(str(cell)), int(str(frame)), note, sector, int(str(frame)) + 1))
     if places:
         yield QCFlag(
             "velocity outliers",
             f"the edge leaps in {frames_of(study, len(places))}",
             f"A velocity more than {VELOCITY_SPREADS:g} times the cell's usual spread is nearly always a "
             "mask that lost or gained a piece between this frame and the next.",
-            "Look at both frames; leave these sectors out of averages of velocity.",
+            "Look at both masks, and correct the wrong one." + without_frames(study, places, after=1),
             tuple(places),
         )
 
@@ -70,7 +71,8 @@ def edge_mismatch(study: Study) -> Iterator[QCFlag]:
             "and lost: some go to the wrong piece of edge. Velocities there are too large, and sectors may "
             "have slid.",
             "Look at the outlines of both frames: is a mask wrong there? If the cell moves far between "
-            "frames, take them more often; if it was turned wrongly, run with --no-registration.",
+            "frames, take them more often; if it was turned wrongly: "
+            + run_again(study, "not_registered", registration=False),
             places_of(rows, lambda row: f"{row['swept_area']:.3g} {study.scale.area_unit} swept"),
         )
 

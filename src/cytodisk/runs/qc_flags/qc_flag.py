@@ -24,12 +24,25 @@ class Place:
         What was found there, in words; empty if the flag says all.
     sector : int or None
         Where on the edge, if it is one place of it.
+    other_frame : int or None
+        The other frame of a pair, for what is between two frames.
     """
 
     cell: int
     frame: int | None
     note: str = ""
     sector: int | None = None
+    other_frame: int | None = None
+
+    @property
+    def frames_words(self) -> str:
+        """As "frame 4", or "frames 3 and 4"; empty for the cell as a whole."""
+        if self.frame is None:
+            return ""
+        if self.other_frame is None:
+            return f"frame {self.frame}"
+        first, second = sorted((self.frame, self.other_frame))
+        return f"frames {first} and {second}"
 
 
 @dataclass(frozen=True)

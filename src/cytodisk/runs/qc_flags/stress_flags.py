@@ -17,6 +17,7 @@ from cytodisk.analysis.stress.stress_marks import (
 )
 from cytodisk.runs.channel_names import correlation_name
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted
+from cytodisk.runs.qc_flags.remedy import correlate_again
 from cytodisk.store.study import Study
 
 _TRUE_TOO = " A true signal can do this, too: the flag says that p is too small, not that nothing is there."
@@ -34,7 +35,7 @@ class StressRule:
     what : str
         With {count} where the number of correlations goes.
     advice : callable
-        Of the row of the first place.
+        (study, names of the first correlation, row of its first cell).
     note : callable
         What stands beside a place: (row).
     ranks_help : bool
@@ -44,7 +45,7 @@ class StressRule:
     name: str
     what: str
     meaning: str
-    advice: Callable[[Any], str]
+    advice: Callable[[Study, tuple[str, ...], Any], str]
     note: Callable[[Any], str]
     ranks_help: bool = True
 
@@ -55,8 +56,11 @@ class StressRule:
                 self.name,
                 self.what.format(count=counted(len(found), "correlation")),
                 self.meaning + _TRUE_TOO,
-                self.advice(found[0][1]),
-                tuple(Place(int(row["cell"]), None, f"{names}: {self.note(row)}") for names, row in found),
+                self.advice(study, *found[0]),
+                tuple(
+                    Place(int(row["cell"]), None, f"{correlation_name(names)}: {self.note(row)}")
+                    for names, row in found
+                ),
             )
 
     def _raised(self, row: pd.Series[Any]) -> bool:
@@ -64,7 +68,7 @@ class StressRule:
         return self.name in str(row.get("stress") or "").split(", ") and not cured
 
 
-def _shifted(row: Any) -> str:
+def _shifted(study: Study, names: tuple[str, ...], row: Any) -> str:
     """What to do about oscillators: circular shifts keep their period whole, but take many frames."""
     lag = int((row["frames"] / _SHIFTS_FOR_P - 1.0) // 2.0)
     if lag < 1:
@@ -73,18 +77,30 @@ def _shifted(row: Any) -> str:
             "correlation has the same lag in all of them."
         )
     return (
-        f"See what p by window cytodisk correlate … --null shift --max-lag {lag} gives: shifts keep the "
-        "oscillation whole. And compare cells: a true correlation has the same lag in all of them."
+        "Compare cells: a true correlation has the same lag in all of them. And see p by window of circular "
+        "shifts, which keep the oscillation whole: "
+        + correlate_again(study, names, "shifts", null="shift", max_lag=lag)
     )
 
 
-def _rows(study: Study) -> Iterator[tuple[str, pd.Series[Any]]]:
+def _ranks(study: Study, names: tuple[str, ...], row: Any) -> str:
+    return f"See what ranks say: {correlate_again(study, names, 'ranks', statistic='spearman')}"
+
+
+def _without_pulse(study: Study, names: tuple[str, ...], row: Any) -> str:
+    earlier = study.correlation(*names).settings.get("without_frames") or ()
+    frames = sorted({*earlier, *(int(frame) for frame in row["pulse_frames"].split(","))})
+    again = correlate_again(study, names, "without_pulse", without_frames=frames)
+    return f"See what all other frames say: {again}"
+
+
+def _rows(study: Study) -> Iterator[tuple[tuple[str, ...], pd.Series[Any]]]:
     """Correlated cells of all correlations that looked for stress, with the names of what was correlated."""
     for names in study.correlations:
         cells = study.correlation(*names).cells
         if "stress" in cells:
             for _, row in cells[cells["status"] == "ok"].iterrows():
-                yield correlation_name(names), row
+                yield names, row
 
 
 common_pulse = StressRule(
@@ -92,20 +108,17 @@ common_pulse = StressRule(
     "three frames outweigh all others in {count}",
     "Both series leap in the same few frames, in many windows at once, as after a jolt, a change of focus or "
     "one fast move of the cell.",
+    _without_pulse,
     lambda row: (
-        f"See what cytodisk correlate … --without-frames {row['pulse_frames']} says, and "
-        "--statistic spearman."
+        f"frames {row['pulse_frames'].replace(',', ', ')} hold {row['pulse_share']:.0%} of the joint energy"
     ),
-    lambda row: f"frames {row['pulse_frames']} hold {row['pulse_share']:.0%} of the joint energy",
 )
 restless_episode = StressRule(
     RESTLESS_EPISODE,
     "both series vary most in one episode in {count}",
     "While a cell is restless, both series vary more, whatever one has to do with the other: the episode "
     "counts as a few observations, p counts all frames.",
-    lambda row: (
-        "See what cytodisk correlate … --statistic spearman says, and --frames with the calm part alone."
-    ),
+    _ranks,
     lambda row: (
         f"frames {row['episode_frames'].replace(':', '–')} vary {row['episode_ratio']:.1f} times as much"
     ),
@@ -115,7 +128,7 @@ variance_change = StressRule(
     "the variance of both series changes in the same direction in {count}",
     "The part of the movie with the larger variance outweighs the rest, so there are fewer observations "
     "than p counts.",
-    lambda row: "See what cytodisk correlate … --statistic spearman says.",
+    _ranks,
     lambda row: f"variance of the second half {row['variance_ratio']:.2g} times that of the first",
 )
 steady_oscillation = StressRule(
@@ -130,8 +143,8 @@ heavy_tails = StressRule(
     HEAVY_TAILS,
     "single values lie far out in {count}",
     "A few extreme values in both series decide the correlation.",
-    lambda row: "See what cytodisk correlate … --statistic spearman says.",
-    lambda row: f"kurtosis {row['kurtosis']:.1f}, 3 of a normal distribution",
+    _ranks,
+    lambda row: f"kurtosis {row['kurtosis']:.1f} (normal: 3)",
 )
 
 STRESS_RULES: tuple[StressRule, ...] = (

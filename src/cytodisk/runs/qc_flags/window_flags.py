@@ -8,6 +8,7 @@ import pandas as pd
 
 from cytodisk.runs.qc_flags.finest_grid import finest_grid
 from cytodisk.runs.qc_flags.qc_flag import QCFlag, frames_of, mapped_rows, places_of
+from cytodisk.runs.qc_flags.remedy import run_again
 from cytodisk.store.study import Study
 from cytodisk.store.window_areas import areas_px
 from cytodisk.windows.window_sizes import FEW_PX
@@ -29,13 +30,22 @@ def small_windows(study: Study) -> Iterator[QCFlag]:
     yield QCFlag(
         "small windows",
         f"windows are small in {frames_of(study, len(rows))}: the median down to "
-        f"{rows['median_window_px'].min():.2g} px, up to {rows['windows_below_10px'].max():.1%} below 10 px "
-        f"and {rows['windows_below_1px'].max():.1%} below 1 px",
+        f"{rows['median_window_px'].min():.2g} px, up to {rows['windows_below_10px'].max():.1%} below 10 px"
+        + _below_1px(rows["windows_below_1px"].max()),
         "The mean of a few pixels is noisy. A window below 1 px is a part of a pixel: it shares its value "
         "with its neighbours.",
         _advice(study, rows),
         places_of(rows, _note),
     )
+
+
+def _below_1px(share: float) -> str:
+    return f" and {_least_percent(share)} below 1 px" if share > 0 else ""
+
+
+def _least_percent(share: float) -> str:
+    """A share that is not 0 in percent, never as 0.0%."""
+    return "less than 0.1%" if share < 0.0005 else f"{share:.1%}"
 
 
 def _note(row: pd.Series[float]) -> str:
@@ -57,7 +67,8 @@ def _advice(study: Study, rows: pd.DataFrame) -> str:
             break
     else:
         return "The cell is too small for windows: use its mean."
-    layers = "" if by_depth else f"--layers {grid[0]} "
-    rest = "" if least else "; a few windows in its thin parts stay below 1 px: leave them out by their area"
-    command = "movie" if study.is_movie else "map"
-    return f"Use fewer windows: cytodisk {command} … {layers}--sectors {grid[1]}{rest}."
+    layers, sectors = grid
+    rest = "" if least else " (a few windows in its thin parts stay below 1 px: leave them out by their area)"
+    changes = {"sectors": sectors} if by_depth else {"layers": layers, "sectors": sectors}
+    again = run_again(study, "x".join(str(number) for number in changes.values()), **changes)
+    return f"Use fewer windows{rest}: {again}"

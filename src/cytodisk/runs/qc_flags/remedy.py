@@ -1,0 +1,126 @@
+"""Commands that do a run or a correlation again in another way, whole, to be pasted into a terminal."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from cytodisk.runs.qc_flags.qc_flag import Place
+from cytodisk.store.study import Study
+from cytodisk.store.study_kind import PARAMETERS
+
+_LONGEST_NAME = 60
+_MOST_LEFT_OUT = 0.25  # of the frames of a movie: more leave no series
+_RANGES = ("frames", "sectors")
+
+
+def correlate_again(study: Study, names: Sequence[str], variant: str, **changes: Any) -> str:
+    """The command that correlates again in another way, beside what is there.
+
+    Parameters
+    ----------
+    study : Study
+    names : sequence of str
+        Signal, what it was correlated with, and the name of a variant, as of `Study.correlations`.
+    variant : str
+        Name of the new one.
+    **changes
+        Parameters of `cytodisk correlate`. All others stay as they were given.
+
+    Returns
+    -------
+    str
+        As "cytodisk correlate out --signal Rac1 --with velocity --skip-lags=-1,0 --name without_jitter".
+    """
+    signal, with_, *own = names
+    settings = study.correlation(*names).settings if tuple(names) in study.correlations else {}
+    given = dict(settings.get("given") or {})
+    given.pop("name", None)
+    cells = [f"--cell={cell}" for cell in settings.get("cells") or ()]
+    called = "_".join(filter(None, [*own, variant]))[:_LONGEST_NAME]
+    words = ["cytodisk", "correlate", shown_path(str(study.path)), "--signal", signal, "--with", with_]
+    return shlex.join([*words, *cells, *_flags(given | changes), "--name", called])
+
+
+def run_again(study: Study, suffix: str, **changes: Any) -> str:
+    """The command that makes a study again in another way, beside what is there.
+
+    Parameters
+    ----------
+    study : Study
+    suffix : str
+        Behind the name of the new folder.
+    **changes
+        Parameters of the command. All others stay as they were.
+
+    Returns
+    -------
+    str
+        As "cytodisk movie masks.tif --parameters out/parameters.toml --sectors 48 -o out_48".
+    """
+    inputs = study.provenance.get("inputs", {})
+    masks, signal = (inputs.get(role, {}).get("path") for role in ("masks", "signal"))
+    words = ["cytodisk", "movie" if study.is_movie else "map", shown_path(masks or "masks.tif")]
+    words += ["--signal", shown_path(signal)] if signal else []
+    words += ["--parameters", shown_path(str(study.path / PARAMETERS))]
+    return shlex.join([*words, *_flags(changes), "-o", f"{shown_path(str(study.path))}_{suffix}"])
+
+
+def without_frames(study: Study, places: Iterable[Place], after: int = 0) -> str:
+    """How to correlate without the frames of a flag.
+
+    Parameters
+    ----------
+    study : Study
+    places : iterable of Place
+        Frames of all cells are left out of all.
+    after : int
+        The wrong mask may also be so many frames later.
+
+    Returns
+    -------
+    str
+        Of the first correlation there is, else of the first channel; empty without a signal, or where
+        more than a quarter of the movie would be left out.
+    """
+    if "mean" not in study.windows:
+        return ""
+    frames = sorted(
+        {place.frame + k for place in places if place.frame is not None for k in range(after + 1)}
+    )
+    if len(frames) > _MOST_LEFT_OUT * study.cells["frame"].nunique():
+        return ""
+    names = (
+        study.correlations[0] if study.correlations else (str(study.windows["channel"].iloc[0]), "velocity")
+    )
+    return f" Or correlate without these frames: {_without(study, names, frames)}"
+
+
+def _without(study: Study, names: Sequence[str], frames: Sequence[int]) -> str:
+    earlier = study.correlation(*names).settings.get("without_frames") if study.correlations else None
+    return correlate_again(study, names, "without_jumps", without_frames=sorted({*frames, *(earlier or ())}))
+
+
+def shown_path(path: str) -> str:
+    """A path as it was given, or from the working folder if that is shorter."""
+    try:
+        near = os.path.relpath(path)
+    except ValueError:  # on another drive
+        return path
+    return near if len(near) < len(path) else path
+
+
+def _flags(values: Mapping[str, Any]) -> list[str]:
+    return [word for name, value in values.items() if value is not None for word in _flag(name, value)]
+
+
+def _flag(name: str, value: Any) -> list[str]:
+    flag = name.replace("_", "-")
+    if isinstance(value, bool):
+        return [f"--{flag}" if value else f"--no-{flag}"]
+    if isinstance(value, (list, tuple)):
+        value = (":" if name in _RANGES else ",").join(str(item) for item in value)
+    text = str(value)
+    return [f"--{flag}={text}"] if text.startswith("-") else [f"--{flag}", text]
