@@ -7,7 +7,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from cytodisk import edge_changes, map_movie
 from cytodisk.arrays import FloatArray
-from cytodisk.motion.velocity_error import velocity_error
+from cytodisk.motion.velocity_error import error_is, velocity_error
 
 QUICK = {"method": "harmonic", "edge_length": 4.0}
 
@@ -90,14 +90,25 @@ def test_it_is_never_below_that_of_a_mask_that_is_right_to_the_pixel() -> None:
     assert (np.diff(found[0]) < 0.0).all()
 
 
-def test_one_step_tells_no_error_and_gaps_have_none() -> None:
+def test_steps_that_do_not_follow_one_another_tell_the_least_error() -> None:
     random = np.random.default_rng(1005)
     length = np.full((40, 12), 5.0)
-    assert np.isnan(velocity_error(random.normal(size=(1, 12)), length[:1])).all()
+    least = velocity_error(np.zeros((40, 12)), length)
+    one = random.normal(size=(1, 12))
+    np.testing.assert_allclose(velocity_error(one, length[:1]), least[:1])
+    assert error_is(one) == "at least"
     assert np.isnan(velocity_error(np.full((5, 12), np.nan), length[:5])).all()
     every_other = random.normal(size=(40, 12))
     every_other[1::2] = np.nan
-    assert np.isnan(velocity_error(every_other, length)).all()
+    np.testing.assert_allclose(velocity_error(every_other, length)[::2], least[::2])
+    assert error_is(every_other) == "at least"
+    assert error_is(random.normal(size=(14, 12))) == "at most"
+    assert error_is(random.normal(size=(15, 12))) == ""
+
+
+def test_gaps_have_no_error() -> None:
+    random = np.random.default_rng(1005)
+    length = np.full((40, 12), 5.0)
     error = jitter(40, 12, random)
     error[[7, 20]] = np.nan
     error[:, 3] = np.nan

@@ -109,8 +109,9 @@ def finish_movie(console: "Console", study: "Study") -> None:
 def _say_measures(console: "Console", study: "Study", mapped: Any) -> None:
     speed, unit = study.edge["velocity"], study.edge.attrs["units"]["velocity"]
     length = study.consistency.attrs["units"]["centroid_displacement"]
+    error = " ".join(["error of one sector", *_bounds(study.edge)])
     console.print(
-        f"edge velocity: {speed.min():.3g} to {speed.max():.3g} {unit}, error of one sector "
+        f"edge velocity: {speed.min():.3g} to {speed.max():.3g} {unit}, {error} "
         f"{study.edge['velocity_error'].median():.2g} {unit}"
     )
     correlation = study.consistency["correlation"].mean()
@@ -119,3 +120,16 @@ def _say_measures(console: "Console", study: "Study", mapped: Any) -> None:
         f"window centroids move {study.consistency['centroid_displacement'].mean():.3g} {length} a frame; "
         f"{alike}empty windows {int(mapped['empty_windows'].sum())}"
     )
+
+
+def _bounds(edge: Any) -> list[str]:
+    """The word "at least" or "at most" if the error of velocity is such a bound in most cells."""
+    from cytodisk.motion.velocity_error import error_is
+
+    words = []
+    for _, of_cell in edge.groupby("cell"):
+        by_frame = of_cell.pivot(index="frame", columns="sector", values="velocity")
+        every = range(by_frame.index.min(), by_frame.index.max() + 1)
+        words.append(error_is(by_frame.reindex(every).to_numpy(dtype=float)))
+    most = max(set(words), key=words.count, default="")
+    return [most] if most else []

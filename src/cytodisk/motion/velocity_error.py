@@ -35,7 +35,8 @@ def velocity_error(displacement_px: FloatArray, length_px: FloatArray) -> FloatA
     Returns
     -------
     ndarray of shape (T, S) and dtype float
-        NaN where the displacement is, and everywhere if no two steps follow one another.
+        NaN where the displacement is. If no two steps follow one another, nothing is known of jitter: it is
+        the error of a mask that is right to the pixel, a lower bound.
 
     Notes
     -----
@@ -51,10 +52,33 @@ def velocity_error(displacement_px: FloatArray, length_px: FloatArray) -> FloatA
     and pairs of neighbours have the same v.
     """
     variance, reach = _by_length(displacement_px, length_px)
+    if not np.isfinite(variance):
+        variance = 0.0
     with np.errstate(invalid="ignore", divide="ignore"):
         jitter = variance / (1.0 + length_px / reach)
         clean = _CLEAN_PX**2 / (1.0 + length_px / _CLEAN_REACH_PX)
         return np.where(np.isfinite(displacement_px), np.sqrt(jitter + clean), np.nan)
+
+
+def error_is(displacement: FloatArray) -> str:
+    """What the error of velocity is in a movie, in words: "at least" or "at most" so much, or empty.
+
+    Parameters
+    ----------
+    displacement : ndarray of shape (T, S) and dtype float
+        By step and sector, in any unit.
+
+    Returns
+    -------
+    str
+    """
+    if not np.isfinite(np.diff(displacement, axis=0)).any():
+        return "at least"
+    return "at most" if _few_steps(displacement) else ""
+
+
+def _few_steps(displacement: FloatArray) -> bool:
+    return int(np.isfinite(displacement).any(axis=1).sum()) < _STEPS_TO_TELL
 
 
 def _by_length(displacement: FloatArray, length: FloatArray) -> tuple[float, float]:
@@ -96,7 +120,7 @@ def jitter_variance(displacement: FloatArray) -> float:
     spread = _OUTLIER_SPREADS * _MAD_TO_SD * float(np.median(np.abs(finite)))
     if spread > 0.0:
         change = np.clip(change, -spread, spread)
-    if np.isfinite(displacement).any(axis=1).sum() < _STEPS_TO_TELL:
+    if _few_steps(displacement):
         return float(np.nanmean(change**2)) / 3.0
     found, weights = _autocovariance(change)
     fitted, _ = nnls(weights[:, None] * _AUTOCOVARIANCES[: len(found)], weights * found)

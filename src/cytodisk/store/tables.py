@@ -213,7 +213,8 @@ EDGE_COLUMNS: Columns = (
         "velocity",
         "standard deviation of velocity, from how the velocities of the movie jitter from frame to frame, "
         "with that of a mask right to the pixel on top; in a movie of fewer than 16 frames an upper bound "
-        "(all change of velocity counts), and NaN in one of two; it knows nothing of masks that stay wrong",
+        "(all change of velocity counts), and a lower one in one of two (none counts); it knows nothing of "
+        "masks that stay wrong",
     ),
     Column("protruded_area", pa.float64(), "length²", "area won in this sector from this frame to the next"),
     Column("retracted_area", pa.float64(), "length²", "area lost in this sector from this frame to the next"),
