@@ -67,7 +67,7 @@ def verdict_words(found: Correlation, cell: int) -> str:
             clear.append(f"{name} ({lag})")
     if not (clear or waiting or lost):
         return "No layer and no cluster is significant."
-    words = f"Nothing speaks against: {', '.join(clear)}." if clear else "No layer and no cluster is free of doubt."
+    words = f"Nothing speaks against: {', '.join(clear)}." if clear else "None is free of doubt."
     if waiting:
         alike = groupby(waiting, key=itemgetter(1))
         told = [f"{', '.join(name for name, _ in some)} ({why})" for why, some in alike]
