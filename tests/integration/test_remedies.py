@@ -8,6 +8,8 @@ import tifffile
 from command_line import Run
 
 import cytodisk as cd
+from cytodisk.runs.qc_flags.qc_flag import Place
+from cytodisk.runs.qc_flags.remedy import without_frames
 from cytodisk.store.tables import write_table
 
 FEW = {"max_lag": 3, "surrogates": 19, "geometry": False, "clusters": False}
@@ -54,3 +56,10 @@ def test_flags_of_other_correlations_are_not_mixed_in(run: Run, study: cd.Study)
     assert code == 0, error
     assert "(odd)" not in said
     assert f"flags of other results: cytodisk report {study.path}" in said
+
+
+def test_a_movie_without_a_signal_is_not_told_to_correlate(study: cd.Study, tmp_path: Path) -> None:
+    bare = cd.run_movie(tmp_path / "masks.tif", tmp_path / "bare", layers=2, sectors=8)
+    places = [Place(cell=0, frame=7, note="")]
+    assert "--without-frames 7" in without_frames(study, places)
+    assert without_frames(bare, places) == ""

@@ -85,16 +85,15 @@ def without_frames(study: Study, places: Iterable[Place], after: int = 0) -> str
         Of the first correlation there is, else of the first channel; empty without a signal, or where
         more than a quarter of the movie would be left out.
     """
-    if "mean" not in study.windows:
+    channels = study.windows["channel"].dropna()
+    if channels.empty:
         return ""
     frames = sorted(
         {place.frame + k for place in places if place.frame is not None for k in range(after + 1)}
     )
     if len(frames) > _MOST_LEFT_OUT * study.cells["frame"].nunique():
         return ""
-    names = (
-        study.correlations[0] if study.correlations else (str(study.windows["channel"].iloc[0]), "velocity")
-    )
+    names = study.correlations[0] if study.correlations else (str(channels.iloc[0]), "velocity")
     return f" Or correlate without these frames: {_without(study, names, frames)}"
 
 
