@@ -10,6 +10,7 @@ import argparse
 import sys
 import tempfile
 import textwrap
+from contextlib import chdir
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -17,7 +18,7 @@ from matplotlib.figure import Figure
 from cytodisk.files import replacing
 from cytodisk.plot.style import MM_PER_INCH, paper_style
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE / "going_wrong"))
 import correlation_cases  # noqa: E402
 import edge_cases  # noqa: E402
@@ -40,7 +41,8 @@ def main() -> None:
     for name in parser.parse_args().cases or CASES:
         with paper_style(), tempfile.TemporaryDirectory() as folder:
             figure = Figure(figsize=(WIDTH_MM / MM_PER_INCH, HEIGHT_MM / MM_PER_INCH), layout="constrained")
-            said = CASES[name](figure, Path(folder))
+            with chdir(folder):  # so that commands name files as a user does who is there
+                said = CASES[name](figure, Path())
             with replacing(TARGET / f"{name}.png") as temporary:
                 figure.savefig(temporary, dpi=DPI, pil_kwargs={"optimize": True})
         with replacing(TARGET / f"{name}.txt") as temporary:
