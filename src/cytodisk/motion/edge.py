@@ -13,8 +13,10 @@ from cytodisk.motion.registration import RigidTransform
 from cytodisk.motion.swept_edge import Frame, swept_edge, transforms
 from cytodisk.motion.tracking import TrackedBoundary
 
+STRETCHES = 240  # of the edge, of equal angle on the disk, from which the error of velocity is told
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False)
 class EdgeMotion:
     """Motion of the boundary from one frame to the next, by sector.
 
@@ -31,6 +33,8 @@ class EdgeMotion:
         Mean of the boundary's lengths in both frames, off the border, in pixels.
     swept_px2 : float
         Sum over short pieces of the edge of the area that each sweeps, without signs.
+    stretches_px : ndarray of shape (2, 240) and dtype float
+        Swept area and length of short stretches of the edge, off the border, whatever the sectors.
     """
 
     displacement_px: FloatArray
@@ -39,6 +43,7 @@ class EdgeMotion:
     retracted_px2: FloatArray
     length_px: FloatArray
     swept_px2: float
+    stretches_px: FloatArray
 
 
 def sector_of(angles: FloatArray, sectors: int) -> IntArray:
@@ -126,7 +131,8 @@ def edge_motion(
     start, stop = transforms(here, there, frame)
     won = _area_outside(disk_there, stop, disk_here, start, sectors)
     lost = _area_outside(disk_here, start, disk_there, stop, sectors)
-    return EdgeMotion(_over(area, length), fastest, won, lost, length, pieces.absolute_px2)
+    stretches = np.stack(pieces.by_sector(STRETCHES)[:2])
+    return EdgeMotion(_over(area, length), fastest, won, lost, length, pieces.absolute_px2, stretches)
 
 
 def _over(area: FloatArray, length: FloatArray) -> FloatArray:

@@ -10,7 +10,7 @@ import xarray as xr
 from cytodisk.checks import instance_of, one_of
 from cytodisk.disk.sector_parameters import SECTORS, SectorParameters
 from cytodisk.motion.disk_movie import DiskMovie
-from cytodisk.motion.edge import displacement_by_sector, edge_motion, normal_displacement
+from cytodisk.motion.edge import STRETCHES, displacement_by_sector, edge_motion, normal_displacement
 from cytodisk.motion.swept_edge import FRAMES, Frame
 from cytodisk.motion.velocity_error import velocity_error
 
@@ -158,11 +158,13 @@ def edge_changes(
         name: np.full((len(movie), sectors), np.nan)
         for name in ("displacement_px", "fastest_px", "protruded_px2", "retracted_px2", "length_px")
     }
+    stretches = np.full((len(movie), 2, STRETCHES), np.nan)
     for number, (here, there) in _pairs(movie):
         motion = edge_motion(here, there, movie[number], movie[number + 1], sectors, frame=frame)
         for name, values in found.items():
             values[number] = getattr(motion, name)
-    found["error_px"] = velocity_error(found["displacement_px"], found["length_px"])
+        stretches[number] = motion.stretches_px
+    found["error_px"] = velocity_error(found["displacement_px"], found["length_px"], stretches)
     scale = movie.scale
     scaled = {
         "velocity": ("displacement_px", scale.velocity, scale.velocity_unit),

@@ -14,10 +14,14 @@ _CLEAN_REACH_PX = 12.0  # length of edge over which that error averages out
 _OUTLIER_SPREADS = 5.0
 _MAD_TO_SD = 1.4826  # of a normal distribution
 _FEWEST_SECTORS = 4  # from which pairs of neighbours tell over what length of edge the error averages out
-_REACHES = np.geomspace(0.05, 20.0, 16)  # of the mean length of a sector, that are tried for that length
+_FEWEST_SERIES = 24  # that longer and longer stretches of neighbours may be made of
+_REACHES = (0.05, 20.0)  # of the shortest and longest stretches' mean length: first and last that is tried
+_STEP = 1.5  # from one that is tried to the next
 
 
-def velocity_error(displacement_px: FloatArray, length_px: FloatArray) -> FloatArray:
+def velocity_error(
+    displacement_px: FloatArray, length_px: FloatArray, stretches_px: FloatArray | None = None
+) -> FloatArray:
     """Standard deviation of the displacement of each sector's edge between frames, from the movie itself.
 
     An error of one outline makes the edge leap and come back: the displacement to that frame is too large by
@@ -31,6 +35,9 @@ def velocity_error(displacement_px: FloatArray, length_px: FloatArray) -> FloatA
         Mean outward displacement by step between frames, and sector; NaN where there is none.
     length_px : ndarray of shape (T, S) and dtype float
         Length of each sector's edge.
+    stretches_px : ndarray of shape (T, 2, F) and dtype float, optional
+        Swept area and length of short stretches of the same edge, from which jitter is told; NaN where there
+        are none. By default the sectors.
 
     Returns
     -------
@@ -48,10 +55,14 @@ def velocity_error(displacement_px: FloatArray, length_px: FloatArray) -> FloatA
     told apart: all change of velocity from one step to the next is counted as error, an upper bound.
 
     Errors of neighbouring sectors may be alike or not, so that the error falls with the sector's length or
-    does not. The variance of jitter is taken to be v / (1 + length / reach), with the reach at which sectors
-    and pairs of neighbours have the same v.
+    does not. The variance of jitter is taken to be v / (1 + length / reach), with the reach at which
+    stretches and 2, 4, 8 … neighbours together have v as alike as can be. A few long sectors tell neither v
+    nor reach: stretches that are short and many do, whatever the sectors.
     """
-    variance, reach = _by_length(displacement_px, length_px)
+    if stretches_px is None:
+        variance, reach = _by_length(displacement_px * length_px, length_px)
+    else:
+        variance, reach = _by_length(stretches_px[:, 0], stretches_px[:, 1])
     if not np.isfinite(variance):
         variance = 0.0
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -81,23 +92,33 @@ def _few_steps(displacement: FloatArray) -> bool:
     return int(np.isfinite(displacement).any(axis=1).sum()) < _STEPS_TO_TELL
 
 
-def _by_length(displacement: FloatArray, length: FloatArray) -> tuple[float, float]:
-    """Variance of jitter in a very short sector, and length over which it averages out (may be infinite)."""
-    sectors = displacement.shape[1]
-    plain = jitter_variance(displacement)
-    if not plain > 0.0 or sectors < _FEWEST_SECTORS:
+def _by_length(swept: FloatArray, length: FloatArray) -> tuple[float, float]:
+    """Variance of jitter in a very short stretch, and length over which it averages out (may be infinite)."""
+    held = np.where(np.isfinite(swept) & (length > 0.0), length, np.nan)
+    plain = jitter_variance(swept / held)
+    if not plain > 0.0 or swept.shape[1] < _FEWEST_SECTORS:
         return plain, np.inf
-    held = np.where(np.isfinite(displacement) & (length > 0.0), length, np.nan)
-    pairs = (each[:, : sectors // 2 * 2].reshape(len(each), -1, 2) for each in (displacement * held, held))
-    swept, lengths = (each.sum(axis=2) for each in pairs)
+    merged = [(swept / held, held), _merged(swept, held, 2)]
+    while swept.shape[1] >= _FEWEST_SERIES * 2 ** len(merged):
+        merged.append(_merged(swept, held, 2 ** len(merged)))
+    low, high = (
+        times * float(np.nanmean(each))
+        for times, (_, each) in zip(_REACHES, (merged[0], merged[-1]), strict=True)
+    )
     best, found = np.inf, (plain, np.inf)
-    for reach in np.append(float(np.nanmean(held)) * _REACHES, np.inf):
-        one = jitter_variance(displacement * np.sqrt(1.0 + held / reach))
-        of_pairs = jitter_variance(swept / lengths * np.sqrt(1.0 + lengths / reach))
-        unlike = abs(np.log(one / of_pairs)) if one > 0.0 and of_pairs > 0.0 else np.inf
+    for reach in np.append(np.geomspace(low, high, round(np.log(high / low) / np.log(_STEP))), np.inf):
+        each = [jitter_variance(away * np.sqrt(1.0 + long / reach)) for away, long in merged]
+        unlike = float(np.std(np.log(each))) if min(each) > 0.0 else np.inf
         if unlike < best:
-            best, found = unlike, (one, float(reach))
+            best, found = unlike, (each[0], float(reach))
     return found
+
+
+def _merged(swept: FloatArray, length: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
+    """Displacement and length of so many neighbours together; NaN where one of them is."""
+    whole = swept.shape[1] // count * count
+    areas, lengths = (each[:, :whole].reshape(len(each), -1, count).sum(axis=2) for each in (swept, length))
+    return areas / lengths, lengths
 
 
 def jitter_variance(displacement: FloatArray) -> float:

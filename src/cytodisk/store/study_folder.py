@@ -9,9 +9,11 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from cytodisk.arrays import FloatArray
 from cytodisk.errors import StudyError, WriteError
 from cytodisk.files import replacing
 from cytodisk.store.columns_file import write_columns
@@ -163,6 +165,19 @@ class StudyFolder:
         with replacing(self._part(key, f"{table}.parquet")) as temporary:
             pq.write_table(rows, temporary, use_dictionary=repeating(columns_schema))
 
+    def add_array(self, key: str, name: str, values: FloatArray) -> None:
+        """Write numbers of a part that only its run needs; they go with the parts when it ends.
+
+        Parameters
+        ----------
+        key : str
+            See `part_key`.
+        name : str
+        values : ndarray and dtype float
+        """
+        with replacing(self._part(key, f"{name}.npy")) as temporary:
+            np.save(temporary, values)
+
     def add(self, key: str, row: dict[str, Any], tables: dict[str, dict[str, Any]]) -> None:
         """Write a part: its rows for the tables, then its own row, which marks it as complete.
 
@@ -229,6 +244,11 @@ class StudyFolder:
     def part_table(self, key: str, table: str) -> Any:
         """A part's rows for a table, as an Arrow table."""
         return pq.read_table(self._part(key, f"{table}.parquet"))
+
+    def part_array(self, key: str, name: str) -> FloatArray | None:
+        """Numbers of a part as `add_array` wrote them; None if it did not."""
+        path = self._part(key, f"{name}.npy")
+        return np.load(path) if path.exists() else None
 
     def finish(self, keys: list[str], then: Callable[[StudyFolder], None] | None = None) -> None:
         """Merge the parts into the tables and mark the study as complete.

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cytodisk.arrays import FloatArray
 from cytodisk.errors import CytodiskError, WindowError
 from cytodisk.images.tracks import MissingLabel
 from cytodisk.motion.edge import EdgeMotion, displacement_by_sector, edge_motion
@@ -55,11 +56,12 @@ class FrameTask:
 
 @dataclass(frozen=True)
 class FrameRows:
-    """Rows of a frame: its own, its windows', and those of the edge of the frame before."""
+    """Rows of a frame: its own, its windows', and the frame before's edge, by sector and short stretch."""
 
     row: dict[str, Any]
     tables: dict[str, dict[str, Any]]
     edge_before: dict[str, Any] | None
+    stretches_before: FloatArray | None = None
 
     @property
     def cell(self) -> int:
@@ -103,7 +105,7 @@ def measure_frame(task: FrameTask) -> FrameRows:
     row["swept_area"] = np.nan if motion is None else frame.disk.scale.area(motion.swept_px2)
     edge = None if task.before is None else _edge_before(task, task.before, motion)
     row |= {"status": "ok", "reason": "", "seconds": task.seconds + clock.perf_counter() - started}
-    return FrameRows(row, {"windows": columns}, edge)
+    return FrameRows(row, {"windows": columns}, edge, None if motion is None else motion.stretches_px)
 
 
 def _smallest_share(windows: CellWindows, parameters: FollowedCellParameters) -> float:

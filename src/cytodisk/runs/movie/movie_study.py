@@ -20,7 +20,7 @@ from cytodisk.runs.frame_rows import FramePlace
 from cytodisk.runs.movie.measured_frame import FrameRows, FrameTask, measure_frame, unmapped_rows
 from cytodisk.runs.movie.movie_inputs import MovieInputs
 from cytodisk.runs.movie.movie_kind import MOVIE
-from cytodisk.runs.movie.movie_tables import finish_tables
+from cytodisk.runs.movie.movie_tables import STRETCHES_PART, finish_tables
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.run_options import Progress, RunOptions, silent
 from cytodisk.runs.study_run import StudyRun
@@ -96,8 +96,11 @@ class _Run:
         done, total = sum(self._folder.has(key) for key in self._inputs.keys), self._inputs.n_frames
         self._report(done, total)
         for rows in self._executor.results(self._frames()):
+            before = part_key(rows.cell, rows.frame - 1)
+            if rows.stretches_before is not None:
+                self._folder.add_array(before, STRETCHES_PART, rows.stretches_before)
             if rows.edge_before is not None:
-                self._folder.add_table(part_key(rows.cell, rows.frame - 1), "edge", rows.edge_before)
+                self._folder.add_table(before, "edge", rows.edge_before)
             self._folder.add(part_key(rows.cell, rows.frame), rows.row, rows.tables)
             done += 1
             self._report(done, total)

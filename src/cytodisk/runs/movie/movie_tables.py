@@ -11,6 +11,7 @@ import numpy as np
 from cytodisk.analysis.activity import GEOMETRY, STATISTICS
 from cytodisk.analysis.consistency import correlation_over_sectors, displacement_between
 from cytodisk.images.tracks import CellTrack
+from cytodisk.motion.edge import STRETCHES
 from cytodisk.motion.registration import RigidTransform
 from cytodisk.motion.velocity_error import velocity_error
 from cytodisk.runs.frame_rows import FramePlace
@@ -20,6 +21,8 @@ from cytodisk.store.activity_store import EDGE_VARIABLES, ActivityStore
 from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_kind import ACTIVITY
 from cytodisk.windows.polar_windows import PolarGrid
+
+STRETCHES_PART = "stretches"  # arrays of how short stretches of the edge moved, one a frame
 
 
 def finish_tables(
@@ -118,10 +121,14 @@ def _complete_edges(
     parts = {frame: folder.part_table(part_key(track.cell, frame), "edge") for frame in mapped}
     displacement = np.full((len(track.frames), sectors), np.nan)
     length = displacement.copy()
+    stretches = np.full((len(track.frames), 2, STRETCHES), np.nan)
     for frame, part in parts.items():
+        found = folder.part_array(part_key(track.cell, frame), STRETCHES_PART)
+        if found is not None:
+            stretches[frame - track.first] = found
         displacement[frame - track.first] = part.column("velocity").to_numpy() / scale.velocity(1.0)
         length[frame - track.first] = part.column("edge_length").to_numpy() / scale.length(1.0)
-    error = scale.velocity(velocity_error(displacement, length))
+    error = scale.velocity(velocity_error(displacement, length, stretches))
     for frame, part in parts.items():
         columns: dict[str, Any] = {name: part.column(name) for name in part.column_names}
         columns["velocity_error"] = error[frame - track.first]
