@@ -19,7 +19,7 @@ from figure import Figure
 from honest_trials import Trials, percent
 
 SECTORS = 60
-FEW_SECTORS = 12
+FEW_SECTORS, FEWEST_SECTORS = 12, 8
 FILOPODIUM_FRAMES = 14
 ALONG_X = 0.5  # degrees
 BIASES: dict[str, tuple[MovieKind, dict[str, Any]]] = {
@@ -38,8 +38,9 @@ FAULTS: dict[str, dict[str, float]] = {
     "clean, twice as fast": {"protrusion_px": 24.0},
     "clean, 12 sectors": {"sectors": FEW_SECTORS},
     "flips of 0.2, 12 sectors": {"flips": 0.2, "sectors": FEW_SECTORS},
+    "flips of 0.2, 8 sectors": {"flips": 0.2, "sectors": FEWEST_SECTORS},
 }
-NOT_JUDGED = ("clean, twice as fast", "clean, 12 sectors", "flips of 0.2, 12 sectors")
+NOT_JUDGED = ("clean, twice as fast",)
 
 
 def _steps(mapped: DiskMovie) -> Iterator[tuple[int, float]]:

@@ -149,6 +149,20 @@ def test_a_part_without_its_row_is_not_complete(tmp_path: Path) -> None:
     assert not StudyFolder.start(tmp_path / "out", run(), KIND, resume=True).has(part_key(3))
 
 
+def test_arrays_of_parts_are_kept_until_the_run_ends(tmp_path: Path) -> None:
+    folder = StudyFolder.start(tmp_path / "out", run(), KIND)
+    values = np.random.default_rng(1000).normal(size=(2, 5))
+    folder.add_array(part_key(0), "pieces", values)
+    again = StudyFolder.start(tmp_path / "out", run(), KIND, resume=True)
+    found = again.part_array(part_key(0), "pieces")
+    assert found is not None
+    np.testing.assert_array_equal(found, values)
+    assert again.part_array(part_key(1), "pieces") is None
+    add(again, 0, status="ok")
+    again.finish([part_key(0)])
+    assert not list((tmp_path / "out").rglob("*.npy"))
+
+
 def test_overwrite_removes_the_study_and_nothing_else(tmp_path: Path) -> None:
     finished(tmp_path / "out")
     out = tmp_path / "out"

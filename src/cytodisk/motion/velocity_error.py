@@ -101,12 +101,10 @@ def _by_length(swept: FloatArray, length: FloatArray) -> tuple[float, float]:
     merged = [(swept / held, held), _merged(swept, held, 2)]
     while swept.shape[1] >= _FEWEST_SERIES * 2 ** len(merged):
         merged.append(_merged(swept, held, 2 ** len(merged)))
-    low, high = (
-        times * float(np.nanmean(each))
-        for times, (_, each) in zip(_REACHES, (merged[0], merged[-1]), strict=True)
-    )
+    low, high = _REACHES[0], _REACHES[1] * 2 ** (len(merged) - 1)
+    tried = np.geomspace(low, high, round(np.log(high / low) / np.log(_STEP))) * float(np.nanmean(held))
     best, found = np.inf, (plain, np.inf)
-    for reach in np.append(np.geomspace(low, high, round(np.log(high / low) / np.log(_STEP))), np.inf):
+    for reach in np.append(tried, np.inf):
         each = [jitter_variance(away * np.sqrt(1.0 + long / reach)) for away, long in merged]
         unlike = float(np.std(np.log(each))) if min(each) > 0.0 else np.inf
         if unlike < best:
