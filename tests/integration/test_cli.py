@@ -279,6 +279,7 @@ def test_check_names_what_is_wrong(run: Run, tmp_path: Path) -> None:
     assert "2\t2\t0\tno\tmask of shape (30, 30) is empty" in said
     assert "frames without a cell: 1 empty" in said
     assert "2 frames: 2 usable (0 with QC flags), 0 not usable" in said
+    assert "cytodisk movie finds them" in said
 
 
 def test_check_counts_cells_of_labels(run: Run, tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import pytest
 from movie_files import SMALL, Stopped, stop_after, write_masks, write_movie
 
 import cytodisk as cd
+from cytodisk.runs.channel_names import channels_words
 from cytodisk.runs.correlate.correlate_study import correlate_study
 from cytodisk.runs.flagged_cells import names_by_row
 from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
@@ -75,3 +76,9 @@ def test_flags_of_a_correlation_stand_in_its_table_of_cells(tmp_path: Path) -> N
         study, "edge", max_lag=3, surrogates=19, geometry=False, detrend="linear", name="x"
     )
     assert "drifting series" not in detrended.cells["qc_flags"].iloc[0].split("; ")
+
+
+def test_channels_without_a_name_say_how_to_name_them() -> None:
+    assert channels_words(["Rac1", "RhoA"]) == "channels Rac1, RhoA"
+    assert channels_words(["0"]) == "1 channel without a name: it is called 0 (name it: --channels Rac1)"
+    assert "they are called 0, 1 (name them: --channels Rac1,RhoA)" in channels_words(["0", "1"])

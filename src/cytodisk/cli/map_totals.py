@@ -174,5 +174,7 @@ def say_checked(console: "Console", inputs: "CellInputs", cells: Iterable["Check
         words = f"{count(len(inputs.sources), 'file')}, {words}, {on_border} on the image border"
         say_reasons(lost)
     console.print(words)
+    if inputs.sources[0].kind == "stack":
+        console.print("Masks were looked at one by one. Jumps between frames: cytodisk movie finds them.")
     _say_without_cell(console, without, inputs.is_folder)
     return unusable + without.total() - (without["no cell"] if inputs.is_folder else 0)

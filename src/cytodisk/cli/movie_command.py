@@ -110,10 +110,8 @@ def _say_measures(console: "Console", study: "Study", mapped: Any) -> None:
     speed, unit = study.edge["velocity"], study.edge.attrs["units"]["velocity"]
     length = study.consistency.attrs["units"]["centroid_displacement"]
     error = " ".join(["error of one sector", *_bounds(study.edge)])
-    console.print(
-        f"edge velocity: {speed.min():.3g} to {speed.max():.3g} {unit}, {error} "
-        f"{study.edge['velocity_error'].median():.2g} {unit}"
-    )
+    span = f"{speed.min():.3g} to {speed.max():.3g}".replace("-", "−")
+    console.print(f"edge velocity: {span} {unit}, {error} {study.edge['velocity_error'].median():.2g} {unit}")
     correlation = study.consistency["correlation"].mean()
     alike = f"consecutive frames correlate by {correlation:.2f}; " if correlation == correlation else ""
     console.print(

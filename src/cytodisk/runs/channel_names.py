@@ -31,6 +31,28 @@ def shown_name(name: str) -> str:
     return f"channel {name}" if name.isdigit() else name
 
 
+def channels_words(names: Sequence[str]) -> str:
+    """Words for the channels of a signal, with the way to name those without a name.
+
+    Parameters
+    ----------
+    names : sequence of str
+
+    Returns
+    -------
+    str
+        As "channels Rac1, RhoA".
+    """
+    unnamed = [name for name in names if name.isdigit()]
+    if len(unnamed) < len(names):
+        return f"channels {', '.join(names)}"
+    given = ",".join(["Rac1", "RhoA", "Cdc42"][: len(names)]) + (",…" if len(names) > 3 else "")
+    if len(names) == 1:
+        return f"1 channel without a name: it is called {names[0]} (name it: --channels {given})"
+    called = f"they are called {', '.join(names)} (name them: --channels {given})"
+    return f"{len(names)} channels without names: {called}"
+
+
 def correlation_name(names: Sequence[str]) -> str:
     """Words for a correlation.
 

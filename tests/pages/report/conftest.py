@@ -13,6 +13,7 @@ from selenium.webdriver.chrome.service import Service
 
 import cytodisk as cd
 from cytodisk.pages.report.page import write_report
+from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_study import movie_study
@@ -78,7 +79,7 @@ def bare_study(masks: Path) -> Study:
 @pytest.fixture(scope="session")
 def written(study: Study) -> Path:
     """The page of the study with a correlation."""
-    write_correlation(study.path, NAMES[1], "velocity", correlated(), {"max_lag": 3})
+    write_correlation(study.path, NAMES[1], "velocity", correlated(), CORRELATION_TABLES, {"max_lag": 3})
     return write_report(study, study.path.with_name("report.html"))
 
 

@@ -8,6 +8,7 @@ from report_study import LAGS, LAYERS, NAMES, SECTORS, correlated
 from cytodisk.pages.report import shown_correlations as correlations
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_correlations import pairs_of
+from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.store.correlation_store import write_correlation
 from cytodisk.store.study import Study
 
@@ -15,7 +16,7 @@ from cytodisk.store.study import Study
 @pytest.fixture
 def plain(study: Study, monkeypatch: pytest.MonkeyPatch) -> ShownCell:
     """A cell with one correlation whose arrays are not packed."""
-    write_correlation(study.path, NAMES[1], "velocity", correlated(), {"max_lag": 3})
+    write_correlation(study.path, NAMES[1], "velocity", correlated(), CORRELATION_TABLES, {"max_lag": 3})
     monkeypatch.setattr(correlations, "pack_floats", np.asarray)
     return ShownCell(study, 0)
 
@@ -42,7 +43,9 @@ def test_the_largest_clusters_are_listed(study: Study, plain: ShownCell) -> None
         (five[:1].assign(layers="3", lag_s=np.nan), ["cluster 1: sectors 50–5, layer 3, lag −4 frames, r"]),
         (five[:0], ["no cluster of neighbouring windows"]),
     ):
-        write_correlation(study.path, NAMES[1], "velocity", correlated() | {"clusters": table}, {})
+        write_correlation(
+            study.path, NAMES[1], "velocity", correlated() | {"clusters": table}, CORRELATION_TABLES, {}
+        )
         (pair,), _ = pairs_of(plain)
         assert pair["peak_notes"][0].startswith(expected[0])
         assert len(pair["peak_notes"]) == min(max(len(table), 1), 4)
@@ -50,7 +53,9 @@ def test_the_largest_clusters_are_listed(study: Study, plain: ShownCell) -> None
 
 def test_variants_of_the_same_names_are_told_apart(study: Study, plain: ShownCell) -> None:
     settings = {"detrend": "linear"}
-    folder = write_correlation(study.path, NAMES[1], "velocity", correlated(), settings, "steady").path
+    folder = write_correlation(
+        study.path, NAMES[1], "velocity", correlated(), CORRELATION_TABLES, settings, "steady"
+    ).path
     pairs, _ = pairs_of(plain)
     shutil.rmtree(folder)
     words = f"{NAMES[1]} with velocity"
@@ -59,7 +64,7 @@ def test_variants_of_the_same_names_are_told_apart(study: Study, plain: ShownCel
 
 
 def test_those_with_velocity_come_first(study: Study, plain: ShownCell) -> None:
-    folder = write_correlation(study.path, NAMES[1], NAMES[0], correlated(), {}).path
+    folder = write_correlation(study.path, NAMES[1], NAMES[0], correlated(), CORRELATION_TABLES, {}).path
     pairs, _ = pairs_of(plain)
     assert [pair["with"] for pair in pairs] == ["velocity", NAMES[0]]
     shutil.rmtree(folder)
@@ -69,7 +74,7 @@ def test_what_was_not_computed_is_unknown(study: Study, plain: ShownCell) -> Non
     tables = correlated()
     tables["windows"] = tables["windows"].drop(columns=["p", "q", "threshold"])
     tables["layers"] = tables["layers"].drop(columns=["p", "q", "threshold"])
-    write_correlation(study.path, NAMES[1], "velocity", tables, {})
+    write_correlation(study.path, NAMES[1], "velocity", tables, CORRELATION_TABLES, {})
     (pair,), _ = pairs_of(plain)
     assert np.isnan(pair["windows"]["q"]).all()
     assert np.isnan(pair["layers"]["threshold"]).all()
@@ -87,7 +92,7 @@ def test_cell_that_was_not_correlated(study: Study, plain: ShownCell) -> None:
     tables = {name: table.assign(cell=7) for name, table in correlated().items()}
     for table in tables.values():
         table.attrs["units"] = dict.fromkeys(table, "")
-    write_correlation(study.path, NAMES[1], "velocity", tables, {})
+    write_correlation(study.path, NAMES[1], "velocity", tables, CORRELATION_TABLES, {})
     pairs, notes = pairs_of(plain)
     assert pairs == []
     assert notes == [f"correlation of {NAMES[1]} with velocity, which this cell has not"]
@@ -102,7 +107,7 @@ def test_the_partial_correlation_is_beside_the_raw_one(study: Study, plain: Show
     for table in tables.values():
         table.attrs["units"] = dict.fromkeys(table, "")
     settings = {"geometry": True, "control": ["volume"]}
-    write_correlation(study.path, NAMES[1], "velocity", tables, settings)
+    write_correlation(study.path, NAMES[1], "velocity", tables, CORRELATION_TABLES, settings)
     (pair,), _ = pairs_of(plain)
     assert pair["without"] == "without geometry and volume"
     np.testing.assert_allclose(pair["layer_partial"], np.full((LAYERS, len(LAGS)), 0.02))

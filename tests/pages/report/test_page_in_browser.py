@@ -12,6 +12,7 @@ from selenium.webdriver.support.ui import Select
 
 import cytodisk as cd
 from cytodisk.pages.report.page import write_report
+from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.store.correlation_store import write_correlation
 from cytodisk.store.study import Study
 
@@ -284,7 +285,7 @@ def test_correlation_of_some_sectors(browser: webdriver.Chrome, study: Study, tm
         tables[name] = tables[name][tables[name]["sector"] < 4]
         tables[name].attrs = units
     settings = {"detrend": "linear", "skip_lags": [-1, 0], "sectors": [0, 3]}
-    write_correlation(folder, NAMES[1], "velocity", tables, settings)
+    write_correlation(folder, NAMES[1], "velocity", tables, CORRELATION_TABLES, settings)
     page = Page(browser, write_report(cd.open_study(folder)))
     assert page.text("peaks-differs") == "linear detrending, without lags −1, 0, only sectors 0–3"
     assert page.text("curve-differs") == page.text("peaks-differs")

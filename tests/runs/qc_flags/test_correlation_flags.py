@@ -5,6 +5,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.qc_flags import correlation_flags
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.store.correlation_store import write_correlation
@@ -19,7 +20,7 @@ def flags(folder: Path, **faults: object) -> list[QCFlag]:
     cells = cells.assign(drifting_signal=0.05, drifting_with=0.0)
     for name, value in faults.items():
         cells.loc[1, name] = value
-    write_correlation(folder, "VASP", "velocity", {"cells": cells}, {})
+    write_correlation(folder, "VASP", "velocity", {"cells": cells}, CORRELATION_TABLES, {})
     study = Study(folder, pd.DataFrame(), {"run": "movie"})
     return [flag for rule in RULES for flag in rule(study)]
 
@@ -54,14 +55,16 @@ def test_each_fault_has_its_flag(tmp_path: Path, faults: dict[str, object], name
 @pytest.mark.parametrize(("difference", "lags"), [(False, "=-1,0"), (True, "=-2,-1,0,1")])
 def test_lags_that_jitter_makes_are_named(tmp_path: Path, difference: bool, lags: str) -> None:
     cells = pd.DataFrame({"cell": [0], "status": "ok", "reason": "", "jitter": 0.2})
-    write_correlation(tmp_path, "VASP", "velocity", {"cells": cells}, {"difference": difference})
+    write_correlation(
+        tmp_path, "VASP", "velocity", {"cells": cells}, CORRELATION_TABLES, {"difference": difference}
+    )
     (flag,) = correlation_flags.jitter(Study(tmp_path, pd.DataFrame(), {"run": "movie"}))
     assert flag.advice.endswith(f"--skip-lags{lags} --name without_jitter")
 
 
 def test_a_variant_is_told_by_its_name(tmp_path: Path) -> None:
     cells = pd.DataFrame({"cell": [0], "status": "refused", "reason": "too short"})
-    write_correlation(tmp_path, "0", "velocity", {"cells": cells}, {}, "early")
+    write_correlation(tmp_path, "0", "velocity", {"cells": cells}, CORRELATION_TABLES, {}, "early")
     study = Study(tmp_path, pd.DataFrame(), {"run": "movie"})
     (flag,) = correlation_flags.left_out(study)
     assert [place.note for place in flag.places] == ["channel 0 with velocity (early): too short"]

@@ -5,6 +5,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.stress_flags import STRESS_RULES
 from cytodisk.store.correlation_store import write_correlation
@@ -28,7 +29,7 @@ def flags(folder: Path, stress: str | None, statistic: str = "pearson") -> list[
     cells = pd.DataFrame({"cell": [0, 1], "status": "ok", "reason": "", "statistic": statistic} | NUMBERS)
     if stress is not None:
         cells["stress"] = ["", stress]
-    write_correlation(folder, "VASP", "velocity", {"cells": cells}, {})
+    write_correlation(folder, "VASP", "velocity", {"cells": cells}, CORRELATION_TABLES, {})
     study = Study(folder, pd.DataFrame(), {"run": "movie"})
     return [flag for rule in STRESS_RULES for flag in rule(study)]
 

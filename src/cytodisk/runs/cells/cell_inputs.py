@@ -15,7 +15,7 @@ from cytodisk.images.mask_files import MaskSource, open_mask_files
 from cytodisk.images.signal_files import pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
-from cytodisk.runs.channel_names import name_channels
+from cytodisk.runs.channel_names import channels_words, name_channels
 from cytodisk.runs.file_scales import agreed
 from cytodisk.scale import Scale
 
@@ -76,8 +76,9 @@ class CellInputs:
             masks = source.file
             words["masks"] = f"{_KINDS[source.kind]}, {masks.axes} {masks.shape} {masks.dtype}"
             for signal in self.signal_files:
-                names = ", ".join(signal.channels)
-                words["signal"] = f"channels {names}; {signal.axes} {signal.shape} {signal.dtype}"
+                words["signal"] = (
+                    f"{channels_words(signal.channels)}; {signal.axes} {signal.shape} {signal.dtype}"
+                )
                 if signal.n_frames < masks.n_frames:
                     words["signal"] += f"; the one image is used for all {masks.n_frames} frames of the masks"
         return words

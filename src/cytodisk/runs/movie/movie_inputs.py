@@ -15,7 +15,7 @@ from cytodisk.images.tracks import CellTrack, list_tracks
 from cytodisk.motion.still_interior import fade_in_px
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.cells.cell_inputs import check_signal
-from cytodisk.runs.channel_names import name_channels
+from cytodisk.runs.channel_names import channels_words, name_channels
 from cytodisk.runs.depth_layers import check_depths, depth_words
 from cytodisk.runs.file_scales import agreed
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
@@ -78,9 +78,9 @@ class MovieInputs:
             what += ", linked by overlap"
         words = {"masks": f"{what}, {size} ({self.masks.axes}, {self.masks.dtype})"}
         if self.signal is not None:
-            names = ", ".join(self.signal.channels)
             words["signal"] = (
-                f"channels {names}; {self.signal.n_frames} frames ({self.signal.axes}, {self.signal.dtype})"
+                f"{channels_words(self.signal.channels)}; {self.signal.n_frames} frames "
+                f"({self.signal.axes}, {self.signal.dtype})"
             )
         if self.grid.depth_um is not None:
             words["windows"] = depth_words(self.grid)

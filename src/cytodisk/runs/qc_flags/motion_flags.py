@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted, frames_of, mapped_rows, places_of
-from cytodisk.runs.qc_flags.remedy import run_again, without_frames
+from cytodisk.runs.qc_flags.remedy import correlate_again, run_again, without_frames
 from cytodisk.runs.qc_flags.signal_drift import signal_drifts
 from cytodisk.store.study import Study
 
@@ -85,7 +85,8 @@ def drift(study: Study) -> Iterator[QCFlag]:
             f"the mean signal drifts in {counted(len({drift.cell for drift in drifts}), 'cell')}",
             "The whole cell fades (bleaching, focus) or brightens over the movie: correlations in time and "
             "comparisons of early with late frames feel it.",
-            "Correct for bleaching before the run, or correlate with a trend taken out (--detrend).",
+            "Correct for bleaching before the run, or correlate with a trend taken out: "
+            + correlate_again(study, (drifts[0].channel, "velocity"), "without_trend", detrend="linear"),
             tuple(Place(drift.cell, None, drift.words) for drift in drifts),
         )
 

@@ -41,7 +41,7 @@ class Drift:
     @property
     def words(self) -> str:
         """Channel and change, as "VASP −23 %"."""
-        return f"{self.channel} {self.change:+.0%} over the movie".replace("-", "−")
+        return f"{self.channel} " + f"{self.change:+.0%} over the movie".replace("-", "−")
 
 
 def mean_by_frame(windows: pd.DataFrame) -> pd.Series[float]:
