@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from cytodisk.analysis.pixel_pileup import clipped_share, pileup, saturated_share
+from cytodisk.analysis.pixel_pileup import clipped_note, clipped_share, pileup, saturated_share
 
 N = 3000
 
@@ -14,9 +14,9 @@ def drawn(seed: int = 1000) -> np.random.Generator:
 
 
 @pytest.mark.parametrize("scale", [1, 5])
-@pytest.mark.parametrize("mean", [0.02, 0.3, 1.0])
+@pytest.mark.parametrize("mean", [0.35, 0.6, 1.0])
 def test_dim_images_are_not_clipped(mean: float, scale: int) -> None:
-    """Most pixels got no photon, whatever a photon counts."""
+    """Many pixels got no photon, whatever a photon counts."""
     values = scale * drawn().poisson(mean, N)
     assert np.mean(values == 0) > 0.3
     assert clipped_share(values) == 0.0
@@ -25,10 +25,31 @@ def test_dim_images_are_not_clipped(mean: float, scale: int) -> None:
 
 @pytest.mark.parametrize("seed", range(1000, 1020))
 def test_dim_and_uneven_images_are_not_clipped(seed: int) -> None:
-    """Three quarters of zeros: an edge that is bright, and an inside that is dark."""
-    bright = 3.0 * np.exp(-np.linspace(0.0, 8.0, N))
+    """Many zeros: an edge that is bright, and an inside that is dark."""
+    bright = 3.0 * np.exp(-np.linspace(0.0, 5.0, N))
     assert clipped_share(drawn(seed).poisson(bright)) == 0.0
-    assert clipped_share(drawn(seed).poisson(drawn(seed).gamma(0.3, 1.0, N))) == 0.0
+    assert clipped_share(drawn(seed).poisson(drawn(seed).gamma(0.5, 1.0, N))) == 0.0
+
+
+@pytest.mark.parametrize("seed", range(1000, 1010))
+def test_where_most_is_zero_dim_and_cut_off_look_the_same(seed: int) -> None:
+    noise = drawn(seed).normal(size=N)
+    cut = np.maximum(noise - np.quantile(noise, 0.9), 0.0).round()
+    dim = drawn(seed).poisson(0.05, N)
+    for values in (cut, dim):
+        assert clipped_share(values) == np.mean(values == 0) > 0.9
+        assert clipped_note(values).startswith("most of the cell is 0: dim or cut off")
+    grey = np.maximum(100.0 * (noise - np.quantile(noise, 0.8)), 0.0).round()
+    assert clipped_share(grey) == pytest.approx(0.8, abs=0.01)
+    assert clipped_note(grey) == ""  # enough levels are left to be sure
+    assert clipped_note(noise) == ""
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_an_image_of_two_values_is_a_mask(share: float) -> None:
+    values = (drawn().random(N) > share).astype(float)
+    assert clipped_share(values) == 0.0
+    assert clipped_note(values) == ""
 
 
 @pytest.mark.parametrize("share", [0.12, 0.4, 0.75])
@@ -90,4 +111,5 @@ def test_the_worst_channel_is_named() -> None:
     found = pileup(image, inside)
     assert (found.clipped_channel, found.saturated_channel) == ("actin", "Rac1")
     assert found.clipped == pytest.approx(0.5, abs=0.05)
+    assert found.clipped_note == ""
     assert found.saturated == pytest.approx(0.31, abs=0.05)

@@ -18,6 +18,8 @@ _ABOVE_NEIGHBOURS = 4.0  # times the levels below it that a pile at the top must
 _ABOVE_AT_CEILING = 2.0  # the same where the value is one at which cameras end
 _CEILINGS = (255.0, 1023.0, 4095.0, 16383.0, 65535.0)
 _NEARLY_ALL = 0.99
+_MOST = 0.75  # at the smallest value: too few pixels are left to tell why
+_OF_TWO_LEVELS = 2  # masks and labels: such an image has no range to be cut off
 
 
 @dataclass(frozen=True)
@@ -30,12 +32,15 @@ class Pileup:
         Share of the cell's pixels that pile up at the smallest and at the largest value.
     clipped_channel, saturated_channel : str
         Channel of that share; empty if it is 0.
+    clipped_note : str
+        That pixels without a photon would look the same; empty if the share of clipped pixels is sure.
     """
 
     clipped: float = 0.0
     clipped_channel: str = ""
     saturated: float = 0.0
     saturated_channel: str = ""
+    clipped_note: str = ""
 
 
 def pileup(image: Any, inside: Any) -> Pileup:
@@ -51,19 +56,24 @@ def pileup(image: Any, inside: Any) -> Pileup:
     -------
     Pileup
     """
-    clipped, saturated = (0.0, ""), (0.0, "")
+    clipped, saturated, note = (0.0, ""), (0.0, ""), ""
     for name, values in zip(image["channel"].to_numpy(), image.to_numpy()[:, inside], strict=True):
         known = values[np.isfinite(values)]
-        clipped = max(clipped, (clipped_share(known), str(name)), key=lambda found: found[0])
+        share = clipped_share(known)
+        if share > clipped[0]:
+            clipped, note = (share, str(name)), clipped_note(known)
         saturated = max(saturated, (saturated_share(known), str(name)), key=lambda found: found[0])
-    return Pileup(*clipped, *saturated)
+    return Pileup(*clipped, *saturated, note)
 
 
 def clipped_share(values: Any) -> float:
     """Share of values that were cut off at the smallest one.
 
     A dim image has many zeros too, as many pixels get no photon. There the levels above fall off like a
-    series: 0.74, 0.22, 0.03. A clipped signal has one high level, and few values at each of the next ones.
+    series: 0.60, 0.30, 0.08. A clipped signal has one high level, and few values at each of the next ones.
+    Where three quarters or more are at the smallest value, the levels above hold too little to tell: that
+    share is given whatever they are, and `clipped_note` says whether it is sure. An image of two values is a
+    mask or a label, and is not clipped.
 
     Parameters
     ----------
@@ -73,7 +83,8 @@ def clipped_share(values: Any) -> float:
     Returns
     -------
     float
-        0 for zeros that the levels above explain, and for a cell that has one value other than 0.
+        0 for zeros that the levels above explain, for a cell that has one value other than 0, and for one of
+        two values unless nearly all are the smaller.
     """
     if not values.size:
         return 0.0
@@ -84,11 +95,38 @@ def clipped_share(values: Any) -> float:
     if share == 1.0:
         return 1.0 if lowest == 0 else 0.0
     counts = np.unique(values, return_counts=True)[1]
-    near, next_, levels = _pooled(counts[1:])
-    if levels == 0:
+    if len(counts) == _OF_TWO_LEVELS:
         return share if share > _NEARLY_ALL else 0.0
-    explained = np.inf if next_ == 0 else _PHOTON_LOSS * near**2 / next_ / levels
-    return share if counts[0] > explained else 0.0
+    return share if share >= _MOST or _unexplained(counts) else 0.0
+
+
+def clipped_note(values: Any) -> str:
+    """What to know of a share of clipped values: that a dim image would look the same.
+
+    Parameters
+    ----------
+    values : ndarray of shape (N,)
+        Finite.
+
+    Returns
+    -------
+    str
+        Empty where `clipped_share` is 0, or where the levels above the smallest show that it was cut off.
+    """
+    share = clipped_share(values)
+    counts = np.unique(values, return_counts=True)[1]
+    if share < _MOST or share == 1.0 or _unexplained(counts):
+        return ""
+    return (
+        f"most of the cell is {values.min():g}: dim or cut off; the two cannot be told apart at so few "
+        "grey levels"
+    )
+
+
+def _unexplained(counts: IntArray) -> bool:
+    """Whether more values are at the lowest level than photon noise leaves there, by the next ones."""
+    near, next_, levels = _pooled(counts[1:])
+    return next_ > 0 and bool(counts[0] > _PHOTON_LOSS * near**2 / next_ / levels)
 
 
 def saturated_share(values: Any) -> float:

@@ -99,9 +99,12 @@ CELL_COLUMNS: Columns = (
         pa.float64(),
         "1",
         "share of the cell's pixels that are cut off at the smallest value, in the worst channel; "
-        "0 if the zeros are no more than a dim image has",
+        "0 if the zeros are no more than a dim image has and less than three quarters",
     ),
     Column("clipped_channel", pa.string(), "", "that channel; empty if the share is 0"),
+    Column(
+        "clipped_note", pa.string(), "", "that a dim image would look the same; empty if the share is sure"
+    ),
     Column(
         "saturated_share",
         pa.float64(),

@@ -230,6 +230,11 @@ def test_single_masks() -> None:
     [
         ({"clipped_share": 0.75, "clipped_channel": "VASP"}, "clipped signal", "VASP: 75% of the cell"),
         (
+            {"clipped_share": 0.96, "clipped_channel": "VASP", "clipped_note": "dim or cut off"},
+            "clipped signal",
+            "VASP: 96% of the cell; dim or cut off",
+        ),
+        (
             {"saturated_share": 0.034, "saturated_channel": "A"},
             "saturated signal",
             "A: 3.4% of the cell",

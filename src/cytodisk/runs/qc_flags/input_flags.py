@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from cytodisk.runs.qc_flags.column_flags import ColumnRule
 
 LARGEST_CLIPPED = 0.1
@@ -11,6 +13,14 @@ LARGEST_SATURATED = 0.01
 LARGEST_OUTLINE_STEP_PX = 1
 """Steps of an outline that is not flagged, in px."""
 
+
+def _clipped(share: float, row: Any) -> str:
+    """Channel, share, and a note if there is one; studies of earlier versions have none."""
+    note = row.get("clipped_note")
+    share_of_cell = f"{row['clipped_channel']}: {share:.0%} of the cell"
+    return f"{share_of_cell}; {note}" if isinstance(note, str) and note else share_of_cell
+
+
 clipped_signal = ColumnRule(
     "clipped signal",
     "the signal is cut off at its smallest value in {frames}",
@@ -19,7 +29,7 @@ clipped_signal = ColumnRule(
     "Go back to the raw image: subtract less background, keep negative values, or raise the offset.",
     "clipped_share",
     lambda column, scale: column > LARGEST_CLIPPED,
-    lambda value, row, scale: f"{row['clipped_channel']}: {value:.0%} of the cell",
+    lambda value, row, scale: _clipped(value, row),
 )
 saturated_signal = ColumnRule(
     "saturated signal",
