@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.ndimage import gaussian_filter
 
 import cytodisk as cd
 from cytodisk.analysis.stress.energy import capped_energy, kurtosis
@@ -140,6 +141,20 @@ def test_one_outlier_is_no_energy_and_makes_heavy_tails() -> None:
     assert kurtosis(values[:, :1]) > 100.0
 
 
+@pytest.mark.parametrize("width", [2.0, 12.0])
+@pytest.mark.parametrize("lag", [None, 3])
+def test_ordinary_motion_that_hangs_together_has_no_line(width: float, lag: int | None) -> None:
+    """Velocity of an edge whose position is smooth in time and around the cell; alone, and followed."""
+    marked = 0
+    for seed in range(1000, 1020):
+        noise = np.random.default_rng(seed).normal(size=(2, FRAMES + 61, 24))
+        place = gaussian_filter(noise, (0.0, 2.0, width), mode=("nearest", "nearest", "wrap"))
+        first, other = np.diff(place, axis=1)[:, 30:]
+        second = other if lag is None else np.roll(first, lag, axis=0) + 0.5 * other
+        marked += shared_line(first[lag or 0 : FRAMES], second[lag or 0 : FRAMES]).p <= 0.01
+    assert marked <= 2
+
+
 def test_a_line_stands_out_of_red_noise_and_red_noise_does_not() -> None:
     a, b = quiet(1006, "slow", 200)
     tables = [series.to_numpy().reshape(200, -1) for series in (a, b)]
@@ -148,4 +163,5 @@ def test_a_line_stands_out_of_red_noise_and_red_noise_does_not() -> None:
     found = shared_line(*(table + wave for table in tables))
     assert found.period == pytest.approx(10.0)
     assert found.prominence > 20.0
+    assert found.p < 1e-6
     assert 0.5 < found.share < 0.8

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import fdtrc
 
 from cytodisk.analysis.correlation.prepared_series import interpolated
 from cytodisk.arrays import FloatArray
@@ -12,6 +13,7 @@ from cytodisk.arrays import FloatArray
 _FEWEST_CYCLES = 4.0  # in the movie: fewer are no steady oscillation
 _SHORTEST_PERIOD = 2.2  # frames
 _NEAR, _FAR = 3, 7  # bins to both sides whose median is the background of a line
+_BESIDE = (2, 3)  # bins to each side where a band still has its power, and a line under a Hann window none
 
 
 class SharedLine(NamedTuple):
@@ -25,11 +27,14 @@ class SharedLine(NamedTuple):
         Of the variance that lies in it, the smaller of both.
     period : float
         In frames.
+    p : float
+        Probability that noise with a smooth spectrum has so narrow a peak there, of both the larger.
     """
 
     prominence: float
     share: float
     period: float
+    p: float
 
 
 def shared_line(a: FloatArray, b: FloatArray) -> SharedLine:
@@ -44,16 +49,49 @@ def shared_line(a: FloatArray, b: FloatArray) -> SharedLine:
     -------
     SharedLine
         Periods from 2.2 frames to a quarter of the movie.
+
+    Notes
+    -----
+    Series that hang together around the cell are few series, whatever their number, and the mean of few
+    spectra keeps the peaks that chance gives to each. So the peak is compared with the two bins beyond its
+    own on each side, of which the stronger counts. The ratio of both follows an F distribution by the number
+    of series that are independent: once the line is taken out, the square of the sum over the sum of squares
+    of the eigenvalues of their correlations.
     """
     frames = len(a)
-    found = [_lines(_spectrum(series)) for series in (a, b)]
+    spectra = [_spectrum(series) for series in (a, b)]
+    found = [_lines(power) for power in spectra]
     frequency = np.fft.rfftfreq(frames)
     known = (frequency >= (_FEWEST_CYCLES - 0.5) / frames) & (frequency <= 1.0 / _SHORTEST_PERIOD)
     if not known.any():
-        return SharedLine(0.0, 0.0, np.nan)
+        return SharedLine(0.0, 0.0, np.nan, 1.0)
     prominence, share = (np.minimum(one, other) for one, other in zip(*found, strict=True))
     place = int(np.where(known, prominence, 0.0).argmax())
-    return SharedLine(float(prominence[place]), float(share[place]), float(1.0 / frequency[place]))
+    p = max(_chance(series, power, place) for series, power in zip((a, b), spectra, strict=True))
+    return SharedLine(float(prominence[place]), float(share[place]), float(1.0 / frequency[place]), p)
+
+
+def _chance(series: FloatArray, power: FloatArray, place: int) -> float:
+    """Probability that a smooth spectrum has a peak so far above both of its sides."""
+    near, far = _BESIDE
+    sides = power[max(place - far, 1) : place - near + 1], power[place + near : place + far + 1]
+    beside = max(float(side.mean()) if side.size else 0.0 for side in sides)
+    count = _independent(series, place)
+    # two degrees of freedom a bin and series; the stronger side has two bins
+    return float(fdtrc(2.0 * count, 4.0 * count, power[place] / max(beside, 1e-12)))
+
+
+def _independent(series: FloatArray, place: int) -> float:
+    """How many series are worth as much, apart from the bin of a line and its two neighbours."""
+    values = interpolated(series)
+    turns = (
+        2.0 * np.pi * np.outer(np.arange(len(values)), np.arange(max(place - 1, 0), place + 2)) / len(values)
+    )
+    basis, _ = np.linalg.qr(np.concatenate([np.ones((len(values), 1)), np.cos(turns), np.sin(turns)], axis=1))
+    values = values - basis @ (basis.T @ values)
+    values = values / np.maximum(values.std(axis=0), 1e-12)
+    eigenvalues = np.linalg.svd(values, compute_uv=False) ** 2
+    return float(eigenvalues.sum() ** 2 / max((eigenvalues**2).sum(), 1e-12))
 
 
 def _spectrum(series: FloatArray) -> FloatArray:

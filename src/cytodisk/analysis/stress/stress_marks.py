@@ -35,6 +35,8 @@ SMALLEST_EPISODE, SMALLEST_CHANGE = 2.0, 1.5
 """Ratios of variance that make so much of a difference that chance correlations are found too often."""
 SMALLEST_PROMINENCE, SMALLEST_LINE = 5.0, 0.25
 """Of a spectral line: power over that beside it, and share of the variance."""
+LARGEST_CHANCE = 0.01
+"""Probability below which a peak is a line, and no chance peak of a band or of few independent series."""
 HEAVIEST_NORMAL = 3.8
 """Kurtosis of both above which tails are heavy; 3 of a normal distribution."""
 
@@ -232,7 +234,8 @@ def _found(measured: _Measured) -> list[str]:
         found.append(RESTLESS_EPISODE)
     elif changes:
         found.append(VARIANCE_CHANGE)
-    if line.prominence >= SMALLEST_PROMINENCE and line.share >= SMALLEST_LINE:
+    stands_out = line.prominence >= SMALLEST_PROMINENCE and line.share >= SMALLEST_LINE
+    if stands_out and line.p <= LARGEST_CHANCE:
         found.append(STEADY_OSCILLATION)
     if not found and measured.kurtosis >= HEAVIEST_NORMAL:
         found.append(HEAVY_TAILS)
