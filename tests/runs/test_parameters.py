@@ -147,8 +147,18 @@ def test_the_constructor_takes_one_of_two_that_exclude_each_other() -> None:
     assert MovieParameters(depth_um=2.0).part(MapParameters).layers == MapParameters().layers
 
 
-def test_a_file_with_the_default_layers_and_a_depth_can_be_fed_back(tmp_path: Path) -> None:
+def test_a_file_with_a_depth_has_no_layers_and_can_be_fed_back(tmp_path: Path) -> None:
     path, written = tmp_path / "parameters.toml", MovieParameters(depth_um=2.0, sectors=8)
     write_parameters(written, path)
-    assert {"layers = 10", "depth_um = [2.0]"} <= set(path.read_text().splitlines())
+    lines = path.read_text().splitlines()
+    assert "depth_um = [2.0]" in lines
+    assert not any(line.startswith(("layers", "spacing")) for line in lines)
     assert parameters_from({}, path, MovieParameters) == written
+
+
+def test_a_file_with_layers_and_a_depth_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text("layers = 5\ndepth_um = [0.3, 0.7]\n")
+    with pytest.raises(ParameterError, match="layers and depth_um exclude each other"):
+        parameters_from({}, path, MovieParameters)
+    assert parameters_from({"layers": 3}, path, MovieParameters).layers == 3

@@ -85,8 +85,15 @@ def test_another_channel_as_control(study: Study) -> None:
     alone = cd.run_correlate(study, "follower", "volume", geometry=False, name="raw", **_HOW)
     assert (alone.windows["correlation"] > 0.9).all()
     assert "correlation_partial" not in alone.windows
-    with pytest.raises(ParameterError, match="control 'volume' is no other channel"):
-        cd.run_correlate(study, "follower", "volume", control=("volume",), **_HOW)
+    for control, words in {
+        ("volume",): "'volume' is one of the two correlated",
+        ("nothing",): "'nothing' is no other channel",
+        ("volume", "volume"): "names 'volume' twice",
+    }.items():
+        with pytest.raises(ParameterError, match=words):
+            cd.run_correlate(
+                study, "follower", "volume" if len(control) == 1 else "velocity", control=control, **_HOW
+            )
     raw = cd.run_correlate(study, "follower", geometry=False, name="raw", **_HOW)
     found = cd.run_correlate(study, "follower", geometry=False, control=("volume",), **_HOW)
     np.testing.assert_array_equal(found.windows["correlation"], raw.windows["correlation"])

@@ -114,3 +114,9 @@ def test_a_grid_takes_the_radii_of_each_cell_that_it_is_laid_on() -> None:
     of_small = grid.on(small).grid
     assert of_small.on(large).grid == grid.on(large).grid != of_small
     assert of_small.of_any_cell == grid
+
+
+@pytest.mark.parametrize(("wrong", "words"), [("0.3,0.7", "list of numbers"), ((True, 2), "numbers")])
+def test_depths_that_are_no_numbers(wrong: object, words: str) -> None:
+    with pytest.raises(WindowError, match=words):
+        cd.polar_windows(sectors=8, depth_um=wrong)  # type: ignore[arg-type]

@@ -45,8 +45,8 @@ def parameters_from(
     found = {} if path is None else _read(path, of)
     for one, other in of.exclusive:
         found = {name: value for name, value in found.items() if not _overruled(name, one, other, given)}
-        if one in found and other in found:
-            found.pop(one)  # a study's file has both, of which the second counts
+        if one in found and other in found and path is not None and _of_study(path):
+            found.pop(one)  # studies of earlier versions have both, of which the second counts
     shown = {name: shown for name, shown in (names or {}).items() if name in given}
     return of.called(found | given, shown)
 
@@ -54,6 +54,10 @@ def parameters_from(
 def _overruled(name: str, one: str, other: str, given: Mapping[str, Any]) -> bool:
     """Whether a name of the file excludes one that is given."""
     return (name == one and other in given) or (name == other and one in given)
+
+
+def _of_study(path: Path) -> bool:
+    return path.name == PARAMETERS and read_provenance(path.parent) is not None
 
 
 def _read(path: Path, of: type[Parameters]) -> dict[str, Any]:
@@ -84,7 +88,17 @@ def write_parameters(parameters: Parameters, path: Path) -> None:
     path : Path
     """
     with replacing(path) as temporary:
-        temporary.write_text("\n".join(toml_lines(parameters.model_dump())) + "\n", encoding="utf-8")
+        temporary.write_text("\n".join(toml_lines(_without_excluded(parameters))) + "\n", encoding="utf-8")
+
+
+def _without_excluded(parameters: Parameters) -> dict[str, Any]:
+    """Values without those of which another one takes the place, as `layers` where there is `depth_um`."""
+    values = parameters.model_dump()
+    for one, other in type(parameters).exclusive:
+        default = type(parameters).model_fields[other].default
+        if default is None and values.get(other) is not None:
+            values.pop(one, None)
+    return values
 
 
 def toml_lines(values: Mapping[str, Any]) -> list[str]:

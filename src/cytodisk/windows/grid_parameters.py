@@ -59,6 +59,10 @@ class PolarGridParameters(GridParameters):
     @field_validator("depth_um", mode="before")
     @classmethod
     def _several(cls, depth_um: Any) -> Any:
+        if isinstance(depth_um, str):
+            raise ValueError("must be a list of numbers, such as [0.5, 1, 2]")
+        if isinstance(depth_um, tuple | list) and any(isinstance(depth, bool) for depth in depth_um):
+            raise ValueError("must be numbers")
         return (depth_um,) if is_number(depth_um) else depth_um
 
     @field_validator("depth_um")

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from cytodisk.runs.partial_words import lost_rows, region_left, windows_lost, without_words
-from cytodisk.runs.qc_flags.geometry_flags import geometry, geometry_not_tested
+from cytodisk.runs.qc_flags.geometry_flags import _remedy, geometry, geometry_not_tested
 
 
 class _Found:
@@ -93,3 +93,8 @@ def test_what_is_left_of_clusters_and_windows_in_words() -> None:
 def test_without_surrogates_nothing_is_lost() -> None:
     layers = pd.DataFrame({"layer": [0, 1]})
     assert not lost_rows(layers).any()
+
+
+def test_the_remedy_where_maps_are_gone() -> None:
+    assert "cytodisk movie again" in _remedy("out/maps/cell_00000_t00000.npz does not exist")
+    assert "signal where it was" in _remedy("signal.tif does not exist")

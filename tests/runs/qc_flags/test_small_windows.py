@@ -58,6 +58,14 @@ def test_layers_by_depth_keep_their_number_in_the_advice(tmp_path: Path) -> None
     assert "small windows" not in flags_of(disks(20.0), tmp_path / "again", **wanted, **settings)
 
 
+def test_a_border_by_depth_that_nearly_reaches_the_centre_is_named(tmp_path: Path) -> None:
+    settings = {"pixel_size_um": 1.0, "sectors": 8}
+    flag = flags_of(disks(8.0), tmp_path, depth_um=(2.0, 7.0), **settings)["small windows"]
+    assert flag.advice.startswith("Leave out 7 of --depth-um")
+    (tmp_path / "again").mkdir()
+    assert "small windows" not in flags_of(disks(8.0), tmp_path / "again", depth_um=(2.0,), **settings)
+
+
 def test_a_window_below_a_pixel_is_flagged_where_the_median_is_large(tmp_path: Path) -> None:
     masks = np.pad(disks(20.0, 2), ((0, 0), (0, 0), (0, 40)))
     masks[:, masks.shape[1] // 2, 23:80] = True  # an arm a pixel wide

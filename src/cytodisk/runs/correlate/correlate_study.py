@@ -141,7 +141,13 @@ def _check_names(names: list[str], signal: str, with_: str, options: CorrelatePa
             f"signal {signal!r} with itself in the same window is 1: pass against 'edge' to compare it "
             "with that of the outermost layer"
         )
-    for name in options.control:
+    for number, name in enumerate(options.control):
+        if name in options.control[:number]:
+            raise ParameterError(f"control names {name!r} twice: name each channel once")
+        if name in (signal, with_):
+            raise ParameterError(
+                f"control {name!r} is one of the two that are correlated: name another channel"
+            )
         if name not in names or name in (signal, with_):
             others = ", ".join(repr(other) for other in names if other not in (signal, with_)) or "none"
             raise ParameterError(f"control {name!r} is no other channel of the study: there is {others}")

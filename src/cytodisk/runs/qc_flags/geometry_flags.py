@@ -47,9 +47,16 @@ def geometry_not_tested(study: Study) -> Iterator[QCFlag]:
             f"what geometry alone would give is not known of {counted(len(places), 'correlation')}",
             "The signal or the maps could not be read again, or too few frames show the same places: a still "
             "pattern or a cortex that moves with the edge may have made the correlation.",
-            "Put the signal where it was and correlate again, or pass a smaller --max-lag.",
+            _remedy(" ".join(place.note for place in places)),
             tuple(places),
         )
+
+
+def _remedy(why: str) -> str:
+    """What to do, by why geometry was not tested."""
+    if "/maps/" in why or "\\maps\\" in why:
+        return "The maps of the study are gone: run cytodisk movie again, then correlate again."
+    return "Put the signal where it was and correlate again, or pass a smaller --max-lag."
 
 
 def _lost(found: Correlation, cell: int) -> str:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
+import numpy as np
 import pandas as pd
 
+from cytodisk.arrays import FloatArray
 from cytodisk.runs.qc_flags.finest_grid import finest_grid
 from cytodisk.runs.qc_flags.qc_flag import QCFlag, frames_of, mapped_rows, places_of
 from cytodisk.runs.qc_flags.remedy import run_again
@@ -16,6 +18,7 @@ from cytodisk.windows.window_sizes import FEW_PX
 LEAST_PX = 1.0
 """A window that is smaller is flagged, however large the others are."""
 
+_FEWEST_SECTORS = 4  # that a layer by depth must have pixels for
 _LOOKED_AT = 8  # rows with the smallest windows, by which a coarser grid is chosen
 
 
@@ -54,13 +57,28 @@ def _note(row: pd.Series[float]) -> str:
     return f"{words}, {between} without a pixel's centre" if between else words
 
 
+def _idle_border(areas: list[FloatArray], depths: Sequence[float]) -> str:
+    """The border whose layer has too few pixels for a few sectors in some frame; empty if there is none."""
+    of_layer = np.stack([area.sum(axis=1) for area in areas])  # layers deeper than the cell have none
+    smallest = np.where(of_layer > 0.0, of_layer, np.inf).min(axis=0)
+    thin = int(smallest.argmin())
+    if smallest[thin] >= _FEWEST_SECTORS * FEW_PX:
+        return ""
+    return f"{depths[max(thin - 1, 0)]:g}"
+
+
 def _advice(study: Study, rows: pd.DataFrame) -> str:
     """The finest grid with large enough windows in the rows with the smallest ones, as flags."""
     sizes = ("median_window_px", "smallest_window_px")
     worst = pd.concat([rows.nsmallest(_LOOKED_AT, name) for name in sizes])
     places = {(int(cell), int(frame)) for cell, frame in zip(worst["cell"], worst["frame"], strict=True)}
-    by_depth = study.provenance["parameters"].get("depth_um") is not None
+    depths = study.provenance["parameters"].get("depth_um")
+    by_depth = depths is not None
     areas = areas_px(study, places)
+    if isinstance(depths, list | tuple) and (border := _idle_border(areas, depths)):
+        return (
+            f"Leave out {border} of --depth-um: windows between it and the next border hold too few pixels."
+        )
     for least in (LEAST_PX, 0.0):
         grid = finest_grid(areas, FEW_PX, least, fewer_layers=not by_depth)
         if grid is not None:
