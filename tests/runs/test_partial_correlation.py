@@ -86,7 +86,7 @@ def test_another_channel_as_control(study: Study) -> None:
     assert (alone.windows["correlation"] > 0.9).all()
     assert "correlation_partial" not in alone.windows
     for control, words in {
-        ("volume",): "'volume' is one of the two correlated",
+        ("volume",): "'volume' is one of the two that are correlated",
         ("nothing",): "'nothing' is no other channel",
         ("volume", "volume"): "names 'volume' twice",
     }.items():

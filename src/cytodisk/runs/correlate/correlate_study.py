@@ -148,7 +148,7 @@ def _check_names(names: list[str], signal: str, with_: str, options: CorrelatePa
             raise ParameterError(
                 f"control {name!r} is one of the two that are correlated: name another channel"
             )
-        if name not in names or name in (signal, with_):
+        if name not in names:
             others = ", ".join(repr(other) for other in names if other not in (signal, with_)) or "none"
             raise ParameterError(f"control {name!r} is no other channel of the study: there is {others}")
     if options.pairs and with_ in VELOCITIES:
