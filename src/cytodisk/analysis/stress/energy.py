@@ -54,19 +54,20 @@ def capped_energy(series: FloatArray) -> FloatArray:
     return np.asarray(np.where(np.isfinite(energy), energy, 1.0))
 
 
-def kurtosis(series: FloatArray) -> float:
+def kurtosis(series: FloatArray) -> FloatArray:
     """Mean over windows of the fourth moment over the squared second: 3 of a normal distribution.
 
     Parameters
     ----------
-    series : ndarray of shape (T, W) and dtype float
+    series : ndarray of shape (T, W, …) and dtype float
         NaN is left out.
 
     Returns
     -------
-    float
+    ndarray of shape (…) and dtype float
     """
     with warnings.catch_warnings(), np.errstate(invalid="ignore", divide="ignore"):
         warnings.simplefilter("ignore", RuntimeWarning)
         square = (series - np.nanmean(series, axis=0)) ** 2
-        return float(np.nanmean(np.nanmean(square**2, axis=0) / np.nanmean(square, axis=0) ** 2))
+        each = np.nanmean(square**2, axis=0) / np.nanmean(square, axis=0) ** 2
+        return np.asarray(np.nanmean(each, axis=0))

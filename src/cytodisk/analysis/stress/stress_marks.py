@@ -27,7 +27,7 @@ from cytodisk.checks import whole_number
 COMMON_PULSE, RESTLESS_EPISODE, VARIANCE_CHANGE = "common pulse", "restless episode", "variance change"
 STEADY_OSCILLATION, HEAVY_TAILS = "steady oscillation", "heavy tails"
 
-SMALLEST_PULSE = 4.0
+SMALLEST_PULSE = 7.0
 """Times that a share of joint energy must be of what three frames have in a steady movie."""
 SHARPEST_EPISODE = 0.85
 """Share of a pulse's energy among nine frames above which it is not an episode."""
@@ -87,14 +87,14 @@ class StressMarks:
 
 @dataclass(frozen=True)
 class _Measured:
-    """Scans of the series, first in each array, and of surrogates after it; a line; kurtosis of both."""
+    """Scans and kurtosis of the series, first in each array, and of surrogates after it; a line."""
 
     frames: int
     pulse: Pulse
     episode: Episode
     ramp: Ramp
     line: SharedLine
-    kurtosis: float
+    kurtosis: FloatArray
 
 
 def stress_marks(a: Any, b: Any, max_lag: int, *, seed: int = 0) -> StressMarks | None:
@@ -174,14 +174,16 @@ def _measure(a: FloatArray, b: FloatArray, max_lag: int, seed: int) -> _Measured
     line = shared_line(a, b)
     quick = [without_slow_changes(series) for series in (a, b)]
     random = np.random.default_rng([seed, 0])
-    energies = [capped_energy(_with_surrogates(series, random)) for series in quick]
+    beside = [_with_surrogates(series, random) for series in quick]
+    energies = [capped_energy(series) for series in beside]
     pulse = common_pulse(energies[0], energies[1], max_lag)
     if _beyond(pulse.share) and pulse.sharpness[0] >= SHARPEST_EPISODE:
         starts = int(pulse.first[0]), int(pulse.first[0] + pulse.lag[0])
         for energy, start in zip(energies, starts, strict=True):
             _smooth_over(energy, start)
     episode, ramp = restless_episode(*energies), variance_ramp(*energies)
-    return _Measured(frames, pulse, episode, ramp, line, min(kurtosis(series) for series in quick))
+    tails = np.minimum(*(kurtosis(series) for series in beside))
+    return _Measured(frames, pulse, episode, ramp, line, tails)
 
 
 def _with_surrogates(series: FloatArray, random: np.random.Generator) -> FloatArray:
@@ -217,7 +219,7 @@ def _marks(measured: _Measured, numbers: list[int]) -> StressMarks:
         float(ramp.ratio[0]),
         line.share,
         line.period,
-        measured.kurtosis,
+        float(measured.kurtosis[0]),
     )
 
 
@@ -237,6 +239,6 @@ def _found(measured: _Measured) -> list[str]:
     stands_out = line.prominence >= SMALLEST_PROMINENCE and line.share >= SMALLEST_LINE
     if stands_out and line.p <= LARGEST_CHANCE:
         found.append(STEADY_OSCILLATION)
-    if not found and measured.kurtosis >= HEAVIEST_NORMAL:
+    if not found and measured.kurtosis[0] >= HEAVIEST_NORMAL and _beyond(measured.kurtosis):
         found.append(HEAVY_TAILS)
     return found
