@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from cytodisk.arrays import BoolArray, FloatArray, Int32Array, IntArray
+from cytodisk.geometry.lower_envelope import lower_envelope, outside_in_column
 from cytodisk.geometry.outline import on_border
 
 _THIN_PX = 4  # in parts that are thinner, edges on both sides are looked at
@@ -184,11 +185,11 @@ def _nearest_edges(inside: BoolArray, edges: FloatArray, counts: BoolArray) -> t
     """From the nearest pixel outside to the edge before it, and from there along the outline."""
     height, width = inside.shape
     nearest, distance = _around_edges(inside.shape, edges, counts)
-    outside = _outside_in_column(inside)
+    outside = outside_in_column(inside)
     lowest = np.empty(width, dtype=np.int64)  # columns whose parabolas make up the lower envelope
     begin = np.empty(width + 1)  # and where each of them begins
     for row in range(1, height - 1):
-        count = _envelope(row, outside[row], lowest, begin)
+        count = lower_envelope(row, outside[row], lowest, begin)
         place = 0
         for column in range(1, width - 1):
             while place < count - 1 and begin[place + 1] < column:
@@ -264,44 +265,3 @@ def _around_edges(
                     if here > distance[row, column]:
                         nearest[row, column], distance[row, column] = i, here
     return nearest, distance
-
-
-@njit(cache=True, error_model="numpy")
-def _outside_in_column(inside: BoolArray) -> IntArray:
-    """Nearest row of each pixel's column that is outside of the mask, in its shape; -1 if there is none.
-
-    The margin is no part of the image.
-    """
-    height, width = inside.shape
-    found = np.full(inside.shape, -1, dtype=np.int64)
-    for row in range(1, height - 1):
-        for column in range(1, width - 1):
-            found[row, column] = found[row - 1, column] if inside[row, column] else row
-    for row in range(height - 3, 0, -1):
-        for column in range(1, width - 1):
-            below, own = found[row + 1, column], found[row, column]
-            if below >= 0 and (own < 0 or below - row < row - own):
-                found[row, column] = below
-    return found
-
-
-@njit(cache=True, error_model="numpy")
-def _envelope(row: int, outside: IntArray, lowest: IntArray, begin: FloatArray) -> int:
-    """Lower envelope of the squared distances from a row to the pixels outside, by column: see `depth_of`."""
-    count = 0
-    for column in range(len(outside)):
-        if outside[column] < 0:
-            continue
-        height = float(outside[column] - row) ** 2
-        meet = -np.inf
-        while count > 0:
-            last = lowest[count - 1]
-            rise = height - float(outside[last] - row) ** 2
-            meet = 0.5 * (rise / (column - last) + column + last)
-            if meet > begin[count - 1]:
-                break
-            count -= 1
-            meet = -np.inf
-        lowest[count], begin[count] = column, meet
-        count += 1
-    return count
