@@ -6,8 +6,8 @@ import xarray as xr
 from scipy.ndimage import gaussian_filter
 
 import cytodisk as cd
-from cytodisk.analysis.stress.energy import capped_energy, kurtosis
 from cytodisk.analysis.stress.energy_scans import common_pulse, restless_episode, variance_ramp
+from cytodisk.analysis.stress.series_energy import capped_energy, kurtosis
 from cytodisk.analysis.stress.spectral_line import shared_line
 
 FRAMES = 80

@@ -10,7 +10,6 @@ import xarray as xr
 
 from cytodisk.analysis.correlation.pairing import named_series
 from cytodisk.analysis.correlation.surrogates import filtered_noise
-from cytodisk.analysis.stress.energy import capped_energy, kurtosis, without_slow_changes
 from cytodisk.analysis.stress.energy_scans import (
     PULSE_FRAMES,
     Episode,
@@ -20,6 +19,7 @@ from cytodisk.analysis.stress.energy_scans import (
     restless_episode,
     variance_ramp,
 )
+from cytodisk.analysis.stress.series_energy import capped_energy, kurtosis, without_slow_changes
 from cytodisk.analysis.stress.spectral_line import SharedLine, shared_line
 from cytodisk.arrays import FloatArray
 from cytodisk.checks import whole_number
