@@ -174,7 +174,7 @@ def test_layers_by_depth(run: Run, masks: Path, tmp_path: Path) -> None:
     assert code == 0
     assert "windows: layers 0–0.7 µm deep and the rest inside, sectors 8" in said
     assert cd.open_study(tmp_path / "out").provenance["layers"] == 2
-    assert_refused(run("movie", masks, "-o", tmp_path / "other", *flags), "--depth-um needs the pixel size")
+    assert_refused(run("movie", masks, "-o", tmp_path / "other", *flags), "(--depth-um) needs the pixel size")
     both = run("movie", masks, "-o", tmp_path / "other", *flags, "--layers", 3, "--pixel-size", 0.5)
     assert_refused(both, "--layers and --depth-um exclude each other")
     assert not (tmp_path / "other").exists()

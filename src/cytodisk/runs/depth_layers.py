@@ -16,7 +16,9 @@ def check_depths(grid: PolarGrid, scale: Scale) -> None:
         The layers are by depth, and the pixel size is unknown.
     """
     if grid.depth_um is not None and scale.pixel_size_um is None:
-        raise ParameterError("--depth-um needs the pixel size: add --pixel-size, or use --layers")
+        raise ParameterError(
+            "depth_um (--depth-um) needs the pixel size: add pixel_size_um (--pixel-size), or use layers"
+        )
 
 
 def layer_borders(grid: PolarGrid) -> list[str]:
