@@ -158,7 +158,7 @@ def test_killed_and_resumed_by_two_workers_it_is_the_same_to_the_last_bit(
     assert summary.statuses == {"ok": 4, "refused": 1}
     units, qc_flags = summary.remarks
     assert units.startswith("inputs have different units")
-    assert qc_flags.startswith("1 input has cells with QC flags")
+    assert qc_flags.startswith("2 inputs have cells with QC flags")
     for name in TABLES:
         assert (out / f"{name}.parquet").read_bytes() == (quiet / f"{name}.parquet").read_bytes(), name
 
