@@ -94,3 +94,7 @@ def as_data(fault: Fault) -> Fault:
 
 class StationarityWarning(UserWarning):
     """The level of many series drifts: what correlates may do so for no other reason."""
+
+
+class EarlierVersionWarning(UserWarning):
+    """A file of an earlier version lacks something, and another value stands for it."""

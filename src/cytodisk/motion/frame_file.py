@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import os
+import warnings
 import zipfile
 import zlib
 from dataclasses import astuple
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap, load_map
-from cytodisk.errors import ReadError
+from cytodisk.errors import EarlierVersionWarning, ReadError
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.mapped_frame import MappedFrame
 from cytodisk.motion.registration import RigidTransform
 from cytodisk.motion.tracking import TrackedBoundary
+
+_NO_MATCH = np.empty((2, 0))  # of a first frame, and of the paper's tracker
 
 
 def save_frame(path: str | os.PathLike[str], frame: MappedFrame) -> None:
@@ -32,11 +37,10 @@ def save_frame(path: str | os.PathLike[str], frame: MappedFrame) -> None:
         The file cannot be written.
     """
     boundary = frame.boundary
-    matched = {} if boundary.matched_s is None else {"track_matched_s": boundary.matched_s}
     frame.disk.save(
         path,
-        matched
-        | {
+        {
+            "track_matched_s": _NO_MATCH if boundary.matched_s is None else boundary.matched_s,
             "track_s": boundary.s,
             "track_transforms": np.array([astuple(boundary.transform), astuple(boundary.alignment)]),
             "track_residual_px": np.array(boundary.residual_px),
@@ -64,6 +68,11 @@ def load_boundary(path: str | os.PathLike[str], disk: DiskMap | None = None) -> 
     ------
     ReadError
         The file is missing, damaged, or holds no boundary.
+
+    Warns
+    -----
+    EarlierVersionWarning
+        An earlier version wrote it, which kept no match of the step to this frame.
     """
     return _read(path, disk)[0]
 
@@ -110,8 +119,22 @@ def _read(path: str | os.PathLike[str], disk: DiskMap | None) -> tuple[TrackedBo
                 float(file["track_residual_px"]),
                 violations,
                 str(file["track_restarted"]),
-                file.get("track_matched_s"),
+                _match(path, file) if number != reference_frame else None,
             )
             return boundary, reference_frame
     except (zipfile.BadZipFile, zlib.error, KeyError, ValueError, OSError, EOFError) as error:
         raise ReadError(f"{path} holds no tracked boundary: {error}") from error
+
+
+def _match(path: str | os.PathLike[str], file: Any) -> FloatArray | None:
+    """Match of the step to this frame, None if there is none; a file that does not say so is told."""
+    if "track_matched_s" not in file:
+        warnings.warn(
+            f"{path} was written by an earlier version: velocity is taken from its tracked points alone, and "
+            "that of a thin protrusion gets lost; run cytodisk movie again",
+            EarlierVersionWarning,
+            stacklevel=4,
+        )
+        return None
+    matched = np.asarray(file["track_matched_s"], dtype=np.float64)
+    return matched if matched.size else None
