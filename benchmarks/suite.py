@@ -51,6 +51,7 @@ BLOCKS: dict[str, Callable[[Path], Iterator[Figure]]] = {
         suite_checks.area,
         suite_checks.random,
         suite_checks.windows,
+        suite_checks.same_place,
         suite_checks.tracking,
         suite_checks.false_positives,
     )

@@ -15,6 +15,7 @@ from figure import Figure
 RANDOM_MASKS = 2800
 GRIDS = ((1, 1), (5, 12), (10, 60), (20, 120), (50, 100), (100, 200))
 TRACKED_FRAMES = 12
+PLACE_SEEDS = 3
 SERIES_MOVIES = 12
 
 
@@ -40,36 +41,44 @@ def random(_data: Path) -> Iterator[Figure]:
         trials = list(pool.map(try_mask, kinds, seeds, chunksize=20))
     what = f"{RANDOM_MASKS} random masks"
     yield Figure(
-        f"{what}: flips", sum(trial.flips for trial in trials), most=0, note="10 000: random_masks.py"
+        f"{what}: flips", sum(trial.flips for trial in trials), most=0, note="20 000: random_masks.py"
     )
     yield Figure(f"{what}: refused, invalid or inexact", sum(trial.failed for trial in trials), most=0)
     yield Figure(f"{what}: mask pixels outside the map", sum(trial.lost for trial in trials), "px", most=0)
+    yield Figure(f"{what}: empty windows", sum(trial.empty for trial in trials), most=0)
+    yield Figure(f"{what}: not converged", sum(not trial.converged for trial in trials))
+
+
+def same_place(_data: Path) -> Iterator[Figure]:
+    """Points in the same window of two maps of nearly the same cell, and area error of windows."""
+    from cell_outlines import judges
+    from reproducibility import DEFAULT, judged, measured
+
+    rows = measured(judges(), [DEFAULT], range(PLACE_SEEDS), workers=2)
+    note = f"{PLACE_SEEDS} seeds; ten: reproducibility.py --judges"
+    for shape, _, what, mean, _, target, _ in judged(rows):
+        if what == "windows":
+            yield Figure(f"area error of 10 × 60 windows, {shape}", mean, most=target, note=note)
+        else:
+            words = {"mirrored": "mirrored", "noise": "with 1 px of noise"}[what]
+            figure = f"points in the same 10 × 60 window, {shape} {words}"
+            yield Figure(figure, 100.0 * mean, "%", least=100.0 * target, note=note)
 
 
 def windows(data: Path) -> Iterator[Figure]:
     """Empty windows, and sums over windows, of grids up to 100 × 200."""
     import tifffile
 
+    from checked_windows import check_windows
     from cytodisk import simulate
     from cytodisk.disk.mapping import map_to_disk
-    from cytodisk.windows.polar_windows import polar_windows
-    from cytodisk.windows.sample import sample
 
     masks = [tifffile.imread(path) > 0 for path in sorted((data / "reference_masks").glob("*.tif"))]
-    empty, worst = 0, 0.0
-    for mask in [*masks, simulate.disk(12.8)]:  # the last has 517 pixels
-        disk = map_to_disk(mask)
-        signal = np.random.default_rng(0).uniform(1.0, 2.0, mask.shape)
-        known = disk.mask.sum(), signal[disk.mask].sum()
-        for layers, sectors in GRIDS:
-            on_cell = polar_windows(layers, sectors).on(disk)
-            found = sample(on_cell, signal)
-            empty += int((on_cell.areas <= 0).sum())
-            sums = on_cell.areas.sum(), float((found["mean"] * found["n_pixels"]).sum())
-            worst = max(worst, *(abs(a / b - 1.0) for a, b in zip(sums, known, strict=True)))
-    what = f"grids up to 100 × 200 on {len(masks) + 1} masks"
-    yield Figure(f"{what}: empty windows", empty, most=0)
-    yield Figure(f"{what}: sums of area and intensity off by", worst, most=1e-9)
+    masks.append(simulate.disk(12.8))  # of 517 pixels
+    empty, errors = zip(*(check_windows(map_to_disk(mask), GRIDS) for mask in masks), strict=True)
+    what = f"grids up to 100 × 200 on {len(masks)} masks"
+    yield Figure(f"{what}: empty windows", sum(empty), most=0)
+    yield Figure(f"{what}: sums of area and intensity off by", max(errors), most=1e-9)
 
 
 def tracking(_data: Path) -> Iterator[Figure]:

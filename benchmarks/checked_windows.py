@@ -1,0 +1,36 @@
+"""Are windows of a map empty, and do they sum to the cell?"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+import cytodisk as cd
+from cytodisk.disk.disk_map import DiskMap
+
+SUM_ERROR = 1e-9
+
+
+def check_windows(disk: DiskMap, grids: Sequence[tuple[int, int]]) -> tuple[int, float]:
+    """Number of empty windows, and by how much sums of area and of intensity are off, relative.
+
+    Parameters
+    ----------
+    disk : DiskMap
+    grids : sequence of (int, int)
+        Layers and sectors.
+
+    Returns
+    -------
+    empty : int
+    sum_error : float
+    """
+    signal = np.random.default_rng(0).uniform(1.0, 2.0, disk.mask.shape)
+    known = disk.mask.sum(), signal[disk.mask].sum()
+    empty, worst = 0, 0.0
+    for layers, sectors in grids:
+        on_cell = cd.polar_windows(layers, sectors).on(disk)
+        found = cd.sample(on_cell, signal)
+        sums = on_cell.areas.sum(), float((found["mean"] * found["n_pixels"]).sum())
+        empty += int((on_cell.areas <= 0).sum())
+        worst = max(worst, *(abs(a / b - 1.0) for a, b in zip(sums, known, strict=True)))
+    return empty, worst

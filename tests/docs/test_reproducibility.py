@@ -1,0 +1,106 @@
+"""What the benchmark of reproducibility compares is one place; random masks go on where they were."""
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+BENCHMARKS = str(Path(__file__).parents[2] / "benchmarks")
+
+
+@pytest.fixture(scope="module")
+def load() -> Iterator[Any]:
+    sys.path.insert(0, BENCHMARKS)
+    try:
+        yield __import__
+    finally:
+        sys.path.remove(BENCHMARKS)
+
+
+def test_outlines_do_not_cross_themselves_and_their_masks_have_their_area(load: Any) -> None:
+    shapely = load("shapely")
+    drawn = load("cell_outlines")
+    shapes = [*drawn.judges(), *drawn.others()]
+    assert len({shape.name for shape in shapes}) == len(shapes)
+    for shape in shapes:
+        polygon = shapely.Polygon(shape.outline_yx)
+        assert polygon.is_valid, shape.name
+        assert shape.drawn((0.3, 0.6)).mask.sum() == pytest.approx(polygon.area, rel=0.02), shape.name
+
+
+def test_changes_take_points_of_the_cell_to_the_same_points_of_its_other_masks(load: Any) -> None:
+    drawn, same = load("cell_outlines"), load("same_places")
+    shape = drawn.Shape("blob", "lobed", drawn.polar(drawn.blob(25.0, seed=4, amplitude=0.3)))
+    drawing = shape.drawn((0.2, 0.7))
+    random = np.random.default_rng(0)
+    changes = {change.name: change for change in same.changes(shape, drawing.places, drawing.mask, random)}
+    assert tuple(changes) == same.CHANGES
+    rows, columns = np.nonzero(drawing.mask)
+    middle = np.array([[rows.mean(), columns.mean()]])
+    for change in changes.values():
+        there = np.argwhere(change.mask).mean(axis=0)
+        # The cell's middle stays its middle; noise moves it a little.
+        assert change.place(middle)[0] == pytest.approx(there, abs=0.2), change.name
+
+
+def test_the_harmonic_map_of_a_cell_turned_mirrored_or_larger_is_nearly_the_same(load: Any) -> None:
+    drawn, same = load("cell_outlines"), load("same_places")
+    shape = drawn.Shape("ellipse", "round", drawn.ellipse(24.0, 16.0))
+    rows = {row["change"]: row for row in same.measure(shape, "harmonic", 0)}
+    assert rows["mirrored"]["same_10x60"] > 0.98
+    for change in ("turned", "larger"):
+        assert rows[change]["shift_px"] < 0.4, change
+    assert rows["noise"]["same_20x120"] < rows["noise"]["same_10x60"] < rows["noise"]["same_5x30"]
+
+
+def test_a_missed_target_of_the_default_method_alone_counts(
+    load: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    benchmark = load("reproducibility")
+    good = {"window_error_10x60": 0.01, "same_10x60": 0.99}
+    rows = [
+        {"shape": "star", "method": method, "change": change, **good}
+        for method in (benchmark.DEFAULT, "harmonic")
+        for change in ("mirrored", "noise")
+    ]
+    assert benchmark.print_judged(pd.DataFrame(rows))
+    rows[2]["same_10x60"] = 0.2
+    assert benchmark.print_judged(pd.DataFrame(rows))
+    assert "(missed)" in capsys.readouterr().out
+    rows[0]["same_10x60"] = 0.2
+    assert not benchmark.print_judged(pd.DataFrame(rows))
+    assert "  MISSED" in capsys.readouterr().out
+
+
+def test_a_stopped_run_of_random_masks_goes_on_and_another_version_is_refused(
+    load: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    benchmark = load("random_masks")
+    results = tmp_path / "results"
+    jobs = [("few", seed) for seed in range(3)]
+    list(benchmark.run(jobs[:2], results, workers=1))
+    first = results.read_text(encoding="utf-8")
+    results.write_text(first + '{"kind": "fe', encoding="utf-8")  # stopped in the middle of a line
+    trials = list(benchmark.run(jobs, results, workers=1))
+    assert [trial.seed for trial in trials] == [0, 1, 2]
+    assert not any(trial.failed for trial in trials)
+    assert results.read_text(encoding="utf-8").startswith(first)
+    monkeypatch.setattr(benchmark, "try_mask", None)  # nothing is left to do
+    assert list(benchmark.run(jobs, results, workers=1)) == trials
+    other = json.dumps({"version": "another"}) + "\n"
+    results.write_text(other, encoding="utf-8")
+    with pytest.raises(SystemExit, match="another version"):
+        list(benchmark.run(jobs, results, workers=1))
+
+
+def test_an_empty_window_or_a_wrong_sum_fails_a_mask(load: Any) -> None:
+    benchmark = load("random_masks")
+    trial = benchmark.try_mask("smooth", 1)
+    assert not trial.failed
+    for wrong in ({"empty": 1}, {"sum_error": 1e-8}, {"sum_error": np.nan}, {"lost": 1}, {"valid": False}):
+        assert benchmark.Trial(**(vars(trial) | wrong)).failed, wrong
