@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
 
 Word = TypeVar("Word", bound=str)
@@ -121,3 +122,17 @@ def is_path(name: str, value: Any) -> None:
         It is something else.
     """
     instance_of(name, value, (str, os.PathLike), "a path")
+
+
+def as_points(name: str, points: Any) -> tuple[FloatArray, tuple[int, ...]]:
+    """Points of shape (N, 2), and the shape (…, 2) that they came in.
+
+    Raises
+    ------
+    ParameterError
+        The last dimension is not 2.
+    """
+    array = np.asarray(points, dtype=np.float64)
+    if array.ndim == 0 or array.shape[-1] != 2:
+        raise ParameterError(f"{name} must have 2 as its last dimension, got shape {array.shape}")
+    return array.reshape(-1, 2), array.shape

@@ -57,7 +57,7 @@ def places_at_depth(disk: DiskMap, angles: FloatArray, depth_px: float) -> Float
         places[going[over]] = np.nan
         going = going[~over]
         places[going] = _at(rays[going], arc[going], walked[going])
-    places[on_border(rays[:, 0], (disk.mask.shape[0], disk.mask.shape[1]))] = np.nan
+    places[on_border(rays[:, 0], disk.placed_mask.image_shape)] = np.nan
     return places
 
 

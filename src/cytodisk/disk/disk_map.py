@@ -11,15 +11,17 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.checks import as_points
 from cytodisk.disk.certificate import Certificate, certify
 from cytodisk.disk.circle import polygon_radius
 from cytodisk.disk.disk_image import image_on_disk
 from cytodisk.disk.distortion import Distortion, distortion_of
-from cytodisk.disk.map_file import placed_mask, reading_map, write_map_file
+from cytodisk.disk.map_file import reading_map, write_map_file
 from cytodisk.disk.mapping_parameters import Method
 from cytodisk.errors import ParameterError
 from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline
 from cytodisk.geometry.mask import MaskReport
+from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import UNKNOWN, Scale
 
 Start: TypeAlias = Literal["cotangent", "uniform", "previous"]
@@ -43,8 +45,8 @@ class DiskMap:
     triangles : ndarray of shape (F, 3) and dtype int
     boundary : ndarray of shape (B,) and dtype int
         The boundary loop in order, from +x towards +y.
-    mask : ndarray of shape (H, W) and dtype bool
-        The cleaned mask that was mapped.
+    placed_mask : PlacedMask
+        The cleaned mask that was mapped, as its box in the image; `mask` is the whole of it.
     report : MaskReport
         What cleaning changed.
     method : {"newton", "harmonic", "advection"}
@@ -75,7 +77,7 @@ class DiskMap:
     vertices_uv: FloatArray
     triangles: IntArray
     boundary: IntArray
-    mask: BoolArray
+    placed_mask: PlacedMask
     report: MaskReport
     method: Method
     start: Start
@@ -94,6 +96,11 @@ class DiskMap:
             f"<DiskMap {self.method} of {self.report.area_px} px: {len(self.triangles)} triangles, "
             f"valid {self.certificate.valid}, area distortion {self.distortion.area:.3f}>"
         )
+
+    @property
+    def mask(self) -> BoolArray:
+        """The cleaned mask, shape (H, W) and dtype bool; made anew each time."""
+        return self.placed_mask.whole
 
     @property
     def outline_yx(self) -> FloatArray:
@@ -138,7 +145,7 @@ class DiskMap:
         """
         if outside not in ("nan", "nearest"):
             raise ParameterError(f"outside must be 'nan' or 'nearest', got {outside!r}")
-        points, shape = _as_points(points_yx, "points_yx")
+        points, shape = as_points("points_yx", points_yx)
         uv = self._in_cell.carry(points, self.vertices_uv[self.triangles])
         lost = np.isnan(uv[:, 0]) & np.isfinite(points).all(axis=1)
         uv /= polygon_radius(uv, self.boundary_angles)[:, None]
@@ -166,7 +173,7 @@ class DiskMap:
         ParameterError
             The last dimension is not 2.
         """
-        points, shape = _as_points(points_uv, "points_uv")
+        points, shape = as_points("points_uv", points_uv)
         inner = points * polygon_radius(points, self.boundary_angles)[:, None]
         return self._in_disk.carry(inner, self.vertices_yx[self.triangles]).reshape(shape)
 
@@ -192,16 +199,15 @@ class DiskMap:
         ParameterError
             `size` is below 1.
         """
-        return image_on_disk(signal, self.mask.shape, self.to_cell, size)
+        return image_on_disk(signal, self.placed_mask.image_shape, self.to_cell, size)
 
     def placed(self, corner: tuple[int, int], image_shape: tuple[int, int]) -> DiskMap:
         """The same map in the image that its mask was cut out of.
 
         Parameters
         ----------
-        corner : (int, int)
-            (row, column) of the mask's first pixel in the image.
-        image_shape : (int, int)
+        corner, image_shape : (int, int)
+            (row, column) of the mask's first pixel in the image, and its (H, W).
 
         Returns
         -------
@@ -209,7 +215,8 @@ class DiskMap:
             Its mask has the shape of the image, its points are pixels of the image.
         """
         vertices_yx = self.vertices_yx + np.array(corner, dtype=np.float64)
-        return replace(self, mask=placed_mask(self.mask, corner, image_shape), vertices_yx=vertices_yx)
+        placed = self.placed_mask.within(corner, image_shape)
+        return replace(self, placed_mask=placed, vertices_yx=vertices_yx)
 
     def save(self, path: str | os.PathLike[str], beside: Mapping[str, FloatArray] | None = None) -> None:
         """Write the map to a compressed `.npz` file that `load_map` reads back.
@@ -231,7 +238,7 @@ class DiskMap:
         facts = {name: getattr(self, name) for name in _FACTS}
         header = {"report": asdict(self.report), **asdict(self.scale), **facts}
         arrays = {name: getattr(self, name) for name in _ARRAYS}
-        write_map_file(path, header, self.mask, {**(beside or {}), **arrays})
+        write_map_file(path, header, self.placed_mask, {**(beside or {}), **arrays})
 
     @cached_property
     def _in_cell(self) -> TriangleLocator:
@@ -285,16 +292,9 @@ def load_map(path: str | os.PathLike[str]) -> DiskMap:
     """
     with reading_map(path) as (header, mask, file):
         return DiskMap(
-            mask=mask,
+            placed_mask=mask,
             report=MaskReport(**header["report"]),
             **{name: file[name] for name in _ARRAYS},
             **{name: header[name] for name in _FACTS},
             scale=Scale(header.get("pixel_size_um"), header.get("frame_interval_s")),
         )
-
-
-def _as_points(points: Any, name: str) -> tuple[FloatArray, tuple[int, ...]]:
-    array = np.asarray(points, dtype=np.float64)
-    if array.ndim == 0 or array.shape[-1] != 2:
-        raise ParameterError(f"{name} must have 2 as its last dimension, got shape {array.shape}")
-    return array.reshape(-1, 2), array.shape

@@ -4,16 +4,17 @@ import json
 import os
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import ParameterError, ReadError
 from cytodisk.files import replacing
+from cytodisk.geometry.placed_mask import PlacedMask
 
 _FORMAT = 2
 
@@ -21,7 +22,7 @@ _FORMAT = 2
 def write_map_file(
     path: str | os.PathLike[str],
     header: Mapping[str, Any],
-    mask: BoolArray,
+    mask: PlacedMask,
     arrays: Mapping[str, FloatArray | IntArray],
 ) -> None:
     """Write a map's header, mask and arrays to a compressed `.npz` file.
@@ -35,15 +36,14 @@ def write_map_file(
     """
     if Path(path).suffix != ".npz":
         raise ParameterError(f"path must end in .npz, got {path}")
-    crop, corner = _cropped(mask)  # a cell is small in its image
-    place = {"corner": corner, "image_shape": list(mask.shape)}
+    place = {"corner": mask.corner, "image_shape": mask.image_shape}
     text = json.dumps({"format": _FORMAT, **header, **place})
     with replacing(path) as temporary:
-        np.savez_compressed(temporary, header=np.array(text), mask=crop, **dict[str, Any](arrays))
+        np.savez_compressed(temporary, header=np.array(text), mask=mask.box, **dict[str, Any](arrays))
 
 
 @contextmanager
-def reading_map(path: str | os.PathLike[str]) -> Iterator[tuple[dict[str, Any], BoolArray, Any]]:
+def reading_map(path: str | os.PathLike[str]) -> Iterator[tuple[dict[str, Any], PlacedMask, Any]]:
     """Header, mask and arrays of a map's file; what is wrong with it becomes a `ReadError`.
 
     Raises
@@ -61,33 +61,11 @@ def reading_map(path: str | os.PathLike[str]) -> Iterator[tuple[dict[str, Any], 
                     f"{path} is a map of format {header['format']}, this version reads format {_FORMAT}: "
                     "make it again, with cytodisk map or map_to_disk"
                 )
-            yield header, placed_mask(file["mask"], header["corner"], header["image_shape"]), file
+            (y, x), (height, width) = header["corner"], header["image_shape"]
+            yield header, PlacedMask(file["mask"], (y, x), (height, width)), file
     except FileNotFoundError as error:
         raise ReadError(f"{path} does not exist: pass a file that DiskMap.save wrote") from error
     except (zipfile.BadZipFile, zlib.error, KeyError, TypeError, ValueError, OSError, EOFError) as error:
         if isinstance(error, ReadError):
             raise
         raise ReadError(f"{path} is not a map that DiskMap.save wrote: {error}") from error
-
-
-def placed_mask(mask: BoolArray, corner: Sequence[int], image_shape: Sequence[int]) -> BoolArray:
-    """A mask in the image that it was cut out of.
-
-    Parameters
-    ----------
-    mask : ndarray of shape (h, w) and dtype bool
-    corner : (int, int)
-        (row, column) of its first pixel in the image.
-    image_shape : (int, int)
-    """
-    whole = np.zeros(tuple(image_shape), dtype=bool)
-    (y, x), (height, width) = corner, mask.shape
-    whole[y : y + height, x : x + width] = mask
-    return whole
-
-
-def _cropped(mask: BoolArray) -> tuple[BoolArray, list[int]]:
-    rows = np.flatnonzero(mask.any(axis=1))
-    strip = mask[rows[0] : rows[-1] + 1]
-    columns = np.flatnonzero(strip.any(axis=0))
-    return strip[:, columns[0] : columns[-1] + 1], [int(rows[0]), int(columns[0])]

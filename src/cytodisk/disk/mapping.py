@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.advection import advect
 from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.circle import boundary_angles
@@ -19,6 +19,7 @@ from cytodisk.errors import MapError
 from cytodisk.geometry.mask import MaskReport, clean_mask
 from cytodisk.geometry.mesh import Mesh, mesh_inside
 from cytodisk.geometry.outline import trace_outline
+from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.taking import takes
 
@@ -89,7 +90,7 @@ class CellMesh:
 
     Attributes
     ----------
-    mask : ndarray of shape (H, W) and dtype bool
+    placed_mask : PlacedMask
     report : MaskReport
     mesh : Mesh
         In the frame of the mask's bounding box, so that a shifted mask gives the same mesh.
@@ -99,7 +100,7 @@ class CellMesh:
     scale : Scale
     """
 
-    mask: BoolArray
+    placed_mask: PlacedMask
     report: MaskReport
     mesh: Mesh
     corner: FloatArray
@@ -122,8 +123,8 @@ def mesh_cell(mask: Any, parameters: MappingParameters, scale: Scale = UNKNOWN) 
 
     Parameters
     ----------
-    mask : array_like of shape (H, W)
-        As for `map_to_disk`.
+    mask : array_like of shape (H, W), or PlacedMask
+        As for `map_to_disk`; or its box, with one more pixel on every side where the image goes on.
     parameters : MappingParameters
         Method "advection" needs triangles of one size, the others take larger ones inside.
     scale : Scale
@@ -140,11 +141,15 @@ def mesh_cell(mask: Any, parameters: MappingParameters, scale: Scale = UNKNOWN) 
     MeshError
         It could not be triangulated.
     """
+    corner, image_shape = (0, 0), ()
+    if isinstance(mask, PlacedMask):
+        mask, corner, image_shape = mask.box, mask.corner, mask.image_shape
     cleaned, report = clean_mask(mask)
-    crop, corner = _crop(cleaned)
+    placed = PlacedMask.of(cleaned, corner, image_shape)
     spacing = _ISOTROPIC if parameters.method == "advection" else {}
-    mesh = mesh_inside(trace_outline(crop), crop, edge_length=parameters.edge_length, **spacing)
-    return CellMesh(cleaned, report, mesh, corner, parameters.edge_length, scale)
+    mesh = mesh_inside(trace_outline(placed.box), placed.box, edge_length=parameters.edge_length, **spacing)
+    first = np.array(placed.corner, dtype=np.float64)
+    return CellMesh(placed, report, mesh, first, parameters.edge_length, scale)
 
 
 def map_mesh(
@@ -226,7 +231,7 @@ def disk_map(
         vertices_uv=relaxed.vertices_uv,
         triangles=cell.mesh.triangles if triangles is None else triangles,
         boundary=cell.mesh.boundary,
-        mask=cell.mask,
+        placed_mask=cell.placed_mask,
         report=cell.report,
         method=parameters.method,
         start=start,
@@ -247,13 +252,6 @@ def _start(cell: CellMesh, circle: FloatArray, anchor_uv: FloatArray | None) -> 
         if uv is not None:
             return uv, "previous"
     return harmonic_map(cell.mesh, circle, cell.system)
-
-
-def _crop(mask: BoolArray) -> tuple[BoolArray, FloatArray]:
-    """The mask's bounding box and its first corner, so that a shifted mask gives the same mesh."""
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    crop = mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-    return crop, np.array([rows[0], columns[0]], dtype=np.float64)
 
 
 def _relative(align: Align, corner: FloatArray) -> Align:

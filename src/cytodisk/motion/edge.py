@@ -126,7 +126,7 @@ def edge_motion(
     -------
     EdgeMotion
     """
-    pieces = swept_edge(here, there, frame, disk_here.mask.shape)
+    pieces = swept_edge(here, there, frame, disk_here.placed_mask.image_shape)
     area, length, fastest = pieces.by_sector(sectors)
     start, stop = transforms(here, there, frame)
     won = _area_outside(disk_there, stop, disk_here, start, sectors)
@@ -145,9 +145,9 @@ def _area_outside(
 ) -> FloatArray:
     """Pixels of one cell that lie outside the other, counted by the sector of their place in the disk."""
     if transform == other_transform:
-        pixels = np.argwhere(disk.mask & ~other.mask).astype(np.float64)
+        pixels = disk.placed_mask.outside(other.placed_mask).astype(np.float64)
     else:  # pixel centres fall between the other's pixels, where its outline decides
-        everything = np.argwhere(disk.mask).astype(np.float64)
+        everything = disk.placed_mask.pixels_yx.astype(np.float64)
         outline = shapely.Polygon(other.outline_yx)
         shapely.prepare(outline)
         seen = other_transform.inverse(transform(everything))

@@ -91,8 +91,9 @@ def map_movie(
     shape: tuple[int, ...] = ()
     for result in map_frames(frames, given, scale):
         if result.mapped is not None:
-            _check_shape(result.mapped.disk.mask.shape, shape, result.frame)
-            shape = result.mapped.disk.mask.shape
+            found = result.mapped.disk.placed_mask.image_shape
+            _check_shape(found, shape, result.frame)
+            shape = found
             store.keep(result.frame, result.mapped.disk)
         records.append(result.record)
         if progress is not None:

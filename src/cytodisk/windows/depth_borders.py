@@ -72,7 +72,7 @@ def _rays(disk: DiskMap) -> FloatArray:
     """Directions in which the cell has an edge, as unit vectors, shape (N, 2)."""
     angles = 2.0 * np.pi * (np.arange(_ANGLES) + 0.5) / _ANGLES
     directions = np.column_stack([np.cos(angles), np.sin(angles)])
-    cut = on_border(disk.to_cell(directions), (disk.mask.shape[0], disk.mask.shape[1]))
+    cut = on_border(disk.to_cell(directions), disk.placed_mask.image_shape)
     if cut.all():
         raise WindowError(
             "depth_um needs an edge of the cell, and the border of the image cuts it all around: pass layers"

@@ -54,10 +54,8 @@ def windows_of_all_subpixels(
     ndarray of shape (P, subpixels) and dtype int32
         Subpixels row by row.
     """
-    corner = pixels_yx.min(axis=0)
-    height, width = pixels_yx.max(axis=0) - corner + 1
-    number = np.full((height, width), -1, dtype=np.int32)
-    inside = disk.mask[corner[0] : corner[0] + height, corner[1] : corner[1] + width]
+    inside, corner = disk.placed_mask.box, np.array(disk.placed_mask.corner)
+    number = np.full(inside.shape, -1, dtype=np.int32)
     number[inside] = np.arange(len(pixels_yx), dtype=np.int32)
     window = np.full((len(pixels_yx), per_side**2), -1, dtype=np.int32)
     _paint(

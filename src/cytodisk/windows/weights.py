@@ -31,7 +31,7 @@ def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:
     WindowShares
         Columns of the weights sum to 1, and no row is empty but those of layers deeper than the cell.
     """
-    pixels = np.argwhere(disk.mask)
+    pixels = disk.placed_mask.pixels_yx
     if disk.method == "advection":
         coarse: IntArray | Int32Array = windows_of_subpixels(grid, disk, pixels, PER_SIDE)
     else:

@@ -43,5 +43,5 @@ def between_pixels(windows: CellWindows) -> IntArray:
     if not open_.size:
         return open_
     shared = np.unique(weights[open_].indices)
-    centres = np.argwhere(windows.mask)[shared].astype(np.float64)
+    centres = windows.disk.placed_mask.pixels_yx[shared].astype(np.float64)
     return np.setdiff1d(open_, grid.window_of(windows.disk.to_disk(centres, outside="nearest")))

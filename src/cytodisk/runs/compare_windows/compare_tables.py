@@ -135,7 +135,7 @@ def windows_row(windows: WindowsOnCell, disk: DiskMap | None) -> dict[str, Any]:
     }
     if disk is None:
         return row
-    outside = int(np.isnan(disk.to_disk(np.argwhere(disk.mask))[:, 0]).sum())
+    outside = int(np.isnan(disk.to_disk(disk.placed_mask.pixels_yx)[:, 0]).sum())
     return row | {
         "lost_px": row["lost_px"] + outside,
         "certificate_valid": disk.certificate.valid,

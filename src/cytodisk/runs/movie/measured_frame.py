@@ -127,7 +127,7 @@ def _interior_note(frame: MappedFrame, task: FrameTask) -> str:
 
 def _jump(task: FrameTask) -> str:
     """Remark on a cell that is nowhere where it was in the frame before."""
-    if task.before is None or (task.before.disk.mask & task.frame.disk.mask).any():
+    if task.before is None or task.before.disk.placed_mask.touches(task.frame.disk.placed_mask):
         return ""
     return f"the cell does not touch its place in frame {task.before.frame}: it moved far, or is another one"
 
@@ -214,7 +214,7 @@ def _edge_before(task: FrameTask, before: MappedFrame, motion: EdgeMotion | None
     place = replace(task.place, frame=before.frame, time_s=scale.seconds(before.frame))
     if motion is None:
         return edge_columns(place, sectors, scale, None, None, "tracking starts anew in the next frame")
-    in_cell_frame = displacement_by_sector(here, there, before.disk.mask.shape, sectors, "cell")
+    in_cell_frame = displacement_by_sector(here, there, before.disk.placed_mask.image_shape, sectors, "cell")
     return edge_columns(place, sectors, scale, motion, in_cell_frame, "ok")
 
 

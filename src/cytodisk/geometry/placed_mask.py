@@ -1,0 +1,94 @@
+"""`PlacedMask`: the box of a mask in its image, so that memory goes by the cell and not by the image."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cytodisk.arrays import BoolArray, IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedMask:
+    """The box of a mask, and where it lies in the image.
+
+    Attributes
+    ----------
+    box : ndarray of shape (h, w) and dtype bool
+        Holds all pixels of the cell.
+    corner : (int, int)
+        (row, column) of its first pixel in the image.
+    image_shape : (int, int)
+    """
+
+    box: BoolArray
+    corner: tuple[int, int]
+    image_shape: tuple[int, int]
+
+    @classmethod
+    def of(
+        cls, mask: BoolArray, corner: Sequence[int] = (0, 0), image_shape: Sequence[int] = ()
+    ) -> PlacedMask:
+        """The smallest box of a mask that holds some pixel, with pixels of its own.
+
+        Parameters
+        ----------
+        mask : ndarray of shape (H, W) and dtype bool
+        corner : (int, int)
+            (row, column) of its first pixel in the image.
+        image_shape : (int, int), optional
+            By default that of the mask.
+        """
+        rows = np.flatnonzero(mask.any(axis=1))
+        strip = mask[rows[0] : rows[-1] + 1]
+        columns = np.flatnonzero(strip.any(axis=0))
+        box = strip[:, columns[0] : columns[-1] + 1].copy()
+        height, width = image_shape or mask.shape
+        return cls(box, (int(corner[0] + rows[0]), int(corner[1] + columns[0])), (height, width))
+
+    @property
+    def whole(self) -> BoolArray:
+        """The mask in its image, shape (H, W) and dtype bool; made anew each time."""
+        mask = np.zeros(self.image_shape, dtype=bool)
+        mask[self.slices] = self.box
+        return mask
+
+    @property
+    def slices(self) -> tuple[slice, slice]:
+        """Rows and columns of the box in the image."""
+        (y, x), (height, width) = self.corner, self.box.shape
+        return slice(y, y + height), slice(x, x + width)
+
+    @property
+    def pixels_yx(self) -> IntArray:
+        """(row, column) in the image of each pixel of the cell, in row-major order, shape (P, 2)."""
+        pixels: IntArray = np.argwhere(self.box) + np.array(self.corner)
+        return pixels
+
+    def within(self, corner: tuple[int, int], image_shape: tuple[int, int]) -> PlacedMask:
+        """The same mask in a larger image that its own was cut out of at a corner."""
+        (y, x), (row, column) = self.corner, corner
+        return PlacedMask(self.box, (y + row, x + column), image_shape)
+
+    def cut_out_of(self, image: Any) -> Any:
+        """The part of an image (…, H, W) that the box covers."""
+        return image[(..., *self.slices)]
+
+    def outside(self, other: PlacedMask) -> IntArray:
+        """Pixels of this cell that are none of another one in the same image, shape (P, 2)."""
+        pixels = self.pixels_yx
+        return np.asarray(pixels[~other.holds(pixels)])
+
+    def touches(self, other: PlacedMask) -> bool:
+        """Whether it shares a pixel with another mask in the same image."""
+        return bool(other.holds(self.pixels_yx).any())
+
+    def holds(self, pixels_yx: IntArray) -> BoolArray:
+        """Whether pixels of the image, shape (P, 2), are the cell's, shape (P,)."""
+        places = pixels_yx - np.array(self.corner)
+        found = ((places >= 0) & (places < self.box.shape)).all(axis=1)
+        found[found] = self.box[tuple(places[found].T)]
+        return np.asarray(found)
