@@ -26,8 +26,8 @@ from typing import Any, get_args
 
 import pandas as pd
 
-from cytodisk.disk.mapping_parameters import MappingParameters, Method
 from cell_outlines import Shape, judges, others, real_cells
+from cytodisk.disk.mapping_parameters import MappingParameters, Method
 from same_places import CHANGES, GRIDS, measure
 from suite import THREADS
 

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt
 
 import cytodisk as cd
+from cell_outlines import Shape, rotation
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.disk.disk_map import DiskMap
-from cell_outlines import Shape, rotation
 
 GRIDS = {"5x30": (5, 30), "10x60": (10, 60), "20x120": (20, 120)}
 CHANGES = ("mirrored", "noise", "turned", "larger")

@@ -18,11 +18,13 @@ class StoredTrials:
         The file, which need not exist; None keeps nothing.
     package : Path
         Folder of the package that is measured.
+    choice : str
+        What else the results depend on, such as the method.
     """
 
-    def __init__(self, path: Path | None, package: Path) -> None:
+    def __init__(self, path: Path | None, package: Path, choice: str = "") -> None:
         self.path = path
-        self.version = version_of(package)
+        self.version = " ".join([version_of(package), choice]).strip()
 
     def read(self) -> Iterator[dict[str, Any]]:
         """Results that stand in the file; a last line that a stopped run left unfinished is taken off.

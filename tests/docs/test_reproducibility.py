@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+import tifffile
 
 BENCHMARKS = str(Path(__file__).parents[2] / "benchmarks")
 
@@ -104,3 +105,19 @@ def test_an_empty_window_or_a_wrong_sum_fails_a_mask(load: Any) -> None:
     assert not trial.failed
     for wrong in ({"empty": 1}, {"sum_error": 1e-8}, {"sum_error": np.nan}, {"lost": 1}, {"valid": False}):
         assert benchmark.Trial(**(vars(trial) | wrong)).failed, wrong
+
+
+def test_each_cell_of_a_label_movie_is_checked_and_large_uneven_ones_fail(load: Any, tmp_path: Path) -> None:
+    benchmark = load("real_masks")
+    (tmp_path / "label_movies").mkdir()
+    labels = np.zeros((2, 30, 40), np.uint8)
+    labels[0, 3:20, 4:30], labels[0, 22:28, 2:9], labels[1, 8:25, 8:30] = 3, 7, 3
+    tifffile.imwrite(tmp_path / "label_movies" / "a.tif", labels, metadata={"axes": "TYX"})
+    jobs = list(benchmark.jobs_of(tmp_path, benchmark.SOURCES, quick=False))
+    assert [(job.page, job.label) for job in jobs] == [(0, 3), (0, 7), (1, 3)]
+    assert jobs[1].read(tmp_path).sum() == 42
+    found = benchmark.check(jobs[1], tmp_path, "harmonic")
+    assert (found.job, found.pixels, found.failed) == (jobs[1], 42, False)
+    large = vars(found) | {"source": "osteosarcoma", "pixels": benchmark.LARGE_PX}
+    assert not benchmark.Check(**(large | {"window_error": 0.15})).failed
+    assert benchmark.Check(**(large | {"window_error": 0.16})).failed
