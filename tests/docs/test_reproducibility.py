@@ -12,6 +12,7 @@ import pytest
 import tifffile
 
 BENCHMARKS = str(Path(__file__).parents[2] / "benchmarks")
+DOCS = Path(__file__).parents[2] / "docs"
 
 
 @pytest.fixture(scope="module")
@@ -121,3 +122,25 @@ def test_each_cell_of_a_label_movie_is_checked_and_large_uneven_ones_fail(load: 
     large = vars(found) | {"source": "osteosarcoma", "pixels": benchmark.LARGE_PX}
     assert not benchmark.Check(**(large | {"window_error": 0.15})).failed
     assert benchmark.Check(**(large | {"window_error": 0.16})).failed
+
+
+def test_the_page_says_the_finest_grid_that_keeps_two_of_three_points(
+    load: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(DOCS))
+    page = load("draw_how_fine")
+    shares = {"round": (0.9, 0.8, 0.7), "lobed": (0.8, 0.5, 0.3), "star": (0.6, 0.5, 0.4)}
+    rows = pd.DataFrame(
+        [
+            {"family": name, "shape": name, "method": page.MappingParameters().method, "change": change}
+            | dict(zip([f"same_{grid}" for grid in page.GRIDS], share, strict=True))
+            | {"shift_px": 1.0, "shift_percent": 2.0}
+            for name, share in shares.items()
+            for change in ("noise", "mirrored")
+        ]
+    )
+    words = page.words_of(page.by_class(rows))
+    assert words.iloc[:, -1].tolist() == ["20 × 120", "5 × 30", "coarser than 5 × 30"]
+    written = pd.read_csv(DOCS / "source" / "guides" / "how_fine_a_grid" / "classes.csv")
+    assert sorted(written["cells"]) == sorted(words for words, _ in page.CLASSES.values())
+    assert written.columns.tolist() == words.columns.tolist()
