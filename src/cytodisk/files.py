@@ -37,16 +37,19 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     target = Path(path)
     # Processes of several machines that share a folder may have one number.
     temporary = target.with_name(f".{target.stem}.{uuid.uuid4().int >> 64}.tmp{target.suffix}")
+    renamed = False
     try:
         yield temporary
         temporary.replace(target)
+        renamed = True
     except CytodiskError:
         raise
     except OSError as error:
         raise WriteError(f"cannot write {target}: {error.strerror or error}") from error
     finally:
-        with suppress(OSError):  # the error that matters is on its way already
-            temporary.unlink(missing_ok=True)
+        if not renamed:
+            with suppress(OSError):  # the error that matters is on its way already
+                temporary.unlink(missing_ok=True)
 
 
 def lock(path: Path) -> IO[bytes]:

@@ -219,7 +219,7 @@ class DiskMap:
         return replace(self, placed_mask=placed, vertices_yx=vertices_yx)
 
     def save(self, path: str | os.PathLike[str], beside: Mapping[str, FloatArray] | None = None) -> None:
-        """Write the map to a compressed `.npz` file that `load_map` reads back.
+        """Write the map to a `.npz` file that `load_map` reads back.
 
         Parameters
         ----------
@@ -237,8 +237,8 @@ class DiskMap:
         """
         facts = {name: getattr(self, name) for name in _FACTS}
         header = {"report": asdict(self.report), **asdict(self.scale), **facts}
-        arrays = {name: getattr(self, name) for name in _ARRAYS}
-        write_map_file(path, header, self.placed_mask, {**(beside or {}), **arrays})
+        arrays = {name: getattr(self, name) for name in _ARRAYS if name != "vertices_uv"}
+        write_map_file(path, header, self.placed_mask, arrays, {**(beside or {}), "vertices_uv": self.vertices_uv})
 
     @cached_property
     def _in_cell(self) -> TriangleLocator:
