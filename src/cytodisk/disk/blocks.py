@@ -15,7 +15,7 @@ from scipy import sparse
 
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.ldl import Factorisation
-from cytodisk.geometry.half_edges import HalfEdges, half_edges
+from cytodisk.geometry.half_edges import HalfEdges
 from cytodisk.geometry.mesh import Mesh
 
 
@@ -45,7 +45,7 @@ class BlockSystem:
 
     def __init__(self, mesh: Mesh):
         n_vertices = len(mesh.vertices_yx)
-        edges = half_edges(mesh.triangles, n_vertices)
+        edges = mesh.half_edges
         order = _elimination_order(edges, mesh.n_boundary)
         self.vertex = mesh.n_boundary + order
         self.unknown = np.full(n_vertices, -1)

@@ -3,12 +3,14 @@
 from fractions import Fraction
 
 import numpy as np
+from numba import njit
 
 from cytodisk.arrays import FloatArray, IntArray
 
 # Shewchuk 1997, doi:10.1007/PL00009321: bound of the rounding error of the plain determinant.
 _ERROR_BOUND = (3.0 + 16.0 * 2.0**-53) * 2.0**-53
 _UNDERFLOW = 2.0**-1000  # below it products lose digits, which that bound leaves out
+_DOUBT = 2
 
 
 def orientations(points: FloatArray, triangles: IntArray) -> tuple[IntArray, int]:
@@ -31,18 +33,28 @@ def orientations(points: FloatArray, triangles: IntArray) -> tuple[IntArray, int
     ----------
     Shewchuk, "Adaptive precision floating-point arithmetic", 1997, doi:10.1007/PL00009321
     """
-    a, b, c = (points[triangles[:, corner]] for corner in range(3))
-    finite = np.isfinite(np.concatenate([a, b, c], axis=1)).all(axis=1)
-    with np.errstate(invalid="ignore", over="ignore"):
-        left = (a[:, 1] - c[:, 1]) * (b[:, 0] - c[:, 0])
-        right = (a[:, 0] - c[:, 0]) * (b[:, 1] - c[:, 1])
-        determinant = left - right
-        surely = np.abs(determinant) > _ERROR_BOUND * (np.abs(left) + np.abs(right)) + _UNDERFLOW
-    sign = np.where(finite & surely, np.sign(determinant), 0.0).astype(np.int64)
-    in_doubt = finite & ~surely
-    for t in np.flatnonzero(in_doubt):
+    points, triangles = np.ascontiguousarray(points), np.ascontiguousarray(triangles)
+    sign = _signs(points, triangles)
+    in_doubt = np.flatnonzero(sign == _DOUBT)
+    for t in in_doubt:
         sign[t] = _exact_sign(points[triangles[t]])
-    return sign, int(in_doubt.sum())
+    return sign, len(in_doubt)
+
+
+@njit(cache=True)
+def _signs(points: FloatArray, triangles: IntArray) -> IntArray:
+    """Sign of each area, 0 if it is not finite, `_DOUBT` where rounding errors may decide it."""
+    sign = np.zeros(len(triangles), dtype=np.int64)
+    for t in range(len(triangles)):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        left = (points[a, 1] - points[c, 1]) * (points[b, 0] - points[c, 0])
+        right = (points[a, 0] - points[c, 0]) * (points[b, 1] - points[c, 1])
+        determinant = left - right
+        if abs(determinant) > _ERROR_BOUND * (abs(left) + abs(right)) + _UNDERFLOW:
+            sign[t] = 1 if determinant > 0.0 else -1
+        elif np.isfinite(points[a]).all() and np.isfinite(points[b]).all() and np.isfinite(points[c]).all():
+            sign[t] = _DOUBT
+    return sign
 
 
 def _exact_sign(corners: FloatArray) -> int:

@@ -97,9 +97,10 @@ def _without_opposite(first: IntArray, end: IntArray) -> tuple[BoolArray, int]:
     for a in range(len(first) - 1):
         for place in range(first[a], first[a + 1]):
             b = end[place]
-            ends = end[first[b] : first[b + 1]]
-            found = np.searchsorted(ends, a)
-            outer[place] = found == len(ends) or ends[found] != a
+            found = first[b]
+            while found < first[b + 1] and end[found] < a:
+                found += 1
+            outer[place] = found == first[b + 1] or end[found] != a
             repeated = place > first[a] and end[place - 1] == b
             if not repeated and (a <= b or outer[place]):
                 n_edges += 1

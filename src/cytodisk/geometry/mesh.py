@@ -1,6 +1,7 @@
 """Outline → mesh: a triangulation of the cell's inside that is fit to be mapped."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from numba import njit
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.errors import MeshError
-from cytodisk.geometry.half_edges import half_edges
+from cytodisk.geometry.half_edges import HalfEdges, half_edges
 from cytodisk.geometry.lattice import graded_lattice
 from cytodisk.geometry.polygon import signed_area
 
@@ -35,6 +36,11 @@ class Mesh:
     vertices_yx: FloatArray
     triangles: IntArray
     n_boundary: int
+
+    @cached_property
+    def half_edges(self) -> HalfEdges:
+        """Its edges, each in the directions in which triangles run along it."""
+        return half_edges(self.triangles, len(self.vertices_yx))
 
     @property
     def boundary(self) -> IntArray:
@@ -100,9 +106,18 @@ def triangle_areas(points_ab: FloatArray, triangles: IntArray) -> FloatArray:
     ndarray of shape (F,) and dtype float
         Positive from +x towards +y.
     """
-    a, b, c = (points_ab[triangles[:, corner]] for corner in range(3))
-    ab, ac = b - a, c - a
-    return np.asarray(0.5 * (ab[:, 1] * ac[:, 0] - ab[:, 0] * ac[:, 1]))
+    return np.asarray(_areas(np.ascontiguousarray(points_ab), np.ascontiguousarray(triangles)))
+
+
+@njit(cache=True)
+def _areas(points: FloatArray, triangles: IntArray) -> FloatArray:
+    areas = np.empty(len(triangles))
+    for t in range(len(triangles)):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        ab_0, ab_1 = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
+        ac_0, ac_1 = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1]
+        areas[t] = 0.5 * (ab_1 * ac_0 - ab_0 * ac_1)
+    return areas
 
 
 def hat_gradients(vertices_yx: FloatArray, triangles: IntArray) -> FloatArray:
@@ -203,7 +218,7 @@ def _subdivide(triangles: IntArray, middle: IntArray) -> IntArray:
 
 def _check(mesh: Mesh, outline_yx: FloatArray) -> None:
     areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
-    edges = half_edges(mesh.triangles, len(mesh.vertices_yx))
+    edges = mesh.half_edges
     faults = []
     if edges.euler_characteristic != 1:
         faults.append("its Euler characteristic is not 1")
