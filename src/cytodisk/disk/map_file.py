@@ -54,10 +54,9 @@ def write_map_file(
         raise ParameterError(f"path must end in .npz, got {path}")
     place = {"corner": mask.corner, "image_shape": mask.image_shape}
     text = json.dumps({"format": _FORMAT, **header, **place})
-    with replacing(path) as temporary:
-        with zipfile.ZipFile(temporary, "w") as archive:
-            _write(archive, {"mask": mask.box, **arrays}, zipfile.ZIP_DEFLATED)
-            _write(archive, {"header": np.array(text), **numbers}, zipfile.ZIP_STORED)
+    with replacing(path) as temporary, zipfile.ZipFile(temporary, "w") as archive:
+        _write(archive, {"mask": mask.box, **arrays}, zipfile.ZIP_DEFLATED)
+        _write(archive, {"header": np.array(text), **numbers}, zipfile.ZIP_STORED)
 
 
 def _write(archive: zipfile.ZipFile, arrays: Mapping[str, Any], how: int) -> None:

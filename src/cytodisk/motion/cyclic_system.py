@@ -25,22 +25,26 @@ def solve_cyclic(diagonal: FloatArray, coupling: FloatArray, right: FloatArray) 
     """
     n, k = right.shape
     corner = -diagonal[0]
-    x = np.zeros((n, k + 1))
+    x = np.empty((n, k + 1))
     x[:, :k] = right
+    x[:, k] = 0.0
     x[0, k], x[n - 1, k] = corner, coupling[n - 1]
     ratio = np.empty(n)
-    pivot = diagonal[0] - corner
+    one_over = 1.0 / (diagonal[0] - corner)
     for a in range(k + 1):
-        x[0, a] /= pivot
+        x[0, a] *= one_over
     for i in range(1, n):
-        ratio[i] = coupling[i - 1] / pivot
+        ratio[i] = coupling[i - 1] * one_over
         last = coupling[n - 1] ** 2 / corner if i == n - 1 else 0.0
-        pivot = diagonal[i] - last - coupling[i - 1] * ratio[i]
+        one_over = 1.0 / (diagonal[i] - last - coupling[i - 1] * ratio[i])
         for a in range(k + 1):
-            x[i, a] = (x[i, a] - coupling[i - 1] * x[i - 1, a]) / pivot
+            x[i, a] = (x[i, a] - coupling[i - 1] * x[i - 1, a]) * one_over
     for i in range(n - 2, -1, -1):
         for a in range(k + 1):
             x[i, a] -= ratio[i + 1] * x[i + 1, a]
     end = coupling[n - 1] / corner
     factor = (x[0, :k] + end * x[n - 1, :k]) / (1.0 + x[0, k] + end * x[n - 1, k])
-    return x[:, :k] - np.outer(x[:, k], factor)
+    for i in range(n):
+        for a in range(k):
+            x[i, a] -= x[i, k] * factor[a]
+    return x[:, :k]

@@ -43,14 +43,14 @@ class _Band(NamedTuple):
         From each place to the next, along the target.
     tangent : ndarray of shape (N, 2) and dtype float
         Derivative of d by the place.
-    by_motion : ndarray of shape (N, 2, 3) and dtype float
-        Derivative of d by the rigid motion.
+    by_angle : ndarray of shape (N, 2) and dtype float
+        Derivative of d by the angle of the rigid motion; that by its shift is -1.
     """
 
     d: FloatArray
     gaps: FloatArray
     tangent: FloatArray
-    by_motion: FloatArray
+    by_angle: FloatArray
 
 
 @njit(cache=True)
@@ -96,10 +96,8 @@ def relax_band(
     stiffness = smoothness / spacing
     reach = math.sqrt((points**2).sum() / n)
     places, motion = places.copy(), motion.copy()
-    band = _Band(np.empty((n, 2)), np.empty(n), np.empty((n, 2)), np.zeros((n, 2, 3)))
+    band = _Band(np.empty((n, 2)), np.empty(n), np.empty((n, 2)), np.empty((n, 2)))
     d, gaps = band.d, band.gaps
-    band.by_motion[:, 0, 1] = -1.0
-    band.by_motion[:, 1, 2] = -1.0
     _displace(points, target, places, motion, band)
     value = _energy(d, gaps, spacing, stiffness, doubt, motion)
     for _ in range(_ROUNDS):
@@ -138,15 +136,15 @@ def energy_and_slope(
     """Energy of a band, without doubt, and its derivative by the angle of the motion; see `relax_band`."""
     n = points.shape[0]
     stiffness = smoothness / spacing
-    band = _Band(np.empty((n, 2)), np.empty(n), np.empty((n, 2)), np.zeros((n, 2, 3)))
+    band = _Band(np.empty((n, 2)), np.empty(n), np.empty((n, 2)), np.empty((n, 2)))
     _displace(points, target, places, motion, band)
-    d, by_motion = band.d, band.by_motion
+    d, by_angle = band.d, band.by_angle
     slope = 0.0
     for i in range(n):
         after = i + 1 if i < n - 1 else 0
         for k in range(2):
-            step = by_motion[after, k, 0] - by_motion[i, k, 0]
-            slope += 2.0 * spacing * by_motion[i, k, 0] * d[i, k]
+            step = by_angle[after, k] - by_angle[i, k]
+            slope += 2.0 * spacing * by_angle[i, k] * d[i, k]
             slope += 2.0 * stiffness * step * (d[after, k] - d[i, k])
     return _energy(d, band.gaps, spacing, stiffness, 0.0, motion), slope
 
@@ -169,27 +167,31 @@ def _displace(
 ) -> None:
     """Fill in displacements, their derivatives by place (the tangent) and by the angle, and the gaps."""
     corners, arc = target
-    d, gaps, tangent, by_motion = band
+    d, gaps, tangent, by_angle = band
     cosine, sine = math.cos(motion[0]), math.sin(motion[0])
     total, edges = arc[-1], corners.shape[0]
     n = points.shape[0]
+    turn = math.floor(places[0] / total) * total  # where the turn starts that the point is in
     edge = 0
     for i in range(n):
         gaps[i] = places[i + 1] - places[i] if i < n - 1 else places[0] - places[i] + total
-        wrapped = places[i] % total
+        wrapped = places[i] - turn
+        if wrapped >= total:
+            turn += total
+            wrapped -= total
         if wrapped < arc[edge]:  # around the start
             edge = 0
         while edge < edges - 1 and arc[edge + 1] <= wrapped:
             edge += 1
-        length = arc[edge + 1] - arc[edge]
-        share = (wrapped - arc[edge]) / length
+        into, after = wrapped - arc[edge], edge + 1 if edge < edges - 1 else 0
+        part = 1.0 / (arc[edge + 1] - arc[edge])
+        tangent[i, 0] = part * (corners[after, 0] - corners[edge, 0])
+        tangent[i, 1] = part * (corners[after, 1] - corners[edge, 1])
         y = cosine * points[i, 0] + sine * points[i, 1]
         x = cosine * points[i, 1] - sine * points[i, 0]
-        by_motion[i, 0, 0], by_motion[i, 1, 0] = -x, y
-        for k in range(2):
-            side = corners[edge + 1 if edge < edges - 1 else 0, k] - corners[edge, k]
-            tangent[i, k] = side / length
-            d[i, k] = corners[edge, k] + share * side - (y if k == 0 else x) - motion[1 + k]
+        by_angle[i, 0], by_angle[i, 1] = -x, y
+        d[i, 0] = corners[edge, 0] + into * tangent[i, 0] - y - motion[1]
+        d[i, 1] = corners[edge, 1] + into * tangent[i, 1] - x - motion[2]
 
 
 @njit(cache=True)
@@ -197,36 +199,59 @@ def _newton_step(
     band: _Band, weight: float, stiffness: float, rigid: bool, doubt: float, motion: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Change of places and of the rigid motion; places are eliminated first, three unknowns are left."""
-    d, gaps, tangent, by_motion = band
+    d, gaps, tangent, by_angle = band
     n = d.shape[0]
     spring = _SPRING * stiffness
-    diagonal, coupling, right = np.empty(n), np.empty(n), np.zeros((n, 4))
+    diagonal, coupling, right = np.empty(n), np.empty(n), np.empty((n, 4 if rigid else 1))
     diagonal[:] = weight + 2.0 * (stiffness + spring)
-    square, pull = np.zeros((3, 3)), np.zeros(3)
-    square[0, 0], pull[0] = doubt, doubt * motion[0]
     for i in range(n):
         after, before = i + 1 if i < n - 1 else 0, i - 1
-        alike = tangent[i, 0] * tangent[after, 0] + tangent[i, 1] * tangent[after, 1]
-        coupling[i] = -stiffness * alike - spring
-        right[i, 3] = spring * (gaps[i] - gaps[before])
-        for k in range(2):
-            ahead, behind = d[after, k] - d[i, k], d[i, k] - d[before, k]
-            right[i, 3] -= tangent[i, k] * (weight * d[i, k] + stiffness * (behind - ahead))
-            if not rigid:
-                continue
-            for a in range(3):
-                step = by_motion[after, k, a] - by_motion[i, k, a]
-                back = by_motion[i, k, a] - by_motion[before, k, a]
-                right[i, a] += tangent[i, k] * (weight * by_motion[i, k, a] + stiffness * (back - step))
-                pull[a] += weight * by_motion[i, k, a] * d[i, k] + stiffness * step * ahead
-                for b in range(3):
-                    square[a, b] += weight * by_motion[i, k, a] * by_motion[i, k, b]
-                    square[a, b] += stiffness * step * (by_motion[after, k, b] - by_motion[i, k, b])
+        t0, t1 = tangent[i, 0], tangent[i, 1]
+        coupling[i] = -stiffness * (t0 * tangent[after, 0] + t1 * tangent[after, 1]) - spring
+        bend0, bend1 = 2.0 * d[i, 0] - d[before, 0] - d[after, 0], 2.0 * d[i, 1] - d[before, 1] - d[after, 1]
+        uphill = t0 * (weight * d[i, 0] + stiffness * bend0) + t1 * (weight * d[i, 1] + stiffness * bend1)
+        right[i, 0] = spring * (gaps[i] - gaps[before]) - uphill
+        if rigid:
+            bend0 = 2.0 * by_angle[i, 0] - by_angle[before, 0] - by_angle[after, 0]
+            bend1 = 2.0 * by_angle[i, 1] - by_angle[before, 1] - by_angle[after, 1]
+            right[i, 1] = t0 * (weight * by_angle[i, 0] + stiffness * bend0)
+            right[i, 1] += t1 * (weight * by_angle[i, 1] + stiffness * bend1)
+            right[i, 2], right[i, 3] = -weight * t0, -weight * t1
     solved = solve_cyclic(diagonal, coupling, right)
-    change, moved = solved[:, 3].copy(), np.zeros(3)
-    if rigid:
-        across, response = np.ascontiguousarray(right[:, :3].T), np.ascontiguousarray(solved[:, :3])
-        moved[:] = np.linalg.solve(square - across @ response, -pull - across @ change)
+    if not rigid:
+        return solved[:, 0].copy(), np.zeros(3)
+    square, pull = _motion_terms(band, weight, stiffness, doubt, motion)
+    for i in range(n):
         for a in range(3):
-            change -= response[:, a] * moved[a]
+            pull[a] += right[i, 1 + a] * solved[i, 0]
+            for b in range(3):
+                square[a, b] -= right[i, 1 + a] * solved[i, 1 + b]
+    moved = np.linalg.solve(square, -pull)
+    change = np.empty(n)
+    for i in range(n):
+        change[i] = solved[i, 0] - (
+            solved[i, 1] * moved[0] + solved[i, 2] * moved[1] + solved[i, 3] * moved[2]
+        )
     return change, moved
+
+
+@njit(cache=True)
+def _motion_terms(
+    band: _Band, weight: float, stiffness: float, doubt: float, motion: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """What the rigid motion alone adds to the normal equations: their matrix, and the energy's slope."""
+    d, _, _, by_angle = band
+    n = d.shape[0]
+    square, pull = np.zeros((3, 3)), np.zeros(3)
+    square[0, 0], pull[0] = doubt, doubt * motion[0]
+    square[1, 1] = square[2, 2] = weight * n
+    for i in range(n):
+        after = i + 1 if i < n - 1 else 0
+        for k in range(2):
+            step, ahead = by_angle[after, k] - by_angle[i, k], d[after, k] - d[i, k]
+            square[0, 0] += weight * by_angle[i, k] ** 2 + stiffness * step**2
+            square[0, 1 + k] -= weight * by_angle[i, k]
+            pull[0] += weight * by_angle[i, k] * d[i, k] + stiffness * step * ahead
+            pull[1 + k] -= weight * d[i, k]
+    square[1, 0], square[2, 0] = square[0, 1], square[0, 2]
+    return square, pull
