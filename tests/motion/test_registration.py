@@ -9,7 +9,14 @@ from cytodisk.geometry.outline import trace_outline
 from cytodisk.geometry.polygon import centroid
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.matching import first_guess
-from cytodisk.motion.registration import IDENTITY, RigidTransform, believable, first_transform, register
+from cytodisk.motion.registration import (
+    IDENTITY,
+    Registration,
+    RigidTransform,
+    believable,
+    first_transform,
+    register,
+)
 
 transforms = st.builds(
     RigidTransform, st.floats(-10.0, 10.0), st.floats(-100.0, 100.0), st.floats(-100.0, 100.0)
@@ -20,7 +27,7 @@ POINTS = np.random.default_rng(0).uniform(-50.0, 50.0, (4, 5, 2))
 def turned(moving: Contour, reference: Contour, start: RigidTransform) -> RigidTransform:
     s = evenly(reference)
     guess = first_guess(reference, start.of(moving), s, 64.0)
-    return register(moving, reference, start, s, guess, 64.0)
+    return register(moving, reference, start, s, guess, 64.0).transform
 
 
 @given(transforms)
@@ -109,7 +116,7 @@ def test_a_round_mask_is_not_turned(shift: tuple[float, float]) -> None:
 def believed(moving: Contour, reference: Contour, found: RigidTransform) -> RigidTransform:
     s = evenly(reference)
     guess = first_guess(reference, moving, s, 64.0)
-    return believable(IDENTITY, found, moving, reference, s, guess, 64.0)
+    return believable(IDENTITY, found, moving, reference, Registration(found, s, guess, guess), 64.0)
 
 
 @given(st.floats(-5.0, 5.0), st.floats(0.3, 3.0))

@@ -97,8 +97,8 @@ def test_an_energy_that_does_not_fall_towards_a_turn_speaks_against_it() -> None
     turned = exact(moved(still.points_yx, 12.0, (0.0, 0.0)))
     grid = still.length * np.arange(300) / 300
     for contour, expected in ((turned, 12.0), (flipped, 0.0), (still, 0.0)):
-        angle, _, _ = rigid_motion(still, contour, grid, grid * contour.length / still.length, 64.0)
-        assert math.degrees(angle) == pytest.approx(expected, abs=0.5)
+        fit = rigid_motion(still, contour, grid, grid * contour.length / still.length, 64.0)
+        assert math.degrees(fit.angle) == pytest.approx(expected, abs=0.5)
 
 
 def test_lobes_that_turn_and_change_sign_do_not_leap() -> None:

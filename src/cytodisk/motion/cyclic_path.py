@@ -75,25 +75,29 @@ def cyclic_path(
 
 
 @njit(cache=True)
-def _step_cost(
-    here: FloatArray,
-    there: FloatArray,
-    i: int,
-    j: int,
-    a: int,
-    b: int,
-    spacing: float,
+def _reach(
+    cost: FloatArray,
+    step_of: IntArray,
+    before: tuple[FloatArray, FloatArray, FloatArray],
+    d_y: FloatArray,
+    d_x: FloatArray,
+    length: float,
     smoothness: float,
-) -> float:
-    """Cost between the pairs (i - a, j - b) and (i, j), with d linear in between."""
-    n, m = here.shape[0], there.shape[0]
-    i0, j0, i1, j1 = (i - a) % n, (j - b) % m, i % n, j % m
-    y0, x0 = there[j0, 0] - here[i0, 0], there[j0, 1] - here[i0, 1]
-    y1, x1 = there[j1, 0] - here[i1, 0], there[j1, 1] - here[i1, 1]
-    length = 0.5 * (a + b) * spacing
-    size = (y0 * y0 + x0 * x0 + y1 * y1 + x1 * x1 + y0 * y1 + x0 * x1) / 3.0
-    change = (y1 - y0) ** 2 + (x1 - x0) ** 2
-    return float(size * length + smoothness * change / length)
+    step: int,
+) -> None:
+    """Take a step to each pair of a row where that is cheaper; d is linear in between.
+
+    `before` holds the cost and both components of d of the pairs that the step comes from.
+    """
+    cost_before, y_before, x_before = before
+    for place in range(len(cost)):
+        y0, x0, y1, x1 = y_before[place], x_before[place], d_y[place], d_x[place]
+        size = (y0 * y0 + x0 * x0 + y1 * y1 + x1 * x1 + y0 * y1 + x0 * x1) / 3.0
+        change = (y1 - y0) ** 2 + (x1 - x0) ** 2
+        total = cost_before[place] + (size * length + smoothness * change / length)
+        cheaper = total < cost[place]
+        cost[place] = total if cheaper else cost[place]
+        step_of[place] = step if cheaper else step_of[place]
 
 
 @njit(cache=True)
@@ -112,34 +116,36 @@ def _path(
     low = np.empty(rows, np.int64)
     for row in range(rows):
         low[row] = int(np.floor((first + row) * m / n + offset)) - half
+    d_y, d_x = np.empty((rows, width)), np.empty((rows, width))
+    for row in range(rows):
+        i = (first + row) % n
+        for column in range(width):
+            j = (low[row] + column) % m
+            d_y[row, column], d_x[row, column] = there[j, 0] - here[i, 0], there[j, 1] - here[i, 1]
     cost = np.full((rows, width), np.inf)
     step_of = np.full((rows, width), -1, np.int64)
     for column in range(width):
         if pinned < 0 or low[0] + column == pinned:
             cost[0, column] = 0.0
     for row in range(1, rows):
-        for column in range(width):
-            best, chosen = np.inf, -1
-            for k in range(steps.shape[0]):
-                before = row - steps[k, 0]
-                if before < 0:
-                    continue
-                place = low[row] + column - steps[k, 1] - low[before]
-                if place < 0 or place >= width or not cost[before, place] < best:
-                    continue
-                total = cost[before, place] + _step_cost(
-                    here,
-                    there,
-                    first + row,
-                    low[row] + column,
-                    steps[k, 0],
-                    steps[k, 1],
-                    spacing,
-                    smoothness,
-                )
-                if total < best:
-                    best, chosen = total, k
-            cost[row, column], step_of[row, column] = best, chosen
+        for k in range(steps.shape[0]):
+            before = row - steps[k, 0]
+            if before < 0:
+                continue
+            shift = low[row] - steps[k, 1] - low[before]  # of the columns of that row
+            shared = max(0, width - abs(shift))
+            to = slice(max(0, -shift), max(0, -shift) + shared)
+            come = slice(max(0, shift), max(0, shift) + shared)
+            _reach(
+                cost[row, to],
+                step_of[row, to],
+                (cost[before, come], d_y[before, come], d_x[before, come]),
+                d_y[row, to],
+                d_x[row, to],
+                0.5 * (steps[k, 0] + steps[k, 1]) * spacing,
+                smoothness,
+                k,
+            )
     row = rows - 1
     column = pinned + m - low[row] if pinned >= 0 else int(cost[row].argmin())
     i, j = [first + row], [low[row] + column]

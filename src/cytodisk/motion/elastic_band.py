@@ -226,8 +226,8 @@ def _newton_step(
             pull[a] += right[i, 1 + a] * solved[i, 0]
             for b in range(3):
                 square[a, b] -= right[i, 1 + a] * solved[i, 1 + b]
-    moved = np.linalg.solve(square, -pull)
-    change = np.empty(n)
+    change, moved = np.empty(n), np.zeros(3)
+    moved[:] = np.linalg.solve(square, -pull)
     for i in range(n):
         change[i] = solved[i, 0] - (
             solved[i, 1] * moved[0] + solved[i, 2] * moved[1] + solved[i, 3] * moved[2]

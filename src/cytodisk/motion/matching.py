@@ -10,6 +10,7 @@ same energy with a free rigid motion.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -106,15 +107,38 @@ def mean_square_displacement(
     )
 
 
+class RigidFit(NamedTuple):
+    """A rigid motion of one outline onto another, and where points come to lie.
+
+    Attributes
+    ----------
+    angle : float
+        In radians, from +x towards +y.
+    pivot, place : ndarray of shape (2,) and dtype float
+        The motion takes x to R (x - pivot) + place.
+    s : ndarray of shape (N,) and dtype float
+        Points along the first outline, in pixels.
+    slid, turned : ndarray of shape (N,) and dtype float
+        Where they lie along the second one, if the first does not turn and if it may turn freely.
+    """
+
+    angle: float
+    pivot: FloatArray
+    place: FloatArray
+    s: FloatArray
+    slid: FloatArray
+    turned: FloatArray
+
+
 def rigid_motion(
     here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoothness: float
-) -> tuple[float, FloatArray, FloatArray]:
+) -> RigidFit:
     """Rigid motion that leaves the least of the matching energy.
 
     Growth of the whole shape is taken out first. Then three fits: without a rotation, with one, and with one
-    that what the second leaves unexplained speaks against. The result goes from the first towards the third
-    as far as the second explains what the first leaves: neither the stair steps of a round mask nor a
-    protrusion turn a cell.
+    that what the second leaves unexplained speaks against; each starts where the one before ended. The result
+    goes from the first towards the third as far as the second explains what the first leaves: neither the
+    stair steps of a round mask nor a protrusion turn a cell.
 
     Parameters
     ----------
@@ -127,10 +151,7 @@ def rigid_motion(
 
     Returns
     -------
-    angle : float
-        In radians, from +x towards +y.
-    pivot, place : ndarray of shape (2,) and dtype float
-        The motion takes x to R (x - pivot) + place.
+    RigidFit
     """
     grid, target = even_grid(here), _target(there)
     places = carry(grid, s, guess, here.length, there.length)
@@ -138,19 +159,21 @@ def rigid_motion(
     pivot = points.mean(axis=0)
     growth = math.sqrt(signed_area(there.points_yx) / signed_area(here.points_yx))
     grown, spacing = growth * (points - pivot), growth * here.length / len(grid)
-    start = np.array([0.0, *pivot])
 
-    def fit(doubt: float) -> tuple[FloatArray, FloatArray, float]:
-        return relax_band(grown, target, places, spacing, smoothness, start, True, doubt)
+    def fit(places: FloatArray, motion: FloatArray, doubt: float) -> tuple[FloatArray, FloatArray, float]:
+        return relax_band(grown, target, places, spacing, smoothness, motion, True, doubt)
 
-    slid, shifted, by_shift = fit(_PINNED)
-    turned_places, free, by_both = fit(0.0)
-    _, turned, _ = fit(_NOISE_REACH_PX * by_both / _USUAL_TURN**2)
+    slid, shifted, by_shift = fit(places, np.array([0.0, *pivot]), _PINNED)
+    turned, free, by_both = fit(slid, shifted, 0.0)
     explained = max(0.0, by_shift - by_both) / max(by_shift, _PIXEL_NOISE_PX2)
     before, slope = energy_and_slope(grown, target, slid, spacing, smoothness, shifted)
-    after, _ = energy_and_slope(grown, target, turned_places, spacing, smoothness, free)
-    motion = shifted + explained * _downhill(before - after, -slope * float(free[0])) * (turned - shifted)
-    return float(motion[0]), pivot, motion[1:]
+    after, _ = energy_and_slope(grown, target, turned, spacing, smoothness, free)
+    way = explained * _downhill(before - after, -slope * float(free[0]))
+    motion = shifted
+    if way > 0.0:
+        _, doubted, _ = fit(turned, free, _NOISE_REACH_PX * by_both / _USUAL_TURN**2)
+        motion = shifted + way * (doubted - shifted)
+    return RigidFit(float(motion[0]), pivot, motion[1:], grid, slid, turned)
 
 
 def _downhill(gain: float, foreseen: float) -> float:

@@ -68,6 +68,26 @@ class RigidTransform:
 IDENTITY = RigidTransform()
 
 
+@dataclass(frozen=True, eq=False)
+class Registration:
+    """A rigid motion that lays an outline onto a reference, and where points of the reference come to lie.
+
+    Attributes
+    ----------
+    transform : RigidTransform
+        From the frame of the outline to the common frame.
+    reference_s : ndarray of shape (N,) and dtype float
+        Points on the reference, in pixels along it.
+    slid, turned : ndarray of shape (N,) and dtype float
+        The same points on the outline, if it does not turn from where it was, and if it may turn freely.
+    """
+
+    transform: RigidTransform
+    reference_s: FloatArray
+    slid: FloatArray
+    turned: FloatArray
+
+
 def first_transform(moving: Contour, reference: Contour, angle: float) -> RigidTransform:
     """Transform with a known rotation that brings the centroids together.
 
@@ -93,8 +113,7 @@ def believable(
     found: RigidTransform,
     contour: Contour,
     reference: Contour,
-    reference_s: FloatArray,
-    s: FloatArray,
+    start: Registration,
     smoothness: float,
 ) -> RigidTransform:
     """Go from the last frame's transform towards a new one, as far as that explains how the boundary moved.
@@ -109,8 +128,8 @@ def believable(
         From the frame of `contour` to the common frame.
     contour, reference : Contour
         This frame's, and the reference's in the common frame.
-    reference_s, s : ndarray of shape (N,) and dtype float
-        Points on the reference and a guess of the same points on `contour`.
+    start : Registration
+        Of the same two outlines; its points are where matching starts.
     smoothness : float
         Smoothness of the matching energy, in square pixels.
 
@@ -119,8 +138,8 @@ def believable(
     RigidTransform
     """
     before, after = (
-        mean_square_displacement(reference, transform.of(contour), reference_s, s, smoothness)
-        for transform in (last, found)
+        mean_square_displacement(reference, transform.of(contour), start.reference_s, places, smoothness)
+        for transform, places in ((last, start.slid), (found, start.turned))
     )
     explained = 1.0 - after / before if after < before else 0.0
     way = explained / (explained + _HESITATION * (1.0 - explained))
@@ -137,7 +156,7 @@ def register(
     reference_s: FloatArray,
     moving_s: FloatArray,
     smoothness: float,
-) -> RigidTransform:
+) -> Registration:
     """Rigid motion that lays one outline onto another.
 
     The motion that leaves the least of the matching energy (`matching.rigid_motion`): a growing protrusion
@@ -157,14 +176,13 @@ def register(
 
     Returns
     -------
-    RigidTransform
-        From the frame of `moving` to the common frame.
+    Registration
 
     References
     ----------
     u-Unwrap, appendix A.1, algorithm 1.
     """
-    angle, pivot, place = rigid_motion(reference, start.of(moving), reference_s, moving_s, smoothness)
-    back = RigidTransform(-angle)
-    shift = back(start.shift - place) + pivot
-    return RigidTransform(start.angle - angle, float(shift[0]), float(shift[1]))
+    fit = rigid_motion(reference, start.of(moving), reference_s, moving_s, smoothness)
+    shift = RigidTransform(-fit.angle)(start.shift - fit.place) + fit.pivot
+    transform = RigidTransform(start.angle - fit.angle, float(shift[0]), float(shift[1]))
+    return Registration(transform, fit.s, fit.slid, fit.turned)

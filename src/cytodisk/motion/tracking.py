@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-import shapely
 from scipy.spatial import KDTree
 
 from cytodisk.arrays import FloatArray
@@ -17,6 +16,7 @@ from cytodisk.motion.contour import Contour
 from cytodisk.motion.demons import propagate
 from cytodisk.motion.demons_parameters import DemonsParameters
 from cytodisk.motion.matching import carry, even_grid, first_guess, match
+from cytodisk.motion.overlap import least_overlap, overlap
 from cytodisk.motion.registration import IDENTITY, RigidTransform, believable, first_transform, register
 from cytodisk.motion.tracking_parameters import TrackingSettings
 
@@ -156,15 +156,19 @@ def follow(
     transform = alignment = rough
     if settings.registration:
         fixed = reference.transform.of(reference.contour)
-        transform = _registered(contour, last, reference, rough, guess, smoothness)
-        moved = reference.alignment.after(reference.transform.undone())
-        alignment = believable(
-            last.alignment, moved.after(transform), contour, moved.of(fixed), reference.s, guess, smoothness
+        registration = register(contour, fixed, rough, reference.s, guess, smoothness)
+        transform = _seen_from_last(
+            registration.transform, contour, last, reference, rough, guess, smoothness
         )
-    overlap = _overlap(here, transform.of(contour))
-    if overlap < _LEAST_OVERLAP:
-        why = f"outlines overlap by {overlap:.0%} only (frames {last.frame} and {frame})"
-        return _restart(frame, contour, transform, last, why)
+        moved = reference.alignment.after(reference.transform.undone())
+        found = moved.after(transform)
+        alignment = believable(last.alignment, found, contour, moved.of(fixed), registration, smoothness)
+    placed = transform.of(contour)
+    if least_overlap(here, placed, grid, guess_on_grid) < _LEAST_OVERLAP:
+        shared = overlap(here, placed)
+        if shared < _LEAST_OVERLAP:
+            why = f"outlines overlap by {shared:.0%} only (frames {last.frame} and {frame})"
+            return _restart(frame, contour, transform, last, why)
     if settings.tracker == "demons":
         return _follow_demons(frame, contour, last, transform, settings.demons or DemonsParameters())
     if in_lab:
@@ -181,7 +185,7 @@ def _rough_transform(contour: Contour, here: Contour, last: TrackedBoundary) -> 
     moved, stayed = first_transform(contour, here, last.transform.angle), last.transform
     if np.linalg.norm(moved.shift - stayed.shift) < _NEAR_PX:
         return moved
-    return max(moved, stayed, key=lambda transform: _overlap(here, transform.of(contour)))
+    return max(moved, stayed, key=lambda transform: overlap(here, transform.of(contour)))
 
 
 def _follow_matching(
@@ -212,7 +216,8 @@ def _follow_matching(
     return TrackedBoundary(frame, contour, even, transform, alignment, residual, matched_s=steps)
 
 
-def _registered(
+def _seen_from_last(
+    found: RigidTransform,
     contour: Contour,
     last: TrackedBoundary,
     reference: TrackedBoundary,
@@ -225,12 +230,10 @@ def _registered(
     Several frames after the reference, the lobes of a cell may have grown and shrunk into the same shape,
     turned; from frame to frame they did not turn.
     """
-    to_reference = reference.transform.of(reference.contour)
-    found = register(contour, to_reference, rough, reference.s, guess, smoothness)
     if reference is last or abs(found.angle - rough.angle) <= _USUAL_TURN:
         return found
     to_last = last.transform.of(last.contour)
-    since_last = register(contour, to_last, rough, last.s, guess, smoothness)
+    since_last = register(contour, to_last, rough, last.s, guess, smoothness).transform
     allowed = abs(since_last.angle - rough.angle) + _USUAL_TURN
     return found if abs(found.angle - since_last.angle) <= allowed else since_last
 
@@ -288,9 +291,3 @@ def _at_even_angles(contour: Contour, angles: FloatArray, n: int) -> FloatArray:
 def _towards_even(s: FloatArray, length: float, tension: float) -> FloatArray:
     even = length * np.arange(len(s)) / len(s)
     return np.asarray(s + tension * (even + (s - even).mean() - s))
-
-
-def _overlap(here: Contour, there: Contour) -> float:
-    a, b = shapely.Polygon(here.outline_yx), shapely.Polygon(there.outline_yx)
-    shared = shapely.intersection(a, b).area
-    return float(shared / (a.area + b.area - shared))
