@@ -11,7 +11,8 @@ from cytodisk.geometry.outline import trace_outline
 from cytodisk.motion import tracking
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.matching import match, rigid_motion
-from cytodisk.motion.tracking import TrackedBoundary, first_boundary, follow, outline_distance, point_angles
+from cytodisk.motion.overlap import outline_distance
+from cytodisk.motion.tracking import TrackedBoundary, first_boundary, follow, point_angles
 from cytodisk.motion.tracking_parameters import TrackingSettings
 from cytodisk.simulate.movie_signals import rasterised
 

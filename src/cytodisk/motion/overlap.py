@@ -1,9 +1,10 @@
-"""How far two outlines overlap."""
+"""How far two outlines overlap, and how far apart they are."""
 
 from __future__ import annotations
 
 import numpy as np
 import shapely
+from scipy.spatial import KDTree
 
 from cytodisk.arrays import FloatArray
 from cytodisk.geometry.polygon import signed_area
@@ -46,3 +47,16 @@ def least_overlap(here: Contour, there: Contour, s: FloatArray, places: FloatArr
 
 def _cross(one: FloatArray, other: FloatArray) -> FloatArray:
     return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
+
+
+def outline_distance(here: Contour, there: Contour) -> float:
+    """Largest distance from a corner of either outline to the nearest corner of the other, in pixels."""
+    one, other = here.points_yx, there.points_yx
+    away, back = KDTree(other).query(one)[0], KDTree(one).query(other)[0]
+    return float(max(np.max(away), np.max(back)))
+
+
+def corner_distance(here: Contour, there: Contour, s: float) -> float:
+    """Distance from the corner of `here` before s to the nearest one of `there`: at most `outline_distance`."""
+    corner = here.points_yx[np.searchsorted(here.arc, s, side="right") - 1]
+    return float(np.sqrt(np.square(there.points_yx - corner).sum(axis=1).min()))

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.circle import boundary_angles
@@ -16,7 +15,7 @@ from cytodisk.motion.contour import Contour
 from cytodisk.motion.demons import propagate
 from cytodisk.motion.demons_parameters import DemonsParameters
 from cytodisk.motion.matching import carry, even_grid, first_guess, match
-from cytodisk.motion.overlap import least_overlap, overlap
+from cytodisk.motion.overlap import corner_distance, least_overlap, outline_distance, overlap
 from cytodisk.motion.registration import IDENTITY, RigidTransform, believable, first_transform, register
 from cytodisk.motion.tracking_parameters import TrackingSettings
 
@@ -200,10 +199,13 @@ def _follow_matching(
     here, there = last.alignment.of(last.contour), alignment.of(contour)
     grid, smoothness = even_grid(here), settings.smoothness_px2
     matched = match(here, there, grid, guess_on_grid, smoothness)
-    farthest = float(np.linalg.norm(there.at(matched) - here.at(grid), axis=1).max())
+    steps = np.linalg.norm(there.at(matched) - here.at(grid), axis=1)
+    farthest = float(steps.max())
     bound = _SLACK_PX
+    if farthest > bound:  # mostly the outlines are so far apart there, too
+        bound += _LEAP * corner_distance(here, there, float(grid[steps.argmax()]))
     if farthest > bound:
-        bound += _LEAP * outline_distance(here, there)
+        bound = _SLACK_PX + _LEAP * outline_distance(here, there)
     if farthest > bound:
         frames = f"frames {last.frame} and {frame}"
         why = f"points would move {farthest:.0f} px, outlines allow {bound:.0f} ({frames})"
@@ -212,8 +214,8 @@ def _follow_matching(
     back = match(there, here, s, last.s, smoothness)
     residual = float(np.linalg.norm(here.at(back) - here.at(last.s), axis=1).mean())
     even = _towards_even(s, there.length, settings.tension)
-    steps = np.stack([grid, matched])
-    return TrackedBoundary(frame, contour, even, transform, alignment, residual, matched_s=steps)
+    both = np.stack([grid, matched])
+    return TrackedBoundary(frame, contour, even, transform, alignment, residual, matched_s=both)
 
 
 def _seen_from_last(
@@ -236,13 +238,6 @@ def _seen_from_last(
     since_last = register(contour, to_last, rough, last.s, guess, smoothness).transform
     allowed = abs(since_last.angle - rough.angle) + _USUAL_TURN
     return found if abs(found.angle - since_last.angle) <= allowed else since_last
-
-
-def outline_distance(here: Contour, there: Contour) -> float:
-    """Largest distance from a corner of either outline to the nearest corner of the other, in pixels."""
-    one, other = here.points_yx, there.points_yx
-    away, back = KDTree(other).query(one)[0], KDTree(one).query(other)[0]
-    return float(max(np.max(away), np.max(back)))
 
 
 def _follow_demons(
