@@ -1,6 +1,6 @@
 """A raw mask → one cell without holes, and a report of every change that took."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -8,6 +8,8 @@ from scipy import ndimage
 
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import EmptyMaskError, MaskError, ParameterError
+from cytodisk.geometry.outline import has_one_outline, pixel_edges
+from cytodisk.geometry.placed_mask import PlacedMask
 
 # Shares from which on a mask gets a QC flag: area in dropped pieces, area in holes, edge on the border.
 _FLAGGED_DROPPED, _FLAGGED_FILLED, _FLAGGED_BORDER = 0.1, 0.02, 0.5
@@ -215,23 +217,28 @@ def clean_mask(
     """
     _check_policies(holes, fragments, border)
     raw = parse_mask(mask)
-    piece, components, dropped = _largest_piece(raw)
-    solid, n_holes = _filled(piece)
-    report = MaskReport(
-        area_px=int(solid.sum()),
-        components=components,
-        dropped_px=dropped,
-        holes=n_holes,
-        filled_px=int(solid.sum() - piece.sum()),
-        border_share=_border_share(solid),
-    )
+    placed = PlacedMask.of(raw)
+    solid, report = _cleaned(placed.box)
+    if report.components > 1 or report.holes:
+        raw = replace(placed, box=solid).whole
+    report = replace(report, border_share=_border_share(raw, solid))
     if fragments == "error" and report.components > 1:
-        raise MaskError(f"mask has {components} pieces: keep one, or pass fragments='largest'")
+        raise MaskError(f"mask has {report.components} pieces: keep one, or pass fragments='largest'")
     if holes == "error" and report.holes:
-        raise MaskError(f"mask has {n_holes} holes ({report.filled_px} px): fill them, or pass holes='fill'")
+        found = f"{report.holes} holes ({report.filled_px} px)"
+        raise MaskError(f"mask has {found}: fill them, or pass holes='fill'")
     if border == "error" and report.touches_border:
         raise MaskError("mask touches the image border: leave the cell out, or pass border='flag'")
-    return solid, report
+    return raw, report
+
+
+def _cleaned(crop: BoolArray) -> tuple[BoolArray, MaskReport]:
+    if has_one_outline(crop):
+        return crop, MaskReport(int(crop.sum()), 1, 0, 0, 0, 0.0)
+    piece, components, dropped = _largest_piece(crop)
+    solid, n_holes = _filled(piece)
+    filled = int(solid.sum() - piece.sum())
+    return solid, MaskReport(int(solid.sum()), components, dropped, n_holes, filled, 0.0)
 
 
 def _check_policies(holes: str, fragments: str, border: str) -> None:
@@ -259,10 +266,6 @@ def _filled(piece: BoolArray) -> tuple[BoolArray, int]:
     return solid, int(count) - 1
 
 
-def _border_share(solid: BoolArray) -> float:
-    on_border = sum(int(side.sum()) for side in (solid[0], solid[-1], solid[:, 0], solid[:, -1]))
-    if not on_border:
-        return 0.0
-    padded = np.pad(solid, 1)
-    edges = sum(int((padded ^ np.roll(padded, 1, axis)).sum()) for axis in (0, 1))
-    return on_border / edges
+def _border_share(mask: BoolArray, crop: BoolArray) -> float:
+    on_border = sum(int(side.sum()) for side in (mask[0], mask[-1], mask[:, 0], mask[:, -1]))
+    return on_border / pixel_edges(np.pad(crop, 1)) if on_border else 0.0

@@ -57,6 +57,6 @@ def outline_distance(here: Contour, there: Contour) -> float:
 
 
 def corner_distance(here: Contour, there: Contour, s: float) -> float:
-    """Distance from the corner of `here` before s to the nearest one of `there`: at most `outline_distance`."""
+    """Distance from the corner of `here` before s to the nearest of `there`; at most `outline_distance`."""
     corner = here.points_yx[np.searchsorted(here.arc, s, side="right") - 1]
     return float(np.sqrt(np.square(there.points_yx - corner).sum(axis=1).min()))
