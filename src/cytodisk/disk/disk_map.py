@@ -238,7 +238,9 @@ class DiskMap:
         facts = {name: getattr(self, name) for name in _FACTS}
         header = {"report": asdict(self.report), **asdict(self.scale), **facts}
         arrays = {name: getattr(self, name) for name in _ARRAYS if name != "vertices_uv"}
-        write_map_file(path, header, self.placed_mask, arrays, {**(beside or {}), "vertices_uv": self.vertices_uv})
+        write_map_file(
+            path, header, self.placed_mask, arrays, {**(beside or {}), "vertices_uv": self.vertices_uv}
+        )
 
     @cached_property
     def _in_cell(self) -> TriangleLocator:
