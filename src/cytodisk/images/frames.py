@@ -78,7 +78,7 @@ class FrameFile:
         ReadError
             This frame of the file is damaged.
         """
-        with _reading(self.path, f"frame {number}"):
+        with reading(self.path, f"frame {number}"):
             if self.path.suffix.lower() in _PICTURES:
                 with self.path.open("rb") as opened:
                     array = np.asarray(imageio.imread(opened, **_PNG))
@@ -141,7 +141,7 @@ def open_frames(path: str | os.PathLike[str], *, unnamed: str = "T") -> FrameFil
     known = _TIFF + _PICTURES + _ARRAYS
     if suffix not in known:
         raise ReadError(f"{file} is no image that can be read ({', '.join(known)}): convert it to TIFF")
-    with _reading(file, "its header"):
+    with reading(file, "its header"):
         if suffix in _ARRAYS:
             return _open_array(file, unnamed)
         return _open_tiff(file, unnamed) if suffix in _TIFF else _open_picture(file)
@@ -201,7 +201,7 @@ def read_image(path: str | os.PathLike[str], *, unnamed: str = "C") -> xr.DataAr
 
 
 @contextmanager
-def _reading(path: Path, part: str) -> Iterator[None]:
+def reading(path: Path, part: str) -> Iterator[None]:
     """Turn whatever a decoder raises on a damaged file into a `ReadError` that names the place."""
     try:
         yield

@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
-from scipy import ndimage
 
 from cytodisk.errors import CytodiskError, EmptyMaskError, MaskError, ReadError, as_data
 from cytodisk.images.file_parameters import Kind
+from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.frames import FrameFile, open_frames
-from cytodisk.images.mask_kinds import MaskLook, check_labels, look_at
+from cytodisk.images.label_boxes import LabelBoxes, cell_box, label_boxes
+from cytodisk.images.mask_kinds import MaskLook, Reader, check_labels, look_at
 from cytodisk.images.mask_names import mask_names
-
-Reader: TypeAlias = Callable[[int], np.ndarray[Any, Any]]
-
-_MOST_SLOTS = 1_000_000  # labels up to here index a list of boxes; larger ones are renumbered first
 
 
 @dataclass(frozen=True)
@@ -43,7 +40,7 @@ class MaskSource:
     look : MaskLook or None
         What is known of its frames.
     reader : callable or None
-        Gives a frame that is kept since the look; None to read it from the file.
+        Opens a frame that is kept since the look; None to open it anew.
     """
 
     name: str
@@ -56,11 +53,10 @@ class MaskSource:
     look: MaskLook | None = None
     reader: Reader | None = field(default=None, repr=False, compare=False)
 
-    def read(self, number: int) -> np.ndarray[Any, Any]:
+    def read(self, number: int) -> FramePixels:
         """A frame; raises ReadError where it is damaged."""
         assert self.file is not None  # whoever asks for a frame knows that there is one
-        frame: np.ndarray[Any, Any] = (self.reader or self.file.frame)(number)[0]
-        return frame
+        return (self.reader or partial(frame_pixels, self.file))(number)
 
 
 @dataclass(frozen=True)
@@ -128,7 +124,8 @@ def open_mask_files(
     place = Path(path)
     if not place.is_dir():
         file = open_frames(place, unnamed="T")
-        reader: Reader = lru_cache(maxsize=1)(file.frame) if file.n_frames == 1 else file.frame
+        opened = partial(frame_pixels, file)
+        reader: Reader = lru_cache(maxsize=1)(opened) if file.n_frames == 1 else opened
         look = look_at(file, kind, reader)
         return (MaskSource(place.name, place, file, look.kind, look=look, reader=reader),)
     return tuple(_source(chosen, others, kind) for chosen, others in mask_names(place, images))
@@ -247,41 +244,43 @@ def _cells_of(source: MaskSource, number: int) -> Iterator[SourceCell]:
     nothing = SourceCell(0, source.name, number, 0, None, image_shape=shape)
     try:
         frame = source.read(number)
-        _check_frame(frame, number, source.kind)
+        if source.kind != "labels":
+            yield _single(frame, nothing)
+            return
+        found = _found_labels(frame, number)
     except (ReadError, MaskError) as fault:
         yield replace(nothing, fault=as_data(fault))
         return
-    if source.kind == "labels":
-        yield from _labelled(frame, nothing)
-        return
-    box = ndimage.find_objects(np.asarray(frame != 0).view(np.uint8))
-    rows, columns = with_margin(box[0], shape) if box else (slice(0, None), slice(0, None))
-    mask = frame[rows, columns].copy()  # so that a waiting cell does not hold its whole image
-    yield replace(nothing, label=_single_label(frame), mask=mask, corner=(rows.start, columns.start))
+    yield from (_labelled(frame, label, with_margin(box, shape), nothing) for label, box in found)
 
 
-def _check_frame(frame: np.ndarray[Any, Any], number: int, kind: Kind) -> None:
-    if kind == "labels":
-        extremes = np.array([frame.min(), frame.max()], dtype=frame.dtype)
-        check_labels(frame.dtype, extremes, number)
-        if not extremes.any():
-            raise EmptyMaskError(f"frame {number} is empty: it holds no label")
-    elif frame.dtype == np.uint64 and frame.max(initial=0) < np.iinfo(np.uint64).max:  # which is a plain mask
-        check_labels(frame.dtype, frame.max(initial=0), number)
+def _found_labels(frame: FramePixels, number: int) -> LabelBoxes:
+    if not np.issubdtype(frame.dtype, np.integer):
+        check_labels(frame.dtype, None, number)
+    found = label_boxes(frame.strips())
+    check_labels(frame.dtype, np.array([found.least, found.greatest], dtype=frame.dtype), number)
+    if not (found.least or found.greatest):
+        raise EmptyMaskError(f"frame {number} is empty: it holds no label")
+    return found
 
 
-def _labelled(frame: np.ndarray[Any, Any], nothing: SourceCell) -> Iterator[SourceCell]:
-    """Each label's crop, in one pass over the frame."""
-    values, ranks = None, frame
-    if int(frame.max()) > _MOST_SLOTS:
-        values = np.unique(frame[frame != 0])
-        ranks = np.where(frame != 0, np.searchsorted(values, frame) + 1, 0)
-    for place, box in enumerate(ndimage.find_objects(ranks.astype(np.int32))):
-        if box is not None:
-            label = place + 1 if values is None else int(values[place])
-            rows, columns = with_margin(box, frame.shape)
-            inside = frame[rows, columns] == label
-            yield replace(nothing, label=label, mask=inside, corner=(rows.start, columns.start))
+def _labelled(frame: FramePixels, label: int, place: tuple[slice, ...], nothing: SourceCell) -> SourceCell:
+    try:
+        mask, corner = frame.cut(*place)[0] == label, (place[0].start, place[1].start)
+        return replace(nothing, label=label, mask=mask, corner=corner)
+    except ReadError as fault:
+        return replace(nothing, label=label, fault=as_data(fault))
+
+
+def _single(frame: FramePixels, nothing: SourceCell) -> SourceCell:
+    box, greatest = cell_box(frame.strips())
+    if frame.dtype == np.uint64 and greatest < np.iinfo(np.uint64).max:  # which is a plain mask
+        check_labels(frame.dtype, np.array(greatest, dtype=frame.dtype), nothing.frame)
+    everything = slice(0, frame.image_shape[0]), slice(0, frame.image_shape[1])
+    rows, columns = with_margin(box or everything, frame.image_shape)
+    mask = frame.cut(rows, columns)[0].copy()  # so that a waiting cell does not hold its whole image
+    label = _single_label(frame.dtype, greatest, box is not None)
+    return replace(nothing, label=label, mask=mask, corner=(rows.start, columns.start))
 
 
 def with_margin(box: tuple[slice, ...], shape: tuple[int, ...]) -> tuple[slice, slice]:
@@ -292,9 +291,9 @@ def with_margin(box: tuple[slice, ...], shape: tuple[int, ...]) -> tuple[slice, 
     return rows, columns
 
 
-def _single_label(frame: np.ndarray[Any, Any]) -> int:
+def _single_label(dtype: np.dtype[Any], greatest: Any, holds_cell: bool) -> int:
     """The label of a frame that holds just one; 1 for plain masks such as 0/1 and 0/255, 0 without a cell."""
-    if not np.issubdtype(frame.dtype, np.integer):
-        return int(frame.any())
-    label = int(frame.max(initial=0))
-    return 1 if label == np.iinfo(frame.dtype).max else max(label, 0)
+    if not np.issubdtype(dtype, np.integer):
+        return int(holds_cell)
+    label = int(greatest)
+    return 1 if label == np.iinfo(dtype).max else max(label, 0)

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import Any, TypeAlias
 
 import numpy as np
-import pandas as pd
-from skimage import measure
 
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
 from cytodisk.images.file_parameters import Kind, KindParameters
+from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.frames import FrameFile
+from cytodisk.images.label_boxes import count_pieces, share_alike, values_of
 
 _LEAST_ALIKE = 0.5  # of neighbouring pixels within cells must have one label in a label image
 _LARGEST = int(np.iinfo(np.int64).max)  # tables hold labels as 64-bit integers with a sign
 _MOST_PIECES = 3  # connected pieces a label, on average, in a label image
+
+Reader: TypeAlias = Callable[[int], FramePixels]
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,7 @@ def understood_as(file: FrameFile, kind: Kind = "auto") -> Kind:
     return look_at(file, kind).kind
 
 
-def look_at(file: FrameFile, kind: Kind = "auto", read: Callable[[int], Any] | None = None) -> MaskLook:
+def look_at(file: FrameFile, kind: Kind = "auto", read: Reader | None = None) -> MaskLook:
     """What a mask file holds; its frames are read once, unless `kind` says enough.
 
     Parameters
@@ -54,7 +57,7 @@ def look_at(file: FrameFile, kind: Kind = "auto", read: Callable[[int], Any] | N
     kind : {"auto", "mask", "stack", "labels"}
         "auto" decides: labels if any readable frame holds two integers beside 0; else one mask or a stack.
     read : callable, optional
-        In the place of `file.frame`, such as to keep what was read.
+        Opens a frame in the place of `frame_pixels`, such as to keep what was read.
 
     Returns
     -------
@@ -82,7 +85,7 @@ def look_at(file: FrameFile, kind: Kind = "auto", read: Callable[[int], Any] | N
         )
     if kind in ("mask", "stack"):
         return MaskLook(kind)
-    labels, several = _labels_of(file, read or file.frame, pictures_refused=kind == "auto")
+    labels, several = _labels_of(file, read or partial(frame_pixels, file), pictures_refused=kind == "auto")
     if kind == "labels" or several:
         return MaskLook("labels", labels)
     damaged = [found for found in labels if isinstance(found, ReadError)]
@@ -92,21 +95,21 @@ def look_at(file: FrameFile, kind: Kind = "auto", read: Callable[[int], Any] | N
 
 
 def _labels_of(
-    file: FrameFile, read: Callable[[int], Any], pictures_refused: bool
+    file: FrameFile, read: Reader, pictures_refused: bool
 ) -> tuple[tuple[tuple[int, ...] | CytodiskError, ...], bool]:
     """Labels of each frame, or its fault; and whether any frame holds several values beside 0."""
     found: list[tuple[int, ...] | CytodiskError] = []
     several = False
     for number in range(file.n_frames):
         try:
-            frame = read(number)[0]
+            frame = read(number)
+            values = values_of(frame.strips()) if np.issubdtype(frame.dtype, np.integer) else None
         except ReadError as fault:
             found.append(as_data(fault))
             continue
-        values = np.unique(pd.unique(frame.ravel())) if np.issubdtype(frame.dtype, np.integer) else None
         if values is not None and (values != 0).sum() > 1:
             if pictures_refused and not several:
-                _refuse_intensities(file, number, frame)
+                _refuse_intensities(file, number, frame, int((values != 0).sum()))
             several = True
         try:
             check_labels(frame.dtype, values, number)
@@ -128,14 +131,8 @@ def check_labels(dtype: Any, values: Any, number: int) -> None:
         raise MaskError(f"frame {number} has labels up to {values.max()}: number the cells from 1")
 
 
-def _refuse_intensities(file: FrameFile, number: int, frame: np.ndarray[Any, Any]) -> None:
-    left, right = frame[:, :-1], frame[:, 1:]
-    both = (left != 0) & (right != 0)
-    alike = (left == right)[both].mean() if both.any() else 1.0
-    values = len(np.unique(frame[frame != 0]))
-    _, pieces = measure.label(  # type: ignore[no-untyped-call,unused-ignore]
-        frame, background=0, connectivity=2, return_num=True
-    )
+def _refuse_intensities(file: FrameFile, number: int, frame: FramePixels, values: int) -> None:
+    alike, pieces = share_alike(frame.strips()), count_pieces(frame.strips())
     if alike < _LEAST_ALIKE or pieces > _MOST_PIECES * values:
         raise MaskError(
             f"{file.path} looks like a picture, not a mask or label image: "

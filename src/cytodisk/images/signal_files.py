@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -11,6 +12,8 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.errors import ReadError, SignalError, as_data
+from cytodisk.images.frame_pixels import FramePixels, frame_pixels
+from cytodisk.images.frames import FrameFile
 from cytodisk.images.mask_files import MaskSource
 from cytodisk.images.mask_names import base_name, image_stem, visible_files
 from cytodisk.scale import Scale
@@ -63,8 +66,42 @@ def load_image(file: FrameSource | None, frame: int) -> xr.DataArray | ReadError
         values = file.frame(min(frame, file.n_frames - 1))
     except ReadError as error:
         return as_data(error)
-    coords = {"channel": list(file.channels)}
-    return xr.DataArray(values, dims=("channel", "y", "x"), coords=coords, attrs=Scale.of(file).attrs)
+    return _named(values, file.channels, Scale.of(file))
+
+
+def _named(values: np.ndarray[Any, Any], channels: Sequence[str], scale: Scale) -> xr.DataArray:
+    return xr.DataArray(values, {"channel": list(channels)}, ("channel", "y", "x"), attrs=scale.attrs)
+
+
+@dataclass(frozen=True, eq=False)
+class SignalFrame:
+    """The image of a frame of the masks, read by piece.
+
+    Attributes
+    ----------
+    pixels : FramePixels
+    channels : tuple of str
+    scale : Scale
+    """
+
+    pixels: FramePixels
+    channels: tuple[str, ...]
+    scale: Scale
+
+    def cut(self, rows: slice, columns: slice) -> xr.DataArray:
+        """A piece of it, with dims (channel, y, x) and pixels of its own; raises ReadError where damaged."""
+        return _named(self.pixels.cut(rows, columns).copy(), self.channels, self.scale)
+
+
+def open_image(file: FrameFile | None, frame: int) -> SignalFrame | ReadError | None:
+    """As `load_image`, for reading by piece."""
+    if file is None:
+        return None
+    try:
+        pixels = frame_pixels(file, min(frame, file.n_frames - 1))
+    except ReadError as error:
+        return as_data(error)
+    return SignalFrame(pixels, file.channels, Scale.of(file))
 
 
 def pair_images(

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
 from typing import Any, TypeAlias
 
 import xarray as xr
 
-from cytodisk.errors import CytodiskError
+from cytodisk.errors import CytodiskError, ReadError, as_data
+from cytodisk.images.frame_pixels import FramePixels
 from cytodisk.images.mask_files import MaskImage, SourceCell, list_images
-from cytodisk.images.signal_files import load_image
+from cytodisk.images.signal_files import SignalFrame, open_image
 from cytodisk.runs.cells.cell_inputs import CellInputs
 from cytodisk.runs.executor import Executor
 from cytodisk.runs.run_options import Progress
@@ -31,7 +32,9 @@ class CellTask:
     fault : CytodiskError or None
         Why the signal cannot be used.
     image : DataArray with dims (channel, y, x), or None
-        The whole image, for a cell that is drawn.
+        The whole image, or of a large one what lies around the cell, for a cell that is drawn.
+    image_corner : (int, int)
+        (row, column) of its first pixel in the whole image.
     drawn : bool
     """
 
@@ -39,6 +42,7 @@ class CellTask:
     signal: xr.DataArray | None = None
     fault: CytodiskError | None = None
     image: xr.DataArray | None = None
+    image_corner: tuple[int, int] = (0, 0)
     drawn: bool = False
 
 
@@ -106,22 +110,39 @@ class CellRun:
             if pending.isdisjoint(part_key(first) for first, _ in self._parts_of(image)):
                 continue
             signal = self.inputs.signals[image.source.name]
-            loaded = signal.fault or load_image(signal.file, image.frame)
+            loaded = signal.fault or open_image(signal.file, image.frame)
             cells = image.cells()
             while part := list(islice(cells, self.at_once)):
                 if part_key(part[0].cell) in pending:
                     yield [self._task(found, loaded) for found in part]
 
-    def _task(self, found: SourceCell, loaded: xr.DataArray | CytodiskError | None) -> CellTask:
-        drawn = found.cell < self.draw_at_most
+    def _task(self, found: SourceCell, loaded: SignalFrame | CytodiskError | None) -> CellTask:
+        task = CellTask(found, drawn=found.cell < self.draw_at_most)
         if isinstance(loaded, CytodiskError):
-            return CellTask(found, None, loaded, None, drawn)
+            return replace(task, fault=loaded)
         if loaded is None or found.mask is None:
-            return CellTask(found, drawn=drawn)
+            return task
         (y, x), (height, width) = found.corner, found.mask.shape
-        # A copy, so that a waiting cell does not hold its whole image.
-        signal = loaded[:, y : y + height, x : x + width].copy()
-        return CellTask(found, signal, None, loaded if drawn else None, drawn)
+        box = slice(y, y + height), slice(x, x + width)
+        try:
+            task = replace(task, signal=loaded.cut(*box))
+            if not task.drawn:
+                return task
+            rows, columns = _around(box, loaded.pixels)
+            return replace(task, image=loaded.cut(rows, columns), image_corner=(rows.start, columns.start))
+        except ReadError as fault:
+            return replace(task, fault=as_data(fault))
+
+
+def _around(box: tuple[slice, slice], pixels: FramePixels) -> tuple[slice, slice]:
+    """All of a frame in memory; of a larger one the box and as much again on each side."""
+    rows, columns = (
+        slice(0, size)
+        if pixels.is_whole
+        else slice(max(0, 2 * side.start - side.stop), min(size, 2 * side.stop - side.start))
+        for side, size in zip(box, pixels.image_shape, strict=True)
+    )
+    return rows, columns
 
 
 def _work_on_part(cells: Sequence[CellTask], work: Work, folder: StudyFolder) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ from cytodisk.disk.mapping import map_to_disk
 from cytodisk.disk.mapping_parameters import Align, MappingParameters
 from cytodisk.errors import CytodiskError
 from cytodisk.files import replacing
+from cytodisk.images.frame_pixels import WHOLE_BYTES
 from cytodisk.images.mask_files import SourceCell
 from cytodisk.runs.cells.cell_parts import CellTask, Rows
 from cytodisk.runs.frame_rows import FramePlace, cell_status, measure_windows
@@ -70,15 +72,25 @@ class MapWork:
                 (place.row | {"status": cell_status(fault), "reason": str(fault)} | _seconds(started), {})
             ]
         row, columns = measure_windows(place, windows, task.signal, self.parameters.nan, found.corner)
-        placed = windows
-        if self.maps or self.geojson or task.drawn:  # in pixels of the whole image
+        if self.maps or self.geojson:  # in pixels of the whole image
             placed = CellWindows(windows.grid, disk.placed(found.corner, found.image_shape))
             self._write(placed, self.folder.map_path(part_key(found.cell)))
         row |= {"status": "ok", "reason": ""} | _seconds(started)
         if task.drawn and self.draw is not None:
-            image = None if task.image is None else task.image.astype(np.float64)
-            self.draw(figures_folder(self.folder.path), f"cell_{found.cell:05d}", placed, image)
+            self._draw(self.draw, task, windows)
         return [(row, {"windows": columns})]
+
+    def _draw(self, draw: DrawCell, task: CellTask, windows: CellWindows) -> None:
+        found, image, (y, x) = task.found, None, task.found.corner
+        disk = windows.disk
+        if task.image is not None:
+            image = task.image.astype(np.float64)
+            _, height, width = image.shape
+            disk = disk.placed((y - task.image_corner[0], x - task.image_corner[1]), (height, width))
+        elif math.prod(found.image_shape) <= WHOLE_BYTES:
+            disk = disk.placed((y, x), found.image_shape)
+        placed = CellWindows(windows.grid, disk)
+        draw(figures_folder(self.folder.path), f"cell_{found.cell:05d}", placed, image)
 
     def _map(self, found: SourceCell) -> DiskMap:
         mapping = dict(self.parameters.part(MappingParameters))

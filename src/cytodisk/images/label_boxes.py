@@ -1,0 +1,166 @@
+"""Boxes of the cells of a frame, in one pass over its strips."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+from skimage import measure
+
+from cytodisk.arrays import AnyArray, IntArray
+
+Strips: TypeAlias = Iterable[tuple[int, np.ndarray[Any, Any]]]
+"""Number of the first row and pixels, strip after strip of a frame."""
+
+
+class _Runs(NamedTuple):
+    """Pixels of one value side by side in a row."""
+
+    values: AnyArray
+    starts: IntArray
+    ends: IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class LabelBoxes:
+    """The labels of a frame and their boxes.
+
+    Attributes
+    ----------
+    least, greatest : int
+        Of all values, 0 among them.
+    labels : ndarray of shape (N,)
+        Sorted, without 0.
+    boxes : ndarray of shape (N, 4) and dtype int
+        First row, row after the last, first column, column after the last.
+    """
+
+    least: int
+    greatest: int
+    labels: AnyArray
+    boxes: IntArray
+
+    def __iter__(self) -> Iterator[tuple[int, tuple[slice, slice]]]:
+        """Label and box, by label."""
+        for label, (top, bottom, left, right) in zip(self.labels.tolist(), self.boxes.tolist(), strict=True):
+            yield label, (slice(top, bottom), slice(left, right))
+
+
+def label_boxes(strips: Strips) -> LabelBoxes:
+    """Find all labels of a frame and their boxes.
+
+    Parameters
+    ----------
+    strips : iterable of (int, ndarray of shape (h, W))
+
+    Returns
+    -------
+    LabelBoxes
+    """
+    labels, boxes, extremes = [], [], []
+    for first, strip in strips:
+        runs = _runs(strip)
+        extremes += [int(runs.values.min()), int(runs.values.max())]
+        kept = np.flatnonzero(runs.values != 0)
+        if not kept.size:
+            continue
+        row, left = np.divmod(runs.starts[kept], strip.shape[1])
+        right = left + runs.ends[kept] - runs.starts[kept]
+        found, box = _extents(runs.values[kept], np.column_stack([row, row + 1, left, right]))
+        labels.append(found)
+        boxes.append(box + np.array([first, first, 0, 0]))
+    if not labels:
+        return LabelBoxes(min(extremes), max(extremes), np.empty(0, np.int64), np.empty((0, 4), np.int64))
+    return LabelBoxes(min(extremes), max(extremes), *_extents(np.concatenate(labels), np.concatenate(boxes)))
+
+
+def values_of(strips: Strips) -> AnyArray:
+    """The values of a frame, sorted."""
+    found = [np.unique(_runs(strip).values) for _, strip in strips]
+    return np.asarray(np.unique(np.concatenate(found)))
+
+
+def cell_box(strips: Strips) -> tuple[tuple[slice, slice] | None, Any]:
+    """Box of all pixels of a frame that are not 0, None without any; and the greatest value, 0 at least."""
+    greatest: Any = 0
+    rows: list[int] = []
+    columns: list[int] = []
+    for first, strip in strips:
+        held = strip != 0
+        if held.any():
+            there = np.flatnonzero(held.any(axis=1)) + first
+            across = np.flatnonzero(held.any(axis=0))
+            rows += [int(there[0]), int(there[-1])]
+            columns += [int(across[0]), int(across[-1])]
+        greatest = max(greatest, strip.max(initial=0).item())
+    if not rows:
+        return None, greatest
+    return (slice(min(rows), max(rows) + 1), slice(min(columns), max(columns) + 1)), greatest
+
+
+def share_alike(strips: Strips) -> float:
+    """Share of neighbours in a row, both with a label, that have the same; 1 without any."""
+    alike, both = 0, 0
+    for _, strip in strips:
+        left, right = strip[:, :-1], strip[:, 1:]
+        inside = (left != 0) & (right != 0)
+        both += int(inside.sum())
+        alike += int(((left == right) & inside).sum())
+    return alike / both if both else 1.0
+
+
+def count_pieces(strips: Strips) -> int:
+    """Number of 8-connected pieces of one value, over all labels of a frame."""
+    total = 0
+    seams: list[IntArray] = []
+    above: tuple[AnyArray, IntArray] | None = None
+    for _, strip in strips:
+        pieces, count = measure.label(  # type: ignore[no-untyped-call,unused-ignore]
+            strip, background=0, connectivity=2, return_num=True
+        )
+        if above is not None:
+            seams.append(_joined(*above, strip[0], pieces[0] + total))
+        above = strip[-1].copy(), pieces[-1].astype(np.int64) + total
+        total += int(count)
+    if not seams:
+        return total
+    ends = np.unique(np.concatenate(seams), axis=0)
+    if not len(ends):
+        return total
+    names, place = np.unique(ends, return_inverse=True)
+    first, second = place.reshape(-1, 2).T
+    graph = sparse.coo_array((np.ones(len(ends), dtype=bool), (first, second)), shape=(len(names),) * 2)
+    together, _ = connected_components(graph, directed=False)
+    return total - (len(names) - int(together))
+
+
+def _joined(above: AnyArray, pieces_above: IntArray, below: AnyArray, pieces_below: IntArray) -> IntArray:
+    """Pieces of two rows that touch, shape (N, 2)."""
+    pairs = []
+    width = len(above)
+    for step in (-1, 0, 1):
+        up = slice(max(0, -step), width - max(0, step))
+        down = slice(max(0, step), width - max(0, -step))
+        joined = (above[up] == below[down]) & (above[up] != 0)
+        pairs.append(np.column_stack([pieces_above[up][joined], pieces_below[down][joined]]))
+    return np.unique(np.concatenate(pairs), axis=0)
+
+
+def _runs(strip: np.ndarray[Any, Any]) -> _Runs:
+    begins = np.ones(strip.shape, dtype=bool)
+    np.not_equal(strip[:, 1:], strip[:, :-1], out=begins[:, 1:])
+    starts = np.flatnonzero(begins)
+    return _Runs(strip[begins], starts, np.append(starts[1:], strip.size))
+
+
+def _extents(labels: AnyArray, boxes: IntArray) -> tuple[AnyArray, IntArray]:
+    """Each label once, with the box around all of its boxes."""
+    order = np.argsort(labels, kind="stable")
+    labels, boxes = labels[order], boxes[order]
+    first = np.flatnonzero(np.append(True, labels[1:] != labels[:-1]))
+    low, high = np.minimum.reduceat(boxes, first), np.maximum.reduceat(boxes, first)
+    return labels[first], np.column_stack([low[:, 0], high[:, 1], low[:, 2], high[:, 3]])

@@ -1,0 +1,122 @@
+"""Compressed TIFF files by strip or tile."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tifffile
+
+from cytodisk.images.frames import FrameFile
+from cytodisk.images.tiff_pages import opened_tiff
+
+_KEPT_BYTES = 2**26  # of decoded segments, so that cells side by side do not decode them twice
+_PLANES = {"YX": False, "CYX": True}  # axes of a frame, and whether each channel has a page of its own
+_WITH_TABLES = (6, 7, 34892, 33007)  # compressions whose segments need more than themselves: kinds of JPEG
+
+
+@dataclass(eq=False)
+class TiffSegments:
+    """A frame in strips or tiles, each decoded when a piece of it is needed.
+
+    Attributes
+    ----------
+    path : Path
+    pages : range
+        Pages of the frame among those of the series, one a channel.
+    shape : (int, int, int)
+        (C, H, W).
+    dtype : numpy.dtype
+    height, width : int
+        Of a strip or tile.
+    """
+
+    path: Path
+    pages: range
+    shape: tuple[int, int, int]
+    dtype: np.dtype[Any]
+    height: int
+    width: int
+    _kept: OrderedDict[tuple[int, int], np.ndarray[Any, Any]] = field(default_factory=OrderedDict)
+    _kept_bytes: int = 0
+
+    @classmethod
+    def of(cls, file: FrameFile, number: int) -> TiffSegments | None:
+        """The segments of a frame; None where its layout is unusual, so that it must be read whole."""
+        axes = file.axes.replace("T", "")
+        height, width = file.image_shape
+        channels = len(file.channels) if axes == "CYX" else 1
+        if axes not in _PLANES or ("T" in file.axes and file.axes[0] != "T"):
+            return None
+        with opened_tiff(file.path) as tiff:
+            series = tiff.series[0]
+            if series.is_multifile or len(series.pages) != channels * file.n_frames:
+                return None
+            page: Any = series.keyframe
+            usual = page.shape == (height, width) and page.compression not in _WITH_TABLES
+            if not usual:
+                return None
+            tall, wide = (page.tilelength, page.tilewidth) if page.is_tiled else (page.rowsperstrip, width)
+        pages = range(number * channels, (number + 1) * channels)
+        shape = (channels, height, width)
+        return cls(file.path, pages, shape, np.dtype(series.dtype), min(tall, height), min(wide, width))
+
+    def cut(self, rows: slice, columns: slice) -> np.ndarray[Any, Any]:
+        """Pixels of some rows and columns of all channels, shape (C, h, w)."""
+        out = np.empty((len(self.pages), rows.stop - rows.start, columns.stop - columns.start), self.dtype)
+        across = -(-self.shape[2] // self.width)
+        with opened_tiff(self.path) as tiff:
+            for channel, page in enumerate(self.pages):
+                for down in range(rows.start // self.height, -(-rows.stop // self.height)):
+                    for right in range(columns.start // self.width, -(-columns.stop // self.width)):
+                        segment = self._segment(tiff, page, down * across + right)
+                        corner = down * self.height, right * self.width
+                        _copy(segment, corner, out[channel], (rows.start, columns.start))
+        return out
+
+    def _segment(self, tiff: tifffile.TiffFile, page: int, index: int) -> np.ndarray[Any, Any]:
+        if (page, index) in self._kept:
+            self._kept.move_to_end((page, index))
+            return self._kept[page, index]
+        segment = self._decoded(tiff, page, index)
+        self._kept[page, index] = segment
+        self._kept_bytes += segment.nbytes
+        while self._kept_bytes > _KEPT_BYTES and len(self._kept) > 1:
+            self._kept_bytes -= self._kept.popitem(last=False)[1].nbytes
+        return segment
+
+    def _decoded(self, tiff: tifffile.TiffFile, page: int, index: int) -> np.ndarray[Any, Any]:
+        found: Any = tiff.series[0].pages[page]
+        start, size = found.dataoffsets[index], found.databytecounts[index]
+        content = None
+        if size:
+            tiff.filehandle.seek(start)
+            content = tiff.filehandle.read(size)
+            if len(content) < size:
+                raise ValueError(f"segment {index} has {len(content)} of {size} bytes")
+        decoded, _, shape = found.keyframe.decode(content, index)
+        if decoded is None:  # nothing stored
+            return np.full(shape[1:3], found.keyframe.nodata, self.dtype)
+        return np.asarray(decoded[0, : shape[1], : shape[2], 0])
+
+
+def _copy(
+    segment: np.ndarray[Any, Any],
+    corner: tuple[int, int],
+    out: np.ndarray[Any, Any],
+    out_corner: tuple[int, int],
+) -> None:
+    """Copy what a segment and a piece share; their corners are (row, column) in the frame."""
+    start = [max(one, other) for one, other in zip(corner, out_corner, strict=True)]
+    stop = [
+        min(one + size, other + wanted)
+        for one, size, other, wanted in zip(corner, segment.shape, out_corner, out.shape, strict=True)
+    ]
+    here, there = (
+        tuple(slice(a - first, b - first) for a, b, first in zip(start, stop, place, strict=True))
+        for place in (corner, out_corner)
+    )
+    out[there] = segment[here]
