@@ -26,8 +26,10 @@ def solve_cyclic(diagonal: FloatArray, coupling: FloatArray, right: FloatArray) 
     n, k = right.shape
     corner = -diagonal[0]
     x = np.empty((n, k + 1))
-    x[:, :k] = right
-    x[:, k] = 0.0
+    for i in range(n):
+        for a in range(k):
+            x[i, a] = right[i, a]
+        x[i, k] = 0.0
     x[0, k], x[n - 1, k] = corner, coupling[n - 1]
     ratio = np.empty(n)
     one_over = 1.0 / (diagonal[0] - corner)
@@ -43,8 +45,9 @@ def solve_cyclic(diagonal: FloatArray, coupling: FloatArray, right: FloatArray) 
         for a in range(k + 1):
             x[i, a] -= ratio[i + 1] * x[i + 1, a]
     end = coupling[n - 1] / corner
-    factor = (x[0, :k] + end * x[n - 1, :k]) / (1.0 + x[0, k] + end * x[n - 1, k])
-    for i in range(n):
-        for a in range(k):
-            x[i, a] -= x[i, k] * factor[a]
-    return x[:, :k]
+    solved = np.empty((n, k))
+    for a in range(k):
+        factor = (x[0, a] + end * x[n - 1, a]) / (1.0 + x[0, k] + end * x[n - 1, k])
+        for i in range(n):
+            solved[i, a] = x[i, a] - x[i, k] * factor
+    return solved

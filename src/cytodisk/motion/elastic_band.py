@@ -94,22 +94,23 @@ def relax_band(
     """
     n = points.shape[0]
     stiffness = smoothness / spacing
-    reach = math.sqrt((points**2).sum() / n)
-    places, motion = places.copy(), motion.copy()
-    band = _Band(np.empty((n, 2)), np.empty(n), np.empty((n, 2)), np.empty((n, 2)))
+    reach = math.sqrt(_sum_of_squares(points) / n)
+    band = _new_band(n)
     d, gaps = band.d, band.gaps
     _displace(points, target, places, motion, band)
     value = _energy(d, gaps, spacing, stiffness, doubt, motion)
     for _ in range(_ROUNDS):
         change, moved = _newton_step(band, spacing, stiffness, rigid, doubt, motion)
-        longest = max(np.abs(change).max(), reach * abs(moved[0]), abs(moved[1]), abs(moved[2]))
+        longest = max(reach * abs(moved[0]), abs(moved[1]), abs(moved[2]))
+        for i in range(n):
+            longest = max(longest, abs(change[i]))
         scale = min(1.0, _LONGEST_STEP_PX / max(longest, 1e-12))
         for i in range(n):
             shrinking = change[i] - change[(i + 1) % n]
             if shrinking > _MOST_SHRINKING * gaps[i]:
                 scale = min(scale, _MOST_SHRINKING * gaps[i] / shrinking)
         for _ in range(_HALVINGS):
-            new_places, new_motion = places + scale * change, motion + scale * moved
+            new_places, new_motion = _moved_on(places, scale, change), _moved_on(motion, scale, moved)
             _displace(points, target, new_places, new_motion, band)
             new_value = _energy(d, gaps, spacing, stiffness, doubt, new_motion)
             if new_value <= value:
@@ -121,7 +122,29 @@ def relax_band(
         places, motion, value = new_places, new_motion, new_value
         if scale * longest < _STILL_PX:
             break
-    return places, motion, float((d**2).sum() / n)
+    return places, motion, _sum_of_squares(d) / n
+
+
+# Loops where NumPy has a word: array expressions and its linear algebra take seconds to compile.
+@njit(cache=True)
+def _new_band(n: int) -> _Band:
+    return _Band(np.empty((n, 2)), np.empty(n), np.empty((n, 2)), np.empty((n, 2)))
+
+
+@njit(cache=True)
+def _sum_of_squares(points: FloatArray) -> float:
+    total = 0.0
+    for i in range(points.shape[0]):
+        total += points[i, 0] ** 2 + points[i, 1] ** 2
+    return total
+
+
+@njit(cache=True)
+def _moved_on(start: FloatArray, scale: float, step: FloatArray) -> FloatArray:
+    end = np.empty(start.shape[0])
+    for i in range(start.shape[0]):
+        end[i] = start[i] + scale * step[i]
+    return end
 
 
 @njit(cache=True)
@@ -136,7 +159,7 @@ def energy_and_slope(
     """Energy of a band, without doubt, and its derivative by the angle of the motion; see `relax_band`."""
     n = points.shape[0]
     stiffness = smoothness / spacing
-    band = _Band(np.empty((n, 2)), np.empty(n), np.empty((n, 2)), np.empty((n, 2)))
+    band = _new_band(n)
     _displace(points, target, places, motion, band)
     d, by_angle = band.d, band.by_angle
     slope = 0.0
@@ -203,9 +226,9 @@ def _newton_step(
     n = d.shape[0]
     spring = _SPRING * stiffness
     diagonal, coupling, right = np.empty(n), np.empty(n), np.empty((n, 4 if rigid else 1))
-    diagonal[:] = weight + 2.0 * (stiffness + spring)
     for i in range(n):
         after, before = i + 1 if i < n - 1 else 0, i - 1
+        diagonal[i] = weight + 2.0 * (stiffness + spring)
         t0, t1 = tangent[i, 0], tangent[i, 1]
         coupling[i] = -stiffness * (t0 * tangent[after, 0] + t1 * tangent[after, 1]) - spring
         bend0, bend1 = 2.0 * d[i, 0] - d[before, 0] - d[after, 0], 2.0 * d[i, 1] - d[before, 1] - d[after, 1]
@@ -218,21 +241,36 @@ def _newton_step(
             right[i, 1] += t1 * (weight * by_angle[i, 1] + stiffness * bend1)
             right[i, 2], right[i, 3] = -weight * t0, -weight * t1
     solved = solve_cyclic(diagonal, coupling, right)
-    if not rigid:
-        return solved[:, 0].copy(), np.zeros(3)
-    square, pull = _motion_terms(band, weight, stiffness, doubt, motion)
-    for i in range(n):
-        for a in range(3):
-            pull[a] += right[i, 1 + a] * solved[i, 0]
-            for b in range(3):
-                square[a, b] -= right[i, 1 + a] * solved[i, 1 + b]
     change, moved = np.empty(n), np.zeros(3)
-    moved[:] = np.linalg.solve(square, -pull)
+    if rigid:
+        square, pull = _motion_terms(band, weight, stiffness, doubt, motion)
+        for i in range(n):
+            for a in range(3):
+                pull[a] += right[i, 1 + a] * solved[i, 0]
+                for b in range(3):
+                    square[a, b] -= right[i, 1 + a] * solved[i, 1 + b]
+        _solve_three(square, pull, moved)
     for i in range(n):
-        change[i] = solved[i, 0] - (
-            solved[i, 1] * moved[0] + solved[i, 2] * moved[1] + solved[i, 3] * moved[2]
-        )
+        change[i] = solved[i, 0]
+        if rigid:
+            change[i] -= solved[i, 1] * moved[0] + solved[i, 2] * moved[1] + solved[i, 3] * moved[2]
     return change, moved
+
+
+@njit(cache=True)
+def _solve_three(square: FloatArray, pull: FloatArray, moved: FloatArray) -> None:
+    """Solve square · moved = −pull; the matrix is symmetric positive definite and is lost."""
+    for a in range(3):
+        moved[a] = -pull[a]
+        for b in range(a):
+            factor = square[a, b] / square[b, b]
+            for c in range(b + 1, 3):
+                square[a, c] -= factor * square[b, c]
+            moved[a] -= factor * moved[b]
+    for a in range(2, -1, -1):
+        for b in range(a + 1, 3):
+            moved[a] -= square[a, b] * moved[b]
+        moved[a] /= square[a, a]
 
 
 @njit(cache=True)
