@@ -33,4 +33,4 @@ def check_windows(disk: DiskMap, grids: Sequence[tuple[int, int]]) -> tuple[int,
         sums = on_cell.areas.sum(), float((found["mean"] * found["n_pixels"]).sum())
         empty += int((on_cell.areas <= 0).sum())
         worst = max(worst, *(abs(a / b - 1.0) for a, b in zip(sums, known, strict=True)))
-    return empty, worst
+    return empty, float(worst)
