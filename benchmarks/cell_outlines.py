@@ -44,10 +44,13 @@ class Shape:
         return float(np.hypot(*(hull[:, None] - hull[None]).T).max())
 
     def drawn(self, phase: Sequence[float], *, turn: float = 0.0, size: float = 1.0) -> "Drawing":
-        """The shape on a pixel grid, turned by degrees from +x towards +y and enlarged."""
+        """The shape on a pixel grid, turned by degrees from +x towards +y and enlarged.
+
+        Its lowest row and column lie at `MARGIN` pixels and a phase from 0 to 1 for each.
+        """
         matrix = size * rotation(turn)
         outline = self.outline_yx @ matrix.T
-        corner = np.floor(outline.min(axis=0)) - MARGIN - np.asarray(phase)
+        corner = outline.min(axis=0) - MARGIN - np.asarray(phase)
         height, width = np.ceil(outline.max(axis=0) - corner + MARGIN).astype(int) + 1
         mask, _ = clean_mask(half_covered(outline - corner, (int(height), int(width))))
         return Drawing(mask, matrix, -corner)

@@ -11,8 +11,8 @@ diameter (median). Then, with noise, the share in the same window of other grids
 cell lies between the pixels, the points, and the noise.
 
 With `--judges`: the five shapes with targets, ten seeds; ends with status 1 if the default method misses one.
-No default may be chosen by these. With `--tuning`: all others. Real cells are read from the folder in
-CYTODISK_DATA, if it is there.
+The targets were measured at `--phase 0.3 0.3`. No default may be chosen by these shapes. With `--tuning`: all
+others. Real cells are read from the folder in CYTODISK_DATA, if it is there.
 """
 
 import argparse
@@ -52,17 +52,23 @@ _QUALITY = {
 
 
 def measured(
-    shapes: Sequence[Shape], methods: Sequence[str], seeds: Sequence[int], workers: int
+    shapes: Sequence[Shape],
+    methods: Sequence[str],
+    seeds: Sequence[int],
+    workers: int,
+    phase: tuple[float, float] | None = None,
 ) -> pd.DataFrame:
     """A row for each shape, method, seed and change."""
-    jobs = list(product(shapes, methods, seeds))
+    jobs = list(product(shapes, methods, seeds, [phase]))
     with ProcessPoolExecutor(workers) as pool:
         found = list(pool.map(_measured, *zip(*jobs, strict=True)))
     return pd.DataFrame([row for rows in found for row in rows])
 
 
-def _measured(shape: Shape, method: str, seed: int) -> list[dict[str, Any]]:
-    return list(measure(shape, method, seed))
+def _measured(
+    shape: Shape, method: str, seed: int, phase: tuple[float, float] | None
+) -> list[dict[str, Any]]:
+    return list(measure(shape, method, seed, phase))
 
 
 def means(rows: pd.DataFrame) -> Iterator[tuple[str, str, pd.DataFrame]]:
@@ -158,6 +164,9 @@ def main() -> int:
     parser.add_argument("--only", nargs="+", default=(), metavar="NAME", help="names of cells")
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=METHODS)
     parser.add_argument("--seeds", nargs=2, type=int, metavar=("A", "B"), help="from A to B - 1")
+    parser.add_argument(
+        "--phase", nargs=2, type=float, metavar=("Y", "X"), help="where cells lie between the pixels (0 to 1)"
+    )
     parser.add_argument("--csv", type=Path, help="write all rows to this file, too")
     parser.add_argument("--data", type=Path, default=DATA)
     parser.add_argument("--workers", type=int, default=2, help="processes (default 2)")
@@ -168,7 +177,8 @@ def main() -> int:
     if last <= first:
         parser.error("--seeds A B: B must be larger than A")
     shapes = chosen_shapes(which, arguments.data, arguments.only)
-    rows = measured(shapes, arguments.methods, range(first, last), arguments.workers)
+    phase = tuple(arguments.phase) if arguments.phase else None
+    rows = measured(shapes, arguments.methods, range(first, last), arguments.workers, phase)
     print_places(rows)
     print_grids(rows)
     if arguments.csv:

@@ -44,13 +44,17 @@ class Change:
     size: float = 1.0
 
 
-def measure(shape: Shape, method: str, seed: int) -> Iterator[dict[str, Any]]:
+def measure(
+    shape: Shape, method: str, seed: int, phase: tuple[float, float] | None = None
+) -> Iterator[dict[str, Any]]:
     """Rows of a shape, one for each change.
 
-    The seed chooses where the shape lies between pixels, which points are followed, and the noise.
+    The seed chooses where the shape lies between pixels, unless that is given, which points are followed, and
+    the noise.
     """
     random = np.random.default_rng([seed, 29])
-    drawing = shape.drawn(random.random(2))
+    anywhere = random.random(2)
+    drawing = shape.drawn(anywhere if phase is None else phase)
     disk = cd.map_to_disk(drawing.mask, method=method)
     points = inner_points(drawing.mask, random)
     row = {"shape": shape.name, "family": shape.family, "method": method, "seed": seed} | quality(disk)
