@@ -108,7 +108,7 @@ def test_the_worst_channel_is_named() -> None:
     inside = np.zeros((40, 40), dtype=bool)
     inside[5:35, 5:35] = True
     raw[:, 6, 6] = np.nan  # is no number, and no end of a range
-    found = pileup(image, inside)
+    found = pileup(image["channel"].to_numpy().tolist(), image.to_numpy()[:, inside])
     assert (found.clipped_channel, found.saturated_channel) == ("actin", "Rac1")
     assert found.clipped == pytest.approx(0.5, abs=0.05)
     assert found.clipped_note == ""

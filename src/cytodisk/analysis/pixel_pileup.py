@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -43,26 +44,28 @@ class Pileup:
     clipped_note: str = ""
 
 
-def pileup(image: Any, inside: Any) -> Pileup:
+def pileup(channels: Sequence[str], values: Any) -> Pileup:
     """Shares of the channel that is clipped most and of the one that is saturated most.
 
     Parameters
     ----------
-    image : DataArray with dims (channel, y, x)
-    inside : ndarray of shape (H, W) and dtype bool
-        The cell.
+    channels : sequence of str
+        Their names.
+    values : ndarray of shape (C, N)
+        Pixels of the cell in each of them.
 
     Returns
     -------
     Pileup
     """
     clipped, saturated, note = (0.0, ""), (0.0, ""), ""
-    for name, values in zip(image["channel"].to_numpy(), image.to_numpy()[:, inside], strict=True):
-        known = values[np.isfinite(values)]
+    for name, of_channel in zip(channels, values, strict=True):
+        finite = np.isfinite(of_channel)
+        known = of_channel if finite.all() else of_channel[finite]
         share = clipped_share(known)
         if share > clipped[0]:
-            clipped, note = (share, str(name)), clipped_note(known)
-        saturated = max(saturated, (saturated_share(known), str(name)), key=lambda found: found[0])
+            clipped, note = (share, name), clipped_note(known)
+        saturated = max(saturated, (saturated_share(known), name), key=lambda found: found[0])
     return Pileup(*clipped, *saturated, note)
 
 

@@ -43,7 +43,7 @@ class Distortion:
     @property
     def area(self) -> float:
         """Mean of |log λ| over the cell's area; 0 is perfect, 0.1 is about 10 % off."""
-        return float(self.area_share @ np.abs(np.log(self.triangle_area_ratio)))
+        return float((self.area_share * np.abs(np.log(self.triangle_area_ratio))).sum())
 
     @property
     def angle(self) -> float:

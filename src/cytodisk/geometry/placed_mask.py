@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -79,16 +79,23 @@ class PlacedMask:
 
     def outside(self, other: PlacedMask) -> IntArray:
         """Pixels of this cell that are none of another one in the same image, shape (P, 2)."""
-        pixels = self.pixels_yx
-        return np.asarray(pixels[~other.holds(pixels)])
+        left, (here, there) = self.box.copy(), self._shared(other)
+        left[here] &= ~other.box[there]
+        return replace(self, box=left).pixels_yx
 
     def touches(self, other: PlacedMask) -> bool:
         """Whether it shares a pixel with another mask in the same image."""
-        return bool(other.holds(self.pixels_yx).any())
+        here, there = self._shared(other)
+        return bool((self.box[here] & other.box[there]).any())
 
-    def holds(self, pixels_yx: IntArray) -> BoolArray:
-        """Whether pixels of the image, shape (P, 2), are the cell's, shape (P,)."""
-        places = pixels_yx - np.array(self.corner)
-        found = ((places >= 0) & (places < self.box.shape)).all(axis=1)
-        found[found] = self.box[tuple(places[found].T)]
-        return np.asarray(found)
+    def _shared(self, other: PlacedMask) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
+        """Rows and columns that two boxes in one image share, in this box and in the other."""
+        sides = [
+            (max(a.start, b.start), max(a.start, b.start, min(a.stop, b.stop)))
+            for a, b in zip(self.slices, other.slices, strict=True)
+        ]
+        (top, bottom), (left, right) = sides
+        here, there = (
+            (slice(top - y, bottom - y), slice(left - x, right - x)) for y, x in (self.corner, other.corner)
+        )
+        return here, there

@@ -113,8 +113,11 @@ def _cell_columns(windows: CellWindows, image: xr.DataArray | None) -> dict[str,
     report, distortion, certificate = disk.report, disk.distortion, disk.certificate
     centre = centroid(disk.outline_yx)
     smooth = smooth_closed(disk.outline_yx, _PERIMETER_SMOOTHING_PX)
-    missing = int((~np.isfinite(image.to_numpy()[:, disk.mask])).sum()) if image is not None else 0
-    ends = pileup(image, disk.mask) if image is not None else Pileup()
+    missing, ends = 0, Pileup()
+    if image is not None:
+        pixels = disk.placed_mask.cut_out_of(image.to_numpy())[:, disk.placed_mask.box]
+        missing = pixels.size - int(np.count_nonzero(np.isfinite(pixels)))
+        ends = pileup(image["channel"].astype(str).to_numpy().tolist(), pixels)
     return {
         "notes": "; ".join(_notes(windows, missing)),
         "mask_remarks": "; ".join(report.qc_flags),
