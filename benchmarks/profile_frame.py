@@ -33,6 +33,7 @@ from reference_masks import data_folder
 from speed import restart_with_one_thread
 from stages import Stage, StageClock
 
+_SYSTEMS = ("blocks:BlockSystem", "pressure_blocks:PressureSystem")
 MAP_STAGES = (
     Stage("outline", "clean mask", ("cytodisk.geometry.mask:clean_mask",)),
     Stage("outline", "trace", ("cytodisk.geometry.outline:trace_outline",)),
@@ -51,10 +52,10 @@ MAP_STAGES = (
     Stage(
         "map",
         "assembly",
-        ("cytodisk.disk.newton:_Problem.__init__", "cytodisk.disk.newton:_Problem.newton_direction"),
+        ("cytodisk.disk.newton:_Problem.__init__", "cytodisk.disk.newton:_Problem.gauss_newton_direction"),
     ),
-    Stage("map", "factors", ("cytodisk.disk.blocks:BlockSystem.factorise",)),
-    Stage("map", "solves", ("cytodisk.disk.blocks:BlockSystem.solve",)),
+    Stage("map", "factors", tuple(f"cytodisk.disk.{where}.factorise" for where in _SYSTEMS)),
+    Stage("map", "solves", tuple(f"cytodisk.disk.{where}.solve" for where in _SYSTEMS)),
     Stage("map", "line search", ("cytodisk.disk.newton:_Problem.search",)),
     Stage("map", "certificate", ("cytodisk.disk.certificate:certify",)),
     Stage("map", "the rest of it", ("cytodisk.disk.mapping:map_mesh",)),

@@ -9,19 +9,18 @@ import argparse
 import csv
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import tifffile
 
 from cytodisk.arrays import BoolArray, FloatArray
-from cytodisk.disk import newton
 from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.harmonic import harmonic_map, weighted_means
 from cytodisk.disk.newton import relax
+from cytodisk.disk.newton_triangles import relax_triangles
 from cytodisk.disk.untangle import untangled
 from cytodisk.geometry.locate import TriangleLocator
 from cytodisk.geometry.mask import clean_mask
@@ -51,13 +50,13 @@ class Cell:
 
 @dataclass(frozen=True)
 class Way:
-    """One way to a map: its mesh, start and steps."""
+    """One way to a map: its mesh, start and energy."""
 
     name: str
     start: Callable[[Cell, Mesh, BlockSystem], FloatArray]
     growth: float = 0.5
     edge_length: float = 0.9
-    momentum: bool = True
+    by_triangle: bool = False
 
 
 def cell_of(mask: BoolArray) -> Cell:
@@ -97,8 +96,8 @@ def from_coarser(cell: Cell, mesh: Mesh, system: BlockSystem) -> FloatArray:
 
 
 WAYS = (
-    Way("momentum, as it is", from_harmonic),
-    Way("no momentum", from_harmonic, momentum=False),
+    Way("as it is", from_harmonic),
+    Way("areas by triangle", from_harmonic, by_triangle=True),
     Way("stretch energy first", from_stretch),
     Way("coarser mesh first", from_coarser),
     Way("larger triangles inside", from_harmonic, growth=0.75),
@@ -106,28 +105,16 @@ WAYS = (
 )
 
 
-@contextmanager
-def steps_of(way: Way) -> Iterator[None]:
-    """Let Newton's method go without momentum, if the way is one without."""
-    kept = newton.LONGER, newton.MOMENTUM
-    if not way.momentum:
-        newton.LONGER, newton.MOMENTUM = 1.0, 0.0
-    try:
-        yield
-    finally:
-        newton.LONGER, newton.MOMENTUM = kept
-
-
 def measure(cell: Cell, way: Way, fine: Mesh, repeats: int) -> tuple[int, float, float, float]:
     """Newton steps, least milliseconds from outline to map; area error and share folded, on the fine mesh."""
     best = np.inf
-    with steps_of(way):
-        for _ in range(repeats + 1):  # the first may compile
-            started = time.process_time()
-            mesh = mesh_inside(cell.outline_yx, cell.mask, edge_length=way.edge_length, growth=way.growth)
-            system = BlockSystem(mesh)
-            found = relax(mesh, way.start(cell, mesh, system), _SHAPE_WEIGHT, system=system)
-            best = min(best, time.process_time() - started)
+    relaxation = relax_triangles if way.by_triangle else relax
+    for _ in range(repeats + 1):  # the first may compile
+        started = time.process_time()
+        mesh = mesh_inside(cell.outline_yx, cell.mask, edge_length=way.edge_length, growth=way.growth)
+        system = BlockSystem(mesh)
+        found = relaxation(mesh, way.start(cell, mesh, system), _SHAPE_WEIGHT, system=system)
+        best = min(best, time.process_time() - started)
     locator = TriangleLocator(mesh.vertices_yx, mesh.triangles)
     uv = locator.carry(fine.vertices_yx, found.vertices_uv[mesh.triangles])
     in_cell = triangle_areas(fine.vertices_yx, fine.triangles)

@@ -49,7 +49,7 @@ class DiskMap:
         The cleaned mask that was mapped, as its box in the image; `mask` is the whole of it.
     report : MaskReport
         What cleaning changed.
-    method : {"newton", "harmonic", "advection"}
+    method : {"newton", "newton-triangles", "harmonic", "advection"}
     start : {"cotangent", "uniform", "previous"}
         Where the relaxation started: weights of the harmonic map ("uniform" when cotangent weights turned a
         triangle over), or the previous frame of a movie.

@@ -17,7 +17,8 @@ from cytodisk.errors import ParameterError, ReadError
 from cytodisk.files import replacing
 from cytodisk.geometry.placed_mask import PlacedMask
 
-_FORMAT = 2
+_FORMAT = 3
+_OLDER = 2  # differs in one word: its "newton" is what format 3 calls "newton-triangles"
 _FASTEST = 1  # level of compression
 _RIGHTS = 0o600  # of an array's file where the archive is unpacked
 
@@ -82,11 +83,13 @@ def reading_map(path: str | os.PathLike[str]) -> Iterator[tuple[dict[str, Any], 
             raise ReadError(f"{path} is not a map that DiskMap.save wrote, or it is damaged")
         with Path(path).open("rb") as stream, np.load(stream) as file:
             header = json.loads(str(file["header"]))
-            if header["format"] != _FORMAT:
+            if header["format"] not in (_OLDER, _FORMAT):
                 raise ReadError(
-                    f"{path} is a map of format {header['format']}, this version reads format {_FORMAT}: "
-                    "make it again, with cytodisk map or map_to_disk"
+                    f"{path} is a map of format {header['format']}, this version reads formats {_OLDER} and "
+                    f"{_FORMAT}: make it again, with cytodisk map or map_to_disk"
                 )
+            if header["format"] == _OLDER and header["method"] == "newton":
+                header["method"] = "newton-triangles"
             (y, x), (height, width) = header["corner"], header["image_shape"]
             yield header, PlacedMask(file["mask"], (y, x), (height, width)), file
     except FileNotFoundError as error:

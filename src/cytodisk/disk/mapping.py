@@ -12,8 +12,10 @@ from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.disk_map import DiskMap, Start
 from cytodisk.disk.harmonic import harmonic_map
-from cytodisk.disk.mapping_parameters import Align, MappingParameters, MapToDiskParameters
-from cytodisk.disk.newton import Relaxed, relax
+from cytodisk.disk.mapping_parameters import NEWTON_METHODS, Align, MappingParameters, MapToDiskParameters
+from cytodisk.disk.newton import relax
+from cytodisk.disk.newton_triangles import relax_triangles
+from cytodisk.disk.relaxed import Relaxed
 from cytodisk.disk.untangle import untangled
 from cytodisk.errors import MapError
 from cytodisk.geometry.mask import MaskReport, clean_mask
@@ -188,8 +190,9 @@ def map_mesh(
     method, shape_weight = parameters.method, parameters.shape_weight
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
     uv, start = _start(cell, circle, None if method == "advection" else anchor_uv)
-    if method == "newton":
-        relaxed = relax(cell.mesh, uv, shape_weight, anchor_uv, inertia, cell.system)
+    if method in NEWTON_METHODS:
+        by_newton = relax if method == "newton" else relax_triangles
+        relaxed = by_newton(cell.mesh, uv, shape_weight, anchor_uv, inertia, cell.system)
         return disk_map(cell, relaxed, start, parameters)
     if method == "advection":
         advected = advect(cell.mesh, uv)

@@ -1,53 +1,31 @@
-"""Equiareal relaxation by projected Newton steps that cannot turn a triangle over (design of this package).
+"""Equiareal relaxation by Gauss-Newton steps that cannot turn a triangle over (design of this package).
+
+Areas are averaged around vertices (`vertex_energy`). One area a triangle would be about as many constraints
+as there are unknowns: the triangulation locks, as linear elements do in an incompressible solid, and the mesh
+chooses the map (`newton_triangles`, kept for comparison). Averages leave half as many constraints, so that
+the shape term chooses, and a cell that is mirrored or meshed anew gets nearly the same map.
 
 The energy is a barrier: it grows without bound as a triangle loses its area, so from a valid start no
 accepted step leaves the valid maps.
-
-Far from the minimum the area term's Hessian is the Gauss-Newton one: log det J is close to linear over a
-step, where (log det J)² bends away from its parabola and even turns concave above e. On cells with thin necks
-this takes fewer steps (`benchmarks/reference_masks.py` prints how many).
-
-Near the minimum the projected Hessian overestimates curvature, for what it raises to 0 was negative: steps
-are too short and run the same way time after time. They are made longer, with momentum, and taken back where
-that does not lower the energy.
 """
-
-from dataclasses import dataclass
 
 import numpy as np
 
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.blocks import BlockSystem
-from cytodisk.disk.energy import Elements, derivatives, energy, largest_step
+from cytodisk.disk.energy import largest_step
+from cytodisk.disk.pressure_blocks import PressureSystem
+from cytodisk.disk.relaxed import Relaxed
+from cytodisk.disk.vertex_energy import averaged_elements, averaged_energy, fill_step
 from cytodisk.errors import MapError
 from cytodisk.geometry.mesh import Mesh, hat_gradients, triangle_areas
 
 _SAFE_SHARE = 0.9  # of the step at which the first triangle would lose its area
 _SUFFICIENT = 1e-4  # Armijo: share of the predicted decrease that a step must reach
-_HALVINGS = 50
-LONGER, MOMENTUM = 1.5, 0.3  # of a step near the minimum: its own length, and the step before
+_TRIALS = 50
+_SHORTEST, _LONGEST = 0.1, 0.7  # of a step that was too long: bounds of the next one
 DECREMENT = 4e-5
-GAUSS_NEWTON_ABOVE = 1e-2  # decrement below which the whole projected Hessian takes over
 MAX_STEPS = 500
-
-
-@dataclass(frozen=True)
-class Relaxed:
-    """Result of a relaxation.
-
-    Attributes
-    ----------
-    vertices_uv : ndarray of shape (V, 2) and dtype float
-    steps : int
-        Newton steps taken.
-    converged : bool
-        Whether the Newton decrement fell below `DECREMENT` within `MAX_STEPS`; if not, the map is valid but
-        its area error could still fall.
-    """
-
-    vertices_uv: FloatArray
-    steps: int
-    converged: bool
 
 
 def relax(
@@ -57,13 +35,13 @@ def relax(
     anchor_uv: FloatArray | None = None,
     inertia: float = 0.0,
     system: BlockSystem | None = None,
-    area_weight: float = 1.0,
 ) -> Relaxed:
-    """Move the interior vertices of a valid map until its triangles have their share of the area.
+    """Move the interior vertices of a valid map until each has its share of the area around it.
 
     Parameters
     ----------
     mesh : Mesh
+        No interior edge may join two boundary vertices.
     start_uv : ndarray of shape (V, 2) and dtype float
         A valid map: every triangle positive. Boundary vertices stay where they are.
     shape_weight : float
@@ -74,8 +52,6 @@ def relax(
         Weight of the mean squared distance from there, over the disk's area, that is added to the energy.
     system : BlockSystem, optional
         Of this mesh, if there is one already.
-    area_weight : float
-        0 leaves areas out: what remains is the shape term, which still keeps triangles from turning over.
 
     Returns
     -------
@@ -88,28 +64,23 @@ def relax(
 
     References
     ----------
-    Smith, de Goes & Kim, "Analytic eigensystems for isotropic distortion energies", 2019,
-    doi:10.1145/3241041
+    Averaged areas: Bonet & Burton, "A simple average nodal pressure tetrahedral element for incompressible
+    and nearly incompressible dynamic explicit applications", 1998. De Souza Neto, Andrade Pires & Owen,
+    "F-bar-based linear triangles and tetrahedra for finite strain analysis of nearly incompressible solids",
+    2005, doi:10.1002/nme.1187
     """
     anchored = (start_uv, 0.0) if anchor_uv is None else (anchor_uv, inertia)
-    weights = shape_weight, area_weight
-    problem = _Problem(mesh, system or BlockSystem(mesh), start_uv, weights, *anchored)
-    uv, value, last = start_uv, problem.energy(start_uv), None
+    problem = _Problem(mesh, system or BlockSystem(mesh), start_uv, shape_weight, *anchored)
+    uv, value = start_uv, problem.energy(start_uv)
     if not np.isfinite(value):
         raise MapError("relaxation needs a start without flipped triangles")
-    gauss = True
     for step in range(MAX_STEPS):
-        newton, decrement = problem.newton_direction(uv, gauss)
-        gauss = gauss and decrement > GAUSS_NEWTON_ABOVE
+        direction, decrement = problem.gauss_newton_direction(uv)
         if decrement < DECREMENT:
             return Relaxed(uv, step, decrement > -DECREMENT)
-        moved = None
-        if last is not None and not gauss:
-            moved = problem.search(uv, LONGER * newton + MOMENTUM * last, value, decrement, halvings=1)
-        moved = moved or problem.search(uv, newton, value, decrement)
+        moved = problem.search(uv, direction, value, decrement)
         if moved is None:  # no descent left in double precision
             return Relaxed(uv, step, False)
-        last = moved[0] - uv
         uv, value = moved
     return Relaxed(uv, MAX_STEPS, False)
 
@@ -122,67 +93,60 @@ class _Problem:
         mesh: Mesh,
         system: BlockSystem,
         uv: FloatArray,
-        weights: tuple[float, float],
+        shape_weight: float,
         anchor_uv: FloatArray,
         inertia: float,
     ):
         areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
         scale = np.sqrt(triangle_areas(uv[:, ::-1], mesh.triangles).sum() / areas.sum())
         hats = hat_gradients(mesh.vertices_yx * scale, mesh.triangles)
-        self._weight, area_weight = weights
-        self._cell = Elements(mesh.triangles, hats, areas / areas.sum(), area_weight)
-        self._system = system
-        self._anchor = anchor_uv
-        corner_share = np.repeat(self._cell.share / 3.0, 3)
-        self._inertia = inertia * np.bincount(mesh.triangles.ravel(), corner_share, minlength=len(uv))
-        self._inertia[: mesh.n_boundary] = 0.0
+        share = areas / areas.sum()
+        self._cell = averaged_elements(mesh.triangles, hats, share, system.unknown)
+        self._weight = shape_weight
+        self._system = PressureSystem(system.pattern)
+        self._vertex = system.vertex
+        self._anchor = anchor_uv[self._vertex]
+        thirds = np.bincount(mesh.triangles.ravel(), np.repeat(share / 3.0, 3), minlength=len(uv))
+        self._inertia = inertia * thirds[self._vertex, None] if inertia else None
 
     def energy(self, uv: FloatArray) -> float:
-        value = float(energy(uv, *self._cell, self._weight))
-        if self._inertia.any():
-            value += float((self._inertia * np.square(uv - self._anchor).sum(axis=1)).sum())
+        value = float(averaged_energy(uv, self._cell, self._weight))
+        if self._inertia is not None:
+            value += float((self._inertia * np.square(uv[self._vertex] - self._anchor)).sum())
         return value
 
-    def newton_direction(self, uv: FloatArray, gauss: bool) -> tuple[FloatArray, float]:
+    def gauss_newton_direction(self, uv: FloatArray) -> tuple[FloatArray, float]:
         """Step of every vertex, and the energy it promises to save to first order."""
-        system = self._system
-        gradient = np.empty((len(system.vertex), 2))
-        derivatives(
-            uv,
-            self._cell,
-            self._weight,
-            system.unknown,
-            system.place,
-            gauss,
-            gradient,
-            system.blocks,
-        )
-        if self._inertia.any():
-            pull = 2.0 * self._inertia[system.vertex, None]
-            gradient += pull * (uv - self._anchor)[system.vertex]
+        system, diagonal = self._system, self._system.pattern.diagonal
+        right = np.empty((len(self._vertex), 3))
+        fill_step(uv, self._cell, self._weight, system.pattern.place, diagonal, system.blocks, right)
+        if self._inertia is not None:
+            pull = 2.0 * self._inertia
+            right[:, :2] -= pull * (uv[self._vertex] - self._anchor)
             for axis in (0, 1):
-                system.blocks[system.diagonal, axis, axis] += pull[:, 0]
+                system.blocks[diagonal, axis, axis] += pull[:, 0]
         system.factorise()
-        step = system.solve(-gradient)
+        found = system.solve(right)
         direction = np.zeros_like(uv)
-        direction[system.vertex] = step
-        return direction, -float((gradient * step).sum())
+        direction[self._vertex] = found[:, :2]
+        # The gradient of the areas is 2 Rᵀr, and R dx = p / 2 - r; `right` holds -g and -r.
+        areas = right[:, 2] @ (found[:, 2] + 2.0 * right[:, 2])
+        return direction, float((right[:, :2] * found[:, :2]).sum() + areas)
 
     def search(
-        self,
-        uv: FloatArray,
-        direction: FloatArray,
-        value: float,
-        decrement: float,
-        halvings: int = _HALVINGS,
+        self, uv: FloatArray, direction: FloatArray, value: float, decrement: float
     ) -> tuple[FloatArray, float] | None:
-        """Armijo backtracking from the longest step that keeps every triangle positive."""
-        barrier = largest_step(uv, direction, self._cell.triangles, self._cell.hats)
-        size = min(1.0, _SAFE_SHARE * barrier)
-        for _ in range(halvings):
+        """Armijo search from the longest step that keeps every triangle positive.
+
+        A step that is too long is followed by the lowest point of the parabola through what is known.
+        """
+        size = min(1.0, _SAFE_SHARE * largest_step(uv, direction, self._cell.triangles, self._cell.hats))
+        for _ in range(_TRIALS):
             moved = uv + size * direction
             new_value = self.energy(moved)
             if new_value <= value - _SUFFICIENT * size * decrement:
                 return moved, new_value
-            size *= 0.5
+            excess = new_value - value + size * decrement  # above the tangent
+            lowest = 0.5 * size * decrement / excess if np.isfinite(excess) else 0.5
+            size *= min(max(lowest, _SHORTEST), _LONGEST)
         return None

@@ -8,6 +8,7 @@ from typing import Any
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import CellMesh, map_mesh, mesh_cell
+from cytodisk.disk.mapping_parameters import NEWTON_METHODS
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.still_interior import fade_in_px, still_map
 from cytodisk.motion.temporal import carried_inside, tracked_angles
@@ -90,7 +91,7 @@ def map_frame(
         found = still_map(cell, angles, last.disk, settings, fade_in_px(settings, scale))
         return MappedFrame(found.disk, boundary, reference, found.restarted)
     anchor = None
-    if not boundary.restarted and settings.method == "newton":
+    if not boundary.restarted and settings.method in NEWTON_METHODS:
         anchor = carried_inside(cell, contour, boundary.s, last.disk, last.boundary.contour, last.boundary.s)
     disk = _map(cell, angles, settings, anchor)
     return MappedFrame(disk, boundary, reference, boundary.restarted if still else "")

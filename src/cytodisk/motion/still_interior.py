@@ -12,7 +12,8 @@ from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap, Start
 from cytodisk.disk.harmonic import fading_extension, harmonic_map, vertex_areas
 from cytodisk.disk.mapping import CellMesh, disk_map
-from cytodisk.disk.newton import relax
+from cytodisk.disk.mapping_parameters import NEWTON_METHODS
+from cytodisk.disk.newton_triangles import relax_triangles
 from cytodisk.disk.untangle import untangled
 from cytodisk.errors import ParameterError
 from cytodisk.geometry.mesh import triangle_areas
@@ -57,8 +58,10 @@ def fade_in_px(settings: MovieSettings, scale: Scale) -> float:
         if settings.fade_um is not None:
             raise ParameterError('fade_um is for interior "still": pass --interior still (interior="still")')
         return FADE_PX
-    if settings.method != "newton":
-        raise ParameterError(f'interior "still" needs method "newton", got {settings.method!r}')
+    if settings.method not in NEWTON_METHODS:
+        raise ParameterError(
+            f'interior "still" needs method "newton" or "newton-triangles", got {settings.method!r}'
+        )
     if settings.fade_um is None:
         return FADE_PX
     if scale.pixel_size_um is None:
@@ -110,7 +113,7 @@ def still_map(
     start: Start = "previous"
     if uv is None:
         uv, start = harmonic_map(cell.mesh, circle, cell.system)
-    relaxed = relax(cell.mesh, uv, _SHAPE_WEIGHT, anchor, _PULL, cell.system, area_weight=0.0)
+    relaxed = relax_triangles(cell.mesh, uv, _SHAPE_WEIGHT, anchor, _PULL, cell.system, area_weight=0.0)
     away = 0.5 * _distance_of_most(cell, relaxed.vertices_uv - anchor)
     why = f"places inside lie {away:.1%} of the diameter from where the last map has them"
     return StillMap(disk_map(cell, relaxed, start, settings), why if away > _MOST_AWAY else "")

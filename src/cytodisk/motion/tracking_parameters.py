@@ -66,9 +66,9 @@ class InteriorParameters(Parameters):
 
     interior: Interior = parameter(
         "area",
-        'What is assumed of the inside, method "newton". "area": each place keeps its share of the area on '
-        'the way from the edge to the centre. "still": it keeps its place in the lab; only near the edge it '
-        "moves with the edge.",
+        'What is assumed of the inside, methods "newton" and "newton-triangles". "area": each place keeps '
+        'its share of the area on the way from the edge to the centre. "still": it keeps its place in the '
+        "lab; only near the edge it moves with the edge.",
     )
     fade_um: float | None = parameter(
         None,

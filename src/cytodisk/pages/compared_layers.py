@@ -23,6 +23,8 @@ from cytodisk.store.figures_folder import figure_path
 # other the thinner ones, and those with gaps, are in front, so that each is seen.
 METHOD_STYLES: dict[str, dict[str, Any]] = {
     "newton": {"color": "#0072B2", "marker": "o", "linewidth": 2.2, "markersize": 4.6, "zorder": 2.1},
+    "newton-triangles": {"color": "#E69F00", "marker": "P", "linestyle": (0, (5, 1.5)), "zorder": 2.15}
+    | {"linewidth": 1.4, "markersize": 3.4},
     "harmonic": {"color": "#56B4E9", "marker": "s", "linestyle": (0, (3, 2)), "zorder": 2.2}
     | {"linewidth": 1.2, "markersize": 3.2},
     "advection": {"color": "#009E73", "marker": "^", "linestyle": (0, (1.2, 2)), "zorder": 2.3}

@@ -111,8 +111,8 @@ class CellWindows(WindowsOnCell):
     --------
     >>> import cytodisk as cd
     >>> windows = cd.polar_windows(layers=3, sectors=8).on(cd.map_to_disk(cd.simulate.disk(12)))
-    >>> windows.areas.shape, windows.n_empty
-    ((3, 8), 0)
+    >>> windows.areas.shape, windows.n_empty, windows.area_error < 0.05
+    ((3, 8), 0, True)
     >>> len(windows.geojson()["features"])
     24
     """
@@ -159,6 +159,16 @@ class CellWindows(WindowsOnCell):
     def completeness(self) -> FloatArray:
         """Share of windows that hold signal, by layer, shape (layers,); NaN if deeper than the cell."""
         return np.where(self.grid.present, super().completeness, np.nan)
+
+    @property
+    def area_error(self) -> float:
+        """Mean |ln| of each window's share of the cell over its share of the disk; 0 is perfect.
+
+        At 0.1 the areas of windows are about 10 % off. Layers deeper than the cell do not count.
+        """
+        in_disk = -np.diff(np.square(self.grid.radii))[self.grid.present]
+        in_cell = self.areas[self.grid.present] / self.areas.sum() * self.grid.sectors
+        return float(np.abs(np.log(in_cell / in_disk[:, None])).mean())
 
     def polygons(self) -> list[FloatArray]:
         """Outline of each window in the cell, by window number.

@@ -13,7 +13,12 @@ _MEASURED = (BY_LAYER, BY_METHOD)
 
 # Name, tables, unit, what it is.
 _COLUMNS: tuple[tuple[str, Iterable[str], str, str], ...] = (
-    ("method", _ALL, "", "newton (cytodisk's default), harmonic, advection (u-Unwrap's), edge, or rings"),
+    (
+        "method",
+        _ALL,
+        "",
+        "newton (cytodisk's default), newton-triangles, harmonic, advection (u-Unwrap's), edge, or rings",
+    ),
     ("layer", (BY_LAYER,), "", "0 at the edge"),
     ("channel", (THROUGH_TIME,), "", "channel of the signal; empty without a signal"),
     ("layer", (THROUGH_TIME,), "", "0 at the edge; empty: the mean over layers of each frame"),

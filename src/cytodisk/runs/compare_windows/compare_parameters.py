@@ -15,12 +15,13 @@ from cytodisk.scale import Scale
 from cytodisk.scale_parameters import PixelSizeParameters
 from cytodisk.windows.grid_parameters import EdgeGridParameters, GridParameters
 
-WindowMethod: TypeAlias = Literal["newton", "harmonic", "advection", "edge", "rings"]
+WindowMethod: TypeAlias = Literal["newton", "newton-triangles", "harmonic", "advection", "edge", "rings"]
 
 OURS = "newton"
-ON_A_MAP = ("newton", "harmonic", "advection")
+ON_A_MAP = ("newton", "newton-triangles", "harmonic", "advection")
 TITLES = {
     "newton": "cytodisk (default)",
+    "newton-triangles": "cytodisk, areas by triangle",
     "harmonic": "harmonic map",
     "advection": "u-Unwrap's relaxation",
     "edge": "edge-based",
@@ -29,8 +30,9 @@ TITLES = {
 """Names of the methods in figures and on the console."""
 
 _METHODS = (
-    "Kinds of windows that are compared: on cytodisk's map (newton), the map before relaxation (harmonic), "
-    "the paper's map (advection), by distance from the edge (edge), around the deepest point (rings)."
+    "Kinds of windows that are compared: on cytodisk's map (newton), on that of earlier versions "
+    "(newton-triangles), on the map before relaxation (harmonic), on the paper's map (advection), by "
+    "distance from the edge (edge), around the deepest point (rings)."
 )
 _WORDS = f"several of {', '.join(TITLES)}"
 

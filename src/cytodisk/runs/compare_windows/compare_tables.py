@@ -38,7 +38,8 @@ _METHOD = Column(
     "method",
     pa.string(),
     "",
-    "how windows are made: newton (the default map), harmonic, advection (of the paper), edge or rings",
+    "how windows are made: newton (the default map), newton-triangles, harmonic, advection (of the paper), "
+    "edge or rings",
 )
 # One row for each cell and method; counts are sums over the frames of a movie.
 _CELLS: Columns = (

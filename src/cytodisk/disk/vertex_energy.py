@@ -1,0 +1,175 @@
+"""The relaxation energy with areas averaged around vertices: Numba kernels.
+
+E = Σ_v a_v (log (A_v / a_v))² + w Σ_t a_t (‖J_t‖²_F / det J_t - 2), where J_t is the Jacobian from the cell,
+scaled to the area of the disk, to the disk, and a_t the share of triangle t in the cell's area. Each triangle
+gives its share, in cell and disk, in parts to its interior corners: a_v and A_v are what vertex v gets. E is
+infinite where any det J_t ≤ 0: the second sum is a barrier.
+
+Both sums are sums of squares, the second of √(w a_t) (J₁₁ - J₂₂, J₁₂ + J₂₁) / √det J_t: 0 where angles are
+kept. So both have a Gauss-Newton Hessian. That of the areas couples a vertex with its neighbours' neighbours;
+a pressure at each vertex as a third unknown keeps every coupling within a triangle (`fill_step`).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.disk.energy import jacobian
+
+SHAPE_CURVATURE = 1.5
+"""Factor of the Gauss-Newton Hessian of the shape term.
+
+It leaves out what bends the residuals, and near the minimum steps are up to twice too long without a factor.
+"""
+
+
+class AveragedElements(NamedTuple):
+    """The triangles of a cell, and the vertices that their areas are averaged at.
+
+    Attributes
+    ----------
+    triangles : ndarray of shape (F, 3) and dtype int
+    hats : ndarray of shape (F, 3, 2) and dtype float
+        Gradients of their hat functions in the cell, scaled to the area of the disk.
+    share : ndarray of shape (F,) and dtype float
+        Their shares of the area.
+    corner : ndarray of shape (F, 3) and dtype int
+        Unknown at each corner; -1 at the boundary.
+    parts : ndarray of shape (F, 3) and dtype float
+        What each triangle gives of its share to each corner; 0 to the boundary.
+    target : ndarray of shape (N,) and dtype float
+        a_v, the share that each unknown gets in the cell.
+    """
+
+    triangles: IntArray
+    hats: FloatArray
+    share: FloatArray
+    corner: IntArray
+    parts: FloatArray
+    target: FloatArray
+
+
+def averaged_elements(
+    triangles: IntArray, hats: FloatArray, share: FloatArray, unknown: IntArray
+) -> AveragedElements:
+    """Elements whose triangles give their shares in equal parts to their interior corners.
+
+    Parameters
+    ----------
+    triangles : ndarray of shape (F, 3) and dtype int
+        Each with at least one interior corner.
+    hats : ndarray of shape (F, 3, 2) and dtype float
+    share : ndarray of shape (F,) and dtype float
+    unknown : ndarray of shape (V,) and dtype int
+        Number of each vertex among the unknowns; -1 for the boundary.
+
+    Returns
+    -------
+    AveragedElements
+    """
+    corner = unknown[triangles]
+    inside = corner >= 0
+    parts = np.where(inside, share[:, None] / np.maximum(inside.sum(axis=1), 1)[:, None], 0.0)
+    target = np.bincount(corner[inside], parts[inside], minlength=int(unknown.max(initial=-1)) + 1)
+    return AveragedElements(triangles, hats, share, corner, parts, np.asarray(target, dtype=np.float64))
+
+
+@njit(cache=True)
+def averaged_energy(uv: FloatArray, cell: AveragedElements, weight: float) -> float:
+    """E of a map; infinite if any triangle is not positive."""
+    triangles, hats, share, corner, parts, target = cell
+    area = np.zeros(len(target))
+    shape = 0.0
+    for t in range(triangles.shape[0]):
+        a, b, c, d = jacobian(uv, triangles[t], hats[t])
+        det = a * d - b * c
+        if not det > 0.0:
+            return np.inf
+        shape += share[t] * ((a - d) ** 2 + (b + c) ** 2) / det
+        for k in range(3):
+            if corner[t, k] >= 0:
+                area[corner[t, k]] += parts[t, k] * det
+    total = weight * shape
+    for n in range(len(target)):
+        total += target[n] * math.log(area[n] / target[n]) ** 2
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def fill_step(
+    uv: FloatArray,
+    cell: AveragedElements,
+    weight: float,
+    place: IntArray,
+    diagonal: IntArray,
+    blocks: FloatArray,
+    right: FloatArray,
+) -> None:
+    """Fill the system of a Gauss-Newton step: its 3×3 blocks and its right-hand side (N, 3).
+
+    With R = √a_v ∇A_v / A_v and r = √a_v log (A_v / a_v), a row each vertex, and H and g the Hessian and the
+    gradient of the shape term, the step dx and the pressures p = 2 (r + R dx) solve
+
+        H dx + Rᵀ p = -g,   R dx - p / 2 = -r,
+
+    which is the step of H + 2 RᵀR. `place` and `diagonal` are those of `block_pattern.BlockPattern`.
+    """
+    triangles, hats, share, corner, parts, _ = cell
+    right[:] = 0.0
+    blocks[:] = 0.0
+    slope = _fill_areas(uv, cell, diagonal, blocks, right)
+    curvature = math.sqrt(SHAPE_CURVATURE)
+    e, f = np.empty((3, 2)), np.empty((3, 2))  # gradients of the two residuals, by corner
+    g, m = np.empty((3, 2)), np.empty(3)  # gradient of det J, and its weight in the area around the corner
+    for t in range(triangles.shape[0]):
+        a, b, c, d = jacobian(uv, triangles[t], hats[t])
+        inverse = 1.0 / (a * d - b * c)
+        root = math.sqrt(2.0 * weight * share[t] * inverse)
+        r1, r2 = root * (a - d), root * (b + c)
+        s1, s2 = 0.5 * r1 * inverse, 0.5 * r2 * inverse
+        for k in range(3):
+            x, y = hats[t, k, 0], hats[t, k, 1]
+            g[k, 0], g[k, 1] = d * x - c * y, a * y - b * x
+            e[k, 0], e[k, 1] = root * x - s1 * g[k, 0], -root * y - s1 * g[k, 1]
+            f[k, 0], f[k, 1] = root * y - s2 * g[k, 0], root * x - s2 * g[k, 1]
+            n = corner[t, k]
+            m[k] = parts[t, k] * slope[n] if n >= 0 else 0.0
+            for axis in range(2):
+                if n >= 0:
+                    right[n, axis] -= r1 * e[k, axis] + r2 * f[k, axis]
+                e[k, axis] *= curvature
+                f[k, axis] *= curvature
+        for k in range(3):
+            for l in range(3):
+                block = place[t, k, l]
+                if block < 0:
+                    continue
+                for i in range(2):
+                    for j in range(2):
+                        blocks[block, i, j] += e[k, i] * e[l, j] + f[k, i] * f[l, j]
+                    blocks[block, i, 2] += g[k, i] * m[l]
+                    blocks[block, 2, i] += m[k] * g[l, i]
+
+
+@njit(cache=True, error_model="numpy")
+def _fill_areas(
+    uv: FloatArray, cell: AveragedElements, diagonal: IntArray, blocks: FloatArray, right: FloatArray
+) -> FloatArray:
+    """Fill in what belongs to the pressures alone; √a_v / A_v of each vertex."""
+    triangles, hats, _, corner, parts, target = cell
+    area = np.zeros(len(target))
+    for t in range(triangles.shape[0]):
+        a, b, c, d = jacobian(uv, triangles[t], hats[t])
+        for k in range(3):
+            if corner[t, k] >= 0:
+                area[corner[t, k]] += parts[t, k] * (a * d - b * c)
+    slope = np.empty(len(target))
+    for n in range(len(target)):
+        root = math.sqrt(target[n])
+        slope[n] = root / area[n]
+        right[n, 2] = -root * math.log(area[n] / target[n])
+        blocks[diagonal[n], 2, 2] = -0.5
+    return slope
