@@ -38,7 +38,7 @@ def window_measures(windows: WindowsOnCell) -> xr.Dataset:
     >>> measures = cd.window_measures(windows)
     >>> measures["area"].round().to_numpy()  # square pixels, by layer and sector
     array([[59., 59., 59., 59., 59., 59.],
-           [59., 59., 60., 59., 59., 59.]])
+           [59., 59., 59., 59., 59., 59.]])
     """
     by_window = ("layer", "sector")
     return xr.Dataset(

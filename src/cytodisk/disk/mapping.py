@@ -78,7 +78,7 @@ def map_to_disk(
     >>> disk.certificate.valid
     True
     >>> disk.to_cell([[0.0, 0.0]]).round(1)  # the cell's point at the disk's centre, (row, column)
-    array([[38.6, 27.4]])
+    array([[36.9, 27.5]])
     """
     parameters = MapToDiskParameters.of(**settings)
     cell = mesh_cell(mask, parameters, Scale.of(mask).given(parameters.pixel_size_um))
