@@ -27,6 +27,7 @@ import numpy as np
 import pandas as pd
 import pyarrow.parquet as pq
 import zarr
+from zarr.storage import ZipStore
 
 from differences import compare_pictures, difference
 from make_results import Amount, make_results
@@ -36,7 +37,7 @@ HERE = Path(__file__).parent
 # Columns and arrays, as they were and as they are.
 RENAMED = {"time": "frame", "doubts": "qc_flags", "track_times": "track_frames"}
 # Patterns of files' names, as they were, and what stands for them.
-RENAMED_FILES: dict[str, str] = {}
+RENAMED_FILES: dict[str, str] = {r"activity\.zarr$": "activity.zarr.zip"}
 # File (a pattern) and name: a difference that is wanted, and why.
 EXPLAINED: dict[tuple[str, str], str] = {
     (r"\.npz$", "header.pixel_size_um"): "a map carries its scale",
@@ -94,8 +95,9 @@ def read_arrays(path: Path) -> dict[str, np.ndarray]:
 
 
 def read_store(path: Path) -> dict[str, np.ndarray]:
-    """Arrays of a Zarr store, by their place in it."""
-    members = zarr.open_group(path, mode="r").members(max_depth=None)
+    """Arrays of a Zarr store, a folder or packed into one file, by their place in it."""
+    store = ZipStore(path, mode="r") if path.is_file() else path
+    members = zarr.open_group(store, mode="r").members(max_depth=None)
     return {place: np.asarray(item[...]) for place, item in members if isinstance(item, zarr.Array)}
 
 
@@ -104,6 +106,7 @@ READERS: dict[str, Callable[[Path], dict[str, np.ndarray]]] = {
     ".csv": read_csv,
     ".npz": read_arrays,
     ".zarr": read_store,
+    ".zip": read_store,
 }
 
 

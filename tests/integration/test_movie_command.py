@@ -59,8 +59,10 @@ def test_a_movie_from_end_to_end(run: Run, masks: Path, signal: Path, tmp_path: 
         assert words in said
     names = {path.name for path in out.iterdir()}
     tables = {"cells.parquet", *TABLES}
-    others = {"activity.zarr", "columns.csv", "maps", "figures", "parameters.toml", "provenance.json"}
+    others = {"activity.zarr.zip", "columns.csv", "maps", "figures", "parameters.toml", "provenance.json"}
     assert names == tables | others
+    beside = [path.relative_to(out).parts for path in out.rglob("*") if path.is_file()]
+    assert len([parts for parts in beside if parts[0] not in ("maps", "figures")]) <= 12
     assert {path.name for path in (out / "maps").iterdir()} == {
         f"cell_00000_t{time:05d}.npz" for time in range(FRAMES)
     }

@@ -151,6 +151,6 @@ def test_a_map_or_store_that_is_gone_or_damaged(masks: Path, tmp_path: Path) -> 
     for read in (lambda: study.map(0, 1), lambda: movie[1], lambda: movie.points_yx):
         with pytest.raises(ReadError, match=r"cell_00000_t00001\.npz"):
             read()
-    (study.path / "activity.zarr").rename(study.path / "elsewhere")
-    with pytest.raises(ReadError, match=r"activity\.zarr has no activity of cell 0"):
+    (study.path / "activity.zarr.zip").rename(study.path / "elsewhere")
+    with pytest.raises(ReadError, match=r"activity\.zarr\.zip has no activity of cell 0"):
         study.activity(0)

@@ -1,11 +1,16 @@
-"""The activity store of a movie's study: a Zarr group a cell, written a few frames at a time."""
+"""The activity store of a movie's study: a Zarr group a cell, written a few frames at a time.
+
+It is one file, the Zip of a Zarr store: with shards each of a cell's arrays, about 30, still were two files.
+"""
 
 from __future__ import annotations
 
 import os
 import shutil
+import zipfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +19,7 @@ import xarray as xr
 
 from cytodisk.analysis.activity import GEOMETRY, STATISTICS, with_places
 from cytodisk.errors import ReadError, StudyError
+from cytodisk.files import replacing
 from cytodisk.scale import Scale
 from cytodisk.windows.polar_windows import PolarGrid
 
@@ -54,16 +60,17 @@ class ActivityStore:
         StudyError
             The folder cannot be written.
         """
-        temporary = target.with_name(f".{target.stem}.{os.getpid()}.tmp{target.suffix}")
+        work = target.with_name(f".{target.stem}.{os.getpid()}.tmp.zarr")
         try:
-            shutil.rmtree(temporary, ignore_errors=True)  # of an earlier process with this number
-            temporary.mkdir()
-            yield cls(temporary)
-            if target.exists():
-                shutil.rmtree(target)
-            temporary.replace(target)
+            shutil.rmtree(work, ignore_errors=True)  # of an earlier process with this number
+            work.mkdir()
+            yield cls(work)
+            with replacing(target) as temporary:
+                _pack(work, temporary)
         except OSError as error:
             raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
+        finally:
+            shutil.rmtree(work, ignore_errors=True)
 
     def cell(
         self,
@@ -171,7 +178,7 @@ def open_activity(path: Path, cell: int) -> xr.Dataset:
     Parameters
     ----------
     path : Path
-        The store.
+        The store; where it does not stand, a folder of that name without ".zip", as earlier versions wrote.
     cell : int
 
     Returns
@@ -183,8 +190,26 @@ def open_activity(path: Path, cell: int) -> xr.Dataset:
     ReadError
         It is not there or damaged.
     """
+    folder = path.with_suffix("")
     try:
-        found: xr.Dataset = xr.open_zarr(path, group=group_name(cell), chunks=None, **_ZARR)
-    except (OSError, KeyError, ValueError) as error:
+        store = folder if folder.is_dir() and not path.exists() else _opened(path, path.stat().st_mtime_ns)
+        found: xr.Dataset = xr.open_zarr(store, group=group_name(cell), chunks=None, **_ZARR)
+    except (OSError, KeyError, ValueError, zipfile.BadZipFile) as error:
         raise ReadError(f"{path} has no activity of cell {cell}: {error}") from error
     return with_places(found.set_xindex("frame"))
+
+
+@lru_cache(maxsize=1)
+def _opened(path: Path, _changed: int) -> Any:
+    """A packed store; it stays open for the next cell, as going through the names in it takes time."""
+    from zarr.storage import ZipStore
+
+    return ZipStore(path, mode="r")
+
+
+def _pack(folder: Path, target: Path) -> None:
+    """Put a folder into a Zip file; the same content gives the same bytes."""
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_STORED) as packed:
+        for file in sorted(path for path in folder.rglob("*") if path.is_file()):
+            name = zipfile.ZipInfo(file.relative_to(folder).as_posix())
+            packed.writestr(name, file.read_bytes())

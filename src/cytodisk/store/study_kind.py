@@ -12,7 +12,7 @@ from cytodisk.store.tables import Columns
 PARAMETERS = "parameters.toml"
 CELLS = "cells.parquet"
 MAPS, FIGURES, PARTS = "maps", "figures", ".parts"
-ACTIVITY = "activity.zarr"
+ACTIVITY = "activity.zarr.zip"
 
 
 @dataclass(frozen=True)

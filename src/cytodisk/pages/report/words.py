@@ -29,7 +29,7 @@ _FILES = {
     "windows.parquet": "one row a cell, frame, channel, layer and sector: mean, sd, area",
     "edge.parquet": "one row a cell, frame and sector: edge velocity with its error, areas won and lost",
     "consistency.parquet": "how alike consecutive frames are, by layer",
-    "activity.zarr": "the same as arrays by time, channel, layer and sector",
+    "activity.zarr.zip": "the same as arrays by time, channel, layer and sector",
     "maps/": "the map of each cell and frame",
     "correlation/": "correlations by window and layer, if any were computed",
     "figures/": "figures for print",

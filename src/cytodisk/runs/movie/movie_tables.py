@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Sequence
 from typing import Any
 
@@ -45,12 +44,9 @@ def finish_tables(
         Channels of the signal; empty if there is none.
     """
     rows = {(row["cell"], row["frame"]): row for row in folder.rows()}
-    target = folder.path / ACTIVITY
-    with ActivityStore.replacing(target) as store:
+    with ActivityStore.replacing(folder.path / ACTIVITY) as store:
         for track in tracks:
             _finish_track(folder, track, grid, scale, channels, rows, store)
-    for left_over in folder.path.glob(".activity.*"):
-        shutil.rmtree(left_over)
 
 
 def _finish_track(
