@@ -19,7 +19,7 @@ from cytodisk.taking import takes
 from cytodisk.windows.depths import DEPTHS
 from cytodisk.windows.grid_parameters import SampleParameters
 from cytodisk.windows.on_cell import WindowsOnCell
-from cytodisk.windows.sample import sample
+from cytodisk.windows.sample import sample, sampled_pixels
 
 GEOMETRY = ("area", "centroid_y", "centroid_x", *DEPTHS)
 STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
@@ -172,12 +172,27 @@ def window_arrays(windows: WindowsOnCell, image: Any, **settings: Any) -> dict[s
         Statistics of shape (C, L, S); of shape (L, S) area in square pixels, and centroid_y, centroid_x,
         depth, depth_p5 and depth_p95 in pixels.
     """
+    if image is None:
+        return pixel_arrays(windows, None)
+    data = sample(windows, image, **settings)
+    return {name: data[name].to_numpy() for name in STATISTICS} | pixel_arrays(windows, None)
+
+
+def pixel_arrays(
+    windows: WindowsOnCell, pixels: FloatArray | None, nan: str = "propagate"
+) -> dict[str, FloatArray]:
+    """As `window_arrays`, from the values of the cell's pixels alone.
+
+    Parameters
+    ----------
+    windows : WindowsOnCell
+    pixels : ndarray of shape (C, P) and dtype float, or None
+        Of each pixel of the mask, in row-major order.
+    nan : {"propagate", "omit"}
+    """
     arrays = {"area": windows.areas} | windows.depth_columns
     arrays["centroid_y"], arrays["centroid_x"] = np.moveaxis(windows.centroids_yx, -1, 0)
-    if image is None:
-        return arrays
-    data = sample(windows, image, **settings)
-    return {name: data[name].to_numpy() for name in STATISTICS} | arrays
+    return arrays if pixels is None else sampled_pixels(windows, pixels, nan=nan) | arrays
 
 
 class ActivityTables:

@@ -17,6 +17,10 @@ Strips: TypeAlias = Iterable[tuple[int, np.ndarray[Any, Any]]]
 """Number of the first row and pixels, strip after strip of a frame."""
 
 
+Box: TypeAlias = tuple[slice, slice]
+"""Rows and columns."""
+
+
 class _Runs(NamedTuple):
     """Pixels of one value side by side in a row."""
 
@@ -44,7 +48,7 @@ class LabelBoxes:
     labels: AnyArray
     boxes: IntArray
 
-    def __iter__(self) -> Iterator[tuple[int, tuple[slice, slice]]]:
+    def __iter__(self) -> Iterator[tuple[int, Box]]:
         """Label and box, by label."""
         for label, (top, bottom, left, right) in zip(self.labels.tolist(), self.boxes.tolist(), strict=True):
             yield label, (slice(top, bottom), slice(left, right))
@@ -84,7 +88,7 @@ def values_of(strips: Strips) -> AnyArray:
     return np.asarray(np.unique(np.concatenate(found)))
 
 
-def cell_box(strips: Strips) -> tuple[tuple[slice, slice] | None, Any]:
+def cell_box(strips: Strips) -> tuple[Box | None, Any]:
     """Box of all pixels of a frame that are not 0, None without any; and the greatest value, 0 at least."""
     greatest: Any = 0
     rows: list[int] = []
@@ -100,6 +104,14 @@ def cell_box(strips: Strips) -> tuple[tuple[slice, slice] | None, Any]:
     if not rows:
         return None, greatest
     return (slice(min(rows), max(rows) + 1), slice(min(columns), max(columns) + 1)), greatest
+
+
+def with_margin(box: Box, shape: tuple[int, int]) -> Box:
+    """A box with one more pixel on every side where the image goes on."""
+    rows, columns = (
+        slice(max(side.start - 1, 0), min(side.stop + 1, size)) for side, size in zip(box, shape, strict=True)
+    )
+    return rows, columns
 
 
 def share_alike(strips: Strips) -> float:

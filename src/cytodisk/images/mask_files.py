@@ -15,7 +15,7 @@ from cytodisk.errors import CytodiskError, EmptyMaskError, MaskError, ReadError,
 from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.frames import FrameFile, open_frames
-from cytodisk.images.label_boxes import LabelBoxes, cell_box, label_boxes
+from cytodisk.images.label_boxes import Box, LabelBoxes, cell_box, label_boxes, with_margin
 from cytodisk.images.mask_kinds import MaskLook, Reader, check_labels, look_at
 from cytodisk.images.mask_names import mask_names
 
@@ -264,7 +264,7 @@ def _found_labels(frame: FramePixels, number: int) -> LabelBoxes:
     return found
 
 
-def _labelled(frame: FramePixels, label: int, place: tuple[slice, ...], nothing: SourceCell) -> SourceCell:
+def _labelled(frame: FramePixels, label: int, place: Box, nothing: SourceCell) -> SourceCell:
     try:
         mask, corner = frame.cut(*place)[0] == label, (place[0].start, place[1].start)
         return replace(nothing, label=label, mask=mask, corner=corner)
@@ -281,14 +281,6 @@ def _single(frame: FramePixels, nothing: SourceCell) -> SourceCell:
     mask = frame.cut(rows, columns)[0].copy()  # so that a waiting cell does not hold its whole image
     label = _single_label(frame.dtype, greatest, box is not None)
     return replace(nothing, label=label, mask=mask, corner=(rows.start, columns.start))
-
-
-def with_margin(box: tuple[slice, ...], shape: tuple[int, ...]) -> tuple[slice, slice]:
-    """A box with one more pixel on every side where the image goes on."""
-    rows, columns = (
-        slice(max(side.start - 1, 0), min(side.stop + 1, size)) for side, size in zip(box, shape, strict=True)
-    )
-    return rows, columns
 
 
 def _single_label(dtype: np.dtype[Any], greatest: Any, holds_cell: bool) -> int:

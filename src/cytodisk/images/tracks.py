@@ -9,7 +9,11 @@ from typing import Any
 import numpy as np
 
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
+from cytodisk.geometry.placed_mask import PlacedMask
+from cytodisk.images.file_parameters import Kind
+from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.frames import FrameFile
+from cytodisk.images.label_boxes import Box, cell_box, label_boxes, with_margin
 from cytodisk.images.linking import link_labels
 from cytodisk.images.mask_kinds import MaskLook
 
@@ -61,6 +65,72 @@ class CellTrack:
         if frame not in self.labels:
             return MissingLabel(f"label {self.label} is not in frame {frame}")
         return image == self.labels[frame]
+
+    def cut_from(self, found: CellsInFrame | CytodiskError, frame: int) -> PlacedMask | CytodiskError:
+        """As `mask_in`, but the cell's box alone, with one more pixel on every side where the image goes on.
+
+        Parameters
+        ----------
+        found : CellsInFrame or CytodiskError
+            As `open_cells` returns it.
+        frame : int
+        """
+        if isinstance(found, CytodiskError):
+            return found
+        if self.labels is not None and frame not in self.labels:
+            return MissingLabel(f"label {self.label} is not in frame {frame}")
+        try:
+            return found.mask_of(None if self.labels is None else self.labels[frame])
+        except ReadError as error:
+            return as_data(error)
+
+
+@dataclass(frozen=True, eq=False)
+class CellsInFrame:
+    """A frame of a mask movie with the box of each cell.
+
+    Attributes
+    ----------
+    pixels : FramePixels
+    boxes : dict of (int or None) to (slice, slice)
+        By label, None for a frame that is the mask of one cell.
+    """
+
+    pixels: FramePixels
+    boxes: dict[int | None, Box]
+
+    def mask_of(self, label: int | None) -> PlacedMask:
+        """The mask of a label, or of the one cell with the values that it has in the file."""
+        shape = self.pixels.image_shape
+        everything = slice(0, shape[0]), slice(0, shape[1])
+        rows, columns = with_margin(self.boxes.get(label, everything), shape)
+        values = self.pixels.cut(rows, columns)[0]
+        box = values.copy() if label is None else values == label
+        return PlacedMask(box, (rows.start, columns.start), shape)
+
+
+def open_cells(file: FrameFile, frame: int, kind: Kind) -> CellsInFrame | ReadError:
+    """Find the cells of a frame of a mask movie, which is read by piece.
+
+    Parameters
+    ----------
+    file : FrameFile
+    frame : int
+    kind : {"stack", "labels"}
+
+    Returns
+    -------
+    CellsInFrame, or ReadError
+        The error of a damaged frame, so that the frames around it can be used.
+    """
+    try:
+        pixels = frame_pixels(file, frame)
+        if kind == "labels":
+            return CellsInFrame(pixels, dict(label_boxes(pixels.strips())))
+        box, _ = cell_box(pixels.strips())
+        return CellsInFrame(pixels, {} if box is None else {None: box})
+    except ReadError as error:
+        return as_data(error)
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,15 @@ from typing import Any, Literal
 import numpy as np
 import xarray as xr
 
-from cytodisk.analysis.activity import STATISTICS, window_arrays
+from cytodisk.analysis.activity import STATISTICS, pixel_arrays
 from cytodisk.analysis.pixel_pileup import Pileup, pileup
 from cytodisk.errors import CytodiskError, EmptyMaskError, ReadError, SignalError
 from cytodisk.geometry.outline_step import outline_step
+from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
 from cytodisk.windows.depths import DEPTHS
 from cytodisk.windows.polar_windows import CellWindows
+from cytodisk.windows.sample import check_channel_names
 from cytodisk.windows.window_sizes import window_sizes
 
 _PERIMETER_SMOOTHING_PX = 1.0
@@ -73,6 +75,22 @@ def cell_status(fault: CytodiskError) -> str:
     return "no image" if isinstance(fault, SignalError) else "refused"
 
 
+@dataclass(frozen=True, eq=False)
+class _CellSignal:
+    """Values of a cell's pixels, shape (C, P), and the names of the channels."""
+
+    channels: list[str]
+    pixels: np.ndarray[Any, Any]
+
+    @classmethod
+    def of(cls, image: xr.DataArray, placed: PlacedMask) -> _CellSignal:
+        values = image.to_numpy()
+        box = values if values.shape[1:] == placed.box.shape else placed.cut_out_of(values)
+        channels = [str(name) for name in image["channel"].to_numpy()]
+        check_channel_names("signal", channels)
+        return cls(channels, box[:, placed.box])
+
+
 def measure_windows(
     place: FramePlace,
     windows: CellWindows,
@@ -87,7 +105,7 @@ def measure_windows(
     place : FramePlace
     windows : CellWindows
     image : DataArray with dims (channel, y, x), or None
-        Of the shape of the map's mask.
+        Of the shape of the map's mask, or of its box in the image (`DiskMap.placed_mask`).
     nan : {"propagate", "omit"}
     corner : (int, int)
         (row, column) of the first pixel of the mask in the image that the rows are about.
@@ -99,25 +117,25 @@ def measure_windows(
     columns : dict of str to array
         Of the table of windows: for each channel every window, layers first.
     """
-    row = place.row | _cell_columns(windows, image)
-    columns = _window_columns(place, windows, image, nan)
+    signal = None if image is None else _CellSignal.of(image, windows.disk.placed_mask)
+    row = place.row | _cell_columns(windows, signal)
+    columns = _window_columns(place, windows, signal, nan)
     for values in (row, columns):
         for name, first in zip(("centroid_y", "centroid_x"), corner, strict=True):
             values[name] = values[name] + float(first)
     return row, columns
 
 
-def _cell_columns(windows: CellWindows, image: xr.DataArray | None) -> dict[str, Any]:
+def _cell_columns(windows: CellWindows, signal: _CellSignal | None) -> dict[str, Any]:
     """What the table of cells says about a map and its windows."""
     disk = windows.disk
     report, distortion, certificate = disk.report, disk.distortion, disk.certificate
     centre = centroid(disk.outline_yx)
     smooth = smooth_closed(disk.outline_yx, _PERIMETER_SMOOTHING_PX)
     missing, ends = 0, Pileup()
-    if image is not None:
-        pixels = disk.placed_mask.cut_out_of(image.to_numpy())[:, disk.placed_mask.box]
-        missing = pixels.size - int(np.count_nonzero(np.isfinite(pixels)))
-        ends = pileup(image["channel"].astype(str).to_numpy().tolist(), pixels)
+    if signal is not None:
+        missing = signal.pixels.size - int(np.count_nonzero(np.isfinite(signal.pixels)))
+        ends = pileup(signal.channels, signal.pixels)
     return {
         "notes": "; ".join(_notes(windows, missing)),
         "mask_remarks": "; ".join(report.qc_flags),
@@ -171,15 +189,16 @@ def _notes(windows: CellWindows, missing: int) -> list[str]:
 def _window_columns(
     place: FramePlace,
     windows: CellWindows,
-    image: xr.DataArray | None,
+    signal: _CellSignal | None,
     nan: Literal["propagate", "omit"],
 ) -> dict[str, Any]:
-    arrays = window_arrays(windows, image, nan=nan)
+    pixels = None if signal is None else signal.pixels.astype(np.float64, copy=False)
+    arrays = pixel_arrays(windows, pixels, nan)
     n_windows = windows.grid.n_windows
-    channels = [None] if image is None else [str(name) for name in image["channel"].to_numpy()]
+    channels = [None] if signal is None else signal.channels
     repeats = len(channels)
-    missing = np.isnan(arrays["mean"]) if image is not None else np.zeros((1, *windows.areas.shape), bool)
-    status = np.where(missing, "NaN in signal", "no signal" if image is None else "ok").astype(object)
+    missing = np.isnan(arrays["mean"]) if signal is not None else np.zeros((1, *windows.areas.shape), bool)
+    status = np.where(missing, "NaN in signal", "no signal" if signal is None else "ok").astype(object)
     status[:, ~windows.grid.present] = "deeper than the cell"
     layer, sector = np.divmod(np.tile(np.arange(n_windows), repeats), windows.grid.sectors)
     nothing = np.full(n_windows * repeats, np.nan)

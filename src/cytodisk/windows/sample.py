@@ -72,18 +72,13 @@ def sample(
     instance_of("windows", windows, WindowsOnCell, "windows on a cell, as grid.on(disk) returns them", order)
     _check_quantiles(quantiles)
     values, channels = _parse_signal(signal, windows.mask.shape)
-    weights = windows.weights
     pixels = values.reshape(len(values), -1)[:, np.flatnonzero(windows.mask)]
+    arrays = sampled_pixels(windows, pixels, tuple(quantiles), nan)
     shape = (len(values), *windows.areas.shape)
-    tables = [_statistics(weights, row, tuple(quantiles), nan) for row in pixels]
     dims = ("channel", "layer", "sector")
-    data: dict[str, Any] = {
-        name: (dims, np.stack([table[name] for table in tables]).reshape(shape), {"units": unit})
-        for name, unit in _UNITS.items()
-    }
+    data: dict[str, Any] = {name: (dims, arrays[name], {"units": unit}) for name, unit in _UNITS.items()}
     if quantiles:
-        stacked = np.stack([table["quantile"] for table in tables]).reshape(*shape, len(quantiles))
-        data["quantile"] = ((*dims, "q"), stacked, {"units": "a.u."})
+        data["quantile"] = ((*dims, "q"), arrays["quantile"], {"units": "a.u."})
     data["area"] = (("layer", "sector"), windows.areas, {"units": "px²"})
     for name, depth in windows.depth_columns.items():
         data[name] = (("layer", "sector"), windows.scale.length(depth), {"units": windows.scale.length_unit})
@@ -94,6 +89,31 @@ def sample(
         coords["channel"] = channels
     dataset = xr.Dataset(data, coords, attrs=windows.scale.attrs)
     return dataset.isel(channel=0) if channels is None else dataset
+
+
+def sampled_pixels(
+    windows: WindowsOnCell, pixels: FloatArray, quantiles: tuple[float, ...] = (), nan: str = "propagate"
+) -> dict[str, FloatArray]:
+    """The statistics of `sample` from the values of the cell's pixels alone.
+
+    Parameters
+    ----------
+    windows : WindowsOnCell
+    pixels : ndarray of shape (C, P) and dtype float
+        Of each pixel of the mask, in row-major order.
+    quantiles : tuple of float
+    nan : {"propagate", "omit"}
+
+    Returns
+    -------
+    dict of str to ndarray of shape (C, layers, sectors), or (C, layers, sectors, Q) for "quantile"
+    """
+    tables = [_statistics(windows.weights, row, quantiles, nan) for row in pixels]
+    shape = (len(pixels), *windows.areas.shape)
+    return {
+        name: np.stack([table[name] for table in tables]).reshape(*shape, *values.shape[1:])
+        for name, values in tables[0].items()
+    }
 
 
 _UNITS = {"mean": "a.u.", "sd": "a.u.", "n_pixels": "px²", "n_nan": "px²", "min": "a.u.", "max": "a.u."}

@@ -36,6 +36,7 @@ class FrameTask:
     before : MappedFrame or None
         The frame before, if that has a map.
     signal : DataArray with dims (channel, y, x), or None
+        Of the box of the frame's mask.
     grid : PolarGrid
     parameters : FollowedCellParameters
     map_path : Path

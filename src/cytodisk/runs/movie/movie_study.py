@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from concurrent.futures import Future
 from typing import Any
 
-from cytodisk.errors import MaskError, ReadError
-from cytodisk.images.signal_files import load_image
-from cytodisk.images.tracks import CellTrack, read_frame
+from cytodisk.errors import MaskError, ReadError, as_data
+from cytodisk.images.signal_files import SignalFrame, open_image
+from cytodisk.images.tracks import CellTrack, open_cells
 from cytodisk.motion.following import FollowedFrame, map_cells
 from cytodisk.motion.frame_file import load_frame
 from cytodisk.motion.mapped_frame import MappedFrame
@@ -88,7 +88,7 @@ class _Run:
         self._executor = executor
         self._tracks = {track.cell: track for track in inputs.tracks}
         self._last: dict[int, MappedFrame] = {}
-        self._signal: Any = None  # of the frame that is being mapped
+        self._signal: SignalFrame | ReadError | None = None  # of the frame that is being mapped
         self._report = report
 
     def all_frames(self) -> None:
@@ -124,12 +124,12 @@ class _Run:
 
     def _read(self, frame: int, tracks: list[CellTrack]) -> Iterator[tuple[int, Any]]:
         """Cells with their masks; without the frame's signal there is none."""
-        labels = read_frame(self._inputs.masks, frame)
-        signal = self._signal = load_image(self._inputs.signal, frame)
+        cells = open_cells(self._inputs.masks, frame, self._inputs.kind)
+        signal = self._signal = open_image(self._inputs.signal, frame)
         for track in tracks:
             if track.cell not in self._last:
                 self._resume_from(track, frame)
-            mask = signal if isinstance(signal, ReadError) else track.mask_in(labels, frame)
+            mask = signal if isinstance(signal, ReadError) else track.cut_from(cells, frame)
             yield track.cell, mask
 
     def _measured(self, found: FollowedFrame) -> Future[FrameRows]:
@@ -138,11 +138,17 @@ class _Run:
         place = FramePlace(track.cell, frame, track.label, self._inputs.scale.seconds(frame))
         if result.mapped is None:
             return finished(unmapped_rows(place, result.fault or MaskError("no map"), found.seconds))
+        signal = None
+        if isinstance(self._signal, SignalFrame):
+            try:
+                signal = self._signal.cut(*result.mapped.disk.placed_mask.slices)
+            except ReadError as fault:
+                return finished(unmapped_rows(place, as_data(fault), found.seconds))
         task = FrameTask(
             place,
             result.mapped,
             last if last is not None and last.frame == frame - 1 else None,
-            self._signal,
+            signal,
             self._inputs.grid,
             self._inputs.parameters,
             self._folder.map_path(part_key(track.cell, frame)),
