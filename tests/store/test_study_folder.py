@@ -9,7 +9,7 @@ import pytest
 import cytodisk as cd
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.store.figures_folder import figure_path
-from cytodisk.store.provenance_file import differences, record_files
+from cytodisk.store.provenance_file import MAPS, differences, record_files
 from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import SOURCE_COLUMNS
@@ -35,8 +35,8 @@ def add(folder: StudyFolder, cell: int, **values: object) -> None:
     folder.add(part_key(cell), {"cell": cell, "frame": 0} | values, tables)
 
 
-def finished(path: Path, length_unit: str = "px") -> StudyFolder:
-    folder = StudyFolder.start(path, run(length_unit), KIND)
+def finished(path: Path, length_unit: str = "px", **settings: object) -> StudyFolder:
+    folder = StudyFolder.start(path, run(length_unit, **settings), KIND)
     add(folder, 0, status="ok", area=12.5)
     add(folder, 1, status="refused", reason="empty")
     folder.finish([part_key(0), part_key(1)])
@@ -133,6 +133,27 @@ def test_resume_names_the_packages_that_differ_alone() -> None:
     there = {"fingerprint": {"packages": {"numpy": "1.26.4", "scipy": "1.11"}, "gone": 1}}
     here = {"fingerprint": {"packages": {"numpy": "2.1.0", "scipy": "1.11"}}}
     assert differences(there, here) == "numpy: 1.26.4 then, 2.1.0 now; gone: 1 then, None now"
+
+
+def test_resume_says_what_newton_was_in_an_earlier_version(tmp_path: Path) -> None:
+    now = {MAPS: 2}
+    finished(tmp_path / "out", method="newton")
+    with pytest.raises(
+        StudyError, match=r"newton is now newton-triangles\): pass --overwrite .* maps as before"
+    ):
+        StudyFolder.start(tmp_path / "out", run(method="newton", **now), KIND, resume=True)
+    with pytest.raises(
+        StudyError, match=r"newton then, newton-triangles now; .*newton is now newton-triangles"
+    ):
+        StudyFolder.start(tmp_path / "out", run(method="newton-triangles", **now), KIND, resume=True)
+    assert len(cd.open_study(tmp_path / "out").cells) == 2
+
+
+def test_resume_by_another_method_names_both_and_the_way_on(tmp_path: Path) -> None:
+    finished(tmp_path / "out", method="newton-triangles")
+    words = r"method: newton-triangles then, newton now\): pass --method newton-triangles to go on"
+    with pytest.raises(StudyError, match=words):
+        StudyFolder.start(tmp_path / "out", run(method="newton"), KIND, resume=True)
 
 
 def test_resume_keeps_complete_parts(tmp_path: Path) -> None:

@@ -11,6 +11,9 @@ Align: TypeAlias = Literal["upright"] | tuple[float, float] | float
 NEWTON_METHODS: tuple[Method, ...] = ("newton", "newton-triangles")
 """Methods that relax by Newton's method, so that a movie's frames can start from the frame before."""
 
+MAPS_VERSION = 2
+"""Of what the methods give. In version 1, "newton" gave what "newton-triangles" gives now."""
+
 
 class MethodParameters(Parameters):
     """How a cell is mapped."""

@@ -8,10 +8,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from cytodisk.disk.mapping_parameters import MAPS_VERSION
 from cytodisk.errors import ReadError
 from cytodisk.parameters import Parameters
 from cytodisk.runs.versions import NUMERIC, installed
 from cytodisk.scale import Scale
+from cytodisk.store.provenance_file import MAPS
 
 
 def describe_run(
@@ -46,7 +48,7 @@ def describe_run(
     settings = parameters.model_dump(mode="json")
     fingerprint: dict[str, Any] = {f"{role} sha256": found["sha256"] for role, found in described.items()}
     fingerprint |= {"cytodisk": installed(("cytodisk",))["cytodisk"]} | settings
-    fingerprint["packages"] = installed(NUMERIC)
+    fingerprint |= {MAPS: MAPS_VERSION, "packages": installed(NUMERIC)}
     fingerprint |= asdict(scale)
     return {
         "status": "running",

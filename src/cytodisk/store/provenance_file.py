@@ -14,6 +14,8 @@ from cytodisk.errors import ReadError
 from cytodisk.files import replacing
 
 PROVENANCE = "provenance.json"
+MAPS = "maps version"
+_EARLIER_MAPS = "its maps are of an earlier version, whose method newton is now newton-triangles"
 FORMAT = 2
 """Of the tables and files of a study: 1 had no list of files, and other names of columns."""
 
@@ -139,12 +141,25 @@ def differences(there: dict[str, Any], here: dict[str, Any]) -> str:
     return "; ".join(changes) or "unknown"
 
 
+def way_out(there: dict[str, Any], here: dict[str, Any]) -> str:
+    """What to do where another run stands, in words."""
+    then, now = there.get("fingerprint", {}), here["fingerprint"]
+    anew = "--overwrite to replace it, or another folder"
+    if "method" in then and then | {"method": now.get("method")} == now:
+        return f"pass --method {then['method']} to go on with it, {anew}"
+    if MAPS in now and MAPS not in then and then.get("method") == "newton":
+        return f"pass {anew}; --method newton-triangles maps as before"
+    return f"pass {anew}"
+
+
 def _changes(old: dict[str, Any], new: dict[str, Any]) -> list[str]:
     changes = []
     for name in [*new, *(name for name in old if name not in new)]:
         then, now = old.get(name), new.get(name)
         if isinstance(then, dict) and isinstance(now, dict):
             changes += _changes(then, now)
+        elif name == MAPS and then is None:
+            changes.append(_EARLIER_MAPS)
         elif then != now:
             changes.append(f"{name}: {_short(then)} then, {_short(now)} now")
     return changes

@@ -18,6 +18,7 @@ from cytodisk.store.provenance_file import (
     other_version,
     own_files,
     read_provenance,
+    way_out,
     write_json,
 )
 
@@ -125,10 +126,7 @@ def check_room(
     if not resume:
         raise StudyError(f"{place} holds a study: pass --resume to go on, --overwrite to replace it")
     if there.get("fingerprint") != here["fingerprint"]:
-        raise OtherRunError(
-            f"{place} holds another run ({differences(there, here)}): "
-            "pass --overwrite to replace it, or another folder"
-        )
+        raise OtherRunError(f"{place} holds another run ({differences(there, here)}): {way_out(there, here)}")
 
 
 def remove_left_overs(places: Iterable[Path]) -> None:

@@ -9,11 +9,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from cytodisk.disk.mapping_parameters import MAPS_VERSION
 from cytodisk.errors import OtherRunError, StudyError
 from cytodisk.runs.batch.batch_file import Batch
 from cytodisk.runs.batch.input_row import ROWS, STUDIES
 from cytodisk.runs.versions import NUMERIC, installed
-from cytodisk.store.provenance_file import FORMAT, PROVENANCE, command_of, own_files, parse_provenance
+from cytodisk.store.provenance_file import FORMAT, MAPS, PROVENANCE, command_of, own_files, parse_provenance
 from cytodisk.store.study_room import check_room
 from cytodisk.store.targets import Store
 from cytodisk.store.url_store import is_url
@@ -100,7 +101,11 @@ def describe_batch(batch: Batch) -> dict[str, Any]:
         "format": FORMAT,
         "files": list(_FILES),
         "status": "running",
-        "fingerprint": {"cytodisk": installed(("cytodisk",))["cytodisk"], "packages": installed(NUMERIC)},
+        "fingerprint": {
+            "cytodisk": installed(("cytodisk",))["cytodisk"],
+            MAPS: MAPS_VERSION,
+            "packages": installed(NUMERIC),
+        },
         "inputs": {role: _described_file(path) for role, path in files.items()},
         "batch file": batch.path.read_text(encoding="utf-8-sig"),
         "number of inputs": len(batch.inputs),
