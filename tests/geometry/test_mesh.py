@@ -1,5 +1,7 @@
 import numpy as np
 import pytest
+from shapely import contains_xy
+from shapely.geometry import Polygon
 
 from cytodisk import simulate
 from cytodisk.errors import MeshError
@@ -65,3 +67,14 @@ def test_an_outline_that_crosses_itself_is_refused() -> None:
     bow_tie = np.array([(0.0, 0.0), (10.0, 10.0), (0.0, 10.0), (10.0, 0.0)])
     with pytest.raises(MeshError, match=r"crosses itself|not a disk"):
         mesh_inside(bow_tie, np.ones((11, 11), dtype=bool), edge_length=0.9)
+
+
+@pytest.mark.parametrize("kind", simulate.KINDS)
+def test_triangles_are_those_that_the_library_leaves_inside_the_outline(kind: str) -> None:
+    mask, _ = clean_mask(simulate.random_mask(kind, 3))
+    outline = trace_outline(mask)
+    mesh = mesh_inside(outline, mask, edge_length=1.5)
+    polygon = Polygon(outline[:, ::-1])
+    centres = mesh.vertices_yx[mesh.triangles].mean(axis=1)
+    assert contains_xy(polygon, centres[:, 1], centres[:, 0]).all()
+    assert triangle_areas(mesh.vertices_yx, mesh.triangles).sum() == pytest.approx(polygon.area)

@@ -34,14 +34,15 @@ def graded_lattice(mask: BoolArray, edge_length: float, growth: float, clearance
         (row, column) in pixels; may be empty for thin cells.
     """
     depth = depth_of(np.pad(mask, 1)) - 0.5
-    pixels = np.argwhere(mask)
-    centre = pixels.mean(axis=0)
-    return _fill(depth, centre, _long_axis(pixels - centre), edge_length, growth, clearance)
+    row, column = np.nonzero(mask)
+    centre = np.array([row.mean(), column.mean()])
+    axis = _long_axis(row - centre[0], column - centre[1])
+    return _fill(depth, centre, axis, edge_length, growth, clearance)
 
 
-def _long_axis(away: FloatArray) -> float:
+def _long_axis(y: FloatArray, x: FloatArray) -> float:
     """Angle of the axis of largest spread, from +x towards +y, so that the lattice turns with the cell."""
-    yy, xx, yx = (away[:, 0] ** 2).sum(), (away[:, 1] ** 2).sum(), (away[:, 0] * away[:, 1]).sum()
+    yy, xx, yx = (y**2).sum(), (x**2).sum(), (y * x).sum()
     return float(0.5 * np.arctan2(2.0 * yx, xx - yy))
 
 

@@ -15,6 +15,7 @@ from cytodisk.geometry.lattice import graded_lattice
 from cytodisk.geometry.polygon import signed_area
 
 _AREA_TOLERANCE = 1e-9
+_BIG = 3  # corners of the triangle around all points, in which the library inserts them
 
 
 @dataclass(frozen=True)
@@ -166,12 +167,56 @@ def _constrained_delaunay(points_yx: FloatArray, n_boundary: int) -> IntArray:
     triangulation.insert_vertices(points_xy)
     loop = np.arange(n_boundary, dtype=np.uint32)
     edges: Any = np.column_stack([loop, np.roll(loop, -1)])
+    crossed = f"outline ({n_boundary} points) crosses itself: use trace_outline"
     try:
         triangulation.insert_edges(edges)
     except RuntimeError as error:
-        raise MeshError(f"outline ({n_boundary} points) crosses itself: use trace_outline") from error
-    triangulation.erase_outer_triangles()
-    return triangulation.triangles_array()["vertices"].astype(np.int64)
+        raise MeshError(crossed) from error
+    found: Any = triangulation.triangles_array()
+    triangles = _within_loop(found.view(np.uint32).reshape(-1, 6), n_boundary)
+    if not len(triangles):
+        raise MeshError(crossed)
+    return triangles
+
+
+@njit(cache=True)
+def _within_loop(triangles: IntArray, n_boundary: int) -> IntArray:
+    """Triangles inside the loop of the first vertices, of a triangulation with the library's big triangle.
+
+    Columns are a triangle's vertices and its neighbours, edge k from corner k to corner k + 1. The corners of
+    the big triangle, in which points are put one by one, come before all other vertices.
+    """
+    n = len(triangles)
+    outside = np.zeros(n, dtype=np.bool_)
+    waiting = np.empty(n, dtype=np.int64)
+    count = 0
+    for t in range(n):
+        if min(triangles[t, 0], triangles[t, 1], triangles[t, 2]) < _BIG:
+            outside[t] = True
+            waiting[count] = t
+            count += 1
+    n_outside = count
+    while count > 0:
+        count -= 1
+        t = waiting[count]
+        for k in range(3):
+            across = triangles[t, 3 + k]
+            a, b = np.int64(triangles[t, k]) - _BIG, np.int64(triangles[t, (k + 1) % 3]) - _BIG
+            first, last = min(a, b), max(a, b)
+            on_loop = last < n_boundary and (last - first == 1 or last - first == n_boundary - 1)
+            if across < n and not outside[across] and not (on_loop and first >= 0):
+                outside[across] = True
+                waiting[count] = across
+                count += 1
+                n_outside += 1
+    inside = np.empty((n - n_outside, 3), dtype=np.int64)
+    kept = 0
+    for t in range(n):
+        if not outside[t]:
+            for k in range(3):
+                inside[kept, k] = np.int64(triangles[t, k]) - _BIG
+            kept += 1
+    return inside
 
 
 def _split_chords(points_yx: FloatArray, triangles: IntArray, n_boundary: int) -> tuple[FloatArray, IntArray]:
