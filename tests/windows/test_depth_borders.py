@@ -66,7 +66,7 @@ def test_layers_by_depth_share_out_any_cell(kind: str, seed: int, finest: float)
 
 def test_borders_decrease_where_the_depth_does_not_grow_inwards() -> None:
     disk = cd.map_to_disk(dumbbell())
-    distance = EdgeDistance(disk.mask, disk.outline_yx)
+    distance = EdgeDistance(disk.placed_mask, disk.outline_yx)
     depths = np.arange(0.5, 20.0, 0.5)
     radii = radii_at_depths(disk, distance, depths)
     reached = radii > 0

@@ -152,7 +152,7 @@ class DiskMap:
         if self.method == "advection":
             uv /= np.maximum(np.hypot(uv[:, 0], uv[:, 1]), 1.0)[:, None]
         if outside == "nearest" and lost.any():
-            uv[lost] = self._nearest_on_circle(points[lost])
+            uv[lost] = self.nearest_on_circle(points[lost])
         return uv.reshape(shape)
 
     def to_cell(self, points_uv: Any) -> FloatArray:
@@ -176,6 +176,14 @@ class DiskMap:
         points, shape = as_points("points_uv", points_uv)
         inner = points * polygon_radius(points, self.boundary_angles)[:, None]
         return self._in_disk.carry(inner, self.vertices_yx[self.triangles]).reshape(shape)
+
+    def nearest_on_circle(self, points_yx: FloatArray) -> FloatArray:
+        """Image (u, v) of the outline point nearest to each of some points (row, column), shape (N, 2)."""
+        edge, fraction = nearest_on_outline(points_yx, self.outline_yx)
+        circle = self.vertices_uv[self.boundary]
+        start, stop = circle[edge], circle[(edge + 1) % len(circle)]
+        chord = start + fraction[:, None] * (stop - start)
+        return np.asarray(chord / np.hypot(chord[:, 0], chord[:, 1])[:, None])
 
     def image(self, signal: Any, size: int = 256) -> FloatArray:
         """The signal on the disk, read from the cell by linear interpolation between pixels.
@@ -249,13 +257,6 @@ class DiskMap:
     @cached_property
     def _in_disk(self) -> TriangleLocator:
         return TriangleLocator(self.vertices_uv, self.triangles)
-
-    def _nearest_on_circle(self, points_yx: FloatArray) -> FloatArray:
-        edge, fraction = nearest_on_outline(points_yx, self.outline_yx)
-        circle = self.vertices_uv[self.boundary]
-        start, stop = circle[edge], circle[(edge + 1) % len(circle)]
-        chord = start + fraction[:, None] * (stop - start)
-        return np.asarray(chord / np.hypot(chord[:, 0], chord[:, 1])[:, None])
 
 
 _ARRAYS = ("vertices_yx", "vertices_uv", "triangles", "boundary")

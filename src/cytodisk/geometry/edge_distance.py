@@ -13,6 +13,7 @@ from numba import njit
 from cytodisk.arrays import BoolArray, FloatArray, Int32Array, IntArray
 from cytodisk.geometry.lower_envelope import lower_envelope, outside_in_column
 from cytodisk.geometry.outline import on_border
+from cytodisk.geometry.placed_mask import PlacedMask
 
 _THIN_PX = 4  # in parts that are thinner, edges on both sides are looked at
 MOST_AROUND = 11  # edges that `edges_around` finds
@@ -27,29 +28,34 @@ class EdgeDistance:
 
     Attributes
     ----------
-    mask : ndarray of shape (H, W) and dtype bool
+    placed : PlacedMask
     outline_yx : ndarray of shape (B, 2) and dtype float
         Closed polygon around the mask, (row, column) in pixels, from +x towards +y.
     """
 
-    mask: BoolArray
+    placed: PlacedMask
     outline_yx: FloatArray
 
     @cached_property
-    def box(self) -> tuple[slice, slice]:
-        """Rows and columns of the image that hold the cell, and the one beside them if there is one."""
-        held = (np.flatnonzero(self.mask.any(axis=axis)) for axis in (1, 0))
-        rows, columns = (slice(max(int(some[0]) - 1, 0), int(some[-1]) + 2) for some in held)
-        return rows, columns
+    def corner(self) -> IntArray:
+        """First row and column that counts: one before the box of the cell, if the image has it."""
+        y, x = self.placed.corner
+        return np.array([max(y - 1, 0), max(x - 1, 0)])
 
     @cached_property
-    def corner(self) -> IntArray:
-        """First row and column of the box."""
-        return np.array([part.start for part in self.box])
+    def inside(self) -> BoolArray:
+        """Pixels of the cell and those of the image around them, in a margin of one that is no part of it."""
+        rows, columns = self.placed.slices
+        height, width = self.placed.image_shape
+        end = np.array([min(rows.stop + 1, height), min(columns.stop + 1, width)])
+        inside = np.zeros(end - self.corner + 2, dtype=bool)
+        y, x = 1 - self.corner
+        inside[rows.start + y : rows.stop + y, columns.start + x : columns.stop + x] = self.placed.box
+        return inside
 
     @cached_property
     def edges(self) -> FloatArray:
-        """Start in the box, direction and 1 / length² of each edge of the outline, shape (B, 5)."""
+        """Start from the corner, direction and 1 / length² of each edge of the outline, shape (B, 5)."""
         along = np.roll(self.outline_yx, -1, axis=0) - self.outline_yx
         squared = np.maximum((along * along).sum(axis=1), 1e-300)
         return np.column_stack([self.outline_yx - self.corner, along, 1.0 / squared])
@@ -57,12 +63,12 @@ class EdgeDistance:
     @cached_property
     def counts(self) -> BoolArray:
         """Whether each edge of the outline is one of the cell, not one of the image, shape (B,)."""
-        cut = on_border(self.outline_yx, (self.mask.shape[0], self.mask.shape[1]))
+        cut = on_border(self.outline_yx, self.placed.image_shape)
         return ~(cut & np.roll(cut, -1))
 
     @property
     def nearest(self) -> Int32Array:
-        """Nearest edge of each pixel of the cell, in the box with a margin of one pixel around; or -1.
+        """Nearest edge of each pixel of the cell, in the shape of `inside`; or -1.
 
         Pixels outside have one if they are next to an edge.
         """
@@ -80,7 +86,7 @@ class EdgeDistance:
 
     @cached_property
     def _by_pixel(self) -> tuple[Int32Array, FloatArray]:
-        return _nearest_edges(np.pad(self.mask[self.box], 1), self.edges, self.counts)
+        return _nearest_edges(self.inside, self.edges, self.counts)
 
     def at(self, points_yx: FloatArray) -> FloatArray:
         """Distance to the edge of some places, 0 outside; infinite if the image shows no edge of the cell.

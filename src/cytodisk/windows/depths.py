@@ -1,14 +1,14 @@
 """How deep below the edge of a cell its windows lie."""
 
 import math
-from collections.abc import Sequence
+from typing import TypeAlias
 
 import numpy as np
 from numba import njit
 
-from cytodisk.arrays import FloatArray, Int32Array, IntArray
+from cytodisk.arrays import BoolArray, FloatArray, Int32Array, IntArray
 from cytodisk.geometry.edge_distance import MOST_AROUND, Edge, EdgeDistance, depth_below, edges_around
-from cytodisk.windows.shares import Subpixels
+from cytodisk.windows.shares import DIVIDED, FINE, NOWHERE, PER_SIDE, Subpixels
 
 DEPTHS = ("depth", "depth_p5", "depth_p95")
 """Names of the percentiles of a window's depth, in their order."""
@@ -23,19 +23,18 @@ _DEEP_PX = 3.0  # for pixels deeper than this two places do
 _SPREAD = math.sqrt(1.0 / 12.0)  # standard deviation of a place in a pixel, along an axis
 _SPARSE = np.array([(-1.0, -3.0), (3.0, -1.0), (1.0, 3.0), (-3.0, 1.0)]) / 8.0  # a turned 2×2 lattice
 
+_Parts: TypeAlias = tuple[Int32Array, IntArray, Int32Array]
+_Places: TypeAlias = tuple[IntArray, FloatArray, FloatArray]
 
-def window_depths(
-    distance: EdgeDistance, pixels_yx: IntArray, subpixels: Sequence[Subpixels], n_windows: int
-) -> FloatArray:
+
+def window_depths(distance: EdgeDistance, subpixels: Subpixels, n_windows: int) -> FloatArray:
     """Median, 5th and 95th percentile of the depth of each window's subpixels.
 
     Parameters
     ----------
     distance : EdgeDistance
-    pixels_yx : ndarray of shape (P, 2) and dtype int
-        (row, column) of the mask's pixels in row-major order.
-    subpixels : sequence of Subpixels
-        Of all these pixels. Where a pixel lies in one window as a whole, two or four places stand for its
+    subpixels : Subpixels
+        Of the same mask. Where a pixel lies in one window as a whole, two or four places stand for its
         subpixels.
     n_windows : int
 
@@ -44,26 +43,9 @@ def window_depths(
     ndarray of shape (windows, 3) and dtype float
         In pixels; NaN for a window without subpixels, and where the image shows no edge of the cell.
     """
-    counts = np.zeros(n_windows, dtype=np.int64)
-    places = [pixels_yx[some.pixel] - distance.corner for some in subpixels]
-    for pixels, some in zip(places, subpixels, strict=True):
-        _count(pixels, some.window, distance.pixels, counts)
-    start = np.concatenate([[0], np.cumsum(counts)])
-    depth, weight = np.empty(start[-1], dtype=np.float32), np.empty(start[-1], dtype=np.float32)
-    free = start[:-1].copy()
-    for pixels, some in zip(places, subpixels, strict=True):
-        per_side = math.isqrt(some.window.shape[1])
-        _measure(
-            pixels,
-            some.window,
-            some.share,
-            (_SPARSE, _lattice(per_side)),
-            distance.arrays,
-            (free, depth, weight),
-        )
-    found = np.full((n_windows, len(_PERCENTILES)), np.nan)
-    _percentiles(start[:-1], free, depth, weight, np.array(_PERCENTILES), found)
-    return found
+    lattice = np.concatenate([_SPARSE, _lattice(PER_SIDE), _lattice(FINE)])
+    parts = subpixels.whole, subpixels.start, subpixels.window
+    return _depths(distance.inside, parts, lattice, distance.arrays, n_windows)
 
 
 def _lattice(per_side: int) -> FloatArray:
@@ -73,84 +55,87 @@ def _lattice(per_side: int) -> FloatArray:
 
 
 @njit(cache=True, error_model="numpy")
-def _whole(window: IntArray | Int32Array, pixel: int) -> bool:
-    """Whether the subpixels of a pixel, 16 or more of them, are all in one window."""
-    count = window.shape[1]
-    if count < 16:
-        return False
-    first, others = window[pixel, 0], 0
-    for place in range(1, count):
-        others |= window[pixel, place] ^ first
-    return others == 0 and first >= 0
+def _depths(inside: BoolArray, parts: _Parts, lattice: FloatArray, edge: Edge, n_windows: int) -> FloatArray:
+    """Count the places of each window, measure them, and take percentiles."""
+    start = np.cumsum(_count(inside, parts, edge, n_windows))
+    free = start[:-1].copy()
+    depth, weight = np.empty(start[-1], dtype=np.float32), np.empty(start[-1], dtype=np.float32)
+    _measure(inside, parts, lattice, edge, (free, depth, weight))
+    found = np.full((n_windows, len(_PERCENTILES)), np.nan)
+    _percentiles(start, depth, weight, found)
+    return found
 
 
 @njit(cache=True, error_model="numpy")
-def _n_places(window: IntArray | Int32Array, pixel: int, depth: float) -> int:
-    """Number of places that stand for the subpixels of a pixel."""
-    if not _whole(window, pixel):
-        return int(window.shape[1])
-    return 2 if depth > _DEEP_PX else 4
+def _count(inside: BoolArray, parts: _Parts, edge: Edge, n_windows: int) -> IntArray:
+    """Number of places in each window, from entry 1 on."""
+    whole, start, window = parts
+    nearest, distance, _, _ = edge
+    counts = np.zeros(n_windows + 1, dtype=np.int64)
+    pixel = divided = 0
+    for row in range(inside.shape[0]):
+        for column in range(inside.shape[1]):
+            if not inside[row, column]:
+                continue
+            here, known = whole[pixel], nearest[row, column] >= 0
+            if here >= 0 and known:
+                counts[here + 1] += 2 if distance[row, column] > _DEEP_PX else 4
+            elif here == DIVIDED:
+                for entry in range(start[divided], start[divided + 1]):
+                    if window[entry] >= 0 and known:
+                        counts[window[entry] + 1] += 1
+                divided += 1
+            pixel += 1
+    return counts
 
 
 @njit(cache=True, error_model="numpy")
-def _count(pixels: IntArray, window: IntArray | Int32Array, distance: FloatArray, counts: IntArray) -> None:
-    """Add the number of places in each window."""
-    for pixel in range(window.shape[0]):
-        n_places = _n_places(window, pixel, distance[pixels[pixel, 0] + 1, pixels[pixel, 1] + 1])
-        if n_places < window.shape[1]:
-            counts[window[pixel, 0]] += n_places
-            continue
-        for place in range(n_places):
-            if window[pixel, place] >= 0:
-                counts[window[pixel, place]] += 1
-
-
-@njit(cache=True, error_model="numpy")
-def _measure(
-    pixels: IntArray,
-    window: IntArray | Int32Array,
-    share: FloatArray,
-    lattices: tuple[FloatArray, FloatArray],
-    edge: Edge,
-    places: tuple[IntArray, FloatArray, FloatArray],
-) -> None:
+def _measure(inside: BoolArray, parts: _Parts, lattice: FloatArray, edge: Edge, places: _Places) -> None:
     """Write the depth and the weight of each place to where its window's are gathered."""
+    whole, start, window = parts
     nearest, distance, edges, _ = edge
     free, depth, weight = places
-    sparse, lattice = lattices
     among = np.empty(MOST_AROUND, dtype=np.int64)
-    for pixel in range(pixels.shape[0]):
-        row, column = pixels[pixel, 0] + 1, pixels[pixel, 1] + 1
-        if nearest[row, column] < 0:
-            continue
-        middle = distance[row, column]
-        n_places = _n_places(window, pixel, middle)
-        whole = n_places < window.shape[1]
-        area = share[pixel] * (window.shape[1] / n_places)
-        down, right, bent = _slope(row, column, distance)
-        if n_places == 2 and not bent:  # as far from the middle as subpixels are on average
-            here = window[pixel, 0]
-            spread, first = _SPREAD * math.sqrt(down * down + right * right), free[here]
-            depth[first], depth[first + 1] = middle - spread, middle + spread
-            weight[first], weight[first + 1] = area, area
-            free[here] += 2
-            continue
-        close = 0
-        if bent or middle < _NEAR_PX:
-            close = edges_around(row, column, 1 if bent else 0, edge, among)
-        for place in range(n_places):
-            here = window[pixel, place]
-            if here < 0:
+    pixel = divided = -1
+    for row in range(inside.shape[0]):
+        for column in range(inside.shape[1]):
+            if not inside[row, column]:
                 continue
-            y, x = lattice[place, 0], lattice[place, 1]
-            if whole:
-                y, x = sparse[place, 0], sparse[place, 1]
-            if close > 0:
-                found = depth_below(row - 1 + y, column - 1 + x, among, close, edges)
-            else:
-                found = middle + down * y + right * x
-            depth[free[here]], weight[free[here]] = found, area
-            free[here] += 1
+            pixel += 1
+            here, middle = whole[pixel], distance[row, column]
+            divided += here == DIVIDED
+            if here == NOWHERE or nearest[row, column] < 0:
+                continue
+            down, right, bent = _slope(row, column, distance)
+            if (
+                here >= 0 and middle > _DEEP_PX and not bent
+            ):  # as far from the middle as subpixels are on average
+                spread, first = _SPREAD * math.sqrt(down * down + right * right), free[here]
+                depth[first], depth[first + 1] = middle - spread, middle + spread
+                weight[first], weight[first + 1] = 0.5, 0.5
+                free[here] += 2
+                continue
+            first, n_places, begin, size = 0, 2 if middle > _DEEP_PX else 4, 0, 4
+            if here == DIVIDED:
+                first, n_places = start[divided], start[divided + 1] - start[divided]
+                begin, size = (20, FINE**2) if n_places >= FINE**2 else (4, PER_SIDE**2)
+            close = 0
+            if bent or middle < _NEAR_PX:
+                close = edges_around(row, column, 1 if bent else 0, edge, among)
+            for place in range(n_places):
+                if begin > 0:
+                    here = window[first + place]
+                if here < 0:
+                    continue
+                y, x = 0.0, 0.0
+                if place < size:
+                    y, x = lattice[begin + place, 0], lattice[begin + place, 1]
+                if close > 0:
+                    found = depth_below(row - 1 + y, column - 1 + x, among, close, edges)
+                else:
+                    found = middle + down * y + right * x
+                depth[free[here]], weight[free[here]] = found, 1.0 / n_places
+                free[here] += 1
 
 
 @njit(cache=True, error_model="numpy")
@@ -163,18 +148,11 @@ def _slope(row: int, column: int, distance: FloatArray) -> tuple[float, float, b
 
 
 @njit(cache=True, error_model="numpy")
-def _percentiles(
-    start: IntArray,
-    stop: IntArray,
-    depth: FloatArray,
-    weight: FloatArray,
-    shares: FloatArray,
-    found: FloatArray,
-) -> None:
+def _percentiles(start: IntArray, depth: FloatArray, weight: FloatArray, found: FloatArray) -> None:
     """Percentiles of the weighted depths of each window, from a histogram of them."""
     histogram = np.empty(_BINS)
     for window in range(len(found)):
-        first, last = start[window], stop[window]
+        first, last = start[window], start[window + 1]
         if first == last:
             continue
         low, high = depth[first], depth[first]
@@ -189,8 +167,8 @@ def _percentiles(
         for i in range(first, last):
             histogram[int((depth[i] - low) * factor)] += weight[i]
             total += weight[i]
-        for column in range(len(shares)):
-            wanted, passed, place = shares[column] * total, 0.0, 0
+        for column in range(len(_PERCENTILES)):
+            wanted, passed, place = _PERCENTILES[column] * total, 0.0, 0
             while place < _BINS - 1 and passed + histogram[place] < wanted:
                 passed += histogram[place]
                 place += 1

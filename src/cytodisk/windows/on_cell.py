@@ -11,10 +11,11 @@ from scipy import sparse
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.geometry.edge_distance import EdgeDistance
+from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.windows.depths import DEPTHS, window_depths
 from cytodisk.windows.pieces import pieces_by_window
-from cytodisk.windows.shares import PER_SIDE, Subpixels, WindowShares, shares_by_strips, strips
+from cytodisk.windows.shares import PER_SIDE, WindowShares, shares_by_strips, strips
 
 
 class Grid(Protocol):
@@ -39,6 +40,11 @@ class WindowsOnCell(ABC):
     @abstractmethod
     def mask(self) -> BoolArray:
         """The cell's mask, shape (H, W) and dtype bool."""
+
+    @cached_property
+    def placed_mask(self) -> PlacedMask:
+        """The mask as its box in the image."""
+        return PlacedMask.of(self.mask)
 
     @property
     @abstractmethod
@@ -73,8 +79,7 @@ class WindowsOnCell(ABC):
     @cached_property
     def shares(self) -> WindowShares:
         """Shares of pixels in windows, and moments of the windows, from subpixels."""
-        pixels = np.argwhere(self.mask)
-        return shares_by_strips(pixels, self.layers * self.sectors, self.windows_of_subpixels)
+        return shares_by_strips(self.placed_mask, self.layers * self.sectors, self.windows_of_subpixels)
 
     @property
     def weights(self) -> sparse.csr_array:
@@ -88,15 +93,15 @@ class WindowsOnCell(ABC):
     def subpixel_windows(self) -> IntArray:
         """Number of the window of each subpixel of the mask, shape (pixels, 16); -1 for none."""
         return np.concatenate(
-            [self.windows_of_subpixels(block) for _, block in strips(np.argwhere(self.mask))]
+            [self.windows_of_subpixels(block) for _, block in strips(self.placed_mask.pixels_yx)]
         )
 
     @property
     def subpixel_labels(self) -> IntArray:
         """As `labels`, with each pixel divided into 4×4 subpixels, shape (4 H, 4 W)."""
-        height, width = self.mask.shape
+        height, width = self.placed_mask.image_shape
         labels = np.full((height, PER_SIDE, width, PER_SIDE), -1, dtype=np.int64)
-        row, column = np.nonzero(self.mask)
+        row, column = self.placed_mask.pixels_yx.T
         labels[row, :, column, :] = self.subpixel_windows.reshape(-1, PER_SIDE, PER_SIDE)
         return labels.reshape(PER_SIDE * height, PER_SIDE * width)
 
@@ -123,7 +128,7 @@ class WindowsOnCell(ABC):
     @property
     def coverage(self) -> float:
         """Share of the cell's area that lies in a window, 0 to 1."""
-        return float(self.areas.sum() / self.mask.sum())
+        return float(self.areas.sum() / self.placed_mask.box.sum())
 
     @cached_property
     def labels(self) -> IntArray:
@@ -134,8 +139,8 @@ class WindowsOnCell(ABC):
         order = np.lexsort((by_pixel.data, pixel))
         held = np.full(by_pixel.shape[1], -1, dtype=np.int64)
         held[counts > 0] = by_pixel.indices[order][np.cumsum(counts)[counts > 0] - 1]
-        labels = np.full(self.mask.shape, -1, dtype=np.int64)
-        labels[self.mask] = held
+        labels = np.full(self.placed_mask.image_shape, -1, dtype=np.int64)
+        self.placed_mask.cut_out_of(labels)[self.placed_mask.box] = held
         return labels
 
     @cached_property
@@ -150,12 +155,7 @@ class WindowsOnCell(ABC):
         Shape (layers, sectors, 3), in pixels; NaN if empty. The border of the image is no edge of the cell:
         beside it, the distance is that to the nearest edge in the image, and NaN if there is none.
         """
-        distance, subpixels = self.edge_distance, self.shares.subpixels
-        pixels = np.argwhere(self.mask[distance.box]) + distance.corner
-        if not subpixels:
-            share = np.full(len(pixels), 1.0 / PER_SIDE**2)
-            subpixels = [Subpixels(np.arange(len(pixels)), self.subpixel_windows, share)]
-        found = window_depths(distance, pixels, subpixels, self.layers * self.sectors)
+        found = window_depths(self.edge_distance, self.shares.subpixels, self.layers * self.sectors)
         return found.reshape(self.layers, self.sectors, len(DEPTHS))
 
     @property
@@ -166,7 +166,7 @@ class WindowsOnCell(ABC):
     @cached_property
     def edge_distance(self) -> EdgeDistance:
         """Distance to the cell's edge from anywhere in it."""
-        return EdgeDistance(self.mask, self.outline_yx)
+        return EdgeDistance(self.placed_mask, self.outline_yx)
 
     @cached_property
     def eccentricities(self) -> FloatArray:
@@ -187,7 +187,7 @@ class WindowsOnCell(ABC):
         A window is made of the pixels it has any share in, and pixels that touch, be it at a corner, are one
         piece. So what is counted is apart by a whole pixel at least.
         """
-        return pieces_by_window(self.weights, self.mask).reshape(self.layers, self.sectors)
+        return pieces_by_window(self.weights, self.placed_mask.box).reshape(self.layers, self.sectors)
 
     @cached_property
     def layer_pieces(self) -> IntArray:
@@ -196,7 +196,7 @@ class WindowsOnCell(ABC):
         In a neck a layer of polar windows can be thinner than a subpixel, and then it counts as apart.
         """
         into_layers = sparse.kron(sparse.eye_array(self.layers), np.ones((1, self.sectors)))
-        return pieces_by_window(sparse.csr_array(into_layers @ self.weights), self.mask)
+        return pieces_by_window(sparse.csr_array(into_layers @ self.weights), self.placed_mask.box)
 
     @property
     def _mean_moments(self) -> FloatArray:

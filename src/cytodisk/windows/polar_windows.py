@@ -14,6 +14,7 @@ from cytodisk.checks import is_number
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
 from cytodisk.geometry.edge_distance import EdgeDistance
+from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import Scale
 from cytodisk.taking import takes
 from cytodisk.windows.depth_borders import radii_at_depths
@@ -79,7 +80,7 @@ class PolarGrid(PolarLayout):
             raise WindowError(
                 "depth_um needs the scale of the map: pass pixel_size_um to map_to_disk or map_movie"
             )
-        distance = EdgeDistance(disk.mask, disk.outline_yx)
+        distance = EdgeDistance(disk.placed_mask, disk.outline_yx)
         radii = radii_at_depths(disk, distance, [depth / pixel_size_um for depth in self.depth_um])
         windows = CellWindows(replace(self, borders=tuple(radii.tolist())), disk)
         windows.__dict__["edge_distance"] = distance  # which took some time
@@ -139,6 +140,11 @@ class CellWindows(WindowsOnCell):
     def mask(self) -> BoolArray:
         """The cell's mask, shape (H, W) and dtype bool."""
         return self.disk.mask
+
+    @property
+    def placed_mask(self) -> PlacedMask:
+        """The cell's mask as its box in the image."""
+        return self.disk.placed_mask
 
     @property
     def outline_yx(self) -> FloatArray:

@@ -1,7 +1,8 @@
 """Windows of the subpixels of all pixels of a cell, triangle after triangle and row after row.
 
 Within a triangle the map is linear, so a row of subpixels goes to a straight line in the disk, and where that
-meets the next ray or circle of the grid is known without looking at the subpixels before.
+meets the next ray or circle of the grid is known without looking at the subpixels before. A few rows of
+pixels are painted at a time; of those that lie in one window as a whole no subpixels are kept.
 """
 
 import math
@@ -10,13 +11,15 @@ from typing import TypeAlias
 import numpy as np
 from numba import njit
 
-from cytodisk.arrays import FloatArray, Int32Array, IntArray
+from cytodisk.arrays import BoolArray, FloatArray, Int32Array, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.windows.polar_layout import PolarLayout
+from cytodisk.windows.shares import DIVIDED, NOWHERE, PER_SIDE, Subpixels, with_starts
 from cytodisk.windows.subpixels import subpixel_places
 from cytodisk.windows.window_walls import (
     Point,
     Walls,
+    Window,
     exact_window,
     holds,
     holds_triangle,
@@ -28,15 +31,15 @@ from cytodisk.windows.window_walls import (
 
 _BEFORE_WALL = 1e-6  # of a subpixel: so far before a wall a stretch ends; its next subpixel is looked at
 _ON_EDGE = 1e-9  # of a subpixel: a point so far beyond a triangle's edge is still on it
+_AT_ONCE = 1 << 17  # subpixels that are painted before they are looked through: they stay in the cache
 
 _Corners: TypeAlias = tuple[Point, Point, Point]
 _Sides: TypeAlias = tuple[float, float, float]
 _Slopes: TypeAlias = tuple[Point, Point]
+_Grid: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
 
 
-def windows_of_all_subpixels(
-    grid: PolarLayout, disk: DiskMap, pixels_yx: IntArray, per_side: int
-) -> Int32Array:
+def paint_windows(grid: PolarLayout, disk: DiskMap) -> Subpixels:
     """Window of each subpixel of a mask; a subpixel outside the outline goes with the nearest outline point.
 
     Parameters
@@ -44,107 +47,180 @@ def windows_of_all_subpixels(
     grid : PolarLayout
     disk : DiskMap
         One to one: not by "advection", whose triangles may lie over each other.
-    pixels_yx : ndarray of shape (P, 2) and dtype int
-        (row, column) of all pixels of the mask, in row-major order.
-    per_side : int
-        Subpixels along the side of a pixel.
 
     Returns
     -------
-    ndarray of shape (P, subpixels) and dtype int32
-        Subpixels row by row.
+    Subpixels
+        4×4 of each pixel that is divided.
     """
     inside, corner = disk.placed_mask.box, np.array(disk.placed_mask.corner)
-    number = np.full(inside.shape, -1, dtype=np.int32)
-    number[inside] = np.arange(len(pixels_yx), dtype=np.int32)
-    window = np.full((len(pixels_yx), per_side**2), -1, dtype=np.int32)
-    _paint(
-        (disk.vertices_yx - (corner - 0.5)) * per_side,
-        disk.vertices_uv,
-        disk.triangles,
-        layer_bands(grid.radii, disk.boundary_angles),
-        np.column_stack([np.cos(grid.angles), np.sin(grid.angles)]),
-        disk.boundary_angles,
-        number,
-        window,
+    height, width = inside.shape
+    whole, window, places = _paint(
+        ((disk.vertices_yx - (corner - 0.5)) * PER_SIDE, disk.vertices_uv, disk.triangles),
+        (
+            layer_bands(grid.radii, disk.boundary_angles),
+            np.column_stack([np.cos(grid.angles), np.sin(grid.angles)]),
+            disk.boundary_angles,
+        ),
+        inside,
+        min(max(_AT_ONCE // (width * PER_SIDE**2), 1), height),
     )
-    pixel, subpixel = _outside(window)
-    places = subpixel_places(pixels_yx[pixel], per_side)[np.arange(len(pixel)), subpixel]
-    window[pixel, subpixel] = grid.window_of(disk.to_disk(places, outside="nearest"))
-    return window
+    divided, number = np.divmod(np.flatnonzero(window.ravel() == NOWHERE), PER_SIDE**2)
+    if divided.size:
+        pixels_yx = np.column_stack(np.divmod(places[divided], width)) + corner
+        points = subpixel_places(pixels_yx, PER_SIDE)[np.arange(len(divided)), number]
+        window[divided, number] = grid.window_of(disk.nearest_on_circle(points))
+        whole, window = _without_whole(whole, window, np.unique(divided))
+    return with_starts(whole, window.ravel())
 
 
-@njit(cache=True)
-def _outside(window: Int32Array) -> tuple[IntArray, IntArray]:
-    """Pixel and number in it of every subpixel that no triangle holds."""
-    pixels, subpixels = [], []
-    for pixel in range(window.shape[0]):
-        signs = 0
-        for subpixel in range(window.shape[1]):
-            signs |= window[pixel, subpixel]
-        if signs >= 0:
-            continue
-        for subpixel in range(window.shape[1]):
-            if window[pixel, subpixel] < 0:
-                pixels.append(pixel)
-                subpixels.append(subpixel)
-    return np.array(pixels, dtype=np.int64), np.array(subpixels, dtype=np.int64)
+def _without_whole(whole: Int32Array, window: Int32Array, some: IntArray) -> tuple[Int32Array, Int32Array]:
+    """The same without those of some divided pixels that turned out to be in one window as a whole."""
+    some = some[(window[some] == window[some, :1]).all(axis=1)]
+    whole[np.flatnonzero(whole == DIVIDED)[some]] = window[some, 0]
+    return whole, np.delete(window, some, axis=0)
 
 
 @njit(cache=True, error_model="numpy")
 def _paint(
-    vertices_yx: FloatArray,
-    vertices_uv: FloatArray,
-    triangles: IntArray,
-    bands: FloatArray,
-    rays: FloatArray,
-    boundary_angles: FloatArray,
-    number: Int32Array,
+    mesh: tuple[FloatArray, FloatArray, IntArray], grid: _Grid, inside: BoolArray, at_once: int
+) -> tuple[Int32Array, Int32Array, IntArray]:
+    """Window of each pixel as a whole, and the subpixels and places of those that are divided.
+
+    The mesh has its vertices in units of a subpixel, and in the disk; `at_once` counts rows of pixels.
+    """
+    vertices_yx, vertices_uv, triangles = mesh
+    height, width = inside.shape
+    start, listed = _by_strip(vertices_yx, triangles, PER_SIDE * at_once, (height - 1) // at_once + 1)
+    whole = np.empty(inside.sum(), dtype=np.int32)
+    window, places = np.empty((64, PER_SIDE**2), np.int32), np.empty(64, np.int64)
+    canvas = np.empty((PER_SIDE * at_once, PER_SIDE * width), np.int32)
+    near, counts = (0, 0), (0, 0)
+    for strip in range(len(start) - 1):
+        canvas[:] = NOWHERE
+        top = strip * at_once
+        for entry in range(start[strip], start[strip + 1]):
+            t = listed[entry]
+            yx, uv = _corners(vertices_yx, triangles, t), _corners(vertices_uv, triangles, t)
+            near = _paint_triangle(yx, uv, near, grid, PER_SIDE * top, canvas)
+        if len(window) < counts[1] + at_once * width:
+            more = max(len(window), at_once * width)
+            window = np.concatenate((window, np.empty((more, PER_SIDE**2), np.int32)))
+            places = np.concatenate((places, np.empty(more, np.int64)))
+        rows = top, min(top + at_once, height)
+        counts = _collect(canvas, inside, rows, counts, whole, window, places)
+    return whole, window[: counts[1]].copy(), places[: counts[1]].copy()
+
+
+@njit(cache=True)
+def _collect(
+    canvas: Int32Array,
+    inside: BoolArray,
+    rows: tuple[int, int],
+    counts: tuple[int, int],
+    whole: Int32Array,
     window: Int32Array,
-) -> None:
-    """Fill `window` for the subpixels that lie in a triangle; vertices are in units of a subpixel."""
-    sectors, per_side = len(rays) - 1, round(math.sqrt(window.shape[1]))
-    rows, columns = number.shape[0] * per_side, number.shape[1] * per_side
-    pixel_of = np.arange(columns, dtype=np.int32) // per_side
-    within = np.arange(columns, dtype=np.int32) % per_side
-    near = (0, 0)
-    for t in range(triangles.shape[0]):
-        i, j, k = triangles[t, 0], triangles[t, 1], triangles[t, 2]
-        p, q = (vertices_yx[i, 0], vertices_yx[i, 1]), (vertices_yx[j, 0], vertices_yx[j, 1])
-        r = (vertices_yx[k, 0], vertices_yx[k, 1])
-        a, b = (vertices_uv[i, 0], vertices_uv[i, 1]), (vertices_uv[j, 0], vertices_uv[j, 1])
-        c = (vertices_uv[k, 0], vertices_uv[k, 1])
-        if not holds(a[0], a[1], walls_of(near, bands, rays)):
-            near = exact_window(a[0], a[1], bands, sectors, boundary_angles)
-        alike = holds_triangle(a, b, c, walls_of(near, bands, rays))
-        begin = near  # window of the first subpixel of the row before
-        corners = _from_top(p, q, r)
-        sides, (by_row, by_column) = _sides(*corners), _slopes(p, q, r, a, b, c)
-        first_row = max(math.ceil(corners[0][0] - 0.5 - _ON_EDGE), 0)
-        last_row = min(math.floor(corners[2][0] - 0.5 + _ON_EDGE), rows - 1)
-        for row in range(first_row, last_row + 1):
-            column, last = _columns(row, corners, sides, columns)
-            place = row // per_side, row % per_side * per_side
-            if alike:
-                here = near[0] * sectors + near[1]
-                _fill(column, last, here, place, number, pixel_of, within, window)
+    places: IntArray,
+) -> tuple[int, int]:
+    """Look through the painted pixels of some rows; counts are those of pixels, and of divided ones."""
+    (top, bottom), (pixel, divided) = rows, counts
+    pairs = canvas.view(np.int64)  # of subpixels
+    for row in range(top, bottom):
+        y = PER_SIDE * (row - top)
+        for column in range(inside.shape[1]):
+            if not inside[row, column]:
                 continue
-            down, right = row + 0.5 - p[0], 0.5 - p[1]
-            u_row = a[0] + by_row[0] * down + by_column[0] * right
-            v_row = a[1] + by_row[1] * down + by_column[1] * right
-            near, first = begin, column
-            walls = walls_of(near, bands, rays)
-            while column <= last:
-                u, v = u_row + column * by_column[0], v_row + column * by_column[1]
-                if not holds(u, v, walls):
-                    near = window_near(u, v, near, bands, rays, boundary_angles)
-                    walls = walls_of(near, bands, rays)
-                if column == first:
-                    begin = near
-                end = _end_of_stretch(u, v, by_column, column, last, walls)
-                here = near[0] * sectors + near[1]
-                _fill(column, end, here, place, number, pixel_of, within, window)
-                column = end + 1
+            first = pairs[y, 2 * column]
+            others = (first >> 32) ^ (first & 0xFFFFFFFF)
+            for down in range(PER_SIDE):
+                others |= (pairs[y + down, 2 * column] ^ first) | (pairs[y + down, 2 * column + 1] ^ first)
+            if others == 0 and first >= 0:
+                whole[pixel] = first & 0xFFFFFFFF
+            else:
+                whole[pixel] = DIVIDED
+                places[divided] = row * inside.shape[1] + column
+                for down in range(PER_SIDE):
+                    for right in range(PER_SIDE):
+                        window[divided, PER_SIDE * down + right] = canvas[y + down, PER_SIDE * column + right]
+                divided += 1
+            pixel += 1
+    return pixel, divided
+
+
+@njit(cache=True)
+def _by_strip(
+    vertices_yx: FloatArray, triangles: IntArray, rows: int, strips: int
+) -> tuple[IntArray, IntArray]:
+    """Triangles that have a part in each strip of so many rows, in their order: starts, and triangles."""
+    start = np.zeros(strips + 1, dtype=np.int64)
+    first, last = np.empty(len(triangles), np.int64), np.empty(len(triangles), np.int64)
+    for t in range(len(triangles)):
+        a, b, c = _corners(vertices_yx, triangles, t)
+        first[t] = max(int(min(a[0], b[0], c[0]) - 1.0), 0) // rows
+        last[t] = min(max(int(max(a[0], b[0], c[0])), 0) // rows, strips - 1)
+        for strip in range(first[t], last[t] + 1):
+            start[strip + 1] += 1
+    start = np.cumsum(start)
+    listed, free = np.empty(start[-1], np.int64), start[:-1].copy()
+    for t in range(len(triangles)):
+        for strip in range(first[t], last[t] + 1):
+            listed[free[strip]] = t
+            free[strip] += 1
+    return start, listed
+
+
+@njit(cache=True, error_model="numpy")
+def _paint_triangle(
+    yx: _Corners, uv: _Corners, near: Window, grid: _Grid, top: int, canvas: Int32Array
+) -> Window:
+    """Paint what lies of a triangle in the rows from the top one on; give back a window of it."""
+    bands, rays, boundary_angles = grid
+    sectors, columns = len(rays) - 1, canvas.shape[1]
+    (p, q, r), (a, b, c) = yx, uv
+    if not holds(a[0], a[1], walls_of(near, bands, rays)):
+        near = exact_window(a[0], a[1], bands, sectors, boundary_angles)
+    alike = holds_triangle(a, b, c, walls_of(near, bands, rays))
+    begin = near  # window of the first subpixel of the row before
+    corners = _from_top(p, q, r)
+    sides, (by_row, by_column) = _sides(*corners), _slopes(p, q, r, a, b, c)
+    first_row = max(math.ceil(corners[0][0] - 0.5 - _ON_EDGE), top)
+    last_row = min(math.floor(corners[2][0] - 0.5 + _ON_EDGE), top + len(canvas) - 1)
+    for row in range(first_row, last_row + 1):
+        column, last = _columns(row, corners, sides, columns)
+        if alike:
+            _fill(canvas, row - top, column, last, near[0] * sectors + near[1])
+            continue
+        down, right = row + 0.5 - p[0], 0.5 - p[1]
+        u_row = a[0] + by_row[0] * down + by_column[0] * right
+        v_row = a[1] + by_row[1] * down + by_column[1] * right
+        near, first = begin, column
+        walls = walls_of(near, bands, rays)
+        while column <= last:
+            u, v = u_row + column * by_column[0], v_row + column * by_column[1]
+            if not holds(u, v, walls):
+                near = window_near(u, v, near, bands, rays, boundary_angles)
+                walls = walls_of(near, bands, rays)
+            if column == first:
+                begin = near
+            end = _end_of_stretch(u, v, by_column, column, last, walls)
+            _fill(canvas, row - top, column, end, near[0] * sectors + near[1])
+            column = end + 1
+    return near
+
+
+@njit(cache=True, inline="always")
+def _fill(canvas: Int32Array, row: int, first: int, last: int, here: int) -> None:
+    """Give a stretch of a row its window."""
+    for column in range(first, last + 1):
+        canvas[row, column] = here
+
+
+@njit(cache=True)
+def _corners(vertices: FloatArray, triangles: IntArray, t: int) -> _Corners:
+    """Corners of a triangle."""
+    i, j, k = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+    a, b = (vertices[i, 0], vertices[i, 1]), (vertices[j, 0], vertices[j, 1])
+    return a, b, (vertices[k, 0], vertices[k, 1])
 
 
 @njit(cache=True)
@@ -202,21 +278,3 @@ def _end_of_stretch(u: float, v: float, step: Point, column: int, last: int, wal
     if steps < last - column:
         return column + max(math.floor(steps - _BEFORE_WALL), 0)
     return last
-
-
-@njit(cache=True, inline="always")
-def _fill(
-    first: int,
-    last: int,
-    here: int,
-    place: tuple[int, int],
-    number: Int32Array,
-    pixel_of: IntArray,
-    within: IntArray,
-    window: Int32Array,
-) -> None:
-    """Give a stretch of a row its window; the place is the row of pixels, and its first subpixel in each."""
-    for column in range(first, last + 1):
-        pixel = number[place[0], pixel_of[column]]
-        if pixel >= 0:
-            window[pixel, place[1] + within[column]] = here

@@ -1,13 +1,15 @@
-"""Signal in windows: mean, spread, extremes and quantiles by one matrix product."""
+"""Signal in windows: mean, spread, extremes and quantiles."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numba import njit
 from scipy import sparse
 
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import AnyArray, FloatArray, Int32Array
 from cytodisk.checks import instance_of
 from cytodisk.errors import ParameterError, SignalError
 from cytodisk.taking import takes
@@ -71,9 +73,10 @@ def sample(
     order = "the order is sample(windows, signal)"
     instance_of("windows", windows, WindowsOnCell, "windows on a cell, as grid.on(disk) returns them", order)
     _check_quantiles(quantiles)
-    values, channels = _parse_signal(signal, windows.mask.shape)
-    pixels = values.reshape(len(values), -1)[:, np.flatnonzero(windows.mask)]
-    arrays = sampled_pixels(windows, pixels, tuple(quantiles), nan)
+    placed = windows.placed_mask
+    values, channels = _parse_signal(signal, placed.image_shape)
+    pixels = np.stack([image[placed.box] for image in placed.cut_out_of(values)])
+    arrays = sampled_pixels(windows, pixels.astype(np.float64, copy=False), tuple(quantiles), nan)
     shape = (len(values), *windows.areas.shape)
     dims = ("channel", "layer", "sector")
     data: dict[str, Any] = {name: (dims, arrays[name], {"units": unit}) for name, unit in _UNITS.items()}
@@ -140,7 +143,7 @@ def check_channel_names(signal: str, names: Sequence[str]) -> None:
         raise SignalError(f"{signal}: two channels have one name, got {tuple(names)}: rename one of them")
 
 
-def _parse_signal(signal: Any, shape: tuple[int, ...]) -> tuple[FloatArray, list[str] | None]:
+def _parse_signal(signal: Any, shape: tuple[int, ...]) -> tuple[AnyArray, list[str] | None]:
     """Values of shape (C, H, W), and the channels' names if the signal has such a dim."""
     names: list[str] | None = None
     if isinstance(signal, xr.DataArray):
@@ -164,49 +167,60 @@ def _parse_signal(signal: Any, shape: tuple[int, ...]) -> tuple[FloatArray, list
         )
     if array.ndim == 3 and names is None:
         names = [str(number) for number in range(len(array))]
-    return array.astype(np.float64, copy=False).reshape(-1, *shape), names
+    return array.reshape(-1, *shape), names
 
 
 def _statistics(
     weights: sparse.csr_array, values: FloatArray, quantiles: tuple[float, ...], nan: str
 ) -> dict[str, FloatArray]:
-    missing = ~np.isfinite(values)
-    n_nan = np.zeros(weights.shape[0])
-    if missing.any():
-        n_nan = np.asarray(weights @ missing.astype(np.float64))
-        weights = sparse.csr_array(weights @ sparse.diags_array((~missing).astype(np.float64)))
-        weights.eliminate_zeros()
-        values = np.where(missing, 0.0, values)
-    n_pixels = np.asarray(weights.sum(axis=1)).ravel()
-    window = np.repeat(np.arange(weights.shape[0]), np.diff(weights.indptr))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        mean = np.asarray(weights @ values) / n_pixels
-        held = values[weights.indices]
-        deviation = held - mean[window]
-        squares = np.bincount(window, weights.data * deviation**2, minlength=len(mean))
-        sd = np.sqrt(squares / n_pixels)
-    low, high = np.full(len(mean), np.inf), np.full(len(mean), -np.inf)
-    filled = np.diff(weights.indptr) > 0
-    if filled.any():
-        first = weights.indptr[:-1][filled]
-        low[filled], high[filled] = np.minimum.reduceat(held, first), np.maximum.reduceat(held, first)
-    table = {"mean": mean, "sd": sd, "min": low, "max": high}
+    found = np.empty((6, weights.shape[0]))
+    _by_window(weights.indptr, weights.indices, weights.data, values, found)
+    table = dict(zip(("mean", "sd", "min", "max"), found, strict=False))
+    n_pixels, n_nan = found[4:]
     if quantiles:
-        table["quantile"] = _quantiles(weights, window, values, quantiles)
+        table["quantile"] = _quantiles(weights, values, quantiles)
     lost = (n_pixels == 0) | ((n_nan > 0) & (nan == "propagate"))
     for column in table.values():
         column[lost] = np.nan
     return table | {"n_pixels": n_pixels, "n_nan": n_nan}
 
 
-def _quantiles(
-    weights: sparse.csr_array, window: Any, values: FloatArray, quantiles: tuple[float, ...]
-) -> FloatArray:
+@njit(cache=True, error_model="numpy")
+def _by_window(
+    start: Int32Array, pixel: Int32Array, weight: FloatArray, values: FloatArray, found: FloatArray
+) -> None:
+    """Mean, standard deviation, least and greatest value; areas with and without a finite value."""
+    for window in range(len(start) - 1):
+        area = lost = total = squares = 0.0
+        low, high = np.inf, -np.inf
+        for entry in range(start[window], start[window + 1]):
+            value, share = values[pixel[entry]], weight[entry]
+            if math.isfinite(value):
+                area += share
+                total += share * value
+                low, high = min(low, value), max(high, value)
+            else:
+                lost += share
+        mean = total / area
+        for entry in range(start[window], start[window + 1]):
+            value = values[pixel[entry]]
+            if math.isfinite(value):
+                squares += weight[entry] * (value - mean) ** 2
+        found[0, window], found[1, window] = mean, math.sqrt(squares / area)
+        found[2, window], found[3, window] = low, high
+        found[4, window], found[5, window] = area, lost
+
+
+def _quantiles(weights: sparse.csr_array, values: FloatArray, quantiles: tuple[float, ...]) -> FloatArray:
     """Smallest value at which a window's cumulated weight reaches the quantile, shape (windows, Q)."""
+    window = np.repeat(np.arange(weights.shape[0]), np.diff(weights.indptr))
     held = values[weights.indices]
+    known = np.isfinite(held)
+    window, held, weight = window[known], held[known], weights.data[known]
     order = np.lexsort((held, window))
-    running = np.concatenate([[0.0], np.cumsum(weights.data[order])])
-    first, last = weights.indptr[:-1], weights.indptr[1:]
+    running = np.concatenate([[0.0], np.cumsum(weight[order])])
+    ends = np.searchsorted(window, np.arange(weights.shape[0] + 1))
+    first, last = ends[:-1], ends[1:]
     out = np.full((weights.shape[0], len(quantiles)), np.nan)
     filled = last > first
     total = running[last] - running[first]

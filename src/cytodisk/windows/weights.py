@@ -3,14 +3,19 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cytodisk.arrays import FloatArray, Int32Array, IntArray
+from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.windows.polar_layout import PolarLayout
-from cytodisk.windows.raster import windows_of_all_subpixels
-from cytodisk.windows.shares import PER_SIDE, PIXELS_AT_ONCE, Subpixels, WindowShares, gather_shares
+from cytodisk.windows.raster import paint_windows
+from cytodisk.windows.shares import (
+    FINE,
+    PER_SIDE,
+    PIXELS_AT_ONCE,
+    WindowShares,
+    gather_shares,
+    shares_by_strips,
+)
 from cytodisk.windows.subpixels import subpixel_places
-
-_FINE = 16  # subpixels along a pixel's side
 
 
 def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:
@@ -31,29 +36,32 @@ def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:
     WindowShares
         Columns of the weights sum to 1, and no row is empty but those of layers deeper than the cell.
     """
-    pixels = disk.placed_mask.pixels_yx
     if disk.method == "advection":
-        coarse: IntArray | Int32Array = windows_of_subpixels(grid, disk, pixels, PER_SIDE)
+        shares = shares_by_strips(
+            disk.placed_mask,
+            grid.n_windows,
+            lambda pixels: windows_of_subpixels(grid, disk, pixels, PER_SIDE),
+        )
     else:
-        coarse = windows_of_all_subpixels(grid, disk, pixels, PER_SIDE)
-    whole = [Subpixels(np.arange(len(pixels)), coarse, np.full(len(pixels), 1.0 / PER_SIDE**2))]
-    shares = gather_shares(pixels, grid.n_windows, whole)
+        shares = gather_shares(disk.placed_mask, grid.n_windows, paint_windows(grid, disk))
     present = np.repeat(grid.present, grid.sectors)
     empty = np.flatnonzero((np.diff(shares.weights.indptr) == 0) & present)
     if not empty.size:
         return shares
-    near = np.unique(_pixels_at(disk, pixels, grid.centres_uv[empty]))
-    kept = np.delete(np.arange(len(pixels)), near)
-    coarse = coarse[kept]
-    fine = windows_of_subpixels(grid, disk, pixels[near], _FINE)
-    empty = np.flatnonzero((_held(grid, coarse) + _held(grid, fine) == 0) & present)
-    extra = _pixels_at(disk, pixels, grid.centres_uv[empty])
-    counts = np.full(len(pixels), PER_SIDE**2)
-    counts[near] = _FINE**2
-    counts += np.bincount(extra, minlength=len(pixels))
-    sizes = (kept, coarse), (near, fine), (extra, empty[:, None])
-    subpixels = [Subpixels(pixel, window, 1.0 / counts[pixel]) for pixel, window in sizes]
-    return gather_shares(pixels, grid.n_windows, subpixels)
+    subpixels = shares.subpixels
+    pixel, place = _pixels_at(disk, grid.centres_uv[empty])
+    near, first = np.unique(pixel, return_index=True)
+    fine = windows_of_subpixels(grid, disk, place[first], FINE).astype(np.int32)
+    divided = dict(zip(near.tolist(), fine, strict=True))
+    shares = gather_shares(disk.placed_mask, grid.n_windows, subpixels.with_divided(divided))
+    empty = np.flatnonzero((np.diff(shares.weights.indptr) == 0) & present)
+    if not empty.size:
+        return shares
+    pixel, _ = _pixels_at(disk, grid.centres_uv[empty])
+    for number, window in zip(pixel.tolist(), empty, strict=True):
+        own = divided[number] if number in divided else subpixels.of_pixel(number)
+        divided[number] = np.append(own, np.int32(window))
+    return gather_shares(disk.placed_mask, grid.n_windows, subpixels.with_divided(divided))
 
 
 def windows_of_subpixels(grid: PolarLayout, disk: DiskMap, pixels_yx: IntArray, per_side: int) -> IntArray:
@@ -80,14 +88,15 @@ def windows_of_subpixels(grid: PolarLayout, disk: DiskMap, pixels_yx: IntArray, 
     return window
 
 
-def _held(grid: PolarLayout, window: IntArray | Int32Array) -> IntArray:
-    """Number of subpixels in each window."""
-    return np.bincount(window.ravel(), minlength=grid.n_windows)
-
-
-def _pixels_at(disk: DiskMap, pixels: IntArray, points_uv: FloatArray) -> IntArray:
-    """Mask pixel nearest to the place of each disk point in the cell."""
-    if not len(points_uv):
-        return np.empty(0, dtype=np.int64)
-    _, nearest = cKDTree(pixels).query(disk.to_cell(points_uv))
-    return np.asarray(nearest, dtype=np.int64)
+def _pixels_at(disk: DiskMap, points_uv: FloatArray) -> tuple[IntArray, IntArray]:
+    """Number and place of the mask pixel nearest to where each disk point is in the cell."""
+    placed = disk.placed_mask
+    height, width = placed.box.shape
+    numbers = np.flatnonzero(placed.box)
+    points_yx = disk.to_cell(points_uv) - placed.corner
+    nearest = np.clip(np.rint(points_yx).astype(np.int64), 0, (height - 1, width - 1))
+    beside = ~placed.box[tuple(nearest.T)]
+    if beside.any():
+        pixels = np.column_stack(np.divmod(numbers, width))
+        nearest[beside] = pixels[cKDTree(pixels).query(points_yx[beside])[1]]
+    return np.searchsorted(numbers, nearest @ (width, 1)), nearest + placed.corner
