@@ -118,12 +118,16 @@ def print_table(trials: Sequence[Trial]) -> None:
         )
 
 
-def print_failures(failures: Sequence[Trial], shown: int = 20) -> None:
-    """Print why masks were refused, and the first failures with the seed that makes them again."""
+def print_failures(trials: Sequence[Trial], shown: int = 20) -> None:
+    """Print why masks were refused, and the first that failed or did not converge, with their seeds."""
+    failures = [trial for trial in trials if trial.failed]
     for reason, count in Counter(trial.refused for trial in failures if trial.refused).most_common(shown):
         print(f"refused {count} times: {reason}")
     for trial in failures[:shown]:
         print(f"failed: random_mask({trial.kind!r}, {trial.seed}): {trial}")
+    slow = [trial for trial in trials if not (trial.refused or trial.converged)]
+    for trial in slow[:shown]:
+        print(f"not converged: random_mask({trial.kind!r}, {trial.seed})")
 
 
 def run(jobs: Sequence[tuple[str, int]], results: Path | None, workers: int) -> Iterator[Trial]:
@@ -157,7 +161,7 @@ def main() -> int:
     trials = list(run(jobs, arguments.results, arguments.workers))
     print_table(trials)
     failures = [trial for trial in trials if trial.failed]
-    print_failures(failures)
+    print_failures(trials)
     fine = sum(trial.fine for trial in trials)
     print(f"{len(trials)} masks, {fine} of them with 100 × 200 windows, too; {len(failures)} failures")
     return 1 if failures else 0
