@@ -44,6 +44,22 @@ def centroid(outline_yx: FloatArray) -> FloatArray:
     return np.asarray(moment / (3.0 * cross.sum()) + origin)
 
 
+def edges(outline_yx: FloatArray) -> FloatArray:
+    """Step of each edge of a closed polygon, from point i to point i + 1.
+
+    Parameters
+    ----------
+    outline_yx : ndarray of shape (N, 2) and dtype float
+        Closed polygon, (row, column) in pixels.
+
+    Returns
+    -------
+    ndarray of shape (N, 2) and dtype float
+        (along rows, along columns) in pixels.
+    """
+    return np.diff(outline_yx, axis=0, append=outline_yx[:1])
+
+
 def edge_lengths(outline_yx: FloatArray) -> FloatArray:
     """Length of each edge of a closed polygon, edge i from point i to point i + 1.
 
@@ -57,7 +73,7 @@ def edge_lengths(outline_yx: FloatArray) -> FloatArray:
     ndarray of shape (N,) and dtype float
         In pixels.
     """
-    steps = np.diff(outline_yx, axis=0, append=outline_yx[:1])
+    steps = edges(outline_yx)
     return np.hypot(steps[:, 0], steps[:, 1])
 
 
@@ -76,6 +92,25 @@ def smooth_closed(outline_yx: FloatArray, sigma_px: float) -> FloatArray:
     ndarray of shape (N, 2) and dtype float
         One smoothed point for each point.
     """
+    return smooth_along(outline_yx, outline_yx, sigma_px)
+
+
+def smooth_along(values: FloatArray, outline_yx: FloatArray, sigma_px: float) -> FloatArray:
+    """Gaussian smoothing, along a closed polygon, of what is given at each of its points or edges.
+
+    Parameters
+    ----------
+    values : ndarray of shape (N, ...) and dtype float
+        One row for each point, or for each edge.
+    outline_yx : ndarray of shape (N, 2) and dtype float
+        Closed polygon with roughly even spacing, (row, column) in pixels.
+    sigma_px : float
+        Standard deviation of the kernel along the outline, in pixels.
+
+    Returns
+    -------
+    ndarray of shape (N, ...) and dtype float
+    """
     sigma_points = sigma_px / edge_lengths(outline_yx).mean()
-    smoothed: FloatArray = gaussian_filter1d(outline_yx, sigma_points, axis=0, mode="wrap")
+    smoothed: FloatArray = gaussian_filter1d(values, sigma_points, axis=0, mode="wrap")
     return smoothed
