@@ -45,14 +45,41 @@ def boundary_angles(outline_yx: FloatArray, align: Align = "upright") -> FloatAr
     ----------
     u-Unwrap, appendix A.2.1 (i).
     """
-    lengths = arc_lengths(outline_yx)
+    return angles_of_lengths(outline_yx, arc_lengths(outline_yx), align)
+
+
+def angles_of_lengths(outline_yx: FloatArray, lengths: FloatArray, align: Align = "upright") -> FloatArray:
+    """Angle on the circle of each outline point, in proportion to given lengths of the outline's edges.
+
+    Parameters
+    ----------
+    outline_yx : ndarray of shape (B, 2) and dtype float
+        As in `boundary_angles`.
+    lengths : ndarray of shape (B,) and dtype float
+        Of each edge, in any unit, all positive.
+    align : {"upright"}, (float, float) or float
+        As in `boundary_angles`.
+
+    Returns
+    -------
+    ndarray of shape (B,) and dtype float
+        In radians, strictly increasing, all within one turn.
+
+    Raises
+    ------
+    ParameterError
+        `align` is none of these.
+    """
     turn = 2.0 * np.pi * np.cumsum(lengths) / lengths.sum()
     angles = np.concatenate([[0.0], turn[:-1]])
     return angles + _rotation(outline_yx, angles, lengths, align)
 
 
 def arc_lengths(
-    outline_yx: FloatArray, direction_px: float = _DIRECTION_PX, spread_px: float = _SPREAD_PX
+    outline_yx: FloatArray,
+    direction_px: float = _DIRECTION_PX,
+    spread_px: float = _SPREAD_PX,
+    least_share: float = _LEAST_SHARE,
 ) -> FloatArray:
     """Length of each edge of an outline as far as it goes the outline's way.
 
@@ -70,6 +97,8 @@ def arc_lengths(
         Standard deviation of the kernel that smooths the outline's direction, in pixels.
     spread_px : float
         Standard deviation of the kernel that evens out the counted length, in pixels.
+    least_share : float
+        Least counted length of an edge over its own length.
 
     Returns
     -------
@@ -82,7 +111,7 @@ def arc_lengths(
     steps = edges(outline_yx)
     along = (steps * way).sum(axis=1) / np.maximum(np.hypot(way[:, 0], way[:, 1]), _TINY)
     counted, whole = smooth_along(np.column_stack([along, raw]), outline_yx, small * spread_px).T
-    return np.asarray(raw * np.maximum(counted / whole, _LEAST_SHARE))
+    return np.asarray(raw * np.maximum(counted / whole, least_share))
 
 
 def parse_align(align: Any) -> Align:
