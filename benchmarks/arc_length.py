@@ -1,11 +1,18 @@
 """Which measure of the outline's length sends the edge of a cell to the circle: noise, truth and thin parts.
 
-Noise flips the pixels on both sides of the edge with probability 0.5. Prints for each measure how far it
-moves places 2-4 px inside the edge (harmonic map, rms along the edge in px, and over that of the first
-measure), the share of places in the same 10 × 60 window and the steps of the default method under it; the
-error of angles against true arc length, in px along the edge; the least share of the circle that a thin
-protrusion gets (2-6 px wide, 20-60 px long), over its true share; the largest error of angle on disks of
-radius 5-60 px. Then the length that a spike of one pixel adds to an outline.
+    benchmarks/arc_length.py [--seeds N] [--cells N] [--windows]
+
+Noise flips the pixels on both sides of the edge with probability 0.5. A row a measure: how far noise moves
+places 2-4 px inside the edge along it (harmonic map, rms of a mask; median in px, and mean ratio to the first
+measure), on drawn shapes and on osteosarcoma cells from the folder in CYTODISK_DATA; error of angles against
+true arc length, in px along the edge; least share of the circle that a thin protrusion gets (2-6 px wide,
+20-60 px long), over its true share; largest error of angle on disks of radius 5-60 px. With --windows: share
+of places in the same of 10 × 60 windows, and steps, with the default method under noise. The last measure
+reads places off the outline that the mask was drawn from, so no measure can do much better.
+
+Then the length that a spike of one pixel adds to an outline; and what is left in thin arms: how far noise
+moves their middle line and changes their width, and the share of places that stay in the same window of one
+and the same map when they move by a quarter or by half of a pixel.
 """
 
 import argparse
@@ -20,6 +27,8 @@ import shapely
 import tifffile
 from scipy import ndimage
 
+import cytodisk as cd
+from cell_outlines import Drawing, Shape, branched, ellipse, others, polar
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.disk.circle import angles_of_lengths, arc_lengths
 from cytodisk.disk.disk_map import DiskMap
@@ -27,14 +36,13 @@ from cytodisk.disk.mapping import CellMesh, map_mesh, mesh_cell
 from cytodisk.disk.mapping_parameters import MapToDiskParameters
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.outline import trace_outline
-from cytodisk.geometry.polygon import edge_lengths, smooth_closed
-from cytodisk.simulate.cells import disk, ellipse, star
-from cytodisk.simulate.drawing import half_covered
-from cytodisk.windows.polar_windows import polar_windows
+from cytodisk.geometry.polygon import edge_lengths, smooth_along, smooth_closed
 
-_DEFAULT_DATA = Path(__file__).parents[2] / "shared" / "data"
+DATA = Path(os.environ.get("CYTODISK_DATA", Path(__file__).parents[2] / "shared" / "data"))
+PHASE = (0.3, 0.6)  # of a shape between the pixels
 _FLIPPED = 0.5
 _LEAST_LEFT = 0.8  # of a cell's area: where noise cuts off more, the shape is another one
+_TRACED = ("amoeboid", "amoeboid 2", "spiky", "spiky 2", "neurite")  # from masks: no true length is known
 Measure = Callable[[FloatArray], FloatArray]
 
 
@@ -43,12 +51,23 @@ def of_smoothed(outline_yx: FloatArray, sigma_px: float) -> FloatArray:
     return np.maximum(edge_lengths(smooth_closed(outline_yx, sigma_px)), 0.1 * edge_lengths(outline_yx))
 
 
+def of_drawing(outline_yx: FloatArray, true: shapely.LinearRing) -> FloatArray:
+    """Length of each edge by its ends' nearest points of the true outline, evened out as by default."""
+    along = true.project(shapely.points(outline_yx[:, ::-1]))
+    half = 0.5 * true.length
+    steps = np.mod(np.diff(along, append=along[:1]) + half, true.length) - half
+    raw = edge_lengths(outline_yx)
+    counted, whole = smooth_along(np.column_stack([np.sign(steps.sum()) * steps, raw]), outline_yx, 3.0).T
+    return raw * np.maximum(counted / whole, 0.2)
+
+
+OLD, DEFAULT = "smoothed copy, 1 px", "along its way, default"
 MEASURES: dict[str, Measure] = {
-    "smoothed copy, 1 px": partial(of_smoothed, sigma_px=1.0),
+    OLD: partial(of_smoothed, sigma_px=1.0),
     "smoothed copy, 2 px": partial(of_smoothed, sigma_px=2.0),
     "smoothed copy, 3 px": partial(of_smoothed, sigma_px=3.0),
     "smoothed copy, 5 px": partial(of_smoothed, sigma_px=5.0),
-    "along its way, default": arc_lengths,
+    DEFAULT: arc_lengths,
     "  direction over 3 px": partial(arc_lengths, direction_px=3.0),
     "  direction over 4 px": partial(arc_lengths, direction_px=4.0),
     "  direction over 6 px": partial(arc_lengths, direction_px=6.0),
@@ -60,142 +79,105 @@ MEASURES: dict[str, Measure] = {
     "  least share 0.1": partial(arc_lengths, least_share=0.1),
     "  least share 0.4": partial(arc_lengths, least_share=0.4),
 }
+KNOWN = "true outline known"
 
 
-def turned(outline_yx: FloatArray, degrees: float) -> FloatArray:
-    """Outline turned about the origin."""
-    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    return outline_yx @ np.array([[c, s], [-s, c]])
+def circle(radius: float) -> Shape:
+    """A disk."""
+    return Shape(f"disk {radius:g}", "round", polar(lambda t: np.full_like(t, radius)))
 
 
-def wavy(radius: float, waves: dict[int, float], squeeze: float = 1.0) -> FloatArray:
-    """Outline whose distance from the centre is a sum of cosines around it, squeezed along y."""
-    angle = np.linspace(0.0, 2.0 * np.pi, 1440, endpoint=False)
-    away = radius * (1.0 + sum(size * np.cos(k * angle + k) for k, size in waves.items()))
-    return np.column_stack([squeeze * away * np.sin(angle), away * np.cos(angle)])
+def shapes() -> list[Shape]:
+    """Drawn shapes of every class, none of them a judge, and small cells."""
+    small = [circle(6.0), circle(10.0), Shape("small ellipse", "round", ellipse(12.0, 5.0))]
+    star = Shape("small star", "star", polar(lambda t: 18.0 * (1.0 + 0.4 * np.cos(4 * t))))
+    return [*small, star, *(shape for shape in others() if shape.name not in _TRACED)]
 
 
-def armed(radius: float, arms: tuple[tuple[float, float, float], ...]) -> FloatArray:
-    """Outline of a disk with round-ended arms of (degrees, length, width)."""
-    body = shapely.Point(0.0, 0.0).buffer(radius, 64)
-    for degrees, length, width in arms:
-        tip = (radius + length - 0.5 * width) * np.array(
-            [np.cos(np.radians(degrees)), np.sin(np.radians(degrees))]
-        )
-        body = body.union(shapely.LineString([(0.0, 0.0), tuple(tip)]).buffer(0.5 * width, 16))
-    return np.array(body.exterior.coords)[:-1, ::-1]
-
-
-BOX = np.array([(-18.0, -40.0), (-18.0, 40.0), (18.0, 40.0), (18.0, -40.0)])
-U = np.array([(0, 0), (0, 60), (50, 60), (50, 42), (18, 42), (18, 18), (50, 18), (50, 0)], dtype=float)
-OUTLINES = {
-    "disk 10": wavy(10.0, {}),
-    "disk 40": wavy(40.0, {}),
-    "ellipse 60 × 20": turned(wavy(60.0, {}, 1 / 3), 17.0),
-    "ellipse 12 × 5": turned(wavy(12.0, {}, 5 / 12), 33.0),
-    "waves, 25 px": wavy(25.0, {2: 0.15, 3: 0.12, 5: 0.08}),
-    "waves, 45 px": wavy(45.0, {2: 0.1, 3: 0.15, 4: 0.1, 6: 0.06}),
-    "three lobes": wavy(30.0, {3: 0.5}),
-    "four lobes": turned(wavy(18.0, {4: 0.4}), 20.0),
-    "box": turned(BOX, 30.0),
-    "U": turned(U, 9.0),
-    "three arms": armed(18.0, ((52.0, 40.0, 7.0), (155.0, 30.0, 5.0), (264.0, 50.0, 6.0))),
-}
-
-
-def raster(outline_yx: FloatArray, offset: float = 0.3) -> tuple[BoolArray, FloatArray]:
-    """Mask of an outline, and the outline in the mask's frame."""
-    placed = outline_yx - outline_yx.min(axis=0) + 8.0 + offset
-    height, width = np.ceil(placed.max(axis=0)).astype(int) + 9
-    return clean_mask(half_covered(placed, (height, width)))[0], placed
-
-
-def flipped(mask: BoolArray, random: np.random.Generator) -> BoolArray:
-    """The mask with pixels on both sides of its edge flipped at random, cleaned."""
-    rim = (mask & ~ndimage.binary_erosion(mask)) | (ndimage.binary_dilation(mask) & ~mask)
-    return clean_mask(mask ^ (rim & (random.random(mask.shape) < _FLIPPED)))[0]
+def ring(shape: Shape, drawing: Drawing) -> shapely.LinearRing:
+    """True outline in the mask's frame, (x, y)."""
+    return shapely.LinearRing(drawing.places(shape.outline_yx)[:, ::-1])
 
 
 def maps(cell: CellMesh, measures: dict[str, Measure], method: str) -> Iterator[DiskMap]:
     """Map of a cell by each measure."""
     parameters = MapToDiskParameters.of(method=method)
     for measure in measures.values():
-        yield map_mesh(cell, angles_of_lengths(cell.outline, measure(cell.outline)), parameters)
+        yield map_mesh(cell, angles_of_lengths(cell.outline, measure(cell.outline + cell.corner)), parameters)
+
+
+def noisy(mask: BoolArray, seed: int) -> BoolArray:
+    """The mask with noise at its edge."""
+    return cd.simulate.flipped_masks(mask[None], _FLIPPED, seed)[0]
 
 
 def under_noise(mask: BoolArray, measures: dict[str, Measure], seeds: int, windows: bool) -> FloatArray:
     """Mean squared shift along the edge (px²), share in the same window and steps, by measure."""
     depth = ndimage.distance_transform_edt(np.pad(mask, 1))[1:-1, 1:-1]
     near, inside = np.argwhere((depth > 1.9) & (depth < 3.6)), np.argwhere(depth > 1.0)
-    inside = inside[np.random.default_rng(1).permutation(len(inside))[:600]]
-    grid, clean = polar_windows(10, 60), mesh_cell(mask, MapToDiskParameters.of())
+    inside = np.random.default_rng(1).permutation(inside)[:600]
+    window_of = cd.polar_windows(10, 60).window_of
     px = edge_lengths(smooth_closed(trace_outline(mask), 1.0)).sum() / (2.0 * np.pi)
+    clean = mesh_cell(mask, MapToDiskParameters.of())
     before = list(maps(clean, measures, "harmonic"))
     relaxed = list(maps(clean, measures, "newton")) if windows else []
     found = []
     for seed in range(seeds):
-        noisy = flipped(mask, np.random.default_rng(seed))
-        if noisy.sum() < _LEAST_LEFT * mask.sum():
+        changed = noisy(mask, seed)
+        if changed.sum() < _LEAST_LEFT * mask.sum():
             continue
-        held, kept = (p[noisy[tuple(p.T)]].astype(float) for p in (near, inside))
-        other = mesh_cell(noisy, MapToDiskParameters.of())
-        rows = []
-        for one, two in zip(before, maps(other, measures, "harmonic"), strict=True):
+        other = mesh_cell(changed, MapToDiskParameters.of())
+        held, kept = (places[changed[tuple(places.T)]].astype(float) for places in (near, inside))
+        rows = np.full((len(measures), 3), np.nan)
+        for row, one, two in zip(rows, before, maps(other, measures, "harmonic"), strict=True):
             (u, v), (u2, v2) = one.to_disk(held).T, two.to_disk(held).T
-            rows.append([np.square(px * np.angle((u2 + 1j * v2) / (u + 1j * v))).mean(), np.nan, np.nan])
-        for row, one, two in zip(
-            rows, relaxed, maps(other, measures, "newton") if windows else (), strict=False
-        ):
-            row[1:] = (
-                (grid.window_of(one.to_disk(kept)) == grid.window_of(two.to_disk(kept))).mean(),
-                two.steps,
-            )
+            row[0] = np.square(px * np.angle((u2 + 1j * v2) / (u + 1j * v))).mean()
+        for row, one, two in zip(rows, relaxed, maps(other, measures, "newton"), strict=False):
+            row[1:] = (window_of(one.to_disk(kept)) == window_of(two.to_disk(kept))).mean(), two.steps
         found.append(rows)
     return np.mean(found, axis=0) if found else np.full((len(measures), 3), np.nan)
 
 
-def error_against_truth(outline_yx: FloatArray, measure: Measure) -> float:
-    """Rms error of outline points' angles against their true share of length, in px along the edge."""
+def error_against_truth(measure: Measure) -> float:
+    """Rms error of outline points' angles against their true share of length, in px; mean over shapes."""
     errors = []
-    for offset in (0.0, 0.37, 0.6):
-        mask, placed = raster(outline_yx, offset)
-        traced, true = trace_outline(mask), shapely.Polygon(placed).exterior
-        share = np.array([true.project(shapely.Point(point)) for point in traced]) / true.length
-        # In (y, x) a polygon that runs from +x towards +y is clockwise.
-        turn = 2.0 * np.pi * (share if not true.is_ccw else -share)
-        off = np.exp(1j * (angles_of_lengths(traced, measure(traced)) - turn))
+    for shape in shapes():
+        drawing = shape.drawn(PHASE)
+        traced, true = trace_outline(drawing.mask), ring(shape, drawing)
+        turn = 2.0 * np.pi * true.project(shapely.points(traced[:, ::-1]), normalized=True)
+        # In (x, y) an outline from +x towards +y is counter-clockwise.
+        off = np.exp(1j * (angles_of_lengths(traced, measure(traced)) - (turn if true.is_ccw else -turn)))
         errors.append(np.angle(off / off.mean()).std() * true.length / (2.0 * np.pi))
     return float(np.mean(errors))
 
 
-def protrusion_share(measure: Measure, width: float, length: float) -> float:
-    """Share of the circle of a protrusion on a disk of 25 px over its true share; mean over directions."""
-    ratios = []
-    for degrees in (0.0, 20.0, 45.0):
-        drawn = armed(25.0, ((degrees, length, width),))
-        mask, placed = raster(drawn)
-        ahead = np.array([np.sin(np.radians(degrees)), np.cos(np.radians(degrees))])
-        start = (placed - drawn)[0]
-
-        def on_arm(points: FloatArray, ahead: FloatArray = ahead, start: FloatArray = start) -> FloatArray:
-            return (points - start) @ ahead > 25.5
-
-        fine = shapely.segmentize(shapely.Polygon(placed).exterior, 0.05)
-        points = np.array(fine.coords)[:-1]
-        true = edge_lengths(points) @ on_arm(points) / fine.length
-        traced = trace_outline(mask)
-        lengths, there = measure(traced), on_arm(traced)
-        ratios.append(lengths @ (0.5 * there + 0.5 * np.roll(there, -1)) / lengths.sum() / true)
-    return float(np.mean(ratios))
+def protrusion_share(measure: Measure) -> float:
+    """Least share of the circle of a protrusion on a disk of 25 px over its true one, mean of directions."""
+    least = np.inf
+    for width in (2.0, 3.0, 4.0, 6.0):
+        for length in (20.0, 40.0, 60.0):
+            ratios = []
+            for degrees in (0.0, 20.0, 45.0):
+                angle = np.radians(degrees)
+                shape = Shape("arm", "branched", branched(25.0, ((angle, length, width),)))
+                drawing, ahead = shape.drawn(PHASE), np.array([np.sin(angle), np.cos(angle)])
+                fine = shapely.get_coordinates(shapely.segmentize(shapely.LinearRing(shape.outline_yx), 0.05))
+                true = (fine[:-1] @ ahead > 25.5) @ edge_lengths(fine[:-1]) / edge_lengths(fine[:-1]).sum()
+                traced = trace_outline(drawing.mask)
+                lengths, there = measure(traced), drawing.shape_points(traced) @ ahead > 25.5
+                share = lengths @ (0.5 * there + 0.5 * np.roll(there, -1)) / lengths.sum()
+                ratios.append(share / true)
+            least = min(least, float(np.mean(ratios)))
+    return least
 
 
 def disk_error(measure: Measure) -> float:
     """Largest error of angle on disks of radius 5 to 60 px, in degrees."""
     worst = 0.0
     for radius in (5.0, 7.3, 10.0, 20.0, 60.0):
-        mask, placed = raster(wavy(radius, {}))
-        traced = trace_outline(mask)
-        y, x = (traced - placed.mean(axis=0)).T
+        drawing = circle(radius).drawn(PHASE)
+        traced = trace_outline(drawing.mask)
+        y, x = drawing.shape_points(traced).T
         off = np.angle(np.exp(1j * (angles_of_lengths(traced, measure(traced)) - np.arctan2(y, x))))
         worst = max(worst, float(np.degrees(np.abs(off).max())))
     return worst
@@ -203,7 +185,7 @@ def disk_error(measure: Measure) -> float:
 
 def added_by_spike(measure: Measure, height: int) -> float:
     """Length that a spike of one pixel on a disk of 25 px adds to the outline, in px."""
-    plain = disk(25.0, margin=height + 8)
+    plain = cd.simulate.disk(25.0, margin=height + 8)
     column = plain.shape[1] // 2
     top = int(plain[:, column].argmax())
     spiked = plain.copy()
@@ -212,60 +194,79 @@ def added_by_spike(measure: Measure, height: int) -> float:
     return float(with_spike - without)
 
 
-def cells(data: Path, count: int) -> dict[str, BoolArray]:
-    """Reference cells and simulated ones beside the outlines; osteosarcoma cells where they are there."""
-    masks = {name: raster(outline)[0] for name, outline in OUTLINES.items()}
-    masks |= {
-        "simulated star": star(3, body_radius=22.0, arm_length=30.0),
-        "simulated ellipse": ellipse((15, 45)),
-    }
-    path = data / "osteosarcoma" / "masks.tif"
-    if count and path.exists():
-        for number, image in enumerate(tifffile.imread(path, key=range(count))):
-            masks[f"osteosarcoma {number}"] = np.pad(clean_mask(image)[0], 4)
-    return masks
+def arm_under_noise(width: int, seeds: int) -> tuple[float, float]:
+    """How far noise moves the middle line of a straight arm, and changes its width, over 3 px along it."""
+    moved, widened = [], []
+    for seed in range(seeds):
+        mask = np.zeros((200, width + 20), dtype=bool)
+        mask[10:190, 10 : 10 + width] = True
+        rows = noisy(mask, seed)[15:185]
+        first, last = rows.argmax(axis=1), rows.shape[1] - rows[:, ::-1].argmax(axis=1)
+        whole = rows.any(axis=1)
+        moved.append(ndimage.gaussian_filter1d(0.5 * (first + last)[whole], 3.0).std())
+        widened.append(ndimage.gaussian_filter1d((last - first)[whole].astype(float), 3.0).std())
+    return float(np.mean(moved)), float(np.mean(widened))
+
+
+def stays(mask: BoolArray, distance_px: float) -> float:
+    """Share of places that are in the same of 10 × 60 windows of one map after a small move."""
+    disk, window_of = cd.map_to_disk(mask), cd.polar_windows(10, 60).window_of
+    places = np.argwhere(ndimage.distance_transform_edt(np.pad(mask, 1))[1:-1, 1:-1] > 1.0).astype(float)
+    turn = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, len(places))
+    moved = places + distance_px * np.column_stack([np.sin(turn), np.cos(turn)])
+    return float((window_of(disk.to_disk(places)) == window_of(disk.to_disk(moved))).mean())
+
+
+def print_measures(seeds: int, cells: int, windows: bool) -> None:
+    """The table of measures."""
+    drawn, real = [], []
+    for shape in shapes():
+        drawing = shape.drawn(PHASE)
+        known = {KNOWN: partial(of_drawing, true=ring(shape, drawing))}
+        drawn.append(under_noise(drawing.mask, MEASURES | known, seeds, windows))
+    path = DATA / "osteosarcoma" / "masks.tif"
+    for number in range(cells if path.exists() else 0):
+        mask = np.pad(clean_mask(tifffile.imread(path, key=number))[0], 4)
+        real.append(under_noise(mask, MEASURES, seeds, windows))
+    table = pd.DataFrame(index=[*MEASURES, KNOWN])
+    for name, noise in (("shapes", drawn), ("cells", real)):
+        if noise:
+            found = np.array(noise)
+            shift = pd.DataFrame(np.sqrt(found[..., 0]), columns=table.index[: found.shape[1]])
+            table[f"{name} px"] = shift.median()
+            table[f"{name} ratio"] = np.exp(np.log(shift.div(shift[OLD], axis=0)).mean())
+            if windows:
+                table[[f"{name} window", f"{name} steps"]] = np.nan
+                table.loc[shift.columns, [f"{name} window", f"{name} steps"]] = found[..., 1:].mean(axis=0)
+    for name, judge in (("truth px", error_against_truth), ("arm", protrusion_share), ("disk °", disk_error)):
+        table[name] = pd.Series({measure: judge(lengths) for measure, lengths in MEASURES.items()})
+    print(f"{len(drawn)} shapes and {len(real)} cells, {seeds} noisy copies of each")
+    print(table.to_string(float_format="%.3f", na_rep=""))
 
 
 def main() -> None:
     """Run the benchmark."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=3, help="noisy copies of each mask (default 3)")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--seeds", type=int, default=2, help="noisy copies of each mask (default 2)")
     parser.add_argument(
         "--cells", type=int, default=0, help="osteosarcoma cells beside the shapes (default 0)"
     )
-    parser.add_argument(
-        "--no-windows", action="store_true", help="leave out the relaxed maps, which take longest"
-    )
-    parser.add_argument("--data", type=Path, default=Path(os.environ.get("CYTODISK_DATA", _DEFAULT_DATA)))
+    parser.add_argument("--windows", action="store_true", help="also relax the maps, which takes longest")
     chosen = parser.parse_args()
-    masks = cells(chosen.data, chosen.cells)
-    noise = np.array(
-        [under_noise(mask, MEASURES, chosen.seeds, not chosen.no_windows) for mask in masks.values()]
-    )
-    shift = np.sqrt(noise[..., 0])
-    sizes = [(width, length) for width in (2.0, 3.0, 4.0, 6.0) for length in (20.0, 40.0, 60.0)]
-    table = pd.DataFrame(
-        {
-            "shift px": np.nanmedian(shift, axis=0),
-            "ratio": np.exp(np.nanmean(np.log(shift / shift[:, :1]), axis=0)),
-            "truth px": [
-                np.mean([error_against_truth(outline, measure) for outline in OUTLINES.values()])
-                for measure in MEASURES.values()
-            ],
-            "arm": [min(protrusion_share(measure, *size) for size in sizes) for measure in MEASURES.values()],
-            "disk °": [disk_error(measure) for measure in MEASURES.values()],
-        },
-        index=list(MEASURES),
-    )
-    if not chosen.no_windows:
-        table["window"], table["steps"] = np.nanmean(noise[..., 1:], axis=0).T
-    print(f"{len(masks)} masks, {chosen.seeds} noisy copies of each\n{table.to_string(float_format='%.3f')}")
+    print_measures(chosen.seeds, chosen.cells, chosen.windows)
     heights = (1, 2, 3, 4, 6, 10, 20)
     print("\nlength added by a spike 1 px wide, of height " + ", ".join(map(str, heights)) + " px")
-    for name in ("smoothed copy, 1 px", "smoothed copy, 3 px", "along its way, default"):
+    for name in (OLD, "smoothed copy, 3 px", DEFAULT):
         print(
             f"{name:<24}" + "".join(f"{added_by_spike(MEASURES[name], height):>8.2f}" for height in heights)
         )
+    print("\nnoise in a straight arm, over 3 px along it: middle line moved, width changed (px, rms)")
+    for width in (4, 6, 8, 12):
+        print(f"{width:>3} px wide" + "".join(f"{value:>8.2f}" for value in arm_under_noise(width, 10)))
+    print("\nsame of 10 × 60 windows of one map after a move by 0.25, 0.5 px")
+    for shape in shapes():
+        mask = shape.drawn(PHASE).mask
+        print(f"{shape.name:<24}{stays(mask, 0.25):>8.2f}{stays(mask, 0.5):>8.2f}")
 
 
 if __name__ == "__main__":

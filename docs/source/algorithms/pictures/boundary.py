@@ -41,7 +41,7 @@ axes[2].annotate(
     va="center",
     arrowprops={"arrowstyle": "-"},
 )
-axes[2].text(middle + 30, middle + 12, "protrusion of 3 px", ha="center")
+axes[2].text(middle + 28, middle + 5, "protrusion\nof 3 px", ha="center", va="top")
 axes[2].text(middle, middle, "60 sectors", ha="center", va="center")
 for ax in axes:
     ax.set_aspect("equal")
