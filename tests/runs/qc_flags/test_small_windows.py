@@ -67,9 +67,9 @@ def test_a_border_by_depth_that_nearly_reaches_the_centre_is_named(tmp_path: Pat
 
 
 def test_a_window_below_a_pixel_is_flagged_where_the_median_is_large(tmp_path: Path) -> None:
-    masks = np.pad(disks(20.0, 2), ((0, 0), (0, 0), (0, 40)))
-    masks[:, masks.shape[1] // 2, 23:80] = True  # an arm a pixel wide
-    flag = flags_of(masks, tmp_path, layers=5, sectors=24)["small windows"]
+    masks = np.pad(disks(30.0, 2), ((0, 0), (0, 0), (0, 60)))
+    masks[:, masks.shape[1] // 2, 33:120] = True  # an arm a pixel wide
+    flag = flags_of(masks, tmp_path, layers=8, sectors=30)["small windows"]
     cells = cd.open_study(tmp_path / "out").cells
     assert (cells["median_window_px"] > 10).all()
     assert (cells["smallest_window_px"] < 1).all()
