@@ -130,4 +130,4 @@ def test_the_coarse_mesh_tells_the_area_error_of_the_fine_one() -> None:
     disk = cd.map_to_disk(shape.mask, method="harmonic")
     found = measure_distortion(shape)
     assert found["harmonic_area_error"] == pytest.approx(disk.distortion.area, rel=0.05)
-    assert found["harmonic_angle_error"] == pytest.approx(disk.distortion.angle - 1, rel=0.05)
+    assert found["harmonic_angle_error"] == pytest.approx(disk.distortion.angle - 1, rel=0.06)
