@@ -2,11 +2,14 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from cytodisk import polar_windows, simulate
+from cytodisk.arrays import FloatArray
+from cytodisk.disk import newton
 from cytodisk.disk.circle import angles_of_lengths
 from cytodisk.disk.disk_map import DiskMap, load_map
 from cytodisk.disk.mapping import map_mesh, map_to_disk, mesh_cell
@@ -107,3 +110,22 @@ def test_a_map_that_an_earlier_version_wrote_says_how_it_was_made(disk: DiskMap,
         arrays["header"] = np.array(json.dumps(header | {"method": name}))
         np.savez(tmp_path / "old.npz", **arrays)
         assert load_map(tmp_path / "old.npz").method == meant
+
+
+def test_a_step_that_would_climb_for_lost_digits_is_taken_with_a_raised_diagonal(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """On this spiral, a matrix whose diagonal spans eleven powers of ten once gave a step uphill."""
+    mask = simulate.random_mask("spiral_thick", 5014)
+    assert map_to_disk(mask).converged
+    found = newton._Problem.gauss_newton_direction
+    tried = []
+
+    def climbing(problem: Any, uv: FloatArray, damping: float = 0.0) -> tuple[FloatArray, float]:
+        tried.append(damping)
+        direction, decrement = found(problem, uv, damping)
+        return (direction, decrement) if damping else (-direction, -max(decrement, 1.0))
+
+    monkeypatch.setattr(newton._Problem, "gauss_newton_direction", climbing)
+    assert map_to_disk(simulate.disk(12.0)).converged
+    assert tried[:2] == list(newton._DAMPINGS[:2])

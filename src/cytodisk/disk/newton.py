@@ -26,6 +26,7 @@ _TRIALS = 50
 _SHORTEST, _LONGEST = 0.1, 0.7  # of a step that was too long: bounds of the next one
 DECREMENT = 4e-5
 MAX_STEPS = 500
+_DAMPINGS = (0.0, 1e-8, 1e-6, 1e-4, 1e-2)  # share of the diagonal that is added to it
 
 
 def relax(
@@ -75,7 +76,7 @@ def relax(
     if not np.isfinite(value):
         raise MapError("relaxation needs a start without flipped triangles")
     for step in range(MAX_STEPS):
-        direction, decrement = problem.gauss_newton_direction(uv)
+        direction, decrement = problem.descent(uv)
         if decrement < DECREMENT:
             return Relaxed(uv, step, decrement > -DECREMENT)
         moved = problem.search(uv, direction, value, decrement)
@@ -115,8 +116,20 @@ class _Problem:
             value += float((self._inertia * np.square(uv[self._vertex] - self._anchor)).sum())
         return value
 
-    def gauss_newton_direction(self, uv: FloatArray) -> tuple[FloatArray, float]:
-        """Step of every vertex, and the energy it promises to save to first order."""
+    def descent(self, uv: FloatArray) -> tuple[FloatArray, float]:
+        """Step of every vertex, and the energy it promises to save to first order.
+
+        A triangle of next to no area makes the matrix so uneven that its factors can lose all digits, and the
+        step would climb: the diagonal is then raised by a little.
+        """
+        for damping in _DAMPINGS:
+            direction, decrement = self.gauss_newton_direction(uv, damping)
+            if decrement > -DECREMENT:
+                break
+        return direction, decrement
+
+    def gauss_newton_direction(self, uv: FloatArray, damping: float = 0.0) -> tuple[FloatArray, float]:
+        """The step with the diagonal raised by a share of it, and what it saves."""
         system, diagonal = self._system, self._system.pattern.diagonal
         right = np.empty((len(self._vertex), 3))
         fill_step(uv, self._cell, self._weight, system.pattern.place, diagonal, system.blocks, right)
@@ -125,6 +138,9 @@ class _Problem:
             right[:, :2] -= pull * (uv[self._vertex] - self._anchor)
             for axis in (0, 1):
                 system.blocks[diagonal, axis, axis] += pull[:, 0]
+        if damping:
+            for axis in (0, 1):
+                system.blocks[diagonal, axis, axis] *= 1.0 + damping
         system.factorise()
         found = system.solve(right)
         direction = np.zeros_like(uv)
