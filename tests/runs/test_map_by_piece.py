@@ -83,5 +83,5 @@ def test_a_worker_gets_crops_and_the_frame_is_not_read_whole(
     for task in tasks:
         assert task.found.mask is not None
         assert task.signal is not None
-        assert task.signal.shape == (2, *task.found.mask.shape)
+        assert task.signal.values.shape == (2, *task.found.mask.shape)
         assert task.image is None

@@ -81,7 +81,12 @@ def map_to_disk(
     array([[36.9, 27.5]])
     """
     parameters = MapToDiskParameters.of(**settings)
-    cell = mesh_cell(mask, parameters, Scale.of(mask).given(parameters.pixel_size_um))
+    return map_cell(mask, parameters, Scale.of(mask).given(parameters.pixel_size_um))
+
+
+def map_cell(mask: Any, parameters: MappingParameters, scale: Scale = UNKNOWN) -> DiskMap:
+    """As `map_to_disk`, with parameters that are known already."""
+    cell = mesh_cell(mask, parameters, scale)
     angles = boundary_angles(cell.outline, _relative(parameters.align, cell.corner))
     return map_mesh(cell, angles, parameters)
 

@@ -74,6 +74,27 @@ def _named(values: np.ndarray[Any, Any], channels: Sequence[str], scale: Scale) 
 
 
 @dataclass(frozen=True, eq=False)
+class SignalPiece:
+    """Some rows and columns of an image; a DataArray takes longer to make than to measure.
+
+    Attributes
+    ----------
+    values : ndarray of shape (C, h, w)
+    channels : tuple of str
+    scale : Scale
+    """
+
+    values: np.ndarray[Any, Any]
+    channels: tuple[str, ...]
+    scale: Scale
+
+    @property
+    def named(self) -> xr.DataArray:
+        """The same with dims (channel, y, x)."""
+        return _named(self.values, self.channels, self.scale)
+
+
+@dataclass(frozen=True, eq=False)
 class SignalFrame:
     """The image of a frame of the masks, read by piece.
 
@@ -88,9 +109,9 @@ class SignalFrame:
     channels: tuple[str, ...]
     scale: Scale
 
-    def cut(self, rows: slice, columns: slice) -> xr.DataArray:
-        """A piece of it, with dims (channel, y, x) and pixels of its own; raises ReadError where damaged."""
-        return _named(self.pixels.cut(rows, columns).copy(), self.channels, self.scale)
+    def cut(self, rows: slice, columns: slice) -> SignalPiece:
+        """A piece of it with pixels of its own; raises ReadError where it is damaged."""
+        return SignalPiece(self.pixels.cut(rows, columns).copy(), self.channels, self.scale)
 
 
 def open_image(file: FrameFile | None, frame: int) -> SignalFrame | ReadError | None:

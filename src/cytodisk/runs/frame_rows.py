@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-import xarray as xr
 
 from cytodisk.analysis.activity import STATISTICS, pixel_arrays
 from cytodisk.analysis.pixel_pileup import Pileup, pileup
@@ -14,6 +13,7 @@ from cytodisk.errors import CytodiskError, EmptyMaskError, ReadError, SignalErro
 from cytodisk.geometry.outline_step import outline_step
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
+from cytodisk.images.signal_files import SignalPiece
 from cytodisk.windows.depths import DEPTHS
 from cytodisk.windows.polar_windows import CellWindows
 from cytodisk.windows.sample import check_channel_names
@@ -83,10 +83,9 @@ class _CellSignal:
     pixels: np.ndarray[Any, Any]
 
     @classmethod
-    def of(cls, image: xr.DataArray, placed: PlacedMask) -> _CellSignal:
-        values = image.to_numpy()
+    def of(cls, signal: SignalPiece, placed: PlacedMask) -> _CellSignal:
+        values, channels = signal.values, list(signal.channels)
         box = values if values.shape[1:] == placed.box.shape else placed.cut_out_of(values)
-        channels = [str(name) for name in image["channel"].to_numpy()]
         check_channel_names("signal", channels)
         return cls(channels, box[:, placed.box])
 
@@ -94,7 +93,7 @@ class _CellSignal:
 def measure_windows(
     place: FramePlace,
     windows: CellWindows,
-    image: xr.DataArray | None,
+    signal: SignalPiece | None,
     nan: Literal["propagate", "omit"],
     corner: tuple[int, int] = (0, 0),
 ) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -104,7 +103,7 @@ def measure_windows(
     ----------
     place : FramePlace
     windows : CellWindows
-    image : DataArray with dims (channel, y, x), or None
+    signal : SignalPiece or None
         Of the shape of the map's mask, or of its box in the image (`DiskMap.placed_mask`).
     nan : {"propagate", "omit"}
     corner : (int, int)
@@ -117,9 +116,9 @@ def measure_windows(
     columns : dict of str to array
         Of the table of windows: for each channel every window, layers first.
     """
-    signal = None if image is None else _CellSignal.of(image, windows.disk.placed_mask)
-    row = place.row | _cell_columns(windows, signal)
-    columns = _window_columns(place, windows, signal, nan)
+    inside = None if signal is None else _CellSignal.of(signal, windows.disk.placed_mask)
+    row = place.row | _cell_columns(windows, inside)
+    columns = _window_columns(place, windows, inside, nan)
     for values in (row, columns):
         for name, first in zip(("centroid_y", "centroid_x"), corner, strict=True):
             values[name] = values[name] + float(first)

@@ -11,13 +11,12 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import StudyError, WriteError
 from cytodisk.files import replacing
 from cytodisk.store.columns_file import write_columns
-from cytodisk.store.merging import merge_tables, repeating, write_rows
+from cytodisk.store.merging import merge_tables, read_part, write_part, write_rows
 from cytodisk.store.provenance_file import (
     PROVENANCE,
     other_version,
@@ -137,7 +136,7 @@ class StudyFolder:
 
     def has_table(self, key: str, table: str) -> bool:
         """Whether a part has rows for a table."""
-        return self._part(key, f"{table}.parquet").exists()
+        return self._part(key, f"{table}.arrow").exists()
 
     def map_path(self, key: str) -> Path:
         """Where a part's map stands."""
@@ -162,8 +161,8 @@ class StudyFolder:
         """
         columns_schema = self._schema(self.kind.others[table])
         rows = pa.concat_tables([pa.table(some, schema=columns_schema) for some in columns])
-        with replacing(self._part(key, f"{table}.parquet")) as temporary:
-            pq.write_table(rows, temporary, use_dictionary=repeating(columns_schema))
+        with replacing(self._part(key, f"{table}.arrow")) as temporary:
+            write_part(rows, temporary)
 
     def add_array(self, key: str, name: str, values: FloatArray) -> None:
         """Write numbers of a part that only its run needs; they go with the parts when it ends.
@@ -243,7 +242,7 @@ class StudyFolder:
 
     def part_table(self, key: str, table: str) -> Any:
         """A part's rows for a table, as an Arrow table."""
-        return pq.read_table(self._part(key, f"{table}.parquet"))
+        return read_part(self._part(key, f"{table}.arrow"))
 
     def part_array(self, key: str, name: str) -> FloatArray | None:
         """Numbers of a part as `add_array` wrote them; None if it did not."""

@@ -42,6 +42,8 @@ def between_pixels(windows: CellWindows) -> IntArray:
     open_ = np.flatnonzero(~known & np.repeat(grid.present, grid.sectors))
     if not open_.size:
         return open_
-    shared = np.unique(weights[open_].indices)
+    shared = np.zeros(weights.shape[1], dtype=bool)
+    shared[weights.indices[~known[window]]] = True  # in an open window, or in layers deeper than the cell
     centres = windows.disk.placed_mask.pixels_yx[shared].astype(np.float64)
-    return np.setdiff1d(open_, grid.window_of(windows.disk.to_disk(centres, outside="nearest")))
+    known[grid.window_of(windows.disk.to_disk(centres, outside="nearest"))] = True
+    return np.asarray(open_[~known[open_]])

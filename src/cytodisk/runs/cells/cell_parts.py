@@ -8,12 +8,10 @@ from functools import partial
 from itertools import islice
 from typing import Any, TypeAlias
 
-import xarray as xr
-
 from cytodisk.errors import CytodiskError, ReadError, as_data
 from cytodisk.images.frame_pixels import FramePixels
 from cytodisk.images.mask_files import MaskImage, SourceCell, list_images
-from cytodisk.images.signal_files import SignalFrame, open_image
+from cytodisk.images.signal_files import SignalFrame, SignalPiece, open_image
 from cytodisk.runs.cells.cell_inputs import CellInputs
 from cytodisk.runs.executor import Executor
 from cytodisk.runs.run_options import Progress
@@ -27,11 +25,11 @@ class CellTask:
     Attributes
     ----------
     found : SourceCell
-    signal : DataArray with dims (channel, y, x), or None
+    signal : SignalPiece or None
         Cut out as the cell's mask is.
     fault : CytodiskError or None
         Why the signal cannot be used.
-    image : DataArray with dims (channel, y, x), or None
+    image : SignalPiece or None
         The whole image, or of a large one what lies around the cell, for a cell that is drawn.
     image_corner : (int, int)
         (row, column) of its first pixel in the whole image.
@@ -39,9 +37,9 @@ class CellTask:
     """
 
     found: SourceCell
-    signal: xr.DataArray | None = None
+    signal: SignalPiece | None = None
     fault: CytodiskError | None = None
-    image: xr.DataArray | None = None
+    image: SignalPiece | None = None
     image_corner: tuple[int, int] = (0, 0)
     drawn: bool = False
 

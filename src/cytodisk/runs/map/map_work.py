@@ -7,6 +7,7 @@ import math
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -14,8 +15,8 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.disk.mapping import map_to_disk
-from cytodisk.disk.mapping_parameters import Align, MappingParameters
+from cytodisk.disk.mapping import map_cell
+from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.errors import CytodiskError
 from cytodisk.files import replacing
 from cytodisk.images.frame_pixels import WHOLE_BYTES
@@ -27,7 +28,7 @@ from cytodisk.scale import Scale
 from cytodisk.store.figures_folder import figures_folder
 from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.windows.grid_parameters import PolarGridParameters
-from cytodisk.windows.polar_windows import CellWindows, polar_grid
+from cytodisk.windows.polar_windows import CellWindows, PolarGrid, polar_grid
 
 DrawCell: TypeAlias = Callable[[Path, str, CellWindows, xr.DataArray | None], list[Path]]
 
@@ -64,7 +65,7 @@ class MapWork:
         if fault is None:
             try:
                 disk = self._map(found)
-                windows = polar_grid(self.parameters.part(PolarGridParameters)).on(disk)
+                windows = self._grid.on(disk)
             except CytodiskError as error:
                 fault = error
         if fault is not None:
@@ -84,7 +85,7 @@ class MapWork:
         found, image, (y, x) = task.found, None, task.found.corner
         disk = windows.disk
         if task.image is not None:
-            image = task.image.astype(np.float64)
+            image = task.image.named.astype(np.float64)
             _, height, width = image.shape
             disk = disk.placed((y - task.image_corner[0], x - task.image_corner[1]), (height, width))
         elif math.prod(found.image_shape) <= WHOLE_BYTES:
@@ -93,9 +94,19 @@ class MapWork:
         draw(figures_folder(self.folder.path), f"cell_{found.cell:05d}", placed, image)
 
     def _map(self, found: SourceCell) -> DiskMap:
-        mapping = dict(self.parameters.part(MappingParameters))
-        mapping["align"] = _in_crop(self.parameters.align, found.corner)
-        return map_to_disk(found.mask, **mapping, pixel_size_um=self.scale.pixel_size_um)
+        mapping = self._mapping
+        if isinstance(mapping.align, tuple):  # a place in the image
+            (y, x), (row, column) = mapping.align, found.corner
+            mapping = mapping.changed(align=(y - row, x - column))
+        return map_cell(found.mask, mapping, Scale(self.scale.pixel_size_um))
+
+    @cached_property
+    def _mapping(self) -> MappingParameters:
+        return self.parameters.part(MappingParameters)
+
+    @cached_property
+    def _grid(self) -> PolarGrid:
+        return polar_grid(self.parameters.part(PolarGridParameters))
 
     def _write(self, windows: CellWindows, path: Path) -> None:
         if self.maps:
@@ -103,12 +114,6 @@ class MapWork:
         if self.geojson:
             with replacing(path.with_suffix(".geojson")) as temporary:
                 temporary.write_text(json.dumps(windows.geojson()), encoding="utf-8")
-
-
-def _in_crop(align: Align, corner: tuple[int, int]) -> Align:
-    if isinstance(align, tuple):
-        return align[0] - corner[0], align[1] - corner[1]
-    return align
 
 
 def _seconds(started: float) -> dict[str, Any]:

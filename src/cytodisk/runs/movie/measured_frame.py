@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import CytodiskError, WindowError
+from cytodisk.images.signal_files import SignalPiece
 from cytodisk.images.tracks import MissingLabel
 from cytodisk.motion.edge import EdgeMotion, displacement_by_sector, edge_motion
 from cytodisk.motion.following import frame_status
@@ -35,7 +35,7 @@ class FrameTask:
     frame : MappedFrame
     before : MappedFrame or None
         The frame before, if that has a map.
-    signal : DataArray with dims (channel, y, x), or None
+    signal : SignalPiece or None
         Of the box of the frame's mask.
     grid : PolarGrid
     parameters : FollowedCellParameters
@@ -48,7 +48,7 @@ class FrameTask:
     place: FramePlace
     frame: MappedFrame
     before: MappedFrame | None
-    signal: xr.DataArray | None
+    signal: SignalPiece | None
     grid: PolarGrid
     parameters: FollowedCellParameters
     map_path: Path

@@ -70,6 +70,8 @@ class QCFlag:
 
 def places_of(rows: pd.DataFrame, note: Callable[[Any], str] | None = None) -> tuple[Place, ...]:
     """The cell and frame of each row, with a note where there is one to write."""
+    rows = rows.copy(deep=False)
+    rows.attrs = {}  # which pandas copies for each row
     frames = rows["frame"] if "frame" in rows else [None] * len(rows)
     return tuple(
         Place(int(row["cell"]), None if frame is None else int(frame), note(row) if note else "")
