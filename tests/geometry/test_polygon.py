@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from cytodisk.geometry.polygon import centroid, edge_lengths, signed_area, smooth_closed
+from cytodisk.geometry.polygon import centroid, edge_lengths, edges, signed_area, smooth_along, smooth_closed
 
 L_SHAPE = np.array([(0, 0), (0, 3), (1, 3), (1, 1), (3, 1), (3, 0)], dtype=float)  # (y, x), from +x to +y
 
@@ -20,6 +20,24 @@ def test_centroid_moves_with_the_polygon_even_far_away() -> None:
 
 def test_edge_lengths_close_the_polygon() -> None:
     np.testing.assert_array_equal(edge_lengths(L_SHAPE), [3, 1, 2, 2, 1, 3])
+
+
+def test_edges_lead_around_the_polygon_and_have_their_lengths() -> None:
+    steps = edges(L_SHAPE)
+    np.testing.assert_array_equal(steps.sum(axis=0), 0.0)
+    np.testing.assert_array_equal(L_SHAPE[0] + np.cumsum(steps, axis=0)[:-1], L_SHAPE[1:])
+    np.testing.assert_array_equal(np.hypot(*steps.T), edge_lengths(L_SHAPE))
+
+
+def test_values_along_a_polygon_are_smoothed_in_pixels_across_its_first_point() -> None:
+    angle = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
+    circle = 50.0 * np.column_stack([np.sin(angle), np.cos(angle)])
+    peak = np.zeros(400)
+    peak[0] = 1.0
+    smoothed = smooth_along(peak, circle, 3.0)
+    away = np.minimum(angle, 2.0 * np.pi - angle) * 50.0
+    assert smoothed.sum() == pytest.approx(1.0)
+    assert np.sqrt(smoothed @ away**2) == pytest.approx(3.0, rel=0.01)
 
 
 def test_smoothing_keeps_a_circle_a_circle_and_shrinks_it_by_the_gaussian_factor() -> None:
