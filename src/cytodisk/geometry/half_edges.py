@@ -65,42 +65,56 @@ def half_edges(triangles: IntArray, n_vertices: int) -> HalfEdges:
     -------
     HalfEdges
     """
-    first, end = _sorted_ends(triangles, n_vertices)
-    return HalfEdges(first, end, *_without_opposite(first, end))
+    first, end, start = _sorted_edges(triangles, n_vertices)
+    return HalfEdges(first, end, *_without_opposite(first, end, start))
 
 
 @njit(cache=True)
-def _sorted_ends(triangles: IntArray, n_vertices: int) -> tuple[IntArray, IntArray]:
+def _sorted_edges(triangles: IntArray, n_vertices: int) -> tuple[IntArray, IntArray, IntArray]:
+    """End of each edge, by its start and then by itself; and start of each, by its end and then by itself.
+
+    As many edges reach a vertex as leave it, so that both are found from `first`.
+    """
     first = np.zeros(n_vertices + 1, dtype=np.int64)
     for t in range(triangles.shape[0]):
         for k in range(3):
             first[triangles[t, k] + 1] += 1
-    first = np.cumsum(first)
+    for a in range(n_vertices):
+        first[a + 1] += first[a]
+    start, end = np.empty(first[-1], dtype=np.int64), np.empty(first[-1], dtype=np.int64)
     filled = first[:-1].copy()
-    end = np.empty(first[-1], dtype=np.int64)
     for t in range(triangles.shape[0]):
         for k in range(3):
-            a, b = triangles[t, k], triangles[t, (k + 1) % 3]
-            place = filled[a]
-            while place > first[a] and end[place - 1] > b:
-                end[place] = end[place - 1]
-                place -= 1
-            end[place] = b
-            filled[a] += 1
-    return first, end
+            b = triangles[t, (k + 1) % 3]
+            start[filled[b]] = triangles[t, k]
+            filled[b] += 1
+    _turn_around(first, start, end)
+    _turn_around(first, end, start)
+    return first, end, start
 
 
 @njit(cache=True)
-def _without_opposite(first: IntArray, end: IntArray) -> tuple[BoolArray, int]:
+def _turn_around(first: IntArray, one: IntArray, other: IntArray) -> None:
+    """Edges listed at one of their ends are listed at the other one, each list in ascending order."""
+    filled = first[:-1].copy()
+    for b in range(len(first) - 1):
+        for place in range(first[b], first[b + 1]):
+            a = one[place]
+            other[filled[a]] = b
+            filled[a] += 1
+
+
+@njit(cache=True)
+def _without_opposite(first: IntArray, end: IntArray, start: IntArray) -> tuple[BoolArray, int]:
     outer = np.empty(len(end), dtype=np.bool_)
     n_edges = 0
     for a in range(len(first) - 1):
+        back = first[a]
         for place in range(first[a], first[a + 1]):
             b = end[place]
-            found = first[b]
-            while found < first[b + 1] and end[found] < a:
-                found += 1
-            outer[place] = found == first[b + 1] or end[found] != a
+            while back < first[a + 1] and start[back] < b:
+                back += 1
+            outer[place] = back == first[a + 1] or start[back] != b
             repeated = place > first[a] and end[place - 1] == b
             if not repeated and (a <= b or outer[place]):
                 n_edges += 1
