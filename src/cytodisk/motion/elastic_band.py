@@ -13,6 +13,7 @@ _SPRING = 1.0  # weight of even stretch against even displacement
 _ROUNDS = 40
 _HALVINGS = 12
 _STILL_PX = 1e-3
+_STILL_PX2 = 1e-5  # mean over the points; 4000 times less than what the pixels of a mask make of nothing
 _LONGEST_STEP_PX = 3.0
 _MOST_SHRINKING = 0.8  # of the gap between neighbours in one round, so that order is kept
 
@@ -119,8 +120,9 @@ def relax_band(
         if not new_value <= value:  # the polygon's corners leave no descent: this is as far as it goes
             _displace(points, target, places, motion, band)
             break
+        gained = (value - new_value) / (spacing * n)
         places, motion, value = new_places, new_motion, new_value
-        if scale * longest < _STILL_PX:
+        if scale * longest < _STILL_PX or gained < _STILL_PX2:
             break
     return places, motion, _sum_of_squares(d) / n
 
