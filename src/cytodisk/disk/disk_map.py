@@ -181,8 +181,7 @@ class DiskMap:
         """Image (u, v) of the outline point nearest to each of some points (row, column), shape (N, 2)."""
         edge, fraction = nearest_on_outline(points_yx, self.outline_yx)
         circle = self.vertices_uv[self.boundary]
-        start, stop = circle[edge], circle[(edge + 1) % len(circle)]
-        chord = start + fraction[:, None] * (stop - start)
+        chord = circle[edge] + fraction[:, None] * (circle[(edge + 1) % len(circle)] - circle[edge])
         return np.asarray(chord / np.hypot(chord[:, 0], chord[:, 1])[:, None])
 
     def image(self, signal: Any, size: int = 256) -> FloatArray:
@@ -222,9 +221,8 @@ class DiskMap:
         DiskMap
             Its mask has the shape of the image, its points are pixels of the image.
         """
-        vertices_yx = self.vertices_yx + np.array(corner, dtype=np.float64)
-        placed = self.placed_mask.within(corner, image_shape)
-        return replace(self, placed_mask=placed, vertices_yx=vertices_yx)
+        moved = self.vertices_yx + np.array(corner, dtype=np.float64)
+        return replace(self, placed_mask=self.placed_mask.within(corner, image_shape), vertices_yx=moved)
 
     def save(self, path: str | os.PathLike[str], beside: Mapping[str, FloatArray] | None = None) -> None:
         """Write the map to a `.npz` file that `load_map` reads back.
@@ -246,9 +244,8 @@ class DiskMap:
         facts = {name: getattr(self, name) for name in _FACTS}
         header = {"report": asdict(self.report), **asdict(self.scale), **facts}
         arrays = {name: getattr(self, name) for name in _ARRAYS if name != "vertices_uv"}
-        write_map_file(
-            path, header, self.placed_mask, arrays, {**(beside or {}), "vertices_uv": self.vertices_uv}
-        )
+        beside = {**(beside or {}), "vertices_uv": self.vertices_uv}
+        write_map_file(path, header, self.placed_mask, arrays, beside)
 
     @cached_property
     def _in_cell(self) -> TriangleLocator:

@@ -195,28 +195,32 @@ def _nearest_edges(inside: BoolArray, edges: FloatArray, counts: BoolArray) -> t
     lowest = np.empty(width, dtype=np.int64)  # columns whose parabolas make up the lower envelope
     begin = np.empty(width + 1)  # and where each of them begins
     for row in range(1, height - 1):
-        count = lower_envelope(row, outside[row], lowest, begin)
-        place = 0
-        for column in range(1, width - 1):
-            while place < count - 1 and begin[place + 1] < column:
-                place += 1
-            if not inside[row, column] or count == 0:
+        last = 0
+        for first in range(1, width - 1):
+            if first <= last or not inside[row, first]:
                 continue
-            down = outside[row, lowest[place]] - row
-            aside = lowest[place] - column
-            steps = max(abs(down), abs(aside))
-            before = (steps - 1.0) / steps  # of the way from here to that pixel
-            y, x, found = row - 1.0, column - 1.0, nearest[row, column]
-            inner = nearest[row + round(before * down), column + round(before * aside)]
-            if found < 0:
-                found = inner
-            if steps < _THIN_PX:  # edges at both sides of that pixel, and of this one
-                found = _nearer(y, x, found, inner, edges)
-                found = _nearer(y, x, found, nearest[row + down, column + aside], edges)
-            if found >= 0:
-                found = _walk(y, x, found, edges, counts)
-                nearest[row, column] = found
-                distance[row, column] = math.sqrt(squared_distance(y, x, edges, found))
+            last = first
+            while inside[row, last + 1]:
+                last += 1
+            count = lower_envelope(row, outside[row], (first - 1, last + 1), lowest, begin)
+            place = 0
+            for column in range(first, last + 1 if count > 0 else first):
+                while place < count - 1 and begin[place + 1] < column:
+                    place += 1
+                down, aside = outside[row, lowest[place]] - row, lowest[place] - column
+                steps = max(abs(down), abs(aside))
+                before = (steps - 1.0) / steps  # of the way from here to that pixel
+                y, x, found = row - 1.0, column - 1.0, nearest[row, column]
+                inner = nearest[row + round(before * down), column + round(before * aside)]
+                if found < 0:
+                    found = inner
+                if steps < _THIN_PX:  # edges at both sides of that pixel, and of this one
+                    found = _nearer(y, x, found, inner, edges)
+                    found = _nearer(y, x, found, nearest[row + down, column + aside], edges)
+                if found >= 0:
+                    found = _walk(y, x, found, edges, counts)
+                    nearest[row, column] = found
+                    distance[row, column] = math.sqrt(squared_distance(y, x, edges, found))
     return nearest, distance
 
 

@@ -26,10 +26,16 @@ def outside_in_column(inside: BoolArray) -> IntArray:
 
 
 @njit(cache=True, error_model="numpy")
-def lower_envelope(row: int, outside: IntArray, lowest: IntArray, begin: FloatArray) -> int:
-    """Lower envelope of the squared distances from a row to the pixels outside, by column: see `depth_of`."""
+def lower_envelope(
+    row: int, outside: IntArray, columns: tuple[int, int], lowest: IntArray, begin: FloatArray
+) -> int:
+    """Lower envelope of the squared distances from a row to the pixels outside, by column: see `depth_of`.
+
+    Columns are the first and the last that count: for a stretch of pixels inside the ones beside it, for
+    what lies beyond them is further from all of the stretch.
+    """
     count = 0
-    for column in range(len(outside)):
+    for column in range(columns[0], columns[1] + 1):
         if outside[column] < 0:
             continue
         height = float(outside[column] - row) ** 2

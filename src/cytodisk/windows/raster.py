@@ -15,7 +15,6 @@ from cytodisk.arrays import BoolArray, FloatArray, Int32Array, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.windows.polar_layout import PolarLayout
 from cytodisk.windows.shares import DIVIDED, NOWHERE, PER_SIDE, Subpixels, with_starts
-from cytodisk.windows.subpixels import subpixel_places
 from cytodisk.windows.window_walls import (
     Point,
     Walls,
@@ -67,8 +66,9 @@ def paint_windows(grid: PolarLayout, disk: DiskMap) -> Subpixels:
     )
     divided, number = np.divmod(np.flatnonzero(window.ravel() == NOWHERE), PER_SIDE**2)
     if divided.size:
+        middles = np.column_stack(np.divmod(number, PER_SIDE)) + 0.5
         pixels_yx = np.column_stack(np.divmod(places[divided], width)) + corner
-        points = subpixel_places(pixels_yx, PER_SIDE)[np.arange(len(divided)), number]
+        points = pixels_yx + (middles / PER_SIDE - 0.5)
         window[divided, number] = grid.window_of(disk.nearest_on_circle(points))
         whole, window = _without_whole(whole, window, np.unique(divided))
     return with_starts(whole, window.ravel())

@@ -254,7 +254,8 @@ def _add_subpixels(
                 _add_square(moments, window[subpixel], y, x, side, share)
             subpixel += 1
     for more in range(subpixel, stop):
-        _add_square(moments, window[more], float(row), float(column), 1.0, share)
+        if window[more] >= 0:
+            _add_square(moments, window[more], float(row), float(column), 1.0, share)
 
 
 @njit(cache=True, inline="always")
