@@ -70,17 +70,18 @@ def test_nearest_on_outline_agrees_with_a_search_over_all_edges() -> None:
 
 def test_weighted_corners_agree_with_numpy() -> None:
     random = np.random.default_rng(0)
-    corners = random.normal(size=(20, 3, 2))
+    values, triangles = random.normal(size=(30, 2)), random.integers(0, 30, (20, 3))
     triangle = random.integers(-1, 20, 200)
     weights = random.dirichlet(np.ones(3), 200)
-    found = weighted_corners(corners, triangle, weights)
+    found = weighted_corners(values, triangles, triangle, weights)
     nowhere = triangle < 0
     assert 0 < nowhere.sum() < 200
     assert np.isnan(found[nowhere]).all()
-    expected = np.einsum("nk,nkd->nd", weights, corners[triangle])
+    expected = np.einsum("nk,nkd->nd", weights, values[triangles[triangle]])
     np.testing.assert_allclose(found[~nowhere], expected[~nowhere], rtol=1e-13, atol=1e-15)
 
 
 def test_weighted_corners_of_no_points() -> None:
-    none = weighted_corners(np.ones((1, 3, 2)), np.empty(0, dtype=np.int64), np.empty((0, 3)))
+    nowhere = np.empty(0, dtype=np.int64)
+    none = weighted_corners(np.ones((3, 2)), np.array([[0, 1, 2]]), nowhere, np.empty((0, 3)))
     assert none.shape == (0, 2)

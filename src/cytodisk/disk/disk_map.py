@@ -146,7 +146,7 @@ class DiskMap:
         if outside not in ("nan", "nearest"):
             raise ParameterError(f"outside must be 'nan' or 'nearest', got {outside!r}")
         points, shape = as_points("points_yx", points_yx)
-        uv = self._in_cell.carry(points, self.vertices_uv[self.triangles])
+        uv = self._in_cell.carry(points, self.vertices_uv)
         lost = np.isnan(uv[:, 0]) & np.isfinite(points).all(axis=1)
         uv /= polygon_radius(uv, self.boundary_angles)[:, None]
         if self.method == "advection":
@@ -175,7 +175,7 @@ class DiskMap:
         """
         points, shape = as_points("points_uv", points_uv)
         inner = points * polygon_radius(points, self.boundary_angles)[:, None]
-        return self._in_disk.carry(inner, self.vertices_yx[self.triangles]).reshape(shape)
+        return self._in_disk.carry(inner, self.vertices_yx).reshape(shape)
 
     def nearest_on_circle(self, points_yx: FloatArray) -> FloatArray:
         """Image (u, v) of the outline point nearest to each of some points (row, column), shape (N, 2)."""

@@ -83,25 +83,25 @@ class TriangleLocator:
             self._slack,
         )
 
-    def carry(self, points: FloatArray, corners: FloatArray) -> FloatArray:
+    def carry(self, points: FloatArray, goals: FloatArray) -> FloatArray:
         """Points under the map that is linear on every triangle; `weighted_corners` of located points.
 
         Parameters
         ----------
         points : ndarray of shape (N, 2) and dtype float
             In the frame of the vertices.
-        corners : ndarray of shape (F, 3, 2) and dtype float
-            Where each triangle's corners go.
+        goals : ndarray of shape (V, 2) and dtype float
+            Where the vertices go.
 
         Returns
         -------
         ndarray of shape (N, 2) and dtype float
             NaN outside.
         """
-        moved = np.empty((len(points), 2))
+        moved, goals = np.empty((len(points), 2)), np.ascontiguousarray(goals)
         for first in range(0, len(points), _BLOCK):  # weights and triangles of a block stay in the cache
             block = slice(first, first + _BLOCK)
-            moved[block] = weighted_corners(corners, *self(points[block]))
+            moved[block] = weighted_corners(goals, self._triangles, *self(points[block]))
         return moved
 
 
@@ -208,13 +208,16 @@ def _locate(
 
 
 @njit(cache=True)
-def weighted_corners(corners: FloatArray, triangle: IntArray, weights: FloatArray) -> FloatArray:
+def weighted_corners(
+    values: FloatArray, triangles: IntArray, triangle: IntArray, weights: FloatArray
+) -> FloatArray:
     """Weighted mean of the values at a triangle's corners.
 
     Parameters
     ----------
-    corners : ndarray of shape (F, 3, 2) and dtype float
-        Two numbers a corner.
+    values : ndarray of shape (V, 2) and dtype float
+        Two numbers a vertex.
+    triangles : ndarray of shape (F, 3) and dtype int
     triangle : ndarray of shape (N,) and dtype int
         -1 for none.
     weights : ndarray of shape (N, 3) and dtype float
@@ -228,11 +231,10 @@ def weighted_corners(corners: FloatArray, triangle: IntArray, weights: FloatArra
     for n in range(len(triangle)):
         t = triangle[n]
         if t >= 0:
+            a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
             for k in range(2):
                 out[n, k] = (
-                    weights[n, 0] * corners[t, 0, k]
-                    + weights[n, 1] * corners[t, 1, k]
-                    + weights[n, 2] * corners[t, 2, k]
+                    weights[n, 0] * values[a, k] + weights[n, 1] * values[b, k] + weights[n, 2] * values[c, k]
                 )
     return out
 

@@ -87,7 +87,7 @@ class _CellSignal:
         values, channels = signal.values, list(signal.channels)
         box = values if values.shape[1:] == placed.box.shape else placed.cut_out_of(values)
         check_channel_names("signal", channels)
-        return cls(channels, box[:, placed.box])
+        return cls(channels, np.stack([channel[placed.box] for channel in box]))
 
 
 def measure_windows(
