@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -39,7 +40,7 @@ class PolarLayout:
         """layers × sectors."""
         return self.layers * self.sectors
 
-    @property
+    @cached_property
     def radii(self) -> FloatArray:
         """Radii between layers, from 1 at the edge to 0 at the centre, shape (layers + 1,).
 
@@ -65,12 +66,12 @@ class PolarLayout:
             return np.ones(self.layers, dtype=bool)
         return np.asarray(self.radii[:-1] > 0.0)
 
-    @property
+    @cached_property
     def angles(self) -> FloatArray:
         """Angles between sectors in radians, from 0 to 2π, shape (sectors + 1,)."""
         return np.linspace(0.0, 2.0 * np.pi, self.sectors + 1)
 
-    @property
+    @cached_property
     def centres_uv(self) -> FloatArray:
         """Middle of each window in the disk, half of its area on either side, shape (windows, 2)."""
         outer, inner = self.radii[:-1], self.radii[1:]
