@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from scipy import sparse
@@ -17,6 +17,7 @@ Cell: TypeAlias = tuple[int, int]  # frame, place among the sorted labels of the
 Links: TypeAlias = dict[Cell, Cell]  # from a cell to the one before it in its track
 Overlaps: TypeAlias = dict[tuple[Cell, Cell], float]  # IoU of (earlier, later) cell
 _NO_LINK = 1.0  # distance of cells that must not be linked
+_PIXELS_AT_ONCE = 2**20
 _CERTAIN = 0.5  # two labels of one frame cannot both have a larger IoU with the same cell
 
 
@@ -30,13 +31,13 @@ class _Labelled:
         Sorted, without 0.
     sizes : ndarray of shape (K,) and dtype int64
         Pixels.
-    places : ndarray of shape (H·W,) and dtype int32
-        For each pixel, place of its label in `labels`, -1 outside of cells.
+    frame : ndarray of shape (H, W)
+        Label of each pixel, 0 outside of cells.
     """
 
     labels: AnyArray
     sizes: IntArray
-    places: np.ndarray[Any, np.dtype[np.int32]]
+    frame: AnyArray
 
 
 def link_labels(
@@ -184,18 +185,31 @@ def _check(number: int, frame: AnyArray, shape: tuple[int, ...] | None) -> None:
 
 
 def _labelled(frame: AnyArray) -> _Labelled:
-    labels, places, sizes = np.unique(frame.ravel(), return_inverse=True, return_counts=True)
-    background = int(labels.size > 0 and labels[0] == 0)
-    return _Labelled(labels[background:], sizes[background:], places.astype(np.int32) - background)
+    found = [np.unique(strip[strip != 0], return_counts=True) for strip in _strips(frame)]
+    labels, places = np.unique(np.concatenate([values for values, _ in found]), return_inverse=True)
+    sizes = np.zeros(labels.size, dtype=np.int64)
+    np.add.at(sizes, places, np.concatenate([counts for _, counts in found]))
+    return _Labelled(labels, sizes, frame.copy())  # as the next frame may be read into its place
+
+
+def _strips(frame: AnyArray) -> list[AnyArray]:
+    """Rows of a frame, as many together as need little memory beside it."""
+    step = max(1, _PIXELS_AT_ONCE // max(1, frame.shape[1]))
+    return [frame[first : first + step] for first in range(0, max(1, len(frame)), step)]
 
 
 def _overlaps(earlier: _Labelled, later: _Labelled) -> Iterable[tuple[int, int, float]]:
     """(place, place, IoU) of all pairs that share a pixel."""
-    both = (earlier.places >= 0) & (later.places >= 0)
-    pairs = (earlier.places[both], later.places[both])
     shape = (earlier.labels.size, later.labels.size)
-    shared = sparse.coo_array((np.ones(pairs[0].size, dtype=np.int64), pairs), shape=shape)
-    shared.sum_duplicates()
+    shared = sparse.coo_array(shape, dtype=np.int64)
+    for before, after in zip(_strips(earlier.frame), _strips(later.frame), strict=True):
+        both = (before != 0) & (after != 0)
+        pairs = (
+            np.searchsorted(earlier.labels, before[both]),
+            np.searchsorted(later.labels, after[both]),
+        )
+        here = sparse.coo_array((np.ones(pairs[0].size, dtype=np.int64), pairs), shape=shape)
+        shared = sparse.coo_array(shared + here)
     one, other = shared.coords
     union = earlier.sizes[one] + later.sizes[other] - shared.data
     return zip(one.tolist(), other.tolist(), (shared.data / union).tolist(), strict=True)
