@@ -2,6 +2,7 @@
 
 import atexit
 import os
+import pickle
 import shutil
 import sys
 import tempfile
@@ -10,6 +11,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path, PureWindowsPath
+from types import ModuleType
 from typing import IO
 
 from cytodisk.errors import CytodiskError, WriteError
@@ -117,21 +119,35 @@ def keep_kernels(package: Path) -> None:
     numba.config.CACHE_DIR = folder  # type: ignore[attr-defined]
     warnings.warn(
         f"compiled kernels cannot be kept, as neither {package} nor {own} can be written: every start "
-        "compiles them anew, which takes about half a minute. Set the environment variable "
+        "compiles them anew, which takes some 15 seconds. Set the environment variable "
         "NUMBA_CACHE_DIR to a folder that can be written",
         stacklevel=2,
     )
 
 
-def has_kernels(package: Path) -> bool:
-    """Whether kernels were compiled before, else the first start does it, which takes minutes."""
-    from numba.misc.appdirs import user_cache_dir
+def has_kernels(module: ModuleType) -> bool:
+    """Whether kernels of a module were compiled before, by the same Numba and from the code as it is.
 
-    kept = os.environ.get("NUMBA_CACHE_DIR")
-    folders = (
-        [Path(kept)] if kept else [package, Path(user_cache_dir("numba"))]  # type: ignore[no-untyped-call]
-    )
-    return any(next(folder.rglob("*.nbi"), None) is not None for folder in folders)
+    Parameters
+    ----------
+    module : module
+        Has kernels that Numba keeps.
+
+    Returns
+    -------
+    bool
+    """
+    from numba import __version__
+    from numba.core.dispatcher import Dispatcher
+
+    kernels = [value for value in vars(module).values() if isinstance(value, Dispatcher)]
+    own = [kernel for kernel in kernels if kernel.py_func.__module__ == module.__name__]
+    name, written = module.__name__.rpartition(".")[2], Path(str(module.__file__)).stat().st_mtime
+    for index in Path(own[0].stats.cache_path or ".").glob(f"{name}.*.nbi"):
+        with suppress(OSError, pickle.UnpicklingError, EOFError), index.open("rb") as file:
+            if os.fstat(file.fileno()).st_mtime >= written and pickle.load(file) == __version__:
+                return True
+    return False
 
 
 def _can_be_written(folder: Path) -> bool:

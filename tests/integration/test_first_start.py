@@ -1,15 +1,67 @@
 """The first start, which compiles, says so."""
 
+import os
+import subprocess
+import sys
+from importlib import import_module
 from pathlib import Path
 
+import numba
 import pytest
 
+from cytodisk.cli.first_start import _LATE, say_compiling
 from cytodisk.files import has_kernels
+from cytodisk.geometry import lower_envelope
+
+COMPILE = """
+import numpy as np
+from cytodisk.geometry import lower_envelope
+lower_envelope.outside_in_column(np.eye(4, dtype=bool))
+"""
+ASK = """
+from cytodisk.files import has_kernels
+from cytodisk.geometry import lower_envelope
+print(has_kernels(lower_envelope))
+"""
 
 
-def test_kernels_are_seen_once_there_are_any(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    assert not has_kernels(tmp_path)
-    (tmp_path / "geometry").mkdir()
-    (tmp_path / "geometry" / "mesh.nbi").touch()
-    assert has_kernels(tmp_path)
+def run(code: str, cache: Path) -> str:
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+def test_kernels_are_seen_once_they_are_compiled(tmp_path: Path) -> None:
+    assert run(ASK, tmp_path) == "False"
+    run(COMPILE, tmp_path)
+    assert run(ASK, tmp_path) == "True"
+    (index,) = tmp_path.rglob("*.nbi")
+    written = Path(lower_envelope.__file__).stat().st_mtime
+    os.utime(index, (written - 5, written - 5))
+    assert run(ASK, tmp_path) == "False"  # the code is newer
+    os.utime(index)
+    here = numba.__version__.encode()
+    index.write_bytes(index.read_bytes().replace(here, b"0" * len(here)))
+    assert run(ASK, tmp_path) == "False"  # of another Numba
+
+
+@pytest.mark.parametrize("work", _LATE)
+def test_a_line_says_what_takes_long(
+    work: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("cytodisk.files.has_kernels", lambda module: False)
+    say_compiling(False, work)
+    said = capsys.readouterr()
+    assert said.err.startswith("First start: compiling numerical code, about ")
+    assert said.err.count("\n") == 1
+    assert said.out == ""
+    say_compiling(True, work)
+    monkeypatch.setattr("cytodisk.files.has_kernels", lambda module: True)
+    say_compiling(False, work)
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("work", _LATE)
+def test_the_modules_that_are_asked_have_kernels(work: str) -> None:
+    has_kernels(import_module(_LATE[work][0]))

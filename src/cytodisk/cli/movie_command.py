@@ -5,6 +5,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from cytodisk.cli.console import RESUME, console_for, count, fail, progress_bar
+from cytodisk.cli.first_start import say_compiling
 from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.cli.options import (
     Figures,
@@ -52,18 +53,7 @@ def say_movie(console: "Console", inputs: "MovieInputs") -> None:
         console.print(f"{role}: {words}")
     for words in inputs.scale.words():
         console.print(words)
-    say_compiling(console)
-
-
-def say_compiling(console: "Console") -> None:
-    """Say at the first start why the first frame takes long."""
-    from pathlib import Path
-
-    import cytodisk
-    from cytodisk.files import has_kernels
-
-    if not has_kernels(Path(cytodisk.__file__).parent):
-        console.print("The first start compiles the program: the first frame comes after some minutes.")
+    say_compiling(console.quiet, "movie")
 
 
 def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int, again: str = RESUME) -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cytodisk.cli.console import console_for, count, fail, progress_bar
+from cytodisk.cli.first_start import say_compiling
 from cytodisk.cli.map_totals import say_reasons
 from cytodisk.cli.options import (
     Given,
@@ -43,6 +44,7 @@ def shapes_command(
     console.print(inputs.scale.words()[0])
     for remark in inputs.remarks:
         console.print(f"note: {remark}")
+    say_compiling(quiet, "shapes")
     with progress_bar(quiet, "cells") as progress:
         table = shape_study(inputs, out, settings, progress=progress, **dict(options))
     _draw(inputs, table, out)
