@@ -7,7 +7,7 @@ import typer
 
 from cytodisk.cli.comparison_lines import say_comparison, say_tables
 from cytodisk.cli.console import console_for, count, fail, progress_bar
-from cytodisk.cli.first_start import say_compiling
+from cytodisk.cli.first_start import compiling, say_compiling
 from cytodisk.cli.map_command import say_inputs
 from cytodisk.cli.movie_command import say_movie
 from cytodisk.cli.options import (
@@ -81,8 +81,10 @@ def _run_cells(
 
     inputs = open_inputs(masks, None, settings.part(FileParameters))
     say_inputs(console, inputs)
-    say_compiling(console.quiet)
-    with progress_bar(console.quiet, "cells") as progress:
+    with (
+        compiling(console.quiet, "map", options["workers"]),
+        progress_bar(console.quiet, "cells") as progress,
+    ):
         return compare_opened_cells(inputs, out, settings, progress=progress, **options)
 
 
@@ -99,6 +101,7 @@ def _run_movie(
 
     inputs = open_movie(masks, signal, settings)
     say_movie(console, inputs)
+    say_compiling(console.quiet, "movie")
     with progress_bar(console.quiet, f"frames of {count(len(settings.methods), 'method')}") as progress:
         return compare_opened_movie(inputs, out, settings, progress=progress, **options)
 

@@ -9,6 +9,7 @@ import typer
 from cytodisk.cli.console import console_for, progress_bar
 from cytodisk.cli.correlate_command import NOTHING_CHANGED, draw_correlation, write_page
 from cytodisk.cli.correlation_words import say_correlation, say_verdicts
+from cytodisk.cli.first_start import say_compiling
 from cytodisk.cli.movie_command import draw_movie, finish_movie, say_movie
 from cytodisk.cli.options import Quiet
 from cytodisk.errors import MissingPartError
@@ -29,9 +30,12 @@ def demo_command(
     from cytodisk.runs.movie.movie_inputs import open_movie
     from cytodisk.runs.movie.movie_parameters import MovieParameters
     from cytodisk.runs.movie.movie_study import movie_study
+    from cytodisk.runs.warm_up import warm_up
 
     console = console_for(quiet)
     with Executor(1, apart=True) as beside:
+        if say_compiling(quiet, "movie"):
+            beside.submit(warm_up, True)
         beside.submit(_load_drawing)
         truth, masks, signal = write_demo_input(out / "input", seed, overwrite=overwrite)
         console.print(

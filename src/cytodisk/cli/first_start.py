@@ -1,17 +1,20 @@
-"""What a user is told while the first start after an installation compiles."""
+"""The first start after an installation compiles: a user is told so, and two processes do it."""
 
+import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
 
 # For each kind of work a module whose kernels are compiled late in it, and seconds for all of them.
 _LATE = {
-    "shapes": ("cytodisk.disk.blocks", 8),
+    "shapes": ("cytodisk.disk.blocks", 10),
     "map": ("cytodisk.windows.raster", 12),
     "movie": ("cytodisk.motion.swept_edge", 15),
 }
 
 
-def say_compiling(quiet: bool, work: str = "map") -> None:
+def say_compiling(quiet: bool, work: str = "map") -> bool:
     """Say on stderr that compiled code is missing, and how long it takes to make it.
 
     Parameters
@@ -20,12 +23,41 @@ def say_compiling(quiet: bool, work: str = "map") -> None:
         Say nothing.
     work : {"map", "movie", "shapes"}
         What the command does.
+
+    Returns
+    -------
+    bool
+        Whether it is missing.
     """
-    if quiet:
-        return
     from cytodisk.files import has_kernels
 
     module, seconds = _LATE[work]
-    if not has_kernels(import_module(module)):
+    missing = not has_kernels(import_module(module))
+    if missing and not quiet:
         words = f"First start: compiling numerical code, about {seconds} s, once."
         print(words, file=sys.stderr, flush=True)
+    return missing
+
+
+@contextmanager
+def compiling(quiet: bool, work: str, workers: int) -> Iterator[None]:
+    """Where compiled code is missing, say so, and let another process make half of it while the block runs.
+
+    Parameters
+    ----------
+    quiet : bool
+        Say nothing.
+    work : {"map", "movie"}
+        What the command does.
+    workers : int
+        Processes of the command; several keep all cores busy by themselves.
+    """
+    if not say_compiling(quiet, work) or workers > 1 or (os.cpu_count() or 1) == 1:
+        yield
+        return
+    from cytodisk.runs.executor import Executor
+    from cytodisk.runs.warm_up import warm_up
+
+    with Executor(1, apart=True) as beside:
+        beside.submit(warm_up, work == "movie")
+        yield

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from cytodisk.cli.console import console_for, progress_bar
-from cytodisk.cli.first_start import say_compiling
+from cytodisk.cli.first_start import compiling
 from cytodisk.cli.map_totals import finish_map
 from cytodisk.cli.options import (
     Figures,
@@ -43,8 +43,7 @@ def map_command(
     options = given.options(MapOptions)
     inputs = open_inputs(masks, signal, given.of(MapParameters))
     say_inputs(console, inputs)
-    say_compiling(quiet)
-    with progress_bar(quiet, "cells") as progress:
+    with compiling(quiet, "map", options.workers), progress_bar(quiet, "cells") as progress:
         study = map_study(
             inputs,
             out,

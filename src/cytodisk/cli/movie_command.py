@@ -5,7 +5,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from cytodisk.cli.console import RESUME, console_for, count, fail, progress_bar
-from cytodisk.cli.first_start import say_compiling
+from cytodisk.cli.first_start import compiling
 from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.cli.options import (
     Figures,
@@ -42,7 +42,7 @@ def movie_command(
     options = given.options(RunOptions)
     inputs = open_movie(masks, signal, given.of(MovieParameters))
     say_movie(console, inputs)
-    with progress_bar(quiet, "frames") as progress:
+    with compiling(quiet, "movie", options.workers), progress_bar(quiet, "frames") as progress:
         study = movie_study(inputs, out, progress=progress, **dict(options))
     draw_movie(quiet, study, inputs, figures)
     finish_movie(console, study)
@@ -53,7 +53,6 @@ def say_movie(console: "Console", inputs: "MovieInputs") -> None:
         console.print(f"{role}: {words}")
     for words in inputs.scale.words():
         console.print(words)
-    say_compiling(console.quiet, "movie")
 
 
 def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int, again: str = RESUME) -> None:
