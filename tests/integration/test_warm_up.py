@@ -32,6 +32,7 @@ def compiled(code: str, folder: Path, name: str) -> set[tuple[str, str]]:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(900)
 def test_kernels_have_one_signature_and_are_compiled_ahead(tmp_path: Path) -> None:
     y, x = np.mgrid[:48, :50]
     masks = [np.hypot((y - 24) / 14, (x - 24 - step) / (12 + step)) < 1 for step in range(3)]
