@@ -93,7 +93,8 @@ def _paint(
     height, width = inside.shape
     start, listed = _by_strip(vertices_yx, triangles, PER_SIDE * at_once, (height - 1) // at_once + 1)
     whole = np.empty(inside.sum(), dtype=np.int32)
-    window, places = np.empty((64, PER_SIDE**2), np.int32), np.empty(64, np.int64)
+    # Room for all pixels, of which memory is taken only where something is written.
+    window, places = np.empty((len(whole), PER_SIDE**2), np.int32), np.empty(len(whole), np.int64)
     canvas = np.empty((PER_SIDE * at_once, PER_SIDE * width), np.int32)
     near, counts = (0, 0), (0, 0)
     for strip in range(len(start) - 1):
@@ -103,10 +104,6 @@ def _paint(
             t = listed[entry]
             yx, uv = _corners(vertices_yx, triangles, t), _corners(vertices_uv, triangles, t)
             near = _paint_triangle(yx, uv, near, grid, PER_SIDE * top, canvas)
-        if len(window) < counts[1] + at_once * width:
-            more = max(len(window), at_once * width)
-            window = np.concatenate((window, np.empty((more, PER_SIDE**2), np.int32)))
-            places = np.concatenate((places, np.empty(more, np.int64)))
         rows = top, min(top + at_once, height)
         counts = _collect(canvas, inside, rows, counts, whole, window, places)
     return whole, window[: counts[1]].copy(), places[: counts[1]].copy()
