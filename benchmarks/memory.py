@@ -63,7 +63,8 @@ def write_image(folder: Path, image: np.ndarray, layout: str, channels: int) -> 
         tifffile.imwrite(masks, image, **LAYOUTS[layout])
     if not channels:
         return [str(masks)]
-    counts = np.random.default_rng(0).poisson(100.0, image.shape).astype(np.uint16)
+    row = np.random.default_rng(0).poisson(100.0, image.shape[1]).astype(np.uint16)
+    counts = np.stack([np.roll(row, 37 * number) for number in range(image.shape[0])])
     axes = {"axes": "CYX"} if channels > 1 else {"axes": "YX"}
     planes = np.broadcast_to(counts, (channels, *counts.shape)) if channels > 1 else counts
     tifffile.imwrite(
