@@ -17,6 +17,7 @@ from cytodisk.disk.mapping_parameters import MapToDiskParameters
 from cytodisk.disk.newton import relax
 from cytodisk.disk.newton_triangles import relax_triangles
 from cytodisk.errors import MapError
+from cytodisk.geometry import mesh as mesh_module
 from cytodisk.geometry.mesh import Mesh
 from cytodisk.geometry.polygon import edge_lengths, smooth_closed
 
@@ -40,8 +41,7 @@ def same_when_mirrored(mask: np.ndarray, **options: str) -> float:
 
 def test_a_mirrored_star_comes_into_the_same_windows() -> None:
     # Symmetric about its rows, so that the columns' mirror is another star: one arm points right.
-    assert same_when_mirrored(five_arms()) >= 0.9
-    assert same_when_mirrored(five_arms(), method="newton-triangles") < 0.7
+    assert same_when_mirrored(five_arms()) >= 0.95
 
 
 @pytest.mark.parametrize(
@@ -68,10 +68,17 @@ BY_TRIANGLE = {
 
 
 @pytest.mark.parametrize(("kind", "seed"), BY_TRIANGLE)
-def test_areas_by_triangle_give_the_maps_of_before(kind: str, seed: int) -> None:
+def test_areas_by_triangle_give_the_maps_of_before(
+    kind: str, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # That version left the mesh as the triangulation gave it.
+    monkeypatch.setattr(mesh_module, "join_circles", lambda points, triangles, n_boundary: triangles)
+    monkeypatch.setattr(mesh_module, "even_out", lambda points, triangles, n_boundary: points)
+    monkeypatch.setattr(mesh_module, "distances", lambda points, n_boundary: np.zeros(len(points)))
+    monkeypatch.setitem(mesh_module.mesh_inside.__kwdefaults__, "growth", 0.5)
     parameters = MapToDiskParameters.of(method="newton-triangles")
     cell = mesh_cell(simulate.random_mask(kind, seed), parameters)
-    # That version measured length on a copy of the outline smoothed over a pixel.
+    # And it measured length on a copy of the outline smoothed over a pixel.
     lengths = np.maximum(edge_lengths(smooth_closed(cell.outline, 1.0)), 0.1 * edge_lengths(cell.outline))
     disk = map_mesh(cell, angles_of_lengths(cell.outline, lengths), parameters)
     steps, error, place = BY_TRIANGLE[kind, seed]

@@ -8,8 +8,8 @@ from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.mapping import mesh_cell
 from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.geometry.flips import flip_to_delaunay, triangle_neighbours
-from cytodisk.geometry.half_edges import half_edges
-from cytodisk.geometry.mesh import triangle_areas, triangle_edges
+from cytodisk.geometry.half_edges import half_edges, triangle_edges
+from cytodisk.geometry.mesh import triangle_areas
 
 
 def plain_neighbours(triangles: IntArray) -> IntArray:

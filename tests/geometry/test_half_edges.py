@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from cytodisk import simulate
-from cytodisk.geometry.half_edges import half_edges
+from cytodisk.geometry.half_edges import half_edges, triangle_edges
 from cytodisk.geometry.mask import clean_mask
-from cytodisk.geometry.mesh import mesh_inside, triangle_edges
+from cytodisk.geometry.mesh import mesh_inside
 from cytodisk.geometry.outline import trace_outline
 
 AROUND = np.arange(3)

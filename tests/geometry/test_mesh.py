@@ -5,14 +5,13 @@ from shapely.geometry import Polygon
 
 from cytodisk import simulate
 from cytodisk.errors import MeshError
-from cytodisk.geometry.half_edges import half_edges
+from cytodisk.geometry.half_edges import half_edges, triangle_edges
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.mesh import (
     Mesh,
     hat_gradients,
     mesh_inside,
     triangle_areas,
-    triangle_edges,
 )
 from cytodisk.geometry.outline import trace_outline
 from cytodisk.geometry.polygon import signed_area

@@ -78,7 +78,7 @@ def map_to_disk(
     >>> disk.certificate.valid
     True
     >>> disk.to_cell([[0.0, 0.0]]).round(1)  # the cell's point at the disk's centre, (row, column)
-    array([[36.9, 27.5]])
+    array([[37. , 27.6]])
     """
     parameters = MapToDiskParameters.of(**settings)
     return map_cell(mask, parameters, Scale.of(mask).given(parameters.pixel_size_um))

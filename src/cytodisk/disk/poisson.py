@@ -6,7 +6,7 @@ from scipy import sparse
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.advection_field import laplacian_times
 from cytodisk.disk.ldl import Factorisation
-from cytodisk.geometry.mesh import triangle_edges
+from cytodisk.geometry.half_edges import triangle_edges
 
 # Of the residual, against the right-hand side. The next solve goes on from here: on the reference masks the
 # area errors at the end are the same to 2 % as with 0.01.

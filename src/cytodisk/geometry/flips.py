@@ -4,7 +4,6 @@ import numpy as np
 from numba import njit
 
 from cytodisk.arrays import FloatArray, IntArray
-from cytodisk.geometry.mesh import triangle_edges
 
 _MOST_PASSES = 10
 _SLACK = 1e-9  # of a sum of cotangents: four points on a circle stay as they are
@@ -23,14 +22,27 @@ def triangle_neighbours(triangles: IntArray) -> IntArray:
     ndarray of shape (F, 3) and dtype int
         -1 at the boundary.
     """
-    start, stop = triangle_edges(triangles).T
-    n_vertices = int(triangles.max()) + 1
-    key, reverse = start * n_vertices + stop, stop * n_vertices + start
-    order = np.argsort(key)
-    place = np.minimum(np.searchsorted(key[order], reverse), len(key) - 1)
-    shared = key[order][place] == reverse
-    across = np.where(shared, order[place] % len(triangles), -1)
-    return np.ascontiguousarray(across.reshape(3, -1).T)
+    return np.asarray(_across(np.ascontiguousarray(triangles), int(triangles.max()) + 1))
+
+
+@njit(cache=True)
+def _across(triangles: IntArray, n_vertices: int) -> IntArray:
+    last = np.full(n_vertices, -1)  # the edge that was seen last of those that leave a vertex ...
+    before = np.empty(triangles.size, dtype=np.int64)  # ... and for each edge, the one seen before it
+    across = np.full(triangles.shape, -1)
+    for t in range(triangles.shape[0]):
+        for k in range(3):
+            a, b = triangles[t, k], triangles[t, (k + 1) % 3]
+            other = last[b]
+            while other >= 0:
+                s, m = other // 3, other % 3
+                if triangles[s, (m + 1) % 3] == a:
+                    across[t, k], across[s, m] = s, t
+                    break
+                other = before[other]
+            before[3 * t + k] = last[a]
+            last[a] = 3 * t + k
+    return across
 
 
 @njit(cache=True)
@@ -81,7 +93,7 @@ def flip_to_delaunay(
                     continue
                 if not _improves(points_uv, cell_xy, triangles, neighbours, t, k, n_boundary, least_area):
                     continue
-                _flip(triangles, neighbours, t, k)
+                flip(triangles, neighbours, t, k)
                 for side in range(3):  # their outer edges may have to be flipped now
                     for one in (t, s):
                         if neighbours[one, side] >= 0:
@@ -95,7 +107,7 @@ def flip_to_delaunay(
 
 
 @njit(cache=True)
-def _area(points: FloatArray, a: int, b: int, c: int) -> float:
+def signed_area_of(points: FloatArray, a: int, b: int, c: int) -> float:
     ab_x, ab_y = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
     ac_x, ac_y = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1]
     return 0.5 * (ab_x * ac_y - ab_y * ac_x)  # type: ignore[no-any-return]
@@ -108,7 +120,7 @@ def _dot(points: FloatArray, a: int, b: int, corner: int) -> float:
 
 
 @njit(cache=True)
-def _side_of(neighbours: IntArray, t: int, s: int) -> int:
+def side_of(neighbours: IntArray, t: int, s: int) -> int:
     """Which edge of triangle t it shares with s."""
     if neighbours[t, 0] == s:
         return 0
@@ -128,25 +140,25 @@ def _improves(
 ) -> bool:
     s = neighbours[t, k]
     a, b, c = triangles[t, k], triangles[t, (k + 1) % 3], triangles[t, (k + 2) % 3]
-    d = triangles[s, (_side_of(neighbours, s, t) + 2) % 3]
+    d = triangles[s, (side_of(neighbours, s, t) + 2) % 3]
     if c < n_boundary and d < n_boundary:
         return False
-    before_c, before_d = _area(uv, a, b, c), _area(uv, b, a, d)
-    after_a, after_b = _area(uv, a, d, c), _area(uv, d, b, c)
+    before_c, before_d = signed_area_of(uv, a, b, c), signed_area_of(uv, b, a, d)
+    after_a, after_b = signed_area_of(uv, a, d, c), signed_area_of(uv, d, b, c)
     if before_c > 0.0 and before_d > 0.0:
         cotangents = _dot(uv, a, b, c) / before_c + _dot(uv, a, b, d) / before_d
         if cotangents >= -_SLACK or after_a <= 0.0 or after_b <= 0.0:
             return False
     elif min(after_a, after_b) <= min(before_c, before_d):
         return False
-    return _area(xy, a, d, c) > least_area and _area(xy, d, b, c) > least_area
+    return signed_area_of(xy, a, d, c) > least_area and signed_area_of(xy, d, b, c) > least_area
 
 
 @njit(cache=True)
-def _flip(triangles: IntArray, neighbours: IntArray, t: int, k: int) -> None:
+def flip(triangles: IntArray, neighbours: IntArray, t: int, k: int) -> None:
     """Triangles (a, b, c) and (b, a, d) become (a, d, c) and (d, b, c)."""
     s = neighbours[t, k]
-    m = _side_of(neighbours, s, t)
+    m = side_of(neighbours, s, t)
     a, b, c = triangles[t, k], triangles[t, (k + 1) % 3], triangles[t, (k + 2) % 3]
     d = triangles[s, (m + 2) % 3]
     beyond_bc, beyond_ca = neighbours[t, (k + 1) % 3], neighbours[t, (k + 2) % 3]

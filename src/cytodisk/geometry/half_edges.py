@@ -69,6 +69,11 @@ def half_edges(triangles: IntArray, n_vertices: int) -> HalfEdges:
     return HalfEdges(first, end, *_without_opposite(first, end, start))
 
 
+def triangle_edges(triangles: IntArray) -> IntArray:
+    """The three edges of each triangle as (from, to), shape (3 F, 2); edge k of triangle t in row k F + t."""
+    return np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+
+
 @njit(cache=True)
 def _sorted_edges(triangles: IntArray, n_vertices: int) -> tuple[IntArray, IntArray, IntArray]:
     """End of each edge, by its start and then by itself; and start of each, by its end and then by itself.

@@ -10,7 +10,8 @@ from numba import njit
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.errors import MeshError
-from cytodisk.geometry.half_edges import HalfEdges, half_edges
+from cytodisk.geometry.even_mesh import NEARER_PX, distances, even_out, join_circles
+from cytodisk.geometry.half_edges import HalfEdges, half_edges, triangle_edges
 from cytodisk.geometry.lattice import graded_lattice
 from cytodisk.geometry.polygon import signed_area
 
@@ -54,14 +55,14 @@ def mesh_inside(
     mask: BoolArray,
     *,
     edge_length: float,
-    growth: float = 0.5,
+    growth: float = 0.4,
     clearance: float = 0.75,
 ) -> Mesh:
     """Triangulate the inside of an outline, fine at the edge and coarse inside.
 
     Every outline point is a boundary vertex. No interior edge joins two boundary vertices: such edges are
     split at their middle, for a triangle with three pinned corners could never change its area, and
-    Tutte's theorem, which vouches for the harmonic map, asks for it.
+    Tutte's theorem, which vouches for the harmonic map, asks for it. A mirrored mask gets the mirrored mesh.
 
     Parameters
     ----------
@@ -88,8 +89,11 @@ def mesh_inside(
     """
     points = np.concatenate([outline_yx, graded_lattice(mask, edge_length, growth, clearance)])
     n_boundary = len(outline_yx)
-    triangles = _constrained_delaunay(points, n_boundary)
-    mesh = Mesh(*_split_chords(points, triangles, n_boundary), n_boundary)
+    triangles = join_circles(points, _constrained_delaunay(points, n_boundary), n_boundary)
+    points, triangles = _split_chords(points, triangles, n_boundary)
+    if growth > 0.0:
+        points = even_out(points, triangles, n_boundary)
+    mesh = Mesh(points, triangles, n_boundary)
     _check(mesh, outline_yx)
     return mesh
 
@@ -152,11 +156,6 @@ def _hats(vertices_yx: FloatArray, triangles: IntArray) -> FloatArray:
             hats[t, k, 0] /= twice
             hats[t, k, 1] /= twice
     return hats
-
-
-def triangle_edges(triangles: IntArray) -> IntArray:
-    """The three edges of each triangle as (from, to), shape (3 F, 2); edge k of triangle t in row k F + t."""
-    return np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
 
 
 def _constrained_delaunay(points_yx: FloatArray, n_boundary: int) -> IntArray:
@@ -230,14 +229,15 @@ def _split_chords(points_yx: FloatArray, triangles: IntArray, n_boundary: int) -
     middle = np.full(len(start), -1)
     middle[chord] = len(points_yx) + which
     low, high = chords // n_boundary, chords % n_boundary
-    return (
-        np.concatenate([points_yx, 0.5 * (points_yx[low] + points_yx[high])]),
-        _subdivide(triangles, middle.reshape(3, -1).T),
-    )
+    points = np.concatenate([points_yx, 0.5 * (points_yx[low] + points_yx[high])])
+    return points, _subdivide(triangles, middle.reshape(3, -1).T, distances(points, n_boundary))
 
 
-def _subdivide(triangles: IntArray, middle: IntArray) -> IntArray:
-    """Replace triangles by 2, 3 or 4, where `middle` (F, 3) holds a vertex for edge k, k + 1 or -1."""
+def _subdivide(triangles: IntArray, middle: IntArray, distance: FloatArray) -> IntArray:
+    """Replace triangles by 2, 3 or 4, where `middle` (F, 3) holds a vertex for edge k, k + 1 or -1.
+
+    Where there is a choice, the corner at the least `distance` gets the edge.
+    """
     parts = [triangles[(middle < 0).all(axis=1)]]
     count = (middle >= 0).sum(axis=1)
     for n_split in (1, 2, 3):
@@ -252,9 +252,11 @@ def _subdivide(triangles: IntArray, middle: IntArray) -> IntArray:
         turn = (first[:, None] + np.arange(3)) % 3
         a, b, c = np.take_along_axis(triangles[some], turn, axis=1).T
         p, q, r = np.take_along_axis(middle[some], turn, axis=1).T
+        nearer_c = np.fmin(distance[p], distance[c]) + NEARER_PX < np.fmin(distance[a], distance[q])
+        from_a, from_c = np.where(nearer_c, c, q), np.where(nearer_c, p, a)
         pieces = {
             1: [(a, p, c), (p, b, c)],
-            2: [(p, b, q), (a, p, q), (a, q, c)],
+            2: [(p, b, q), (a, p, from_a), (from_c, q, c)],
             3: [(a, p, r), (p, b, q), (r, q, c), (p, q, r)],
         }[n_split]
         parts += [np.column_stack(piece) for piece in pieces]
