@@ -48,7 +48,7 @@ def test_areas_are_those_of_the_outlines(windows: cd.CellWindows) -> None:
     """Up to the pixel squares' overhang at the edge, which is less than half a pixel along it."""
     by_outline = np.abs([signed_area(polygon) for polygon in windows.polygons()])
     inner = windows.grid.sectors  # the windows from layer 1 on do not touch the edge
-    assert_allclose(windows.areas.ravel()[inner:], by_outline[inner:], rtol=0.02)
+    assert_allclose(windows.areas.ravel()[inner:], by_outline[inner:], rtol=0.025)  # quarters of a pixel
     assert_allclose(windows.areas.ravel()[:inner], by_outline[:inner], rtol=0.04)
 
 
