@@ -9,7 +9,7 @@ The energy is a barrier: it grows without bound as a triangle loses its area, so
 accepted step leaves the valid maps.
 
 It ends where a step promises to save little of the energy. Further steps change the area error of windows by
-about 0.001, and cells with long arms would take many.
+0.001 to 0.002, and cells with long arms would take many.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ _SAFE_SHARE = 0.9  # of the step at which the first triangle would lose its area
 _SUFFICIENT = 1e-4  # Armijo: share of the predicted decrease that a step must reach
 _TRIALS = 50
 _SHORTEST, _LONGEST = 0.1, 0.7  # of a step that was too long: bounds of the next one
-DECREMENT, SHARE_OF_ENERGY = 1e-4, 5e-3  # the relaxation ends where a step saves less than the larger
+DECREMENT, SHARE_OF_ENERGY = 2e-4, 5e-3  # the relaxation ends where a step saves less than the larger
 MAX_STEPS = 500
 _DAMPINGS = (0.0, 1e-8, 1e-6, 1e-4, 1e-2)  # share of the diagonal that is added to it
 
