@@ -86,8 +86,7 @@ def quality(disk: DiskMap) -> dict[str, Any]:
 
 def window_error(disk: DiskMap, layers: int, sectors: int) -> float:
     """Mean |ln| of the windows' areas over their mean."""
-    areas = cd.polar_windows(layers, sectors).on(disk).areas
-    return float(np.abs(np.log(areas / areas.mean())).mean())
+    return cd.polar_windows(layers, sectors).on(disk).area_error
 
 
 def changes(shape: Shape, places: Move, mask: BoolArray, random: np.random.Generator) -> Iterator[Change]:
