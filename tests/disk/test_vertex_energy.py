@@ -9,6 +9,7 @@ from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.disk.pressure_blocks import PressureSystem
 from cytodisk.disk.vertex_energy import (
+    EDGE_WEIGHT,
     SHAPE_CURVATURE,
     AveragedElements,
     averaged_elements,
@@ -44,17 +45,22 @@ def problem() -> Problem:
 
 
 def residuals(problem: Problem, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Plain twin: those of the areas, one a vertex, and those of the shape term, two a triangle."""
+    """Plain twin: those of the areas, one a vertex, and of the triangles: two of shape, one of area."""
     cell = problem.cell
     jacobians = np.einsum("tka,tkb->tab", uv[cell.triangles], cell.hats)
     det = np.linalg.det(jacobians)
     inside = cell.corner >= 0
     area = np.bincount(cell.corner[inside], (cell.parts * det[:, None])[inside])
     root = np.sqrt(WEIGHT * cell.share / det)
-    shape = np.concatenate(
-        [root * (jacobians[:, 0, 0] - jacobians[:, 1, 1]), root * (jacobians[:, 0, 1] + jacobians[:, 1, 0])]
+    at_edge = (cell.triangles < problem.mesh.n_boundary).any(axis=1)
+    triangles = np.concatenate(
+        [
+            root * (jacobians[:, 0, 0] - jacobians[:, 1, 1]),
+            root * (jacobians[:, 0, 1] + jacobians[:, 1, 0]),
+            np.where(at_edge, np.sqrt(EDGE_WEIGHT * cell.share) * np.log(det), 0.0),
+        ]
     )
-    return np.sqrt(cell.target) * np.log(area / cell.target), shape
+    return np.sqrt(cell.target) * np.log(area / cell.target), triangles
 
 
 def slopes(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
@@ -68,8 +74,8 @@ def slopes(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
             step[vertex, axis] = h
             there, back = residuals(problem, problem.uv + step), residuals(problem, problem.uv - step)
             columns.append([(a - b) / (2.0 * h) for a, b in zip(there, back, strict=True)])
-    areas, shape = zip(*columns, strict=True)
-    return np.array(areas).T, np.array(shape).T
+    areas, triangles = zip(*columns, strict=True)
+    return np.array(areas).T, np.array(triangles).T
 
 
 def filled(problem: Problem) -> tuple[PressureSystem, np.ndarray]:
@@ -90,11 +96,12 @@ def test_every_share_goes_to_interior_vertices(problem: Problem) -> None:
 
 
 def test_the_energy_is_that_of_its_definition(problem: Problem) -> None:
-    areas, shape = residuals(problem, problem.uv)
-    expected = (areas**2).sum() + (shape**2).sum()
+    areas, triangles = residuals(problem, problem.uv)
+    expected = (areas**2).sum() + (triangles**2).sum()
     assert averaged_energy(problem.uv, problem.cell, WEIGHT) == pytest.approx(expected, rel=1e-10)
     jacobians = np.einsum("tka,tkb->tab", problem.uv[problem.cell.triangles], problem.cell.hats)
     frobenius = (jacobians**2).sum(axis=(1, 2)) / np.linalg.det(jacobians) - 2.0
+    shape = triangles[: 2 * len(frobenius)]
     assert (shape**2).sum() == pytest.approx(WEIGHT * (problem.cell.share * frobenius).sum())
 
 
@@ -106,9 +113,9 @@ def test_the_energy_of_a_flipped_triangle_is_infinite(problem: Problem) -> None:
 
 def test_the_gradient_agrees_with_finite_differences(problem: Problem) -> None:
     _, right = filled(problem)
-    (areas, shape), (_, shape_slopes) = residuals(problem, problem.uv), slopes(problem)
+    (areas, triangles), (_, triangle_slopes) = residuals(problem, problem.uv), slopes(problem)
     np.testing.assert_allclose(right[:, 2], -areas, atol=1e-10)
-    expected = -2.0 * (shape_slopes.T @ shape)
+    expected = -2.0 * (triangle_slopes.T @ triangles)
     np.testing.assert_allclose(right[:, :2].ravel(), expected, atol=1e-5 * np.abs(expected).max())
 
 
@@ -116,9 +123,10 @@ def test_the_step_is_that_of_the_dense_gauss_newton_matrix(problem: Problem) -> 
     system, right = filled(problem)
     system.factorise()
     found = system.solve(right)
-    (areas, shape), (area_slopes, shape_slopes) = residuals(problem, problem.uv), slopes(problem)
-    matrix = 2.0 * area_slopes.T @ area_slopes + 2.0 * SHAPE_CURVATURE * shape_slopes.T @ shape_slopes
-    gradient = 2.0 * (area_slopes.T @ areas + shape_slopes.T @ shape)
+    (areas, triangles), (area_slopes, slopes_) = residuals(problem, problem.uv), slopes(problem)
+    factor = np.repeat([SHAPE_CURVATURE, SHAPE_CURVATURE, 1.0], len(problem.cell.triangles))
+    matrix = 2.0 * area_slopes.T @ area_slopes + 2.0 * slopes_.T @ (factor[:, None] * slopes_)
+    gradient = 2.0 * (area_slopes.T @ areas + slopes_.T @ triangles)
     expected = -np.linalg.solve(matrix, gradient)
     np.testing.assert_allclose(found[:, :2].ravel(), expected, atol=1e-3 * np.abs(expected).max())
     pressure = 2.0 * (areas + area_slopes @ expected)

@@ -1,12 +1,14 @@
 """The relaxation energy with areas averaged around vertices: Numba kernels.
 
-E = Σ_v a_v (log (A_v / a_v))² + w Σ_t a_t (‖J_t‖²_F / det J_t - 2), where J_t is the Jacobian from the cell,
-scaled to the area of the disk, to the disk, and a_t the share of triangle t in the cell's area. Each triangle
-gives its share, in cell and disk, in parts to its interior corners: a_v and A_v are what vertex v gets. E is
-infinite where any det J_t ≤ 0: the second sum is a barrier.
+E = Σ_v a_v (log (A_v / a_v))² + w Σ_t a_t (‖J_t‖²_F / det J_t - 2) + β Σ_edge a_t (log det J_t)², where J_t is
+the Jacobian from the cell, scaled to the area of the disk, to the disk, and a_t the share of triangle t in
+the cell's area. Each triangle gives its share, in cell and disk, in parts to its interior corners: a_v and
+A_v are what vertex v gets. E is infinite where any det J_t ≤ 0: the second sum is a barrier. The third counts
+triangles with a corner on the boundary, whose area else counts only together with that of triangles farther
+in, so that the outermost windows of thin arms come out too small or too large.
 
-Both sums are sums of squares, the second of √(w a_t) (J₁₁ - J₂₂, J₁₂ + J₂₁) / √det J_t: 0 where angles are
-kept. So both have a Gauss-Newton Hessian. That of the areas couples a vertex with its neighbours' neighbours;
+All are sums of squares, the second of √(w a_t) (J₁₁ - J₂₂, J₁₂ + J₂₁) / √det J_t: 0 where angles are
+kept. So all have a Gauss-Newton Hessian. That of the areas couples a vertex with its neighbours' neighbours;
 a pressure at each vertex as a third unknown keeps every coupling within a triangle (`fill_step`).
 """
 
@@ -25,6 +27,9 @@ SHAPE_CURVATURE = 1.5
 It leaves out what bends the residuals, and near the minimum steps are up to twice too long without a factor.
 """
 
+EDGE_WEIGHT = 0.2
+"""β, the weight of each area at the edge; at 1 the triangles there would lock."""
+
 
 class AveragedElements(NamedTuple):
     """The triangles of a cell, and the vertices that their areas are averaged at.
@@ -42,6 +47,8 @@ class AveragedElements(NamedTuple):
         What each triangle gives of its share to each corner; 0 to the boundary.
     target : ndarray of shape (N,) and dtype float
         a_v, the share that each unknown gets in the cell.
+    edge : ndarray of shape (F,) and dtype float
+        β a_t of the triangles with a corner on the boundary, else 0.
     """
 
     triangles: IntArray
@@ -50,6 +57,7 @@ class AveragedElements(NamedTuple):
     corner: IntArray
     parts: FloatArray
     target: FloatArray
+    edge: FloatArray
 
 
 def averaged_elements(
@@ -74,25 +82,28 @@ def averaged_elements(
     inside = corner >= 0
     parts = np.where(inside, share[:, None] / np.maximum(inside.sum(axis=1), 1)[:, None], 0.0)
     target = np.bincount(corner[inside], parts[inside], minlength=int(unknown.max(initial=-1)) + 1)
-    return AveragedElements(triangles, hats, share, corner, parts, np.asarray(target, dtype=np.float64))
+    edge = np.where(inside.all(axis=1), 0.0, EDGE_WEIGHT * share)
+    return AveragedElements(triangles, hats, share, corner, parts, np.asarray(target, dtype=np.float64), edge)
 
 
 @njit(cache=True)
 def averaged_energy(uv: FloatArray, cell: AveragedElements, weight: float) -> float:
     """E of a map; infinite if any triangle is not positive."""
-    triangles, hats, share, corner, parts, target = cell
+    triangles, hats, share, corner, parts, target, edge = cell
     area = np.zeros(len(target))
-    shape = 0.0
+    shape = at_edge = 0.0
     for t in range(triangles.shape[0]):
         a, b, c, d = jacobian(uv, triangles[t], hats[t])
         det = a * d - b * c
         if not det > 0.0:
             return np.inf
         shape += share[t] * ((a - d) ** 2 + (b + c) ** 2) / det
+        if edge[t] > 0.0:
+            at_edge += edge[t] * math.log(det) ** 2
         for k in range(3):
             if corner[t, k] >= 0:
                 area[corner[t, k]] += parts[t, k] * det
-    total = weight * shape
+    total = weight * shape + at_edge
     for n in range(len(target)):
         total += target[n] * math.log(area[n] / target[n]) ** 2
     return total
@@ -115,21 +126,25 @@ def fill_step(
 
         H dx + Rᵀ p = -g,   R dx - p / 2 = -r,
 
-    which is the step of H + 2 RᵀR. `place` and `diagonal` are those of `block_pattern.BlockPattern`.
+    which is the step of H + 2 RᵀR. Areas at the edge count in H and g. `place` and `diagonal` are those of `block_pattern.BlockPattern`.
     """
-    triangles, hats, share, corner, parts, _ = cell
+    triangles, hats, share, corner, parts, _, edge = cell
     right[:] = 0.0
     blocks[:] = 0.0
     slope = _fill_areas(uv, cell, diagonal, blocks, right)
     curvature = math.sqrt(SHAPE_CURVATURE)
-    e, f = np.empty((3, 2)), np.empty((3, 2))  # gradients of the two residuals, by corner
+    e, f = np.empty((3, 2)), np.empty((3, 2))  # gradients of the two residuals of shape, by corner
     g, m = np.empty((3, 2)), np.empty(3)  # gradient of det J, and its weight in the area around the corner
     for t in range(triangles.shape[0]):
         a, b, c, d = jacobian(uv, triangles[t], hats[t])
-        inverse = 1.0 / (a * d - b * c)
+        det = a * d - b * c
+        inverse = 1.0 / det
         root = math.sqrt(2.0 * weight * share[t] * inverse)
         r1, r2 = root * (a - d), root * (b + c)
         s1, s2 = 0.5 * r1 * inverse, 0.5 * r2 * inverse
+        stiff = slant = 0.0  # of the area of a triangle at the edge
+        if edge[t] > 0.0:
+            stiff, slant = 2.0 * edge[t] * inverse**2, 2.0 * edge[t] * math.log(det) * inverse
         for k in range(3):
             x, y = hats[t, k, 0], hats[t, k, 1]
             g[k, 0], g[k, 1] = d * x - c * y, a * y - b * x
@@ -139,7 +154,7 @@ def fill_step(
             m[k] = parts[t, k] * slope[n] if n >= 0 else 0.0
             for axis in range(2):
                 if n >= 0:
-                    right[n, axis] -= r1 * e[k, axis] + r2 * f[k, axis]
+                    right[n, axis] -= r1 * e[k, axis] + r2 * f[k, axis] + slant * g[k, axis]
                 e[k, axis] *= curvature
                 f[k, axis] *= curvature
         for k in range(3):
@@ -150,6 +165,7 @@ def fill_step(
                 for i in range(2):
                     for j in range(2):
                         blocks[block, i, j] += e[k, i] * e[l, j] + f[k, i] * f[l, j]
+                        blocks[block, i, j] += stiff * g[k, i] * g[l, j]
                     blocks[block, i, 2] += g[k, i] * m[l]
                     blocks[block, 2, i] += m[k] * g[l, i]
 
@@ -159,7 +175,7 @@ def _fill_areas(
     uv: FloatArray, cell: AveragedElements, diagonal: IntArray, blocks: FloatArray, right: FloatArray
 ) -> FloatArray:
     """Fill in what belongs to the pressures alone; √a_v / A_v of each vertex."""
-    triangles, hats, _, corner, parts, target = cell
+    triangles, hats, _, corner, parts, target, _ = cell
     area = np.zeros(len(target))
     for t in range(triangles.shape[0]):
         a, b, c, d = jacobian(uv, triangles[t], hats[t])
