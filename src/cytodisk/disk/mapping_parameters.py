@@ -32,13 +32,13 @@ class MeshParameters(Parameters):
     """How a cell is meshed, relaxed and turned, whatever the method."""
 
     shape_weight: float = parameter(
-        0.005,
+        0.003,
         'For methods "newton" and "newton-triangles": how much shape counts against area. Near 0 windows '
         "have equal areas; larger values keep shapes.",
         above=0,
     )
     edge_length: float = parameter(
-        0.9,
+        0.7,
         'Distance between mesh vertices at the edge of the cell; with method "advection" everywhere.',
         least=0.25,
         most=10,

@@ -27,8 +27,10 @@ _SAFE_SHARE = 0.9  # of the step at which the first triangle would lose its area
 _SUFFICIENT = 1e-4  # Armijo: share of the predicted decrease that a step must reach
 _TRIALS = 50
 _SHORTEST, _LONGEST = 0.1, 0.7  # of a step that was too long: bounds of the next one
-DECREMENT, SHARE_OF_ENERGY = 2e-4, 5e-3  # the relaxation ends where a step saves less than the larger
+DECREMENT = 5e-4  # the relaxation ends where a step saves less
 MAX_STEPS = 500
+_STIFFER, _STIFFEST = 30.0, 20.0  # shape weight far out: more by so many times the decrement, at most so much
+_NEAR = 10.0  # times the last decrement: from there on the shape weight is the given one
 _DAMPINGS = (0.0, 1e-8, 1e-6, 1e-4, 1e-2)  # share of the diagonal that is added to it
 
 
@@ -78,15 +80,27 @@ def relax(
     uv, value = start_uv, problem.energy(start_uv)
     if not np.isfinite(value):
         raise MapError("relaxation needs a start without flipped triangles")
+    most = np.inf  # of the shape weight
     for step in range(MAX_STEPS):
         direction, decrement = problem.descent(uv)
-        if decrement < max(DECREMENT, SHARE_OF_ENERGY * value):
+        if decrement < DECREMENT and problem.shape_weight == shape_weight:
             return Relaxed(uv, step, decrement > -DECREMENT)
         moved = problem.search(uv, direction, value, decrement)
-        if moved is None:  # no descent left in double precision
+        if moved is None and problem.shape_weight == shape_weight:  # no descent left in double precision
             return Relaxed(uv, step, False)
-        uv, value = moved
+        uv, value = moved or (uv, value)
+        most = min(most, _shape_weight_far_out(shape_weight, decrement if moved else 0.0))
+        if most != problem.shape_weight:
+            problem.shape_weight = most
+            value = problem.energy(uv)
     return Relaxed(uv, MAX_STEPS, False)
+
+
+def _shape_weight_far_out(shape_weight: float, decrement: float) -> float:
+    """A larger weight while a step still saves much; the given one near the end."""
+    if decrement < _NEAR * DECREMENT:
+        return shape_weight
+    return shape_weight * (1.0 + min(_STIFFER * decrement, _STIFFEST))
 
 
 class _Problem:
@@ -106,7 +120,7 @@ class _Problem:
         hats = hat_gradients(mesh.vertices_yx * scale, mesh.triangles)
         share = areas / areas.sum()
         self._cell = averaged_elements(mesh.triangles, hats, share, system.unknown)
-        self._weight = shape_weight
+        self.shape_weight = shape_weight
         self._system = PressureSystem(system.pattern)
         self._vertex = system.vertex
         self._anchor = anchor_uv[self._vertex]
@@ -114,7 +128,7 @@ class _Problem:
         self._inertia = inertia * thirds[self._vertex, None] if inertia else None
 
     def energy(self, uv: FloatArray) -> float:
-        value = float(averaged_energy(uv, self._cell, self._weight))
+        value = float(averaged_energy(uv, self._cell, self.shape_weight))
         if self._inertia is not None:
             value += float((self._inertia * np.square(uv[self._vertex] - self._anchor)).sum())
         return value
@@ -135,7 +149,7 @@ class _Problem:
         """The step with the diagonal raised by a share of it, and what it saves."""
         system, diagonal = self._system, self._system.pattern.diagonal
         right = np.empty((len(self._vertex), 3))
-        fill_step(uv, self._cell, self._weight, system.pattern.place, diagonal, system.blocks, right)
+        fill_step(uv, self._cell, self.shape_weight, system.pattern.place, diagonal, system.blocks, right)
         if self._inertia is not None:
             pull = 2.0 * self._inertia
             right[:, :2] -= pull * (uv[self._vertex] - self._anchor)

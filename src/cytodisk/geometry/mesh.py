@@ -55,7 +55,7 @@ def mesh_inside(
     mask: BoolArray,
     *,
     edge_length: float,
-    growth: float = 0.4,
+    growth: float = 0.5,
     clearance: float = 0.75,
 ) -> Mesh:
     """Triangulate the inside of an outline, fine at the edge and coarse inside.
