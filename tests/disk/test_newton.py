@@ -76,7 +76,7 @@ def test_areas_by_triangle_give_the_maps_of_before(
     monkeypatch.setattr(mesh_module, "even_out", lambda points, triangles, n_boundary: points)
     monkeypatch.setattr(mesh_module, "distances", lambda points, n_boundary: np.zeros(len(points)))
     monkeypatch.setitem(mesh_module.mesh_inside.__kwdefaults__, "growth", 0.5)
-    parameters = MapToDiskParameters.of(method="newton-triangles")
+    parameters = MapToDiskParameters.of(method="newton-triangles", shape_weight=0.005, edge_length=0.9)
     cell = mesh_cell(simulate.random_mask(kind, seed), parameters)
     # And it measured length on a copy of the outline smoothed over a pixel.
     lengths = np.maximum(edge_lengths(smooth_closed(cell.outline, 1.0)), 0.1 * edge_lengths(cell.outline))

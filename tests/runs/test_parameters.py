@@ -46,7 +46,7 @@ def test_parameters_survive_the_file(
 def test_every_parameter_that_is_set_stands_in_the_file(tmp_path: Path) -> None:
     write_parameters(MapParameters(), tmp_path / "a.toml")
     names = set(tomllib.loads((tmp_path / "a.toml").read_text(encoding="utf-8")))
-    assert names == set(MapParameters.model_fields) - {"pixel_size_um", "channels", "depth_um"}
+    assert names == set(MapParameters.model_fields) - {"edge_length", "pixel_size_um", "channels", "depth_um"}
 
 
 def test_given_values_overrule_the_file(tmp_path: Path) -> None:
@@ -63,7 +63,7 @@ def test_given_values_overrule_the_file(tmp_path: Path) -> None:
         ({"layers": 2.5}, "layers must be a whole number.*got 2.5"),
         ({"layers": True}, "layers must be a whole number.*got True"),
         ({"layers": 4000, "sectors": 4000}, "layers × sectors must be at most 10000000, got 4000 × 4000"),
-        ({"shape_weight": 0.0}, "shape_weight must be a number above 0, got 0.0: 0.005 is the default"),
+        ({"shape_weight": 0.0}, "shape_weight must be a number above 0, got 0.0: 0.003 is the default"),
         ({"edge_length": 0.1}, "edge_length must be a number from 0.25 to 10, got 0.1"),
         ({"edge_length": "0.5"}, "edge_length must be a number from 0.25 to 10, got '0.5'"),
         ({"method": "demons"}, "method must be one of newton, newton-triangles, .*, got 'demons'"),

@@ -54,7 +54,7 @@ class DiskMap:
         Where the relaxation started: weights of the harmonic map ("uniform" when cotangent weights turned a
         triangle over), or the previous frame of a movie.
     shape_weight, edge_length : float
-        As passed to `map_to_disk`; edge_length in pixels.
+        As passed to `map_to_disk`, or its defaults; edge_length in pixels.
     steps : int
         Steps of the relaxation, of Newton's method or of the advection.
     converged : bool

@@ -154,9 +154,9 @@ def mesh_cell(mask: Any, parameters: MappingParameters, scale: Scale = UNKNOWN) 
     cleaned, report = clean_mask(mask)
     placed = PlacedMask.of(cleaned, corner, image_shape)
     spacing = _ISOTROPIC if parameters.method == "advection" else {}
-    mesh = mesh_inside(trace_outline(placed.box), placed.box, edge_length=parameters.edge_length, **spacing)
+    mesh = mesh_inside(trace_outline(placed.box), placed.box, edge_length=parameters.spacing_px, **spacing)
     first = np.array(placed.corner, dtype=np.float64)
-    return CellMesh(placed, report, mesh, first, parameters.edge_length, scale)
+    return CellMesh(placed, report, mesh, first, parameters.spacing_px, scale)
 
 
 def map_mesh(

@@ -14,6 +14,8 @@ NEWTON_METHODS: tuple[Method, ...] = ("newton", "newton-triangles")
 MAPS_VERSION = 2
 """Of what the methods give. In version 1, "newton" gave what "newton-triangles" gives now."""
 
+EDGE_LENGTH_PX, ADVECTION_EDGE_LENGTH_PX = 0.7, 0.9
+
 
 class MethodParameters(Parameters):
     """How a cell is mapped."""
@@ -37,9 +39,10 @@ class MeshParameters(Parameters):
         "have equal areas; larger values keep shapes.",
         above=0,
     )
-    edge_length: float = parameter(
-        0.7,
-        'Distance between mesh vertices at the edge of the cell; with method "advection" everywhere.',
+    edge_length: float | None = parameter(
+        None,
+        'Distance between mesh vertices at the edge of the cell; with method "advection" everywhere. By '
+        f'default {EDGE_LENGTH_PX}, with "advection" {ADVECTION_EDGE_LENGTH_PX}: fewer triangles turn over.',
         least=0.25,
         most=10,
         unit="px",
@@ -55,6 +58,13 @@ class MeshParameters(Parameters):
 
 class MappingParameters(MeshParameters, MethodParameters):
     """How a cell is mapped onto the disk."""
+
+    @property
+    def spacing_px(self) -> float:
+        """Distance between mesh vertices at the edge, as given or by method."""
+        if self.edge_length is not None:
+            return self.edge_length
+        return ADVECTION_EDGE_LENGTH_PX if self.method == "advection" else EDGE_LENGTH_PX
 
 
 class MapToDiskParameters(MappingParameters, PixelSizeParameters):

@@ -1,6 +1,6 @@
 """The relaxation energy with areas averaged around vertices: Numba kernels.
 
-E = Σ_v a_v (log (A_v / a_v))² + w Σ_t a_t (‖J_t‖²_F / det J_t - 2) + β Σ_edge a_t (log det J_t)², where J_t is
+E = Σ_v a_v (log (A_v / a_v))² + w Σ_t a_t (‖J_t‖²_F / det J_t - 2) + β Σ_edge a_t (log det J_t)², with J_t
 the Jacobian from the cell, scaled to the area of the disk, to the disk, and a_t the share of triangle t in
 the cell's area. Each triangle gives its share, in cell and disk, in parts to its interior corners: a_v and
 A_v are what vertex v gets. E is infinite where any det J_t ≤ 0: the second sum is a barrier. The third counts
@@ -126,7 +126,8 @@ def fill_step(
 
         H dx + Rᵀ p = -g,   R dx - p / 2 = -r,
 
-    which is the step of H + 2 RᵀR. Areas at the edge count in H and g. `place` and `diagonal` are those of `block_pattern.BlockPattern`.
+    which is the step of H + 2 RᵀR. H and g hold the areas at the edge, too. `place` and `diagonal` are those
+    of `block_pattern.BlockPattern`.
     """
     triangles, hats, share, corner, parts, _, edge = cell
     right[:] = 0.0
