@@ -12,6 +12,7 @@ from numba import njit
 
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.block_pattern import BlockPattern, FactorPattern
+from cytodisk.disk.lanes import ROW, take_off_column
 
 
 class PressureSystem:
@@ -31,8 +32,8 @@ class PressureSystem:
     def __init__(self, pattern: BlockPattern):
         self.pattern = pattern
         self.blocks = np.empty((len(pattern.row), 3, 3))
-        self._factor = np.empty((len(pattern.factor.below), 3, 3))
-        self._inverse = np.empty((len(pattern.vertex), 3, 3))
+        self._factor = np.empty(9 * len(pattern.factor.below))
+        self._inverse = np.empty((len(pattern.vertex), 6))
 
     def factorise(self) -> None:
         """Compute the factors of `blocks`."""
@@ -54,83 +55,66 @@ def _factorise(
     factor: FloatArray,
     inverse: FloatArray,
 ) -> None:
-    """Fill the factor, row after row, and the inverses of its diagonal blocks."""
+    """Fill the factor, row after row, and the upper halves of the inverses of its diagonal blocks.
+
+    `factor` holds the nine numbers of each block one after the other.
+    """
     start, below, row_start, left, where = pattern
     n = len(first) - 1
-    work = np.zeros((n, 3, 3))  # column k of what is left of the matrix
+    work = np.zeros(3 * ROW * n)  # column k of what is left of the matrix
     for k in range(n):
         for block in range(first[k], first[k + 1]):
             for p in range(3):
-                for q in range(3):
-                    work[row[block], p, q] = blocks[block, p, q]
-        d00, d01, d02 = work[k, 0, 0], work[k, 0, 1], work[k, 0, 2]
-        d11, d12, d22 = work[k, 1, 1], work[k, 1, 2], work[k, 2, 2]
+                at = ROW * (3 * row[block] + p)
+                work[at], work[at + 1], work[at + 2] = (
+                    blocks[block, p, 0],
+                    blocks[block, p, 1],
+                    blocks[block, p, 2],
+                )
+        at = 3 * ROW * k
+        d00, d01, d02 = work[at], work[at + 1], work[at + 2]
+        d11, d12, d22 = work[at + ROW + 1], work[at + ROW + 2], work[at + 2 * ROW + 2]
+        for q in range(3 * ROW):
+            work[at + q] = 0.0
         for entry in range(row_start[k], row_start[k + 1]):
             i, own = left[entry], where[entry]
-            y00, y01, y02 = work[i, 0, 0], work[i, 0, 1], work[i, 0, 2]
-            y10, y11, y12 = work[i, 1, 0], work[i, 1, 1], work[i, 1, 2]
-            y20, y21, y22 = work[i, 2, 0], work[i, 2, 1], work[i, 2, 2]
-            for p in range(3):
-                for q in range(3):
-                    work[i, p, q] = 0.0
-            for block in range(start[i], own):
-                j = below[block]
-                for p in range(3):
-                    l0, l1, l2 = factor[block, p, 0], factor[block, p, 1], factor[block, p, 2]
-                    work[j, p, 0] -= l0 * y00 + l1 * y10 + l2 * y20
-                    work[j, p, 1] -= l0 * y01 + l1 * y11 + l2 * y21
-                    work[j, p, 2] -= l0 * y02 + l1 * y12 + l2 * y22
-            v00, v01, v02 = inverse[i, 0, 0], inverse[i, 0, 1], inverse[i, 0, 2]
-            v11, v12, v22 = inverse[i, 1, 1], inverse[i, 1, 2], inverse[i, 2, 2]
-            l00, l01, l02 = _row_times(y00, y10, y20, v00, v01, v02, v11, v12, v22)
-            l10, l11, l12 = _row_times(y01, y11, y21, v00, v01, v02, v11, v12, v22)
-            l20, l21, l22 = _row_times(y02, y12, y22, v00, v01, v02, v11, v12, v22)
-            factor[own, 0, 0], factor[own, 0, 1], factor[own, 0, 2] = l00, l01, l02
-            factor[own, 1, 0], factor[own, 1, 1], factor[own, 1, 2] = l10, l11, l12
-            factor[own, 2, 0], factor[own, 2, 1], factor[own, 2, 2] = l20, l21, l22
+            take_off_column(work, i, factor, below, start[i], own)
+            at = 3 * ROW * i
+            v00, v01, v02 = inverse[i, 0], inverse[i, 1], inverse[i, 2]
+            v11, v12, v22 = inverse[i, 3], inverse[i, 4], inverse[i, 5]
+            y00, y01, y02 = work[at], work[at + 1], work[at + 2]
+            y10, y11, y12 = work[at + ROW], work[at + ROW + 1], work[at + ROW + 2]
+            y20, y21, y22 = work[at + 2 * ROW], work[at + 2 * ROW + 1], work[at + 2 * ROW + 2]
+            for q in range(3 * ROW):
+                work[at + q] = 0.0
+            l00, l01 = y00 * v00 + y10 * v01 + y20 * v02, y00 * v01 + y10 * v11 + y20 * v12
+            l10, l11 = y01 * v00 + y11 * v01 + y21 * v02, y01 * v01 + y11 * v11 + y21 * v12
+            l20, l21 = y02 * v00 + y12 * v01 + y22 * v02, y02 * v01 + y12 * v11 + y22 * v12
+            l02, l12 = y00 * v02 + y10 * v12 + y20 * v22, y01 * v02 + y11 * v12 + y21 * v22
+            l22 = y02 * v02 + y12 * v12 + y22 * v22
+            at = 9 * own
+            factor[at], factor[at + 1], factor[at + 2] = l00, l01, l02
+            factor[at + 3], factor[at + 4], factor[at + 5] = l10, l11, l12
+            factor[at + 6], factor[at + 7], factor[at + 8] = l20, l21, l22
             d00 -= l00 * y00 + l01 * y10 + l02 * y20
             d01 -= l00 * y01 + l01 * y11 + l02 * y21
             d02 -= l00 * y02 + l01 * y12 + l02 * y22
             d11 -= l10 * y01 + l11 * y11 + l12 * y21
             d12 -= l10 * y02 + l11 * y12 + l12 * y22
             d22 -= l20 * y02 + l21 * y12 + l22 * y22
-        for p in range(3):
-            for q in range(3):
-                work[k, p, q] = 0.0
         _fill_inverse(d00, d01, d02, d11, d12, d22, inverse[k])
-
-
-@njit(cache=True)
-def _row_times(
-    x: float,
-    y: float,
-    z: float,
-    v00: float,
-    v01: float,
-    v02: float,
-    v11: float,
-    v12: float,
-    v22: float,
-) -> tuple[float, float, float]:
-    """(x, y, z) times a symmetric 3×3 matrix."""
-    return x * v00 + y * v01 + z * v02, x * v01 + y * v11 + z * v12, x * v02 + y * v12 + z * v22
 
 
 @njit(cache=True, error_model="numpy")
 def _fill_inverse(
     d00: float, d01: float, d02: float, d11: float, d12: float, d22: float, inverse: FloatArray
 ) -> None:
-    """Inverse of a symmetric 3×3 matrix, from its cofactors."""
+    """Upper half of the inverse of a symmetric 3×3 matrix, from its cofactors."""
     c00, c01, c02 = d11 * d22 - d12 * d12, d02 * d12 - d01 * d22, d01 * d12 - d02 * d11
     over = 1.0 / (d00 * c00 + d01 * c01 + d02 * c02)
-    inverse[0, 0], inverse[1, 1], inverse[2, 2] = (
-        c00 * over,
-        (d00 * d22 - d02 * d02) * over,
-        (d00 * d11 - d01 * d01) * over,
-    )
-    inverse[0, 1] = inverse[1, 0] = c01 * over
-    inverse[0, 2] = inverse[2, 0] = c02 * over
-    inverse[1, 2] = inverse[2, 1] = (d01 * d02 - d00 * d12) * over
+    inverse[0], inverse[1], inverse[2] = c00 * over, c01 * over, c02 * over
+    inverse[3], inverse[4] = (d00 * d22 - d02 * d02) * over, (d01 * d02 - d00 * d12) * over
+    inverse[5] = (d00 * d11 - d01 * d01) * over
 
 
 @njit(cache=True)
@@ -142,18 +126,20 @@ def _solve(
     for i in range(n):
         x, y, z = out[i, 0], out[i, 1], out[i, 2]
         for block in range(start[i], start[i + 1]):
-            j = below[block]
-            for p in range(3):
-                out[j, p] -= factor[block, p, 0] * x + factor[block, p, 1] * y + factor[block, p, 2] * z
+            j, at = below[block], 9 * block
+            out[j, 0] -= factor[at] * x + factor[at + 1] * y + factor[at + 2] * z
+            out[j, 1] -= factor[at + 3] * x + factor[at + 4] * y + factor[at + 5] * z
+            out[j, 2] -= factor[at + 6] * x + factor[at + 7] * y + factor[at + 8] * z
     for i in range(n - 1, -1, -1):
         a, b, c = out[i, 0], out[i, 1], out[i, 2]
-        x = inverse[i, 0, 0] * a + inverse[i, 0, 1] * b + inverse[i, 0, 2] * c
-        y = inverse[i, 1, 0] * a + inverse[i, 1, 1] * b + inverse[i, 1, 2] * c
-        z = inverse[i, 2, 0] * a + inverse[i, 2, 1] * b + inverse[i, 2, 2] * c
+        x = inverse[i, 0] * a + inverse[i, 1] * b + inverse[i, 2] * c
+        y = inverse[i, 1] * a + inverse[i, 3] * b + inverse[i, 4] * c
+        z = inverse[i, 2] * a + inverse[i, 4] * b + inverse[i, 5] * c
         for block in range(start[i], start[i + 1]):
-            a, b, c = out[below[block], 0], out[below[block], 1], out[below[block], 2]
-            x -= factor[block, 0, 0] * a + factor[block, 1, 0] * b + factor[block, 2, 0] * c
-            y -= factor[block, 0, 1] * a + factor[block, 1, 1] * b + factor[block, 2, 1] * c
-            z -= factor[block, 0, 2] * a + factor[block, 1, 2] * b + factor[block, 2, 2] * c
+            j, at = below[block], 9 * block
+            a, b, c = out[j, 0], out[j, 1], out[j, 2]
+            x -= factor[at] * a + factor[at + 3] * b + factor[at + 6] * c
+            y -= factor[at + 1] * a + factor[at + 4] * b + factor[at + 7] * c
+            z -= factor[at + 2] * a + factor[at + 5] * b + factor[at + 8] * c
         out[i, 0], out[i, 1], out[i, 2] = x, y, z
     return out
