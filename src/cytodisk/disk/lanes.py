@@ -15,14 +15,9 @@ ROW = 4
 """Numbers that a row of three takes where it is to be worked on at once; the last is 0."""
 
 
-@intrinsic  # type: ignore[untyped-decorator]
-def take_off_column(
+def _take_off_column(
     typing: Any, work: Any, column: Any, factor: Any, below: Any, first: Any, stop: Any
 ) -> tuple[Any, Any]:
-    """work[below[b]] -= factor[b] @ work[column] for the blocks b from `first` to `stop`.
-
-    `work` is flat with 3 × `ROW` numbers a block, `factor` flat with 9; no block is that of `column`.
-    """
     signature = types.void(work, types.intp, factor, below, types.intp, types.intp)
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -58,3 +53,11 @@ def take_off_column(
         return context.get_dummy_value()
 
     return signature, generate
+
+
+take_off_column: Any = intrinsic(_take_off_column)
+"""Called as (work, column, factor, below, first, stop): work[below[b]] -= factor[b] @ work[column] for the
+blocks b from `first` to `stop`.
+
+`work` is flat with 3 × `ROW` numbers a block, `factor` flat with 9; no block is that of `column`.
+"""
