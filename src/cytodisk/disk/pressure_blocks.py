@@ -22,7 +22,7 @@ class PressureSystem:
     ----------
     pattern : BlockPattern
     blocks : ndarray of shape (P, 3, 3) and dtype float
-        The matrix, to be filled: the upper triangle, and both halves of the blocks on the diagonal.
+        The matrix, to be filled: the upper triangle, and of the blocks on the diagonal the upper half.
 
     References
     ----------

@@ -127,17 +127,16 @@ def fill_step(
         H dx + Rᵀ p = -g,   R dx - p / 2 = -r,
 
     which is the step of H + 2 RᵀR. H and g hold the areas at the edge, too. `place` and `diagonal` are those
-    of `block_pattern.BlockPattern`.
+    of `block_pattern.BlockPattern`; of the blocks on the diagonal only the upper half is filled.
     """
     triangles, hats, share, corner, parts, _, edge = cell
     right[:] = 0.0
     blocks[:] = 0.0
-    slope = _fill_areas(uv, cell, diagonal, blocks, right)
-    curvature = math.sqrt(SHAPE_CURVATURE)
-    e, f = np.empty((3, 2)), np.empty((3, 2))  # gradients of the two residuals of shape, by corner
-    g, m = np.empty((3, 2)), np.empty(3)  # gradient of det J, and its weight in the area around the corner
+    slope, jacobians = _fill_areas(uv, cell, diagonal, blocks, right)
+    numbers = blocks.reshape(-1)  # the nine of each block, one row after the other
+    corners = np.empty((3, 7))  # gradients of det J and of two residuals of shape, and m, at each corner
     for t in range(triangles.shape[0]):
-        a, b, c, d = jacobian(uv, triangles[t], hats[t])
+        a, b, c, d = jacobians[t, 0], jacobians[t, 1], jacobians[t, 2], jacobians[t, 3]
         det = a * d - b * c
         inverse = 1.0 / det
         root = math.sqrt(2.0 * weight * share[t] * inverse)
@@ -148,45 +147,57 @@ def fill_step(
             stiff, slant = 2.0 * edge[t] * inverse**2, 2.0 * edge[t] * math.log(det) * inverse
         for k in range(3):
             x, y = hats[t, k, 0], hats[t, k, 1]
-            g[k, 0], g[k, 1] = d * x - c * y, a * y - b * x
-            e[k, 0], e[k, 1] = root * x - s1 * g[k, 0], -root * y - s1 * g[k, 1]
-            f[k, 0], f[k, 1] = root * y - s2 * g[k, 0], root * x - s2 * g[k, 1]
+            g0, g1 = d * x - c * y, a * y - b * x
+            e0, e1 = root * x - s1 * g0, -root * y - s1 * g1
+            f0, f1 = root * y - s2 * g0, root * x - s2 * g1
+            corners[k, 0], corners[k, 1] = g0, g1
+            corners[k, 2], corners[k, 3], corners[k, 4], corners[k, 5] = e0, e1, f0, f1
             n = corner[t, k]
-            m[k] = parts[t, k] * slope[n] if n >= 0 else 0.0
-            for axis in range(2):
-                if n >= 0:
-                    right[n, axis] -= r1 * e[k, axis] + r2 * f[k, axis] + slant * g[k, axis]
-                e[k, axis] *= curvature
-                f[k, axis] *= curvature
+            corners[k, 6] = parts[t, k] * slope[n]  # of the boundary: 0
+            if n >= 0:
+                right[n, 0] -= r1 * e0 + r2 * f0 + slant * g0
+                right[n, 1] -= r1 * e1 + r2 * f1 + slant * g1
         for k in range(3):
-            for l in range(3):
-                block = place[t, k, l]
+            g0, g1, m = corners[k, 0], corners[k, 1], corners[k, 6]
+            e0, e1 = SHAPE_CURVATURE * corners[k, 2], SHAPE_CURVATURE * corners[k, 3]
+            f0, f1 = SHAPE_CURVATURE * corners[k, 4], SHAPE_CURVATURE * corners[k, 5]
+            s0, s1 = stiff * g0, stiff * g1
+            for l in range(k + 1):
+                block = max(place[t, k, l], place[t, l, k])
                 if block < 0:
                     continue
-                for i in range(2):
-                    for j in range(2):
-                        blocks[block, i, j] += e[k, i] * e[l, j] + f[k, i] * f[l, j]
-                        blocks[block, i, j] += stiff * g[k, i] * g[l, j]
-                    blocks[block, i, 2] += g[k, i] * m[l]
-                    blocks[block, 2, i] += m[k] * g[l, i]
+                at = 9 * block
+                turned = 1 if place[t, k, l] < 0 else 0  # the block of (l, k) is stored: this one's transpose
+                h0, h1, i0, i1 = corners[l, 0], corners[l, 1], corners[l, 2], corners[l, 3]
+                j0, j1, o = corners[l, 4], corners[l, 5], corners[l, 6]
+                numbers[at] += e0 * i0 + f0 * j0 + s0 * h0
+                numbers[at + 1 + 2 * turned] += e0 * i1 + f0 * j1 + s0 * h1
+                numbers[at + 2 + 4 * turned] += g0 * o
+                numbers[at + 4] += e1 * i1 + f1 * j1 + s1 * h1
+                numbers[at + 5 + 2 * turned] += g1 * o
+                if l < k:
+                    numbers[at + 3 - 2 * turned] += e1 * i0 + f1 * j0 + s1 * h0
+                    numbers[at + 6 - 4 * turned] += m * h0
+                    numbers[at + 7 - 2 * turned] += m * h1
 
 
 @njit(cache=True, error_model="numpy")
 def _fill_areas(
     uv: FloatArray, cell: AveragedElements, diagonal: IntArray, blocks: FloatArray, right: FloatArray
-) -> FloatArray:
-    """Fill in what belongs to the pressures alone; √a_v / A_v of each vertex."""
+) -> tuple[FloatArray, FloatArray]:
+    """Fill in what belongs to the pressures alone; √a_v / A_v of each vertex, 0 last, and the Jacobians."""
     triangles, hats, _, corner, parts, target, _ = cell
-    area = np.zeros(len(target))
+    area = np.zeros(len(target) + 1)  # the last takes what corners at the boundary, numbered -1, get: 0
+    jacobians = np.empty((triangles.shape[0], 4))
     for t in range(triangles.shape[0]):
         a, b, c, d = jacobian(uv, triangles[t], hats[t])
+        jacobians[t, 0], jacobians[t, 1], jacobians[t, 2], jacobians[t, 3] = a, b, c, d
         for k in range(3):
-            if corner[t, k] >= 0:
-                area[corner[t, k]] += parts[t, k] * (a * d - b * c)
-    slope = np.empty(len(target))
+            area[corner[t, k]] += parts[t, k] * (a * d - b * c)
+    slope = np.zeros(len(target) + 1)
     for n in range(len(target)):
         root = math.sqrt(target[n])
         slope[n] = root / area[n]
         right[n, 2] = -root * math.log(area[n] / target[n])
         blocks[diagonal[n], 2, 2] = -0.5
-    return slope
+    return slope, jacobians
