@@ -63,13 +63,12 @@ def _elimination_order(edges: HalfEdges, n_boundary: int) -> IntArray:
     n = len(edges.first) - 1 - n_boundary
     if not n:
         return np.empty(0, dtype=np.int64)
-    start, end = edges.start - n_boundary, edges.end - n_boundary
-    upper = (start >= 0) & (end > start)
-    degree = np.diff(edges.first)[n_boundary:]
-    row = np.concatenate([start[upper], np.arange(n)])
-    column = np.concatenate([end[upper], np.arange(n)])
-    value = np.concatenate([np.full(int(upper.sum()), -1.0), degree + 1.0])
-    return Factorisation(sparse.csc_matrix((value, (row, column)), shape=(n, n))).order
+    first, row = _upper(
+        edges.first, edges.end, np.arange(-n_boundary, n), np.arange(n_boundary, n_boundary + n)
+    )
+    value = np.full(len(row), -1.0)
+    value[first[1:] - 1] = np.diff(edges.first)[n_boundary:] + 1.0
+    return Factorisation(sparse.csc_matrix((value, row, first), shape=(n, n))).order
 
 
 @njit(cache=True)
@@ -97,14 +96,17 @@ def _places(triangles: IntArray, unknown: IntArray, first: IntArray, row: IntArr
     place = np.full((triangles.shape[0], 3, 3), -1, dtype=np.int64)
     for t in range(triangles.shape[0]):
         for k in range(3):
+            i = unknown[triangles[t, k]]
+            if i < 0:
+                continue
+            place[t, k, k] = first[i + 1] - 1
             for l in range(3):
-                i, j = unknown[triangles[t, k]], unknown[triangles[t, l]]
-                if i < 0 or j < i:
-                    continue
-                block = first[j]
-                while row[block] != i:
-                    block += 1
-                place[t, k, l] = block
+                j = unknown[triangles[t, l]]
+                if j > i:
+                    block = first[j]
+                    while row[block] != i:
+                        block += 1
+                    place[t, k, l] = block
     return place
 
 

@@ -116,7 +116,8 @@ def _cotangents(mesh: Mesh) -> FloatArray:
     """Half the cotangent opposite each edge of each triangle, edge k → k + 1 of triangle t in row k F + t."""
     hats = hat_gradients(mesh.vertices_yx, mesh.triangles)
     areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
-    return np.concatenate([-areas * (hats[:, k] * hats[:, (k + 1) % 3]).sum(axis=1) for k in range(3)])
+    x, y = np.ascontiguousarray(hats.transpose(2, 1, 0))
+    return np.concatenate([-areas * (x[k] * x[(k + 1) % 3] + y[k] * y[(k + 1) % 3]) for k in range(3)])
 
 
 def weighted_means(

@@ -19,7 +19,7 @@ from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.energy import largest_step
 from cytodisk.disk.pressure_blocks import PressureSystem
 from cytodisk.disk.relaxed import Relaxed
-from cytodisk.disk.vertex_energy import averaged_elements, averaged_energy, fill_step
+from cytodisk.disk.vertex_energy import averaged_elements, averaged_energy, fill_step, step_of
 from cytodisk.errors import MapError
 from cytodisk.geometry.mesh import Mesh, hat_gradients, triangle_areas
 
@@ -159,12 +159,8 @@ class _Problem:
             for axis in (0, 1):
                 system.blocks[diagonal, axis, axis] *= 1.0 + damping
         system.factorise()
-        found = system.solve(right)
-        direction = np.zeros_like(uv)
-        direction[self._vertex] = found[:, :2]
-        # The gradient of the areas is 2 Rᵀr, and R dx = p / 2 - r; `right` holds -g and -r.
-        areas = right[:, 2] @ (found[:, 2] + 2.0 * right[:, 2])
-        return direction, float((right[:, :2] * found[:, :2]).sum() + areas)
+        direction, saved = step_of(system.solve(right), right, self._vertex, len(uv))
+        return direction, float(saved)
 
     def search(
         self, uv: FloatArray, direction: FloatArray, value: float, decrement: float

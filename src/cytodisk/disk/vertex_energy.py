@@ -78,12 +78,28 @@ def averaged_elements(
     -------
     AveragedElements
     """
-    corner = unknown[triangles]
-    inside = corner >= 0
-    parts = np.where(inside, share[:, None] / np.maximum(inside.sum(axis=1), 1)[:, None], 0.0)
-    target = np.bincount(corner[inside], parts[inside], minlength=int(unknown.max(initial=-1)) + 1)
-    edge = np.where(inside.all(axis=1), 0.0, EDGE_WEIGHT * share)
-    return AveragedElements(triangles, hats, share, corner, parts, np.asarray(target, dtype=np.float64), edge)
+    corner, parts, target, edge = _shared_out(triangles, share, unknown, int(unknown.max(initial=-1)) + 1)
+    return AveragedElements(triangles, hats, share, corner, parts, target, edge)
+
+
+@njit(cache=True)
+def _shared_out(
+    triangles: IntArray, share: FloatArray, unknown: IntArray, n_unknown: int
+) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+    corner, parts = np.empty(triangles.shape, dtype=np.int64), np.zeros(triangles.shape)
+    target, edge = np.zeros(n_unknown), np.zeros(len(share))
+    for t in range(len(share)):
+        inside = 0
+        for k in range(3):
+            corner[t, k] = unknown[triangles[t, k]]
+            inside += corner[t, k] >= 0
+        if inside < 3:
+            edge[t] = EDGE_WEIGHT * share[t]
+        for k in range(3):
+            if corner[t, k] >= 0:
+                parts[t, k] = share[t] / inside
+                target[corner[t, k]] += parts[t, k]
+    return corner, parts, target, edge
 
 
 @njit(cache=True)
@@ -201,3 +217,18 @@ def _fill_areas(
         right[n, 2] = -root * math.log(area[n] / target[n])
         blocks[diagonal[n], 2, 2] = -0.5
     return slope, jacobians
+
+
+@njit(cache=True)
+def step_of(
+    found: FloatArray, right: FloatArray, vertex: IntArray, n_vertices: int
+) -> tuple[FloatArray, float]:
+    """Step of every vertex from what solves the system of `fill_step`, and what it saves to first order."""
+    direction = np.zeros((n_vertices, 2))
+    saved = 0.0
+    for n in range(len(vertex)):
+        direction[vertex[n], 0], direction[vertex[n], 1] = found[n, 0], found[n, 1]
+        # The gradient of the areas is 2 Rᵀr, and R dx = p / 2 - r; `right` holds -g and -r.
+        saved += right[n, 0] * found[n, 0] + right[n, 1] * found[n, 1]
+        saved += right[n, 2] * (found[n, 2] + 2.0 * right[n, 2])
+    return direction, saved

@@ -84,18 +84,22 @@ def even_out(points_yx: FloatArray, triangles: IntArray, n_boundary: int) -> Flo
 @njit(cache=True)
 def _join(points: FloatArray, distance: FloatArray, triangles: IntArray, neighbours: IntArray) -> None:
     """Flip edges between triangles on one circle, in place, until all of them meet at its nearest point."""
-    for _ in range(_MOST_ROUNDS):
+    last_flip = np.zeros(len(triangles), dtype=np.int64)  # the round in which each triangle was last changed
+    for attempt in range(1, _MOST_ROUNDS + 1):
         changed = False
         for t in range(len(triangles)):
             for k in range(3):
                 s = neighbours[t, k]
-                if s < 0:
+                if (
+                    s < 0 or max(last_flip[t], last_flip[s]) < attempt - 1
+                ):  # both as they were when last tried
                     continue
                 a, b, c = triangles[t, k], triangles[t, (k + 1) % 3], triangles[t, (k + 2) % 3]
                 d = triangles[s, (side_of(neighbours, s, t) + 2) % 3]
                 gain = min(distance[a], distance[b]) - min(distance[c], distance[d])
                 if gain > NEARER_PX and _flippable(points, a, b, c, d):
                     flip(triangles, neighbours, t, k)
+                    last_flip[t] = last_flip[s] = attempt
                     changed = True
                     break
         if not changed:
@@ -124,25 +128,29 @@ def _pass(points: FloatArray, triangles: IntArray, n_boundary: int) -> FloatArra
     weighted, weight = np.zeros_like(points), np.zeros(len(points))
     before = np.empty(len(triangles))
     for t in range(len(triangles)):
-        a, b, c = triangles[t]
-        before[t] = signed_area_of(points, a, b, c)
-        for vertex in (a, b, c):
-            weight[vertex] += before[t]
-            for axis in range(2):
-                centre = (points[a, axis] + points[b, axis] + points[c, axis]) / 3.0
-                weighted[vertex, axis] += before[t] * centre
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        area = signed_area_of(points, a, b, c)
+        before[t] = area
+        y = area * ((points[a, 0] + points[b, 0] + points[c, 0]) / 3.0)
+        x = area * ((points[a, 1] + points[b, 1] + points[c, 1]) / 3.0)
+        for k in range(3):
+            vertex = triangles[t, k]
+            weight[vertex] += area
+            weighted[vertex, 0] += y
+            weighted[vertex, 1] += x
     free: BoolArray = np.arange(len(points)) >= n_boundary
     while True:
         moved = points.copy()
         for vertex in range(n_boundary, len(points)):
             if free[vertex]:
-                moved[vertex] = weighted[vertex] / weight[vertex]
+                moved[vertex, 0] = weighted[vertex, 0] / weight[vertex]
+                moved[vertex, 1] = weighted[vertex, 1] / weight[vertex]
         held = False
         for t in range(len(triangles)):
-            a, b, c = triangles[t]
+            a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
             if signed_area_of(moved, a, b, c) / before[t] < _LEAST_AREA:
                 held = True
-                for vertex in (a, b, c):
-                    free[vertex] = False
+                for k in range(3):
+                    free[triangles[t, k]] = False
         if not held:
             return moved

@@ -220,25 +220,30 @@ def _within_loop(triangles: IntArray, n_boundary: int) -> IntArray:
 
 def _split_chords(points_yx: FloatArray, triangles: IntArray, n_boundary: int) -> tuple[FloatArray, IntArray]:
     """Put a vertex on the middle of each interior edge between two boundary vertices."""
-    start, stop = triangle_edges(triangles).T
+    first, second, third = np.ascontiguousarray((triangles < n_boundary).T)
+    near = np.flatnonzero((first & second) | (second & third) | (third & first))
+    start, stop = triangle_edges(triangles[near]).T
     pinned = (start < n_boundary) & (stop < n_boundary)
     on_outline = pinned & ((start + 1) % n_boundary == stop)
     chord = pinned & ~on_outline
     low, high = np.minimum(start, stop)[chord], np.maximum(start, stop)[chord]
     chords, which = np.unique(low * n_boundary + high, return_inverse=True)
-    middle = np.full(len(start), -1)
-    middle[chord] = len(points_yx) + which
+    added = np.full(len(start), -1)
+    added[chord] = len(points_yx) + which
+    middle = added.reshape(3, -1).T  # of edge k of each triangle
     low, high = chords // n_boundary, chords % n_boundary
     points = np.concatenate([points_yx, 0.5 * (points_yx[low] + points_yx[high])])
-    return points, _subdivide(triangles, middle.reshape(3, -1).T, distances(points, n_boundary))
+    split = (middle >= 0).any(axis=1)
+    pieces = _subdivide(triangles[near[split]], middle[split], distances(points, n_boundary))
+    return points, np.concatenate([np.delete(triangles, near[split], axis=0), *pieces])
 
 
-def _subdivide(triangles: IntArray, middle: IntArray, distance: FloatArray) -> IntArray:
+def _subdivide(triangles: IntArray, middle: IntArray, distance: FloatArray) -> list[IntArray]:
     """Replace triangles by 2, 3 or 4, where `middle` (F, 3) holds a vertex for edge k, k + 1 or -1.
 
     Where there is a choice, the corner at the least `distance` gets the edge.
     """
-    parts = [triangles[(middle < 0).all(axis=1)]]
+    parts = []
     count = (middle >= 0).sum(axis=1)
     for n_split in (1, 2, 3):
         some = count == n_split
@@ -260,7 +265,7 @@ def _subdivide(triangles: IntArray, middle: IntArray, distance: FloatArray) -> I
             3: [(a, p, r), (p, b, q), (r, q, c), (p, q, r)],
         }[n_split]
         parts += [np.column_stack(piece) for piece in pieces]
-    return np.concatenate(parts)
+    return parts
 
 
 def _check(mesh: Mesh, outline_yx: FloatArray) -> None:
