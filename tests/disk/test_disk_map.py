@@ -1,5 +1,6 @@
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -158,3 +159,33 @@ def test_another_array_file_and_another_format_are_refused(disk: DiskMap, tmp_pa
     np.savez(other, header=np.array(json.dumps([1])))
     with pytest.raises(ReadError):
         load_map(other)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"corner": [500, 500]}, "is not in the image"),
+        ({"corner": [-1, 0]}, "is not in the image"),
+        ({"image_shape": [2, 2]}, "is not in the image"),
+        ({"mask": np.zeros((3, 3), dtype=bool)}, "is empty"),
+        ({"mask": np.full((3, 3), 0.5)}, "its mask has dtype float64"),
+        ({"mask": np.ones((2, 2, 2), dtype=bool)}, r"its mask has dtype bool and shape \(2, 2, 2\)"),
+        ({"vertices_uv": np.zeros((5, 2))}, "vertices_uv has shape"),
+        ({"triangles": np.zeros((4, 3))}, "triangles has dtype float64"),
+        ({"triangles": np.full((4, 3), 10**6)}, "triangles name a vertex that does not exist"),
+        ({"boundary": np.array([-1, 0, 1])}, "boundary name a vertex that does not exist"),
+        ({"boundary": np.empty(0, dtype=int)}, "boundary name a vertex that does not exist"),
+    ],
+)
+def test_arrays_that_do_not_fit_each_other_are_refused(
+    disk: DiskMap, tmp_path: Path, change: dict[str, Any], message: str
+) -> None:
+    disk.save(tmp_path / "a.npz")
+    with np.load(tmp_path / "a.npz") as file:
+        arrays = dict(file)
+    header = json.loads(str(arrays["header"])) | {
+        k: v for k, v in change.items() if k in ("corner", "image_shape")
+    }
+    np.savez(tmp_path / "b.npz", **(arrays | change | {"header": np.array(json.dumps(header))}))
+    with pytest.raises(ReadError, match=message):
+        load_map(tmp_path / "b.npz")

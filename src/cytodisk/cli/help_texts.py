@@ -95,7 +95,7 @@ Examples:
 MASKS is one mask, a stack of masks, or a label image, or a folder of those. With --movie it is a stack of
 masks of one cell through time (or label images in which a label is a cell), and --signal what to sample.
 
-Methods: newton (cytodisk's default map), newton-triangles (that of earlier versions), harmonic (before
+Methods: newton (cytodisk's default map), newton-triangles (areas by triangle), harmonic (before
 relaxation), advection (the paper's relaxation), edge (by distance from the edge, as is usual), rings (around
 the deepest point, as CellProfiler's). A movie is compared by newton, harmonic and edge, if --methods does not
 say otherwise.

@@ -290,11 +290,11 @@ def load_map(path: str | os.PathLike[str]) -> DiskMap:
     >>> disk.certificate.valid
     True
     """
-    with reading_map(path) as (header, mask, file):
+    with reading_map(path) as (header, mask, arrays):
         return DiskMap(
             placed_mask=mask,
             report=MaskReport(**header["report"]),
-            **{name: file[name] for name in _ARRAYS},
+            **{name: arrays[name] for name in _ARRAYS},
             **{name: header[name] for name in _FACTS},
             scale=Scale(header.get("pixel_size_um"), header.get("frame_interval_s")),
         )

@@ -18,8 +18,15 @@ from cytodisk.files import replacing
 from cytodisk.geometry.placed_mask import PlacedMask
 
 _FORMAT = 3
-_OLDER = 2  # differs in one word: its "newton" is what format 3 calls "newton-triangles"
+_OLDER = 2  # differs in one word: its "newton" relaxed as "newton-triangles" does in format 3
 _FASTEST = 1  # level of compression
+# Name, kinds of dtype and shape of a row of each array.
+_EXPECTED = (
+    ("vertices_yx", "f", (2,)),
+    ("vertices_uv", "f", (2,)),
+    ("triangles", "iu", (3,)),
+    ("boundary", "iu", ()),
+)
 _RIGHTS = 0o600  # of an array's file where the archive is unpacked
 
 
@@ -70,7 +77,7 @@ def _write(archive: zipfile.ZipFile, arrays: Mapping[str, Any], how: int) -> Non
 
 
 @contextmanager
-def reading_map(path: str | os.PathLike[str]) -> Iterator[tuple[dict[str, Any], PlacedMask, Any]]:
+def reading_map(path: str | os.PathLike[str]) -> Iterator[tuple[dict[str, Any], PlacedMask, dict[str, Any]]]:
     """Header, mask and arrays of a map's file; what is wrong with it becomes a `ReadError`.
 
     Raises
@@ -91,10 +98,39 @@ def reading_map(path: str | os.PathLike[str]) -> Iterator[tuple[dict[str, Any], 
             if header["format"] == _OLDER and header["method"] == "newton":
                 header["method"] = "newton-triangles"
             (y, x), (height, width) = header["corner"], header["image_shape"]
-            yield header, PlacedMask(file["mask"], (y, x), (height, width)), file
+            placed = PlacedMask(file["mask"], (y, x), (height, width))
+            arrays = {name: file[name] for name, _, _ in _EXPECTED}
+            _check(placed, arrays)
+            yield header, placed, arrays
     except FileNotFoundError as error:
         raise ReadError(f"{path} does not exist: pass a file that DiskMap.save wrote") from error
     except (zipfile.BadZipFile, zlib.error, KeyError, TypeError, ValueError, OSError, EOFError) as error:
         if isinstance(error, ReadError):
             raise
         raise ReadError(f"{path} is not a map that DiskMap.save wrote: {error}") from error
+
+
+def _check(placed: PlacedMask, arrays: Mapping[str, FloatArray | IntArray]) -> None:
+    """Check that arrays have the kind and the size that kernels take for granted.
+
+    Raises
+    ------
+    ValueError
+        One has not.
+    """
+    box = placed.box
+    if box.dtype != bool or box.ndim != 2 or not box.any():
+        raise ValueError(f"its mask has dtype {box.dtype} and shape {box.shape}, or is empty")
+    if min(placed.corner) < 0 or (np.add(placed.corner, box.shape) > placed.image_shape).any():
+        raise ValueError(
+            f"its mask, of shape {box.shape} at {placed.corner}, is not in the image {placed.image_shape}"
+        )
+    n_vertices = len(arrays["vertices_yx"])
+    for name, kind, shape in _EXPECTED:
+        array = arrays[name]
+        if array.dtype.kind not in kind or array.ndim != len(shape) + 1 or array.shape[1:] != shape:
+            raise ValueError(f"{name} has dtype {array.dtype} and shape {array.shape}")
+        if kind == "f" and len(array) != n_vertices:
+            raise ValueError(f"{name} has shape {array.shape} for {n_vertices} vertices")
+        if kind != "f" and not (len(array) and array.min() >= 0 and array.max() < n_vertices):
+            raise ValueError(f"{name} name a vertex that does not exist")

@@ -12,7 +12,9 @@ NEWTON_METHODS: tuple[Method, ...] = ("newton", "newton-triangles")
 """Methods that relax by Newton's method, so that a movie's frames can start from the frame before."""
 
 MAPS_VERSION = 2
-"""Of what the methods give. In version 1, "newton" gave what "newton-triangles" gives now."""
+"""Of what the methods give. In version 1, "newton" relaxed as "newton-triangles" does now; all methods had
+another mesh and other lengths along the edge.
+"""
 
 EDGE_LENGTH_PX, ADVECTION_EDGE_LENGTH_PX = 0.7, 0.9
 
@@ -22,9 +24,9 @@ class MethodParameters(Parameters):
 
     method: Method = parameter(
         "newton",
-        '"newton": windows of equal area, as nearly as the edge allows. "newton-triangles": the same of an '
-        "earlier version; areas are a little more equal, but a slightly other mask of the same cell moves "
-        'places more. "harmonic": the paper\'s map before relaxation; it keeps angles and shrinks '
+        '"newton": windows of equal area, as nearly as the edge allows. "newton-triangles": the same with an '
+        "area for each triangle; areas are a little more equal, but a slightly other mask of the same cell "
+        'moves places more. "harmonic": the paper\'s map before relaxation; it keeps angles and shrinks '
         'protrusions. "advection": the paper\'s relaxation, for comparison; it can turn triangles over, and '
         "the certificate says which.",
     )

@@ -15,7 +15,7 @@ from cytodisk.files import replacing
 
 PROVENANCE = "provenance.json"
 MAPS = "maps version"
-_EARLIER_MAPS = "its maps are of an earlier version, whose method newton is now newton-triangles"
+_EARLIER_MAPS = "its maps are of an earlier version, with another mesh and relaxation"
 FORMAT = 2
 """Of the tables and files of a study: 1 had no list of files, and other names of columns."""
 
@@ -147,8 +147,6 @@ def way_out(there: dict[str, Any], here: dict[str, Any]) -> str:
     anew = "--overwrite to replace it, or another folder"
     if "method" in then and then | {"method": now.get("method")} == now:
         return f"pass --method {then['method']} to go on with it, {anew}"
-    if MAPS in now and MAPS not in then and then.get("method") == "newton":
-        return f"pass {anew}; --method newton-triangles maps as before"
     return f"pass {anew}"
 
 

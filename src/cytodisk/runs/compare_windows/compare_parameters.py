@@ -30,7 +30,7 @@ TITLES = {
 """Names of the methods in figures and on the console."""
 
 _METHODS = (
-    "Kinds of windows that are compared: on cytodisk's map (newton), on that of earlier versions "
+    "Kinds of windows that are compared: on cytodisk's map (newton), with areas by triangle "
     "(newton-triangles), on the map before relaxation (harmonic), on the paper's map (advection), by "
     "distance from the edge (edge), around the deepest point (rings)."
 )
