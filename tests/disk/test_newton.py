@@ -136,3 +136,30 @@ def test_a_step_that_would_climb_for_lost_digits_is_taken_with_a_raised_diagonal
     monkeypatch.setattr(newton._Problem, "gauss_newton_direction", climbing)
     assert map_to_disk(simulate.disk(12.0)).converged
     assert tried[:2] == list(newton._DAMPINGS[:2])
+
+
+@pytest.mark.parametrize("promised", [-1e-4, -1.0, np.nan])
+def test_without_a_step_downhill_a_map_is_valid_but_not_converged(
+    monkeypatch: pytest.MonkeyPatch, promised: float
+) -> None:
+    found = newton._Problem.gauss_newton_direction
+    steps = []
+
+    def lost(problem: Any, uv: FloatArray, damping: float = 0.0) -> tuple[FloatArray, float]:
+        steps.append(uv)
+        direction, decrement = found(problem, uv, damping)
+        return (direction, decrement) if len(steps) == 1 else (-direction, promised)
+
+    monkeypatch.setattr(newton._Problem, "gauss_newton_direction", lost)
+    disk = map_to_disk(simulate.star(arms=3, body_radius=8.0, arm_length=12.0))
+    assert disk.certificate.valid
+    assert not disk.converged
+    assert len({place.tobytes() for place in steps}) == 2  # the start, and where its one good step led
+
+
+@pytest.mark.parametrize("kind", simulate.KINDS)
+def test_a_converged_map_has_converged_at_the_given_shape_weight(kind: str) -> None:
+    disk = map_to_disk(simulate.random_mask(kind, 21), shape_weight=0.01)
+    again = relax(Mesh(disk.vertices_yx, disk.triangles, len(disk.boundary)), disk.vertices_uv, 0.01)
+    assert disk.converged
+    assert (again.steps, again.converged) == (0, True)

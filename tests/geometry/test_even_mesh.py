@@ -6,6 +6,8 @@ from scipy.spatial import cKDTree
 
 from cytodisk import simulate
 from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.errors import MeshError
+from cytodisk.geometry import mesh as mesh_module
 from cytodisk.geometry.even_mesh import even_out, join_circles
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.mesh import Mesh, mesh_inside, triangle_areas
@@ -84,3 +86,12 @@ def test_a_vertex_among_others_comes_to_their_middle() -> None:
     points = even_out(np.concatenate([ring, [[0.3, -0.2]]]), triangles, 6)
     np.testing.assert_allclose(points[:6], ring)
     assert np.hypot(*points[6]) < 0.05
+
+
+def test_a_triangle_without_area_is_refused_as_such() -> None:
+    outline = np.array([[0.0, 0.0], [0.0, 1.0], [0.0, 2.0], [3.0, 1.0]])
+    triangles = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+    flat = even_out(np.concatenate([outline, [[0.0, 1.0]]]), triangles[:2], 4)  # all of its triangles are
+    assert np.isnan(flat[4]).all()
+    with pytest.raises(MeshError, match="4 triangles have no area"):
+        mesh_module._check(Mesh(flat, triangles, 4), outline)

@@ -28,6 +28,9 @@ _SUFFICIENT = 1e-4  # Armijo: share of the predicted decrease that a step must r
 _TRIALS = 50
 _SHORTEST, _LONGEST = 0.1, 0.7  # of a step that was too long: bounds of the next one
 DECREMENT = 5e-4  # the relaxation ends where a step saves less
+_LOST = (
+    1e-3 * DECREMENT
+)  # a step that climbs by more than this, which is none of the exact ones, lost its digits
 MAX_STEPS = 500
 _STIFFER, _STIFFEST = 30.0, 20.0  # shape weight far out: more by so many times the decrement, at most so much
 _NEAR = 10.0  # times the last decrement: from there on the shape weight is the given one
@@ -83,9 +86,9 @@ def relax(
     most = np.inf  # of the shape weight
     for step in range(MAX_STEPS):
         direction, decrement = problem.descent(uv)
-        if decrement < DECREMENT and problem.shape_weight == shape_weight:
-            return Relaxed(uv, step, decrement > -DECREMENT)
-        moved = problem.search(uv, direction, value, decrement)
+        if -_LOST < decrement < DECREMENT and problem.shape_weight == shape_weight:
+            return Relaxed(uv, step, True)
+        moved = problem.search(uv, direction, value, decrement) if decrement > 0.0 else None
         if moved is None and problem.shape_weight == shape_weight:  # no descent left in double precision
             return Relaxed(uv, step, False)
         uv, value = moved or (uv, value)
@@ -141,7 +144,7 @@ class _Problem:
         """
         for damping in _DAMPINGS:
             direction, decrement = self.gauss_newton_direction(uv, damping)
-            if decrement > -DECREMENT:
+            if decrement > -_LOST:
                 break
         return direction, decrement
 

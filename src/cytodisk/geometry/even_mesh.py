@@ -123,7 +123,7 @@ def _flippable(points: FloatArray, a: int, b: int, c: int, d: int) -> bool:
     return bool(turn * one > least and turn * other > least)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")  # a triangle without area gives NaN, which `mesh_inside` refuses
 def _pass(points: FloatArray, triangles: IntArray, n_boundary: int) -> FloatArray:
     weighted, weight = np.zeros_like(points), np.zeros(len(points))
     before = np.empty(len(triangles))

@@ -276,10 +276,10 @@ def _check(mesh: Mesh, outline_yx: FloatArray) -> None:
         faults.append("its Euler characteristic is not 1")
     if not edges.all_used:
         faults.append("a vertex belongs to no triangle")
-    if areas.min() <= 0:
-        faults.append(f"{(areas <= 0).sum()} triangles have no area")
+    if not areas.min() > 0:
+        faults.append(f"{len(areas) - (areas > 0).sum()} triangles have no area")
     outline_area = signed_area(outline_yx)
-    if abs(areas.sum() - outline_area) > _AREA_TOLERANCE * outline_area:
+    if not abs(areas.sum() - outline_area) <= _AREA_TOLERANCE * outline_area:
         faults.append(f"its area {areas.sum()} is not the outline's {outline_area}")
     if faults:
         raise MeshError(f"mesh of the outline ({len(outline_yx)} points) is not a disk: {'; '.join(faults)}")
