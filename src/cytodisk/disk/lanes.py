@@ -59,5 +59,5 @@ take_off_column: Any = intrinsic(_take_off_column)
 """Called as (work, column, factor, below, first, stop): work[below[b]] -= factor[b] @ work[column] for the
 blocks b from `first` to `stop`.
 
-`work` is flat with 3 × `ROW` numbers a block, `factor` flat with 9; no block is that of `column`.
+`work` has 3 × `ROW` numbers a block and `factor` 9, in C order; no block is that of `column`.
 """

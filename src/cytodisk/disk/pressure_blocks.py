@@ -32,7 +32,7 @@ class PressureSystem:
     def __init__(self, pattern: BlockPattern):
         self.pattern = pattern
         self.blocks = np.empty((len(pattern.row), 3, 3))
-        self._factor = np.empty(9 * len(pattern.factor.below))
+        self._factor = np.empty((len(pattern.factor.below), 9))
         self._inverse = np.empty((len(pattern.vertex), 6))
 
     def factorise(self) -> None:
@@ -57,45 +57,39 @@ def _factorise(
 ) -> None:
     """Fill the factor, row after row, and the upper halves of the inverses of its diagonal blocks.
 
-    `factor` holds the nine numbers of each block one after the other.
+    `factor` holds the nine numbers of a block in a row.
     """
     start, below, row_start, left, where = pattern
     n = len(first) - 1
-    work = np.zeros(3 * ROW * n)  # column k of what is left of the matrix
+    work = np.zeros((n, 3 * ROW))  # column k of what is left of the matrix
     for k in range(n):
         for block in range(first[k], first[k + 1]):
+            i = row[block]
             for p in range(3):
-                at = ROW * (3 * row[block] + p)
-                work[at], work[at + 1], work[at + 2] = (
-                    blocks[block, p, 0],
-                    blocks[block, p, 1],
-                    blocks[block, p, 2],
-                )
-        at = 3 * ROW * k
-        d00, d01, d02 = work[at], work[at + 1], work[at + 2]
-        d11, d12, d22 = work[at + ROW + 1], work[at + ROW + 2], work[at + 2 * ROW + 2]
+                for q in range(3):
+                    work[i, ROW * p + q] = blocks[block, p, q]
+        d00, d01, d02 = work[k, 0], work[k, 1], work[k, 2]
+        d11, d12, d22 = work[k, ROW + 1], work[k, ROW + 2], work[k, 2 * ROW + 2]
         for q in range(3 * ROW):
-            work[at + q] = 0.0
+            work[k, q] = 0.0
         for entry in range(row_start[k], row_start[k + 1]):
             i, own = left[entry], where[entry]
             take_off_column(work, i, factor, below, start[i], own)
-            at = 3 * ROW * i
             v00, v01, v02 = inverse[i, 0], inverse[i, 1], inverse[i, 2]
             v11, v12, v22 = inverse[i, 3], inverse[i, 4], inverse[i, 5]
-            y00, y01, y02 = work[at], work[at + 1], work[at + 2]
-            y10, y11, y12 = work[at + ROW], work[at + ROW + 1], work[at + ROW + 2]
-            y20, y21, y22 = work[at + 2 * ROW], work[at + 2 * ROW + 1], work[at + 2 * ROW + 2]
+            y00, y01, y02 = work[i, 0], work[i, 1], work[i, 2]
+            y10, y11, y12 = work[i, ROW], work[i, ROW + 1], work[i, ROW + 2]
+            y20, y21, y22 = work[i, 2 * ROW], work[i, 2 * ROW + 1], work[i, 2 * ROW + 2]
             for q in range(3 * ROW):
-                work[at + q] = 0.0
+                work[i, q] = 0.0
             l00, l01 = y00 * v00 + y10 * v01 + y20 * v02, y00 * v01 + y10 * v11 + y20 * v12
             l10, l11 = y01 * v00 + y11 * v01 + y21 * v02, y01 * v01 + y11 * v11 + y21 * v12
             l20, l21 = y02 * v00 + y12 * v01 + y22 * v02, y02 * v01 + y12 * v11 + y22 * v12
             l02, l12 = y00 * v02 + y10 * v12 + y20 * v22, y01 * v02 + y11 * v12 + y21 * v22
             l22 = y02 * v02 + y12 * v12 + y22 * v22
-            at = 9 * own
-            factor[at], factor[at + 1], factor[at + 2] = l00, l01, l02
-            factor[at + 3], factor[at + 4], factor[at + 5] = l10, l11, l12
-            factor[at + 6], factor[at + 7], factor[at + 8] = l20, l21, l22
+            factor[own, 0], factor[own, 1], factor[own, 2] = l00, l01, l02
+            factor[own, 3], factor[own, 4], factor[own, 5] = l10, l11, l12
+            factor[own, 6], factor[own, 7], factor[own, 8] = l20, l21, l22
             d00 -= l00 * y00 + l01 * y10 + l02 * y20
             d01 -= l00 * y01 + l01 * y11 + l02 * y21
             d02 -= l00 * y02 + l01 * y12 + l02 * y22
@@ -126,20 +120,20 @@ def _solve(
     for i in range(n):
         x, y, z = out[i, 0], out[i, 1], out[i, 2]
         for block in range(start[i], start[i + 1]):
-            j, at = below[block], 9 * block
-            out[j, 0] -= factor[at] * x + factor[at + 1] * y + factor[at + 2] * z
-            out[j, 1] -= factor[at + 3] * x + factor[at + 4] * y + factor[at + 5] * z
-            out[j, 2] -= factor[at + 6] * x + factor[at + 7] * y + factor[at + 8] * z
+            j = below[block]
+            out[j, 0] -= factor[block, 0] * x + factor[block, 1] * y + factor[block, 2] * z
+            out[j, 1] -= factor[block, 3] * x + factor[block, 4] * y + factor[block, 5] * z
+            out[j, 2] -= factor[block, 6] * x + factor[block, 7] * y + factor[block, 8] * z
     for i in range(n - 1, -1, -1):
         a, b, c = out[i, 0], out[i, 1], out[i, 2]
         x = inverse[i, 0] * a + inverse[i, 1] * b + inverse[i, 2] * c
         y = inverse[i, 1] * a + inverse[i, 3] * b + inverse[i, 4] * c
         z = inverse[i, 2] * a + inverse[i, 4] * b + inverse[i, 5] * c
         for block in range(start[i], start[i + 1]):
-            j, at = below[block], 9 * block
+            j = below[block]
             a, b, c = out[j, 0], out[j, 1], out[j, 2]
-            x -= factor[at] * a + factor[at + 3] * b + factor[at + 6] * c
-            y -= factor[at + 1] * a + factor[at + 4] * b + factor[at + 7] * c
-            z -= factor[at + 2] * a + factor[at + 5] * b + factor[at + 8] * c
+            x -= factor[block, 0] * a + factor[block, 3] * b + factor[block, 6] * c
+            y -= factor[block, 1] * a + factor[block, 4] * b + factor[block, 7] * c
+            z -= factor[block, 2] * a + factor[block, 5] * b + factor[block, 8] * c
         out[i, 0], out[i, 1], out[i, 2] = x, y, z
     return out

@@ -247,6 +247,8 @@ def _subdivide(triangles: IntArray, middle: IntArray, distance: FloatArray) -> l
     count = (middle >= 0).sum(axis=1)
     for n_split in (1, 2, 3):
         some = count == n_split
+        if not some.any():
+            continue
         # Turn each triangle so that its split edges come first.
         first = np.argmax(
             (middle[some] >= 0) & (np.roll(middle[some], 1, axis=1) < 0)
