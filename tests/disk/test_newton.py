@@ -138,6 +138,28 @@ def test_a_step_that_would_climb_for_lost_digits_is_taken_with_a_raised_diagonal
     assert tried[:2] == list(newton._DAMPINGS[:2])
 
 
+@pytest.mark.parametrize(
+    ("mask", "least"),
+    [
+        (simulate.random_smooth(2, radius=30.0), 0.98),
+        (simulate.star(arms=3, body_radius=16.0, arm_length=30.0), 0.9),
+        (simulate.random_spiky(2, radius=20.0, spike_length=25.0), 0.85),
+    ],
+)
+def test_what_steps_after_the_end_would_move(
+    mask: np.ndarray, least: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended = map_to_disk(mask)
+    monkeypatch.setattr(newton, "DECREMENT", 1e-7)
+    exact = map_to_disk(mask)
+    assert exact.converged
+    assert exact.steps > ended.steps
+    pixels = np.argwhere(mask).astype(float)
+    windows = [GRID.window_of(disk.to_disk(pixels)) for disk in (ended, exact)]
+    assert (windows[0] == windows[1]).mean() > least
+    assert abs(GRID.on(ended).area_error - GRID.on(exact).area_error) < 0.01
+
+
 @pytest.mark.parametrize("promised", [-1e-4, -1.0, np.nan])
 def test_without_a_step_downhill_a_map_is_valid_but_not_converged(
     monkeypatch: pytest.MonkeyPatch, promised: float
