@@ -13,7 +13,7 @@ from cytodisk.windows.shares import DIVIDED, FINE, NOWHERE, PER_SIDE, Subpixels
 DEPTHS = ("depth", "depth_p5", "depth_p95")
 """Names of the percentiles of a window's depth, in their order."""
 
-_PERCENTILES = (0.5, 0.05, 0.95)
+_PERCENTILES, _COLUMNS = (0.05, 0.5, 0.95), (1, 0, 2)  # ascending, and their places in `DEPTHS`
 _BINS = 256  # between the least and the greatest depth of a window
 _NEAR_PX = 1.5  # deeper than this the distance is as good as linear within a pixel
 _BEND_PX = (
@@ -167,10 +167,11 @@ def _percentiles(start: IntArray, depth: FloatArray, weight: FloatArray, found: 
         for i in range(first, last):
             histogram[int((depth[i] - low) * factor)] += weight[i]
             total += weight[i]
-        for column in range(len(_PERCENTILES)):
-            wanted, passed, place = _PERCENTILES[column] * total, 0.0, 0
+        passed, place = 0.0, 0
+        for rank in range(len(_PERCENTILES)):
+            wanted = _PERCENTILES[rank] * total
             while place < _BINS - 1 and passed + histogram[place] < wanted:
                 passed += histogram[place]
                 place += 1
             within = (wanted - passed) / histogram[place] if histogram[place] > 0.0 else 0.0
-            found[window, column] = low + (place + min(max(within, 0.0), 1.0)) / _BINS * (high - low)
+            found[window, _COLUMNS[rank]] = low + (place + min(max(within, 0.0), 1.0)) / _BINS * (high - low)

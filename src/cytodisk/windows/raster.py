@@ -15,11 +15,11 @@ from cytodisk.arrays import BoolArray, FloatArray, Int32Array, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.windows.polar_layout import PolarLayout
 from cytodisk.windows.shares import DIVIDED, NOWHERE, PER_SIDE, Subpixels, with_starts
+from cytodisk.windows.triangle_rows import ON_EDGE, Corners, columns_of, from_top, sides_of, slopes_of
 from cytodisk.windows.window_walls import (
     Point,
     Walls,
     Window,
-    exact_window,
     holds,
     holds_triangle,
     layer_bands,
@@ -29,13 +29,11 @@ from cytodisk.windows.window_walls import (
 )
 
 _BEFORE_WALL = 1e-6  # of a subpixel: so far before a wall a stretch ends; its next subpixel is looked at
-_ON_EDGE = 1e-9  # of a subpixel: a point so far beyond a triangle's edge is still on it
+_LOOKED_AT = 3  # subpixels, before it is computed where a stretch ends
 _AT_ONCE = 1 << 17  # subpixels that are painted before they are looked through: they stay in the cache
 
-_Corners: TypeAlias = tuple[Point, Point, Point]
-_Sides: TypeAlias = tuple[float, float, float]
-_Slopes: TypeAlias = tuple[Point, Point]
 _Grid: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
+_Mesh: TypeAlias = tuple[FloatArray, FloatArray, IntArray]
 
 
 def paint_windows(grid: PolarLayout, disk: DiskMap) -> Subpixels:
@@ -54,24 +52,30 @@ def paint_windows(grid: PolarLayout, disk: DiskMap) -> Subpixels:
     """
     inside, corner = disk.placed_mask.box, np.array(disk.placed_mask.corner)
     height, width = inside.shape
-    whole, window, places = _paint(
-        ((disk.vertices_yx - (corner - 0.5)) * PER_SIDE, disk.vertices_uv, disk.triangles),
-        (
-            layer_bands(grid.radii, disk.boundary_angles),
-            np.column_stack([np.cos(grid.angles), np.sin(grid.angles)]),
-            disk.boundary_angles,
-        ),
-        inside,
-        min(max(_AT_ONCE // (width * PER_SIDE**2), 1), height),
-    )
+    at_once = min(max(_AT_ONCE // (width * PER_SIDE**2), 1), height)
+    whole, window, places = _paint(_mesh(disk, PER_SIDE), _grid(grid, disk), inside, at_once)
     divided, number = np.divmod(np.flatnonzero(window.ravel() == NOWHERE), PER_SIDE**2)
     if divided.size:
         middles = np.column_stack(np.divmod(number, PER_SIDE)) + 0.5
         pixels_yx = np.column_stack(np.divmod(places[divided], width)) + corner
         points = pixels_yx + (middles / PER_SIDE - 0.5)
         window[divided, number] = grid.window_of(disk.nearest_on_circle(points))
-        whole, window = _without_whole(whole, window, np.unique(divided))
+        some = divided[np.diff(divided, prepend=-1) > 0]
+        whole, window = _without_whole(whole, window, some)
     return with_starts(whole, window.ravel())
+
+
+def _mesh(disk: DiskMap, per_side: int) -> _Mesh:
+    """Vertices in parts of a pixel from the corner of the mask's box, and in the disk; and triangles."""
+    corner = np.array(disk.placed_mask.corner)
+    return (disk.vertices_yx - (corner - 0.5)) * per_side, disk.vertices_uv, disk.triangles
+
+
+def _grid(grid: PolarLayout, disk: DiskMap) -> _Grid:
+    """Bands of the layers, rays between the sectors, and angles of the boundary."""
+    angles = disk.boundary_angles
+    rays = np.column_stack([np.cos(grid.angles), np.sin(grid.angles)])
+    return layer_bands(grid.radii, angles), rays, angles
 
 
 def _without_whole(whole: Int32Array, window: Int32Array, some: IntArray) -> tuple[Int32Array, Int32Array]:
@@ -83,7 +87,7 @@ def _without_whole(whole: Int32Array, window: Int32Array, some: IntArray) -> tup
 
 @njit(cache=True, error_model="numpy")
 def _paint(
-    mesh: tuple[FloatArray, FloatArray, IntArray], grid: _Grid, inside: BoolArray, at_once: int
+    mesh: _Mesh, grid: _Grid, inside: BoolArray, at_once: int
 ) -> tuple[Int32Array, Int32Array, IntArray]:
     """Window of each pixel as a whole, and the subpixels and places of those that are divided.
 
@@ -168,22 +172,24 @@ def _by_strip(
 
 @njit(cache=True, error_model="numpy")
 def _paint_triangle(
-    yx: _Corners, uv: _Corners, near: Window, grid: _Grid, top: int, canvas: Int32Array
+    yx: Corners, uv: Corners, near: Window, grid: _Grid, top: int, canvas: Int32Array
 ) -> Window:
     """Paint what lies of a triangle in the rows from the top one on; give back a window of it."""
     bands, rays, boundary_angles = grid
     sectors, columns = len(rays) - 1, canvas.shape[1]
     (p, q, r), (a, b, c) = yx, uv
+    corners = from_top(p, q, r)
+    first_row = max(math.ceil(corners[0][0] - 0.5 - ON_EDGE), top)
+    last_row = min(math.floor(corners[2][0] - 0.5 + ON_EDGE), top + len(canvas) - 1)
+    if first_row > last_row:
+        return near
     if not holds(a[0], a[1], walls_of(near, bands, rays)):
-        near = exact_window(a[0], a[1], bands, sectors, boundary_angles)
+        near = window_near(a[0], a[1], near, bands, rays, boundary_angles)
     alike = holds_triangle(a, b, c, walls_of(near, bands, rays))
     begin = near  # window of the first subpixel of the row before
-    corners = _from_top(p, q, r)
-    sides, (by_row, by_column) = _sides(*corners), _slopes(p, q, r, a, b, c)
-    first_row = max(math.ceil(corners[0][0] - 0.5 - _ON_EDGE), top)
-    last_row = min(math.floor(corners[2][0] - 0.5 + _ON_EDGE), top + len(canvas) - 1)
+    sides, (by_row, by_column) = sides_of(*corners), slopes_of(p, q, r, a, b, c)
     for row in range(first_row, last_row + 1):
-        column, last = _columns(row, corners, sides, columns)
+        column, last = columns_of(row, corners, sides, columns)
         if alike:
             _fill(canvas, row - top, column, last, near[0] * sectors + near[1])
             continue
@@ -213,57 +219,11 @@ def _fill(canvas: Int32Array, row: int, first: int, last: int, here: int) -> Non
 
 
 @njit(cache=True)
-def _corners(vertices: FloatArray, triangles: IntArray, t: int) -> _Corners:
+def _corners(vertices: FloatArray, triangles: IntArray, t: int) -> Corners:
     """Corners of a triangle."""
     i, j, k = triangles[t, 0], triangles[t, 1], triangles[t, 2]
     a, b = (vertices[i, 0], vertices[i, 1]), (vertices[j, 0], vertices[j, 1])
     return a, b, (vertices[k, 0], vertices[k, 1])
-
-
-@njit(cache=True)
-def _from_top(a: Point, b: Point, c: Point) -> _Corners:
-    """Three points by their row."""
-    if b[0] < a[0]:
-        a, b = b, a
-    if c[0] < b[0]:
-        b, c = c, b
-    if b[0] < a[0]:
-        a, b = b, a
-    return a, b, c
-
-
-@njit(cache=True, error_model="numpy")
-def _sides(top: Point, middle: Point, bottom: Point) -> _Sides:
-    """Columns by row along the upper, the lower and the longest side of a triangle."""
-    return _side(top, middle), _side(middle, bottom), _side(top, bottom)
-
-
-@njit(cache=True, error_model="numpy")
-def _side(above: Point, below: Point) -> float:
-    """Columns by row from one point to another below it; 0 where they are in one row."""
-    down = below[0] - above[0]
-    return (below[1] - above[1]) / down if down > 0.0 else 0.0
-
-
-@njit(cache=True, error_model="numpy")
-def _slopes(p: Point, q: Point, r: Point, a: Point, b: Point, c: Point) -> _Slopes:
-    """How (u, v) grows by row and by column where corners p, q, r of a triangle go to a, b, c."""
-    y1, x1, y2, x2 = q[0] - p[0], q[1] - p[1], r[0] - p[0], r[1] - p[1]
-    u1, v1, u2, v2 = b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]
-    twice = x1 * y2 - y1 * x2
-    by_row = ((u2 * x1 - u1 * x2) / twice, (v2 * x1 - v1 * x2) / twice)
-    return by_row, ((u1 * y2 - u2 * y1) / twice, (v1 * y2 - v2 * y1) / twice)
-
-
-@njit(cache=True, error_model="numpy")
-def _columns(row: int, corners: _Corners, sides: _Sides, columns: int) -> tuple[int, int]:
-    """First and last subpixel of a row whose middle is in a triangle."""
-    ((ya, xa), (yb, xb), (yc, _)), (upper, lower, longest) = corners, sides
-    y = min(max(row + 0.5, ya), yc)
-    one = xa + (y - ya) * longest
-    other = xa + (y - ya) * upper if y < yb else xb + (y - yb) * lower
-    first = max(math.ceil(min(one, other) - 0.5 - _ON_EDGE), 0)
-    return first, min(math.floor(max(one, other) - 0.5 + _ON_EDGE), columns - 1)
 
 
 @njit(cache=True, error_model="numpy")
@@ -271,6 +231,11 @@ def _end_of_stretch(u: float, v: float, step: Point, column: int, last: int, wal
     """Last column of a row of subpixels that is surely in the same window as a first one."""
     if column == last or not holds(u, v, walls):
         return column  # on a wall: the next subpixel is looked at by itself
+    for k in range(1, min(last - column, _LOOKED_AT) + 1):  # in small windows the end is near
+        if not holds(u + k * step[0], v + k * step[1], walls):
+            return column + k - 1
+    if last - column <= _LOOKED_AT:
+        return last
     steps = steps_inside(u, v, step, float(last - column), walls)
     if steps < last - column:
         return column + max(math.floor(steps - _BEFORE_WALL), 0)

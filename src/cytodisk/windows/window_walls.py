@@ -130,6 +130,9 @@ def window_near(
         sector = sector + 1 if sector < last else 0
     if holds(u, v, walls_of((layer, sector), bands, rays)):
         return layer, sector
+    sector = _sector(u, v, last + 1)
+    if holds(u, v, walls_of((layer, sector), bands, rays)):
+        return layer, sector
     return exact_window(u, v, bands, last + 1, boundary_angles)
 
 
@@ -140,5 +143,10 @@ def exact_window(u: float, v: float, bands: FloatArray, sectors: int, boundary_a
     layer = 0
     while layer < len(bands) - 1 and bands[layer, 2] > radius:
         layer += 1
-    sector = math.floor((math.atan2(v, u) / (2.0 * math.pi)) % 1.0 * sectors)
-    return layer, min(sector, sectors - 1)
+    return layer, _sector(u, v, sectors)
+
+
+@njit(cache=True)
+def _sector(u: float, v: float, sectors: int) -> int:
+    """Sector of a point."""
+    return min(math.floor((math.atan2(v, u) / (2.0 * math.pi)) % 1.0 * sectors), sectors - 1)

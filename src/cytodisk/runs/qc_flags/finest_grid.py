@@ -67,8 +67,9 @@ def _at(summed: FloatArray, axis: int, count: int) -> FloatArray:
 
 def _large(summed: FloatArray, median_px: float, least_px: float) -> bool:
     areas = np.diff(np.diff(summed, axis=1), axis=2).reshape(len(summed), -1)
-    held = np.where(areas > 0, areas, np.nan)  # layers deeper than the cell have none
-    return bool(
-        (np.nanmedian(held, axis=1) >= _MARGIN * median_px).all()
-        and (np.nanmin(held, axis=1) >= _MARGIN * least_px).all()
-    )
+    if (areas > 0).all():
+        least, middle = areas.min(axis=1), np.median
+    else:
+        areas = np.where(areas > 0, areas, np.nan)  # layers deeper than the cell have none
+        least, middle = np.nanmin(areas, axis=1), np.nanmedian
+    return bool((least >= _MARGIN * least_px).all() and (middle(areas, axis=1) >= _MARGIN * median_px).all())
