@@ -42,7 +42,7 @@ def map_to_disk(
     Parameters
     ----------
     mask : array_like of shape (H, W), or DataArray with dims (y, x)
-        One cell: boolean, or numbers with one value beside 0.
+        One cell: boolean, whole numbers with one value beside 0, or floats that are 0 and 1.
     **settings
         See `MapToDiskParameters`.
 

@@ -178,7 +178,7 @@ def clean_mask(
     Parameters
     ----------
     mask : array_like of shape (H, W)
-        One cell: boolean, or numbers with one value beside 0.
+        One cell: boolean, whole numbers with one value beside 0, or floats that are 0 and 1.
     holes : {"fill", "error"}
         What to do with background enclosed by the cell (4-connected).
     fragments : {"largest", "error"}
