@@ -1,8 +1,15 @@
-"""Time of one Newton step's linear system: by 2×2 blocks (`disk.blocks`) and by single numbers (QDLDL)."""
+"""Processor time of one Newton step's linear system, as it is and in two other ways.
+
+"blocks": with a pressure at each vertex, by 3×3 blocks, as in `disk.pressure_blocks`. "numbers": the same matrix
+by single numbers (QDLDL). "no pressure": the pressures are eliminated first, which couples each vertex with its
+neighbours' neighbours (QDLDL). The system is that of the first step of each mask. Last, the time of the order of
+elimination with the pattern of the factors, which is found once for a mesh.
+"""
 
 import argparse
 import os
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -13,55 +20,72 @@ from scipy import sparse
 from cytodisk import simulate
 from cytodisk.arrays import BoolArray
 from cytodisk.disk.blocks import BlockSystem
+from cytodisk.disk.circle import boundary_angles
+from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.disk.mapping import mesh_cell
 from cytodisk.disk.mapping_parameters import MappingParameters
-from cytodisk.geometry.mesh import Mesh
+from cytodisk.disk.pressure_blocks import PressureSystem
+from cytodisk.disk.vertex_energy import averaged_elements, fill_step
+from cytodisk.geometry.mesh import hat_gradients, triangle_areas
 from speed import _DEFAULT_DATA, median_seconds, restart_with_one_thread
 
 
-def fill(system: BlockSystem, mesh: Mesh) -> sparse.csc_matrix:
-    """The same positive definite matrix in a block system and as the upper triangle of a sparse one."""
-    random = np.random.default_rng(0)
-    system.blocks[:] = 0.0
-    half = random.normal(size=(len(mesh.triangles), 6, 2))
-    element = (half @ half.transpose(0, 2, 1) + np.eye(6)).reshape(-1, 3, 2, 3, 2)
-    stored = system.place >= 0
-    t, k, l = np.nonzero(stored)
-    np.add.at(system.blocks, system.place[stored], element[t, k, :, l])
-    corner = system.unknown[mesh.triangles]
-    row, column = np.broadcast_arrays(corner[:, :, None], corner[:, None, :])
-    p, q = np.meshgrid([0, 1], [0, 1], indexing="ij")
-    value = element[t, k, :, l]
-    rows = 2 * row[stored][:, None, None] + p
-    columns = 2 * column[stored][:, None, None] + q
-    size = 2 * len(system.vertex)
-    matrix = sparse.coo_matrix((value.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
-    return sparse.csc_matrix(sparse.triu(matrix))
+def whole_matrix(system: PressureSystem) -> sparse.csc_matrix:
+    """The matrix of a system, both triangles."""
+    pattern = system.pattern
+    column = np.repeat(np.arange(len(pattern.vertex)), np.diff(pattern.first))
+    p, q = np.meshgrid(range(3), range(3), indexing="ij")
+    rows, columns = 3 * pattern.row[:, None, None] + p, 3 * column[:, None, None] + q
+    size = 3 * len(pattern.vertex)
+    stored = sparse.coo_matrix((system.blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
+    upper = sparse.csc_matrix(sparse.triu(stored))
+    return sparse.csc_matrix(upper + sparse.triu(upper, 1).T)
 
 
 def compare(name: str, mask: BoolArray, repeats: int) -> None:
-    """Print both times for one mask, after checking that the solutions agree."""
-    mesh = mesh_cell(mask, MappingParameters()).mesh
-    system = BlockSystem(mesh)
-    upper = fill(system, mesh)
-    right = np.random.default_rng(1).normal(size=(len(system.vertex), 2))
-    solver = qdldl.Solver(upper, upper=True)
+    """Print the times for one mask, and how far apart the steps are."""
+    parameters = MappingParameters()
+    cell = mesh_cell(mask, parameters)
+    mesh, shared = cell.mesh, BlockSystem(cell.mesh)
+    angles = boundary_angles(cell.outline)
+    uv, _ = harmonic_map(mesh, np.column_stack([np.cos(angles), np.sin(angles)]), shared)
+    areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
+    scale = np.sqrt(triangle_areas(uv[:, ::-1], mesh.triangles).sum() / areas.sum())
+    hats = hat_gradients(mesh.vertices_yx * scale, mesh.triangles)
+    elements = averaged_elements(mesh.triangles, hats, areas / areas.sum(), shared.unknown)
+    system, right = PressureSystem(shared.pattern), np.empty((len(shared.vertex), 3))
+    place, diagonal = shared.pattern.place, shared.pattern.diagonal
+    fill_step(uv, elements, parameters.shape_weight, place, diagonal, system.blocks, right)
+
+    matrix = whole_matrix(system)
+    upper = sparse.csc_matrix(sparse.triu(matrix))
+    pressure = np.arange(matrix.shape[0]) % 3 == 2
+    shapes, areas_of = matrix[~pressure][:, ~pressure], matrix[pressure][:, ~pressure]
+    eliminated = sparse.csc_matrix(sparse.triu(shapes + 2.0 * areas_of.T @ areas_of))
+    eliminated_right = right[:, :2].ravel() + 2.0 * (areas_of.T @ right[:, 2])
+    numbers, fewer = qdldl.Solver(upper, upper=True), qdldl.Solver(eliminated, upper=True)
 
     def by_blocks() -> object:
         system.factorise()
         return system.solve(right)
 
     def by_numbers() -> object:
-        solver.update(upper, upper=True)
-        return solver.solve(right.ravel())
+        numbers.update(upper, upper=True)
+        return numbers.solve(right.ravel())
 
-    apart = float(np.abs(np.asarray(by_blocks()).ravel() - np.asarray(by_numbers())).max())
-    blocks, numbers = median_seconds(by_blocks, repeats), median_seconds(by_numbers, repeats)
-    found = median_seconds(lambda: BlockSystem(mesh), max(3, repeats // 5))
-    anew = median_seconds(lambda: qdldl.Solver(upper, upper=True), max(3, repeats // 5))
+    def without_pressure() -> object:
+        fewer.update(eliminated, upper=True)
+        return fewer.solve(eliminated_right)
+
+    step = np.asarray(by_blocks())[:, :2].ravel()
+    others = (np.asarray(by_numbers()).reshape(-1, 3)[:, :2].ravel(), np.asarray(without_pressure()))
+    apart = max(float(np.abs(step - other).max()) for other in others) / float(np.abs(step).max())
+    times = [median_seconds(way, repeats, time.process_time) for way in (by_blocks, by_numbers, without_pressure)]
+    found = median_seconds(lambda: BlockSystem(mesh), max(3, repeats // 5), time.process_time)
     print(
-        f"{name:<18}{len(right):>8}{1e3 * blocks:>11.2f}{1e3 * numbers:>9.2f}{numbers / blocks:>7.2f}"
-        f"{1e3 * found:>15.2f}{1e3 * anew:>9.2f}{apart:>10.0e}"
+        f"{name:<18}{len(right):>8}"
+        + "".join(f"{1e3 * seconds:>13.2f}" for seconds in (*times, found))
+        + f"{apart:>10.0e}"
     )
 
 
@@ -78,9 +102,9 @@ def main() -> int:
     masks = {"disk of radius 30": simulate.disk(30.0), "disk of radius 90": simulate.disk(90.0)}
     for path in sorted((arguments.data / "reference_masks").glob("*.tif")):
         masks[path.stem] = tifffile.imread(path) > 0
+    print("milliseconds for factors and one solve; last, the pattern and its order of elimination\n")
     print(
-        f"{'':<18}{'':>8}{'one step, ms':>20}{'':>7}{'once a mesh, ms':>24}\n"
-        f"{'shape':<18}{'inside':>8}{'blocks':>11}{'QDLDL':>9}{'ratio':>7}{'blocks':>15}{'QDLDL':>9}{'apart':>10}"
+        f"{'mask':<18}{'vertices':>8}{'blocks':>13}{'numbers':>13}{'no pressure':>13}{'pattern':>13}{'apart':>10}"
     )
     for name, mask in masks.items():
         compare(name, mask, arguments.repeats)
