@@ -33,12 +33,14 @@ from cytodisk.geometry.mesh import Mesh, mesh_inside, triangle_areas
 from cytodisk.geometry.outline import trace_outline
 from pages import PAGES
 from reference_masks import data_folder
+from scaling_points import fishbone
 from speed import restart_with_one_thread
 
 DEFAULT = MappingParameters()
 GRID = cd.polar_windows(10, 60)
 _STRETCH_ROUNDS = 10
 _PARTS = 4  # of the side of a pixel
+_TEETH = 12  # on each side of the fishbone
 
 
 @dataclass(frozen=True)
@@ -163,11 +165,13 @@ def main() -> int:
     arguments = parser.parse_args()
     restart_with_one_thread()
     rows = []
-    for path in sorted((data_folder() / "reference_masks").glob("*.tif")):
-        cell = cell_of(tifffile.imread(path) > 0)
+    paths = sorted((data_folder() / "reference_masks").glob("*.tif"))
+    masks = {path.stem: tifffile.imread(path) > 0 for path in paths} | {"fishbone": fishbone(_TEETH)}
+    for name, mask in masks.items():
+        cell = cell_of(mask)
         for way in WAYS:
             steps, milliseconds, error = measure(cell, way, arguments.repeats)
-            row = [path.stem, way.name, str(steps), f"{milliseconds:.0f}", f"{error:.3f}"]
+            row = [name, way.name, str(steps), f"{milliseconds:.0f}", f"{error:.3f}"]
             rows.append(row)
             print("".join(f"{text:<{width}}" for text, width in zip(row, (14, 30, 7, 7, 8), strict=True)))
     if arguments.page:

@@ -22,6 +22,7 @@ def measure(masks: Path, work: Path, workers: int) -> dict[str, Any]:
     out = work / "shapes"
     inputs = open_shape_inputs(masks, ShapeParameters())
     table = shape_study(inputs, out, ShapeParameters(), workers=workers, **again(out))
+    (out / "figures").mkdir(exist_ok=True)
     write_shape_figures(out / "figures", table, cleaned_masks(inputs, cells_to_draw(table)))
     scores = [cd.complexity_score(table, seed=seed) for seed in SEEDS]
     return {"table": table, "path": out, "scores": scores}
