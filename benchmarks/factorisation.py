@@ -1,9 +1,9 @@
 """Processor time of one Newton step's linear system, as it is and in two other ways.
 
-"blocks": with a pressure at each vertex, by 3×3 blocks, as in `disk.pressure_blocks`. "numbers": the same matrix
-by single numbers (QDLDL). "no pressure": the pressures are eliminated first, which couples each vertex with its
-neighbours' neighbours (QDLDL). The system is that of the first step of each mask. Last, the time of the order of
-elimination with the pattern of the factors, which is found once for a mesh.
+"blocks": with a pressure at each vertex, by 3×3 blocks, as in `disk.pressure_blocks`. "numbers": the same
+matrix by single numbers (QDLDL). "no pressure": the pressures are eliminated first, which couples each vertex
+with its neighbours' neighbours (QDLDL). The system is that of the first step of each mask. Last, the time of
+the order of elimination with the pattern of the factors, which is found once for a mesh.
 """
 
 import argparse
@@ -80,7 +80,9 @@ def compare(name: str, mask: BoolArray, repeats: int) -> None:
     step = np.asarray(by_blocks())[:, :2].ravel()
     others = (np.asarray(by_numbers()).reshape(-1, 3)[:, :2].ravel(), np.asarray(without_pressure()))
     apart = max(float(np.abs(step - other).max()) for other in others) / float(np.abs(step).max())
-    times = [median_seconds(way, repeats, time.process_time) for way in (by_blocks, by_numbers, without_pressure)]
+    times = [
+        median_seconds(way, repeats, time.process_time) for way in (by_blocks, by_numbers, without_pressure)
+    ]
     found = median_seconds(lambda: BlockSystem(mesh), max(3, repeats // 5), time.process_time)
     print(
         f"{name:<18}{len(right):>8}"
@@ -103,9 +105,8 @@ def main() -> int:
     for path in sorted((arguments.data / "reference_masks").glob("*.tif")):
         masks[path.stem] = tifffile.imread(path) > 0
     print("milliseconds for factors and one solve; last, the pattern and its order of elimination\n")
-    print(
-        f"{'mask':<18}{'vertices':>8}{'blocks':>13}{'numbers':>13}{'no pressure':>13}{'pattern':>13}{'apart':>10}"
-    )
+    titles = ("blocks", "numbers", "no pressure", "pattern")
+    print(f"{'mask':<18}{'vertices':>8}{''.join(f'{title:>13}' for title in titles)}{'apart':>10}")
     for name, mask in masks.items():
         compare(name, mask, arguments.repeats)
     return 0
