@@ -19,6 +19,7 @@ from cytodisk.images.frame_pixels import frame_pixels
 from cytodisk.images.frames import open_frames
 from cytodisk.images.label_boxes import cell_box, count_pieces, label_boxes, share_alike, values_of
 from cytodisk.images.mask_files import SourceCell, list_images, open_mask_files
+from cytodisk.images.tiff_segments import TiffSegments
 
 Write = Callable[[Path, np.ndarray], Path]
 
@@ -53,6 +54,7 @@ LAYOUTS = {
     "compressed tiles": tiff(tile=(32, 16), compression="lzw"),
     "all in one piece": tiff(rowsperstrip=100_000, compression="zlib"),
     "other byte order": tiff(byteorder=">"),
+    "other byte order, compressed": tiff(byteorder=">", compression="zlib", rowsperstrip=7),
     "npy": npy("C"),
     "npy by column": npy("F"),
 }
@@ -87,6 +89,65 @@ def test_pieces_are_the_file_s_pixels(tmp_path: Path, write: Write, dtype: str, 
         assert piece.dtype == dtype
         assert_array_equal(piece[0], LABELS[rows, columns])
     assert_array_equal(np.concatenate([strip for _, strip in frame.strips()]), LABELS)
+
+
+@pytest.mark.parametrize("dtype", ["uint8", "int16", "uint32", "float32"])
+@pytest.mark.parametrize("layout", [{"rowsperstrip": 9}, {"tile": (16, 32)}])
+def test_predictors_are_undone(tmp_path: Path, layout: dict[str, Any], dtype: str, by_piece: None) -> None:
+    values = NOISE.astype(dtype) * 30
+    for order in "<>":
+        file = open_frames(
+            tiff(compression="zlib", predictor=True, byteorder=order, **layout)(tmp_path, values)
+        )
+        frame = frame_pixels(file, 0)
+        assert not frame.is_whole
+        assert_array_equal(frame.cut(slice(5, 50), slice(11, 80))[0], values[5:50, 11:80])
+
+
+def test_colours_that_lie_pixel_by_pixel(tmp_path: Path, by_piece: None) -> None:
+    colours = np.random.default_rng(0).integers(0, 255, (40, 50, 3)).astype(np.uint8)
+    for options in ({}, {"compression": "zlib", "tile": (16, 16)}, {"compression": "jpeg", "tile": (16, 16)}):
+        tifffile.imwrite(tmp_path / "a.tif", colours, photometric="rgb", **options)
+        file = open_frames(tmp_path / "a.tif")
+        assert_array_equal(
+            frame_pixels(file, 0).cut(slice(3, 33), slice(7, 50)), file.frame(0)[:, 3:33, 7:50]
+        )
+
+
+def test_frames_before_the_end_of_a_file_that_is_cut_short(tmp_path: Path, by_piece: None) -> None:
+    movie = np.random.default_rng(0).integers(0, 999, (3, 40, 50)).astype(np.uint16)
+    tifffile.imwrite(tmp_path / "a.tif", movie, photometric="minisblack", metadata={"axes": "TYX"})
+    file = open_frames(tmp_path / "a.tif")
+    pixels = [frame_pixels(file, number) for number in range(3)]
+    with tifffile.TiffFile(tmp_path / "a.tif") as opened:
+        start = opened.series[0].dataoffset
+    with (tmp_path / "a.tif").open("r+b") as opened_file:
+        opened_file.truncate(start + movie[:2].nbytes + 10)
+    for number in range(2):
+        assert_array_equal(pixels[number].cut(slice(0, 40), slice(0, 50))[0], movie[number])
+    with pytest.raises(ReadError, match="frame 2 cannot be read"):
+        pixels[2].cut(slice(0, 40), slice(0, 50))
+
+
+def test_a_large_piece_of_a_file_is_gone_through_by_strip(
+    tmp_path: Path, by_piece: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("cytodisk.images.tiff_segments._KEPT_BYTES", 0)
+    monkeypatch.setattr(module, "_STRIP_PX", 5 * LABELS.shape[1])
+    decoded: list[tuple[int, int]] = []
+    once = TiffSegments._decoded
+    monkeypatch.setattr(
+        TiffSegments,
+        "_decoded",
+        lambda found, *place: decoded.append(place[1:]) or once(found, *place),
+    )
+    for name in ("all in one piece", "compressed tiles"):
+        frame = frame_pixels(open_frames(LAYOUTS[name](tmp_path, LABELS)), 0)
+        decoded.clear()
+        strips = [strip for _, strip in frame.strips()]
+        assert {len(strip) for strip in strips[:-1]} == {5}
+        assert_array_equal(np.concatenate(strips), LABELS)
+        assert len(decoded) == len(set(decoded))
 
 
 def test_channels_and_frames_are_cut_too(tmp_path: Path, by_piece: None) -> None:

@@ -85,3 +85,21 @@ def test_a_worker_gets_crops_and_the_frame_is_not_read_whole(
         assert task.signal is not None
         assert task.signal.values.shape == (2, *task.found.mask.shape)
         assert task.image is None
+
+
+def test_a_damaged_piece_of_the_signal_costs_the_cells_that_lie_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    masks, signal = written(tmp_path, "tiles")
+    y, x = (int(place) // 32 for place in np.argwhere(LABELS)[0])  # a tile in which a cell lies
+    with tifffile.TiffFile(signal) as opened:
+        offset = opened.pages[1].dataoffsets[y * -(-LABELS.shape[1] // 32) + x]
+    content = bytearray(signal.read_bytes())
+    content[offset : offset + 6] = b"broken"
+    signal.write_bytes(content)
+    monkeypatch.setattr(frame_pixels, "WHOLE_BYTES", 0)
+    study = map_study(open_inputs(masks, signal, PARAMETERS), tmp_path / "out", draw=figures, draw_at_most=5)
+    lost = study.cells["status"] != "ok"
+    assert 0 < lost.sum() < 5
+    assert set(study.cells["status"][lost]) == {"unreadable"}
+    assert len(list((tmp_path / "out" / "figures").iterdir())) == 5 - lost.sum()

@@ -67,3 +67,27 @@ def test_what_a_worker_gets_does_not_grow_with_the_frame(
     small, large = studies
     pd.testing.assert_frame_equal(small.windows, large.windows)
     pd.testing.assert_frame_equal(small.cells.drop(columns="seconds"), large.cells.drop(columns="seconds"))
+
+
+def test_a_damaged_piece_of_the_signal_costs_the_cells_that_lie_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    masks, signal = written(tmp_path / "in", 100)
+    with tifffile.TiffFile(signal) as opened:
+        offset = opened.pages[3].dataoffsets[0]  # frame 1, second channel, upper left
+    content = bytearray(signal.read_bytes())
+    content[offset : offset + 6] = b"broken"
+    signal.write_bytes(content)
+    monkeypatch.setattr(frame_pixels, "WHOLE_BYTES", 0)
+    study = cd.run_movie(masks, tmp_path / "out", signal=signal, **SETTINGS)
+    cells = study.cells.set_index(["cell", "frame"]).sort_index()
+    assert cells.index[cells["status"] != "ok"].tolist() == [(0, 1)]
+    assert cells.loc[(0, 1), "status"] == "unreadable"
+    assert "frame 1 cannot be read" in cells.loc[(0, 1), "reason"]
+    assert "unreadable" in cells.loc[(0, 1), "qc_flags"]
+    edge = study.edge[study.edge["cell"] == 0]
+    assert edge["velocity"].isna().all()  # no frame of this cell and the next one both have a map
+    assert sorted(path.name for path in (study.path / "maps").glob("cell_00000_*")) == [
+        "cell_00000_t00000.npz",
+        "cell_00000_t00002.npz",
+    ]

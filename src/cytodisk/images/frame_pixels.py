@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -55,8 +56,9 @@ class FramePixels:
     def strips(self) -> Iterator[tuple[int, np.ndarray[Any, Any]]]:
         """Number of the first row, and pixels (h, W) of the first channel, strip after strip."""
         height, width = self.image_shape
-        blocks = max(1, _STRIP_PX // (width * self.rows_together))
-        step = blocks * self.rows_together
+        rows = max(1, _STRIP_PX // width)
+        # Rows that lie together in a larger piece than a strip are kept when it is read for the first of them.
+        step = rows if rows < self.rows_together else rows // self.rows_together * self.rows_together
         for first in range(0, height, step):
             yield first, self.cut(slice(first, min(first + step, height)), slice(0, width))[0]
 
@@ -140,18 +142,27 @@ class _Stored:
             dtype = np.dtype(tiff.byteorder + np.dtype(series.dtype).char)
             return cls(file.path, dtype, int(series.dataoffset), "C")
 
-    def mapped(self, shape: tuple[int, ...]) -> np.ndarray[Any, Any]:
-        """The array, not read yet; what is read of it is given back when it goes."""
-        return np.memmap(self.path, self.dtype, "r", self.offset, shape, self.order)
+    def mapped(self, file: FrameFile, number: int) -> np.ndarray[Any, Any]:
+        """A frame, not read yet; what is read of it is given back when it goes."""
+        shape, offset = file.shape, self.offset
+        if file.axes[0] == "T" and self.order == "C":  # the others may be missing in a file that is cut short
+            shape = file.shape[1:]
+            offset += number * math.prod(shape) * self.dtype.itemsize
+            return np.memmap(self.path, self.dtype, "r", offset, shape)
+        array = np.memmap(self.path, self.dtype, "r", offset, shape, self.order)
+        frame: np.ndarray[Any, Any] = array[
+            tuple(number if axis == "T" else slice(None) for axis in file.axes)
+        ]
+        return frame
 
 
 def _cut_from_array(
     array: _Stored, file: FrameFile, number: int, rows: slice, columns: slice
 ) -> np.ndarray[Any, Any]:
-    place: dict[str, Any] = {"T": number, "C": slice(None), "Y": rows, "X": columns}
+    place = {"C": slice(None), "Y": rows, "X": columns}
+    order = [axis for axis in file.axes if axis != "T"]
     with reading(file.path, f"frame {number}"):
-        piece = array.mapped(file.shape)[tuple(place[axis] for axis in file.axes)]
-        order = [axis for axis in file.axes if axis != "T"]
+        piece = array.mapped(file, number)[tuple(place[axis] for axis in order)]
         moved = piece.transpose([order.index(axis) for axis in "CYX" if axis in order])
         return np.array(moved if "C" in order else moved[None], dtype=piece.dtype.newbyteorder("="))
 

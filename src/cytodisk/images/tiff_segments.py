@@ -64,15 +64,19 @@ class TiffSegments:
         shape = (channels, height, width)
         return cls(file.path, pages, shape, np.dtype(series.dtype), min(tall, height), min(wide, width))
 
+    @property
+    def across(self) -> int:
+        """Segments side by side; as many are always kept, so that strips of a frame decode none twice."""
+        return -(-self.shape[2] // self.width)
+
     def cut(self, rows: slice, columns: slice) -> np.ndarray[Any, Any]:
         """Pixels of some rows and columns of all channels, shape (C, h, w)."""
         out = np.empty((len(self.pages), rows.stop - rows.start, columns.stop - columns.start), self.dtype)
-        across = -(-self.shape[2] // self.width)
         with opened_tiff(self.path) as tiff:
             for channel, page in enumerate(self.pages):
                 for down in range(rows.start // self.height, -(-rows.stop // self.height)):
                     for right in range(columns.start // self.width, -(-columns.stop // self.width)):
-                        segment = self._segment(tiff, page, down * across + right)
+                        segment = self._segment(tiff, page, down * self.across + right)
                         corner = down * self.height, right * self.width
                         _copy(segment, corner, out[channel], (rows.start, columns.start))
         return out
@@ -84,7 +88,7 @@ class TiffSegments:
         segment = self._decoded(tiff, page, index)
         self._kept[page, index] = segment
         self._kept_bytes += segment.nbytes
-        while self._kept_bytes > _KEPT_BYTES and len(self._kept) > 1:
+        while self._kept_bytes > _KEPT_BYTES and len(self._kept) > self.across:
             self._kept_bytes -= self._kept.popitem(last=False)[1].nbytes
         return segment
 

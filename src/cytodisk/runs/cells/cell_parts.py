@@ -124,12 +124,15 @@ class CellRun:
         box = slice(y, y + height), slice(x, x + width)
         try:
             task = replace(task, signal=loaded.cut(*box))
-            if not task.drawn:
-                return task
-            rows, columns = _around(box, loaded.pixels)
-            return replace(task, image=loaded.cut(rows, columns), image_corner=(rows.start, columns.start))
         except ReadError as fault:
             return replace(task, fault=as_data(fault))
+        if not task.drawn:
+            return task
+        rows, columns = _around(box, loaded.pixels)
+        try:
+            return replace(task, image=loaded.cut(rows, columns), image_corner=(rows.start, columns.start))
+        except ReadError:  # what is damaged lies around the cell, whose own pixels can be drawn
+            return replace(task, image=task.signal, image_corner=found.corner)
 
 
 def _around(box: tuple[slice, slice], pixels: FramePixels) -> tuple[slice, slice]:

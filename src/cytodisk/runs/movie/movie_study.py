@@ -8,6 +8,7 @@ from concurrent.futures import Future
 from typing import Any
 
 from cytodisk.errors import MaskError, ReadError, as_data
+from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.images.signal_files import SignalFrame, open_image
 from cytodisk.images.tracks import CellTrack, open_cells
 from cytodisk.motion.following import FollowedFrame, map_cells
@@ -130,7 +131,7 @@ class _Run:
             if track.cell not in self._last:
                 self._resume_from(track, frame)
             mask = signal if isinstance(signal, ReadError) else track.cut_from(cells, frame)
-            yield track.cell, mask
+            yield track.cell, _without_damage(mask, signal)
 
     def _measured(self, found: FollowedFrame) -> Future[FrameRows]:
         result, last = found.result, found.last
@@ -140,10 +141,7 @@ class _Run:
             return finished(unmapped_rows(place, result.fault or MaskError("no map"), found.seconds))
         signal = None
         if isinstance(self._signal, SignalFrame):
-            try:
-                signal = self._signal.cut(*result.mapped.disk.placed_mask.slices)
-            except ReadError as fault:
-                return finished(unmapped_rows(place, as_data(fault), found.seconds))
+            signal = self._signal.cut(*result.mapped.disk.placed_mask.slices)
         task = FrameTask(
             place,
             result.mapped,
@@ -163,6 +161,16 @@ class _Run:
         mapped = {t: path for t, path in paths.items() if path.exists()}
         if mapped:
             self._last[track.cell] = load_frame(mapped[max(mapped)], mapped)
+
+
+def _without_damage(mask: Any, signal: SignalFrame | ReadError | None) -> Any:
+    """A cell's mask, or the error of its signal where just that piece of a frame is damaged."""
+    if isinstance(mask, PlacedMask) and isinstance(signal, SignalFrame) and not signal.pixels.is_whole:
+        try:
+            signal.pixels.cut(*mask.slices)
+        except ReadError as fault:
+            return as_data(fault)
+    return mask
 
 
 def _warning(row: dict[str, Any]) -> str:
