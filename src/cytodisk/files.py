@@ -16,6 +16,8 @@ from typing import IO
 
 from cytodisk.errors import CytodiskError, WriteError
 
+_OF_ONE_RUN = "cytodisk-kernels-"  # start of the name of a folder of kernels that goes when its run ends
+
 
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
@@ -111,7 +113,7 @@ def keep_kernels(package: Path) -> None:
     own = Path(user_cache_dir("numba"))  # type: ignore[no-untyped-call]
     if _can_be_written(own):
         return
-    folder = tempfile.mkdtemp(prefix="cytodisk-kernels-")
+    folder = tempfile.mkdtemp(prefix=_OF_ONE_RUN)
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     os.environ["NUMBA_CACHE_DIR"] = folder
     import numba
@@ -119,10 +121,15 @@ def keep_kernels(package: Path) -> None:
     numba.config.CACHE_DIR = folder  # type: ignore[attr-defined]
     warnings.warn(
         f"compiled kernels cannot be kept, as neither {package} nor {own} can be written: every start "
-        "compiles them anew, which takes some 15 seconds. Set the environment variable "
+        "compiles them anew, which takes 15 to 30 seconds. Set the environment variable "
         "NUMBA_CACHE_DIR to a folder that can be written",
         stacklevel=2,
     )
+
+
+def keeps_kernels() -> bool:
+    """Whether compiled kernels stay for the next start; see `keep_kernels`."""
+    return not Path(os.environ.get("NUMBA_CACHE_DIR", "")).name.startswith(_OF_ONE_RUN)
 
 
 def has_kernels(module: ModuleType) -> bool:
@@ -136,12 +143,15 @@ def has_kernels(module: ModuleType) -> bool:
     Returns
     -------
     bool
+        True where Numba compiles nothing (`NUMBA_DISABLE_JIT`).
     """
     from numba import __version__
     from numba.core.dispatcher import Dispatcher
 
     kernels = [value for value in vars(module).values() if isinstance(value, Dispatcher)]
     own = [kernel for kernel in kernels if kernel.py_func.__module__ == module.__name__]
+    if not own:
+        return True
     name, written = module.__name__.rpartition(".")[2], Path(str(module.__file__)).stat().st_mtime
     for index in Path(own[0].stats.cache_path or ".").glob(f"{name}.*.nbi"):
         with suppress(OSError, pickle.UnpicklingError, EOFError), index.open("rb") as file:

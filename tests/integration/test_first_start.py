@@ -3,14 +3,12 @@
 import os
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
 
 import numba
 import pytest
 
 from cytodisk.cli.first_start import _LATE, say_compiling
-from cytodisk.files import has_kernels
 from cytodisk.geometry import lower_envelope
 
 COMPILE = """
@@ -53,15 +51,24 @@ def test_a_line_says_what_takes_long(
     monkeypatch.setattr("cytodisk.files.has_kernels", lambda module: False)
     say_compiling(False, work)
     said = capsys.readouterr()
-    assert said.err.startswith("First start: compiling numerical code, about ")
+    assert said.err.startswith("First start: compiling numerical code, once. ")
     assert said.err.count("\n") == 1
     assert said.out == ""
     say_compiling(True, work)
+    with monkeypatch.context() as unkept:
+        unkept.setenv("NUMBA_CACHE_DIR", "/tmp/cytodisk-kernels-abc")
+        assert say_compiling(False, work)  # a warning has said that each start compiles
     monkeypatch.setattr("cytodisk.files.has_kernels", lambda module: True)
-    say_compiling(False, work)
+    assert not say_compiling(False, work)
     assert capsys.readouterr().err == ""
 
 
 @pytest.mark.parametrize("work", _LATE)
-def test_the_modules_that_are_asked_have_kernels(work: str) -> None:
-    has_kernels(import_module(_LATE[work][0]))
+def test_the_modules_that_are_asked_have_kernels(work: str, tmp_path: Path) -> None:
+    ask = f"from cytodisk.files import has_kernels; import {_LATE[work]} as late; print(has_kernels(late))"
+    assert run(ask, tmp_path) == "False"  # a module without kernels has none to miss
+
+
+def test_without_compiling_nothing_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    assert run(ASK, tmp_path) == "True"

@@ -6,12 +6,16 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
 
-# For each kind of work a module whose kernels are compiled late in it, and seconds for all of them.
+# For each kind of work a module whose kernels are compiled late in it.
 _LATE = {
-    "shapes": ("cytodisk.disk.blocks", 10),
-    "map": ("cytodisk.windows.raster", 12),
-    "movie": ("cytodisk.motion.swept_edge", 15),
+    "shapes": "cytodisk.disk.blocks",
+    "map": "cytodisk.windows.raster",
+    "movie": "cytodisk.motion.swept_edge",
 }
+_WORDS = (
+    "First start: compiling numerical code, once. It takes about 15 s where two cores are free, "
+    "else half a minute or more."
+)
 
 
 def say_compiling(quiet: bool, work: str = "map") -> bool:
@@ -29,13 +33,11 @@ def say_compiling(quiet: bool, work: str = "map") -> bool:
     bool
         Whether it is missing.
     """
-    from cytodisk.files import has_kernels
+    from cytodisk.files import has_kernels, keeps_kernels
 
-    module, seconds = _LATE[work]
-    missing = not has_kernels(import_module(module))
-    if missing and not quiet:
-        words = f"First start: compiling numerical code, about {seconds} s, once."
-        print(words, file=sys.stderr, flush=True)
+    missing = not has_kernels(import_module(_LATE[work]))
+    if missing and not quiet and keeps_kernels():  # else the warning of `keep_kernels` has told
+        print(_WORDS, file=sys.stderr, flush=True)
     return missing
 
 

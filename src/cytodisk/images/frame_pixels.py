@@ -57,7 +57,7 @@ class FramePixels:
         """Number of the first row, and pixels (h, W) of the first channel, strip after strip."""
         height, width = self.image_shape
         rows = max(1, _STRIP_PX // width)
-        # Rows that lie together in a larger piece than a strip are kept when it is read for the first of them.
+        # Where the file has them in larger pieces than a strip, a piece is kept from one strip to the next.
         step = rows if rows < self.rows_together else rows // self.rows_together * self.rows_together
         for first in range(0, height, step):
             yield first, self.cut(slice(first, min(first + step, height)), slice(0, width))[0]
