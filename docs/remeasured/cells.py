@@ -73,7 +73,7 @@ def by_method(comparison: Comparison) -> pd.DataFrame:
                 "windows": TITLES[row.method],
                 "cells": f"{row.mapped:.0f} of {row.tried:.0f}",
                 "maps that are not one to one": f"{row.invalid_maps:.0f}" if on_map else "no map",
-                "area error": f"{row.area_error:.3f}" if on_map else "no map",
+                "area error of triangles": f"{row.area_error:.3f}" if on_map else "no map",
                 "windows with signal": percent(row.completeness),
                 "area covered": percent(row.coverage),
                 "CV of area": f"{row.area_cv:.3f}",

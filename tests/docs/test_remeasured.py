@@ -41,6 +41,7 @@ def comparison(**edge: list[float]) -> SimpleNamespace:
         {
             "method": ["newton", "harmonic", "advection"],
             "area_error": [0.02, 0.3, 0.05],
+            "area_cv": [0.03, 0.2, 0.04],
             "invalid_maps": [0, 0, 2],
             "mapped": [9, 9, 9],
         }
