@@ -89,9 +89,11 @@ def peak_mb(command: str, words: list[str], out: Path, workers: int) -> float:
     grid = ["--layers", "3", "--sectors", "12", "--figures", "0"]
     line = [sys.executable, "-m", "cytodisk", command, *words, "-o", str(out), "--workers", str(workers)]
     running = subprocess.Popen([*line, *grid, "-q"], stderr=subprocess.PIPE, text=True)
-    peak = 0.0
+    peak = last = 0.0
     while running.poll() is None:
-        peak = max(peak, resident_mb(running.pid))
+        now = resident_mb(running.pid)
+        peak = max(peak, min(last, now))  # a process that is just being started counts its parent's pages
+        last = now
         time.sleep(_LOOK_EVERY_S)
     status = pd.read_parquet(out / "cells.parquet")["status"] if not running.returncode else None
     if status is None or set(status) != {"ok"}:
