@@ -97,4 +97,4 @@ class StationarityWarning(UserWarning):
 
 
 class EarlierVersionWarning(UserWarning):
-    """A file of an earlier version lacks something, and another value stands for it."""
+    """A file of an earlier version lacks something, or its values mean something else now."""

@@ -1,5 +1,7 @@
 """`cytodisk correlate` and `cytodisk report`, from files to tables, figures and the page."""
 
+import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -168,3 +170,28 @@ def test_what_is_replaced_is_told_and_a_name_keeps_both(run: Run, study: Path) -
         (("--surrogates", "5"), "at least 19"),
     ):
         assert_refused(run(*command, *arguments), words)
+
+
+def test_maps_of_an_earlier_version_are_told_once(run: Run, study: Path, tmp_path: Path) -> None:
+    old = shutil.copytree(study, tmp_path / "old")
+    found = json.loads((old / "provenance.json").read_text())
+    del found["fingerprint"]["maps version"]
+    found["versions"]["cytodisk"] = "0.1.0"
+    (old / "provenance.json").write_text(json.dumps(found))
+    (old / "parameters.toml").write_text('method = "newton"\nedge_length = 0.9\n')
+    line = (
+        "Maps by cytodisk 0.1.0: their windows lie at other places than those of this version. "
+        "Do not compare window by window with studies made now."
+    )
+    few = ("--signal", "edge", "--surrogates", "19", "--max-lag", "4", "--figures", "0", "--no-geometry")
+    code, said, error = run("correlate", old, *few)
+    assert (code, said.splitlines().count(line), "Maps by" in error) == (0, 1, False)
+    code, said, _ = run("correlate", study, *few, "--name", "now")
+    assert (code, "Maps by" in said) == (0, False)
+    again = ("--parameters", old / "parameters.toml", *GRID, "-o", tmp_path / "again")
+    code, _, error = run("movie", study.parent / "masks.tif", *again)
+    assert (code, error.count("Warning: parameters file")) == (0, 1)
+    assert 'method "newton" meant areas by triangle then' in error
+    pytest.importorskip("bokeh")
+    code, said, error = run("report", old)
+    assert (code, said.splitlines().count(line), "Maps by" in error) == (0, 1, False)

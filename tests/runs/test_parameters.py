@@ -5,11 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cytodisk.errors import ParameterError
+from cytodisk.disk.mapping_parameters import MAPS_VERSION
+from cytodisk.errors import EarlierVersionWarning, ParameterError
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.parameters_file import parameters_from, write_parameters
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
+from cytodisk.store.provenance_file import MAPS
 
 POSITIVE = st.floats(1e-6, 1e6)
 NAMES = st.text(min_size=1, max_size=9).filter(lambda name: name.isprintable() and name.strip())
@@ -162,3 +164,65 @@ def test_a_file_with_layers_and_a_depth_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="layers and depth_um exclude each other"):
         parameters_from({}, path, MovieParameters)
     assert parameters_from({"layers": 3}, path, MovieParameters).layers == 3
+
+
+EARLIER = 'layers = 4\nmethod = "newton"\nshape_weight = 0.005\nedge_length = 0.9\n'
+
+
+def earlier_study(folder: Path, content: str = EARLIER, maps: str = "") -> Path:
+    """The parameters file in a study's folder; without a version of the maps it is that of the first."""
+    (folder / "provenance.json").write_text(
+        f'{{"fingerprint": {{{maps}}}, "run": "map", "versions": {{"cytodisk": "0.1.0"}}}}'
+    )
+    (folder / "parameters.toml").write_text(content)
+    return folder / "parameters.toml"
+
+
+def test_values_of_earlier_maps_are_told(tmp_path: Path) -> None:
+    path = earlier_study(tmp_path)
+    with pytest.warns(EarlierVersionWarning) as told:
+        assert parameters_from({}, path, MapParameters).shape_weight == 0.005
+    assert [str(one.message) for one in told] == [
+        f'parameters file {path} is for maps by cytodisk 0.1.0: method "newton" meant areas by triangle then '
+        '("newton-triangles" now); shape_weight = 0.005 and edge_length = 0.9 are the defaults of that '
+        "version. Read as they stand, they give maps that are neither those of then nor those of today: for "
+        "today's maps copy the file and leave the three lines method, shape_weight and edge_length out"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("content", "given_values", "words"),
+    [
+        (EARLIER.replace("0.005", "0.1"), {}, "two lines method and edge_length out"),
+        (EARLIER.replace("newton", "harmonic"), {}, "0.9 is the default of .* the line edge_length out"),
+        (EARLIER, {"method": "newton-triangles"}, "two lines shape_weight and edge_length out"),
+    ],
+)
+def test_only_what_meant_other_maps_is_named(
+    tmp_path: Path, content: str, given_values: dict[str, object], words: str
+) -> None:
+    with pytest.warns(EarlierVersionWarning, match=words):
+        parameters_from(given_values, earlier_study(tmp_path, content), MapParameters)
+
+
+@pytest.mark.parametrize(
+    ("content", "given_values", "maps"),
+    [
+        (EARLIER, {"method": "newton-triangles", "shape_weight": 0.005, "edge_length": 0.9}, ""),
+        (EARLIER.replace("newton", "advection"), {}, ""),
+        ("layers = 4\n", {}, ""),
+        (f"# {MAPS} {MAPS_VERSION}\n{EARLIER}", {}, ""),
+        (EARLIER, {}, f'"{MAPS}": {MAPS_VERSION}'),
+    ],
+)
+def test_a_file_that_means_what_it_says_is_read_without_a_word(
+    tmp_path: Path, content: str, given_values: dict[str, object], maps: str
+) -> None:
+    parameters_from(given_values, earlier_study(tmp_path, content, maps), MapParameters)
+
+
+def test_a_file_says_which_maps_it_is_for_and_a_file_by_hand_need_not(tmp_path: Path) -> None:
+    write_parameters(MapParameters(), tmp_path / "a.toml")
+    assert (tmp_path / "a.toml").read_text().startswith(f"# {MAPS} {MAPS_VERSION};")
+    (tmp_path / "parameters.toml").write_text(EARLIER)
+    assert parameters_from({}, tmp_path / "parameters.toml", MapParameters).edge_length == 0.9

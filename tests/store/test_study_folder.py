@@ -7,7 +7,8 @@ import pyarrow.parquet as pq
 import pytest
 
 import cytodisk as cd
-from cytodisk.errors import ReadError, StudyError
+from cytodisk.disk.mapping_parameters import MAPS_VERSION
+from cytodisk.errors import EarlierVersionWarning, ReadError, StudyError
 from cytodisk.store.figures_folder import figure_path
 from cytodisk.store.provenance_file import MAPS, differences, record_files
 from cytodisk.store.study_folder import StudyFolder, part_key
@@ -19,9 +20,14 @@ KIND = StudyKind(
     "map", "cytodisk map", "", SOURCE_COLUMNS, {"windows": WINDOW_COLUMNS}, ("maps/cell_*.npz", "extra.csv")
 )
 
+EARLIER = {MAPS: None}
+"""Settings of a study of the first maps, which did not write their version down."""
+
 
 def run(length_unit: str = "px", **settings: object) -> dict[str, object]:
-    return {"fingerprint": {"layers": 10} | settings, "length_unit": length_unit}
+    fingerprint = {"layers": 10} | settings | {MAPS: settings.get(MAPS, MAPS_VERSION)}
+    known = {name: value for name, value in fingerprint.items() if value is not None}
+    return {"fingerprint": known, "length_unit": length_unit}
 
 
 def windows_of(cell: int) -> dict[str, object]:
@@ -136,15 +142,15 @@ def test_resume_names_the_packages_that_differ_alone() -> None:
 
 
 def test_resume_says_that_an_earlier_version_made_other_maps(tmp_path: Path) -> None:
-    now = {MAPS: 2}
-    finished(tmp_path / "out", method="newton")
+    finished(tmp_path / "out", method="newton", **EARLIER)
     with pytest.raises(
         StudyError, match=r"another mesh and relaxation\): pass --overwrite .*or another folder"
     ):
-        StudyFolder.start(tmp_path / "out", run(method="newton", **now), KIND, resume=True)
+        StudyFolder.start(tmp_path / "out", run(method="newton"), KIND, resume=True)
     with pytest.raises(StudyError, match=r"newton then, newton-triangles now; .*another mesh and relaxation"):
-        StudyFolder.start(tmp_path / "out", run(method="newton-triangles", **now), KIND, resume=True)
-    assert len(cd.open_study(tmp_path / "out").cells) == 2
+        StudyFolder.start(tmp_path / "out", run(method="newton-triangles"), KIND, resume=True)
+    with pytest.warns(EarlierVersionWarning):
+        assert len(cd.open_study(tmp_path / "out").cells) == 2
 
 
 def test_resume_by_another_method_names_both_and_the_way_on(tmp_path: Path) -> None:
@@ -322,3 +328,17 @@ def test_a_cell_that_is_not_there(tmp_path: Path) -> None:
     study = cd.open_study(tmp_path / "out")
     with pytest.raises(ReadError, match=r"has no cell 9: it has the cells 0 to 1"):
         study.map(9)
+
+
+def test_maps_of_an_earlier_version_are_told(tmp_path: Path) -> None:
+    cd.open_study(finished(tmp_path / "now").path)  # not a word on maps of today
+    folder = finished(tmp_path / "out", **EARLIER)
+    path = folder.path / "provenance.json"
+    found = json.loads(path.read_text())
+    path.write_text(json.dumps(found | {"versions": {"cytodisk": "0.1.0"}}))
+    words = (
+        r"out: Maps by cytodisk 0\.1\.0: their windows lie at other places than those of this version\. Do"
+    )
+    with pytest.warns(EarlierVersionWarning, match=words) as told:
+        assert len(cd.open_study(folder.path).cells) == 2
+    assert len(told) == 1

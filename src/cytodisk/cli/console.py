@@ -2,11 +2,14 @@
 
 import sys
 import time as clock
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import typer
+
+from cytodisk.errors import EarlierVersionWarning
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -31,6 +34,22 @@ def console_for(quiet: bool) -> "Console":
     from rich.console import Console
 
     return Console(quiet=quiet, highlight=False, soft_wrap=True, markup=False)
+
+
+@contextmanager
+def earlier_version_lines(say: Callable[[str], None]) -> Iterator[None]:
+    """Say what is of an earlier version in plain lines, each once; other warnings go on as they are."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", EarlierVersionWarning)
+        yield
+    told: dict[str, None] = {}
+    for one in caught:
+        if issubclass(one.category, EarlierVersionWarning):
+            told[str(one.message)] = None
+        else:
+            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
+    for words in told:
+        say(words)
 
 
 @contextmanager

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 
 import typer
 
-from cytodisk.cli.console import console_for, progress_bar
+from cytodisk.cli.console import console_for, earlier_version_lines, progress_bar
 from cytodisk.cli.correlation_words import say_correlation, say_replaced, say_verdicts
 from cytodisk.cli.flag_words import say_flags, say_study_flags
 from cytodisk.cli.options import Figures, Given, MovieStudy, Quiet, with_parameters
@@ -37,19 +37,18 @@ def correlate_command(
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.runs.correlate.correlate_study import channels_of, correlate_study
-    from cytodisk.store.study import open_study
 
     wanted = _formats(formats)
     settings = given.of(CorrelateParameters)
-    there = open_study(study)
-    chosen = signal if signal is not None else _only(channels_of(there))
     console = console_for(quiet)
+    there = opened(console, study)
+    chosen = signal if signal is not None else _only(channels_of(there))
     say_replaced(console, earlier_settings(there, chosen, with_, settings.name), settings.model_dump())
     with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
         found = correlate_study(there, chosen, with_, cells=cell, progress=progress, parameters=settings)
     draw_correlation(quiet, there, found, figures, wanted)
     say_correlation(console, found, there)
-    say_study_flags(console, open_study(study), found)
+    say_study_flags(console, opened(None, study), found)
     say_verdicts(console, found)
 
 
@@ -66,9 +65,20 @@ def report_command(
     ] = None,
     quiet: Quiet = False,
 ) -> None:
+    console = console_for(quiet)
+    write_page(console, quiet, opened(console, study), out, cell, signal)
+
+
+def opened(console: "Console | None", path: Path) -> "Study":
+    """Open a study and say if its maps are of an earlier version; nothing without a console."""
+    from cytodisk.store.provenance_file import other_maps
     from cytodisk.store.study import open_study
 
-    write_page(console_for(quiet), quiet, open_study(study), out, cell, signal)
+    with earlier_version_lines(lambda _: None):
+        study = open_study(path)
+    if console is not None and (words := other_maps(study.provenance)):
+        console.print(words)
+    return study
 
 
 def write_page(

@@ -1,6 +1,7 @@
 """Options of the command line: those of parameters from their models, and those that commands share."""
 
 import inspect
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import Annotated, Any
 import typer
 from pydantic.fields import FieldInfo
 
+from cytodisk.cli.console import earlier_version_lines
 from cytodisk.parameter_words import (
     choices,
     default_words,
@@ -70,7 +72,8 @@ class Given:
         """The parameters that a command works with; errors name the flags."""
         from cytodisk.runs.parameters_file import parameters_from
 
-        return parameters_from(self._those_of(model), self.file, model, self.flags)
+        with earlier_version_lines(lambda words: print(f"Warning: {words}", file=sys.stderr)):
+            return parameters_from(self._those_of(model), self.file, model, self.flags)
 
     def options(self, model: type[Group]) -> Group:
         """Options of a run, which no file holds; errors name the flags."""

@@ -3,16 +3,29 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from cytodisk.errors import ParameterError
+from cytodisk.disk.mapping_parameters import MAPS_VERSION
+from cytodisk.errors import EarlierVersionWarning, ParameterError
 from cytodisk.files import replacing
 from cytodisk.parameters import Group, Parameters
-from cytodisk.store.provenance_file import command_of, read_provenance
+from cytodisk.store.provenance_file import (
+    MAPS,
+    command_of,
+    maps_version,
+    read_provenance,
+    writer_of,
+)
 from cytodisk.store.study_kind import PARAMETERS
+
+_FOR_MAPS = re.compile(rf"^# {MAPS} (\d+)", re.MULTILINE)
+_EARLIER_DEFAULTS = {"shape_weight": 0.005, "edge_length": 0.9}
+"""Of version 1 of maps, whose files hold all values, given or not."""
 
 
 def parameters_from(
@@ -40,6 +53,11 @@ def parameters_from(
     ------
     ParameterError
         The file cannot be read, or a value is unknown or out of range.
+
+    Warns
+    -----
+    EarlierVersionWarning
+        The file is that of a study of an earlier version, in which some of its values meant other maps.
     """
     given = {name: value for name, value in values.items() if value is not None}
     found = {} if path is None else _read(path, of)
@@ -48,7 +66,46 @@ def parameters_from(
         if one in found and other in found and path is not None and _of_study(path):
             found.pop(one)  # studies of earlier versions have both, of which the second counts
     shown = {name: shown for name, shown in (names or {}).items() if name in given}
-    return of.called(found | given, shown)
+    chosen = of.called(found | given, shown)
+    if path is not None and (words := _meant_otherwise(path, found, given)):
+        warnings.warn(words, EarlierVersionWarning, stacklevel=2)
+    return chosen
+
+
+def _meant_otherwise(path: Path, found: Mapping[str, Any], given: Mapping[str, Any]) -> str:
+    """Words for values that are those of earlier maps, where a study of such maps wrote the file.
+
+    A file that says which maps it is for, or stands in no study, is taken as it reads.
+    """
+    study = read_provenance(path.parent) if path.name == PARAMETERS else None
+    if study is None or _FOR_MAPS.search(path.read_text(encoding="utf-8")):
+        return ""
+    if maps_version(study) >= MAPS_VERSION:
+        return ""
+    left = {name: value for name, value in found.items() if name not in given}
+    method = given.get("method", found.get("method"))
+    relaxes = method not in ("harmonic", "advection")
+    counts = {"shape_weight": relaxes, "edge_length": method != "advection"}
+    old = [name for name, value in _EARLIER_DEFAULTS.items() if counts[name] and left.get(name) == value]
+    meant = ['method "newton" meant areas by triangle then ("newton-triangles" now)']
+    meant = meant if left.get("method") == "newton" else []
+    if old:
+        values = " and ".join(f"{name} = {left[name]}" for name in old)
+        meant.append(f"{values} {'are the defaults' if len(old) > 1 else 'is the default'} of that version")
+    if not meant:
+        return ""
+    lines = [*(["method"] if left.get("method") == "newton" else []), *old]
+    return (
+        f"parameters file {path} is for maps by {writer_of(study)}: {'; '.join(meant)}. Read as they stand, "
+        "they give maps that are neither those of then nor those of today: for today's maps copy the file "
+        f"and leave the {_lines(lines)} out"
+    )
+
+
+def _lines(names: list[str]) -> str:
+    """As "three lines method, shape_weight and edge_length"."""
+    listed = " and ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
+    return f"{('', 'line', 'two lines', 'three lines')[len(names)]} {listed}"
 
 
 def _overruled(name: str, one: str, other: str, given: Mapping[str, Any]) -> bool:
@@ -82,13 +139,17 @@ def _read(path: Path, of: type[Parameters]) -> dict[str, Any]:
 def write_parameters(parameters: Parameters, path: Path) -> None:
     """Write parameters as TOML; those that are not set are left out.
 
+    A comment says which maps they are for.
+
     Parameters
     ----------
     parameters : Parameters
     path : Path
     """
+    told = f"# {MAPS} {MAPS_VERSION}; a later cytodisk reads this line"
     with replacing(path) as temporary:
-        temporary.write_text("\n".join(toml_lines(_without_excluded(parameters))) + "\n", encoding="utf-8")
+        lines = [told, *toml_lines(_without_excluded(parameters))]
+        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def _without_excluded(parameters: Parameters) -> dict[str, Any]:

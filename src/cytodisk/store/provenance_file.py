@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path, PurePath
 from typing import Any
 
+from cytodisk.disk.mapping_parameters import MAPS_VERSION
 from cytodisk.errors import ReadError
 from cytodisk.files import replacing
 
@@ -75,6 +76,27 @@ def other_version(provenance: dict[str, Any]) -> str:
         return ""
     version = provenance.get("versions", {}).get("cytodisk", "of unknown version")
     return f"was written by an earlier or later cytodisk ({version}), with other tables"
+
+
+def maps_version(provenance: dict[str, Any]) -> int:
+    """Version of the maps of a run, see `MAPS_VERSION`; version 1 did not write it down."""
+    return int(provenance.get("fingerprint", {}).get(MAPS, 1))
+
+
+def writer_of(provenance: dict[str, Any]) -> str:
+    """Which cytodisk did a run, as "cytodisk 0.1.0"."""
+    version = provenance.get("versions", {}).get("cytodisk")
+    return f"cytodisk {version}" if version else "an earlier cytodisk"
+
+
+def other_maps(provenance: dict[str, Any]) -> str:
+    """Words for a study whose maps are of another version; empty for maps as they are made now."""
+    if maps_version(provenance) == MAPS_VERSION:
+        return ""
+    return (
+        f"Maps by {writer_of(provenance)}: their windows lie at other places than those of this version. "
+        "Do not compare window by window with studies made now."
+    )
 
 
 def own_files(provenance: dict[str, Any]) -> list[str]:

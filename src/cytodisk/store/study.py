@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -14,13 +15,13 @@ import pyarrow.parquet as pq
 import xarray as xr
 
 from cytodisk.disk.disk_map import DiskMap, load_map
-from cytodisk.errors import ReadError
+from cytodisk.errors import EarlierVersionWarning, ReadError
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
 from cytodisk.motion.frame_file import load_boundary
 from cytodisk.scale import Scale
 from cytodisk.store.activity_store import open_activity
 from cytodisk.store.correlation_store import Correlation, list_correlations, read_correlation
-from cytodisk.store.provenance_file import read_complete
+from cytodisk.store.provenance_file import other_maps, read_complete
 from cytodisk.store.study_folder import part_key
 from cytodisk.store.study_kind import ACTIVITY, CELLS, MAPS
 from cytodisk.store.tables import read_table
@@ -247,6 +248,11 @@ def open_study(path: str | os.PathLike[str]) -> Study:
         The folder does not exist, is not a study of `cytodisk map` or `cytodisk movie`, is damaged, was
         written by another version in another way, or its run is not complete.
 
+    Warns
+    -----
+    EarlierVersionWarning
+        Its maps are of another version: windows lie at other places than in studies made now.
+
     See Also
     --------
     run_map, run_movie : Write a study.
@@ -271,6 +277,9 @@ def open_study(path: str | os.PathLike[str]) -> Study:
     try:
         for name in names:
             pq.read_schema(folder / name)
-        return Study(folder, read_table(folder / CELLS), provenance)
+        study = Study(folder, read_table(folder / CELLS), provenance)
     except (OSError, pa.ArrowException) as error:
         raise ReadError(f"study {folder} is damaged: {error}") from error
+    if words := other_maps(provenance):
+        warnings.warn(f"study {folder}: {words}", EarlierVersionWarning, stacklevel=2)
+    return study
