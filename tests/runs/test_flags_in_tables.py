@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+import tifffile
 from movie_files import SMALL, Stopped, stop_after, write_masks, write_movie
 
 import cytodisk as cd
@@ -53,6 +54,45 @@ def test_a_run_that_was_resumed_has_the_same(leaping: MovieInputs, tmp_path: Pat
     pd.testing.assert_series_equal(resumed.cells["qc_flags"], whole.cells["qc_flags"])
     assert flagged(resumed, "area jumps") == JUMPS
     assert resumed.cells.attrs == whole.cells.attrs
+
+
+def disks_in_a_row(*radii: int) -> np.ndarray:
+    """A label image of disks; the first one touches the border."""
+    labels = np.zeros((40, 45 * len(radii)), np.uint8)
+    for number, radius in enumerate(radii):
+        y, x = np.mgrid[:40, : labels.shape[1]]
+        labels[np.hypot(y - 19.0, x - 45 * number - (15 if number else radius - 1)) <= radius] = number + 1
+    return labels
+
+
+LABELS = disks_in_a_row(9, 17, 7)
+MASKS = {
+    "one mask": {"m.tif": (LABELS == 1).astype(np.uint8)},
+    "stack": {"m.tif": np.stack([k == LABELS for k in (2, 1, 3)]).astype(np.uint8)},
+    "label image": {"m.tif": LABELS},
+    "stack of label images": {"m.tif": np.stack([LABELS, LABELS[:, ::-1]])},
+    "folder": {"m/a.tif": LABELS, "m/b.tif": np.zeros_like(LABELS), "m/c.tif": LABELS[::-1]},
+}
+
+
+@pytest.mark.parametrize("masks", list(MASKS))
+def test_rows_of_a_map_have_the_names_of_the_flags_of_their_cell(masks: str, tmp_path: Path) -> None:
+    for name, values in MASKS[masks].items():
+        axes = {"axes": "TYX" if values.ndim == 3 else "YX"}
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        tifffile.imwrite(tmp_path / name, values, photometric="minisblack", metadata=axes)
+    path = tmp_path / Path(next(iter(MASKS[masks]))).parts[0]
+    study = cd.run_map(path, tmp_path / "out", layers=4, sectors=12)
+    cells = study.cells.set_index("cell")
+    named = {cell: set(filter(None, words.split("; "))) for cell, words in cells["qc_flags"].items()}
+    flags = cd.qc_flags(study)
+    assert {flag.name for flag in flags} >= {"small windows", "image border"}
+    assert named == {
+        cell: {flag.name for flag in flags if cell in [place.cell for place in flag.places]} for cell in named
+    }
+    small = [cell for cell, names in named.items() if "small windows" in names]
+    assert small == cells.index[cells["median_window_px"] < 10.0].tolist()
+    assert 0 < len(small) < len(cells) or masks == "one mask"
 
 
 def test_a_flag_of_a_cell_stands_in_each_of_its_rows() -> None:

@@ -13,8 +13,8 @@ _LATE = {
     "movie": "cytodisk.motion.swept_edge",
 }
 _WORDS = (
-    "First start: compiling numerical code, once. It takes about 15 s where two cores are free, "
-    "else half a minute or more."
+    "First start: compiling numerical code, once. It takes about 15 s on an idle computer, "
+    "longer on a busy one."
 )
 
 

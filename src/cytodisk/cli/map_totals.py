@@ -40,8 +40,8 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
     _say_without_cell(console, Counter(without["status"]), of_folder)
     if len(mapped):
         console.print(
-            f"median {mapped['seconds'].median():.2f} s a cell; median area distortion (mean |log λ|) "
-            f"{mapped['area_distortion'].median():.3f}; empty windows {int(mapped['empty_windows'].sum())}"
+            f"median {mapped['seconds'].median():.2f} s a cell; median area error of windows "
+            f"{mapped['window_area_error'].median():.3f}; empty windows {int(mapped['empty_windows'].sum())}"
         )
     _say_remarks(console, mapped)
     if of_folder:

@@ -35,8 +35,7 @@ def fill_flags(folder: StudyFolder) -> None:
     path = folder.path / CELLS
     study = Study(folder.path, read_table(path), folder.provenance)
     cells = study.cells
-    frames = cells["frame"] if study.is_movie else [None] * len(cells)
-    names = names_by_row(run_flags(study), zip(cells["cell"], frames, strict=True))
+    names = names_by_row(run_flags(study), zip(cells["cell"], cells["frame"], strict=True))
     words = [
         "; ".join(filter(None, [named, remarks]))
         for named, remarks in zip(names, cells[_REMARKS].fillna(""), strict=True)

@@ -121,7 +121,7 @@ CELL_COLUMNS: Columns = (
         pa.float64(),
         "1",
         "mean of |ln λ| over the cell, where λ is a triangle's share of the disk over its share of the cell; "
-        "0.03 is about 3 % off",
+        "triangles may differ where windows do not: see window_area_error",
     ),
     Column("area_ratio_p1", pa.float64(), "1", "1st percentile of λ (see area_distortion)"),
     Column("area_ratio_p99", pa.float64(), "1", "99th percentile of λ (see area_distortion)"),

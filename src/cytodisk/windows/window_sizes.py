@@ -19,12 +19,15 @@ def window_sizes(windows: CellWindows) -> dict[str, float | int]:
     Returns
     -------
     dict
-        median_window_px and smallest_window_px, areas in square pixels; windows_below_10px and
-        windows_below_1px, shares of the windows; windows_between_pixels, the number of windows that hold the
-        centre of no pixel.
+        window_area_error, see `CellWindows.area_error`; median_window_px and smallest_window_px, areas in
+        square pixels; windows_below_10px and windows_below_1px, shares of the windows;
+        windows_between_pixels, the number of windows that hold the centre of no pixel.
     """
     areas = windows.areas[windows.grid.present]
+    with np.errstate(divide="ignore"):  # of an empty window it is infinite
+        error = windows.area_error
     return {
+        "window_area_error": error,
         "median_window_px": float(np.median(areas)),
         "smallest_window_px": float(areas.min()),
         "windows_below_10px": float((areas < FEW_PX).mean()),

@@ -7,6 +7,7 @@ import tifffile
 import cytodisk as cd
 from cytodisk.runs.qc_flags.finest_grid import finest_grid
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
+from cytodisk.runs.qc_flags.window_flags import percent
 from cytodisk.windows.window_sizes import between_pixels, window_sizes
 
 
@@ -43,6 +44,14 @@ def test_small_windows_are_flagged_with_a_grid_that_is_not(tmp_path: Path, movie
     assert 1257 / 13 < wanted["layers"] * wanted["sectors"] < 1257 / 10
     (tmp_path / "again").mkdir()
     assert "small windows" not in flags_of(masks, tmp_path / "again", movie, **wanted)
+
+
+@pytest.mark.parametrize(
+    ("share", "words"),
+    [(0.0, "0%"), (1e-5, "less than 0.1%"), (0.125, "12.5%"), (0.9999, "more than 99.9%"), (1.0, "100%")],
+)
+def test_only_all_windows_are_100_percent(share: float, words: str) -> None:
+    assert percent(share) == words
 
 
 def test_windows_of_ten_pixels_are_not_flagged(tmp_path: Path) -> None:
@@ -83,6 +92,7 @@ def test_sizes_are_those_of_the_windows() -> None:
     assert found["median_window_px"] == pytest.approx(np.median(areas))
     assert found["smallest_window_px"] == pytest.approx(areas.min())
     assert found["windows_below_10px"] == pytest.approx((areas < 10).mean())
+    assert found["window_area_error"] == pytest.approx(np.abs(np.log(areas / areas.mean())).mean())
     assert found["windows_below_1px"] == pytest.approx((areas < 1).mean())
 
 

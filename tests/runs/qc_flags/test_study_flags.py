@@ -31,7 +31,9 @@ def made(frames: int = 20, n_cells: int = 1, **provenance: object) -> MadeStudy:
     cells = pd.DataFrame({"cell": number, "frame": time, "status": "ok", "reason": "", "mask_remarks": ""})
     cells = cells.assign(area=100 + rng.normal(0, 0.5, len(cells)), touches_border=False, border_share=0.0)
     cells["perimeter"] = np.sqrt(4 * np.pi * cells["area"])
-    cells = cells.assign(nan_px=0, area_distortion=0.02, restarted="", tracking_residual=0.01)
+    cells = cells.assign(
+        nan_px=0, area_distortion=0.2, window_area_error=0.02, restarted="", tracking_residual=0.01
+    )
     cells = cells.assign(interior_restarted="", smallest_window_share=np.nan)
     cells = cells.assign(order_violations=0, perimeter=20.0, swept_area=10.0)
     edge = cells[["cell", "frame"]].merge(pd.DataFrame({"sector": range(12)}), how="cross")
@@ -81,7 +83,7 @@ def test_an_edge_that_sweeps_more_than_the_cell_won_and_lost() -> None:
         ("smallest_window_share", 0.09, "small still windows", "9 % of its usual area"),
         ("tracking_residual", 0.6, "tracking residual", "0.6 µm"),
         ("order_violations", 3, "order violations", "3 points"),
-        ("area_distortion", 0.3, "strong distortion", "30%"),
+        ("window_area_error", 0.3, "strong distortion", "30%"),
         ("nan_px", 7, "NaN pixels", "7 px"),
     ],
 )
@@ -98,7 +100,7 @@ def test_a_fault_in_two_frames(column: str, value: object, name: str, note: str)
 
 
 @pytest.mark.parametrize(
-    ("column", "value"), [("tracking_residual", 0.499), ("area_distortion", LARGEST_DISTORTION)]
+    ("column", "value"), [("tracking_residual", 0.499), ("window_area_error", LARGEST_DISTORTION)]
 )
 def test_what_stays_below_its_threshold(column: str, value: float) -> None:
     study = made()

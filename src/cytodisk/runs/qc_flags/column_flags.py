@@ -14,7 +14,7 @@ from cytodisk.scale import Scale
 from cytodisk.store.study import Study
 
 LARGEST_DISTORTION = 0.15
-"""Mean |ln λ| above which windows differ in area by some 15 %; ordinary cells stay below 0.05."""
+"""Area error of windows above which they differ in area by some 15 %; ordinary cells stay below 0.07."""
 LARGEST_RESIDUAL_PX = 1.0
 """Tracking residual of a frame, in px; good frames have a few hundredths."""
 
@@ -127,10 +127,10 @@ image_border = ColumnRule(
 distortion = ColumnRule(
     "strong distortion",
     "windows differ much in area in {frames}",
-    f"The map's mean area error is above {LARGEST_DISTORTION:.0%}, as in cells with long thin arms: "
+    f"The mean area error of windows is above {LARGEST_DISTORTION:.0%}, as in cells with long thin arms: "
     "windows of one layer hold unequal shares of the cell.",
     "Weigh windows by their area, or use fewer and larger windows.",
-    "area_distortion",
+    "window_area_error",
     lambda column, scale: column > LARGEST_DISTORTION,
     lambda value, row, scale: f"{value:.0%}",
 )

@@ -1,6 +1,7 @@
 """QC flags of movies whose interior stands still (`interior="still"`)."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from cytodisk.runs.qc_flags import column_flags
 from cytodisk.runs.qc_flags.column_flags import ColumnRule, said
@@ -36,5 +37,9 @@ small_still_windows = ColumnRule(
 
 def distortion(study: Study) -> Iterator[QCFlag]:
     """Windows that differ much in area, in a study that asked for equal areas."""
-    if study.provenance.get("parameters", {}).get("interior") != "still":
-        yield from column_flags.distortion(study)
+    if study.provenance.get("parameters", {}).get("interior") == "still":
+        return
+    rule = column_flags.distortion
+    if rule.column not in study.cells:  # a study of an earlier version
+        rule = replace(rule, column="area_distortion")
+    yield from rule(study)

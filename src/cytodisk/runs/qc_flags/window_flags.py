@@ -33,7 +33,8 @@ def small_windows(study: Study) -> Iterator[QCFlag]:
     yield QCFlag(
         "small windows",
         f"windows are small in {frames_of(study, len(rows))}: the median down to "
-        f"{rows['median_window_px'].min():.2g} px, up to {rows['windows_below_10px'].max():.1%} below 10 px"
+        f"{rows['median_window_px'].min():.2g} px, "
+        f"up to {percent(rows['windows_below_10px'].max())} below 10 px"
         + _below_1px(rows["windows_below_1px"].max()),
         "The mean of a few pixels is noisy. A window below 1 px is a part of a pixel: it shares its value "
         "with its neighbours.",
@@ -43,12 +44,16 @@ def small_windows(study: Study) -> Iterator[QCFlag]:
 
 
 def _below_1px(share: float) -> str:
-    return f" and {_least_percent(share)} below 1 px" if share > 0 else ""
+    return f" and {percent(share)} below 1 px" if share > 0 else ""
 
 
-def _least_percent(share: float) -> str:
-    """A share that is not 0 in percent, never as 0.0%."""
-    return "less than 0.1%" if share < 0.0005 else f"{share:.1%}"
+def percent(share: float) -> str:
+    """A share in percent: only all is 100%, only none is 0%."""
+    if share in (0.0, 1.0):
+        return f"{share:.0%}"
+    if share < 0.0005:
+        return "less than 0.1%"
+    return "more than 99.9%" if share > 0.9995 else f"{share:.1%}"
 
 
 def _note(row: pd.Series[float]) -> str:
