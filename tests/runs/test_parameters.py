@@ -1,4 +1,5 @@
 import tomllib
+import warnings
 from pathlib import Path
 
 import pytest
@@ -218,7 +219,10 @@ def test_only_what_meant_other_maps_is_named(
 def test_a_file_that_means_what_it_says_is_read_without_a_word(
     tmp_path: Path, content: str, given_values: dict[str, object], maps: str
 ) -> None:
-    parameters_from(given_values, earlier_study(tmp_path, content, maps), MapParameters)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        parameters_from(given_values, earlier_study(tmp_path, content, maps), MapParameters)
+    assert not told
 
 
 def test_a_file_says_which_maps_it_is_for_and_a_file_by_hand_need_not(tmp_path: Path) -> None:
