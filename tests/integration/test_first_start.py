@@ -52,7 +52,7 @@ def test_a_line_says_what_takes_long(
     say_compiling(False, work)
     said = capsys.readouterr()
     assert said.err.startswith("First start: compiling numerical code, once. ")
-    assert "about 15 s on an idle computer, longer on a busy one" in said.err
+    assert "about 20 s on an idle computer, longer on a busy one" in said.err
     assert said.err.count("\n") == 1
     assert said.out == ""
     say_compiling(True, work)

@@ -13,7 +13,7 @@ _LATE = {
     "movie": "cytodisk.motion.swept_edge",
 }
 _WORDS = (
-    "First start: compiling numerical code, once. It takes about 15 s on an idle computer, "
+    "First start: compiling numerical code, once. It takes about 20 s on an idle computer, "
     "longer on a busy one."
 )
 
