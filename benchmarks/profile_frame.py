@@ -61,7 +61,7 @@ MAP_STAGES = (
     Stage("map", "the rest of it", ("cytodisk.disk.mapping:map_mesh",)),
 )
 FRAME_STAGES = (
-    Stage("files", "read", ("cytodisk.images.frames:FrameFile.frame",)),
+    Stage("files", "read", ("cytodisk.images.frame_file:FrameFile.frame",)),
     *MAP_STAGES,
     Stage("tracking", "registration", ("cytodisk.motion.registration:register",)),
     Stage("tracking", "matching and the rest", ("cytodisk.motion.tracking:follow",)),

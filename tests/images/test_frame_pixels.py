@@ -15,11 +15,11 @@ from skimage import measure
 import cytodisk as cd
 from cytodisk.errors import MaskError, ReadError
 from cytodisk.images import frame_pixels as module
+from cytodisk.images.formats.tiff_segments import TiffSegments
 from cytodisk.images.frame_pixels import frame_pixels
 from cytodisk.images.frames import open_frames
 from cytodisk.images.label_boxes import cell_box, count_pieces, label_boxes, share_alike, values_of
 from cytodisk.images.mask_files import SourceCell, list_images, open_mask_files
-from cytodisk.images.tiff_segments import TiffSegments
 
 Write = Callable[[Path, np.ndarray], Path]
 
@@ -132,7 +132,7 @@ def test_frames_before_the_end_of_a_file_that_is_cut_short(tmp_path: Path, by_pi
 def test_a_large_piece_of_a_file_is_gone_through_by_strip(
     tmp_path: Path, by_piece: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cytodisk.images.tiff_segments._KEPT_BYTES", 0)
+    monkeypatch.setattr("cytodisk.images.formats.tiff_segments._KEPT_BYTES", 0)
     monkeypatch.setattr(module, "_STRIP_PX", 5 * LABELS.shape[1])
     decoded: list[tuple[int, int]] = []
     once = TiffSegments._decoded
@@ -246,7 +246,7 @@ def test_a_damaged_piece_is_told(tmp_path: Path, by_piece: None) -> None:
 def test_memory_does_not_grow_with_the_frame(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "WHOLE_BYTES", 2**16)
     monkeypatch.setattr(module, "_STRIP_PX", 2**16)
-    monkeypatch.setattr("cytodisk.images.tiff_segments._KEPT_BYTES", 2**18)
+    monkeypatch.setattr("cytodisk.images.formats.tiff_segments._KEPT_BYTES", 2**18)
     peaks = []
     for copies in (4, 12):
         labels = np.tile(LABELS, (copies, copies)).astype(np.uint32)

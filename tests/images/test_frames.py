@@ -9,7 +9,8 @@ from numpy.testing import assert_array_equal
 
 import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError
-from cytodisk.images.frames import FrameFile, open_frames
+from cytodisk.images.frame_file import FrameFile
+from cytodisk.images.frames import open_frames
 
 STACK = np.random.default_rng(0).integers(0, 4000, (3, 2, 20, 31)).astype(np.uint16)  # T, C, Y, X
 PLANE = STACK[0, 0]

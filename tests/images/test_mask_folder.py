@@ -13,9 +13,9 @@ from hypothesis.extra import numpy as arrays
 from numpy.testing import assert_array_equal
 
 from cytodisk.errors import MaskError, ReadError
+from cytodisk.images.formats.npy import read_npy
 from cytodisk.images.mask_files import MaskSource, open_mask_files, read_source_cells
 from cytodisk.images.mask_names import base_name
-from cytodisk.images.npy import read_npy
 
 LABELS = np.zeros((30, 40), dtype=np.uint16)
 LABELS[2:12, 3:10], LABELS[15:28, 20:33] = 4, 9
@@ -292,7 +292,7 @@ def test_want_of_memory_is_a_fault_of_the_file(tmp_path: Path, monkeypatch: pyte
         raise MemoryError
 
     fill(tmp_path, "a_seg.npy")
-    monkeypatch.setattr("cytodisk.images.frames.read_npy", no_room)
+    monkeypatch.setattr("cytodisk.images.formats.array_file.read_npy", no_room)
     (source,) = open_mask_files(tmp_path)
     assert "a_seg.npy: its header asks for more memory than there is" in str(source.fault)
 

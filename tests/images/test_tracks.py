@@ -7,7 +7,8 @@ from numpy.testing import assert_array_equal
 
 from cytodisk.errors import MaskError, ReadError
 from cytodisk.images.file_parameters import Kind
-from cytodisk.images.frames import FrameFile, open_frames
+from cytodisk.images.frame_file import FrameFile
+from cytodisk.images.frames import open_frames
 from cytodisk.images.mask_kinds import look_at
 from cytodisk.images.tracks import CellTrack, MissingLabel, TrackMasks, list_tracks, read_frame
 

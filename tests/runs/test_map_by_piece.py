@@ -11,7 +11,7 @@ from numpy.testing import assert_array_equal
 
 import cytodisk as cd
 from cytodisk.images import frame_pixels
-from cytodisk.images.frames import FrameFile
+from cytodisk.images.frame_file import FrameFile
 from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.cells.cell_parts import CellTask
 from cytodisk.runs.map.map_parameters import MapParameters

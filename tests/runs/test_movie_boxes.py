@@ -10,7 +10,7 @@ import tifffile
 
 import cytodisk as cd
 from cytodisk.images import frame_pixels
-from cytodisk.images.frames import FrameFile
+from cytodisk.images.frame_file import FrameFile
 from cytodisk.runs.movie import measured_frame, movie_study
 from cytodisk.runs.movie.measured_frame import FrameRows, FrameTask
 

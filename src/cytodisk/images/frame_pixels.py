@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
-from cytodisk.images.frames import FrameFile, reading
-from cytodisk.images.npy import read_npy
-from cytodisk.images.tiff_pages import opened_tiff
-from cytodisk.images.tiff_segments import TiffSegments
+from cytodisk.images.frame_file import Cut, FrameFile
+from cytodisk.images.reading import reading
 
 WHOLE_BYTES = 2**25
 """A frame up to this size is read as a whole."""
 
 _STRIP_PX = 2**20  # pixels that are looked at together
-
-Cut: TypeAlias = Callable[[slice, slice], np.ndarray[Any, Any]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,9 +82,9 @@ def frame_pixels(file: FrameFile, number: int) -> FramePixels:
     shape = (len(file.channels) if "C" in file.axes else 1, height, width)
     if np.prod(shape) * file.dtype.itemsize > WHOLE_BYTES:
         with reading(file.path, f"frame {number}"):
-            cut, rows_together = _cut_from_file(file, number)
-        if cut is not None:
-            return FramePixels(shape, file.dtype, cut, rows_together, is_whole=False)
+            by_piece = file.stored.by_piece(number)
+        if by_piece is not None:
+            return FramePixels(shape, file.dtype, *by_piece, is_whole=False)
     return whole_pixels(file.frame(number))
 
 
@@ -102,73 +96,3 @@ def whole_pixels(frame: np.ndarray[Any, Any]) -> FramePixels:
 
 def _cut_from_memory(frame: np.ndarray[Any, Any], rows: slice, columns: slice) -> np.ndarray[Any, Any]:
     return frame[:, rows, columns]
-
-
-def _cut_from_file(file: FrameFile, number: int) -> tuple[Cut | None, int]:
-    """How to cut pieces out of a frame, and how many rows lie together; None if it must be read whole."""
-    array = _Stored.of(file)
-    if array is not None:
-        return partial(_cut_from_array, array, file, number), 1
-    segments = TiffSegments.of(file, number) if file.path.suffix.lower() in (".tif", ".tiff") else None
-    if segments is None:
-        return None, 1
-    return partial(_cut_from_segments, segments, file, number), segments.height
-
-
-@dataclass(frozen=True)
-class _Stored:
-    """An array as it stands in a file, uncompressed."""
-
-    path: Path
-    dtype: np.dtype[Any]
-    offset: int
-    order: Any
-
-    @classmethod
-    def of(cls, file: FrameFile) -> _Stored | None:
-        suffix = file.path.suffix.lower()
-        if suffix == ".npy":
-            array = read_npy(file.path)
-            if not isinstance(array, np.memmap):
-                return None
-            order = "C" if array.flags.c_contiguous else "F"
-            return cls(file.path, array.dtype, int(array.offset), order)
-        if suffix not in (".tif", ".tiff"):
-            return None
-        with opened_tiff(file.path) as tiff:
-            series = tiff.series[0]
-            if series.is_multifile or series.dataoffset is None:
-                return None
-            dtype = np.dtype(tiff.byteorder + np.dtype(series.dtype).char)
-            return cls(file.path, dtype, int(series.dataoffset), "C")
-
-    def mapped(self, file: FrameFile, number: int) -> np.ndarray[Any, Any]:
-        """A frame, not read yet; what is read of it is given back when it goes."""
-        shape, offset = file.shape, self.offset
-        if file.axes[0] == "T" and self.order == "C":  # the others may be missing in a file that is cut short
-            shape = file.shape[1:]
-            offset += number * math.prod(shape) * self.dtype.itemsize
-            return np.memmap(self.path, self.dtype, "r", offset, shape)
-        array = np.memmap(self.path, self.dtype, "r", offset, shape, self.order)
-        frame: np.ndarray[Any, Any] = array[
-            tuple(number if axis == "T" else slice(None) for axis in file.axes)
-        ]
-        return frame
-
-
-def _cut_from_array(
-    array: _Stored, file: FrameFile, number: int, rows: slice, columns: slice
-) -> np.ndarray[Any, Any]:
-    place = {"C": slice(None), "Y": rows, "X": columns}
-    order = [axis for axis in file.axes if axis != "T"]
-    with reading(file.path, f"frame {number}"):
-        piece = array.mapped(file, number)[tuple(place[axis] for axis in order)]
-        moved = piece.transpose([order.index(axis) for axis in "CYX" if axis in order])
-        return np.array(moved if "C" in order else moved[None], dtype=piece.dtype.newbyteorder("="))
-
-
-def _cut_from_segments(
-    segments: TiffSegments, file: FrameFile, number: int, rows: slice, columns: slice
-) -> np.ndarray[Any, Any]:
-    with reading(file.path, f"frame {number}"):
-        return segments.cut(rows, columns)

@@ -13,8 +13,9 @@ import numpy as np
 
 from cytodisk.errors import CytodiskError, EmptyMaskError, MaskError, ReadError, as_data
 from cytodisk.images.file_parameters import Kind
+from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
-from cytodisk.images.frames import FrameFile, open_frames
+from cytodisk.images.frames import open_frames
 from cytodisk.images.label_boxes import Box, LabelBoxes, cell_box, label_boxes, with_margin
 from cytodisk.images.mask_kinds import MaskLook, Reader, check_labels, look_at
 from cytodisk.images.mask_names import mask_names

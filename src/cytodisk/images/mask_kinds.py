@@ -11,8 +11,8 @@ import numpy as np
 
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
 from cytodisk.images.file_parameters import Kind, KindParameters
+from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
-from cytodisk.images.frames import FrameFile
 from cytodisk.images.label_boxes import count_pieces, share_alike, values_of
 
 _LEAST_ALIKE = 0.5  # of neighbouring pixels within cells must have one label in a label image

@@ -12,8 +12,8 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.errors import ReadError, SignalError, as_data
+from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
-from cytodisk.images.frames import FrameFile
 from cytodisk.images.mask_files import MaskSource
 from cytodisk.images.mask_names import base_name, image_stem, visible_files
 from cytodisk.scale import Scale

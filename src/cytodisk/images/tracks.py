@@ -11,8 +11,8 @@ import numpy as np
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.images.file_parameters import Kind
+from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
-from cytodisk.images.frames import FrameFile
 from cytodisk.images.label_boxes import Box, cell_box, label_boxes, with_margin
 from cytodisk.images.linking import link_labels
 from cytodisk.images.mask_kinds import MaskLook

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from cytodisk.errors import ParameterError, SignalError
 
 if TYPE_CHECKING:
-    from cytodisk.images.frames import FrameFile
+    from cytodisk.images.frame_file import FrameFile
 
 VELOCITIES = ("velocity", "velocity_cell_frame")  # of the edge: no channel can have such a name
 _LONGEST = 24

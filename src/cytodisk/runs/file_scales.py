@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Literal, TypeAlias
 
 from cytodisk.errors import SignalError
-from cytodisk.images.frames import FrameFile
+from cytodisk.images.frame_file import FrameFile
 
 Quantity: TypeAlias = Literal["pixel_size_um", "frame_interval_s"]
 

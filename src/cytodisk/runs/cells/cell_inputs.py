@@ -10,7 +10,8 @@ from pathlib import Path
 
 from cytodisk.checks import is_path
 from cytodisk.errors import ReadError, SignalError, as_data
-from cytodisk.images.frames import FrameFile, open_frames
+from cytodisk.images.frame_file import FrameFile
+from cytodisk.images.frames import open_frames
 from cytodisk.images.mask_files import MaskSource, open_mask_files
 from cytodisk.images.signal_files import pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters

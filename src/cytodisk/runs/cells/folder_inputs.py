@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from cytodisk.errors import CytodiskError, MaskError, SignalError
-from cytodisk.images.frames import FrameFile
+from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.mask_files import MaskSource
 from cytodisk.runs.channel_names import name_channels
 from cytodisk.runs.file_scales import alike, most_common_size

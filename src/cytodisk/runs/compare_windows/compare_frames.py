@@ -14,7 +14,7 @@ from cytodisk.analysis.consistency import centroid_displacement, consecutive_cor
 from cytodisk.analysis.window_measures import measures_by_layer
 from cytodisk.errors import MaskError, ReadError
 from cytodisk.geometry.mask import clean_mask
-from cytodisk.images.frames import FrameFile
+from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.signal_files import load_image
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, CompareMovieParameters

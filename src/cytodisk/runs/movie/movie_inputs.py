@@ -9,7 +9,8 @@ from pathlib import Path
 from cytodisk.checks import is_path
 from cytodisk.errors import MaskError, SignalError
 from cytodisk.images.file_parameters import Kind
-from cytodisk.images.frames import FrameFile, open_frames
+from cytodisk.images.frame_file import FrameFile
+from cytodisk.images.frames import open_frames
 from cytodisk.images.mask_kinds import look_at
 from cytodisk.images.tracks import CellTrack, list_tracks
 from cytodisk.motion.still_interior import fade_in_px

@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 import tifffile
 
-from cytodisk.images.frames import FrameFile
-from cytodisk.images.tiff_pages import opened_tiff
+from cytodisk.images.formats.tiff_pages import opened_tiff
 
 _KEPT_BYTES = 2**26  # of decoded segments, so that cells side by side do not decode them twice
-_PLANES = {"YX": False, "CYX": True}  # axes of a frame, and whether each channel has a page of its own
+_PLANES = ("YX", "CYX")  # axes of a frame of which each channel has a page of its own
 _WITH_TABLES = (6, 7, 34892, 33007)  # compressions whose segments need more than themselves: kinds of JPEG
 
 
@@ -44,16 +43,15 @@ class TiffSegments:
     _kept_bytes: int = 0
 
     @classmethod
-    def of(cls, file: FrameFile, number: int) -> TiffSegments | None:
+    def of(cls, path: Path, axes: str, shape: tuple[int, ...], number: int) -> TiffSegments | None:
         """The segments of a frame; None where its layout is unusual, so that it must be read whole."""
-        axes = file.axes.replace("T", "")
-        height, width = file.image_shape
-        channels = len(file.channels) if axes == "CYX" else 1
-        if axes not in _PLANES or ("T" in file.axes and file.axes[0] != "T"):
+        sizes = dict(zip(axes, shape, strict=True))
+        height, width, channels, frames = (sizes.get(axis, 1) for axis in "YXCT")
+        if axes.replace("T", "") not in _PLANES or ("T" in axes and axes[0] != "T"):
             return None
-        with opened_tiff(file.path) as tiff:
+        with opened_tiff(path) as tiff:
             series = tiff.series[0]
-            if series.is_multifile or len(series.pages) != channels * file.n_frames:
+            if series.is_multifile or len(series.pages) != channels * frames:
                 return None
             page: Any = series.keyframe
             usual = page.shape == (height, width) and page.compression not in _WITH_TABLES
@@ -61,8 +59,8 @@ class TiffSegments:
                 return None
             tall, wide = (page.tilelength, page.tilewidth) if page.is_tiled else (page.rowsperstrip, width)
         pages = range(number * channels, (number + 1) * channels)
-        shape = (channels, height, width)
-        return cls(file.path, pages, shape, np.dtype(series.dtype), min(tall, height), min(wide, width))
+        dtype = np.dtype(series.dtype)
+        return cls(path, pages, (channels, height, width), dtype, min(tall, height), min(wide, width))
 
     @property
     def across(self) -> int:
