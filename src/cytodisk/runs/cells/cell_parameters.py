@@ -6,7 +6,7 @@ from pydantic import field_validator
 
 from cytodisk.disk.mapping_parameters import MeshParameters
 from cytodisk.errors import CytodiskError, ParameterError
-from cytodisk.images.file_parameters import KindParameters
+from cytodisk.images.file_parameters import KindParameters, SignalFileParameters
 from cytodisk.parameters import Parameters, parameter
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.scale_parameters import PixelSizeParameters
@@ -37,7 +37,7 @@ class ChannelParameters(Parameters):
         return channels
 
 
-class FileParameters(PixelSizeParameters, ChannelParameters, KindParameters):
+class FileParameters(PixelSizeParameters, ChannelParameters, SignalFileParameters, KindParameters):
     """How the files of a run are read."""
 
 
