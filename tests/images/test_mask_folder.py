@@ -315,7 +315,7 @@ def test_reasons_stand_on_one_line(tmp_path: Path) -> None:
 def test_masks_of_a_z_stack_are_refused(tmp_path: Path) -> None:
     save_seg(tmp_path / "a_seg.npy", np.stack([LABELS] * 3))
     (source,) = open_mask_files(tmp_path)
-    assert "holds the masks of a z-stack, shape (3, 30, 40): project it" in str(source.fault)
+    assert "is a z-stack (axes ZYX, shape (3, 30, 40)): project it" in str(source.fault)
 
 
 def test_a_good_file_stands_in_for_a_damaged_one(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 
+from cytodisk.images.file_axes import Said
 from cytodisk.images.reading import reading
 from cytodisk.scale import UNKNOWN, Scale
 
@@ -76,7 +77,11 @@ class FrameFile:
     notes : tuple of str
         What was found wrong with its metadata, and what is not known for that, in words.
     evidence : str
-        How its axes are known, in words, as "axes by its ImageJ metadata"; empty where there is no doubt.
+        How its axes are known, in words, as "axes TYX by its metadata"; empty for a plain image.
+    said_by : {"user", "file", "nobody"}
+        Who named its axes; where nobody did, they are a guess.
+    doubt : str
+        What speaks against a guess, in words that end with the remedy; empty if nothing does.
     """
 
     path: Path
@@ -88,6 +93,8 @@ class FrameFile:
     scale: Scale = UNKNOWN
     notes: tuple[str, ...] = ()
     evidence: str = ""
+    said_by: Said = "file"
+    doubt: str = ""
 
     @property
     def n_frames(self) -> int:

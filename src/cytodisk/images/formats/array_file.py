@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.errors import ReadError
+from cytodisk.images.file_axes import file_axes
 from cytodisk.images.formats.file_metadata import channel_names
 from cytodisk.images.formats.npy import read_npy
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile, as_channels_first
@@ -20,18 +21,26 @@ from cytodisk.images.reading import reading
 def open_array(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
     """Look at a saved array without reading its numbers; see `cytodisk.images.frames.open_frames`."""
     array = read_npy(file)
-    if array.ndim not in (2, 3) or not array.size:
+    if array.ndim < 2 or not array.size:
         raise ReadError(f"{file} has shape {array.shape}: save an array of shape (H, W) or (frames, H, W)")
     if array.dtype.kind not in "biuf":
         raise ReadError(f"{file} has dtype {array.dtype}: save an array of numbers, labels as uint16")
-    if array.ndim == 3 and file.name.lower().endswith("_seg.npy"):
-        raise ReadError(
-            f"{file} holds the masks of a z-stack, shape {array.shape}: project it; or if these are frames, "
-            "save the masks alone, as TIFF with axes TYX"
-        )
-    axes = "YX" if array.ndim == 2 else f"{unnamed}YX"
-    channels = channel_names((), len(array) if axes == "CYX" else 1)
-    return FrameFile(file, axes, array.shape, array.dtype, channels, NpyFrames(file, axes))
+    of_cellpose = file.name.lower().endswith("_seg.npy")
+    said = ("Z" if of_cellpose and array.ndim == 3 else "Q" * (array.ndim - 2)) + "YX"
+    known = file_axes(file, said, array.shape, unnamed, choice.axes)
+    axes, shape = known.letters, known.shape
+    channels = channel_names((), shape[axes.index("C")] if "C" in axes else 1)
+    return FrameFile(
+        file,
+        axes,
+        shape,
+        array.dtype,
+        channels,
+        NpyFrames(file, axes, shape),
+        evidence=known.evidence,
+        said_by=known.said_by,
+        doubt=known.doubt,
+    )
 
 
 @dataclass(frozen=True)
@@ -42,14 +51,17 @@ class NpyFrames:
     ----------
     path : Path
     axes : str
+    shape : tuple of int
+        Without axes of length 1 beside Y and X.
     """
 
     path: Path
     axes: str
+    shape: tuple[int, ...]
 
     def read(self, number: int) -> np.ndarray[Any, Any]:
         """Pixels of a frame, shape (C, H, W)."""
-        whole = read_npy(self.path)
+        whole = read_npy(self.path).reshape(self.shape)
         frame = np.array(whole.take(number, axis=self.axes.index("T")) if "T" in self.axes else whole)
         return as_channels_first(frame, self.axes)
 
@@ -60,7 +72,7 @@ class NpyFrames:
             return None
         order = "C" if array.flags.c_contiguous else "F"
         stored = StoredArray(self.path, array.dtype, int(array.offset), order)
-        return ArrayFrames(stored, self.axes, array.shape).by_piece(number)
+        return ArrayFrames(stored, self.axes, self.shape).by_piece(number)
 
 
 @dataclass(frozen=True)

@@ -24,24 +24,6 @@ _MICROMETRES = {
 _SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
 
 
-def named_axes(file: Path, axes: str, shape: tuple[int, ...], unnamed: str) -> tuple[str, tuple[int, ...]]:
-    """Axes in the words T, C, Y, X, without those of length 1 beside Y and X."""
-    kept = [(axis, size) for axis, size in zip(axes, shape, strict=True) if size > 1 or axis in "YX"]
-    named = []
-    for place, (axis, size) in enumerate(kept):
-        if axis == "Z":
-            raise ReadError(
-                f"{file} is a z-stack (axes {axes}, shape {shape}): project it, or save its axis as time"
-            )
-        colour = axis == "S" and place == len(kept) - 1  # planes that stand first may be frames as well
-        letter = axis if axis in "TCYX" else "C" if colour else unnamed
-        named.append((letter, size))
-    letters = "".join(letter for letter, _ in named)
-    if len(set(letters)) != len(letters) or not {"Y", "X"} <= set(letters):
-        raise ReadError(f"{file} has the axes {axes} with shape {shape}: save it as TYX, CYX, TCYX or YX")
-    return letters, tuple(size for _, size in named)
-
-
 def ome_metadata(file: Path, xml: str) -> tuple[Scale, tuple[str, ...]]:
     """Scale of an OME-TIFF, and the names of its channels; no names if one lacks its own.
 

@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import tifffile
 
 from cytodisk.errors import ReadError
+from cytodisk.images.file_axes import file_axes
 from cytodisk.images.formats.array_file import ArrayFrames, StoredArray
-from cytodisk.images.formats.file_metadata import channel_names, imagej_scale, named_axes, ome_metadata
+from cytodisk.images.formats.file_metadata import channel_names, imagej_scale, ome_metadata
 from cytodisk.images.formats.tiff_pages import opened_tiff, whole_tiff
 from cytodisk.images.formats.tiff_segments import TiffSegments
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile, as_channels_first
@@ -28,7 +30,10 @@ def open_tiff(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
                 f"{file} holds {len(tiff.series)} separate images: save one alone, or all as one stack"
             )
         series = tiff.series[0]
-        axes, shape = named_axes(file, series.axes, series.shape, unnamed)
+        colour = series.keyframe.photometric == tifffile.PHOTOMETRIC.RGB
+        said = series.axes.replace("S", "C") if colour else series.axes
+        known = file_axes(file, said, series.shape, unnamed, choice.axes)
+        axes, shape = known.letters, known.shape
         names: tuple[str, ...] = ()
         scale = UNKNOWN
         if tiff.is_ome and tiff.ome_metadata:
@@ -37,7 +42,19 @@ def open_tiff(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
             scale = imagej_scale(file, tiff)
     channels = channel_names(names, shape[axes.index("C")] if "C" in axes else 1)
     dtype = np.dtype(series.dtype)
-    return FrameFile(file, axes, shape, dtype, channels, TiffFrames(file, axes, shape, dtype), scale)
+    stored = TiffFrames(file, axes, shape, dtype)
+    return FrameFile(
+        file,
+        axes,
+        shape,
+        dtype,
+        channels,
+        stored,
+        scale,
+        evidence=known.evidence,
+        said_by=known.said_by,
+        doubt=known.doubt,
+    )
 
 
 @dataclass(frozen=True)
