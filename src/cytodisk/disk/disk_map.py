@@ -16,7 +16,7 @@ from cytodisk.disk.certificate import Certificate, certify
 from cytodisk.disk.circle import polygon_radius
 from cytodisk.disk.disk_image import image_on_disk
 from cytodisk.disk.distortion import Distortion, distortion_of
-from cytodisk.disk.map_file import reading_map, write_map_file
+from cytodisk.disk.map_file import read_map_file, write_map_file
 from cytodisk.disk.mapping_parameters import Method
 from cytodisk.errors import ParameterError
 from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline
@@ -290,11 +290,11 @@ def load_map(path: str | os.PathLike[str]) -> DiskMap:
     >>> disk.certificate.valid
     True
     """
-    with reading_map(path) as (header, mask, arrays):
-        return DiskMap(
-            placed_mask=mask,
-            report=MaskReport(**header["report"]),
-            **{name: arrays[name] for name in _ARRAYS},
-            **{name: header[name] for name in _FACTS},
-            scale=Scale(header.get("pixel_size_um"), header.get("frame_interval_s")),
-        )
+    header, mask, arrays = read_map_file(path)
+    return DiskMap(
+        placed_mask=mask,
+        report=MaskReport(**header["report"]),
+        **arrays,
+        **{name: header[name] for name in _FACTS},
+        scale=Scale(header.get("pixel_size_um"), header.get("frame_interval_s")),
+    )

@@ -1,32 +1,36 @@
 """The file of a map: a header in JSON, the mask cropped to the cell, and arrays."""
 
 import json
+import math
 import os
 import zipfile
-import zlib
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
+from functools import cache
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal, NamedTuple, Required
 
 import numpy as np
+from pydantic import ConfigDict, Field, TypeAdapter, with_config
+from typing_extensions import TypedDict
 
+from cytodisk.array_archive import ArrayArchive, reading_arrays
 from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.disk.mapping_parameters import Method
 from cytodisk.errors import ParameterError, ReadError
 from cytodisk.files import replacing
 from cytodisk.geometry.placed_mask import PlacedMask
+from cytodisk.parameter_words import short_words
+from cytodisk.reading_files import checked, json_of
 
 _FORMAT = 3
 _OLDER = 2  # differs in one word: its "newton" relaxed as "newton-triangles" does in format 3
 _FASTEST = 1  # level of compression
-# Name, kinds of dtype and shape of a row of each array.
-_EXPECTED = (
-    ("vertices_yx", "f", (2,)),
-    ("vertices_uv", "f", (2,)),
-    ("triangles", "iu", (3,)),
-    ("boundary", "iu", ()),
-)
+_WHAT = "a map that DiskMap.save wrote"
+_REMEDY = "make it again, with cytodisk map or map_to_disk"
+_MOST_SIDE = 1_000_000  # pixels of an image
+_BESIDE_PX = 2.0  # the outline runs half a pixel around the mask; of long edges it cuts corners off
+_FURTHEST = 1.5  # in the disk; the paper's relaxation can carry vertices beyond the rim
 _RIGHTS = 0o600  # of an array's file where the archive is unpacked
 
 
@@ -76,61 +80,130 @@ def _write(archive: zipfile.ZipFile, arrays: Mapping[str, Any], how: int) -> Non
         archive.writestr(entry, content.getbuffer(), how, _FASTEST)
 
 
-@contextmanager
-def reading_map(path: str | os.PathLike[str]) -> Iterator[tuple[dict[str, Any], PlacedMask, dict[str, Any]]]:
-    """Header, mask and arrays of a map's file; what is wrong with it becomes a `ReadError`.
+class MapContent(NamedTuple):
+    """What a map's file holds.
+
+    Attributes
+    ----------
+    header : dict
+    mask : PlacedMask
+    arrays : dict of str to ndarray
+        "vertices_yx", "vertices_uv", "triangles" and "boundary".
+    """
+
+    header: dict[str, Any]
+    mask: PlacedMask
+    arrays: dict[str, Any]
+
+
+_Count = Annotated[int, Field(ge=0, lt=2**53)]
+_Side = Annotated[int, Field(ge=1, le=_MOST_SIDE)]
+_Share = Annotated[float, Field(ge=0, le=1)]
+_Positive = Annotated[float, Field(gt=0)]
+_STRICT = ConfigDict(strict=True, allow_inf_nan=False)
+
+
+@with_config(_STRICT)
+class _Report(TypedDict):
+    area_px: _Count
+    components: _Count
+    dropped_px: _Count
+    holes: _Count
+    filled_px: _Count
+    border_share: _Share
+
+
+@with_config(_STRICT)
+class _Header(TypedDict, total=False):
+    report: Required[_Report]
+    pixel_size_um: _Positive | None
+    frame_interval_s: _Positive | None
+    method: Required[Method]
+    start: Required[Literal["cotangent", "uniform", "previous"]]
+    shape_weight: Required[_Positive]
+    edge_length: Required[_Positive]
+    steps: Required[_Count]
+    converged: Required[bool]
+    corner: Required[Annotated[list[_Count], Field(min_length=2, max_length=2)]]
+    image_shape: Required[Annotated[list[_Side], Field(min_length=2, max_length=2)]]
+
+
+@cache
+def _header() -> TypeAdapter[Any]:
+    return TypeAdapter(_Header)
+
+
+def read_map_file(path: str | os.PathLike[str]) -> MapContent:
+    """Header, mask and arrays of a map's file, checked so far that kernels can take them.
+
+    Whether they are those of a map that is one to one, its certificate says.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    MapContent
 
     Raises
     ------
     ReadError
         The file is missing, damaged, of another format, or not a map.
     """
-    try:
-        if not zipfile.is_zipfile(path) and Path(path).is_file():
-            raise ReadError(f"{path} is not a map that DiskMap.save wrote, or it is damaged")
-        with Path(path).open("rb") as stream, np.load(stream) as file:
-            header = json.loads(str(file["header"]))
-            if header["format"] not in (_OLDER, _FORMAT):
-                raise ReadError(
-                    f"{path} is a map of format {header['format']}, this version reads formats {_OLDER} and "
-                    f"{_FORMAT}: make it again, with cytodisk map or map_to_disk"
-                )
-            if header["format"] == _OLDER and header["method"] == "newton":
-                header["method"] = "newton-triangles"
-            (y, x), (height, width) = header["corner"], header["image_shape"]
-            placed = PlacedMask(file["mask"], (y, x), (height, width))
-            arrays = {name: file[name] for name, _, _ in _EXPECTED}
-            _check(placed, arrays)
-            yield header, placed, arrays
-    except FileNotFoundError as error:
-        raise ReadError(f"{path} does not exist: pass a file that DiskMap.save wrote") from error
-    except (zipfile.BadZipFile, zlib.error, KeyError, TypeError, ValueError, OSError, EOFError) as error:
-        if isinstance(error, ReadError):
-            raise
-        raise ReadError(f"{path} is not a map that DiskMap.save wrote: {error}") from error
+    with reading_arrays(path, _WHAT, _REMEDY) as archive:
+        header = _read_header(path, archive)
+        arrays = _read_arrays(archive)
+        placed = _read_mask(archive, header, arrays["vertices_yx"])
+    return MapContent(header, placed, arrays)
 
 
-def _check(placed: PlacedMask, arrays: Mapping[str, FloatArray | IntArray]) -> None:
-    """Check that arrays have the kind and the size that kernels take for granted.
-
-    Raises
-    ------
-    ValueError
-        One has not.
-    """
-    box = placed.box
-    if box.dtype != bool or box.ndim != 2 or not box.any():
-        raise ValueError(f"its mask has dtype {box.dtype} and shape {box.shape}, or is empty")
-    if min(placed.corner) < 0 or (np.add(placed.corner, box.shape) > placed.image_shape).any():
-        raise ValueError(
-            f"its mask, of shape {box.shape} at {placed.corner}, is not in the image {placed.image_shape}"
+def _read_header(path: str | os.PathLike[str], archive: ArrayArchive) -> dict[str, Any]:
+    header = json_of(*archive.texts("header"))
+    version = header.get("format") if isinstance(header, dict) else None
+    if version not in (_OLDER, _FORMAT):
+        raise ReadError(
+            f"{path} is a map of format {short_words(version)}, this version reads formats {_OLDER} and "
+            f"{_FORMAT}: {_REMEDY}"
         )
-    n_vertices = len(arrays["vertices_yx"])
-    for name, kind, shape in _EXPECTED:
-        array = arrays[name]
-        if array.dtype.kind not in kind or array.ndim != len(shape) + 1 or array.shape[1:] != shape:
-            raise ValueError(f"{name} has dtype {array.dtype} and shape {array.shape}")
-        if kind == "f" and len(array) != n_vertices:
-            raise ValueError(f"{name} has shape {array.shape} for {n_vertices} vertices")
-        if kind != "f" and not (len(array) and array.min() >= 0 and array.max() < n_vertices):
-            raise ValueError(f"{name} name a vertex that does not exist")
+    found: dict[str, Any] = checked(header, _header, f"{path}: header", _REMEDY)
+    if version == _OLDER and found["method"] == "newton":
+        found["method"] = "newton-triangles"
+    return found
+
+
+def _read_arrays(archive: ArrayArchive) -> dict[str, Any]:
+    """Vertices, triangles and boundary: what kernels would follow out of their memory is an error."""
+    in_cell = archive.floats("vertices_yx", (None, 2), low=-_MOST_SIDE, high=2 * _MOST_SIDE)
+    n_vertices = len(in_cell)
+    in_disk = archive.floats("vertices_uv", (n_vertices, 2), low=-_FURTHEST, high=_FURTHEST)
+    triangles = archive.integers("triangles", (None, 3), least=0, most=n_vertices - 1)
+    boundary = archive.integers("boundary", (None,), least=0, most=n_vertices - 1)
+    if len(boundary) < 3 or not len(triangles):
+        raise archive.fault("boundary", f"has {len(boundary)} vertices around {len(triangles)} triangles")
+    if not _runs_round_once(in_disk[boundary]):
+        raise archive.fault("boundary", "does not run once around the disk")
+    return {"vertices_yx": in_cell, "vertices_uv": in_disk, "triangles": triangles, "boundary": boundary}
+
+
+def _runs_round_once(on_circle: FloatArray) -> bool:
+    u, v = on_circle.T
+    next_u, next_v = np.roll(u, -1), np.roll(v, -1)
+    turns = np.arctan2(u * next_v - v * next_u, u * next_u + v * next_v)
+    return bool(turns.min() > 0 and abs(turns.sum() - 2.0 * math.pi) < 1e-6)
+
+
+def _read_mask(archive: ArrayArchive, header: Mapping[str, Any], vertices_yx: FloatArray) -> PlacedMask:
+    """The mask, whose box must lie in the image, and around the vertices."""
+    slack = _BESIDE_PX + header["edge_length"]
+    low, high = vertices_yx.min(axis=0), vertices_yx.max(axis=0)
+    height, width = (int(side) for side in high - low + 2.0 * slack)
+    box = archive.truths("mask", (None, None), most=(height, width))
+    corner, image_shape = np.array(header["corner"]), header["image_shape"]
+    end = corner + box.shape
+    if (end > image_shape).any():
+        words = f"has shape {box.shape} at {header['corner']}, which is not in an image of {image_shape}"
+        raise archive.fault("mask", words)
+    if not box.any() or (low < corner - slack).any() or (high > end + slack).any():
+        raise archive.fault("mask", "is not that of the cell that vertices_yx describe")
+    return PlacedMask(box, tuple(header["corner"]), tuple(image_shape))

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import os
 import warnings
-import zipfile
-import zlib
 from dataclasses import astuple
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from cytodisk.array_archive import ArrayArchive, reading_arrays
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap, load_map
 from cytodisk.errors import EarlierVersionWarning, ReadError
@@ -21,6 +19,9 @@ from cytodisk.motion.registration import RigidTransform
 from cytodisk.motion.tracking import TrackedBoundary
 
 _NO_MATCH = np.empty((2, 0))  # of a first frame, and of the paper's tracker
+_REMEDY = "run cytodisk movie again"
+_FURTHEST_PX = 1e8  # along an outline, or from a frame to the movie's first
+_MOST_FRAMES = 10**6
 
 
 def save_frame(path: str | os.PathLike[str], frame: MappedFrame) -> None:
@@ -105,30 +106,39 @@ def load_frame(path: str | os.PathLike[str], path_at: dict[int, Path]) -> Mapped
 
 
 def _read(path: str | os.PathLike[str], disk: DiskMap | None) -> tuple[TrackedBoundary, int]:
-    outline = (disk or load_map(path)).outline_yx
-    try:
-        with Path(path).open("rb") as stream, np.load(stream) as file:
-            number, reference_frame, violations = (int(value) for value in file["track_times"])
-            transform, alignment = (RigidTransform(*row) for row in file["track_transforms"].tolist())
-            boundary = TrackedBoundary(
-                number,
-                Contour.of_outline(outline),
-                file["track_s"],
-                transform,
-                alignment,
-                float(file["track_residual_px"]),
-                violations,
-                str(file["track_restarted"]),
-                _match(path, file) if number != reference_frame else None,
-            )
-            return boundary, reference_frame
-    except (zipfile.BadZipFile, zlib.error, KeyError, ValueError, OSError, EOFError) as error:
-        raise ReadError(f"{path} holds no tracked boundary: {error}") from error
+    contour = Contour.of_outline((disk or load_map(path)).outline_yx)
+    with reading_arrays(path, "the map of a movie's frame", _REMEDY) as archive:
+        if "track_s" not in archive.names:
+            raise ReadError(f"{path} holds no tracked boundary: it is no frame of a movie, or {_REMEDY}")
+        times = archive.integers("track_times", (3,), least=0, most=_MOST_FRAMES)
+        number, reference_frame, violations = times.tolist()
+        rows = archive.floats("track_transforms", (2, 3), low=-_FURTHEST_PX, high=_FURTHEST_PX)
+        transform, alignment = (RigidTransform(*row) for row in rows.tolist())
+        boundary = TrackedBoundary(
+            number,
+            contour,
+            _places(archive, contour),
+            transform,
+            alignment,
+            float(archive.floats("track_residual_px", (), low=0.0, high=_FURTHEST_PX)),
+            violations,
+            archive.texts("track_restarted")[0],
+            _match(path, archive) if number != reference_frame else None,
+        )
+    return boundary, reference_frame
 
 
-def _match(path: str | os.PathLike[str], file: Any) -> FloatArray | None:
+def _places(archive: ArrayArchive, contour: Contour) -> FloatArray:
+    """Tracked points along the contour, in order through one turn."""
+    s = archive.floats("track_s", (None,), low=-_FURTHEST_PX, high=_FURTHEST_PX)
+    if len(s) < 3 or not (np.diff(s) > 0).all() or s[-1] - s[0] >= contour.length:
+        raise archive.fault("track_s", "does not go once around the outline")
+    return s
+
+
+def _match(path: str | os.PathLike[str], archive: ArrayArchive) -> FloatArray | None:
     """Match of the step to this frame, None if there is none; a file that does not say so is told."""
-    if "track_matched_s" not in file:
+    if "track_matched_s" not in archive.names:
         warnings.warn(
             f"{path} was written by an earlier version: velocity is taken from its tracked points alone, and "
             "that of a thin protrusion gets lost; run cytodisk movie again",
@@ -136,5 +146,5 @@ def _match(path: str | os.PathLike[str], file: Any) -> FloatArray | None:
             stacklevel=4,
         )
         return None
-    matched = np.asarray(file["track_matched_s"], dtype=np.float64)
+    matched = archive.floats("track_matched_s", (2, None), low=-_FURTHEST_PX, high=_FURTHEST_PX)
     return matched if matched.size else None
