@@ -47,4 +47,5 @@ def test_mean_counts_windows_by_their_pixels_and_leaves_unknown_ones_out() -> No
             "n_pixels": [3.0, 1.0, 2.0, 9.0],
         }
     )
-    assert mean_by_frame(windows).tolist() == [2.0, 3.0]
+    assert mean_by_frame([windows]).tolist() == [2.0, 3.0]
+    assert mean_by_frame([windows[:1], windows[1:]]).tolist() == [2.0, 3.0]

@@ -10,6 +10,7 @@ from typing import Any
 from cytodisk.runs.qc_flags.qc_flag import Place
 from cytodisk.store.study import Study
 from cytodisk.store.study_kind import PARAMETERS
+from cytodisk.store.window_blocks import window_blocks
 
 _LONGEST_NAME = 60
 _MOST_LEFT_OUT = 0.25  # of the frames of a movie: more leave no series
@@ -85,16 +86,21 @@ def without_frames(study: Study, places: Iterable[Place], after: int = 0) -> str
         Of the first correlation there is, else of the first channel; empty without a signal, or where
         more than a quarter of the movie would be left out.
     """
-    channels = study.windows["channel"].dropna()
-    if channels.empty:
+    channel = _first_channel(study)
+    if channel is None:
         return ""
     frames = sorted(
         {place.frame + k for place in places if place.frame is not None for k in range(after + 1)}
     )
     if len(frames) > _MOST_LEFT_OUT * study.cells["frame"].nunique():
         return ""
-    names = study.correlations[0] if study.correlations else (str(channels.iloc[0]), "velocity")
+    names = study.correlations[0] if study.correlations else (channel, "velocity")
     return f" Or correlate without these frames: {_without(study, names, frames)}"
+
+
+def _first_channel(study: Study) -> str | None:
+    blocks = (block["channel"].dropna() for block in window_blocks(study, "channel"))
+    return next((str(channels.iloc[0]) for channels in blocks if not channels.empty), None)
 
 
 def _without(study: Study, names: Sequence[str], frames: Sequence[int]) -> str:

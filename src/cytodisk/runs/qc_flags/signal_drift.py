@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +11,7 @@ from scipy.stats import kendalltau, theilslopes
 
 from cytodisk.arrays import FloatArray
 from cytodisk.store.study import Study
+from cytodisk.store.window_blocks import has_signal, window_blocks
 
 FEWEST_FRAMES = 8
 """A trend needs so many frames."""
@@ -19,6 +20,7 @@ LARGEST_CHANGE = 0.15
 STEADINESS = 0.5
 """Kendall's τ of a trend: it goes one way, rather than up and down."""
 
+_KEYS = ["cell", "channel", "frame"]
 _MOST_FRAMES = 500  # that a trend is fitted to, as time and memory grow with their square
 
 
@@ -44,23 +46,27 @@ class Drift:
         return f"{self.channel} " + f"{self.change:+.0%} over the movie".replace("-", "−")
 
 
-def mean_by_frame(windows: pd.DataFrame) -> pd.Series[float]:
+def mean_by_frame(blocks: Iterable[pd.DataFrame]) -> pd.Series[float]:
     """Mean signal of each cell by channel and frame.
 
     Parameters
     ----------
-    windows : DataFrame
-        As `Study.windows` of a movie with a signal.
+    blocks : iterable of DataFrame
+        Rows of `Study.windows` of a movie with a signal, with its columns `cell`, `channel`, `frame`, `mean`
+        and `n_pixels`.
 
     Returns
     -------
     Series
         By cell, channel and time; windows count by their pixels, those without a mean not at all.
     """
-    known = windows[windows["mean"].notna()]
-    pixels = known["n_pixels"]
-    keys = [known["cell"], known["channel"], known["frame"]]
-    return (known["mean"] * pixels).groupby(keys).sum() / pixels.groupby(keys).sum()
+    sums = [
+        block.assign(sum=block["mean"] * block["n_pixels"]).groupby(_KEYS)[["sum", "n_pixels"]].sum()
+        for block in (some[some["mean"].notna()] for some in blocks)
+    ]
+    total = pd.concat(sums).groupby(level=_KEYS).sum()
+    mean: pd.Series[float] = total["sum"] / total["n_pixels"]
+    return mean
 
 
 def relative_trend(time: FloatArray, mean: FloatArray) -> float:
@@ -107,11 +113,12 @@ def signal_drifts(study: Study) -> list[Drift]:
     list of Drift
         By cell, then channel; empty without a signal.
     """
-    return list(_drifts(study)) if "mean" in study.windows else []
+    return list(_drifts(study)) if has_signal(study) else []
 
 
 def _drifts(study: Study) -> Iterator[Drift]:
-    means = mean_by_frame(study.windows).rename("mean").reset_index()
+    blocks = window_blocks(study, *_KEYS, "mean", "n_pixels")
+    means = mean_by_frame(blocks).rename("mean").reset_index()
     means = means.merge(_area_by_edge(study.cells), on=["cell", "frame"], how="left")
     for (cell, channel), rows in means.groupby(["cell", "channel"]):
         time, mean, width = (np.asarray(rows[name], dtype=np.float64) for name in ("frame", "mean", "width"))
