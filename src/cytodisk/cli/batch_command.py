@@ -2,7 +2,7 @@
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -70,14 +70,21 @@ def _list_inputs(batch: "Batch") -> None:
     from dataclasses import astuple, fields
 
     from cytodisk.runs.batch.dry_run import Understood, understand
+    from cytodisk.store.csv_tables import text_made_harmless
 
-    lines = csv.writer(sys.stdout, lineterminator="\n")  # which writes None as an empty field
+    writer = csv.writer(sys.stdout, lineterminator="\n")  # which writes None as an empty field
+
+    def write(*values: Any) -> None:
+        writer.writerow(
+            [text_made_harmless(str(one)) if isinstance(one, str | Path) else one for one in values]
+        )
+
     understood = [field.name for field in fields(Understood)]
-    lines.writerow(["name", "kind", "masks", "signal", *batch.columns, *understood])
+    write("name", "kind", "masks", "signal", *batch.columns, *understood)
     faults = 0
     for item in batch.inputs:
         found = understand(item)
-        lines.writerow([item.name, item.kind, item.masks, item.signal, *item.columns, *astuple(found)])
+        write(item.name, item.kind, item.masks, item.signal, *item.columns, *astuple(found))
         faults += bool(found.fault)
     if faults:
         fail(f"{faults} of {count(len(batch.inputs), 'input')} cannot be used: the column fault says why")

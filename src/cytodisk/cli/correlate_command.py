@@ -10,6 +10,7 @@ from cytodisk.cli.correlation_words import say_correlation, say_replaced, say_ve
 from cytodisk.cli.flag_words import say_flags, say_study_flags
 from cytodisk.cli.options import Figures, Given, MovieStudy, Quiet, with_parameters
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
+from cytodisk.runs.run_options import TableOptions
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -21,7 +22,7 @@ NOTHING_CHANGED = "Stopped; nothing was changed."
 Format = Literal["png", "pdf", "svg"]
 
 
-@with_parameters(CorrelateParameters)
+@with_parameters(CorrelateParameters, TableOptions)
 def correlate_command(
     study: MovieStudy,
     given: Given,
@@ -39,13 +40,15 @@ def correlate_command(
     from cytodisk.runs.correlate.correlate_study import channels_of, correlate_study
 
     wanted = _formats(formats)
-    settings = given.of(CorrelateParameters)
+    settings, options = given.of(CorrelateParameters), given.options(TableOptions)
     console = console_for(quiet)
     there = opened(console, study)
     chosen = signal if signal is not None else _only(channels_of(there))
     say_replaced(console, earlier_settings(there, chosen, with_, settings.name), settings.model_dump())
     with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
-        found = correlate_study(there, chosen, with_, cells=cell, progress=progress, parameters=settings)
+        found = correlate_study(
+            there, chosen, with_, cells=cell, progress=progress, parameters=settings, **dict(options)
+        )
     draw_correlation(quiet, there, found, figures, wanted)
     say_correlation(console, found, there)
     say_study_flags(console, opened(None, study), found)

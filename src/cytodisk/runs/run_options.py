@@ -14,19 +14,10 @@ def silent(done: int, total: int) -> None:
     """Report nothing."""
 
 
-class RunOptions(Parameters):
-    """How a run is done."""
+class TableOptions(Parameters):
+    """How tables are written."""
 
-    exclusive: ClassVar[tuple[tuple[str, str], ...]] = (("resume", "overwrite"),)
-
-    workers: int = parameter(1, "Number of processes. The results do not depend on it.", least=1)
-    resume: bool = parameter(False, "Go on with the same run in this folder.")
-    overwrite: bool = parameter(False, "Replace the results in this folder.")
-
-    @property
-    def again(self) -> dict[str, bool]:
-        """What to do with results that are there; see `StudyFolder.start`."""
-        return {"resume": self.resume, "overwrite": self.overwrite}
+    csv: bool = parameter(False, "Write every table as CSV too, for Excel and other programs.")
 
     @classmethod
     def split(cls, settings: Mapping[str, Any], model: type[Parameters]) -> tuple[Self, dict[str, Any]]:
@@ -44,6 +35,21 @@ class RunOptions(Parameters):
         return cls(**own), {name: value for name, value in settings.items() if name not in own}
 
 
+class RunOptions(TableOptions):
+    """How a run is done."""
+
+    exclusive: ClassVar[tuple[tuple[str, str], ...]] = (("resume", "overwrite"),)
+
+    workers: int = parameter(1, "Number of processes. The results do not depend on it.", least=1)
+    resume: bool = parameter(False, "Go on with the same run in this folder.")
+    overwrite: bool = parameter(False, "Replace the results in this folder.")
+
+    @property
+    def again(self) -> dict[str, bool]:
+        """What to do with results that are there; see `StudyFolder.start`."""
+        return {"resume": self.resume, "overwrite": self.overwrite}
+
+
 class MapOptions(RunOptions):
     """How a run of `cytodisk map` is done."""
 
@@ -54,6 +60,10 @@ class MapOptions(RunOptions):
 class BatchOptions(RunOptions):
     """How a batch is done."""
 
+    csv: bool = parameter(
+        False,
+        "Write every merged table as CSV too, for Excel and other programs; inputs.csv is always there.",
+    )
     time_limit: float | None = parameter(
         None, "Longest time that one input may take; without it any.", above=0, unit="s"
     )

@@ -13,6 +13,7 @@ from cytodisk.checks import is_path
 from cytodisk.parameters import Parameters
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.run_options import RunOptions
+from cytodisk.store.csv_tables import check_csv_room, has_csv_tables, write_csv_tables
 from cytodisk.store.study_folder import StudyFolder
 from cytodisk.store.study_kind import PARAMETERS, StudyKind
 from cytodisk.store.study_room import alone_in
@@ -75,8 +76,13 @@ class StudyRun:
         is_path("out", out)
         options, place = self.options, Path(out)
         with alone_in(out):
+            kind, tables_of = self.kind, self.kind.table_files
+            csv = options.csv or (options.resume and has_csv_tables(place, tables_of))
+            if csv:
+                check_csv_room(place, tables_of)
+                kind = kind.with_csv
             if not (options.resume and StudyFolder.is_complete(out, self.provenance)):
-                folder = StudyFolder.start(out, self.provenance, self.kind, **options.again)
+                folder = StudyFolder.start(out, self.provenance, kind, **options.again)
                 write_parameters(self.parameters, place / PARAMETERS)
                 keys, warnings = work(folder)
                 folder.note("warnings", list(warnings))
@@ -84,4 +90,6 @@ class StudyRun:
                 folder.finish(list(keys), tables)
             if after is not None:
                 after(place)
+            if csv:
+                write_csv_tables(place, tables_of)
             return read(place)

@@ -1,12 +1,12 @@
 """The file beside the tables of a folder that says what each of their columns means."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from cytodisk.files import replacing
+from cytodisk.store.csv_tables import write_csv
 from cytodisk.store.tables import Columns, unit_of
 
 COLUMNS_CSV = "columns.csv"
@@ -29,6 +29,10 @@ def write_columns(folder: Path, tables: Mapping[str, Columns], provenance: Mappi
         for name, columns in tables.items()
         for column in columns
     ]
+    write_columns_file(folder, rows)
+
+
+def write_columns_file(folder: Path, rows: Sequence[tuple[str, str, str, str]]) -> None:
+    """Write the file from its rows: table, column, unit and meaning."""
     table = pd.DataFrame(rows, columns=["table", "column", "unit", "meaning"])
-    with replacing(folder / COLUMNS_CSV) as temporary:
-        table.to_csv(temporary, index=False)
+    write_csv(table, folder / COLUMNS_CSV)

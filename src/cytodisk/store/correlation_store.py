@@ -17,6 +17,7 @@ import pyarrow as pa
 
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.store.columns_file import write_columns
+from cytodisk.store.csv_tables import parquet_to_csv
 from cytodisk.store.provenance_file import read_provenance, record_files
 from cytodisk.store.tables import Columns, read_table, write_table
 
@@ -117,6 +118,7 @@ def write_correlation(
     columns: Mapping[str, Columns],
     settings: dict[str, Any],
     name: str = "",
+    csv: bool = False,
 ) -> Correlation:
     """Write a correlation whole, in place of the one that was there.
 
@@ -131,6 +133,8 @@ def write_correlation(
     settings : dict
     name : str
         Name of a variant, which stands beside the others.
+    csv : bool
+        Write every table as CSV too.
 
     Returns
     -------
@@ -149,7 +153,10 @@ def write_correlation(
         shutil.rmtree(temporary, ignore_errors=True)  # of an earlier process with this number
         temporary.mkdir(parents=True)
         for table_name, table in tables.items():
-            write_table(table, temporary / f"{table_name}.parquet")
+            file = temporary / f"{table_name}.parquet"
+            write_table(table, file)
+            if csv:
+                parquet_to_csv(file, file.with_suffix(".csv"))
         told = {
             table_name: tuple(column for column in columns[table_name] if column.name in table)
             for table_name, table in tables.items()

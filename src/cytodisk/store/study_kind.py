@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from cytodisk.store.columns_file import COLUMNS_CSV
+from cytodisk.store.csv_tables import csv_of
 from cytodisk.store.provenance_file import FORMAT, PROVENANCE
 from cytodisk.store.tables import Columns
 
@@ -46,6 +47,18 @@ class StudyKind:
     def tables(self) -> dict[str, Columns]:
         """Columns of all tables, by name."""
         return {"cells": self.cells, **self.others}
+
+    @property
+    def table_files(self) -> tuple[str, ...]:
+        """Names of the files of all tables."""
+        own = (file for file in self.files if file.endswith(".parquet"))
+        return (*(f"{name}.parquet" for name in self.tables), *own)
+
+    @property
+    def with_csv(self) -> StudyKind:
+        """The same where every table is written as CSV too."""
+        new = tuple(name for name in map(csv_of, self.table_files) if name not in self.files)
+        return replace(self, files=(*self.files, *new))
 
     @property
     def provenance(self) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from cytodisk.runs.batch.batch_faults import Faults
 from cytodisk.runs.batch.batch_file_rows import COLUMNS, KEYS, PARAMETERS_OF, FileRow, RowReader
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.batch.input_columns import OWN_COLUMNS
+from cytodisk.store.csv_tables import text_as_meant
 from cytodisk.store.tables import (
     CONSISTENCY_COLUMNS,
     EDGE_COLUMNS,
@@ -143,7 +144,8 @@ def _rows_of_table(table: Path, columns: tuple[str, ...], faults: Faults) -> lis
     text = _read(table)
     separator = max(",;\t", key=text.lstrip().partition("\n")[0].count)
     reader = csv.reader(StringIO(text), delimiter=separator, strict=True)
-    filled = ([field.strip() for field in fields] for fields in reader if any(map(str.strip, fields)))
+    stripped = ([field.strip() for field in fields] for fields in reader)
+    filled = (list(map(text_as_meant, fields)) for fields in stripped if any(fields))
     rows = []
     try:
         names = next(filled, [])

@@ -14,17 +14,22 @@ from cytodisk.errors import OtherRunError, StudyError
 from cytodisk.runs.batch.batch_file import Batch
 from cytodisk.runs.batch.input_row import ROWS, STUDIES
 from cytodisk.runs.versions import NUMERIC, installed
+from cytodisk.store.columns_file import COLUMNS_CSV
+from cytodisk.store.csv_tables import csv_of, other_csv_words
 from cytodisk.store.provenance_file import FORMAT, MAPS, PROVENANCE, command_of, own_files, parse_provenance
 from cytodisk.store.study_room import check_room
 from cytodisk.store.targets import Store
 from cytodisk.store.url_store import is_url
 
+_TABLES = tuple(f"{name}.parquet" for name in ("inputs", "cells", "windows", "edge", "consistency"))
+_CSV = tuple(map(csv_of, _TABLES))
 _FILES = (
     PROVENANCE,
     ROWS,
     STUDIES,
-    *(f"{name}.parquet" for name in ("inputs", "cells", "windows", "edge", "consistency")),
-    "inputs.csv",
+    *_TABLES,
+    _CSV[0],
+    COLUMNS_CSV,
 )
 
 
@@ -81,12 +86,38 @@ def refuse_inputs_inside(batch: Batch, target: str) -> None:
                 )
 
 
-def describe_batch(batch: Batch) -> dict[str, Any]:
+def wants_csv(store: Store, target: str, asked: bool, resume: bool) -> bool:
+    """Whether all tables are to be written as CSV too: if asked for, or done by the run that goes on.
+
+    Parameters
+    ----------
+    store : Store
+    target : str
+        Name of the folder, for messages.
+    asked, resume : bool
+
+    Raises
+    ------
+    StudyError
+        A file that no batch wrote stands in the place of a table.
+    """
+    there = parse_provenance(store.read_text(PROVENANCE) or "null") or {}
+    ours = {*_FILES, *own_files(there)}
+    if ours >= {*_CSV}:
+        return asked or resume
+    if asked and (others := [name for name in store.names("") if name in _CSV and name not in ours]):
+        raise StudyError(other_csv_words(f"{target.rstrip('/')}/{others[0]}"))
+    return asked
+
+
+def describe_batch(batch: Batch, csv: bool = False) -> dict[str, Any]:
     """Provenance of a batch that starts now.
 
     Parameters
     ----------
     batch : Batch
+    csv : bool
+        All tables are written as CSV too.
 
     Returns
     -------
@@ -99,7 +130,7 @@ def describe_batch(batch: Batch) -> dict[str, Any]:
         "command": "cytodisk batch",
         "reader": f"open one of the studies in {STUDIES}/, or read its tables with pandas.read_parquet",
         "format": FORMAT,
-        "files": list(_FILES),
+        "files": list(dict.fromkeys((*_FILES, *(_CSV if csv else ())))),
         "status": "running",
         "fingerprint": {
             "cytodisk": installed(("cytodisk",))["cytodisk"],

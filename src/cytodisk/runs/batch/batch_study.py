@@ -19,6 +19,7 @@ from cytodisk.runs.batch.batch_folder import (
     now,
     refuse_inputs_inside,
     remove_left_overs,
+    wants_csv,
 )
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.batch.batch_target import begin_run, open_store
@@ -118,7 +119,8 @@ def batch_study(
         refuse_inputs_inside(batch, target)
     store = open_store(target)
     with store.alone():
-        provenance = describe_batch(batch)
+        csv = wants_csv(store, target, options.csv, resume)
+        provenance = describe_batch(batch, csv)
         make_room(store, provenance, target, resume, options.overwrite)
         summary = BatchSummary(target)
         pending = list(batch.inputs)
@@ -134,7 +136,7 @@ def batch_study(
             results = _on_cluster(tasks, scheduler, target, tell)
         try:
             _take(results, len(pending), len(batch.inputs), progress or silent)
-            summary.remarks += merge_batch(store, batch, summary.count)
+            summary.remarks += merge_batch(store, batch, summary.count, csv)
             note(store, provenance | {"status": "complete", "finished": now(), "warnings": summary.remarks})
         except WriteError as error:
             raise WriteError(

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
-import pyarrow.csv
 import pyarrow.parquet as pq
 
 from cytodisk.errors import StudyError
@@ -18,6 +17,8 @@ from cytodisk.runs.batch.input_columns import INPUT, INPUT_COLUMNS, UNITS
 from cytodisk.runs.batch.input_row import InputRow, read_row, row_key, study_key
 from cytodisk.runs.map.map_kind import MAP
 from cytodisk.runs.movie.movie_kind import MOVIE
+from cytodisk.store.columns_file import COLUMNS_CSV, write_columns_file
+from cytodisk.store.csv_tables import csv_of, parquet_to_csv
 from cytodisk.store.merging import merge_tables, write_rows
 from cytodisk.store.tables import Column, Columns, schema
 from cytodisk.store.targets import Store
@@ -37,8 +38,8 @@ class _Done:
     qc_flags: int
 
 
-def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None]) -> list[str]:
-    """Write the merged tables.
+def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None], csv: bool = False) -> list[str]:
+    """Write the merged tables, and what their columns are.
 
     They depend on the inputs alone, to the last bit: not on the number of workers, nor on whether the run was
     stopped and resumed. So columns with running times are not in them.
@@ -50,6 +51,8 @@ def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None]) -> 
     batch : Batch
     saw : callable
         Called with the row of each input.
+    csv : bool
+        Write every table as CSV too, not that of inputs alone.
 
     Returns
     -------
@@ -64,17 +67,25 @@ def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None]) -> 
     own = _own_columns(batch)
     done: list[_Done] = []
     with store.work_folder() as folder:
-        file = folder / f"{INPUTS}.parquet"
-        write_rows(_input_rows(store, batch, done, saw), schema((*own, *INPUT_COLUMNS), ""), file)
-        _write_csv(file, folder / f"{INPUTS}.csv")
-        names = [f"{INPUTS}.csv", file.name]
-        for name, columns in _tables(batch).items():
+        file, columns = folder / f"{INPUTS}.parquet", (*own, *INPUT_COLUMNS)
+        columns_schema = schema(columns, "")
+        write_rows(_input_rows(store, batch, done, saw), columns_schema, file)
+        parquet_to_csv(file, folder / csv_of(file.name))
+        names = [csv_of(file.name), file.name]
+        told = [*_told(INPUTS, columns, columns_schema)]
+        for name, measured in _tables(batch).items():
             having = [one for one in done if one.item.kind == "movie" or name in _OF_MAPS]
-            columns_schema = _schema((*own, *_unit_columns(columns), *columns), having)
+            columns = (*own, *_unit_columns(measured), *measured)
+            columns_schema = _schema(columns, having)
             file = folder / f"{name}.parquet"
             merge_tables(_parts(store, having, name, batch, columns_schema), columns_schema, file)
             names.append(file.name)
-        for name in names:
+            if csv:
+                parquet_to_csv(file, folder / csv_of(file.name))
+                names.append(csv_of(file.name))
+            told += _told(name, columns, columns_schema)
+        write_columns_file(folder, told)
+        for name in (*names, COLUMNS_CSV):
             store.put_file(folder / name, name)
     return list(_remarks(done))
 
@@ -159,10 +170,11 @@ def _shown(path: Path, folder: Path) -> str:
     return (path.relative_to(folder) if path.is_relative_to(folder) else path).as_posix()
 
 
-def _write_csv(table: Path, target: Path) -> None:
-    with pq.ParquetFile(table) as rows, pa.csv.CSVWriter(target, rows.schema_arrow) as writer:
-        for some in rows.iter_batches():
-            writer.write_batch(some)
+def _told(name: str, columns: Columns, found: Any) -> Iterator[tuple[str, str, str, str]]:
+    """Rows of the file of columns for a table, with the units that its schema has."""
+    for column in columns:
+        unit = found.field(column.name).metadata[b"unit"].decode()
+        yield f"{name}.parquet", column.name, unit, column.meaning
 
 
 def _schema(columns: Columns, done: Sequence[_Done]) -> Any:

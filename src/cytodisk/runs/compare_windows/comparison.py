@@ -13,7 +13,6 @@ import pandas as pd
 import xarray as xr
 
 from cytodisk.errors import ReadError
-from cytodisk.files import replacing
 from cytodisk.runs.compare_windows.compare_columns import (
     BY_LAYER,
     BY_METHOD,
@@ -24,6 +23,7 @@ from cytodisk.runs.compare_windows.compare_columns import (
 )
 from cytodisk.runs.compare_windows.compare_summaries import layer_summary, method_summary, movie_summary
 from cytodisk.scale import Scale
+from cytodisk.store.csv_tables import write_csv
 from cytodisk.store.provenance_file import read_complete
 from cytodisk.store.study import CONSISTENCY
 from cytodisk.store.study_folder import part_key
@@ -192,5 +192,4 @@ def write_summaries(path: Path) -> None:
         Its folder.
     """
     for name, table in open_comparison(path).summaries.items():
-        with replacing(path / name) as temporary:
-            table.to_csv(temporary, index=False, float_format="%.6g")
+        write_csv(table, path / name)

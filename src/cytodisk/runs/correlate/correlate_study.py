@@ -30,6 +30,7 @@ def correlate_study(
     cells: list[int] | None = None,
     progress: Progress | None = None,
     parameters: CorrelateParameters | None = None,
+    csv: bool = False,
     **settings: Any,
 ) -> Correlation:
     """Correlate a signal with edge velocity or another signal in all cells of a study, and write the tables.
@@ -46,6 +47,8 @@ def correlate_study(
         All by default. A cell that cannot be correlated has a row in the table of cells that says why.
     progress : callable, optional
         Called with (steps done, in all).
+    csv : bool
+        Write every table as CSV too.
     **settings
         Fields of `CorrelateParameters`: max_lag, against, rule, detrend, difference, surrogates, and others.
 
@@ -90,7 +93,9 @@ def correlate_study(
     tables["cells"]["qc_flags"] = flags_by_cell(
         study, UnwrittenCorrelation(study.path, signal, with_, options.name, content, tables)
     )
-    return write_correlation(study.path, signal, with_, tables, CORRELATION_TABLES, content, options.name)
+    return write_correlation(
+        study.path, signal, with_, tables, CORRELATION_TABLES, content, options.name, csv
+    )
 
 
 def channels_of(study: Study) -> list[str]:

@@ -7,13 +7,13 @@ from typing import Any
 
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.correlate.correlate_study import correlate_study
-from cytodisk.runs.run_options import Progress
+from cytodisk.runs.run_options import Progress, TableOptions
 from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.study import Study, open_study
 from cytodisk.taking import takes
 
 
-@takes(CorrelateParameters)
+@takes(CorrelateParameters, TableOptions)
 def run_correlate(
     study: str | os.PathLike[str] | Study,
     signal: str,
@@ -43,7 +43,7 @@ def run_correlate(
     parameters : CorrelateParameters, optional
         All parameters together; those that are given by name overrule them.
     **settings
-        See `CorrelateParameters`.
+        See `CorrelateParameters` and `TableOptions`.
 
     Returns
     -------
@@ -75,5 +75,8 @@ def run_correlate(
     (16, 3)
     """
     there = study if isinstance(study, Study) else open_study(study)
-    chosen = CorrelateParameters.chosen(parameters, settings)
-    return correlate_study(there, signal, with_, cells=cells, progress=progress, parameters=chosen)
+    options, values = TableOptions.split(settings, CorrelateParameters)
+    chosen = CorrelateParameters.chosen(parameters, values)
+    return correlate_study(
+        there, signal, with_, cells=cells, progress=progress, parameters=chosen, **dict(options)
+    )

@@ -22,7 +22,13 @@ from cytodisk.runs.cells.cell_parts import CellRun, CellTask, Rows
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.run_options import Progress, RunOptions, silent
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
-from cytodisk.runs.shapes.shape_tables import SHAPE_STUDY, open_shapes, shape_table, write_shapes
+from cytodisk.runs.shapes.shape_tables import (
+    SHAPE_STUDY,
+    open_shapes,
+    shape_table,
+    write_shape_columns,
+    write_shapes,
+)
 from cytodisk.runs.study_run import StudyRun
 from cytodisk.runs.versions import installed
 from cytodisk.scale import Scale
@@ -106,7 +112,7 @@ def shape_study(
         return keys, [*inputs.remarks, *_warnings(table)]
 
     run = StudyRun(SHAPE_STUDY, _describe(inputs, parameters), parameters, options)
-    return run.into(out, work, open_shapes)
+    return run.into(out, work, open_shapes, after=write_shape_columns)
 
 
 def _describe(inputs: CellInputs, parameters: ShapeParameters) -> dict[str, Any]:

@@ -15,8 +15,10 @@ from cytodisk.analysis.shape.features import FEATURES, GROUPS, SCALE_FREE, featu
 from cytodisk.analysis.shape.score_parameters import ScoreParameters
 from cytodisk.files import replacing
 from cytodisk.scale import Scale
+from cytodisk.store.columns_file import write_columns_file
+from cytodisk.store.csv_tables import write_csv
 from cytodisk.store.provenance_file import read_complete
-from cytodisk.store.study_kind import StudyKind
+from cytodisk.store.study_kind import CELLS, StudyKind
 from cytodisk.store.tables import (
     CELL,
     FRAME,
@@ -34,6 +36,11 @@ from cytodisk.store.tables import (
 
 SHAPES, SHAPES_CSV, FEATURES_CSV = "shapes.parquet", "shapes.csv", "features.csv"
 SCORES = ("complexity", "umap_1", "umap_2")
+_SCORE_WORDS = {
+    "complexity": "place of the shape among those of the run, from plain to complex; empty if there are few",
+    "umap_1": "first coordinate of the shape in the plane of the score",
+    "umap_2": "second coordinate of the shape in the plane of the score",
+}
 _CELL: Columns = (CELL, SOURCE, FRAME, LABEL, STATUS, REASON, NOTES, QC_FLAGS, TOUCHES_BORDER)
 SHAPE_STUDY = StudyKind(
     "shapes",
@@ -85,10 +92,23 @@ def write_shapes(table: pd.DataFrame, folder: Path) -> None:
     """
     with replacing(folder / SHAPES) as temporary:
         write_table(table, temporary)
-    with replacing(folder / SHAPES_CSV) as temporary:
-        table.to_csv(temporary, index=False)
-    with replacing(folder / FEATURES_CSV) as temporary:
-        describe_features(table.attrs["units"]).to_csv(temporary, index=False)
+    write_csv(table, folder / SHAPES_CSV)
+    write_csv(describe_features(table.attrs["units"]), folder / FEATURES_CSV)
+
+
+def write_shape_columns(folder: Path) -> None:
+    """Write what the columns of all tables in the folder of a complete run are.
+
+    Parameters
+    ----------
+    folder : Path
+    """
+    units = read_table(folder / SHAPES).attrs["units"]
+    meanings = {column.name: column.meaning for column in _CELL} | _SCORE_WORDS
+    meanings |= {feature.name: feature.description for feature in FEATURES}
+    told = [(SHAPES, name, unit, meanings[name]) for name, unit in units.items()]
+    cells = [(CELLS, column.name, column.unit, column.meaning) for column in _CELL]
+    write_columns_file(folder, [*cells, *told])
 
 
 def describe_features(units: dict[str, str]) -> pd.DataFrame:
