@@ -10,6 +10,7 @@ import tifffile
 from movie_files import SMALL, Stopped, stop_after, write_masks, write_movie
 
 import cytodisk as cd
+from cytodisk.images.frames import open_frames
 from cytodisk.runs.channel_names import channels_words
 from cytodisk.runs.correlate.correlate_study import correlate_study
 from cytodisk.runs.flagged_cells import names_by_row
@@ -118,7 +119,13 @@ def test_flags_of_a_correlation_stand_in_its_table_of_cells(tmp_path: Path) -> N
     assert "drifting series" not in detrended.cells["qc_flags"].iloc[0].split("; ")
 
 
-def test_channels_without_a_name_say_how_to_name_them() -> None:
-    assert channels_words(["Rac1", "RhoA"]) == "channels Rac1, RhoA"
-    assert channels_words(["0"]) == "1 channel without a name: it is called 0 (name it: --channels Rac1)"
-    assert "they are called 0, 1 (name them: --channels Rac1,RhoA)" in channels_words(["0", "1"])
+def test_channels_without_a_name_say_how_to_name_them(tmp_path: Path) -> None:
+    named = {"axes": "CYX", "Channel": {"Name": ["Rac1", "RhoA"]}}
+    tifffile.imwrite(tmp_path / "a.ome.tif", np.zeros((2, 5, 6), dtype=np.uint8), metadata=named)
+    assert channels_words(open_frames(tmp_path / "a.ome.tif")) == "channels Rac1, RhoA"
+    tifffile.imwrite(tmp_path / "cell.tif", np.zeros((5, 6), dtype=np.uint8))
+    words = channels_words(open_frames(tmp_path / "cell.tif"))
+    assert words == "1 channel without a name: it is called cell (name it: --channels Rac1)"
+    tifffile.imwrite(tmp_path / "c.ome.tif", np.zeros((2, 5, 6), dtype=np.uint8), metadata={"axes": "CYX"})
+    words = channels_words(open_frames(tmp_path / "c.ome.tif"))
+    assert "they are called c 1, c 2 (name them: --channels Rac1,RhoA)" in words

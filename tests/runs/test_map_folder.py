@@ -206,7 +206,7 @@ def test_an_image_with_other_channels_is_refused(place: Path, tmp_path: Path) ->
     tifffile.imwrite(place / "images" / "im11.ome.tif", image[0])
     inputs = open_inputs(place / "masks", place / "images", SMALL)
     fault = str(inputs.signals["im11_cp_masks.tif"].fault)
-    assert "has the channels 0, im9.ome.tif and most others have Rac1, RhoA" in fault
+    assert "has one channel without a name, im9.ome.tif and most others have Rac1, RhoA" in fault
     assert inputs.remarks == ("1 of 3 images have other channels than Rac1, RhoA: they are left out",)
     assert inputs.signals["im10_cp_masks.tif"].fault is None
 

@@ -171,7 +171,7 @@ def test_nan_in_the_signal_is_counted_in_its_frame(tmp_path: Path) -> None:
     study = ran(tmp_path, MASKS, counts)
     assert study.cells["nan_px"].tolist() == [0, 0, 1, 0, 0, 0]
     lost = study.windows[study.windows["status"] == "NaN in signal"]
-    assert set(zip(lost["frame"], lost["channel"], strict=True)) == {(2, "1")}
+    assert set(zip(lost["frame"], lost["channel"], strict=True)) == {(2, "signal 2")}
     assert study.windows["mean"].isna().sum() == len(lost)
     assert study.windows["n_nan"].sum() == pytest.approx(1.0)
 

@@ -1,9 +1,10 @@
 """Parameters that say how files of masks and images are read."""
 
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from pydantic import field_validator
 
+from cytodisk.images.frame_file import FileChoice
 from cytodisk.parameters import Parameters, parameter
 
 Kind: TypeAlias = Literal["auto", "mask", "stack", "labels"]
@@ -29,7 +30,36 @@ def checked_axes(axes: str | None) -> str | None:
     return letters
 
 
-class KindParameters(Parameters):
+def number_as_text(value: Any) -> Any:
+    """A whole number as a text, since names may be given as numbers."""
+    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+class ChoiceParameters(Parameters):
+    """What to take of a file that holds more than one movie, or slices."""
+
+    scene: str | None = parameter(
+        None,
+        "Scene (position, series, image) of a file that holds several: its number from 0, or its name.",
+        words="a number from 0, or a name",
+    )
+    z: str | None = parameter(
+        None,
+        "Slice of a z-stack: its number from 0; or max or mean, for a projection.",
+        words="a number from 0, max or mean",
+    )
+
+    _texts = field_validator("scene", "z", mode="before")(number_as_text)
+
+    @field_validator("z")
+    @classmethod
+    def _slice_or_projection(cls, z: str | None) -> str | None:
+        if z is None or z in ("max", "mean") or (z.isascii() and z.isdecimal()):
+            return z
+        raise ValueError("must be a number from 0, max or mean")
+
+
+class KindParameters(ChoiceParameters):
     """What a mask file holds."""
 
     kind: Kind = parameter(
@@ -49,10 +79,23 @@ class KindParameters(Parameters):
         'holds several cells, or measure the "largest" piece. Smaller pieces are dropped.',
     )
 
+    mask_channel: str | None = parameter(
+        None,
+        "Channel of the mask file that holds the masks, where it has several: its name, or number from 0.",
+        words="a name, or a number from 0",
+    )
+
     _axes = field_validator("axes")(checked_axes)
+    _mask_channel = field_validator("mask_channel", mode="before")(number_as_text)
+
+    @property
+    def mask_choice(self) -> FileChoice:
+        """What to take of a mask file."""
+        channels = None if self.mask_channel is None else (self.mask_channel,)
+        return FileChoice(self.axes, self.scene, self.z, channels)
 
 
-class SignalFileParameters(Parameters):
+class SignalFileParameters(ChoiceParameters):
     """How the file of a signal is read."""
 
     signal_axes: str | None = parameter(
@@ -61,7 +104,25 @@ class SignalFileParameters(Parameters):
         words=_AXES_WORDS,
     )
 
+    signal_channels: tuple[str, ...] | None = parameter(
+        None,
+        "Channels of the signal's file to take, in this order: names, or numbers from 0; without it all.",
+        words="names, or numbers from 0",
+    )
+
     _signal_axes = field_validator("signal_axes")(checked_axes)
+
+    @field_validator("signal_channels")
+    @classmethod
+    def _different_channels(cls, channels: tuple[str, ...] | None) -> tuple[str, ...] | None:
+        if channels is not None and (not all(channels) or len({*channels}) < max(1, len(channels))):
+            raise ValueError("must name one channel at least, and each once")
+        return channels
+
+    @property
+    def signal_choice(self) -> FileChoice:
+        """What to take of the file of a signal."""
+        return FileChoice(self.signal_axes, self.scene, self.z, self.signal_channels)
 
 
 class MovieKindParameters(KindParameters):

@@ -44,7 +44,8 @@ class FileChoice:
     z : str or None
         Number from 0 of a slice of a z-stack, or "max" or "mean" for a projection.
     channels : tuple of str, or None
-        Names, or numbers from 0, of the channels to take, in this order.
+        Names, or numbers from 0, of the channels to take, in this order; `open_frames` takes them out of
+        any format, which reads all.
     """
 
     axes: str | None = None
@@ -69,7 +70,7 @@ class FrameFile:
         Along `axes`.
     dtype : numpy.dtype
     channels : tuple of str
-        Names, or "0", "1", … when the file gives none.
+        Names; a format that knows none calls them "0", "1", …, and `open_frames` after the file.
     stored : StoredFrames
         Reads its pixels.
     scale : Scale
@@ -82,6 +83,10 @@ class FrameFile:
         Who named its axes; where nobody did, they are a guess.
     doubt : str
         What speaks against a guess, in words that end with the remedy; empty if nothing does.
+    unnamed : bool
+        The file has no names for its channels: they are called after it.
+    files : tuple of Path
+        The files that it consists of, where `path` is a folder or a pattern; one a frame.
     """
 
     path: Path
@@ -95,6 +100,8 @@ class FrameFile:
     evidence: str = ""
     said_by: Said = "file"
     doubt: str = ""
+    unnamed: bool = False
+    files: tuple[Path, ...] = ()
 
     @property
     def n_frames(self) -> int:

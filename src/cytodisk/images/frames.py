@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from dataclasses import asdict
+from collections.abc import Sequence
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,8 @@ import xarray as xr
 
 from cytodisk.checks import is_path, one_of
 from cytodisk.errors import ReadError
+from cytodisk.images.chosen_channels import with_channels, with_names
+from cytodisk.images.file_parameters import SignalFileParameters
 from cytodisk.images.formats.array_file import open_array
 from cytodisk.images.formats.picture_file import open_picture
 from cytodisk.images.formats.tiff_file import open_tiff
@@ -21,7 +24,11 @@ _OPENERS = {".tif": open_tiff, ".tiff": open_tiff, ".png": open_picture, ".npy":
 
 
 def open_frames(
-    path: str | os.PathLike[str], *, unnamed: str = "T", choice: FileChoice = NO_CHOICE
+    path: str | os.PathLike[str],
+    *,
+    unnamed: str = "T",
+    choice: FileChoice = NO_CHOICE,
+    flag: str = "--signal-channels",
 ) -> FrameFile:
     """Look at an image file without reading its pixels.
 
@@ -33,10 +40,13 @@ def open_frames(
         What an axis without a name in the file is: frames or channels.
     choice : FileChoice, optional
         Axes, scene, slice and channels, where the file leaves a choice.
+    flag : str
+        What a user passes to choose channels, for messages.
 
     Returns
     -------
     FrameFile
+        With a name for each channel.
 
     Raises
     ------
@@ -62,10 +72,19 @@ def open_frames(
     if suffix not in _OPENERS:
         raise ReadError(f"{file} is no image that can be read ({', '.join(_OPENERS)}): convert it to TIFF")
     with reading(file, "its header"):
-        return _OPENERS[suffix](file, unnamed, choice)
+        found = with_names(_OPENERS[suffix](file, unnamed, replace(choice, channels=None)))
+    return found if choice.channels is None else with_channels(found, choice.channels, flag)
 
 
-def read_image(path: str | os.PathLike[str], *, unnamed: str = "C") -> xr.DataArray:
+def read_image(
+    path: str | os.PathLike[str],
+    *,
+    unnamed: str = "C",
+    axes: str | None = None,
+    scene: str | int | None = None,
+    z: str | int | None = None,
+    channels: Sequence[str | int] | None = None,
+) -> xr.DataArray:
     """Read a whole image with its scale.
 
     Parameters
@@ -74,6 +93,14 @@ def read_image(path: str | os.PathLike[str], *, unnamed: str = "C") -> xr.DataAr
         TIFF, OME-TIFF, ImageJ TIFF, PNG, or an array saved by NumPy (Cellpose's `_seg.npy`: its masks).
     unnamed : {"C", "T"}
         What an axis without a name in the file is: channels or frames.
+    axes : str, optional
+        One letter an axis, such as "TCYX"; overrules what the file says.
+    scene : str or int, optional
+        Name, or number from 0, of a scene (position, series) of a file that holds several.
+    z : str or int, optional
+        Number from 0 of a slice of a z-stack; or "max" or "mean", for a projection.
+    channels : sequence of (str or int), optional
+        Names, or numbers from 0, of the channels to take, in this order.
 
     Returns
     -------
@@ -86,7 +113,7 @@ def read_image(path: str | os.PathLike[str], *, unnamed: str = "C") -> xr.DataAr
     ReadError
         The file is missing, is not an image, is damaged, or has axes that cannot be used.
     ParameterError
-        `path` is no path, or `unnamed` is unknown.
+        `path` is no path, or `unnamed` or another argument cannot be used.
 
     See Also
     --------
@@ -103,7 +130,10 @@ def read_image(path: str | os.PathLike[str], *, unnamed: str = "C") -> xr.DataAr
     >>> masks.dims, masks.attrs["pixel_size_um"]
     (('time', 'y', 'x'), 0.16)
     """
-    file = open_frames(path, unnamed=unnamed)
+    wanted = None if channels is None else tuple(map(str, channels))
+    given = {"signal_axes": axes, "scene": scene, "z": z, "signal_channels": wanted}
+    choice = SignalFileParameters.called(given, {"signal_axes": "axes", "signal_channels": "channels"})
+    file = open_frames(path, unnamed=unnamed, choice=choice.signal_choice, flag="channels")
     stack = np.stack([file.frame(number) for number in range(file.n_frames)])
     image = xr.DataArray(
         stack,
@@ -115,4 +145,4 @@ def read_image(path: str | os.PathLike[str], *, unnamed: str = "C") -> xr.DataAr
         image = image.isel(time=0)
     if "C" in file.axes:
         return image
-    return image.isel(channel=0, drop=file.channels == ("0",))
+    return image.isel(channel=0, drop=file.unnamed)

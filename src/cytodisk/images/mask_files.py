@@ -13,7 +13,7 @@ import numpy as np
 
 from cytodisk.errors import CytodiskError, EmptyMaskError, MaskError, ReadError, as_data
 from cytodisk.images.file_parameters import Kind
-from cytodisk.images.frame_file import FrameFile
+from cytodisk.images.frame_file import NO_CHOICE, FileChoice, FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.frames import open_frames
 from cytodisk.images.label_boxes import Box, LabelBoxes, cell_box, label_boxes, with_margin
@@ -93,7 +93,7 @@ class SourceCell:
 
 
 def open_mask_files(
-    path: str | os.PathLike[str], kind: Kind = "auto", images: str = ""
+    path: str | os.PathLike[str], kind: Kind = "auto", images: str = "", choice: FileChoice = NO_CHOICE
 ) -> tuple[MaskSource, ...]:
     """Find the mask files of a folder, or open a single one.
 
@@ -107,6 +107,8 @@ def open_mask_files(
         What each file is; "auto" decides for each by itself.
     images : str
         How names of images go on that are no masks, as "_img"; in a folder whose masks have other endings.
+    choice : FileChoice, optional
+        Axes, scene, slice and channel of each file, where it leaves a choice.
 
     Returns
     -------
@@ -124,20 +126,20 @@ def open_mask_files(
     """
     place = Path(path)
     if not place.is_dir():
-        file = open_frames(place, unnamed="T")
+        file = open_frames(place, unnamed="T", choice=choice, flag="--mask-channel")
         opened = partial(frame_pixels, file)
         reader: Reader = lru_cache(maxsize=1)(opened) if file.n_frames == 1 else opened
         look = look_at(file, kind, reader)
         return (MaskSource(place.name, place, file, look.kind, look=look, reader=reader),)
-    return tuple(_source(chosen, others, kind) for chosen, others in mask_names(place, images))
+    return tuple(_source(chosen, others, kind, choice) for chosen, others in mask_names(place, images))
 
 
-def _source(path: Path, others: list[Path], kind: Kind) -> MaskSource:
+def _source(path: Path, others: list[Path], kind: Kind, choice: FileChoice) -> MaskSource:
     """The first of an image's mask files that can be used, or the very first with its fault."""
     paths = [path, *others]
     first = None
     for place, taken in enumerate(paths):
-        found = _opened(taken, kind)
+        found = _opened(taken, kind, choice)
         first = found if first is None else first
         if found.fault is None:
             left = tuple(file.name for file in paths if file != taken)
@@ -146,10 +148,10 @@ def _source(path: Path, others: list[Path], kind: Kind) -> MaskSource:
     return replace(first, instead_of=tuple(file.name for file in others))
 
 
-def _opened(path: Path, kind: Kind) -> MaskSource:
+def _opened(path: Path, kind: Kind, choice: FileChoice) -> MaskSource:
     source = MaskSource(path.name, path, None, None)
     try:
-        file = open_frames(path, unnamed="T")
+        file = open_frames(path, unnamed="T", choice=choice, flag="--mask-channel")
         look = look_at(file, kind)
         if kind != "auto" and file.n_frames == 1:
             file.frame(0)  # raises where the picture itself is damaged; "auto" has read it

@@ -76,7 +76,8 @@ def look_at(file: FrameFile, kind: Kind = "auto", read: Reader | None = None) ->
     if "C" in file.axes:
         raise MaskError(
             f"{file.path} has {len(file.channels)} channels ({', '.join(file.channels)}): "
-            "a mask has one value a pixel; save the mask alone, not as a colour picture"
+            "a mask has one value a pixel; pass the channel that holds it, as --mask-channel 0, "
+            "or save the mask alone, not as a colour picture"
         )
     if kind == "mask" and file.n_frames > 1:
         raise MaskError(

@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.errors import ReadError, SignalError, as_data
+from cytodisk.images.chosen_channels import stem_of
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.mask_files import MaskSource
@@ -160,6 +161,19 @@ def pair_images(
     if all(isinstance(image, SignalError) for image in found):
         raise SignalError(f"signal {signal} fits no mask file: {found[0]}")
     return found
+
+
+def common_name(signal: Path) -> str:
+    """A name for the channel of many images, as "VASP" for the folder VASP, or "w1" for "_w1.tif".
+
+    Parameters
+    ----------
+    signal : Path
+        As `pair_images` takes it.
+    """
+    if signal.is_dir():
+        return signal.resolve().name
+    return stem_of(signal.name).strip(" _-.")
 
 
 def _where(signal: Path, masks: Path) -> tuple[Path, tuple[str, ...]]:

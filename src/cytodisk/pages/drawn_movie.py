@@ -11,7 +11,6 @@ import numpy as np
 from cytodisk.arrays import FloatArray
 from cytodisk.pages.movie_cell import MovieCell
 from cytodisk.pages.sheet import Sheet
-from cytodisk.runs.channel_names import shown_name
 from cytodisk.store.figures_folder import figure_path
 from cytodisk.store.study_folder import part_key
 from cytodisk.windows.polar_windows import CellWindows
@@ -46,8 +45,6 @@ class DrawnMovie(MovieCell):
         if not self.channels:
             return "signal"
         name = self.channels[channel]
-        if name.isdigit():  # a file without names
-            return shown_name(name) if len(self.channels) > 1 else "signal"
         return name if len(name) <= _LONGEST_CHANNEL else f"{name[: _LONGEST_CHANNEL - 1]}…"
 
     @cached_property

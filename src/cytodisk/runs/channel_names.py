@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from cytodisk.errors import ParameterError, SignalError
+from cytodisk.images.chosen_channels import with_names
 
 if TYPE_CHECKING:
     from cytodisk.images.frame_file import FrameFile
@@ -17,7 +18,7 @@ _LONGEST = 24
 
 
 def shown_name(name: str) -> str:
-    """Name of a channel in words: files without names number them.
+    """Name of a channel in words.
 
     Parameters
     ----------
@@ -26,26 +27,26 @@ def shown_name(name: str) -> str:
     Returns
     -------
     str
-        As "VASP", or "channel 0".
+        As "VASP"; "channel 488" where the name is a number.
     """
     return f"channel {name}" if name.isdigit() else name
 
 
-def channels_words(names: Sequence[str]) -> str:
+def channels_words(signal: FrameFile) -> str:
     """Words for the channels of a signal, with the way to name those without a name.
 
     Parameters
     ----------
-    names : sequence of str
+    signal : FrameFile
 
     Returns
     -------
     str
         As "channels Rac1, RhoA".
     """
-    unnamed = [name for name in names if name.isdigit()]
-    if len(unnamed) < len(names):
-        return f"channels {', '.join(names)}"
+    names = signal.channels
+    if not signal.unnamed:
+        return f"channel{'s' if len(names) > 1 else ''} {', '.join(names)}"
     given = ",".join(["Rac1", "RhoA", "Cdc42"][: len(names)]) + (",…" if len(names) > 3 else "")
     if len(names) == 1:
         return f"1 channel without a name: it is called {names[0]} (name it: --channels {given})"
@@ -113,6 +114,8 @@ def name_channels(signal: FrameFile | None, channels: tuple[str, ...] | None) ->
         A name in the file is one of the edge's velocity.
     """
     if channels is None:
+        if signal is not None and signal.unnamed and set(VELOCITIES) & set(signal.channels):
+            return with_names(signal, f"{signal.channels[0]} signal")
         for name in VELOCITIES:
             if signal is not None and name in signal.channels:
                 raise SignalError(
@@ -128,4 +131,4 @@ def name_channels(signal: FrameFile | None, channels: tuple[str, ...] | None) ->
             f"channels must be as many names as {signal.path} has channels, which are {len(signal.channels)} "
             f"({signal.axes} {signal.shape}), got {len(channels)} ({given})"
         )
-    return replace(signal, channels=channels)
+    return replace(signal, channels=channels, unnamed=False)

@@ -115,7 +115,7 @@ def expected_seconds(item: BatchInput) -> float:
     if not item.masks.is_file():
         return 0.0
     try:
-        file = open_frames(item.masks)
+        file = open_frames(item.masks, choice=item.parameters.mask_choice)
     except CytodiskError:
         return 0.0
     height, width = file.image_shape

@@ -10,10 +10,11 @@ from pathlib import Path
 
 from cytodisk.checks import is_path
 from cytodisk.errors import ReadError, SignalError, as_data
+from cytodisk.images.chosen_channels import with_names
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frames import open_frames
 from cytodisk.images.mask_files import MaskSource, open_mask_files
-from cytodisk.images.signal_files import pair_images
+from cytodisk.images.signal_files import common_name, pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
 from cytodisk.runs.channel_names import channels_words, name_channels
@@ -77,9 +78,7 @@ class CellInputs:
             masks = source.file
             words["masks"] = f"{_KINDS[source.kind]}, {masks.axes} {masks.shape} {masks.dtype}"
             for signal in self.signal_files:
-                words["signal"] = (
-                    f"{channels_words(signal.channels)}; {signal.axes} {signal.shape} {signal.dtype}"
-                )
+                words["signal"] = f"{channels_words(signal)}; {signal.axes} {signal.shape} {signal.dtype}"
                 if signal.n_frames < masks.n_frames:
                     words["signal"] += f"; the one image is used for all {masks.n_frames} frames of the masks"
         return words
@@ -96,9 +95,7 @@ class CellInputs:
             )
         signals = self.signal_files
         if signals:
-            words["signal"] = (
-                f"{_count(len(signals), 'image')} with the channels {', '.join(signals[0].channels)}"
-            )
+            words["signal"] = f"{_count(len(signals), 'image')} with {channels_words(signals[0])}"
         return words
 
 
@@ -135,7 +132,7 @@ def open_inputs(
     is_path("masks", masks)
     if Path(masks).is_dir():
         return _open_folder(Path(masks), signal, parameters)
-    sources = open_mask_files(masks, parameters.kind)
+    sources = open_mask_files(masks, parameters.kind, choice=parameters.mask_choice)
     found = _open_signal(sources[0], signal, parameters)
     files = [file for file in (found.file, sources[0].file) if file is not None]
     pixel_size_um = parameters.pixel_size_um or agreed(files, "pixel_size_um")
@@ -145,7 +142,7 @@ def open_inputs(
 def _open_folder(
     masks: Path, signal: str | os.PathLike[str] | None, parameters: FileParameters
 ) -> CellInputs:
-    sources = open_mask_files(masks, parameters.kind, images=_ending_beside(masks, signal))
+    sources = open_mask_files(masks, parameters.kind, _ending_beside(masks, signal), parameters.mask_choice)
     signals, remarks = _open_signals(sources, signal, parameters)
     pixel_size_um = parameters.pixel_size_um
     if pixel_size_um is None:
@@ -171,14 +168,15 @@ def _ending_beside(masks: Path, signal: str | os.PathLike[str] | None) -> str:
 def _open_signal(
     source: MaskSource, signal: str | os.PathLike[str] | None, parameters: FileParameters
 ) -> SignalFile:
-    found = None if signal is None else _fitting_image(source, Path(signal))
+    found = None if signal is None else _fitting_image(source, Path(signal), parameters)
     return SignalFile(name_channels(found, parameters.channels))
 
 
-def _fitting_image(source: MaskSource, path: Path) -> FrameFile | None:
+def _fitting_image(source: MaskSource, path: Path, parameters: FileParameters) -> FrameFile | None:
     if source.file is None:
         return None
-    found = open_frames(path, unnamed="T" if source.file.n_frames > 1 else "C")
+    unnamed = "T" if source.file.n_frames > 1 else "C"
+    found = open_frames(path, unnamed=unnamed, choice=parameters.signal_choice)
     check_signal(source.file, found)
     return found
 
@@ -191,19 +189,21 @@ def _open_signals(
         name_channels(None, parameters.channels)  # raises if there are names and nothing to name
         return {source.name: SignalFile() for source in sources}, []
     images = pair_images(sources, signal)
-    opened = [_open_paired(source, image) for source, image in zip(sources, images, strict=True)]
+    opened = [_open_paired(source, image, parameters) for source, image in zip(sources, images, strict=True)]
     if all(found.file is None for found in opened):
         faults = [found.fault for found in opened if found.fault is not None]
         raise SignalError(f"signal {signal}: no image can be used: {faults[0] if faults else 'no mask can'}")
+    name = common_name(Path(signal))
+    opened = [found if found.file is None else SignalFile(with_names(found.file, name)) for found in opened]
     alike, remarks = with_common_channels(opened, parameters.channels)
     return {source.name: found for source, found in zip(sources, alike, strict=True)}, remarks
 
 
-def _open_paired(source: MaskSource, image: Path | SignalError) -> SignalFile:
+def _open_paired(source: MaskSource, image: Path | SignalError, parameters: FileParameters) -> SignalFile:
     if isinstance(image, SignalError):
         return SignalFile(fault=image)
     try:
-        return SignalFile(_fitting_image(source, image))
+        return SignalFile(_fitting_image(source, image, parameters))
     except (ReadError, SignalError) as fault:
         return SignalFile(fault=as_data(fault))
 
@@ -217,7 +217,7 @@ def check_signal(masks: FrameFile, signal: FrameFile) -> None:
         )
     if signal.dtype.kind not in "biuf":
         raise SignalError(f"signal {signal.path} has dtype {signal.dtype}: it must be numbers")
-    if len(signal.channels) > _MOST_UNNAMED and signal.channels[0] == "0":
+    if len(signal.channels) > _MOST_UNNAMED and signal.unnamed:
         raise SignalError(
             f"signal {signal.path} has {len(signal.channels)} planes without names, where one image is due: "
             "pass one frame, or name its axes in the file, and its channels there or with --channels"

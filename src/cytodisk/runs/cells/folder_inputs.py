@@ -64,11 +64,17 @@ def with_common_channels(
 
 
 def _other_channels(file: FrameFile, example: FrameFile) -> SignalError:
-    here, there = ", ".join(file.channels), ", ".join(example.channels)
     return SignalError(
-        f"signal {file.path} has the channels {here}, {example.path.name} and most others have {there}: "
-        "all images of a run must have the same"
+        f"signal {file.path} has {_channels(file)}, {example.path.name} and most others have "
+        f"{_channels(example).removeprefix('the channels ')}: all images of a run must have the same"
     )
+
+
+def _channels(file: FrameFile) -> str:
+    if not file.unnamed:
+        return f"the channels {', '.join(file.channels)}"
+    count = len(file.channels)
+    return "one channel without a name" if count == 1 else f"{count} channels without names"
 
 
 @dataclass(frozen=True)

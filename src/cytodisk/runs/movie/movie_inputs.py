@@ -80,7 +80,7 @@ class MovieInputs:
         words = {"masks": f"{what}, {size} ({self.masks.axes}, {self.masks.dtype})"}
         if self.signal is not None:
             words["signal"] = (
-                f"{channels_words(self.signal.channels)}; {self.signal.n_frames} frames "
+                f"{channels_words(self.signal)}; {self.signal.n_frames} frames "
                 f"({self.signal.axes}, {self.signal.dtype})"
             )
         if self.grid.depth_um is not None:
@@ -154,11 +154,11 @@ def open_movie_files(
         A file is missing, damaged, or does not fit.
     """
     is_path("masks", masks)
-    mask_file = open_frames(masks, unnamed="T")
+    mask_file = open_frames(masks, unnamed="T", choice=parameters.mask_choice, flag="--mask-channel")
     _check_masks(mask_file)
     signal_file = None
     if signal is not None:
-        signal_file = open_frames(signal, unnamed="T")
+        signal_file = open_frames(signal, unnamed="T", choice=parameters.signal_choice)
         _check_frames(mask_file, signal_file)
     signal_file = name_channels(signal_file, parameters.channels)
     if signal_file is not None:
