@@ -59,7 +59,8 @@ def test_flags_reach_the_parameters(run: Run, mask: Path, tmp_path: Path) -> Non
         "pixel_size_um": 0.2,
     }
     outlines = json.loads((tmp_path / "out" / "maps" / "cell_00000.geojson").read_text())
-    assert len(outlines["features"]) == 24
+    kinds = [feature["properties"]["objectType"] for feature in outlines["features"]]
+    assert kinds == ["annotation"] + ["detection"] * 24
 
 
 def test_a_point_to_align_to(run: Run, mask: Path, tmp_path: Path) -> None:

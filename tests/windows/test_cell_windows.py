@@ -1,5 +1,3 @@
-import json
-
 import numpy as np
 import pytest
 import shapely
@@ -175,24 +173,6 @@ def test_layer_0_follows_the_cell_outline(cell: cd.DiskMap, windows: cd.CellWind
 def test_no_point_of_an_outline_is_repeated(windows: cd.CellWindows) -> None:
     for polygon in windows.polygons():
         assert (np.diff(polygon, axis=0, append=polygon[:1]) != 0).any(axis=1).all()
-
-
-def test_geojson_holds_closed_rings_in_xy(windows: cd.CellWindows) -> None:
-    values = np.arange(48.0).reshape(4, 12)
-    values[1, 2] = np.nan
-    collection = json.loads(json.dumps(windows.geojson({"mean": values}), allow_nan=False))
-    assert collection["type"] == "FeatureCollection"
-    assert len(collection["features"]) == 48
-    for number, (feature, polygon) in enumerate(zip(collection["features"], windows.polygons(), strict=True)):
-        assert (feature["type"], feature["geometry"]["type"]) == ("Feature", "Polygon")
-        (ring,) = feature["geometry"]["coordinates"]
-        assert ring[0] == ring[-1]
-        assert_array_equal(ring[:-1], polygon[:, ::-1])
-        layer, sector = divmod(number, 12)
-        properties = feature["properties"]
-        assert (properties["layer"], properties["sector"]) == (layer, sector)
-        assert properties["area_px"] == windows.areas[layer, sector]
-        assert properties["mean"] == (None if number == 14 else number)
 
 
 def test_geojson_values_of_another_shape_are_refused(windows: cd.CellWindows) -> None:

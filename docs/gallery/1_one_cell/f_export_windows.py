@@ -20,10 +20,12 @@ windows = cd.polar_windows(layers=6, sectors=36).on(cd.map_to_disk(cell.mask))
 means = cd.sample(windows, cell.signal)["mean"].sel(channel="edge")
 
 # %%
-# Each window is a polygon with its layer, sector, area, and the numbers that you
-# passed.
-collection = windows.geojson({"edge": means.to_numpy()})
-first = collection["features"][0]
+# Each window is a polygon with a name and measurements: its area, and the numbers that
+# you passed. The cell comes first if you give it a name. In QuPath the cell is an
+# annotation and the windows are detections in it.
+collection = windows.geojson({"mean edge a.u.": means.to_numpy()}, cell="cell 0")
+cell_outline, first, *_ = collection["features"]
+print(cell_outline["properties"])
 print(first["properties"], "and", len(first["geometry"]["coordinates"][0]), "points")
 
 # %%
@@ -31,12 +33,14 @@ print(first["properties"], "and", len(first["geometry"]["coordinates"][0]), "poi
 with TemporaryDirectory() as folder:
     file = Path(folder) / "windows.geojson"
     file.write_text(json.dumps(collection))
-    features = json.loads(file.read_text())["features"]
+    features = json.loads(file.read_text())["features"][1:]
 
 figure, ax = plt.subplots(figsize=(5, 3), layout="constrained")
 polygons = PolyCollection(
     [feature["geometry"]["coordinates"][0] for feature in features],
-    array=[feature["properties"]["edge"] for feature in features],
+    array=[
+        feature["properties"]["measurements"]["mean edge a.u."] for feature in features
+    ],
     edgecolor="white",
     linewidth=0.3,
 )
@@ -49,5 +53,5 @@ figure.colorbar(polygons, label="mean signal (a.u.)", shrink=0.8)
 plt.show()
 
 # %%
-# Coordinates count from the middle of a pixel. Programs that count from its corner,
-# such as QuPath, need 0.5 added to both.
+# Coordinates count from the corner of the image, as in QuPath and Fiji: the first pixel
+# covers 0 to 1. In cytodisk's own arrays the middle of the first pixel is (0, 0).

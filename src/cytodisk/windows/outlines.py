@@ -1,5 +1,6 @@
 """Window outlines in the cell, as polygons that fit together."""
 
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -9,13 +10,15 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.windows.polar_layout import PolarLayout
 
 _POINTS_PER_RADIUS = 256  # samples along a radius of the disk, shared among the layers
+_LONGEST_PX = 0.5  # between points of an outline, but where it would take more than so many halvings
+_HALVINGS = 6
 
 
 def window_polygons(grid: PolarLayout, disk: DiskMap) -> list[FloatArray]:
     """Outline of every window in the cell.
 
-    Rings and spokes of the grid are sampled as finely as the boundary is, so neighbours share their points,
-    and layer 0 follows the cell's outline exactly.
+    Rings and spokes of the grid are sampled as finely as the boundary is, and more where they are drawn out,
+    so neighbours share their points, and layer 0 follows the cell's outline exactly.
 
     Parameters
     ----------
@@ -28,14 +31,13 @@ def window_polygons(grid: PolarLayout, disk: DiskMap) -> list[FloatArray]:
         By window number, (row, column) in pixels, last point not repeated.
     """
     rings = [_sector_arcs(grid, disk, radius) for radius in grid.radii]
-    per_layer = max(2, _POINTS_PER_RADIUS // grid.layers)
+    spokes = [_spoke(grid, disk, angle) for angle in grid.angles[:-1]]
     polygons = []
     for layer in range(grid.layers):
-        spokes = _spokes(grid, disk, layer, per_layer)
         for sector in range(grid.sectors):
-            following = (sector + 1) % grid.sectors
+            here, following = spokes[sector][layer], spokes[(sector + 1) % grid.sectors][layer]
             outer, inner = rings[layer][sector], rings[layer + 1][sector]
-            polygon = np.concatenate([outer, spokes[following][1:-1], inner[::-1], spokes[sector][-2:0:-1]])
+            polygon = np.concatenate([outer, following[1:-1], inner[::-1], here[-2:0:-1]])
             moved = (np.diff(polygon, axis=0, append=polygon[:1]) != 0).any(axis=1)
             polygons.append(polygon[moved])
     return polygons
@@ -45,14 +47,42 @@ def _sector_arcs(grid: PolarLayout, disk: DiskMap, radius: float) -> list[FloatA
     """Arc of each sector at one radius, mapped into the cell, both ends included."""
     turn = 2.0 * np.pi
     within = np.unique(np.concatenate([np.mod(disk.boundary_angles, turn), grid.angles]))
-    points = disk.to_cell(np.column_stack([radius * np.cos(within), radius * np.sin(within)]))
+    halvings = 0 if radius == 1.0 else _HALVINGS  # the outline is straight between its points
+
+    def points_at(angles: FloatArray) -> FloatArray:
+        return disk.to_cell(radius * np.column_stack([np.cos(angles), np.sin(angles)]))
+
+    angles, points = _finely(points_at, within, halvings)
     points[-1] = points[0]
-    ends = np.searchsorted(within, grid.angles)
+    ends = np.searchsorted(angles, grid.angles)
     return [points[first : last + 1] for first, last in pairwise(ends)]
 
 
-def _spokes(grid: PolarLayout, disk: DiskMap, layer: int, samples: int) -> FloatArray:
-    """Each sector's first side within a layer, from outside in, shape (sectors, samples, 2)."""
-    radius = np.linspace(grid.radii[layer], grid.radii[layer + 1], samples)
-    angle = grid.angles[:-1, None]
-    return disk.to_cell(np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1))
+def _spoke(grid: PolarLayout, disk: DiskMap, angle: float) -> list[FloatArray]:
+    """A sector's first side by layer, from outside in, both ends included."""
+    samples = max(2, _POINTS_PER_RADIUS // grid.layers)
+    layers = [np.linspace(outer, inner, samples) for outer, inner in pairwise(grid.radii)]
+    direction = np.array([np.cos(angle), np.sin(angle)])
+
+    def points_at(radii: FloatArray) -> FloatArray:
+        return disk.to_cell(radii[:, None] * direction)
+
+    along = np.concatenate([layers[0], *(layer[1:] for layer in layers[1:])])
+    radii, points = _finely(points_at, along, _HALVINGS)
+    ends = np.searchsorted(-radii, -grid.radii)
+    return [points[first : last + 1] for first, last in pairwise(ends)]
+
+
+def _finely(
+    points_at: Callable[[FloatArray], FloatArray], places: FloatArray, halvings: int
+) -> tuple[FloatArray, FloatArray]:
+    """Places along a line, and their points in the cell, with more between points that lie far apart."""
+    points = points_at(places)
+    for _ in range(halvings):
+        far = np.flatnonzero(np.hypot(*np.diff(points, axis=0).T) > _LONGEST_PX)
+        if not len(far):
+            break
+        between = (places[far] + places[far + 1]) / 2.0
+        places = np.insert(places, far + 1, between)
+        points = np.insert(points, far + 1, points_at(between), axis=0)
+    return places, points

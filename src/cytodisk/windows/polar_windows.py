@@ -24,6 +24,7 @@ from cytodisk.windows.outlines import window_polygons
 from cytodisk.windows.polar_layout import PolarLayout
 from cytodisk.windows.shares import PER_SIDE, WindowShares
 from cytodisk.windows.weights import window_shares, windows_of_subpixels
+from cytodisk.windows.window_features import window_features
 
 
 @dataclass(frozen=True)
@@ -187,45 +188,37 @@ class CellWindows(WindowsOnCell):
         """
         return window_polygons(self.grid, self.disk)
 
-    def geojson(self, values: dict[str, FloatArray] | None = None) -> dict[str, Any]:
-        """Window outlines as a GeoJSON feature collection, for QuPath, Fiji or napari.
+    def geojson(
+        self,
+        values: Mapping[str, FloatArray] | None = None,
+        *,
+        cell: str = "",
+        corner: tuple[int, int] = (0, 0),
+    ) -> dict[str, Any]:
+        """Windows as a GeoJSON feature collection, for QuPath, Fiji or napari.
 
         Parameters
         ----------
         values : dict of str to ndarray of shape (layers, sectors), optional
-            Numbers to put into each window's properties.
+            Measurements of the windows, by name.
+        cell : str
+            Name of the cell, which then is the first feature, an annotation; without it windows alone.
+        corner : (int, int)
+            (row, column) of the mask's first pixel in the image that coordinates count in.
 
         Returns
         -------
         dict
-            Coordinates are (x, y) in pixels with pixel centres at integers: add 0.5 for programs that count
-            from the pixel's corner. With a single sector a window is a ring, which is cut open along a line;
-            windows thinner than their outline's points lie apart may touch themselves.
+            Each window is a detection with a name, its layer, its sector, and measurements; NaN is left
+            out. Coordinates are (x, y) in pixels from the image's corner, as in QuPath and Fiji: pixel
+            (0, 0) covers 0 to 1. All polygons are valid: one that touches itself is given in pieces.
 
         Raises
         ------
         WindowError
             An array of values has another shape.
         """
-        columns = {name: np.asarray(array) for name, array in (values or {}).items()}
-        for name, array in columns.items():
-            if array.shape != self.areas.shape:
-                raise WindowError(f"values[{name!r}] has shape {array.shape}, the windows {self.areas.shape}")
-        features = []
-        for number, polygon in enumerate(self.polygons()):
-            layer, sector = divmod(number, self.grid.sectors)
-            if not self.grid.present[layer]:
-                continue
-            ring = np.concatenate([polygon, polygon[:1]])[:, ::-1].tolist()
-            numbers = {name: _number(array[layer, sector]) for name, array in columns.items()}
-            properties = {"layer": layer, "sector": sector, "area_px": float(self.areas[layer, sector])}
-            features.append(
-                {
-                    "type": "Feature",
-                    "geometry": {"type": "Polygon", "coordinates": [ring]},
-                    "properties": properties | numbers,
-                }
-            )
+        features = list(window_features(self, values or {}, cell, corner))
         return {"type": "FeatureCollection", "features": features}
 
 
@@ -293,8 +286,3 @@ def polar_grid_of(provenance: Mapping[str, Any]) -> PolarGrid:
     left_out = ("depth_um",) if known["depth_um"] is None else ("layers", "spacing")
     given = {name: value for name, value in known.items() if value is not None and name not in left_out}
     return polar_windows(**given)
-
-
-def _number(value: Any) -> float | None:
-    """A float that JSON can hold: NaN becomes null."""
-    return float(value) if np.isfinite(value) else None

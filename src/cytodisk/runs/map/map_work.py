@@ -14,6 +14,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import xarray as xr
 
+from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_cell
 from cytodisk.disk.mapping_parameters import MappingParameters
@@ -73,9 +74,7 @@ class MapWork:
                 (place.row | {"status": cell_status(fault), "reason": str(fault)} | _seconds(started), {})
             ]
         row, columns = measure_windows(place, windows, task.signal, self.parameters.nan, found.corner)
-        if self.maps or self.geojson:  # in pixels of the whole image
-            placed = CellWindows(windows.grid, disk.placed(found.corner, found.image_shape))
-            self._write(placed, self.folder.map_path(part_key(found.cell)))
+        self._write(found, windows, columns)
         row |= {"status": "ok", "reason": ""} | _seconds(started)
         if task.drawn and self.draw is not None:
             self._draw(self.draw, task, windows)
@@ -108,12 +107,23 @@ class MapWork:
     def _grid(self) -> PolarGrid:
         return polar_grid(self.parameters.part(PolarGridParameters))
 
-    def _write(self, windows: CellWindows, path: Path) -> None:
+    def _write(self, found: SourceCell, windows: CellWindows, columns: dict[str, Any]) -> None:
+        """Write the map and the outlines, in pixels of the whole image."""
+        path = self.folder.map_path(part_key(found.cell))
         if self.maps:
-            windows.disk.save(path)
+            windows.disk.placed(found.corner, found.image_shape).save(path)
         if self.geojson:
+            means = _means(columns, windows)
+            outlines = windows.geojson(means, cell=f"cell {found.cell}", corner=found.corner)
             with replacing(path.with_suffix(".geojson")) as temporary:
-                temporary.write_text(json.dumps(windows.geojson()), encoding="utf-8")
+                temporary.write_text(json.dumps(outlines, ensure_ascii=False), encoding="utf-8")
+
+
+def _means(columns: dict[str, Any], windows: CellWindows) -> dict[str, FloatArray]:
+    """The mean of each channel in the windows, with its unit, from columns of the table of windows."""
+    channels = [name for name in dict.fromkeys(columns["channel"]) if name is not None]
+    means = np.reshape(columns["mean"], (-1, *windows.areas.shape))
+    return {f"mean {name} a.u.": mean for name, mean in zip(channels, means, strict=False)}
 
 
 def _seconds(started: float) -> dict[str, Any]:
