@@ -12,6 +12,9 @@ import numpy as np
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
 
+SMALLEST_SCALE, LARGEST_SCALE = 1e-6, 1e6
+"""µm per pixel and seconds per frame: from far below an atom to a metre, from 1 µs to 12 days."""
+
 Word = TypeVar("Word", bound=str)
 
 
@@ -25,7 +28,7 @@ def is_number(value: Any) -> bool:
         return False
 
 
-def whole_number(name: str, value: Any, least: int) -> int:
+def whole_number(name: str, value: Any, least: int, most: float = np.inf) -> int:
     """A parameter as a whole number; 2.0 counts as 2.
 
     Parameters
@@ -34,6 +37,8 @@ def whole_number(name: str, value: Any, least: int) -> int:
         Name of the parameter, for the message.
     value : object
     least : int
+    most : float
+        Both counted.
 
     Returns
     -------
@@ -42,10 +47,11 @@ def whole_number(name: str, value: Any, least: int) -> int:
     Raises
     ------
     ParameterError
-        It is not a number, not whole, or below `least`.
+        It is not a number, not whole, or out of range.
     """
-    if not (is_number(value) and value >= least and value == int(value)):
-        raise ParameterError(f"{name} must be a whole number of at least {least}, got {value!r}")
+    if not (is_number(value) and least <= value <= most and value == int(value)):
+        words = f"of at least {least}" if most == np.inf else f"from {least} to {most}"
+        raise ParameterError(f"{name} must be a whole number {words}, got {value!r}")
     return int(value)
 
 

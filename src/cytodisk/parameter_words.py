@@ -61,12 +61,17 @@ def limits(field: FieldInfo) -> str:
     """The range of a number, as " above 0" or " from 0 to 1"; empty if there is none."""
     found = {name: getattr(part, name) for part in field.metadata for name in _LIMITS if hasattr(part, name)}
     if {"ge", "le"} <= found.keys():
-        return f" from {found['ge']:g} to {found['le']:g}"
-    words = [f"{word} {found[name]:g}" for name, word in _LIMITS.items() if name in found]
+        return f" from {number_words(found['ge'])} to {number_words(found['le'])}"
+    words = [f"{word} {number_words(found[name])}" for name, word in _LIMITS.items() if name in found]
     return f" {' and '.join(words)}" if words else ""
 
 
 _LIMITS = {"ge": "of at least", "gt": "above", "le": "at most", "lt": "below"}
+
+
+def number_words(number: float) -> str:
+    """A limit as one writes it: 1000000, not 1e+06."""
+    return f"{number:.10f}".rstrip("0").rstrip(".")
 
 
 def flag_of(name: str, field: FieldInfo) -> str:

@@ -11,6 +11,8 @@ from pydantic_core import PydanticCustomError
 from cytodisk.errors import CytodiskError, ParameterError
 from cytodisk.parameter_words import choices, kinds, range_words, short_words, unknown_words, value_words
 
+MOST_SEED = 2**32 - 1
+
 Group = TypeVar("Group", bound="Parameters")
 
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from cytodisk.arrays import FloatArray, IntArray
-from cytodisk.checks import is_number
+from cytodisk.checks import LARGEST_SCALE, SMALLEST_SCALE, is_number
 from cytodisk.errors import ParameterError
+from cytodisk.parameter_words import number_words, short_words
 
 Number = TypeVar("Number", float, FloatArray)
 """A number or an array of numbers."""
@@ -48,9 +49,11 @@ class Scale:
             value = getattr(self, name)
             if value is None:
                 continue
-            if not (is_number(value) and value > 0):
+            if not (is_number(value) and SMALLEST_SCALE <= value <= LARGEST_SCALE):
+                limits = " to ".join(map(number_words, (SMALLEST_SCALE, LARGEST_SCALE)))
                 raise ParameterError(
-                    f"{name} must be a number above 0, got {value!r}: leave it out when it is not known"
+                    f"{name} must be a number from {limits}, got {short_words(value)}: leave it out when it "
+                    "is not known"
                 )
             object.__setattr__(self, name, float(value))
 

@@ -1,5 +1,6 @@
 """Parameters that say how large a pixel is, and how long a frame."""
 
+from cytodisk.checks import LARGEST_SCALE, SMALLEST_SCALE
 from cytodisk.parameters import Parameters, parameter
 
 
@@ -9,7 +10,8 @@ class PixelSizeParameters(Parameters):
     pixel_size_um: float | None = parameter(
         None,
         "Side of a pixel; without it the one in the file or array is used.",
-        above=0,
+        least=SMALLEST_SCALE,
+        most=LARGEST_SCALE,
         unit="µm",
         flag="pixel-size",
     )
@@ -21,7 +23,8 @@ class ScaleParameters(PixelSizeParameters):
     frame_interval_s: float | None = parameter(
         None,
         "Time between frames; without it the one in the file or array is used.",
-        above=0,
+        least=SMALLEST_SCALE,
+        most=LARGEST_SCALE,
         unit="s",
         flag="frame-interval",
     )

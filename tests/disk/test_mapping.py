@@ -153,8 +153,11 @@ def test_the_report_of_cleaning_comes_with_the_map() -> None:
     ("change", "message"),
     [
         ({"method": "magic"}, "method must be .*, got 'magic'"),
-        ({"shape_weight": 0.0}, "shape_weight must be a number above 0, got 0.0: 0.003 is the default"),
-        ({"shape_weight": np.nan}, "shape_weight must be a number above 0, got nan"),
+        (
+            {"shape_weight": 0.0},
+            "shape_weight must be a number above 0 and at most 1000000, got 0.0: 0.003 is the default",
+        ),
+        ({"shape_weight": np.nan}, "shape_weight must be a number above 0 and at most 1000000, got nan"),
         ({"edge_length": 0.1}, "edge_length must be a number from 0.25 to 10, got 0.1"),
         ({"align": "left"}, "align must be 'upright', a point .* got 'left'"),
     ],

@@ -106,7 +106,10 @@ def test_a_movie_is_compared_through_time(run: Run, tmp_path: Path) -> None:
         (("--layers", "0"), "--layers must be"),
         (("--depth-px", "-1"), "--depth-px must be a number above 0"),
         (("--depth-um", "1"), "depth_um needs a pixel size: pass it as --pixel-size, or pass --depth-px"),
-        (("--depth-um", "0", "--pixel-size", "1"), "--depth-um must be a number above 0, got 0"),
+        (
+            ("--depth-um", "0", "--pixel-size", "1"),
+            "--depth-um must be a number above 0 and at most 1000000, got 0",
+        ),
         (("--depth-um", "1", "--depth-px", "2"), "--depth-px and --depth-um exclude each other"),
         (("--cells", "1,two"), "cells must be numbers of cells as 3,17,20, got '1,two'"),
         (("--cells", "1,2,3,4,5,6"), "cells: got 6: name one to 5"),

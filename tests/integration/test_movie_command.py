@@ -203,7 +203,7 @@ def test_parameters_of_a_study_reproduce_it(run: Run, masks: Path, signal: Path,
 @pytest.mark.parametrize("flag", ["--frame-interval", "--pixel-size"])
 def test_a_scale_that_is_not_above_0(run: Run, masks: Path, tmp_path: Path, flag: str, value: int) -> None:
     result = run("movie", masks, "-o", tmp_path / "out", flag, value)
-    assert_refused(result, f"{flag} must be a number above 0, got {float(value)}")
+    assert_refused(result, f"{flag} must be a number from 0.000001 to 1000000, got {float(value)}")
     assert not (tmp_path / "out").exists()
 
 

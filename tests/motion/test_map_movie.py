@@ -200,8 +200,8 @@ def test_a_movie_without_a_cell_is_refused() -> None:
 
 @pytest.mark.parametrize("name", ["frame_interval_s", "pixel_size_um"])
 @pytest.mark.parametrize("value", [0, -1.0, np.inf, np.nan, "fast", True])
-def test_a_scale_is_a_number_above_0(masks: np.ndarray, name: str, value: object) -> None:
-    message = f"{name} must be a number above 0, got {re.escape(repr(value))}"
+def test_a_scale_is_a_number_that_can_be(masks: np.ndarray, name: str, value: object) -> None:
+    message = f"{name} must be a number from 0.000001 to 1000000, got {re.escape(repr(value))}"
     with pytest.raises(ParameterError, match=message):
         map_movie(masks, **{name: value})
     with pytest.raises(ParameterError, match=message):

@@ -145,7 +145,7 @@ signal = "drug/missing.tif"
         "[[inputs]] 1 (line 4): unknown field in signal 'foldr': did you mean 'folder'?",
         "[[inputs]] 2 (line 8): unknown parameter 'layer': did you mean 'layers'?",
         f"[[inputs]] 2 (line 8): masks 'nothing*.tif' match nothing in {folder}",
-        "[[inputs]] 3 (line 11): pixel_size_um must be a number above 0, got -1",
+        "[[inputs]] 3 (line 11): pixel_size_um must be a number from 0.000001 to 1000000, got -1",
         "[[inputs]] 3 (line 11), cell2_masks.tif: name 'a b' cannot be that of a folder: use letters, "
         "digits, '_', '-' and '.' (at most 120 bytes)",
         "[[inputs]] 4 (line 15): kind must be movie or map, got 'film'",

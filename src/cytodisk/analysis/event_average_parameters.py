@@ -5,7 +5,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import Field
 
 from cytodisk.analysis.events import Kind
-from cytodisk.parameters import Parameters, parameter
+from cytodisk.parameters import MOST_SEED, Parameters, parameter
 
 Moment: TypeAlias = Literal["onset", "peak", "end"]
 Normalisation: TypeAlias = Literal["none", "mean", "sd"]
@@ -25,8 +25,10 @@ class EventAverageParameters(Parameters):
         '"mean" subtracts from each window of each event its own mean over the delays that it has; "sd" then '
         "divides by its standard deviation, and leaves out windows that do not vary.",
     )
-    bootstrap: int = parameter(1000, "How often patches are drawn for the band; 0 for none.", least=0)
-    seed: int = parameter(0, "Seed of the draws.", least=0)
+    bootstrap: int = parameter(
+        1000, "How often patches are drawn for the band; 0 for none.", least=0, most=100_000
+    )
+    seed: int = parameter(0, "Seed of the draws.", least=0, most=MOST_SEED)
     confidence: Annotated[float, Field(lt=1)] = parameter(
         0.95, "Share of repeated experiments whose band is to hold the true mean, at one delay.", above=0
     )

@@ -11,7 +11,7 @@ import xarray as xr
 from cytodisk.analysis.boundary_depth import places_at_depth
 from cytodisk.analysis.signal_frames import MovieSignals, parse_signals
 from cytodisk.arrays import AnyArray, BoolArray, FloatArray
-from cytodisk.checks import number_between, positive_number, whole_number
+from cytodisk.checks import number_between, whole_number
 from cytodisk.errors import ParameterError, SignalError
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.tracking import point_angles
@@ -67,7 +67,10 @@ def line_kymograph(line_yx: Any, signals: Any, *, width_px: int = 1, spacing_px:
            [1., 2., 3., 4., 5.]])
     """
     line = _parse_line(line_yx)
-    width_px, spacing_px = whole_number("width_px", width_px, 1), positive_number("spacing_px", spacing_px)
+    width_px, spacing_px = (
+        whole_number("width_px", width_px, 1, 10_000),
+        number_between("spacing_px", spacing_px, 1e-3, 1e6),
+    )
     _refuse_path(signals)
     known = _parse_movie(signals)
     distance, places, normals = _along(line, spacing_px)
@@ -139,7 +142,7 @@ def boundary_kymograph(movie: DiskMovie, depth: float, signals: Any, *, points: 
         )
     _refuse_path(signals)
     depth = number_between("depth", depth, 0.0)
-    points = whole_number("points", points, 1)
+    points = whole_number("points", points, 1, 1_000_000)
     known = parse_signals(signals, len(movie), movie.image_shape)
     angles, scale = point_angles(points), movie.scale
     places = np.full((len(movie), points, 2), np.nan)

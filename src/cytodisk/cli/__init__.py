@@ -1,11 +1,14 @@
 """The command line: reads flags, calls the library, prints what happened."""
 
+import sys
+
 from typer.core import TyperGroup
 
-from cytodisk.cli.console import fail
+from cytodisk.cli.console import fail, out_of_memory_words
 from cytodisk.cli.help_texts import HELP
 from cytodisk.cli.lazy_command import LazyCommand
 from cytodisk.errors import CytodiskError
+from cytodisk.stopping import Stopped, is_stop, stopping_tidily
 
 _ELSEWHERE = {"report": "correlate_command", "check": "map_command"}  # the others have a module of their own
 
@@ -25,11 +28,20 @@ app = TyperGroup(
 
 
 def main() -> None:
-    """Run the command line; errors that a user can mend end in exit code 2."""
+    """Run the command line; errors that a user can mend end in exit code 2, and what stops it in one line."""
     try:
-        app()
+        with stopping_tidily():
+            app()
     except CytodiskError as error:
         fail(str(error))
+    except MemoryError as error:
+        fail(out_of_memory_words(error))
+    except (Stopped, KeyboardInterrupt, SystemError) as error:
+        stop = is_stop(error)
+        if stop is None:
+            raise
+        print("Stopped.", file=sys.stderr)
+        raise SystemExit(stop.exit_code) from None
 
 
 __all__ = ["app", "main"]

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import typer
 
 from cytodisk.errors import EarlierVersionWarning
+from cytodisk.reading_files import words_of
+from cytodisk.stopping import Stopped, is_stop
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -24,6 +26,15 @@ RESUME = "run it again with --resume"
 def fail(message: str) -> None:
     print(f"Error: {message}", file=sys.stderr)
     raise SystemExit(2)
+
+
+def out_of_memory_words(error: MemoryError) -> str:
+    """What to do where memory ran out."""
+    said = f" ({words_of(error)})" if str(error) else ""
+    return (
+        f"memory ran out{said}: pass fewer --workers or smaller --layers and --sectors, crop the images, or "
+        "use a computer with more memory; what was done is kept (--resume)"
+    )
 
 
 def count(number: int, of: str = "cell") -> str:
@@ -56,7 +67,7 @@ def earlier_version_lines(say: Callable[[str], None]) -> Iterator[None]:
 def progress_bar(
     quiet: bool, unit: str, *, total: int | None = None, stopped: str | None = None, again: str = RESUME
 ) -> Iterator[Callable[[int, int], None]]:
-    """A bar on stderr with rate and time left; Ctrl-C within ends the command with exit code 130.
+    """A bar on stderr with rate and time left; what asks to stop within ends the command in a line.
 
     Where stderr is no terminal, as in a log file, a line at most every 30 s.
 
@@ -105,14 +116,15 @@ def progress_bar(
 
         try:
             yield report
-        except (KeyboardInterrupt, SystemError) as error:
-            if not _is_interrupt(error):
+        except (Stopped, KeyboardInterrupt, SystemError) as error:
+            stop = is_stop(error)
+            if stop is None:
                 raise
             done, known = bar.tasks[task].completed, bar.tasks[task].total
             of_all = f" ({done:.0f} of {known:.0f} {unit})" if known else ""
             kept = f"Stopped; what was done is kept{of_all}: {again}."
             print(kept if stopped is None else stopped, file=sys.stderr)
-            raise typer.Exit(130) from None
+            raise typer.Exit(stop.exit_code) from None
         if stopped is None and not bar.tasks[task].total and not quiet:
             print("this study is complete already: nothing was run again", file=sys.stderr)
 
@@ -162,10 +174,3 @@ class ProgressLines:
         percent = f"{100 * done / total:.0f} %" if total else "0 %"
         whole = percent if self.unit == PERCENT else f"{self.unit} {done}/{total}"
         print(", ".join([whole, *words]), file=sys.stderr, flush=True)
-
-
-def _is_interrupt(error: BaseException | None) -> bool:
-    """Whether Ctrl-C is behind an error: where compiled code is called it comes out as a SystemError."""
-    while error is not None and not isinstance(error, KeyboardInterrupt):
-        error = error.__cause__ or error.__context__
-    return error is not None

@@ -10,6 +10,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.disk.mapping_parameters import Align
 from cytodisk.errors import ParameterError
 from cytodisk.geometry.polygon import centroid, edge_lengths, edges, smooth_along, smooth_closed
+from cytodisk.parameter_words import short_words
 
 # benchmarks/arc_length.py prints what other values give.
 _DIRECTION_PX = 5.0  # over which the outline's direction is smoothed
@@ -17,6 +18,7 @@ _SPREAD_PX = 3.0  # over which the counted length is evened out
 _WHOLE_PX = 80.0  # a shorter outline is smoothed less, in proportion
 _LEAST_SHARE = 0.2  # of an edge's own length: a shorter arc would squeeze its triangle
 _TINY = 1e-12  # px, of a step that has no direction
+_FURTHEST = 1_000_000  # px or degrees
 
 
 def boundary_angles(outline_yx: FloatArray, align: Align = "upright") -> FloatArray:
@@ -137,10 +139,12 @@ def parse_align(align: Any) -> Align:
         numbers = np.asarray(align, dtype=np.float64)
     except (TypeError, ValueError):
         numbers = np.full(3, np.nan)
-    if numbers.shape in ((), (2,)) and np.isfinite(numbers).all() and not isinstance(align, bool | str):
+    in_reach = numbers.shape in ((), (2,)) and bool((np.abs(numbers) <= _FURTHEST).all())
+    if in_reach and not isinstance(align, bool | str):
         return float(numbers) if numbers.shape == () else (float(numbers[0]), float(numbers[1]))
     raise ParameterError(
-        f"align must be 'upright', a point (row, column) or an angle in degrees, got {align!r}"
+        "align must be 'upright', a point (row, column) or an angle in degrees, at most "
+        f"{_FURTHEST}, got {short_words(align)}"
     )
 
 

@@ -46,7 +46,7 @@ def image_on_disk(
         raise SignalError(
             f"signal has shape {values.shape}, the mask {image_shape}: pass one channel of one frame"
         )
-    size = whole_number("size", size, 1)
+    size = whole_number("size", size, 1, 100_000)
     axis = (np.arange(size) + 0.5) / size * 2.0 - 1.0
     v, u = np.meshgrid(axis, axis, indexing="ij")
     points = to_cell(np.column_stack([u.ravel(), v.ravel()]))

@@ -40,6 +40,7 @@ class MeshParameters(Parameters):
         'For methods "newton" and "newton-triangles": how much shape counts against area. Near 0 windows '
         "have equal areas; larger values keep shapes.",
         above=0,
+        most=1_000_000,
     )
     edge_length: float | None = parameter(
         None,

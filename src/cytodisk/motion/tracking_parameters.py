@@ -32,6 +32,7 @@ class TrackingParameters(Parameters):
         SMOOTHNESS_PX2,
         'For tracker "matching": how much neighbouring boundary points move alike.',
         above=0,
+        most=1_000_000,
         unit="px²",
     )
     registration: bool = parameter(True, "Take out rigid motion of the cell before tracking.")
@@ -39,6 +40,7 @@ class TrackingParameters(Parameters):
         5,
         "Number of frames after which the registration takes a new reference frame.",
         least=1,
+        most=1_000_000,
         unit="frames",
     )
 
@@ -58,6 +60,7 @@ class FollowingParameters(TrackingParameters, MeshParameters):
         1.0,
         "How much the inside of a frame stays where the frame before had it, against equal areas.",
         least=0,
+        most=1_000_000,
     )
 
 
@@ -75,6 +78,7 @@ class InteriorParameters(Parameters):
         'For interior "still": depth over which the motion of the edge fades, at least a pixel; without it '
         "4 px.",
         above=0,
+        most=1_000_000,
         unit="µm",
     )
 

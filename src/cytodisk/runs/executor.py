@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 import signal
+import time as clock
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import ExitStack
@@ -17,6 +18,7 @@ from cytodisk.runs.worker_process import Answer, WorkerProcess
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
+_TIME_TO_TIDY_S = 2.0  # of a process that is asked to end, before it is killed
 _STARTS = 3  # of a process that is killed before it is ready
 _WAITING = 2  # tasks a worker, so that a long list of tasks takes no memory
 
@@ -73,11 +75,16 @@ class Processes:
         self.close()
 
     def close(self) -> None:
-        """Kill all processes; what they were at can be resumed."""
+        """End all processes; what they were at can be resumed."""
         with self._lock:
             self._closed = True
             idle, busy = self._idle, self._all - set(self._idle)
             self._idle = []
+        for process in busy:
+            process.ask_to_end()
+        end = clock.monotonic() + _TIME_TO_TIDY_S
+        while any(process.alive for process in busy) and clock.monotonic() < end:
+            clock.sleep(0.01)
         for process in busy:
             process.kill()  # the thread that waits for it does the rest
         for process in idle:

@@ -40,7 +40,7 @@ class RunOptions(TableOptions):
 
     exclusive: ClassVar[tuple[tuple[str, str], ...]] = (("resume", "overwrite"),)
 
-    workers: int = parameter(1, "Number of processes. The results do not depend on it.", least=1)
+    workers: int = parameter(1, "Number of processes. The results do not depend on it.", least=1, most=1024)
     resume: bool = parameter(False, "Go on with the same run in this folder.")
     overwrite: bool = parameter(False, "Replace the results in this folder.")
 
@@ -65,7 +65,7 @@ class BatchOptions(RunOptions):
         "Write every merged table as CSV too, for Excel and other programs; inputs.csv is always there.",
     )
     time_limit: float | None = parameter(
-        None, "Longest time that one input may take; without it any.", above=0, unit="s"
+        None, "Longest time that one input may take; without it any.", above=0, most=1e9, unit="s"
     )
     scheduler: str | None = parameter(
         None, "Address of a Dask scheduler, such as tcp://host:8786, whose workers do the inputs."

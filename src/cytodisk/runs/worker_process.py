@@ -21,6 +21,8 @@ from queue import SimpleQueue
 from threading import Thread, Timer
 from typing import IO, Any
 
+from cytodisk.stopping import Stopped, stopping_tidily
+
 _LENGTH_BYTES = 8
 _MOST_WORDS = 2000  # characters kept of the beginning and of the end of what a process said
 _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
@@ -115,6 +117,11 @@ class WorkerProcess:
                 watch.cancel()
         return None if found is None else pickle.loads(found)
 
+    def ask_to_end(self) -> None:
+        """Let it remove its locks and temporary files; in the middle of compiled code it does not hear."""
+        with suppress(OSError):  # it has ended already
+            self._process.terminate()
+
     def kill(self) -> None:
         """Kill it and all that it started."""
         with suppress(ProcessLookupError):  # it has ended already
@@ -165,6 +172,16 @@ def _receive(pipe: IO[bytes] | None) -> bytes | None:
 def main() -> None:
     """The far end: answer until stdin ends, which it does when the process that started this one is gone."""
     _be_killed_first()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # who started this one hears Ctrl-C, and ends it
+    try:
+        with stopping_tidily():
+            _answer_all()
+    except Stopped as stop:
+        signal.signal(stop.number, signal.SIG_DFL)
+        os.kill(os.getpid(), stop.number)
+
+
+def _answer_all() -> None:
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what libraries print must not get between answers
     tasks: SimpleQueue[bytes] = SimpleQueue()

@@ -12,6 +12,7 @@ from cytodisk.parameters import Parameters, parameter
 Spacing: TypeAlias = Literal["area", "radius"]
 NanRule: TypeAlias = Literal["propagate", "omit"]
 
+_DEEPEST_UM = 1e6
 _MOST_WINDOWS = 10_000_000  # beyond any image, and still within memory
 
 
@@ -71,7 +72,12 @@ class PolarGridParameters(GridParameters):
         if depth_um is None:
             return None
         borders = (0.0, *depth_um)
-        if not depth_um or len(depth_um) >= MOST or any(a >= b for a, b in pairwise(borders)):
+        if (
+            not depth_um
+            or len(depth_um) >= MOST
+            or any(a >= b for a, b in pairwise(borders))
+            or depth_um[-1] > _DEEPEST_UM
+        ):
             raise ValueError("must be a depth above 0 or several that increase, such as 0.5,1,2")
         return depth_um
 

@@ -2,12 +2,14 @@
 
 from typing import Literal, TypeAlias
 
-from cytodisk.parameters import Parameters, parameter
+from cytodisk.parameters import MOST_SEED, Parameters, parameter
 
 Detrend: TypeAlias = Literal["none", "linear", "median"]
 Statistic: TypeAlias = Literal["pearson", "spearman"]
 Null: TypeAlias = Literal["phase", "shift"]
 Rule: TypeAlias = Literal["nearest", "largest"]
+
+MOST_SURROGATES = 100_000  # p-values down to 0.00001; each takes as long as the correlation itself
 
 
 class DetrendParameters(Parameters):
@@ -20,6 +22,7 @@ class DetrendParameters(Parameters):
         None,
         "Length of the moving median; without it 4 × max_lag + 1.",
         least=3,
+        most=1_000_000,
         unit="frames",
     )
     difference: bool = parameter(False, "Use the changes from frame to frame in place of the values.")
@@ -48,19 +51,23 @@ class NullParameters(Parameters):
     """What chance would give."""
 
     min_pairs: int = parameter(
-        10, "Fewest frames that must have both values at a lag; lags with fewer are NaN.", least=3
+        10,
+        "Fewest frames that must have both values at a lag; lags with fewer are NaN.",
+        least=3,
+        most=1_000_000,
     )
     surrogates: int = parameter(
         0,
         "Number of surrogate series to compare with; 0 for none. 999 give p-values down to 0.001.",
         least=0,
+        most=MOST_SURROGATES,
     )
     null: Null = parameter(
         "phase",
         'How surrogates are made: "phase" draws random phases, "shift" shifts series in a circle. Shifts '
         "that share no lag are few: at most frames / (2 × max_lag + 1).",
     )
-    seed: int = parameter(0, "Seed of the surrogates.", least=0)
+    seed: int = parameter(0, "Seed of the surrogates.", least=0, most=MOST_SEED)
 
 
 class PairCorrelationParameters(NullParameters, StatisticParameters, DetrendParameters):
@@ -75,6 +82,7 @@ class PairParameters(PairCorrelationParameters):
         "Number of bins of distances above 0. One more, at 0, holds windows paired with themselves, and "
         "along the edge all windows of one sector.",
         least=1,
+        most=10_000,
     )
 
 
@@ -111,6 +119,7 @@ class CrossCorrelationParameters(
         "Number of sectors of the whole edge, where only some are passed: its last one is the neighbour of "
         "sector 0. Without it, sectors numbered from 0 without a gap are the whole edge.",
         least=1,
+        most=100_000,
         unit="sectors",
     )
 

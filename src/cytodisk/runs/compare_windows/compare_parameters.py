@@ -48,6 +48,7 @@ class ComparedParameters(EdgeGridParameters):
         None,
         "Thickness of a layer by distance from the edge, in place of one in pixels; needs the pixel size.",
         above=0,
+        most=1_000_000,
         unit="µm",
     )
 

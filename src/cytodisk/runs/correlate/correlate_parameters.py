@@ -6,6 +6,7 @@ from pydantic import field_validator
 
 from cytodisk.analysis.correlation.correlation_parameters import (
     CLUSTERS,
+    MOST_SURROGATES,
     PairCorrelationParameters,
     PeakParameters,
     SkipLagsParameters,
@@ -24,6 +25,7 @@ class CorrelateParameters(PeakParameters, SkipLagsParameters, PairCorrelationPar
         None,
         "Longest lag; without it a quarter of the movie, at most 20, or what leaves enough pairs of frames.",
         least=0,
+        most=1_000_000,
         unit="frames",
     )
     against: Literal["window", "edge"] = parameter(
@@ -36,6 +38,7 @@ class CorrelateParameters(PeakParameters, SkipLagsParameters, PairCorrelationPar
         f"Number of surrogate series to compare with; 0 for none, else at least {FEWEST_SURROGATES}, as p "
         "could not reach 0.05 with fewer.",
         least=0,
+        most=MOST_SURROGATES,
     )
     geometry: bool = parameter(
         True,
