@@ -192,9 +192,9 @@ def test_a_folder_is_no_image(tmp_path: Path) -> None:
 
 
 def test_an_unknown_format_is_named(tmp_path: Path) -> None:
-    (tmp_path / "a.czi").write_bytes(b"ZISRAWFILE")
-    with pytest.raises(ReadError, match=r"a\.czi.*TIFF"):
-        open_frames(tmp_path / "a.czi")
+    (tmp_path / "a.vsi").write_bytes(b"II*")
+    with pytest.raises(ReadError, match=r"a\.vsi.*TIFF"):
+        open_frames(tmp_path / "a.vsi")
 
 
 @pytest.mark.parametrize("name", ["a.tif", "a.png"])

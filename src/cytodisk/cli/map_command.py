@@ -57,12 +57,14 @@ def map_command(
 
 @with_parameters(FileParameters, file=False)
 def check_command(masks: MaskFiles, given: Given, signal: SignalFiles = None) -> None:
+    from cytodisk.cli.contents_lines import say_contents
     from cytodisk.cli.map_totals import say_checked
     from cytodisk.runs.cells.cell_inputs import open_inputs
     from cytodisk.runs.map.map_study import check_cells
 
-    inputs = open_inputs(masks, signal, given.of(FileParameters))
     console = console_for(False)
+    say_contents(console, (masks, signal))
+    inputs = open_inputs(masks, signal, given.of(FileParameters))
     say_inputs(console, inputs)
     unusable = say_checked(console, inputs, check_cells(inputs))
     raise typer.Exit(1 if unusable else 0)

@@ -38,8 +38,8 @@ Signal = Annotated[
 SignalFiles = Annotated[
     Path | None,
     typer.Option(
-        help="Image to sample, of the same height and width: TIFF or PNG. For a folder of masks: a folder "
-        "of images with the same names, or the ending of their names, such as _img."
+        help="Image to sample, of the same height and width: TIFF, PNG, OME-Zarr, ND2, CZI or LIF. For a "
+        "folder of masks: a folder of images with the same names, or the ending of their names, such as _img."
     ),
 ]
 OutFolder = Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)]

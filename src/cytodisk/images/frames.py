@@ -15,12 +15,26 @@ from cytodisk.errors import ReadError
 from cytodisk.images.chosen_channels import with_channels, with_names
 from cytodisk.images.file_parameters import SignalFileParameters
 from cytodisk.images.formats.array_file import open_array
+from cytodisk.images.formats.czi_file import open_czi
+from cytodisk.images.formats.lif_file import open_lif
+from cytodisk.images.formats.nd2_file import open_nd2
 from cytodisk.images.formats.picture_file import open_picture
 from cytodisk.images.formats.tiff_file import open_tiff
+from cytodisk.images.formats.zarr_file import open_zarr
 from cytodisk.images.frame_file import NO_CHOICE, FileChoice, FrameFile
+from cytodisk.images.image_paths import is_folder_of_files, is_zarr
 from cytodisk.images.reading import reading
 
-_OPENERS = {".tif": open_tiff, ".tiff": open_tiff, ".png": open_picture, ".npy": open_array}
+_OPENERS = {
+    ".tif": open_tiff,
+    ".tiff": open_tiff,
+    ".png": open_picture,
+    ".npy": open_array,
+    ".nd2": open_nd2,
+    ".czi": open_czi,
+    ".lif": open_lif,
+    ".zarr": open_zarr,
+}
 
 
 def open_frames(
@@ -35,7 +49,8 @@ def open_frames(
     Parameters
     ----------
     path : path-like
-        TIFF, OME-TIFF, ImageJ TIFF, PNG, or an array saved by NumPy (Cellpose's `_seg.npy`: its masks).
+        TIFF, OME-TIFF, ImageJ TIFF, PNG, OME-Zarr, ND2, CZI, LIF, or an array saved by NumPy (Cellpose's
+        `_seg.npy`: its masks).
     unnamed : {"T", "C"}
         What an axis without a name in the file is: frames or channels.
     choice : FileChoice, optional
@@ -66,9 +81,9 @@ def open_frames(
         raise ReadError(f"{file} does not exist: check the path") from error
     except OSError as error:
         raise ReadError(f"{file} cannot be read: {error.strerror}") from error
-    if file.is_dir():
+    if is_folder_of_files(file):
         raise ReadError(f"{file} is a folder: pass one image file")
-    suffix = file.suffix.lower()
+    suffix = ".zarr" if is_zarr(file) else file.suffix.lower()
     if suffix not in _OPENERS:
         raise ReadError(f"{file} is no image that can be read ({', '.join(_OPENERS)}): convert it to TIFF")
     with reading(file, "its header"):
@@ -90,7 +105,8 @@ def read_image(
     Parameters
     ----------
     path : path-like
-        TIFF, OME-TIFF, ImageJ TIFF, PNG, or an array saved by NumPy (Cellpose's `_seg.npy`: its masks).
+        TIFF, OME-TIFF, ImageJ TIFF, PNG, OME-Zarr, ND2, CZI, LIF, or an array saved by NumPy (Cellpose's
+        `_seg.npy`: its masks).
     unnamed : {"C", "T"}
         What an axis without a name in the file is: channels or frames.
     axes : str, optional

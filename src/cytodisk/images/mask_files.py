@@ -16,6 +16,7 @@ from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frame_file import NO_CHOICE, FileChoice, FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.frames import open_frames
+from cytodisk.images.image_paths import is_folder_of_files
 from cytodisk.images.label_boxes import Box, LabelBoxes, cell_box, label_boxes, with_margin
 from cytodisk.images.mask_kinds import MaskLook, Reader, check_labels, look_at
 from cytodisk.images.mask_names import mask_names
@@ -125,7 +126,7 @@ def open_mask_files(
         An unknown kind.
     """
     place = Path(path)
-    if not place.is_dir():
+    if not is_folder_of_files(place):
         file = open_frames(place, unnamed="T", choice=choice, flag="--mask-channel")
         opened = partial(frame_pixels, file)
         reader: Reader = lru_cache(maxsize=1)(opened) if file.n_frames == 1 else opened

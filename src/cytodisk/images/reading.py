@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from cytodisk.errors import ReadError
+from cytodisk.errors import MissingPartError, ReadError
 
 
 @contextmanager
@@ -14,7 +14,7 @@ def reading(path: Path, part: str) -> Iterator[None]:
     """Turn whatever a decoder raises on a damaged file into a `ReadError` that names the place."""
     try:
         yield
-    except ReadError:
+    except (ReadError, MissingPartError):
         raise
     except MemoryError as error:
         raise ReadError(

@@ -15,6 +15,7 @@ from cytodisk.errors import ReadError, SignalError, as_data
 from cytodisk.images.chosen_channels import stem_of
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
+from cytodisk.images.image_paths import is_folder_of_files
 from cytodisk.images.mask_files import MaskSource
 from cytodisk.images.mask_names import base_name, image_stem, visible_files
 from cytodisk.scale import Scale
@@ -171,15 +172,15 @@ def common_name(signal: Path) -> str:
     signal : Path
         As `pair_images` takes it.
     """
-    if signal.is_dir():
+    if is_folder_of_files(signal):
         return signal.resolve().name
     return stem_of(signal.name).strip(" _-.")
 
 
 def _where(signal: Path, masks: Path) -> tuple[Path, tuple[str, ...]]:
-    if signal.is_dir():
+    if is_folder_of_files(signal):
         return signal, _USUAL_ENDINGS
-    if signal.is_file():
+    if signal.exists():
         raise SignalError(
             f"signal {signal} is one file for a folder of masks: pass a folder of images with names as those "
             "of the masks, or how their names go on, as --signal _img"

@@ -10,6 +10,7 @@ from typing import Any
 
 from cytodisk.disk.mapping_parameters import MAPS_VERSION
 from cytodisk.errors import ReadError
+from cytodisk.images.image_paths import sha256_of
 from cytodisk.parameters import Parameters
 from cytodisk.runs.versions import NUMERIC, installed
 from cytodisk.scale import Scale
@@ -86,7 +87,6 @@ def _sha256_if_readable(path: Path) -> str:
 
 def _sha256(path: Path) -> str:
     try:
-        with path.open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
+        return sha256_of(path)
     except OSError as error:
         raise ReadError(f"{path} cannot be read: {error.strerror}") from error

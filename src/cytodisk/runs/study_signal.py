@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
 from cytodisk.errors import ReadError, SignalError
 from cytodisk.files import file_name
 from cytodisk.images.frames import open_frames
+from cytodisk.images.image_paths import sha256_of
 from cytodisk.images.signal_files import FrameSource
 from cytodisk.store.study import Study
 
@@ -46,11 +46,11 @@ def find_signal(study: Study) -> FoundSignal:
         return FoundSignal(None)
     path, name = Path(told["path"]), file_name(told["path"])
     places = [path] if path.is_absolute() else [path, study.path.parent / path, study.path / path]
-    there = [place for place in places if place.is_file()]
+    there = [place for place in places if place.exists()]
     if not there:
         return FoundSignal(None, f"{name} is not there any more")
     try:
-        same = next((place for place in there if _sha256(place) == told.get("sha256")), None)
+        same = next((place for place in there if sha256_of(place) == told.get("sha256")), None)
         if same is None:
             return FoundSignal(None, f"{name} does not hold what was measured (its sha256 differs)")
         source = open_frames(same)
@@ -107,8 +107,3 @@ def misfit(study: Study, source: FrameSource) -> str:
             f"channels and at least {last + 1} frames"
         )
     return ""
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -25,6 +25,9 @@ PARTS = {
     "link": ("laptrack",),
     "demons": ("SimpleITK",),
     "umap": ("umap-learn",),
+    "nd2": ("nd2",),
+    "czi": ("czifile",),
+    "lif": ("liffile",),
     "cluster": ("distributed", "fsspec"),
 }
 

@@ -12,6 +12,7 @@ from string import Formatter
 from typing import Any
 
 from cytodisk.errors import ParameterError
+from cytodisk.images.image_paths import is_folder_of_files
 from cytodisk.images.mask_names import base_name, image_stem, natural_order
 from cytodisk.runs.batch.batch_faults import Faults
 from cytodisk.runs.batch.batch_input import BatchInput, InputKind, Value
@@ -128,7 +129,7 @@ class RowReader:
         else:
             names = glob.glob(pattern, root_dir=self.folder, recursive=True)  # noqa: PTH207  may be absolute
             found = [self.folder / name for name in sorted(names, key=natural_order)]
-        return [path for path in found if kind == "map" or not path.is_dir()]
+        return [path for path in found if kind == "map" or not is_folder_of_files(path)]
 
     def _input(
         self, row: FileRow, kind: InputKind, masks: Path, parameters: MapParameters | None
@@ -175,11 +176,11 @@ class RowReader:
             self.faults.add(place, f"signal must be a path, got {signal!r}")
             return None
         path = self.folder / signal
-        if masks.is_dir() and signal.startswith(_BESIDE) and not _exists(path):
+        if is_folder_of_files(masks) and signal.startswith(_BESIDE) and not _exists(path):
             return Path(signal)  # how the names of images go on beside the masks
         if not _exists(path):
             self.faults.add(place, f"signal {path} does not exist")
-        elif not masks.is_dir() and path.resolve() == masks.resolve():
+        elif not is_folder_of_files(masks) and path.resolve() == masks.resolve():
             self.faults.add(
                 place, f"signal {path} is the mask file itself: name its image, or take signal out"
             )

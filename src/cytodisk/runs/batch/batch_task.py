@@ -16,6 +16,7 @@ from typing import Any
 
 from cytodisk.errors import CytodiskError, StudyError, WriteError
 from cytodisk.images.frames import open_frames
+from cytodisk.images.image_paths import is_folder_of_files
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.batch.batch_target import is_latest, open_store
 from cytodisk.runs.batch.compute_input import CANNOT_WRITE, RUNS, compute_input
@@ -110,9 +111,9 @@ def expected_seconds(item: BatchInput) -> float:
     float
         0 for a file that cannot be read, which is soon found out. A folder counts as a task of its own.
     """
-    if item.masks.is_dir():
+    if is_folder_of_files(item.masks):
         return math.inf
-    if not item.masks.is_file():
+    if not item.masks.exists():
         return 0.0
     try:
         file = open_frames(item.masks, choice=item.parameters.mask_choice)

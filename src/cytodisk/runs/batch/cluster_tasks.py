@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from cytodisk.images.image_paths import is_folder_of_files
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.batch.batch_target import open_store
 from cytodisk.runs.batch.batch_task import BatchTask, TaskResult
@@ -31,7 +32,7 @@ def as_seen_by_all(task: BatchTask, target: str, run: str) -> BatchTask:
 
 def _signal(item: BatchInput) -> Path | None:
     """The signal's full path; how names of images go on beside a folder's masks, as "_img", is no path."""
-    if item.signal is None or (item.masks.is_dir() and not item.signal.exists()):
+    if item.signal is None or (is_folder_of_files(item.masks) and not item.signal.exists()):
         return item.signal
     return item.signal.absolute()
 

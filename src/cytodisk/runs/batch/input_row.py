@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from cytodisk.errors import StudyError
+from cytodisk.images.image_paths import is_zarr, parts_of
 from cytodisk.images.mask_names import visible_files
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.store.targets import Store
@@ -114,6 +115,8 @@ def files_mark(item: BatchInput) -> str:
 
 def _marks(path: Path) -> list[Any]:
     try:
+        if is_zarr(path):
+            return [[str(part), *_marks(part)] for part in parts_of(path)]
         if path.is_dir():
             return [[file.name, *_marks(file)] for file in visible_files(path)]
         found = path.stat()

@@ -13,6 +13,7 @@ from cytodisk.errors import ReadError, SignalError, as_data
 from cytodisk.images.chosen_channels import with_names
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frames import open_frames
+from cytodisk.images.image_paths import is_folder_of_files
 from cytodisk.images.mask_files import MaskSource, open_mask_files
 from cytodisk.images.signal_files import common_name, pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
@@ -130,7 +131,7 @@ def open_inputs(
         A file is missing, damaged, or does not fit.
     """
     is_path("masks", masks)
-    if Path(masks).is_dir():
+    if is_folder_of_files(Path(masks)):
         return _open_folder(Path(masks), signal, parameters)
     sources = open_mask_files(masks, parameters.kind, choice=parameters.mask_choice)
     found = _open_signal(sources[0], signal, parameters)

@@ -1,0 +1,127 @@
+"""Frames that are put together from the planes of a microscope file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol, TypeAlias
+
+import numpy as np
+
+from cytodisk.errors import ReadError
+from cytodisk.images.formats.file_metadata import channel_names
+from cytodisk.images.frame_file import Cut, FileChoice, FrameFile, StoredFrames
+from cytodisk.images.scenes import Scene, Taken, take
+
+Plane: TypeAlias = Callable[[int, int, int], np.ndarray[Any, Any]]
+"""Pixels (H, W) of a plane, by frame, channel and slice."""
+
+
+class Planes(Protocol):
+    """Planes of one scene of a file; can be sent to other processes, so it holds no open file."""
+
+    def opened(self) -> AbstractContextManager[Plane]:
+        """Open the file, to read planes of it."""
+        ...
+
+
+@dataclass(frozen=True)
+class PlaneFrames:
+    """Frames of a scene.
+
+    Attributes
+    ----------
+    planes : Planes
+    channels : int
+    slices : int
+        How many there are.
+    z : int, "max" or "mean"
+        What of them makes a frame.
+    """
+
+    planes: Planes
+    channels: int
+    slices: int
+    z: int | str
+
+    def read(self, number: int) -> np.ndarray[Any, Any]:
+        """Pixels of a frame, shape (C, H, W)."""
+        slices = range(self.slices) if isinstance(self.z, str) else (self.z,)
+        with self.planes.opened() as plane:
+            stacks = (
+                np.stack([plane(number, channel, z) for channel in range(self.channels)]) for z in slices
+            )
+            return projected(stacks, self.z)
+
+    def by_piece(self, number: int) -> tuple[Cut, int] | None:
+        """None: a plane is read whole."""
+        return None
+
+
+def projected(slices: Iterable[np.ndarray[Any, Any]], z: int | str) -> np.ndarray[Any, Any]:
+    """Slices of a z-stack made one image, with one or two of them in memory.
+
+    Parameters
+    ----------
+    slices : iterable of ndarray
+    z : int, "max" or "mean"
+        A mean is float32; a number stands for a single slice.
+    """
+    image: np.ndarray[Any, Any] | None = None
+    count = 0
+    for piece in slices:
+        count += 1
+        if image is None:
+            image = piece.astype(np.float64) if z == "mean" else piece
+        elif z == "mean":
+            image += piece
+        else:
+            np.maximum(image, piece, out=image)
+    assert image is not None  # a slice is always taken
+    return (image / count).astype(np.float32) if z == "mean" else image
+
+
+def scene_file(
+    file: Path, scenes: Sequence[Scene], choice: FileChoice, stored: Callable[[Scene, Taken], StoredFrames]
+) -> FrameFile:
+    """A microscope file as a sequence of frames.
+
+    Parameters
+    ----------
+    file : Path
+    scenes : sequence of Scene
+        What it holds.
+    choice : FileChoice
+        What a user takes of it.
+    stored : callable
+        Gives the frames of what is taken.
+
+    Raises
+    ------
+    ReadError
+        The choice is not complete, or is not in the file.
+    """
+    if choice.axes is not None:
+        raise ReadError(f"{file} names its axes itself: leave out --axes {choice.axes}")
+    taken = take(file, scenes, choice)
+    scene = scenes[taken.scene]
+    sizes = {"T": scene.frames, "C": len(scene.channels)}
+    axes = "".join(axis for axis, size in sizes.items() if size > 1) + "YX"
+    shape = tuple(size for size in sizes.values() if size > 1) + scene.image_shape
+    dtype = np.dtype(np.float32) if taken.z == "mean" else scene.dtype
+    names = channel_names(scene.channels if all(scene.channels) else (), len(scene.channels))
+    evidence = ", ".join(filter(None, _evidence(scenes, taken)))
+    return FrameFile(
+        file, axes, shape, dtype, names, stored(scene, taken), scene.scale, scene.notes, evidence
+    )
+
+
+def _evidence(scenes: Sequence[Scene], taken: Taken) -> Iterator[str]:
+    scene = scenes[taken.scene]
+    if len(scenes) > 1:
+        yield f"scene {taken.scene} of {len(scenes)} ({scene.name})"
+    if scene.slices > 1:
+        of_all = f"{taken.z} of {scene.slices} slices in z"
+        yield of_all if isinstance(taken.z, str) else f"slice {of_all}".replace(" slices", "")

@@ -1,0 +1,256 @@
+"""OME-Zarr images (versions 0.4 and 0.5) in local folders."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cytodisk.errors import ReadError
+from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
+from cytodisk.images.formats.plane_frames import Plane, PlaneFrames, scene_file
+from cytodisk.images.frame_file import Cut, FileChoice, FrameFile
+from cytodisk.images.image_paths import is_zarr
+from cytodisk.images.reading import reading
+from cytodisk.images.scenes import Scene, Taken
+from cytodisk.scale import Scale
+
+_MICROMETRES = {"angstrom": 1e-4, "nanometer": 1e-3, "micrometer": 1.0, "millimeter": 1e3, "meter": 1e6}
+_SECONDS = {"millisecond": 1e-3, "second": 1.0, "minute": 60.0, "hour": 3600.0, "day": 86400.0}
+_MOST_IMAGES = 1000
+
+
+def open_zarr(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
+    """Look at an OME-Zarr image without reading its pixels; see `cytodisk.images.frames.open_frames`."""
+    images = _images(file)
+
+    def stored(scene: Scene, taken: Taken) -> ZarrFrames:
+        return ZarrFrames(images[taken.scene][1], len(scene.channels), scene.slices, taken.z)
+
+    return scene_file(file, [scene for scene, _ in images], choice, stored)
+
+
+def zarr_scenes(file: Path) -> tuple[Scene, ...]:
+    """What an OME-Zarr folder holds: its images, at full resolution."""
+    return tuple(scene for scene, _ in _images(file))
+
+
+@dataclass(frozen=True)
+class ZarrPlanes:
+    """Planes of one image of an OME-Zarr folder.
+
+    Attributes
+    ----------
+    path : Path
+    array : str
+        Where its array is in the folder.
+    axes : str
+        As stored, one letter each.
+    """
+
+    path: Path
+    array: str
+    axes: str
+
+    @contextmanager
+    def opened(self) -> Iterator[Plane]:
+        """Open the array, to read planes of it."""
+        everything = slice(None)
+        array = _array(self.path, self.array)
+        yield lambda frame, channel, z: self.cut(array, (frame, channel, z), everything, everything)
+
+    def cut(
+        self, array: Any, plane: tuple[int, int, int], rows: slice, columns: slice
+    ) -> np.ndarray[Any, Any]:
+        """Some rows and columns of a plane, by frame, channel and slice."""
+        places: dict[str, Any] = dict(zip("TCZ", plane, strict=True)) | {"Y": rows, "X": columns}
+        piece = np.asarray(array[tuple(places.get(axis, 0) for axis in self.axes)])
+        return piece if self.axes.index("Y") < self.axes.index("X") else piece.T
+
+
+@dataclass(frozen=True)
+class ZarrFrames:
+    """Frames of one image of an OME-Zarr folder.
+
+    Attributes
+    ----------
+    planes : ZarrPlanes
+    channels, slices, z
+        As those of `PlaneFrames`.
+    """
+
+    planes: ZarrPlanes
+    channels: int
+    slices: int
+    z: int | str
+
+    def read(self, number: int) -> np.ndarray[Any, Any]:
+        """Pixels of a frame, shape (C, H, W)."""
+        return PlaneFrames(self.planes, self.channels, self.slices, self.z).read(number)
+
+    def by_piece(self, number: int) -> tuple[Cut, int] | None:
+        """How to cut pieces out of a frame, chunk by chunk; None for a projection."""
+        if isinstance(self.z, str):
+            return None
+        array = _array(self.planes.path, self.planes.array)
+        return partial(self._cut, number, self.z), int(array.chunks[self.planes.axes.index("Y")])
+
+    def _cut(self, number: int, z: int, rows: slice, columns: slice) -> np.ndarray[Any, Any]:
+        with reading(self.planes.path, f"frame {number}"):
+            array = _array(self.planes.path, self.planes.array)
+            planes = [(number, channel, z) for channel in range(self.channels)]
+            return np.stack([self.planes.cut(array, plane, rows, columns) for plane in planes])
+
+
+def _array(file: Path, name: str) -> Any:
+    import zarr
+
+    return zarr.open_array(str(file), path=name, mode="r")
+
+
+def _group(file: Path, name: str) -> Any:
+    import zarr
+
+    return zarr.open_group(str(file), path=name, mode="r")
+
+
+def _images(file: Path) -> list[tuple[Scene, ZarrPlanes]]:
+    if (file / ".zarray").is_file() or not _is_group(file):
+        raise ReadError(
+            f"{file} is a Zarr array without OME metadata: pass the folder above it that has them "
+            "(multiscales), or save it as OME-Zarr or TIFF"
+        )
+    names = _image_names(file, _ome(file, ""))[:_MOST_IMAGES]
+    return [_image(file, name, number) for name in names for number in range(len(_multiscales(file, name)))]
+
+
+def _is_group(file: Path) -> bool:
+    import zarr
+
+    return isinstance(zarr.open(str(file), mode="r"), zarr.Group)
+
+
+def _ome(file: Path, name: str) -> dict[str, Any]:
+    """OME metadata of a group: below "ome" since version 0.5."""
+    attributes = dict(_group(file, name).attrs)
+    ome = attributes.get("ome", attributes)
+    return ome if isinstance(ome, dict) else {}
+
+
+def _multiscales(file: Path, name: str) -> list[Any]:
+    found = _ome(file, name).get("multiscales")
+    if not isinstance(found, list) or not found:
+        raise ReadError(f"{file / name} is no OME-Zarr image: its metadata have no multiscales")
+    return found
+
+
+def _image_names(file: Path, ome: dict[str, Any]) -> list[str]:
+    """Where the images of a folder are: in itself, in a plate or a well, or numbered by Bio-Formats."""
+    if "multiscales" in ome:
+        return [""]
+    if "plate" in ome:
+        wells = [str(well["path"]) for well in ome["plate"]["wells"]]
+        return [f"{well}/{image}" for well in wells for image in _well_images(_ome(file, well))]
+    if "well" in ome:
+        return _well_images(ome)
+    if "labels" in ome:
+        return [str(name) for name in ome["labels"]]
+    if "bioformats2raw.layout" in ome:
+        numbered = [place.name for place in file.iterdir() if place.name.isdecimal() and is_zarr(place)]
+        return sorted(numbered, key=int)
+    raise ReadError(
+        f"{file} is a Zarr folder without an OME image (no multiscales): pass the folder of an image in it"
+    )
+
+
+def _well_images(ome: dict[str, Any]) -> list[str]:
+    return [str(image["path"]) for image in ome["well"]["images"]]
+
+
+def _image(file: Path, name: str, number: int) -> tuple[Scene, ZarrPlanes]:
+    multiscale = _multiscales(file, name)[number]
+    try:
+        described = [axis if isinstance(axis, dict) else {"name": axis} for axis in multiscale["axes"]]
+        axes = "".join(str(axis["name"])[:1].upper() for axis in described)
+        dataset = multiscale["datasets"][0]
+        place = str(Path(name) / str(dataset["path"]))
+    except (KeyError, TypeError, IndexError) as error:
+        raise ReadError(
+            f"{file / name}: its OME metadata lack {error}: write it as OME-Zarr 0.4 or 0.5"
+        ) from error
+    array = _array(file, place)
+    if len(axes) != array.ndim:
+        raise ReadError(
+            f"{file / name}: its OME metadata name {len(axes)} axes and its array has {array.ndim}: write it "
+            "anew"
+        )
+    sizes = dict(zip(axes, array.shape, strict=True))
+    steps = _steps(multiscale, dataset, len(axes))
+    spaces = [_step(described, axes, steps, axis, _MICROMETRES) for axis in "YX"]
+    size_um, size_notes, fault = pixel_size_of([size for size, _ in spaces])
+    interval, time_note = _step(described, axes, steps, "T", _SECONDS)
+    interval_s, time_notes = agreed_interval((), interval, sizes.get("T", 1))
+    title = str(multiscale.get("name") or "") if name == "" else name
+    notes = dict.fromkeys([note for _, note in spaces] + [time_note if sizes.get("T", 1) > 1 else ""])
+    scene = Scene(
+        title or str(number),
+        sizes.get("T", 1),
+        sizes.get("Z", 1),
+        _channels(_ome(file, name), sizes.get("C", 1)),
+        (sizes.get("Y", 1), sizes.get("X", 1)),
+        np.dtype(array.dtype),
+        Scale(size_um, interval_s),
+        (*size_notes, *time_notes, *filter(None, notes)),
+        _fault(axes, array.shape) or fault,
+    )
+    return scene, ZarrPlanes(file, place, axes)
+
+
+def _fault(axes: str, shape: Sequence[int]) -> str:
+    others = [axis for axis, size in zip(axes, shape, strict=True) if axis not in "TCZYX" and size > 1]
+    if len(set(axes)) != len(axes) or not {"Y", "X"} <= set(axes) or others:
+        return f"has the axes {axes.lower()}: save it with axes out of t, c, z, y and x"
+    return ""
+
+
+def _channels(ome: dict[str, Any], count: int) -> tuple[str, ...]:
+    omero = ome.get("omero")
+    listed = omero.get("channels") if isinstance(omero, dict) else None
+    names = [str(channel.get("label") or "") for channel in listed or () if isinstance(channel, dict)]
+    return tuple(names) if len(names) == count else ("",) * count
+
+
+def _steps(multiscale: Any, dataset: Any, count: int) -> list[float] | None:
+    """Step along each axis: the scale of the array times that of the image; None where there is none."""
+    steps, found = [1.0] * count, False
+    for owner in (dataset, multiscale):
+        for transformation in owner.get("coordinateTransformations") or ():
+            factors = transformation.get("scale") or ()
+            if transformation.get("type") == "scale" and len(factors) == count:
+                steps = [step * float(factor) for step, factor in zip(steps, factors, strict=True)]
+                found = True
+    return steps if found and all(map(math.isfinite, steps)) else None
+
+
+def _step(
+    described: list[Any], axes: str, steps: list[float] | None, axis: str, units: dict[str, float]
+) -> tuple[float | None, str]:
+    """Step along an axis in µm or seconds; None, perhaps with a note, where the file does not say."""
+    if steps is None or axis not in axes:
+        return None, ""
+    number = axes.index(axis)
+    unit, step = described[number].get("unit"), steps[number]
+    if unit in units:
+        return step * units[unit], ""
+    if unit is None and step == 1:
+        return None, ""
+    flag = "--frame-interval" if axis == "T" else "--pixel-size"
+    what = "frame interval" if axis == "T" else "pixel size"
+    named = f"the unit {unit!r}, which is unknown" if unit is not None else "no unit"
+    return None, f"its {what} of {step:g} has {named}: give it with {flag}"

@@ -1,0 +1,57 @@
+"""Paths of images: a file, or a Zarr folder, which is one image as well; other folders hold files."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+_ZARR_MEMBERS = ("zarr.json", ".zgroup", ".zattrs", ".zarray")
+
+
+def is_zarr(path: Path) -> bool:
+    """Whether a path is a Zarr folder.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    bool
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> is_zarr(Path("no_such_folder.zarr"))
+    False
+    """
+    return path.is_dir() and any((path / name).is_file() for name in _ZARR_MEMBERS)
+
+
+def is_folder_of_files(path: Path) -> bool:
+    """Whether a path is a folder, and no image itself."""
+    return path.is_dir() and not is_zarr(path)
+
+
+def parts_of(image: Path) -> list[Path]:
+    """The files that an image consists of: itself, or all of a Zarr folder in the order of their names."""
+    return sorted(part for part in image.rglob("*") if part.is_file()) if image.is_dir() else [image]
+
+
+def sha256_of(image: Path) -> str:
+    """A hash of what an image holds, also of one that is a folder.
+
+    Raises
+    ------
+    OSError
+        A file of it cannot be read.
+    """
+    if not image.is_dir():
+        return _sha256(image)
+    lines = [f"{_sha256(part)}  {part.relative_to(image).as_posix()}\n" for part in parts_of(image)]
+    return hashlib.sha256("".join(lines).encode("utf-8", "surrogateescape")).hexdigest()
+
+
+def _sha256(file: Path) -> str:
+    with file.open("rb") as opened:
+        return hashlib.file_digest(opened, "sha256").hexdigest()

@@ -1,0 +1,164 @@
+"""What a microscope file holds, scene by scene, and what of it a user takes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cytodisk.errors import ReadError
+from cytodisk.images.frame_file import FileChoice
+from cytodisk.scale import UNKNOWN, Scale
+
+PROJECTIONS = ("max", "mean")
+"""How the slices of a z-stack can be made one image."""
+
+_LISTED = 12  # scenes or channels that a message names
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One scene of a file: a position, series or image.
+
+    Attributes
+    ----------
+    name : str
+    frames, slices : int
+        In time, and in z; 1 where there is but one.
+    channels : tuple of str
+        Names; "" for one without a name.
+    image_shape : (int, int)
+        (H, W) of a plane.
+    dtype : numpy.dtype
+    scale : Scale
+        What the metadata says of it.
+    notes : tuple of str
+        What was found wrong with its metadata, and what is not known for that, in words.
+    fault : str
+        Why it cannot be read, and what to do; empty where it can.
+    """
+
+    name: str
+    frames: int
+    slices: int
+    channels: tuple[str, ...]
+    image_shape: tuple[int, int]
+    dtype: np.dtype[Any]
+    scale: Scale = UNKNOWN
+    notes: tuple[str, ...] = ()
+    fault: str = ""
+
+    @property
+    def words(self) -> str:
+        """What it holds, as "3 frames, 2 channels (DAPI, GFP), 170 × 240 px of uint16"; or its fault."""
+        if self.fault:
+            return f"cannot be read: it {self.fault}"
+        parts = [_count(self.frames, "frame")]
+        if self.slices > 1:
+            parts.append(f"{self.slices} slices in z")
+        named = [name or str(number) for number, name in enumerate(self.channels)]
+        parts.append("1 channel" if named == ["0"] else f"{_count(len(named), 'channel')} ({_listed(named)})")
+        parts.append(f"{self.image_shape[0]} × {self.image_shape[1]} px of {self.dtype}")
+        if self.scale.pixel_size_um is not None:
+            parts.append(f"{self.scale.pixel_size_um:.4g} µm a pixel")
+        if self.scale.frame_interval_s is not None:
+            parts.append(f"{self.scale.frame_interval_s:.4g} s a frame")
+        return ", ".join(parts)
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What is taken of a file.
+
+    Attributes
+    ----------
+    scene : int
+        Its number, from 0.
+    z : int, "max" or "mean"
+        A slice, from 0, or how the slices become one image.
+    """
+
+    scene: int
+    z: int | str
+
+
+def take(file: Path, scenes: Sequence[Scene], choice: FileChoice) -> Taken:
+    """What a user takes of a file that holds more than one movie.
+
+    Parameters
+    ----------
+    file : Path
+        For messages.
+    scenes : sequence of Scene
+    choice : FileChoice
+        A scene or a slice has no meaning in a file with one of them, and is ignored there: one choice is
+        made for the masks and the signal together.
+
+    Raises
+    ------
+    ReadError
+        The file has several scenes, or slices, and none is chosen; or the choice is not in the file; or the
+        scene cannot be read.
+    """
+    number = _scene_number(file, scenes, choice.scene)
+    scene = scenes[number]
+    if scene.fault:
+        of_it = f", scene {number} ({scene.name})," if len(scenes) > 1 else ""
+        raise ReadError(f"{file}{of_it} {scene.fault}")
+    return Taken(number, _slice(file, scene.slices, choice.z))
+
+
+def _slice(file: Path, slices: int, z: str | None) -> int | str:
+    if slices == 1:
+        return 0
+    remedy = f"pass one of them, as --z {slices // 2} (0 to {slices - 1}), or a projection, as --z max"
+    if z is None:
+        raise ReadError(f"{file} is a z-stack of {slices} slices: {remedy}")
+    if z in PROJECTIONS:
+        return z
+    if not z.isdecimal() or int(z) >= slices:
+        raise ReadError(f"{file} is a z-stack of {slices} slices and has no slice {z!r}: {remedy}")
+    return int(z)
+
+
+def _scene_number(file: Path, scenes: Sequence[Scene], chosen: str | None) -> int:
+    if not scenes:
+        raise ReadError(f"{file} holds no image: check the file in the microscope's own software")
+    if len(scenes) == 1:
+        return 0
+    usable = next((number for number, scene in enumerate(scenes) if not scene.fault), None)
+    if usable is None:
+        first = scenes[0]
+        raise ReadError(
+            f"{file} holds {len(scenes)} scenes and none can be read; the first ({first.name}) {first.fault}"
+        )
+    found = None if chosen is None else _number_of(chosen, [scene.name for scene in scenes])
+    if found is not None:
+        return found
+    listed = _listed([f"{number} ({scene.name})" for number, scene in enumerate(scenes) if not scene.fault])
+    wrong = "" if chosen is None else f" and none is {chosen!r}"
+    raise ReadError(
+        f"{file} holds {len(scenes)} scenes{wrong}: pass one, by number or name, as --scene {usable}, of "
+        f"{listed}"
+    )
+
+
+def _number_of(chosen: str, names: Sequence[str]) -> int | None:
+    """Where a name is, or a number where there is no such name."""
+    if list(names).count(chosen) == 1:
+        return list(names).index(chosen)
+    if chosen.isdecimal() and int(chosen) < len(names):
+        return int(chosen)
+    return None
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def _listed(words: Sequence[str]) -> str:
+    rest = f" and {len(words) - _LISTED} more" if len(words) > _LISTED else ""
+    return ", ".join(words[:_LISTED]) + rest
