@@ -15,7 +15,7 @@ def info_command() -> None:
             print(f"{name}\t{number}")
     for part, packages in PARTS.items():
         print(f"{part}\t{_part_words(part, installed(packages))}")
-    print("image formats\tTIFF, OME-TIFF, ImageJ TIFF, PNG, OME-Zarr; with extras ND2, CZI, LIF")
+    print("image formats\tTIFF, OME-TIFF, ImageJ TIFF, PNG, OME-Zarr, with extras ND2, CZI, LIF")
     print(f"compressed TIFF\t{'yes' if find_spec('imagecodecs') else 'no: pip install imagecodecs'}")
 
 
