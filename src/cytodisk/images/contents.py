@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cytodisk.checks import is_path
-from cytodisk.images.formats.czi_file import czi_scenes
-from cytodisk.images.formats.lif_file import lif_scenes
-from cytodisk.images.formats.nd2_file import nd2_scenes
-from cytodisk.images.formats.zarr_file import zarr_scenes
+from cytodisk.images.formats.microscope.czi_file import czi_scenes
+from cytodisk.images.formats.microscope.lif_file import lif_scenes
+from cytodisk.images.formats.microscope.nd2_file import nd2_scenes
+from cytodisk.images.formats.microscope.zarr_file import zarr_scenes
 from cytodisk.images.frames import open_frames
 from cytodisk.images.image_paths import is_zarr
 from cytodisk.images.reading import reading

@@ -15,12 +15,12 @@ from cytodisk.errors import ReadError
 from cytodisk.images.chosen_channels import with_channels, with_names
 from cytodisk.images.file_parameters import SignalFileParameters
 from cytodisk.images.formats.array_file import open_array
-from cytodisk.images.formats.czi_file import open_czi
-from cytodisk.images.formats.lif_file import open_lif
-from cytodisk.images.formats.nd2_file import open_nd2
+from cytodisk.images.formats.microscope.czi_file import open_czi
+from cytodisk.images.formats.microscope.lif_file import open_lif
+from cytodisk.images.formats.microscope.nd2_file import open_nd2
+from cytodisk.images.formats.microscope.zarr_file import open_zarr
 from cytodisk.images.formats.picture_file import open_picture
 from cytodisk.images.formats.tiff_file import open_tiff
-from cytodisk.images.formats.zarr_file import open_zarr
 from cytodisk.images.frame_file import NO_CHOICE, FileChoice, FrameFile
 from cytodisk.images.image_paths import is_folder_of_files, is_zarr
 from cytodisk.images.reading import reading

@@ -14,9 +14,9 @@ from xml.etree import ElementTree
 import numpy as np
 
 from cytodisk.errors import MissingPartError, ReadError
-from cytodisk.images.formats.czi_blocks import Block, block_pixels
 from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
-from cytodisk.images.formats.plane_frames import Plane, PlaneFrames, scene_file
+from cytodisk.images.formats.microscope.czi_blocks import Block, block_pixels
+from cytodisk.images.formats.microscope.plane_frames import Plane, PlaneFrames, scene_file
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.scenes import Scene, Taken
 from cytodisk.scale import Scale

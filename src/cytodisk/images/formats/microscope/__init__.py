@@ -1,0 +1,1 @@
+"""Files as microscopes write them, and OME-Zarr: scenes with frames, channels and slices in z."""
