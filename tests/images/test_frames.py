@@ -9,7 +9,7 @@ from numpy.testing import assert_array_equal
 
 import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError
-from cytodisk.images.frame_file import FrameFile
+from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.frames import open_frames
 
 STACK = np.random.default_rng(0).integers(0, 4000, (3, 2, 20, 31)).astype(np.uint16)  # T, C, Y, X
@@ -236,11 +236,27 @@ def test_a_damaged_frame_leaves_the_others(tmp_path: Path) -> None:
     assert_array_equal(damaged.frame(2)[0], STACK[2, 0])
 
 
-def test_separate_images_of_one_size_are_refused_too(tmp_path: Path) -> None:
-    for _ in range(3):
-        tifffile.imwrite(tmp_path / "a.tif", PLANE, append=True)
-    with pytest.raises(ReadError, match="holds 3 separate images"):
+@pytest.mark.parametrize("compression", [None, "zlib"])
+def test_pages_that_were_written_one_by_one_are_one_stack(tmp_path: Path, compression: str | None) -> None:
+    with tifffile.TiffWriter(tmp_path / "a.tif") as writer:
+        for plane in STACK[:, 0]:
+            writer.write(plane, compression=compression)
+    file = open_frames(tmp_path / "a.tif")
+    assert (file.axes, file.said_by) == ("TYX", "nobody")
+    assert "3 pages were written one by one" in file.evidence
+    assert_array_equal(frames_of(file)[:, 0], STACK[:, 0])
+
+
+def test_one_of_separate_images_is_chosen(tmp_path: Path) -> None:
+    with tifffile.TiffWriter(tmp_path / "a.tif") as writer:
+        writer.write(PLANE)
+        writer.write(PLANE[:10])
+    with pytest.raises(ReadError, match=r"--scene, of 0 \(20 × 31\), 1 \(10 × 31\)"):
         open_frames(tmp_path / "a.tif")
+    file = open_frames(tmp_path / "a.tif", choice=FileChoice(scene="1"))
+    assert_array_equal(file.frame(0)[0], PLANE[:10])
+    with pytest.raises(ReadError, match="no scene '2'"):
+        open_frames(tmp_path / "a.tif", choice=FileChoice(scene="2"))
 
 
 @pytest.mark.parametrize(("unnamed", "axes"), [("T", "TYX"), ("C", "CYX")])

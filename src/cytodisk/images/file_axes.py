@@ -158,7 +158,11 @@ def _chosen(file: Path, chosen: str, shape: tuple[int, ...]) -> FileAxes:
 
 def _other_words(file: Path, axis: str, said: str, shape: tuple[int, ...]) -> str:
     if axis == "Z":
-        words = f"{file} is a z-stack (axes {said}, shape {shape}): project it, or save one slice"
+        slices = shape[said.index(axis)]
+        words = (
+            f"{file} is a z-stack (axes {said}, shape {shape}): project it, as --z max, or take one slice, "
+            f"as --z {slices // 2}"
+        )
     else:
         number = shape[said.index(axis)]
         words = f"{file} has {number} {_OTHERS[axis]} (axes {said}, shape {shape}): save one of them alone"

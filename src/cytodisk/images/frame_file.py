@@ -9,6 +9,7 @@ from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 
+from cytodisk.images.claims import check_memory
 from cytodisk.images.file_axes import Said
 from cytodisk.images.reading import reading
 from cytodisk.scale import UNKNOWN, Scale
@@ -130,6 +131,9 @@ class FrameFile:
         ReadError
             This frame of the file is damaged.
         """
+        height, width = self.image_shape
+        pixels = height * width * (len(self.channels) if "C" in self.axes else 1)
+        check_memory(self.path, f"frame {number}", pixels * self.dtype.itemsize)
         with reading(self.path, f"frame {number}"):
             return self.stored.read(number)
 

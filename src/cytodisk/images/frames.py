@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Sequence
 from dataclasses import asdict, replace
@@ -13,6 +14,8 @@ import xarray as xr
 from cytodisk.checks import is_path, one_of
 from cytodisk.errors import ReadError
 from cytodisk.images.chosen_channels import with_channels, with_names
+from cytodisk.images.claims import check_memory
+from cytodisk.images.file_kind import image_kind
 from cytodisk.images.file_parameters import SignalFileParameters
 from cytodisk.images.formats.array_file import open_array
 from cytodisk.images.formats.microscope.czi_file import open_czi
@@ -83,10 +86,12 @@ def open_frames(
         raise ReadError(f"{file} cannot be read: {error.strerror}") from error
     if is_folder_of_files(file):
         raise ReadError(f"{file} is a folder: pass one image file")
-    suffix = ".zarr" if is_zarr(file) else file.suffix.lower()
-    if suffix not in _OPENERS:
-        raise ReadError(f"{file} is no image that can be read ({', '.join(_OPENERS)}): convert it to TIFF")
     with reading(file, "its header"):
+        suffix = ".zarr" if is_zarr(file) else image_kind(file) or file.suffix.lower()
+        if suffix not in _OPENERS:
+            raise ReadError(
+                f"{file} is no image that can be read ({', '.join(_OPENERS)}): convert it to TIFF"
+            )
         found = with_names(_OPENERS[suffix](file, unnamed, replace(choice, channels=None)))
     return found if choice.channels is None else with_channels(found, choice.channels, flag)
 
@@ -150,7 +155,13 @@ def read_image(
     given = {"signal_axes": axes, "scene": scene, "z": z, "signal_channels": wanted}
     choice = SignalFileParameters.called(given, {"signal_axes": "axes", "signal_channels": "channels"})
     file = open_frames(path, unnamed=unnamed, choice=choice.signal_choice, flag="channels")
-    stack = np.stack([file.frame(number) for number in range(file.n_frames)])
+    shape = (file.n_frames, len(file.channels) if "C" in file.axes else 1, *file.image_shape)
+    check_memory(
+        file.path, "the whole movie", math.prod(shape) * file.dtype.itemsize, "read it frame by frame"
+    )
+    stack = np.empty(shape, file.dtype.newbyteorder("="))
+    for number in range(file.n_frames):
+        stack[number] = file.frame(number)
     image = xr.DataArray(
         stack,
         dims=("time", "channel", "y", "x"),

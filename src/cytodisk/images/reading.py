@@ -21,5 +21,5 @@ def reading(path: Path, part: str) -> Iterator[None]:
             f"{path}: {part} asks for more memory than there is: the file is too large, or damaged"
         ) from error
     except Exception as error:
-        words = " ".join(str(error).split())  # on one line, as tables of reasons need it
+        words = " ".join(str(error).split()) or type(error).__name__  # on one line, for tables of reasons
         raise ReadError(f"{path}: {part} cannot be read as an image ({words})") from error

@@ -108,10 +108,26 @@ def take(file: Path, scenes: Sequence[Scene], choice: FileChoice) -> Taken:
     if scene.fault:
         of_it = f", scene {number} ({scene.name})," if len(scenes) > 1 else ""
         raise ReadError(f"{file}{of_it} {scene.fault}")
-    return Taken(number, _slice(file, scene.slices, choice.z))
+    return Taken(number, chosen_slice(file, scene.slices, choice.z))
 
 
-def _slice(file: Path, slices: int, z: str | None) -> int | str:
+def chosen_slice(file: Path, slices: int, z: str | None) -> int | str:
+    """Number of the slice that a user takes of a z-stack, or "max" or "mean" of them.
+
+    Parameters
+    ----------
+    file : Path
+        For messages.
+    slices : int
+        How many there are; of one, it is taken whatever the user says.
+    z : str or None
+        What the user says.
+
+    Raises
+    ------
+    ReadError
+        There are several and none is chosen, or there is no such slice.
+    """
     if slices == 1:
         return 0
     remedy = f"pass one of them, as --z {slices // 2} (0 to {slices - 1}), or a projection, as --z max"

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from cytodisk.errors import ReadError
-from cytodisk.images.file_axes import file_axes
 from cytodisk.images.formats.file_metadata import channel_names
 from cytodisk.images.formats.npy import read_npy
+from cytodisk.images.formats.plane_frames import projected
+from cytodisk.images.formats.stored_axes import stored_axes
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile, as_channels_first
 from cytodisk.images.reading import reading
 
@@ -27,16 +28,16 @@ def open_array(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
         raise ReadError(f"{file} has dtype {array.dtype}: save an array of numbers, labels as uint16")
     of_cellpose = file.name.lower().endswith("_seg.npy")
     said = ("Z" if of_cellpose and array.ndim == 3 else "Q" * (array.ndim - 2)) + "YX"
-    known = file_axes(file, said, array.shape, unnamed, choice.axes)
-    axes, shape = known.letters, known.shape
-    channels = channel_names((), shape[axes.index("C")] if "C" in axes else 1)
+    stored = stored_axes(file, said, array.shape, unnamed, choice)
+    known = stored.known
+    channels = channel_names((), known.shape[known.letters.index("C")] if "C" in known.letters else 1)
     return FrameFile(
         file,
-        axes,
-        shape,
-        array.dtype,
+        known.letters,
+        known.shape,
+        stored.pixel_type(array.dtype),
         channels,
-        NpyFrames(file, axes, shape),
+        NpyFrames(file, stored.axes, stored.shape, stored.slices, stored.z),
         evidence=known.evidence,
         said_by=known.said_by,
         doubt=known.doubt,
@@ -53,26 +54,36 @@ class NpyFrames:
     axes : str
     shape : tuple of int
         Without axes of length 1 beside Y and X.
+    slices : tuple of int
+        The slices that are read of a z-stack.
+    z : int, "max" or "mean"
+        What is made of them.
     """
 
     path: Path
     axes: str
     shape: tuple[int, ...]
+    slices: tuple[int, ...] = (0,)
+    z: int | str = 0
 
     def read(self, number: int) -> np.ndarray[Any, Any]:
         """Pixels of a frame, shape (C, H, W)."""
         whole = read_npy(self.path).reshape(self.shape)
-        frame = np.array(whole.take(number, axis=self.axes.index("T")) if "T" in self.axes else whole)
-        return as_channels_first(frame, self.axes)
+        rest = self.axes.replace("T", "").replace("Z", "")
+        taken = ({"T": number, "Z": z} for z in self.slices)
+        planes = (
+            np.array(whole[tuple(place.get(axis, slice(None)) for axis in self.axes)]) for place in taken
+        )
+        return as_channels_first(projected(planes, self.z), rest)
 
     def by_piece(self, number: int) -> tuple[Cut, int] | None:
         """How to cut pieces out of a frame; None for a pickle."""
         array = read_npy(self.path)
-        if not isinstance(array, np.memmap):
+        if not isinstance(array, np.memmap) or len(self.slices) > 1:
             return None
         order = "C" if array.flags.c_contiguous else "F"
         stored = StoredArray(self.path, array.dtype, int(array.offset), order)
-        return ArrayFrames(stored, self.axes, self.shape).by_piece(number)
+        return ArrayFrames(stored, self.axes, self.shape, self.slices[0]).by_piece(number)
 
 
 @dataclass(frozen=True)
@@ -93,12 +104,16 @@ class ArrayFrames:
     ----------
     array : StoredArray
     axes : str
+        T, C, Z, Y and X.
     shape : tuple of int
+    z : int
+        The slice of a z-stack.
     """
 
     array: StoredArray
     axes: str
     shape: tuple[int, ...]
+    z: int = 0
 
     def by_piece(self, number: int) -> tuple[Cut, int]:
         """How to cut pieces out of a frame."""
@@ -107,7 +122,7 @@ class ArrayFrames:
     def cut(self, number: int, rows: slice, columns: slice) -> np.ndarray[Any, Any]:
         """Pixels (C, h, w) of some rows and columns of a frame."""
         place = {"C": slice(None), "Y": rows, "X": columns}
-        order = self.axes.replace("T", "")
+        order = self.axes.replace("T", "").replace("Z", "")
         with reading(self.array.path, f"frame {number}"):
             piece = self.mapped(number)[tuple(place[axis] for axis in order)]
             moved = as_channels_first(piece, order)
@@ -116,12 +131,12 @@ class ArrayFrames:
     def mapped(self, number: int) -> np.ndarray[Any, Any]:
         """A frame, not read yet; what is read of it is given back when it goes."""
         path, dtype, offset, order = self.array.path, self.array.dtype, self.array.offset, self.array.order
-        if self.axes[0] == "T" and order == "C":  # the others may be missing in a file that is cut short
-            shape = self.shape[1:]
-            offset += number * math.prod(shape) * dtype.itemsize
-            return np.memmap(path, dtype, "r", offset, shape)
-        array = np.memmap(path, dtype, "r", offset, self.shape, order)
-        frame: np.ndarray[Any, Any] = array[
-            tuple(number if axis == "T" else slice(None) for axis in self.axes)
-        ]
+        axes, shape, taken = self.axes, self.shape, {"T": number, "Z": self.z}
+        while (
+            order == "C" and axes[0] in taken
+        ):  # what stands after may be missing in a file that is cut short
+            offset += taken[axes[0]] * math.prod(shape[1:]) * dtype.itemsize
+            axes, shape = axes[1:], shape[1:]
+        array = np.memmap(path, dtype, "r", offset, shape, order)
+        frame: np.ndarray[Any, Any] = array[tuple(taken.get(axis, slice(None)) for axis in axes)]
         return frame

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.errors import ReadError
+from cytodisk.images.claims import check_claim
 
 _MASKS = "masks"  # the entry of a `_seg.npy` that holds the label image
 _NUMBERS_AND_TEXT = re.compile("[biufcSUO][0-9]*")
@@ -42,8 +43,10 @@ def read_npy(path: Path) -> np.ndarray[Any, Any]:
     with path.open("rb") as file:
         version = np.lib.format.read_magic(file)
         reader = np.lib.format.read_array_header_1_0 if version == (1, 0) else _header_2
-        _, _, dtype = reader(file)
+        shape, _, dtype = reader(file)
         if not dtype.hasobject:
+            if shape and 0 not in shape:
+                check_claim(path, shape, dtype, path.stat().st_size - file.tell())
             return np.asanyarray(np.load(path, mmap_mode="r", allow_pickle=False))
         content = _Unpickler(file, path).load()
     found = content.values[0] if isinstance(content, _Array) and len(content.values) == 1 else None
@@ -60,8 +63,11 @@ def _header_2(file: Any) -> tuple[Any, Any, Any]:
     return np.lib.format.read_array_header_2_0(file)
 
 
-class _Unpickler(pickle.Unpickler):
-    """Makes stand-ins for NumPy's objects, so that what a pickle says never reaches NumPy unchecked."""
+class _Unpickler(pickle._Unpickler):
+    """Makes stand-ins for NumPy's objects, so that what a pickle says never reaches NumPy unchecked.
+
+    The unpickler is the one written in Python: the other allocates as much as the numbers in a file say.
+    """
 
     def __init__(self, file: io.BufferedReader, path: Path):
         super().__init__(file)

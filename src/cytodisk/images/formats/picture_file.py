@@ -2,26 +2,70 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 import imageio.v3 as imageio
 import numpy as np
+from PIL import Image
 
+from cytodisk.errors import ReadError
+from cytodisk.images.claims import check_claim, check_memory
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile, as_channels_first
 
 _PNG: dict[str, Any] = {"extension": ".png", "plugin": "pillow"}
 _COLOURS = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha"), 2: ("grey", "alpha")}
+_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+_SAMPLES = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}  # of a pixel, by type of colour
+_COPIES = 3  # of the pixels that decoding holds at once
+
+_limit_lifted = Lock()
 
 
 def open_picture(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
     """Look at a PNG without reading its pixels; see `cytodisk.images.frames.open_frames`."""
-    with file.open("rb") as opened:  # imageio leaves a damaged file open when it opens it itself
+    pixels = _checked_pixels(file)
+    with file.open("rb") as opened, _of_any_size(pixels):  # imageio would leave a damaged file open
         properties = imageio.improps(opened, **_PNG)
     shape = tuple(properties.shape)
     axes, names = ("YX", ("0",)) if len(shape) == 2 else ("YXC", _COLOURS[shape[2]])
     return FrameFile(file, axes, shape, properties.dtype, names, PictureFrames(file, axes))
+
+
+def _checked_pixels(file: Path) -> int:
+    """How many pixels a PNG claims, compared with its own size before anything is allocated."""
+    with file.open("rb") as opened:
+        head = opened.read(29)
+    if head[:8] != _SIGNATURE or len(head) < 29:
+        raise ReadError(
+            f"{file} cannot be read as an image: it is no PNG, or is damaged; save it as PNG or TIFF"
+        )
+    width, height = (int.from_bytes(head[place : place + 4]) for place in (16, 20))
+    bits = head[24] * _SAMPLES.get(head[25], 1)
+    check_claim(file, (height, math.ceil(width * bits / 8)), np.dtype(np.uint8), codec="zlib")
+    check_memory(
+        file, "the picture", _COPIES * height * width * math.ceil(bits / 8), "save it as TIFF, in tiles"
+    )
+    return height * width
+
+
+@contextmanager
+def _of_any_size(pixels: int) -> Iterator[None]:
+    """Lift the limit that Pillow has against pictures from strangers; this one's size was looked at."""
+    if Image.MAX_IMAGE_PIXELS is None or pixels <= Image.MAX_IMAGE_PIXELS:
+        yield
+        return
+    with _limit_lifted:
+        before, Image.MAX_IMAGE_PIXELS = Image.MAX_IMAGE_PIXELS, None
+        try:
+            yield
+        finally:
+            Image.MAX_IMAGE_PIXELS = before
 
 
 @dataclass(frozen=True)
@@ -39,7 +83,8 @@ class PictureFrames:
 
     def read(self, number: int) -> np.ndarray[Any, Any]:
         """Its pixels, shape (C, H, W)."""
-        with self.path.open("rb") as opened:
+        pixels = _checked_pixels(self.path)
+        with self.path.open("rb") as opened, _of_any_size(pixels):
             return as_channels_first(np.asarray(imageio.imread(opened, **_PNG)), self.axes)
 
     def by_piece(self, number: int) -> tuple[Cut, int] | None:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,103 +11,101 @@ import numpy as np
 import tifffile
 
 from cytodisk.errors import ReadError
-from cytodisk.images.file_axes import file_axes
-from cytodisk.images.formats.array_file import ArrayFrames, StoredArray
-from cytodisk.images.formats.file_metadata import channel_names, imagej_scale, ome_metadata
+from cytodisk.images.claims import check_claim
+from cytodisk.images.formats.file_metadata import channel_names
+from cytodisk.images.formats.stored_axes import stored_axes
+from cytodisk.images.formats.tiff_frames import TiffFrames
 from cytodisk.images.formats.tiff_pages import opened_tiff, whole_tiff
-from cytodisk.images.formats.tiff_segments import TiffSegments
-from cytodisk.images.frame_file import Cut, FileChoice, FrameFile, as_channels_first
-from cytodisk.images.reading import reading
-from cytodisk.scale import UNKNOWN
+from cytodisk.images.formats.tiff_scale import tiff_says
+from cytodisk.images.formats.tiff_segments import segment_shape
+from cytodisk.images.formats.tiff_series import TiffSeries, chosen_series
+from cytodisk.images.frame_file import FileChoice, FrameFile
+
+_CODECS = {1: "none", 5: "lzw", 8: "zlib", 32946: "zlib", 32773: "packbits"}
+_LOSSY = (6, 7, 33007, 34892)  # kinds of JPEG
+_LOSS = (
+    "its pixels are stored with loss (JPEG): edges and values are not those of the microscope; save it anew "
+    "from the raw file, without JPEG",
+)
 
 
 def open_tiff(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
     """Look at a TIFF without reading its pixels; see `cytodisk.images.frames.open_frames`."""
-    with whole_tiff(file) as tiff:
-        if len(tiff.series) > 1:
-            raise ReadError(
-                f"{file} holds {len(tiff.series)} separate images: save one alone, or all as one stack"
-            )
-        series = tiff.series[0]
+    with whole_tiff(file) as (tiff, logged):
+        found = chosen_series(file, tiff, logged, choice.scene)
+        says = tiff_says(file, tiff, found.image)
+    with opened_tiff(file, found.plain) as tiff:
+        series = tiff.series[found.number]
         colour = series.keyframe.photometric == tifffile.PHOTOMETRIC.RGB
-        said = series.axes.replace("S", "C") if colour else series.axes
-        known = file_axes(file, said, series.shape, unnamed, choice.axes)
-        axes, shape = known.letters, known.shape
-        names: tuple[str, ...] = ()
-        scale = UNKNOWN
-        if tiff.is_ome and tiff.ome_metadata:
-            scale, names = ome_metadata(file, tiff.ome_metadata)
-        elif tiff.is_imagej and tiff.imagej_metadata:
-            scale = imagej_scale(file, tiff)
-    channels = channel_names(names, shape[axes.index("C")] if "C" in axes else 1)
-    dtype = np.dtype(series.dtype)
-    stored = TiffFrames(file, axes, shape, dtype)
+        said = found.axes.replace("S", "C") if colour else found.axes
+        stored = stored_axes(file, said, found.shape, unnamed, choice)
+        known, axes, shape = stored.known, stored.axes, stored.shape
+        frames, gaps = _frames_there(found, series, axes, shape)
+        _check_claims(file, tiff, series)
+        dtype = np.dtype(series.dtype)
+        lossy = series.keyframe.compression in _LOSSY
+    sizes = [frames if axis == "T" else size for axis, size in zip(known.letters, known.shape, strict=True)]
     return FrameFile(
         file,
-        axes,
-        shape,
-        dtype,
-        channels,
-        stored,
-        scale,
-        evidence=known.evidence,
-        said_by=known.said_by,
-        doubt=known.doubt,
+        known.letters,
+        tuple(sizes),
+        stored.pixel_type(dtype),
+        channel_names(says.channels, sizes[known.letters.index("C")] if "C" in known.letters else 1),
+        TiffFrames(file, found.number, found.plain, axes, shape, stored.slices, stored.z),
+        says.scale,
+        tuple(dict.fromkeys([*found.notes, *says.notes, *gaps, *(_LOSS if lossy else ())])),
+        "; ".join(filter(None, [known.evidence, found.evidence])),
+        known.said_by,
+        known.doubt,
     )
 
 
-@dataclass(frozen=True)
-class TiffFrames:
-    """Frames of a TIFF.
-
-    Attributes
-    ----------
-    path : Path
-    axes : str
-    shape : tuple of int
-    dtype : numpy.dtype
-        As those of its `FrameFile`.
-    """
-
-    path: Path
-    axes: str
-    shape: tuple[int, ...]
-    dtype: np.dtype[Any]
-
-    def read(self, number: int) -> np.ndarray[Any, Any]:
-        """Pixels of a frame, shape (C, H, W)."""
-        without = tuple(size for axis, size in zip(self.axes, self.shape, strict=True) if axis != "T")
-        frames = math.prod(self.shape) // math.prod(without)
-        with opened_tiff(self.path) as tiff:
-            pages = len(tiff.series[0].pages) // frames
-            if self.axes[0] == "T" and pages > 0 and pages * frames == len(tiff.series[0].pages):
-                keys = list(range(number * pages, (number + 1) * pages))
-                array = np.asarray(tiff.asarray(series=0, key=keys)).reshape(without)
-                return as_channels_first(array, self.axes)
-            whole = np.asarray(tiff.series[0].asarray()).reshape(self.shape)
-        frame = whole.take(number, axis=self.axes.index("T")) if "T" in self.axes else whole
-        return as_channels_first(frame, self.axes)
-
-    def by_piece(self, number: int) -> tuple[Cut, int] | None:
-        """How to cut pieces out of a frame; None where the layout is unusual."""
-        if (array := self._uncompressed()) is not None:
-            return ArrayFrames(array, self.axes, self.shape).by_piece(number)
-        segments = TiffSegments.of(self.path, self.axes, self.shape, number)
-        if segments is None:
-            return None
-        return partial(_cut_from_segments, segments, self.path, number), segments.height
-
-    def _uncompressed(self) -> StoredArray | None:
-        with opened_tiff(self.path) as tiff:
-            series = tiff.series[0]
-            if series.is_multifile or series.dataoffset is None:
-                return None
-            dtype = np.dtype(tiff.byteorder + np.dtype(series.dtype).char)
-            return StoredArray(self.path, dtype, int(series.dataoffset), "C")
+def _frames_there(
+    found: TiffSeries, series: Any, axes: str, shape: Sequence[int]
+) -> tuple[int, tuple[str, ...]]:
+    """How many frames there are up to the last that is in a file, and notes on what is missing."""
+    frames = shape[axes.index("T")] if "T" in axes else 1
+    absent = np.array([page is None for page in series._pages], dtype=bool)
+    notes: list[str] = []
+    if found.image is not None and found.image.missing:
+        names = ", ".join(found.image.missing[:5]) + (" and more" if len(found.image.missing) > 5 else "")
+        notes.append(
+            f"files of its set are missing ({names}): frames in them cannot be read; put them beside it"
+        )
+    if not absent.any():
+        return frames, tuple(notes)
+    lead = next((k for k in range(len(axes)) if math.prod(shape[:k]) == len(absent)), 0)
+    if "T" not in axes[:lead]:
+        return frames, tuple(notes)
+    by_frame = np.moveaxis(absent.reshape(shape[:lead]), axes.index("T"), 0).reshape(frames, -1)
+    there = int(np.flatnonzero(~by_frame.all(axis=1)).max()) + 1
+    if by_frame[:there].any() and not notes:
+        lost = ", ".join(map(str, np.flatnonzero(by_frame[:there].any(axis=1))[:10]))
+        notes.append(f"pages are missing, so that these frames cannot be read: {lost}; copy the file again")
+    if there < frames and not (found.image is not None and found.image.missing):
+        notes.append(
+            f"its metadata claim {frames} frames, {there} are in the file: the movie was stopped, or the "
+            f"file cut; the first {there} are read; copy the file again if there should be more"
+        )
+        frames = there
+    return frames, tuple(notes)
 
 
-def _cut_from_segments(
-    segments: TiffSegments, path: Path, number: int, rows: slice, columns: slice
-) -> np.ndarray[Any, Any]:
-    with reading(path, f"frame {number}"):
-        return segments.cut(rows, columns)
+def _check_claims(file: Path, tiff: tifffile.TiffFile, series: Any) -> None:
+    """Compare what a series claims with the bytes that are stored, before anything is allocated."""
+    page, dtype = series.keyframe, np.dtype(series.dtype)
+    if series.dataoffset is not None and not series.is_multifile:
+        check_claim(file, series.shape, dtype, tiff.filehandle.size - int(series.dataoffset))
+        return
+    codec = _CODECS.get(int(page.compression), "")
+    height, width = segment_shape(page)
+    needed = math.ceil(page.imagelength / max(height, 1)) * math.ceil(page.imagewidth / max(width, 1))
+    counts = page.databytecounts
+    if len(counts) < needed:
+        raise ReadError(
+            f"{file} claims {needed} strips or tiles a page and lists {len(counts)}: it is damaged; copy it "
+            "again"
+        )
+    if all(counts):  # strips that are left out hold nothing
+        bits = math.prod(page.shape) * max(1, int(page.bitspersample)) / 8
+        check_claim(file, (max(1, int(bits)),), np.dtype(np.uint8), sum(counts), codec)

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import tifffile
 
-from cytodisk.images.formats.tiff_pages import opened_tiff
+from cytodisk.images.claims import check_memory
+from cytodisk.images.formats.tiff_pages import opened_member, opened_tiff, present_page
 
 _KEPT_BYTES = 2**26  # of decoded segments, so that cells side by side do not decode them twice
-_PLANES = ("YX", "CYX")  # axes of a frame of which each channel has a page of its own
 _WITH_TABLES = (6, 7, 34892, 33007)  # compressions whose segments need more than themselves: kinds of JPEG
 
 
@@ -24,7 +24,11 @@ class TiffSegments:
     Attributes
     ----------
     path : Path
-    pages : range
+    series : int
+        Number of the series.
+    plain : bool
+        As of `tiff_opened`.
+    pages : tuple of int
         Pages of the frame among those of the series, one a channel.
     shape : (int, int, int)
         (C, H, W).
@@ -34,7 +38,9 @@ class TiffSegments:
     """
 
     path: Path
-    pages: range
+    series: int
+    plain: bool
+    pages: tuple[int, ...]
     shape: tuple[int, int, int]
     dtype: np.dtype[Any]
     height: int
@@ -43,24 +49,19 @@ class TiffSegments:
     _kept_bytes: int = 0
 
     @classmethod
-    def of(cls, path: Path, axes: str, shape: tuple[int, ...], number: int) -> TiffSegments | None:
+    def of(
+        cls, path: Path, series: int, plain: bool, pages: tuple[int, ...], image_shape: tuple[int, int]
+    ) -> TiffSegments | None:
         """The segments of a frame; None where its layout is unusual, so that it must be read whole."""
-        sizes = dict(zip(axes, shape, strict=True))
-        height, width, channels, frames = (sizes.get(axis, 1) for axis in "YXCT")
-        if axes.replace("T", "") not in _PLANES or ("T" in axes and axes[0] != "T"):
-            return None
-        with opened_tiff(path) as tiff:
-            series = tiff.series[0]
-            if series.is_multifile or len(series.pages) != channels * frames:
+        with opened_tiff(path, plain) as tiff:
+            page: Any = tiff.series[series].keyframe
+            dtype = np.dtype(tiff.series[series].dtype)
+            if page.shape != image_shape or page.compression in _WITH_TABLES:
                 return None
-            page: Any = series.keyframe
-            usual = page.shape == (height, width) and page.compression not in _WITH_TABLES
-            if not usual:
-                return None
-            tall, wide = (page.tilelength, page.tilewidth) if page.is_tiled else (page.rowsperstrip, width)
-        pages = range(number * channels, (number + 1) * channels)
-        dtype = np.dtype(series.dtype)
-        return cls(path, pages, (channels, height, width), dtype, min(tall, height), min(wide, width))
+            tall, wide = segment_shape(page)
+        height, width = image_shape
+        shape = len(pages), height, width
+        return cls(path, series, plain, pages, shape, dtype, min(tall, height), min(wide, width))
 
     @property
     def across(self) -> int:
@@ -70,7 +71,8 @@ class TiffSegments:
     def cut(self, rows: slice, columns: slice) -> np.ndarray[Any, Any]:
         """Pixels of some rows and columns of all channels, shape (C, h, w)."""
         out = np.empty((len(self.pages), rows.stop - rows.start, columns.stop - columns.start), self.dtype)
-        with opened_tiff(self.path) as tiff:
+        check_memory(self.path, "a strip or tile", self.height * self.width * self.dtype.itemsize)
+        with opened_tiff(self.path, self.plain) as tiff:
             for channel, page in enumerate(self.pages):
                 for down in range(rows.start // self.height, -(-rows.stop // self.height)):
                     for right in range(columns.start // self.width, -(-columns.stop // self.width)):
@@ -91,18 +93,24 @@ class TiffSegments:
         return segment
 
     def _decoded(self, tiff: tifffile.TiffFile, page: int, index: int) -> np.ndarray[Any, Any]:
-        found: Any = tiff.series[0].pages[page]
+        found = present_page(self.path, tiff, self.series, page)
         start, size = found.dataoffsets[index], found.databytecounts[index]
         content = None
         if size:
-            tiff.filehandle.seek(start)
-            content = tiff.filehandle.read(size)
+            with opened_member(found) as file:
+                file.seek(start)
+                content = file.read(size)
             if len(content) < size:
                 raise ValueError(f"segment {index} has {len(content)} of {size} bytes")
         decoded, _, shape = found.keyframe.decode(content, index)
         if decoded is None:  # nothing stored
             return np.full(shape[1:3], found.keyframe.nodata, self.dtype)
         return np.asarray(decoded[0, : shape[1], : shape[2], 0])
+
+
+def segment_shape(page: Any) -> tuple[int, int]:
+    """Height and width of the strips or tiles of a page."""
+    return (page.tilelength, page.tilewidth) if page.is_tiled else (page.rowsperstrip, page.imagewidth)
 
 
 def _copy(
