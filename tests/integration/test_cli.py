@@ -264,32 +264,6 @@ def test_a_parameters_file_that_cannot_be_used(run: Run, mask: Path, tmp_path: P
     assert_refused(run(*common, tmp_path / "gone.toml"), "gone.toml cannot be read")
 
 
-def test_check_of_good_masks(run: Run, mask: Path) -> None:
-    code, said, _ = run("check", mask)
-    assert code == 0
-    assert "0\t0\t1\tyes\t" in said
-    assert "1 cell: 1 usable (0 with QC flags), 0 not usable" in said
-
-
-def test_check_names_what_is_wrong(run: Run, tmp_path: Path) -> None:
-    masks = np.zeros((3, 30, 30), dtype=np.uint8)
-    masks[0, 5:25, 5:25] = 1
-    masks[1, 5:20, 5:20] = masks[1, 25, 25] = 1
-    code, said, _ = run("check", write(tmp_path / "masks.tif", masks))
-    assert code == 1
-    assert "1\t1\t1\tyes\t1 fragment" in said
-    assert "2\t2\t0\tno\tmask of shape (30, 30) is empty" in said
-    assert "frames without a cell: 1 empty" in said
-    assert "2 frames: 2 usable (0 with QC flags), 0 not usable" in said
-    assert "cytodisk movie finds them" in said
-
-
-def test_check_counts_cells_of_labels(run: Run, tmp_path: Path) -> None:
-    labels = np.zeros((30, 60), dtype=np.uint8)
-    labels[5:25, 5:25], labels[5:25, 35:50] = 1, 2
-    assert "2 cells: 2 usable (0 with" in run("check", write(tmp_path / "labels.tif", labels))[1]
-
-
 def test_names_of_channels(run: Run, mask: Path, tmp_path: Path) -> None:
     counts = np.ones((2, 40, 50), dtype=np.uint16)
     signal = tmp_path / "signal.ome.tif"
@@ -373,12 +347,6 @@ def test_only_a_run_can_be_complete_already(capsys: pytest.CaptureFixture[str], 
     assert bar == [None, None, 4]
 
 
-def test_check_of_a_file_that_cannot_be_read(run: Run, mask: Path, tmp_path: Path) -> None:
-    assert_refused(run("check", tmp_path / "gone.tif"), "does not exist")
-    assert_refused(run("check", mask, "--kind", "cells"), "kind", "got 'cells'")
-    assert_refused(run("check", mask, "--signal", tmp_path / "gone.tif"), "does not exist")
-
-
 def test_info_lists_versions(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(versions_of.PARTS, "umap", ("umap-learn", "no-such-package"))
     code, said, _ = run("info")
@@ -450,7 +418,6 @@ def test_cells_with_qc_flags_are_named(run: Run, tmp_path: Path) -> None:
     mask = np.zeros((30, 60), dtype=np.uint8)
     mask[5:25, 5:25] = mask[5:25, 35:50] = 1
     path = write(tmp_path / "mask.tif", mask)
-    assert "QC flag\tperhaps more than one cell" in run("check", path)[1]
     said = run("map", path, "-o", tmp_path / "out", "--figures", 0)[1]
     assert "QC flag flagged masks: 1 cell may not be one whole cell (cell 0, frame 0: perhaps more" in said
     assert "QC flag warnings" not in said

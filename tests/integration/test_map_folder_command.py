@@ -56,16 +56,18 @@ def test_a_folder_is_mapped_and_its_totals_are_given(run: Run, folder: Path, tmp
 
 
 def test_a_folder_is_checked(run: Run, folder: Path) -> None:
-    code, said, error = run("check", folder)
+    code, said, _ = run("check", folder)
     assert code == 1
     lines = said.splitlines()
-    assert "cell\tfile\tframe\tlabel\tusable\tremarks" in lines
-    assert any(line.startswith("4\t001_masks.png\t0\t1\t") for line in lines)
     assert "6 files, 12 cells: 12 usable (0 with QC flags), 0 not usable" in said
     assert "files or images without a cell: 2 empty, 1 damaged" in said
-    assert "2 without a cell: 003_masks.png: mask of shape" in error
+    assert "without a cell: 2 (003_masks.png, 004_masks.png): mask of shape (40, 50) is empty" in said
+    assert any(line.startswith("without a cell: 001b_masks.png: frame 0 cannot be read") for line in lines)
     (folder / "001b_masks.png").unlink()
     assert run("check", folder)[0] == 0  # an image without any cell is usual
+    lines = run("check", folder, "--all")[1].splitlines()
+    assert "cell\tfile\tframe\tlabel\tusable\tremarks" in lines
+    assert any(line.startswith("4\t001_masks.png\t0\t1\tyes") for line in lines)
 
 
 def test_a_folder_that_cannot_be_used(run: Run, folder: Path, tmp_path: Path) -> None:

@@ -3,8 +3,8 @@ What is wrong with a mask
 =========================
 
 A map needs one piece without holes. Cleaning makes such a mask and reports each change.
-On the command line, ``cytodisk check masks.tif`` prints the same for every mask of a
-file.
+On the command line, ``cytodisk check masks.tif`` prints the same for all masks of a
+file, a line for each kind of fault.
 """
 
 import matplotlib.pyplot as plt

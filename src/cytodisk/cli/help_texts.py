@@ -111,12 +111,19 @@ is damaged.
 
 The paper's relaxation (advection) takes seconds a cell, and minutes for one of 50 000 pixels and more.
 """,
-    "check": """Say what is wrong with masks before a run: a line a cell, or a frame of a stack.
+    "check": """Say what is wrong with masks before a run, and how many can be used.
+
+It says what the file was understood as, and a line for each kind of fault with the cells or frames that have
+it. --all prints a line for every cell, or frame of a stack.
 
 Exit code: 0 when all can be used (an image of a folder may be empty), 1 if any cannot, 2 if the file
 cannot be read at all.
 
-Example: cytodisk check labels.tif
+Examples:
+
+  cytodisk check labels.tif
+
+  cytodisk check masks.tif --signal movie.ome.tif --all
 """,
     "info": "Print versions, and which optional parts are there.",
     "demo": "Simulate a moving cell with two signals, follow it, correlate, report, "

@@ -1,8 +1,6 @@
-"""`cytodisk map` and `cytodisk check`."""
+"""`cytodisk map`."""
 
 from typing import TYPE_CHECKING
-
-import typer
 
 from cytodisk.cli.console import console_for, progress_bar
 from cytodisk.cli.first_start import compiling
@@ -16,7 +14,6 @@ from cytodisk.cli.options import (
     SignalFiles,
     with_parameters,
 )
-from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.run_options import MapOptions
 
@@ -53,21 +50,6 @@ def map_command(
             **dict(options),
         )
     finish_map(console, study, figures, inputs.is_folder)
-
-
-@with_parameters(FileParameters, file=False)
-def check_command(masks: MaskFiles, given: Given, signal: SignalFiles = None) -> None:
-    from cytodisk.cli.contents_lines import say_contents
-    from cytodisk.cli.map_totals import say_checked
-    from cytodisk.runs.cells.cell_inputs import open_inputs
-    from cytodisk.runs.map.map_study import check_cells
-
-    console = console_for(False)
-    say_contents(console, (masks, signal))
-    inputs = open_inputs(masks, signal, given.of(FileParameters))
-    say_inputs(console, inputs)
-    unusable = say_checked(console, inputs, check_cells(inputs))
-    raise typer.Exit(1 if unusable else 0)
 
 
 def say_inputs(console: "Console", inputs: "CellInputs") -> None:

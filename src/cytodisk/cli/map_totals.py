@@ -1,9 +1,9 @@
-"""What `cytodisk map` and `cytodisk check` say at their end."""
+"""What `cytodisk map` says at its end."""
 
 import re
 import sys
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from cytodisk.cli.console import count, fail
@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     import pandas as pd
     from rich.console import Console
 
-    from cytodisk.runs.cells.cell_inputs import CellInputs
-    from cytodisk.runs.map.map_study import CheckedCell
     from cytodisk.store.study import Study
 
 _MOST_LINES = 20
@@ -37,7 +35,8 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
         _say_totals(console, rows["source"].nunique(), cells, mapped)
     else:
         console.print(f"{len(mapped)} of {count(len(cells))} mapped{_one_to_one(mapped)}")
-    _say_without_cell(console, Counter(without["status"]), of_folder)
+    for line in without_cell_words(Counter(without["status"]), of_folder):
+        console.print(line)
     if len(mapped):
         console.print(
             f"median {mapped['seconds'].median():.2f} s a cell; median area error of windows "
@@ -61,11 +60,11 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
         fail(f"damaged {what} of the input: {unreadable}; all others are in {study.path}")
 
 
-def _say_without_cell(console: "Console", statuses: Counter[str], of_folder: bool) -> None:
-    """Say how many files, or images in them, hold no cell: they count as no cell in the totals."""
+def without_cell_words(statuses: Counter[str], of_folder: bool) -> Iterator[str]:
+    """A line on how many files, or images in them, hold no cell: they count as no cell in the totals."""
     if statuses:
         what = "files or images" if of_folder else "frames"
-        console.print(f"{what} without a cell: {_counts(statuses, _EMPTY)}")
+        yield f"{what} without a cell: {_counts(statuses, _EMPTY)}"
 
 
 def _counts(statuses: Counter[str], words: dict[str, str]) -> str:
@@ -138,43 +137,3 @@ def say_reasons(lost: Iterable[tuple[int | None, str, str, str]]) -> None:
     if len(ordered) > _MOST_LINES:
         rest = sum(len(found) for _, found in ordered[_MOST_LINES:])
         print(f"… and {rest} for other reasons: column 'reason' of cells.parquet", file=sys.stderr)
-
-
-def say_checked(console: "Console", inputs: "CellInputs", cells: Iterable["CheckedCell"]) -> int:
-    """Print a line a cell and the totals; give the number of cells, files and images that are at fault.
-
-    An image without any cell is no fault in a folder, where such images are usual.
-    """
-    unusable = flagged = looked_at = on_border = 0
-    without: Counter[str] = Counter()
-    lost: list[tuple[int | None, str, str, str]] = []
-    print("cell\tfile\t" if inputs.is_folder else "cell\t", end="")
-    print("frame\tlabel\tusable\tremarks")
-    for checked in cells:
-        found, report = checked.found, checked.report
-        qc_flags, notes = (report.qc_flags, report.notes) if report is not None else ((), ())
-        is_cell = found.label != 0
-        looked_at += is_cell
-        unusable += is_cell and bool(checked.reason)
-        if not is_cell:
-            without[checked.status] += 1
-        flagged += bool(qc_flags)
-        on_border += report is not None and report.touches_border
-        reason = without_name(checked.reason, found.source) if inputs.is_folder else checked.reason
-        remarks = reason or "; ".join([*qc_flags, *notes])
-        usable = "no" if checked.reason else "QC flag" if qc_flags else "yes"
-        place = f"{found.cell}\t{found.source}" if inputs.is_folder else f"{found.cell}"
-        print(f"{place}\t{found.frame}\t{found.label}\t{usable}\t{remarks}")
-        if checked.reason:
-            number, what = (found.cell, "not usable") if is_cell else (None, "without a cell")
-            lost.append((number, found.source, what, checked.reason))
-    what = count(looked_at, "cell" if inputs.sources[0].kind != "stack" or inputs.is_folder else "frame")
-    words = f"{what}: {looked_at - unusable} usable ({flagged} with QC flags), {unusable} not usable"
-    if inputs.is_folder:
-        words = f"{count(len(inputs.sources), 'file')}, {words}, {on_border} on the image border"
-        say_reasons(lost)
-    console.print(words)
-    if inputs.sources[0].kind == "stack":
-        console.print("Masks were looked at one by one. Jumps between frames: cytodisk movie finds them.")
-    _say_without_cell(console, without, inputs.is_folder)
-    return unusable + without.total() - (without["no cell"] if inputs.is_folder else 0)

@@ -1,0 +1,55 @@
+"""`cytodisk check`."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from cytodisk.cli.console import console_for
+from cytodisk.cli.map_command import say_inputs
+from cytodisk.cli.options import Given, MaskFiles, SignalFiles, with_parameters
+from cytodisk.runs.cells.cell_parameters import FileParameters
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from cytodisk.runs.cells.cell_inputs import CellInputs
+
+
+@with_parameters(FileParameters, file=False)
+def check_command(
+    masks: MaskFiles,
+    given: Given,
+    signal: SignalFiles = None,
+    every: Annotated[
+        bool, typer.Option("--all", help="Print a line for every cell, or frame of a stack.")
+    ] = False,
+) -> None:
+    from cytodisk.cli.checked_words import Checked
+    from cytodisk.cli.contents_lines import say_contents
+    from cytodisk.runs.cells.cell_inputs import open_inputs
+    from cytodisk.runs.map.map_study import check_cells
+
+    console = console_for(False)
+    say_contents(console, (masks, signal))
+    inputs = open_inputs(masks, signal, given.of(FileParameters))
+    say_inputs(console, inputs)
+    _say_evidence(console, inputs)
+    found = Checked(inputs)
+    if every:
+        print(found.header)
+    for checked in check_cells(inputs):
+        found.add(checked)
+        if every:
+            print(found.line(checked))
+    for line in found.summary():
+        print(line)
+    raise typer.Exit(1 if found.faults else 0)
+
+
+def _say_evidence(console: "Console", inputs: "CellInputs") -> None:
+    """How the axes of the files are known; of a folder those of its first file."""
+    masks, signals = inputs.sources[0].file, inputs.signal_files
+    for role, file in (("masks", masks), ("signal", signals[0] if signals else None)):
+        if file is not None and file.evidence:
+            which = f" (as in {file.path.name})" if inputs.is_folder else ""
+            console.print(f"{role}: {file.evidence}{which}")
