@@ -158,7 +158,7 @@ def test_counts_that_are_no_numbers(run: Run, mask: Path, tmp_path: Path) -> Non
 
 def test_no_workers(run: Run, mask: Path, tmp_path: Path) -> None:
     result = run("map", mask, "-o", tmp_path / "out", "--workers", "0")
-    assert_refused(result, "workers must be a whole number of at least 1, got 0")
+    assert_refused(result, "workers must be a whole number from 1 to 1024, got 0")
 
 
 def test_an_output_folder_below_a_file(run: Run, mask: Path) -> None:

@@ -218,7 +218,7 @@ class CellWindows(WindowsOnCell):
         WindowError
             An array of values has another shape.
         """
-        features = list(window_features(self, values or {}, cell, corner))
+        features = list(window_features(self, self.polygons(), values or {}, cell, corner))
         return {"type": "FeatureCollection", "features": features}
 
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import shapely
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import WindowError
-
-if TYPE_CHECKING:
-    from cytodisk.windows.polar_windows import CellWindows
+from cytodisk.windows.on_cell import WindowsOnCell
 
 _FIRST_PIXEL = 0.5  # of its centre, where the image's corner is (0, 0)
 _SLIVER = 1e-3  # of a window's area: a smaller piece beside it is left out
@@ -20,13 +18,19 @@ _DECIMALS = 4  # of coordinates in pixels
 
 
 def window_features(
-    windows: CellWindows, values: Mapping[str, FloatArray], cell: str, corner: tuple[int, int]
+    windows: WindowsOnCell,
+    polygons: Sequence[FloatArray],
+    values: Mapping[str, FloatArray],
+    cell: str,
+    corner: tuple[int, int],
 ) -> Iterator[dict[str, Any]]:
     """The cell, if it has a name, then its windows, as `CellWindows.geojson` has them.
 
     Parameters
     ----------
-    windows : CellWindows
+    windows : WindowsOnCell
+    polygons : sequence of ndarray of shape (N, 2)
+        Of the windows, by number; without points where there is none.
     values : mapping of str to ndarray of shape (layers, sectors)
     cell : str
         Name of the cell; empty for windows alone.
@@ -50,9 +54,9 @@ def window_features(
         area = _by_unit(windows, "area", np.array(windows.placed_mask.box.sum(), dtype=np.float64))
         numbers = {name: float(value) for name, value in area.items()}
         yield _feature(windows.outline_yx, corner, "annotation", {"name": cell}, numbers)
-    for number, polygon in enumerate(windows.polygons()):
+    for number, polygon in enumerate(polygons):
         layer, sector = divmod(number, windows.grid.sectors)
-        if not windows.grid.present[layer]:
+        if not len(polygon):
             continue
         named = {
             "name": f"layer {layer}, sector {sector}",
@@ -64,12 +68,12 @@ def window_features(
         yield _feature(polygon, corner, "detection", named, here)
 
 
-def _measures(windows: CellWindows) -> dict[str, FloatArray]:
+def _measures(windows: WindowsOnCell) -> dict[str, FloatArray]:
     """What is known of all windows without a signal."""
     return _by_unit(windows, "area", windows.areas)
 
 
-def _by_unit(windows: CellWindows, name: str, areas: FloatArray) -> dict[str, FloatArray]:
+def _by_unit(windows: WindowsOnCell, name: str, areas: FloatArray) -> dict[str, FloatArray]:
     """Areas in square pixels, and in µm² if the scale is known; units as QuPath writes them."""
     found = {f"{name} px^2": areas}
     if windows.scale.pixel_size_um is not None:
