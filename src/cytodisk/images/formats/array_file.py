@@ -13,7 +13,7 @@ import numpy as np
 from cytodisk.errors import ReadError
 from cytodisk.images.formats.file_metadata import channel_names
 from cytodisk.images.formats.npy import read_npy
-from cytodisk.images.formats.plane_frames import projected
+from cytodisk.images.formats.projection import projected
 from cytodisk.images.formats.stored_axes import stored_axes
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile, as_channels_first
 from cytodisk.images.reading import reading

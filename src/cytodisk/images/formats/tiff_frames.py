@@ -14,7 +14,7 @@ import numpy as np
 import tifffile
 
 from cytodisk.images.formats.array_file import ArrayFrames, StoredArray
-from cytodisk.images.formats.plane_frames import projected
+from cytodisk.images.formats.projection import projected
 from cytodisk.images.formats.tiff_pages import opened_member, opened_tiff, present_page
 from cytodisk.images.formats.tiff_segments import TiffSegments
 from cytodisk.images.frame_file import Cut, as_channels_first

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +12,7 @@ import numpy as np
 
 from cytodisk.errors import ReadError
 from cytodisk.images.formats.file_metadata import channel_names
+from cytodisk.images.formats.projection import projected
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile, StoredFrames
 from cytodisk.images.scenes import Scene, Taken, take
 
@@ -58,29 +59,6 @@ class PlaneFrames:
     def by_piece(self, number: int) -> tuple[Cut, int] | None:
         """None: a plane is read whole."""
         return None
-
-
-def projected(slices: Iterable[np.ndarray[Any, Any]], z: int | str) -> np.ndarray[Any, Any]:
-    """Slices of a z-stack made one image, with one or two of them in memory.
-
-    Parameters
-    ----------
-    slices : iterable of ndarray
-    z : int, "max" or "mean"
-        A mean is float32; a number stands for a single slice.
-    """
-    image: np.ndarray[Any, Any] | None = None
-    count = 0
-    for piece in slices:
-        count += 1
-        if image is None:
-            image = piece.astype(np.float64) if z == "mean" else piece
-        elif z == "mean":
-            image += piece
-        else:
-            np.maximum(image, piece, out=image)
-    assert image is not None  # a slice is always taken
-    return (image / count).astype(np.float32) if z == "mean" else image
 
 
 def scene_file(
