@@ -192,6 +192,23 @@ def test_a_stopped_recording_loses_its_missing_frames_alone(tmp_path: Path, plan
         file.frame(1)
 
 
+@pytest.mark.parametrize("xml", ["<Scaling>", "&;", "<a></b>", "\x01"])
+def test_damaged_metadata_cost_the_metadata_alone(tmp_path: Path, plane: np.ndarray, xml: str) -> None:
+    file = open_frames(write_czi(tmp_path / "a.czi", [Tile(plane)], xml))
+    np.testing.assert_array_equal(file.frame(0)[0], plane)
+    assert "its metadata are damaged" in file.notes[0]
+    assert "--pixel-size" in file.notes[0]
+
+
+@pytest.mark.parametrize("place", ["T99999999", "Z2000000000", "C5000", "T-3", "M1 X900000000"])
+def test_claims_that_the_blocks_do_not_fill_are_refused(
+    tmp_path: Path, plane: np.ndarray, place: str
+) -> None:
+    path = write_czi(tmp_path / "a.czi", [Tile(plane), Tile(plane, place)])
+    with pytest.raises(ReadError, match="is damaged: its list of 2 blocks of pixels makes no sense"):
+        open_frames(path)
+
+
 def test_damaged_files_end_in_a_read_error(tmp_path: Path, plane: np.ndarray) -> None:
     whole = write_czi(tmp_path / "whole.czi", [Tile(plane, f"T{t}") for t in range(2)]).read_bytes()
     rng = np.random.default_rng(3)

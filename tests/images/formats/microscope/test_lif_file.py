@@ -145,11 +145,23 @@ def test_sections_and_mosaics_are_refused_with_the_reason(tmp_path: Path, stack:
         open_frames(path)
 
 
+def test_a_file_that_is_cut_short_loses_its_last_frames_alone(tmp_path: Path, stack: np.ndarray) -> None:
+    movie = stack[:, 0, 0].copy()
+    path = write_lif(tmp_path / "cut.lif", {"cell": (movie, "TYX")})
+    whole = path.read_bytes()
+    path.write_bytes(whole[:-100])
+    file = open_frames(path)
+    assert "it is cut short: its pixels need 3600 bytes and 3500 are there" in file.notes[0]
+    np.testing.assert_array_equal(file.frame(1)[0], movie[1])
+    with pytest.raises(ReadError, match=r"cut\.lif: frame 2"):
+        file.frame(2)
+    path.write_bytes(whole[:-3590])
+    with pytest.raises(ReadError, match="damaged or cut short: its pixels need 3600 bytes and 10 are there"):
+        open_frames(path)
+
+
 def test_damaged_files_end_in_a_read_error(tmp_path: Path, stack: np.ndarray) -> None:
     whole = write_lif(tmp_path / "whole.lif", {"cell": (stack[:, 0, 0].copy(), "TYX")}).read_bytes()
-    (tmp_path / "cut.lif").write_bytes(whole[:-100])
-    with pytest.raises(ReadError, match=r"cut\.lif"):
-        open_frames(tmp_path / "cut.lif").frame(2)
     rng = np.random.default_rng(3)
     for trial in range(60):
         bad = bytearray(whole[: rng.integers(len(whole))] if trial % 2 else whole)

@@ -161,6 +161,19 @@ def test_units_of_steps(
             raise ValueError(file.notes[0])
 
 
+@pytest.mark.parametrize("scale", ["x", [1.0], ["a", 1.0], None, {}])
+def test_a_damaged_scale_costs_the_scale_alone(tmp_path: Path, stack: np.ndarray, scale: Any) -> None:
+    path = write_ome_zarr(tmp_path / "a.zarr", stack[0, 0, 0], "yx")
+    group = zarr.open_group(path)
+    ome = dict(group.attrs)["ome"]
+    ome["multiscales"][0]["datasets"][0]["coordinateTransformations"][0]["scale"] = scale
+    group.attrs["ome"] = ome
+    file = open_frames(path)
+    assert "coordinateTransformations cannot be used" in file.notes[0]
+    assert "--pixel-size" in file.notes[0]
+    np.testing.assert_array_equal(file.frame(0)[0], stack[0, 0, 0])
+
+
 def test_other_zarr_folders_are_refused_with_what_to_pass(tmp_path: Path, stack: np.ndarray) -> None:
     array = zarr.create_array(tmp_path / "array.zarr", shape=(20, 30), dtype="u2")
     array[...] = 1
@@ -196,11 +209,25 @@ def test_damaged_folders_end_in_a_read_error(tmp_path: Path, stack: np.ndarray) 
             file.frame(0)
 
 
-def test_a_claim_beyond_memory_is_refused(tmp_path: Path, stack: np.ndarray) -> None:
-    path = write_ome_zarr(tmp_path / "a.zarr", stack[0, 0, 0], "yx")
+@pytest.mark.parametrize(
+    ("axes", "field", "value", "said"),
+    [
+        ("yx", "shape", [10**9, 10**9], "memory"),
+        ("tyx", "shape", [10**9, 20, 30], "claims 1000000000 planes and .* bytes are stored; copy it again"),
+        ("yx", "chunks", [10**6, 10**6], "stored in chunks of 1000000 × 1000000"),
+        ("yx", "shape", [-3, 30], "zarr"),
+    ],
+)
+def test_claims_that_are_not_filled_are_refused(
+    tmp_path: Path, stack: np.ndarray, axes: str, field: str, value: list[int], said: str
+) -> None:
+    path = write_ome_zarr(tmp_path / "a.zarr", stack[0, 0, 0] if axes == "yx" else stack[:, 0, 0], axes)
     place = path / "0" / "zarr.json"
-    said = json.loads(place.read_text())
-    said["shape"] = [10**9, 10**9]
-    place.write_text(json.dumps(said))
-    with pytest.raises(ReadError, match="memory"):
+    array = json.loads(place.read_text())
+    if field == "shape":
+        array["shape"] = value
+    else:
+        array["chunk_grid"]["configuration"]["chunk_shape"] = value
+    place.write_text(json.dumps(array))
+    with pytest.raises(ReadError, match=said):
         open_frames(path).frame(0)

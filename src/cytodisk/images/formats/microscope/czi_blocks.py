@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -50,7 +51,7 @@ class Block:
         """
         if hasattr(entry, "dimension_entries"):
             axes = {e.dimension: (e.start, e.size, e.stored_size) for e in entry.dimension_entries}
-            base, samples = np.dtype(entry.dtype).base, int(np.prod(np.dtype(entry.dtype).shape))
+            base, samples = np.dtype(entry.dtype).base, math.prod(np.dtype(entry.dtype).shape)
         else:
             sizes = zip(entry.start, entry.shape, entry.stored_shape, strict=True)
             axes = {axis: place for axis, place in zip(entry.dims, sizes, strict=True) if axis != "S"}
@@ -98,13 +99,13 @@ def block_pixels(block: Block, opened: BinaryIO) -> np.ndarray[Any, Any]:
     if block.compression == _LZW:
         data = bytes(imagecodecs.lzw_decode(data))
     elif block.compression in (_ZSTD, _ZSTD_SHUFFLED):
-        data = _zstd(data, block.compression, int(np.prod(shape)) * block.dtype.itemsize)
+        data = _zstd(data, block.compression, math.prod(shape) * block.dtype.itemsize)
     elif block.compression:
         raise ReadError(
             f"{opened.name} is compressed in a way of its camera (number {block.compression}): save it with "
             "another compression in ZEN"
         )
-    pixels = np.frombuffer(data, block.dtype, int(np.prod(shape))).reshape(shape)
+    pixels = np.frombuffer(data, block.dtype, math.prod(shape)).reshape(shape)
     return pixels if block.samples == 1 else pixels[..., [2, 1, 0, 3][: block.samples]]
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ from cytodisk.scale import Scale
 _KNOWN_AXES = {"S", "T", "C", "Z", "Y", "X", "M"}
 _AXIS_WORDS = {"H": "phases", "I": "directions of light", "V": "views", "R": "rotations", "B": "blocks"}
 _COLOURS = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha")}
+_MOST_TIMES = 100  # as much as its pixels fill, a file may claim, for what was left out while recording
 _DAYS = (29_000, 90_000)  # days since 1900 of the years 1979 to 2146: some files give times as dates
 
 
@@ -102,15 +104,17 @@ def _looked_at(file: Path, changed: int, size: int) -> _Contents:
         warnings.simplefilter("ignore")  # of a missing list of blocks, which is then made anew
         with czifile.CziFile(str(file)) as opened:
             blocks = [Block.of(entry) for entry in opened.subblock_directory]
-            metadata = ElementTree.fromstring(opened.metadata() or "<ImageDocument/>")
-            times = _attached_times(opened)
+            metadata, times, notes = _said(opened)
     whole = [block for block in blocks if block.is_whole]
     numbers = tuple(sorted({block.start("S") for block in whole}))
     samples = {block.samples for block in whole}
     if len(samples) > 1:
         raise ReadError(f"{file} mixes grey and colour images: export them as TIFF, each kind alone")
     return _Contents(
-        tuple(_scene(number, whole, metadata, times) for number in numbers),
+        tuple(
+            replace(scene, notes=(*notes, *scene.notes))
+            for scene in (_scene(number, whole, metadata, times) for number in numbers)
+        ),
         numbers,
         next(iter(samples), 1),
         {number: _area([block for block in whole if block.start("S") == number]) for number in numbers},
@@ -157,6 +161,16 @@ def _fault(blocks: list[Block]) -> str:
             return f"holds {extent} {words}: save the processed image, or one of them, in ZEN"
     if any(block.size(axis) > 1 for block in blocks for axis in "TCZ"):
         return "holds lines or spectra, not images: export it as TIFF from ZEN"
+    planes = {(block.start("T"), block.start("C"), block.start("Z")) for block in blocks}
+    rows, columns = _area(blocks)
+    covered = sum(block.size("Y") * block.size("X") for block in blocks) / len(planes)
+    claimed = math.prod(_extent(blocks, axis) for axis in "TCZ")
+    if (
+        min(block.start(axis) for block in blocks for axis in "TCZ") < 0
+        or claimed > _MOST_TIMES * len(planes)
+        or (rows.stop - rows.start) * (columns.stop - columns.start) > _MOST_TIMES * covered
+    ):
+        return f"is damaged: its list of {len(blocks)} blocks of pixels makes no sense; copy it again"
     if any(block.dtype.kind == "c" for block in blocks):
         return "holds complex numbers: export it as TIFF from ZEN"
     return ""
@@ -225,6 +239,19 @@ def _interval(
             )
     increment = None if positions is None else _number(positions.findtext("Interval/Increment"))
     return agreed_interval(times, increment, frames)
+
+
+def _said(opened: Any) -> tuple[ElementTree.Element, tuple[float, ...], tuple[str, ...]]:
+    """Metadata and times of frames; empty with a note where they are damaged, as pixels do not need them."""
+    try:
+        return ElementTree.fromstring(opened.metadata() or "<ImageDocument/>"), _attached_times(opened), ()
+    except Exception as error:  # noqa: BLE001  whatever broken metadata raise, the pixels are there
+        words = " ".join(str(error).split()) or type(error).__name__
+        note = (
+            f"its metadata are damaged ({words}): scale and names of channels are unknown; give them with "
+            "--pixel-size, --frame-interval and --channels"
+        )
+        return ElementTree.Element("ImageDocument"), (), (note,)
 
 
 def _attached_times(opened: Any) -> tuple[float, ...]:

@@ -22,6 +22,7 @@ from cytodisk.scale import Scale
 _CHANNEL_AXES = {"C": "", "S": "", "λ": "nm emission", "Λ": "nm excitation"}
 _COLOURS = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha")}
 _AXIS_WORDS = {"N": "rotations", "M": "tiles", "Q": "positions", "H": "lifetimes"}
+_MOST_TIMES = 100  # as many bytes as are there, an image may claim
 _CHANNELS = "./Data/Image/ImageDescription/Channels/ChannelDescription"
 
 
@@ -91,6 +92,7 @@ def _scene(image: Any) -> Scene:
         return Scene(image.path, sizes.get("T", 1), 1, ("",), shape, np.dtype(np.uint8), fault=fault)
     steps = {axis: _steps(image, axis) for axis in "TYX"}
     size_um, size_notes, fault = pixel_size_of([_step_um(steps[axis]) for axis in "YX"])
+    short, damage = _cut_short(image)
     interval_s, time_notes = agreed_interval(_times(image), _step(steps["T"]), sizes.get("T", 1))
     return Scene(
         image.path,
@@ -100,8 +102,8 @@ def _scene(image: Any) -> Scene:
         shape,
         image.dtype,
         Scale(size_um, interval_s),
-        size_notes + time_notes,
-        fault or _cut_short(image),
+        (*size_notes, *time_notes, *short),
+        fault or damage,
     )
 
 
@@ -128,13 +130,17 @@ def _fault(image: Any) -> str:
     return ""
 
 
-def _cut_short(image: Any) -> str:
-    """What is missing of its pixels, if any."""
+def _cut_short(image: Any) -> tuple[tuple[str, ...], str]:
+    """A note if some of its pixels are missing, or the fault if nearly all are."""
     needed = math.prod(image.sizes.values()) * image.dtype.itemsize
-    there = image.memory_block.size
+    block = image.memory_block
+    there = min(block.size, Path(image.parent.filepath).stat().st_size - block.offset)
     if needed <= there:
-        return ""
-    return f"is damaged: its pixels need {needed} bytes and the file holds {there}"
+        return (), ""
+    words = f"its pixels need {needed} bytes and {max(there, 0)} are there"
+    if needed > _MOST_TIMES * max(there, 0):
+        return (), f"is damaged or cut short: {words}; copy it again"
+    return (f"it is cut short: {words}, so that the last frames are missing; copy it again",), ""
 
 
 def _channels(image: Any) -> tuple[str, ...]:

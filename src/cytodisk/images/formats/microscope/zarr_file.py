@@ -16,7 +16,7 @@ from cytodisk.errors import ReadError
 from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
 from cytodisk.images.formats.microscope.plane_frames import Plane, PlaneFrames, scene_file
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile
-from cytodisk.images.image_paths import is_zarr
+from cytodisk.images.image_paths import is_zarr, parts_of
 from cytodisk.images.reading import reading
 from cytodisk.images.scenes import Scene, Taken
 from cytodisk.scale import Scale
@@ -24,6 +24,8 @@ from cytodisk.scale import Scale
 _MICROMETRES = {"angstrom": 1e-4, "nanometer": 1e-3, "micrometer": 1.0, "millimeter": 1e3, "meter": 1e6}
 _SECONDS = {"millisecond": 1e-3, "second": 1.0, "minute": 60.0, "hour": 3600.0, "day": 86400.0}
 _MOST_IMAGES = 1000
+_FEW = 100_000  # pixels, and planes, that need no look
+_MOST_TIMES = 100  # as many pixels as an array has, its chunks may have
 
 
 def open_zarr(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
@@ -191,7 +193,7 @@ def _image(file: Path, name: str, number: int) -> tuple[Scene, ZarrPlanes]:
             "anew"
         )
     sizes = dict(zip(axes, array.shape, strict=True))
-    steps = _steps(multiscale, dataset, len(axes))
+    steps, step_notes = _steps(multiscale, dataset, len(axes))
     spaces = [_step(described, axes, steps, axis, _MICROMETRES) for axis in "YX"]
     size_um, size_notes, fault = pixel_size_of([size for size, _ in spaces])
     interval, time_note = _step(described, axes, steps, "T", _SECONDS)
@@ -206,8 +208,8 @@ def _image(file: Path, name: str, number: int) -> tuple[Scene, ZarrPlanes]:
         (sizes.get("Y", 1), sizes.get("X", 1)),
         np.dtype(array.dtype),
         Scale(size_um, interval_s),
-        (*size_notes, *time_notes, *filter(None, notes)),
-        _fault(axes, array.shape) or fault,
+        (*step_notes, *size_notes, *time_notes, *filter(None, notes)),
+        _fault(axes, array.shape) or _claim_fault(file / place, axes, array) or fault,
     )
     return scene, ZarrPlanes(file, place, axes)
 
@@ -219,6 +221,23 @@ def _fault(axes: str, shape: Sequence[int]) -> str:
     return ""
 
 
+def _claim_fault(folder: Path, axes: str, array: Any) -> str:
+    """What is wrong with the size of an array, as chunks that are empty are not stored."""
+    size = math.prod(array.shape)
+    if math.prod(array.chunks) > _MOST_TIMES * max(size, _FEW):
+        chunk = " × ".join(map(str, array.chunks))
+        return f"is damaged: its array of {size} pixels is said to be stored in chunks of {chunk}"
+    planes = math.prod(n for axis, n in zip(axes, array.shape, strict=True) if axis not in "YX")
+    if planes <= _FEW:
+        return ""
+    stored = sum(part.stat().st_size for part in parts_of(folder))
+    if size * array.dtype.itemsize <= _MOST_TIMES * _MOST_TIMES * stored:
+        return ""
+    return (
+        f"is damaged or not complete: it claims {planes} planes and {stored} bytes are stored; copy it again"
+    )
+
+
 def _channels(ome: dict[str, Any], count: int) -> tuple[str, ...]:
     omero = ome.get("omero")
     listed = omero.get("channels") if isinstance(omero, dict) else None
@@ -226,16 +245,23 @@ def _channels(ome: dict[str, Any], count: int) -> tuple[str, ...]:
     return tuple(names) if len(names) == count else ("",) * count
 
 
-def _steps(multiscale: Any, dataset: Any, count: int) -> list[float] | None:
+def _steps(multiscale: Any, dataset: Any, count: int) -> tuple[list[float] | None, tuple[str, ...]]:
     """Step along each axis: the scale of the array times that of the image; None where there is none."""
     steps, found = [1.0] * count, False
-    for owner in (dataset, multiscale):
-        for transformation in owner.get("coordinateTransformations") or ():
-            factors = transformation.get("scale") or ()
-            if transformation.get("type") == "scale" and len(factors) == count:
-                steps = [step * float(factor) for step, factor in zip(steps, factors, strict=True)]
-                found = True
-    return steps if found and all(map(math.isfinite, steps)) else None
+    try:
+        for owner in (dataset, multiscale):
+            for transformation in owner.get("coordinateTransformations") or ():
+                if transformation.get("type") == "scale":
+                    factors = [float(factor) for factor in transformation["scale"]]
+                    steps = [step * factor for step, factor in zip(steps, factors, strict=True)]
+                    found = True
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        note = (
+            f"its coordinateTransformations cannot be used ({error}): the scale is unknown; give it with "
+            "--pixel-size and --frame-interval"
+        )
+        return None, (note,)
+    return (steps if found else None), ()
 
 
 def _step(
