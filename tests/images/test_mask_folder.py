@@ -196,13 +196,6 @@ def test_a_file_that_would_run_code_is_refused_and_runs_nothing(tmp_path: Path, 
     assert (tmp_path / "proof").exists()
 
 
-def test_a_dtype_that_lies_about_its_content_is_refused(tmp_path: Path) -> None:
-    lying = np.zeros(3, dtype=[("a", "i4"), ("b", "f8")])
-    save_seg(tmp_path / "a_seg.npy", LABELS, table=lying)
-    (source,) = open_mask_files(tmp_path)
-    assert "only numbers and text are read" in str(source.fault)
-
-
 @pytest.mark.parametrize("content", [{"flows": LABELS}, {"masks": [1, 2]}, [LABELS], {"masks": None}])
 def test_a_file_without_label_image(tmp_path: Path, content: object) -> None:
     array = np.empty((), dtype=object)

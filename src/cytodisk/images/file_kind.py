@@ -25,6 +25,10 @@ _REFUSED = {
     b"GIF8": "is a GIF, which keeps 256 colours and no grey values: save it as TIFF from the raw file",
     b"BM": "is a BMP: save it as TIFF",
     b"\x1f\x8b": "is compressed with gzip: unpack it first",
+    b"\x89HDF\r\n\x1a\n": (
+        "is an HDF5 file: export it as TIFF; in ilastik, choose Format: tif under Choose "
+        "Export Image Settings"
+    ),
     b"%PDF": "is a PDF: save the image alone, as TIFF",
     b"<!DOCTYPE html": "is a web page, so its download failed: download it again",
     b"<html": "is a web page, so its download failed: download it again",

@@ -1,5 +1,6 @@
 """Parameters that say how files of masks and images are read."""
 
+import os
 from typing import Any, Literal, TypeAlias
 
 from pydantic import field_validator
@@ -33,6 +34,11 @@ def checked_axes(axes: str | None) -> str | None:
 def number_as_text(value: Any) -> Any:
     """A whole number as a text, since names may be given as numbers."""
     return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+def path_as_text(value: Any) -> Any:
+    """A path as a text."""
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
 class ChoiceParameters(Parameters):
@@ -136,3 +142,10 @@ class MovieKindParameters(KindParameters):
     link: bool = parameter(
         False, "Labels differ from frame to frame: give overlapping cells one label through time."
     )
+    tracks: str | None = parameter(
+        None,
+        "File of tracks that give each label its cell through time: TrackMate's XML, or a GEFF.",
+        words="a path",
+    )
+
+    _tracks = field_validator("tracks", mode="before")(path_as_text)

@@ -47,12 +47,15 @@ class FileChoice:
     channels : tuple of str, or None
         Names, or numbers from 0, of the channels to take, in this order; `open_frames` takes them out of
         any format, which reads all.
+    like : (int, int, int), or None
+        (frames, H, W) of the image that goes with a file of outlines, which does not say it.
     """
 
     axes: str | None = None
     scene: str | None = None
     z: str | None = None
     channels: tuple[str, ...] | None = None
+    like: tuple[int, int, int] | None = None
 
 
 NO_CHOICE = FileChoice()

@@ -22,6 +22,9 @@ from cytodisk.images.formats.microscope.czi_file import open_czi
 from cytodisk.images.formats.microscope.lif_file import open_lif
 from cytodisk.images.formats.microscope.nd2_file import open_nd2
 from cytodisk.images.formats.microscope.zarr_file import open_zarr
+from cytodisk.images.formats.outlined.geojson_file import open_geojson
+from cytodisk.images.formats.outlined.roi_file import open_rois
+from cytodisk.images.formats.outlined.trackmate_outlines import open_trackmate
 from cytodisk.images.formats.picture_file import open_picture
 from cytodisk.images.formats.tiff_file import open_tiff
 from cytodisk.images.frame_file import NO_CHOICE, FileChoice, FrameFile
@@ -37,6 +40,11 @@ _OPENERS = {
     ".czi": open_czi,
     ".lif": open_lif,
     ".zarr": open_zarr,
+    ".roi": open_rois,
+    ".zip": open_rois,
+    ".geojson": open_geojson,
+    ".json": open_geojson,
+    ".xml": open_trackmate,
 }
 
 

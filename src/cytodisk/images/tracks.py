@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -181,7 +181,9 @@ def read_frame(file: FrameFile, frame: int) -> Any:
         return as_data(error)
 
 
-def list_tracks(file: FrameFile, look: MaskLook, link: bool) -> list[CellTrack]:
+def list_tracks(
+    file: FrameFile, look: MaskLook, link: bool, given: Sequence[dict[int, int]] | None = None
+) -> list[CellTrack]:
     """The cells of a mask movie.
 
     Parameters
@@ -191,11 +193,13 @@ def list_tracks(file: FrameFile, look: MaskLook, link: bool) -> list[CellTrack]:
         At this file.
     link : bool
         Labels are not the same from frame to frame: link them by overlap.
+    given : sequence of dict of int to int, optional
+        For each frame {label: track}, where another program has tracked the labels.
 
     Returns
     -------
     list of CellTrack
-        By label, or by first appearance when linked.
+        By label, or by track.
 
     Raises
     ------
@@ -211,7 +215,9 @@ def list_tracks(file: FrameFile, look: MaskLook, link: bool) -> list[CellTrack]:
         if not isinstance(fault, ReadError):
             raise fault
     found: dict[int, dict[int, int]] = {}
-    tracks = link_labels(_label_frames(file)) if link else _labels_as_tracks(look)
+    tracks = given
+    if tracks is None:
+        tracks = link_labels(_label_frames(file)) if link else _labels_as_tracks(look)
     for frame, in_frame in enumerate(tracks):
         for label, track in in_frame.items():
             found.setdefault(track, {})[frame] = label

@@ -28,6 +28,7 @@ PARTS = {
     "nd2": ("nd2",),
     "czi": ("czifile",),
     "lif": ("liffile",),
+    "roi": ("roifile",),
     "cluster": ("distributed", "fsspec"),
 }
 

@@ -6,7 +6,7 @@ import io
 import pickle
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -17,14 +17,32 @@ _MASKS = "masks"  # the entry of a `_seg.npy` that holds the label image
 _NUMBERS_AND_TEXT = re.compile("[biufcSUO][0-9]*")
 _RECONSTRUCT = {(f"numpy.{core}.multiarray", "_reconstruct") for core in ("core", "_core")}
 _SCALAR = {(f"numpy.{core}.multiarray", "scalar") for core in ("core", "_core")}
-_LEFT_OUT = {("builtins", name) for name in ("set", "frozenset", "complex", "bytearray", "slice", "range")}
+_FROM_BUFFER = {(f"numpy.{core}.numeric", "_frombuffer") for core in ("core", "_core")}
+_DICTS = {("collections", name) for name in ("OrderedDict", "defaultdict", "Counter")}
+# What only a file asks for that wants to run something; nothing of it would run, but it is no file to trust.
+_COMMANDS = {
+    "os",
+    "posix",
+    "nt",
+    "subprocess",
+    "sys",
+    "shutil",
+    "importlib",
+    "runpy",
+    "socket",
+    "ctypes",
+    "io",
+}
+_COMMANDS |= {"_io", "pty", "code", "timeit", "webbrowser", "pip", "multiprocessing", "pickle"}
+_RUNS = {"eval", "exec", "execfile", "compile", "open", "__import__", "input", "breakpoint", "apply", "file"}
 
 
 def read_npy(path: Path) -> np.ndarray[Any, Any]:
     """The array of a `.npy` file, or the label image of Cellpose's `_seg.npy`.
 
     Such a file is a pickle, which can hold commands. Here nothing but arrays of numbers and text, numbers,
-    text, and plain containers of those are made from it; anything else is an error.
+    text, and plain containers of those are made from it. Any other object, such as a path or a date, is left
+    out: an empty object stands in its place. A file that asks for commands is refused.
 
     Parameters
     ----------
@@ -38,7 +56,7 @@ def read_npy(path: Path) -> np.ndarray[Any, Any]:
     Raises
     ------
     ReadError
-        A pickle asks for anything else, or holds no label image.
+        A pickle asks for commands, or holds no label image.
     """
     with path.open("rb") as file:
         version = np.lib.format.read_magic(file)
@@ -79,41 +97,76 @@ class _Unpickler(pickle._Unpickler):
         if place in _RECONSTRUCT:
             return _Array
         if place in _SCALAR:
-            return _number
-        if place in _LEFT_OUT:
-            return _LeftOut
+            return _Number
+        if place in _FROM_BUFFER:
+            return _ArrayOfBytes
+        if place in _DICTS:
+            return _Dict
         if place == ("numpy", "dtype"):
             return _Type
         if place == ("numpy", "ndarray"):
             return _Ndarray
         if place == ("_codecs", "encode"):
-            return _latin1
-        raise ReadError(
-            f"{self._path} asks for {module}.{name} when it is read: a file must not run code, so nothing "
-            "but arrays, numbers, text and plain containers is read; save the label image alone, as TIFF"
-        )
+            return _Latin1
+        built_in = module in ("builtins", "__builtin__")
+        if module.partition(".")[0] in _COMMANDS or (built_in and name in _RUNS):
+            raise ReadError(
+                f"{self._path} asks for {module}.{name} when it is read: a file must not run code, so it is "
+                "not read; save the label image alone, as TIFF"
+            )
+        return _LeftOut
 
 
 class _LeftOut:
-    """Stands for a plain object that is no part of the masks: `set(range(10**10))` would fill the memory."""
+    """Stands for an object that is no part of the masks: `set(range(10**10))` would fill the memory.
 
-    def __init__(self, *_: Any):
+    Whatever a pickle does to it, it stays empty.
+    """
+
+    def __new__(cls, *_: Any, **__: Any) -> Self:
         """Make nothing of what it is called with."""
+        return super().__new__(cls)
+
+    def __setstate__(self, state: Any) -> None:
+        """Take nothing in."""
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        """Take nothing in."""
+
+    def append(self, value: Any) -> None:
+        """Take nothing in."""
+
+    extend = update = add = append
+
+    def __call__(self, *_: Any, **__: Any) -> _LeftOut:
+        """Stand for what a call would have made."""
+        return self
 
 
-class _Ndarray:
+class _Dict(dict[Any, Any]):
+    """Stands for the kinds of dict that Python comes with."""
+
+    def __init__(self, *given: Any):
+        super().__init__(*(value for value in given if type(value) in (dict, list)))
+
+    def __setstate__(self, state: Any) -> None:
+        """Take nothing in."""
+
+
+class _Ndarray(_LeftOut):
     """Stands where a pickle names the class of arrays."""
 
 
 class _Type:
-    """Stands for a dtype of numbers, text or objects."""
+    """Stands for a dtype; `dtype` is None unless it is one of numbers, text or objects."""
 
     def __init__(self, code: str, *_: Any):
-        if not isinstance(code, str) or not _NUMBERS_AND_TEXT.fullmatch(code):
-            raise ValueError(f"a pickled array has dtype {code!r}: only numbers and text are read")
-        self.dtype = np.dtype(code)
+        known = isinstance(code, str) and _NUMBERS_AND_TEXT.fullmatch(code) is not None
+        self.dtype = np.dtype(code) if known else None
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
+        if self.dtype is None:
+            return
         if state[1] in ("<", ">"):
             self.dtype = self.dtype.newbyteorder(state[1])
         if self.dtype.kind in "SU" and self.dtype.itemsize == 0:
@@ -128,7 +181,11 @@ class _Array:
         self.values: list[Any] = []
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
+        if len(state) != 5 or not isinstance(state[2], _Type):
+            return  # of a kind of array with more to it
         _, shape, kind, fortran, content = state
+        if kind.dtype is None:
+            return
         if kind.dtype.hasobject:
             self.values = list(content)
             return
@@ -136,8 +193,24 @@ class _Array:
         self.array = values.reshape(shape, order="F" if fortran else "C")
 
 
-def _number(kind: _Type, content: bytes = b"") -> Any:
-    return None if kind.dtype.hasobject else np.frombuffer(_as_bytes(content), kind.dtype)[0]
+class _ArrayOfBytes(_LeftOut):
+    """Stands for the function that makes an array in pickles of protocol 5."""
+
+    def __new__(cls, content: Any, kind: _Type, shape: tuple[int, ...], order: str) -> Any:
+        """The array."""
+        made = _Array()
+        made.__setstate__((1, shape, kind, order == "F", content))
+        return made
+
+
+class _Number(_LeftOut):
+    """Stands for the function that makes a number; as a class, it cannot be changed by a pickle."""
+
+    def __new__(cls, kind: _Type, content: bytes = b"") -> Any:
+        """The number, or None where it is none."""
+        if kind.dtype is None or kind.dtype.hasobject:
+            return None
+        return np.frombuffer(_as_bytes(content), kind.dtype)[0]
 
 
 def _as_bytes(content: Any) -> bytes:
@@ -146,8 +219,11 @@ def _as_bytes(content: Any) -> bytes:
     return bytes(content)
 
 
-def _latin1(text: str, encoding: str) -> bytes:
-    """How old pickles write bytes."""
-    if encoding not in ("latin1", "latin-1"):
-        raise ValueError(f"a pickle holds bytes in the encoding {encoding!r}: only latin1 is read")
-    return text.encode("latin1")
+class _Latin1(_LeftOut):
+    """Stands for the function that makes bytes in old pickles."""
+
+    def __new__(cls, text: str, encoding: str) -> Any:
+        """The bytes of a text."""
+        if encoding not in ("latin1", "latin-1"):
+            raise ValueError(f"a pickle holds bytes in the encoding {encoding!r}: only latin1 is read")
+        return text.encode("latin1")

@@ -15,6 +15,7 @@ from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frames import open_frames
 from cytodisk.images.image_paths import is_folder_of_files
 from cytodisk.images.mask_files import MaskSource, open_mask_files
+from cytodisk.images.outline_sizes import sized_like
 from cytodisk.images.signal_files import common_name, pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
@@ -133,7 +134,8 @@ def open_inputs(
     is_path("masks", masks)
     if is_folder_of_files(Path(masks)):
         return _open_folder(Path(masks), signal, parameters)
-    sources = open_mask_files(masks, parameters.kind, choice=parameters.mask_choice)
+    choice = sized_like(parameters.mask_choice, masks, signal, parameters.signal_choice, "C")
+    sources = open_mask_files(masks, parameters.kind, choice=choice)
     found = _open_signal(sources[0], signal, parameters)
     files = [file for file in (found.file, sources[0].file) if file is not None]
     pixel_size_um = parameters.pixel_size_um or agreed(files, "pixel_size_um")

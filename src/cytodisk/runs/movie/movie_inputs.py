@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from cytodisk.checks import is_path
-from cytodisk.errors import MaskError, SignalError
+from cytodisk.errors import MaskError, ParameterError, SignalError
 from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frames import open_frames
-from cytodisk.images.mask_kinds import look_at
+from cytodisk.images.mask_kinds import MaskLook, look_at
+from cytodisk.images.outline_sizes import sized_like
+from cytodisk.images.spots.label_spots import LabelTracks, label_tracks
+from cytodisk.images.spots.track_files import read_tracks
 from cytodisk.images.tracks import CellTrack, list_tracks
 from cytodisk.motion.still_interior import fade_in_px
 from cytodisk.motion.tracking_parameters import MovieSettings
@@ -59,6 +62,8 @@ class MovieInputs:
     grid : PolarGrid
     scale : Scale
         The given one, or else the files' own.
+    mothers : dict of int to int
+        Labels of tracks that begin with a division, and of the track that divided.
     """
 
     masks: FrameFile
@@ -68,6 +73,7 @@ class MovieInputs:
     parameters: FollowedCellParameters
     grid: PolarGrid
     scale: Scale
+    mothers: dict[int, int] = field(default_factory=dict)
 
     @property
     def understood(self) -> dict[str, str]:
@@ -83,6 +89,10 @@ class MovieInputs:
                 f"{channels_words(self.signal)}; {self.signal.n_frames} frames "
                 f"({self.signal.axes}, {self.signal.dtype})"
             )
+        if self.parameters.tracks is not None:
+            words["tracks"] = (
+                f"tracks of {len(self.tracks)} cells, {len(self.mothers)} of them born in the movie"
+            )
         if self.grid.depth_um is not None:
             words["windows"] = depth_words(self.grid)
         return words
@@ -90,7 +100,9 @@ class MovieInputs:
     @property
     def paths(self) -> dict[str, Path]:
         """Files by their role."""
-        return {"masks": self.masks.path} | ({"signal": self.signal.path} if self.signal else {})
+        tracks = self.parameters.tracks
+        paths = {"masks": self.masks.path} | ({"signal": self.signal.path} if self.signal else {})
+        return paths | ({} if tracks is None else {"tracks": Path(tracks)})
 
     @property
     def n_frames(self) -> int:
@@ -128,10 +140,29 @@ def open_movie(
     files = open_movie_files(masks, signal, parameters)
     mask_file, scale = files.masks, files.scale
     look = look_at(mask_file, parameters.kind)
-    tracks = tuple(list_tracks(mask_file, look, parameters.link))
+    given = None if parameters.tracks is None else _given_tracks(mask_file, look, parameters, scale)
+    if given is not None:
+        mask_file = replace(mask_file, notes=(*mask_file.notes, *given.remarks))
+    tracks = tuple(list_tracks(mask_file, look, parameters.link, None if given is None else given.frames))
     grid = polar_grid(parameters.part(PolarGridParameters))
     check_depths(grid, scale)
-    return MovieInputs(mask_file, look.kind, tracks, files.signal, parameters, grid, scale)
+    mothers = {} if given is None else given.mothers
+    return MovieInputs(mask_file, look.kind, tracks, files.signal, parameters, grid, scale, mothers)
+
+
+def _given_tracks(
+    masks: FrameFile, look: MaskLook, parameters: FollowedCellParameters, scale: Scale
+) -> LabelTracks:
+    """The tracks of labels by the file of another program."""
+    assert parameters.tracks is not None  # whoever calls this has looked
+    if parameters.link:
+        raise ParameterError("link and tracks exclude each other: pass one of them (--link, --tracks)")
+    if look.kind != "labels":
+        raise MaskError(
+            f"masks {masks.path} hold one cell a frame, and tracks are for label images: take the tracks out "
+            "(--tracks), or pass label images"
+        )
+    return label_tracks(read_tracks(parameters.tracks, scale.frame_interval_s), masks, look.labels, scale)
 
 
 def open_movie_files(
@@ -154,7 +185,8 @@ def open_movie_files(
         A file is missing, damaged, or does not fit.
     """
     is_path("masks", masks)
-    mask_file = open_frames(masks, unnamed="T", choice=parameters.mask_choice, flag="--mask-channel")
+    choice = sized_like(parameters.mask_choice, masks, signal, parameters.signal_choice, "T")
+    mask_file = open_frames(masks, unnamed="T", choice=choice, flag="--mask-channel")
     _check_masks(mask_file)
     signal_file = None
     if signal is not None:

@@ -1,0 +1,1 @@
+"""Formats that hold outlines of cells rather than pixels."""
