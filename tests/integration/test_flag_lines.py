@@ -77,3 +77,17 @@ def test_many_flags_are_cut_short() -> None:
 def test_a_long_note_ends_between_words() -> None:
     words = places_words([Place(0, None, " ".join(["layer"] * 40))], {})
     assert words == f"cell 0: {' '.join(['layer'] * 26)} …"
+
+
+def test_a_scale_that_makes_no_cell_is_told_by_every_command(run: Run, tmp_path: Path) -> None:
+    masks = cd.simulate.movie("still", frames=2, radius_px=14.0).masks.astype(np.uint8)
+    scale = {"axes": "TYX", "unit": "um", "finterval": 2.0}
+    tifffile.imwrite(tmp_path / "m.tif", masks, imagej=True, resolution=(1 / 160, 1 / 160), metadata=scale)
+    told = " mm wide, with pixels of 160 µm."
+    commands = [("check",), ("shapes", "-o", tmp_path / "shapes"), ("map", "-o", tmp_path / "map", *GRID)]
+    for command, *more in [*commands, ("movie", "-o", tmp_path / "movie", *GRID)]:
+        code, said, error = run(command, tmp_path / "m.tif", *more)
+        assert code == 0, error
+        assert "implausible scale: cells are " in said
+        assert told in said
+        assert "--pixel-size" in said

@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cytodisk.cli.console import count
 from cytodisk.cli.map_totals import without_cell_words
@@ -128,6 +129,8 @@ class Checked:
         yield from without_cell_words(self._without, self._inputs.is_folder)
         if self._areas:
             yield size_words(self._areas, self._inputs.scale)
+            diameters = 2.0 * np.sqrt(np.asarray(self._areas, dtype=np.float64) / np.pi)
+            yield from scale_words(self._inputs.scale.length(diameters), self._inputs.scale)
         if self._is_stack:
             yield "Masks were looked at one by one. Jumps between frames: cytodisk movie finds them."
 
@@ -172,3 +175,19 @@ def size_words(areas_px: Sequence[int], scale: "Scale") -> str:
     spread = f" (from {least} to {most} px²)" if len(areas_px) > 1 else ""
     of = "median area" if len(areas_px) > 1 else "area"
     return f"{of} {area}{spread}, as a circle of {diameter:.3g} {scale.length_unit} across"
+
+
+def scale_words(diameters: ArrayLike, scale: "Scale") -> Iterator[str]:
+    """A line where the scale makes cells of a size that no cell has.
+
+    Parameters
+    ----------
+    diameters : array-like of float
+        Of the cells, in the units of `scale`.
+    scale : Scale
+    """
+    from cytodisk.runs.qc_flags.input_flags import scale_doubt
+
+    doubt = scale_doubt(diameters, scale)
+    if doubt is not None:
+        yield f"implausible scale: {doubt.words}. {doubt.advice}"

@@ -254,3 +254,27 @@ def test_faults_of_what_came_in(columns: dict[str, object], name: str, note: str
         study.cells.loc[[3, 4], column] = value
     flag = only(study)
     assert (flag.name, where(flag), flag.places[0].note) == (name, [(0, 3), (0, 4)], note)
+
+
+@pytest.mark.parametrize(
+    ("pixel_um", "wide", "command"),
+    [
+        (160.0, "3.61 mm", "--pixel-size 0.16"),
+        (0.0001, "2.26 nm", "--pixel-size 0.1"),
+        (0.02, "0.451 µm", "--pixel-size 20"),
+    ],
+)
+def test_a_scale_that_makes_no_cell(pixel_um: float, wide: str, command: str) -> None:
+    study = made(pixel_size_um=pixel_um)
+    study.cells["area"] = 400.0 * pixel_um**2
+    (flag,) = (flag for flag in qc_flags(study) if flag.name == "implausible scale")
+    assert flag.what == f"cells are {wide} wide, with pixels of {pixel_um:.4g} µm"
+    assert command in flag.advice
+    assert "--pixel-size" in flag.advice
+    assert flag.places == ()
+
+
+def test_dirt_among_cells_says_nothing_of_the_scale() -> None:
+    study = made(n_cells=3)
+    study.cells.loc[study.cells["cell"] == 0, "area"] = 0.1
+    assert "implausible scale" not in [flag.name for flag in qc_flags(study)]

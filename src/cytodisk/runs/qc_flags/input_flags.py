@@ -1,10 +1,19 @@
-"""QC flags of what came in: signals cut off at the ends of their range, masks scaled up."""
+"""QC flags of what came in: signals cut off at the ends of their range, masks scaled up, a wrong scale."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from cytodisk.runs.qc_flags.column_flags import ColumnRule
+from cytodisk.runs.qc_flags.qc_flag import QCFlag, mapped_rows
+from cytodisk.runs.qc_flags.remedy import run_again
+from cytodisk.scale import Scale
+from cytodisk.store.study import Study
 
 LARGEST_CLIPPED = 0.1
 """Share of a cell's pixels at the smallest value from which on a signal is flagged."""
@@ -12,6 +21,9 @@ LARGEST_SATURATED = 0.01
 """Share of a cell's pixels at the largest value from which on a signal is flagged."""
 LARGEST_OUTLINE_STEP_PX = 1
 """Steps of an outline that is not flagged, in px."""
+SMALLEST_CELL_UM, LARGEST_CELL_UM = 1.0, 1000.0
+"""Diameters of cells whose scale is not flagged, in µm."""
+_OTHER_UNITS = ((1e-3, "nm"), (1e3, "mm"))  # which may have been taken for µm
 
 
 def _clipped(share: float, row: Any) -> str:
@@ -51,3 +63,74 @@ coarse_outline = ColumnRule(
     lambda column, scale: column > LARGEST_OUTLINE_STEP_PX,
     lambda value, row, scale: f"steps of {int(value)} px",
 )
+
+
+def implausible_scale(study: Study) -> Iterator[QCFlag]:
+    """Cells that are smaller or larger than cells are; a single one of many is no fault of the scale."""
+    rows = mapped_rows(study)
+    if study.scale.pixel_size_um is None or "area" not in rows:
+        return
+    doubt = scale_doubt(2 * np.sqrt(rows["area"].to_numpy(dtype=np.float64) / np.pi), study.scale)
+    if doubt is None:
+        return
+    advice = doubt.advice
+    if doubt.likely is not None:
+        again = run_again(study, "rescaled", pixel_size=f"{doubt.likely[0]:.4g}")
+        advice += f" If the size was in {doubt.likely[1]}: {again}"
+    yield QCFlag(
+        "implausible scale",
+        doubt.words,
+        f"Cells are {SMALLEST_CELL_UM:g} to {LARGEST_CELL_UM:g} µm wide, so the pixel size is wrong, and "
+        "with it all lengths, areas, depths and velocities.",
+        advice,
+    )
+
+
+@dataclass(frozen=True)
+class ScaleDoubt:
+    """A scale that makes cells of a size that no cell has.
+
+    Attributes
+    ----------
+    words, advice : str
+        What was found, and what to do.
+    likely : (float, str) or None
+        Size of a pixel in µm if the given one was in another unit, and that unit.
+    """
+
+    words: str
+    advice: str
+    likely: tuple[float, str] | None
+
+
+def scale_doubt(diameters: ArrayLike, scale: Scale) -> ScaleDoubt | None:
+    """What speaks against a scale; None if nothing does.
+
+    Parameters
+    ----------
+    diameters : array-like of float
+        Of the cells, in the units of `scale`; their median counts.
+    scale : Scale
+    """
+    pixel_um, found = scale.pixel_size_um, np.asarray(diameters, dtype=np.float64)
+    if pixel_um is None or not len(found):
+        return None
+    width_um = float(np.median(found))
+    if not width_um > 0 or SMALLEST_CELL_UM <= width_um <= LARGEST_CELL_UM:
+        return None
+    likely = (
+        (factor * pixel_um, unit)
+        for factor, unit in _OTHER_UNITS
+        if SMALLEST_CELL_UM <= factor * width_um <= LARGEST_CELL_UM
+    )
+    return ScaleDoubt(
+        f"cells are {_length(width_um)} wide, with pixels of {pixel_um:.4g} µm",
+        "Find the size of a pixel in the microscope's own file, and run again with --pixel-size, in µm.",
+        next(likely, None),
+    )
+
+
+def _length(width_um: float) -> str:
+    if width_um >= LARGEST_CELL_UM:
+        return f"{width_um / 1e3:.3g} mm"
+    return f"{width_um:.3g} µm" if width_um >= 0.1 else f"{width_um * 1e3:.3g} nm"

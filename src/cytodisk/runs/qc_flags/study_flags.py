@@ -97,6 +97,7 @@ _RUN_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     column_flags.without_map,
     column_flags.flagged_masks,
     area_jumps.area_jumps,
+    input_flags.implausible_scale,
     input_flags.clipped_signal,
     input_flags.saturated_signal,
     input_flags.coarse_outline,
