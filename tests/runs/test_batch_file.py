@@ -187,7 +187,6 @@ def test_one_name_or_one_mask_file_stands_for_one_input(folder: Path) -> None:
         ("[[input]]\nmasks = 'a.tif'", "top: unknown table 'input': did you mean 'inputs'?"),
         ("[inputs]\nmasks = 'a.tif'", "[[inputs]]: must be tables"),
         ("[[inputs]]\nname = 'a'", "[[inputs]] 1 (line 1): masks must be a path or a pattern"),
-        ("[[inputs]]\nmasks = 'labels'", "masks 'labels' is a folder, and a movie is one file"),
         (f"{LABELS}frame_interval_s = 5", "frame_interval_s is for movies"),
         (f"{LABELS}condition = '{{'", "condition '{' is no template"),
         (f"{LABELS}condition = [1]", "condition must be a text or a number"),

@@ -3,7 +3,7 @@
 import sys
 import time as clock
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -39,6 +39,13 @@ def out_of_memory_words(error: MemoryError) -> str:
 
 def count(number: int, of: str = "cell") -> str:
     return f"1 {of}" if number == 1 else f"{number} {of}s"
+
+
+def say_notes(console: "Console", notes: Iterable[str]) -> None:
+    """Say on stderr what is wrong with the files, each once."""
+    if not console.quiet:
+        for note in notes:
+            print(f"Warning: {note}", file=sys.stderr)
 
 
 def console_for(quiet: bool) -> "Console":

@@ -93,10 +93,10 @@ def write_page(
     signal: Path | None = None,
 ) -> None:
     """Write the report and say where it is and what is wrong with the study."""
-    from cytodisk.images.frames import open_frames
     from cytodisk.pages.report.page import page_flags, write_report
+    from cytodisk.runs.study_signal import open_signal
 
-    image = open_frames(signal) if signal is not None else None
+    image = open_signal(study, signal) if signal is not None else None
     with progress_bar(quiet, "frames", stopped=NOTHING_CHANGED) as progress:
         page = write_report(study, out, cell=cell, signal=image, progress=progress)
     say_flags(console, page_flags(study, image), "they are first on the page")

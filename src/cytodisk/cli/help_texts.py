@@ -21,7 +21,9 @@ damaged (the rest is done all the same).
 """,
     "movie": """Follow cells through a movie: maps, activity of a signal, edge velocity, into a study folder.
 
-MASKS is a stack of masks of one cell, or label images in which a label is a cell in all frames, as TIFF.
+MASKS is a stack of masks of one cell, or label images in which a label is a cell in all frames: one file, or
+a folder or a pattern in quotes of one file a frame, in the order of the numbers in their names. So is
+--signal.
 
 Examples:
 
@@ -29,7 +31,9 @@ Examples:
 
   cytodisk movie masks.tif --signal movie.tif -o out/ --pixel-size 0.16 --frame-interval 5 --depth-um 0.5,1,2
 
-  cytodisk movie labels.tif -o out/ --link --resume
+  cytodisk movie cellpose_folder/ --signal cellpose_folder/ -o out/ --link
+
+  cytodisk movie 'masks/t*.tif' --signal 'images/t*.tif' -o out/ --resume
 
 Exit code: 0 when done (frames without a map have a row with the reason), 2 if nothing could be mapped.
 """,

@@ -7,6 +7,10 @@ from typing import Any
 import typer
 from typer.core import TyperCommand
 
+_QUOTES = (
+    "For several files of one movie put the pattern in quotes, as 'frames/t*.tif', or pass their folder."
+)
+
 
 class LazyCommand(TyperCommand):
     """A command that is known by its name and its help until it is called.
@@ -34,4 +38,10 @@ class LazyCommand(TyperCommand):
 
     def make_context(self, *call: Any, **extra: Any) -> Any:
         """Parse the arguments, as the command itself does."""
-        return self.loaded.make_context(*call, **extra)
+        try:
+            return self.loaded.make_context(*call, **extra)
+        except Exception as error:  # of which class depends on the version of typer
+            words = str(getattr(error, "message", ""))
+            if "unexpected extra argument" in words:
+                error.message = f"{words}. {_QUOTES}"  # type: ignore[attr-defined]
+            raise

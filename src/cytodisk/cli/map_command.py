@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from cytodisk.cli.console import console_for, progress_bar
+from cytodisk.cli.console import console_for, progress_bar, say_notes
 from cytodisk.cli.first_start import compiling
 from cytodisk.cli.map_totals import finish_map
 from cytodisk.cli.options import (
@@ -56,5 +56,6 @@ def say_inputs(console: "Console", inputs: "CellInputs") -> None:
     for role, words in inputs.understood.items():
         console.print(f"{role}: {words}")
     console.print(inputs.scale.words()[0])
+    say_notes(console, inputs.notes)
     for remark in inputs.remarks:
         console.print(f"note: {remark}")

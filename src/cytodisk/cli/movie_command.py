@@ -4,7 +4,7 @@ import sys
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from cytodisk.cli.console import RESUME, console_for, count, fail, progress_bar
+from cytodisk.cli.console import RESUME, console_for, count, fail, progress_bar, say_notes
 from cytodisk.cli.first_start import compiling
 from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.cli.options import (
@@ -53,6 +53,7 @@ def say_movie(console: "Console", inputs: "MovieInputs") -> None:
         console.print(f"{role}: {words}")
     for words in inputs.scale.words():
         console.print(words)
+    say_notes(console, inputs.notes)
 
 
 def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int, again: str = RESUME) -> None:

@@ -30,10 +30,21 @@ MaskFiles = Annotated[
         show_default=False,
     ),
 ]
-MovieFile = Annotated[Path, typer.Argument(help="Masks or label images by frame: TIFF.", show_default=False)]
+MovieFile = Annotated[
+    Path,
+    typer.Argument(
+        help="Masks or label images by frame: one file, or a folder, or a pattern in quotes, of one file a "
+        "frame.",
+        show_default=False,
+    ),
+]
 MovieStudy = Annotated[Path, typer.Argument(help="Folder of a movie's study.", show_default=False)]
 Signal = Annotated[
-    Path | None, typer.Option(help="Image to sample, of the same height and width: TIFF or PNG.")
+    Path | None,
+    typer.Option(
+        help="Image to sample, of the same height and width: one file, or a folder, or a pattern in quotes, "
+        "of one file a frame."
+    ),
 ]
 SignalFiles = Annotated[
     Path | None,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from cytodisk.cli.checked_words import scale_words
 from cytodisk.cli.console import console_for, count, fail, progress_bar
 from cytodisk.cli.first_start import say_compiling
+from cytodisk.cli.map_command import say_inputs
 from cytodisk.cli.map_totals import say_reasons
 from cytodisk.cli.options import (
     Given,
@@ -41,10 +42,7 @@ def shapes_command(
     settings, options = given.of(ShapeParameters), given.options(RunOptions)
     console = console_for(quiet)
     inputs = open_shape_inputs(masks, settings)
-    console.print(f"masks: {inputs.understood['masks']}")
-    console.print(inputs.scale.words()[0])
-    for remark in inputs.remarks:
-        console.print(f"note: {remark}")
+    say_inputs(console, inputs)
     say_compiling(quiet, "shapes")
     with progress_bar(quiet, "cells") as progress:
         table = shape_study(inputs, out, settings, progress=progress, **dict(options))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import glob
 import hashlib
+import os
 from pathlib import Path
 
 _ZARR_MEMBERS = ("zarr.json", ".zgroup", ".zattrs", ".zarray")
@@ -31,6 +33,11 @@ def is_zarr(path: Path) -> bool:
 def is_folder_of_files(path: Path) -> bool:
     """Whether a path is a folder, and no image itself."""
     return path.is_dir() and not is_zarr(path)
+
+
+def is_pattern(path: Path) -> bool:
+    """Whether a path stands for several files, as "frames/t*.tif"; a file of that very name comes first."""
+    return glob.has_magic(str(path)) and not os.path.lexists(path)
 
 
 def parts_of(image: Path) -> list[Path]:

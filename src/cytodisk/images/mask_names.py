@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import glob
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 from cytodisk.errors import ReadError
+from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 
 # Endings of mask files; where one image has several, the one that stands first here is taken.
 ENDINGS = (
@@ -50,6 +53,23 @@ def visible_files(folder: Path) -> list[Path]:
     except OSError as error:
         raise ReadError(f"folder {folder} cannot be read: {error.strerror}") from error
     return sorted(found, key=lambda file: natural_order(file.name))
+
+
+def files_of(place: Path) -> list[Path]:
+    """Files of a folder or a pattern in natural order.
+
+    Raises
+    ------
+    ReadError
+        The folder cannot be read, or the pattern fits no file.
+    """
+    if not is_pattern(place):
+        return visible_files(place)
+    found = [Path(name) for name in glob.glob(str(place), recursive=True)]  # noqa: PTH207  may be absolute
+    files = [file for file in found if not is_folder_of_files(file)]
+    if not files:
+        raise ReadError(f"no file fits the pattern {place}: check the folder and the names")
+    return sorted(files, key=lambda file: natural_order(str(file)))
 
 
 def without_name(reason: str, name: str) -> str:
@@ -100,8 +120,13 @@ def mask_names(folder: Path, images_end: str = "") -> list[tuple[Path, list[Path
                 f"nor other images ({', '.join(_IMAGES)})"
             )
         return [(file, []) for file in images]
+    return best_masks(named)
+
+
+def best_masks(files: Iterable[Path]) -> list[tuple[Path, list[Path]]]:
+    """Of mask files with one of `ENDINGS` the first of each image, and others for the same image."""
     by_image: dict[str, list[Path]] = {}
-    for file in named:
+    for file in files:
         by_image.setdefault(base_name(file.name), []).append(file)
     ranked = [sorted(group, key=lambda file: _rank(file.name)) for group in by_image.values()]
     return [(first, others) for first, *others in ranked]

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from cytodisk.images.frame_file import FileChoice
 from cytodisk.images.frames import open_frames
+from cytodisk.images.movie_signals import open_movie_images
 
 _OUTLINES = (".roi", ".zip", ".geojson", ".json", ".xml")
 
@@ -46,5 +47,8 @@ def sized_like(
     """
     if signal is None or not is_of_outlines(masks):
         return choice
-    image = open_frames(signal, unnamed=unnamed, choice=signal_choice)
+    if unnamed == "T":
+        image = open_movie_images(Path(signal), signal_choice)
+    else:
+        image = open_frames(signal, unnamed=unnamed, choice=signal_choice)
     return replace(choice, like=(image.n_frames, *image.image_shape))

@@ -85,7 +85,7 @@ class StudyRun:
                 folder = StudyFolder.start(out, self.provenance, kind, **options.again)
                 write_parameters(self.parameters, place / PARAMETERS)
                 keys, warnings = work(folder)
-                folder.note("warnings", list(warnings))
+                folder.note("warnings", [*self.provenance["warnings"], *warnings])
                 folder.note("finished", datetime.now(UTC).isoformat(timespec="seconds"))
                 folder.finish(list(keys), tables)
             if after is not None:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from cytodisk.errors import ReadError, SignalError
 from cytodisk.files import file_name
-from cytodisk.images.frames import open_frames
-from cytodisk.images.image_paths import sha256_of
+from cytodisk.images.file_parameters import SignalFileParameters
+from cytodisk.images.frame_file import FrameFile
+from cytodisk.images.movie_signals import open_movie_images, reopened
 from cytodisk.images.signal_files import FrameSource
+from cytodisk.runs.input_hashes import described
 from cytodisk.store.study import Study
 
 
@@ -50,10 +54,10 @@ def find_signal(study: Study) -> FoundSignal:
     if not there:
         return FoundSignal(None, f"{name} is not there any more")
     try:
-        same = next((place for place in there if sha256_of(place) == told.get("sha256")), None)
+        same = next((place for place in there if _hash_of(place, told) == told.get("sha256")), None)
         if same is None:
             return FoundSignal(None, f"{name} does not hold what was measured (its sha256 differs)")
-        source = open_frames(same)
+        source = open_signal(study, same, list(told.get("files", ())))
     except (ReadError, OSError) as error:
         words = str(error)
         for place in there:
@@ -65,6 +69,30 @@ def find_signal(study: Study) -> FoundSignal:
         if fault
         else FoundSignal(source)
     )
+
+
+def open_signal(study: Study, path: Path, files: Sequence[str] = ()) -> FrameFile:
+    """Open a movie's images as the study's were: with the same axes, scene, slice and channels.
+
+    Parameters
+    ----------
+    study : Study
+    path : Path
+        A file; a folder or a pattern of files of one frame each.
+    files : sequence of str
+        Those of the folder, by frame, where they are known.
+
+    Raises
+    ------
+    ReadError
+        It cannot be read.
+    """
+    settings = study.provenance["parameters"]
+    known = {name: settings[name] for name in SignalFileParameters.model_fields if name in settings}
+    choice = SignalFileParameters.of(**known).signal_choice
+    if files:
+        return reopened(path, [path / name for name in files], choice)
+    return open_movie_images(path, choice)
 
 
 def shown_signal(study: Study, signal: FrameSource | None = None) -> FoundSignal:
@@ -107,3 +135,8 @@ def misfit(study: Study, source: FrameSource) -> str:
             f"channels and at least {last + 1} frames"
         )
     return ""
+
+
+def _hash_of(path: Path, told: Mapping[str, Any]) -> str:
+    files = [path / name for name in told.get("files", ())]
+    return str(described(files or path)["sha256"])

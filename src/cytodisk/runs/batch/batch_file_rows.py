@@ -12,7 +12,7 @@ from string import Formatter
 from typing import Any
 
 from cytodisk.errors import ParameterError
-from cytodisk.images.image_paths import is_folder_of_files
+from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 from cytodisk.images.mask_names import base_name, image_stem, natural_order
 from cytodisk.runs.batch.batch_faults import Faults
 from cytodisk.runs.batch.batch_input import BatchInput, InputKind, Value
@@ -83,10 +83,7 @@ class RowReader:
             )
             return
         found = self._matches(pattern, kind)
-        if not found and _exists(self.folder / pattern):
-            hint = f"use a pattern as '{pattern}/*.tif', or kind = \"map\""
-            self.faults.add(row.place, f"masks {pattern!r} is a folder, and a movie is one file: {hint}")
-        elif not found:
+        if not found:
             self.faults.add(row.place, f"masks {pattern!r} match nothing in {self.folder}")
         if not self._check_templates(row):
             return
@@ -129,7 +126,8 @@ class RowReader:
         else:
             names = glob.glob(pattern, root_dir=self.folder, recursive=True)  # noqa: PTH207  may be absolute
             found = [self.folder / name for name in sorted(names, key=natural_order)]
-        return [path for path in found if kind == "map" or not is_folder_of_files(path)]
+        files = [path for path in found if not is_folder_of_files(path)]
+        return found if kind == "map" else files or found  # folders of movies are those of one file a frame
 
     def _input(
         self, row: FileRow, kind: InputKind, masks: Path, parameters: MapParameters | None
@@ -178,7 +176,7 @@ class RowReader:
         path = self.folder / signal
         if is_folder_of_files(masks) and signal.startswith(_BESIDE) and not _exists(path):
             return Path(signal)  # how the names of images go on beside the masks
-        if not _exists(path):
+        if not _exists(path) and not (is_pattern(path) and glob.glob(str(path), recursive=True)):  # noqa: PTH207
             self.faults.add(place, f"signal {path} does not exist")
         elif not is_folder_of_files(masks) and path.resolve() == masks.resolve():
             self.faults.add(

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from cytodisk.errors import StudyError
-from cytodisk.images.image_paths import is_zarr, parts_of
-from cytodisk.images.mask_names import visible_files
+from cytodisk.images.image_paths import is_pattern, is_zarr, parts_of
+from cytodisk.images.mask_names import files_of
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.store.targets import Store
 
@@ -117,8 +117,8 @@ def _marks(path: Path) -> list[Any]:
     try:
         if is_zarr(path):
             return [[str(part), *_marks(part)] for part in parts_of(path)]
-        if path.is_dir():
-            return [[file.name, *_marks(file)] for file in visible_files(path)]
+        if path.is_dir() or is_pattern(path):
+            return [[file.name, *_marks(file)] for file in files_of(path)]
         found = path.stat()
     except OSError:
         return []  # whoever opens it says what is wrong

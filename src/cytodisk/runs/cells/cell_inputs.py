@@ -20,6 +20,7 @@ from cytodisk.images.signal_files import common_name, pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
 from cytodisk.runs.channel_names import channels_words, name_channels
+from cytodisk.runs.file_notes import file_notes
 from cytodisk.runs.file_scales import agreed
 from cytodisk.scale import Scale
 
@@ -62,6 +63,11 @@ class CellInputs:
     def signal_files(self) -> list[FrameFile]:
         """Images that can be read, in the order of the masks."""
         return [signal.file for signal in self.signals.values() if signal.file is not None]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is wrong with the files, in words."""
+        return file_notes([*(source.file for source in self.sources), *self.signal_files])
 
     @property
     def paths(self) -> Mapping[str, Path | list[Path]]:

@@ -91,7 +91,7 @@ def compare_opened_cells(
         ]
         return keys, warnings
 
-    provenance = describe_run(inputs.paths, parameters, inputs.understood, UNKNOWN)
+    provenance = describe_run(inputs.paths, parameters, inputs.understood, UNKNOWN, inputs.notes)
     run = StudyRun(COMPARED_CELLS, provenance, parameters, options)
     return run.into(out, work, open_comparison, after=write_summaries)
 

@@ -86,7 +86,7 @@ def compare_opened_movie(
             f"cell {row['cell']}, {row['method']}: {row['reason']}" for row in rows if row["reason"]
         ]
 
-    provenance = describe_run(inputs.paths, parameters, inputs.understood, inputs.scale)
+    provenance = describe_run(inputs.paths, parameters, inputs.understood, inputs.scale, inputs.notes)
     run = StudyRun(COMPARED_MOVIE, provenance, parameters, options)
     return run.into(out, work, open_comparison, after=write_summaries)
 

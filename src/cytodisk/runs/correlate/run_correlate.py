@@ -70,7 +70,7 @@ def run_correlate(
     >>> tifffile.imwrite("masks.tif", movie.masks.astype("uint8"), photometric="minisblack")
     >>> tifffile.imwrite("signal.ome.tif", movie.signal.to_numpy(), metadata={"axes": "TCYX"})
     >>> study = run_movie("masks.tif", "movie", signal="signal.ome.tif", layers=2, sectors=8)
-    >>> found = run_correlate(study, "0", max_lag=3, surrogates=19)
+    >>> found = run_correlate(study, "signal 1", max_lag=3, surrogates=19)
     >>> len(found.windows), found.settings["max_lag"]
     (16, 3)
     """

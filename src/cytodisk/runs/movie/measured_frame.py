@@ -11,6 +11,7 @@ import numpy as np
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import CytodiskError, WindowError
+from cytodisk.images.formats.file_sequence import MissingFrameError
 from cytodisk.images.signal_files import SignalPiece
 from cytodisk.images.tracks import MissingLabel
 from cytodisk.motion.edge import EdgeMotion, displacement_by_sector, edge_motion
@@ -147,7 +148,7 @@ def unmapped_rows(place: FramePlace, fault: CytodiskError, seconds: float) -> Fr
     -------
     FrameRows
     """
-    status = "missing" if isinstance(fault, MissingLabel) else frame_status(fault)
+    status = "missing" if isinstance(fault, MissingLabel | MissingFrameError) else frame_status(fault)
     return FrameRows(place.row | {"status": status, "reason": str(fault), "seconds": seconds}, {}, None)
 
 

@@ -10,8 +10,9 @@ from cytodisk.checks import is_path
 from cytodisk.errors import MaskError, ParameterError, SignalError
 from cytodisk.images.file_parameters import Kind
 from cytodisk.images.frame_file import FrameFile
-from cytodisk.images.frames import open_frames
 from cytodisk.images.mask_kinds import MaskLook, look_at
+from cytodisk.images.movie_files import open_movie_masks
+from cytodisk.images.movie_signals import open_movie_signal
 from cytodisk.images.outline_sizes import sized_like
 from cytodisk.images.spots.label_spots import LabelTracks, label_tracks
 from cytodisk.images.spots.track_files import read_tracks
@@ -21,6 +22,7 @@ from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.cells.cell_inputs import check_signal
 from cytodisk.runs.channel_names import channels_words, name_channels
 from cytodisk.runs.depth_layers import check_depths, depth_words
+from cytodisk.runs.file_notes import file_notes
 from cytodisk.runs.file_scales import agreed
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
@@ -95,13 +97,25 @@ class MovieInputs:
             )
         if self.grid.depth_um is not None:
             words["windows"] = depth_words(self.grid)
+        for role, file in self._files.items():
+            if file.files:
+                words[role] += f"; {file.evidence}"
         return words
 
     @property
-    def paths(self) -> dict[str, Path]:
-        """Files by their role."""
+    def notes(self) -> tuple[str, ...]:
+        """What is wrong with the files, in words."""
+        return file_notes(self._files.values())
+
+    @property
+    def _files(self) -> dict[str, FrameFile]:
+        return {"masks": self.masks} | ({"signal": self.signal} if self.signal else {})
+
+    @property
+    def paths(self) -> dict[str, Path | list[Path]]:
+        """Files by their role; a list where each frame has its own."""
         tracks = self.parameters.tracks
-        paths = {"masks": self.masks.path} | ({"signal": self.signal.path} if self.signal else {})
+        paths = {role: list(file.files) or file.path for role, file in self._files.items()}
         return paths | ({} if tracks is None else {"tracks": Path(tracks)})
 
     @property
@@ -186,11 +200,13 @@ def open_movie_files(
     """
     is_path("masks", masks)
     choice = sized_like(parameters.mask_choice, masks, signal, parameters.signal_choice, "T")
-    mask_file = open_frames(masks, unnamed="T", choice=choice, flag="--mask-channel")
+    found = open_movie_masks(Path(masks), choice)
+    mask_file = found.file
     _check_masks(mask_file)
     signal_file = None
     if signal is not None:
-        signal_file = open_frames(signal, unnamed="T", choice=parameters.signal_choice)
+        is_path("signal", signal)
+        signal_file = open_movie_signal(Path(signal), found, parameters.signal_choice)
         _check_frames(mask_file, signal_file)
     signal_file = name_channels(signal_file, parameters.channels)
     if signal_file is not None:

@@ -64,7 +64,7 @@ def movie_study(
         The folder cannot be used.
     """
     options = RunOptions.of(**settings)
-    provenance = describe_run(inputs.paths, inputs.parameters, inputs.understood, inputs.scale)
+    provenance = describe_run(inputs.paths, inputs.parameters, inputs.understood, inputs.scale, inputs.notes)
     provenance |= {"layers": inputs.grid.layers, "image_shape": list(inputs.masks.image_shape)}
 
     def work(folder: StudyFolder) -> tuple[list[str], list[str]]:

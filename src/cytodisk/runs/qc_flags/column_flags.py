@@ -28,8 +28,9 @@ _WITHOUT_MAP = {
         "Correct the mask, or leave the frame out of what you compare.",
     ),
     "missing": (
-        "The cell is not in the mask there; the frame has no numbers, and velocity and tracking break.",
-        "If the cell is in the image, complete the segmentation; if labels changed, link them (--link).",
+        "The cell, or the file, is not there; the frame has no numbers, and velocity and tracking break.",
+        "If the cell is in the image, complete the segmentation; if labels changed, link them (--link); "
+        "if a file is missing, put it back.",
     ),
 }
 

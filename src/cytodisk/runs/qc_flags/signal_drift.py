@@ -64,6 +64,9 @@ def mean_by_frame(blocks: Iterable[pd.DataFrame]) -> pd.Series[float]:
         block.assign(sum=block["mean"] * block["n_pixels"]).groupby(_KEYS)[["sum", "n_pixels"]].sum()
         for block in (some[some["mean"].notna()] for some in blocks)
     ]
+    if not sums:  # no frame has a map
+        nowhere = pd.MultiIndex.from_arrays([[], [], []], names=_KEYS)
+        return pd.Series(np.zeros(0), nowhere)
     total = pd.concat(sums).groupby(level=_KEYS).sum()
     mean: pd.Series[float] = total["sum"] / total["n_pixels"]
     return mean
@@ -119,6 +122,8 @@ def signal_drifts(study: Study) -> list[Drift]:
 def _drifts(study: Study) -> Iterator[Drift]:
     blocks = window_blocks(study, *_KEYS, "mean", "n_pixels")
     means = mean_by_frame(blocks).rename("mean").reset_index()
+    if means.empty:
+        return
     means = means.merge(_area_by_edge(study.cells), on=["cell", "frame"], how="left")
     for (cell, channel), rows in means.groupby(["cell", "channel"]):
         time, mean, width = (np.asarray(rows[name], dtype=np.float64) for name in ("frame", "mean", "width"))

@@ -116,7 +116,7 @@ def shape_study(
 
 
 def _describe(inputs: CellInputs, parameters: ShapeParameters) -> dict[str, Any]:
-    provenance = describe_run(inputs.paths, parameters, inputs.understood, inputs.scale)
+    provenance = describe_run(inputs.paths, parameters, inputs.understood, inputs.scale, inputs.notes)
     packages = installed(_LAYOUT)
     provenance["fingerprint"] |= {"run": "shapes"}
     provenance["fingerprint"]["packages"] |= packages

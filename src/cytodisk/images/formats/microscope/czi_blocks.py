@@ -6,13 +6,16 @@ import math
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, BinaryIO, Self
 
 import numpy as np
 
 from cytodisk.errors import ReadError
+from cytodisk.images.claims import check_claim
 
 _JPEG, _LZW, _JPEG_XR, _ZSTD, _ZSTD_SHUFFLED = 1, 2, 4, 5, 6
+_CODECS = {0: "none", _LZW: "lzw"}
 _HEADER = struct.Struct("<16sqqiiq")  # kind, two sizes of the segment; sizes of metadata, attachment, pixels
 _ENTRY_BYTES, _AXIS_BYTES, _LEAST_BYTES = 32, 20, 256
 
@@ -93,6 +96,7 @@ def block_pixels(block: Block, opened: BinaryIO) -> np.ndarray[Any, Any]:
 
     shape = block.size("Y"), block.size("X"), block.samples
     data = _stored(block, opened)
+    check_claim(Path(opened.name), shape, block.dtype, len(data), _CODECS.get(block.compression, "other"))
     if block.compression in (_JPEG, _JPEG_XR):
         decode = imagecodecs.jpeg8_decode if block.compression == _JPEG else imagecodecs.jpegxr_decode
         return np.asarray(decode(data)).reshape(shape)

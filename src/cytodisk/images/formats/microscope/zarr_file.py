@@ -15,14 +15,13 @@ import numpy as np
 from cytodisk.errors import ReadError
 from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
 from cytodisk.images.formats.microscope.plane_frames import Plane, PlaneFrames, scene_file
+from cytodisk.images.formats.scale_units import is_no_unit, micrometres, seconds
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile
 from cytodisk.images.image_paths import is_zarr, parts_of
 from cytodisk.images.reading import reading
 from cytodisk.images.scenes import Scene, Taken
 from cytodisk.scale import Scale
 
-_MICROMETRES = {"angstrom": 1e-4, "nanometer": 1e-3, "micrometer": 1.0, "millimeter": 1e3, "meter": 1e6}
-_SECONDS = {"millisecond": 1e-3, "second": 1.0, "minute": 60.0, "hour": 3600.0, "day": 86400.0}
 _MOST_IMAGES = 1000
 _FEW = 100_000  # pixels, and planes, that need no look
 _MOST_TIMES = 100  # as many pixels as an array has, its chunks may have
@@ -194,9 +193,9 @@ def _image(file: Path, name: str, number: int) -> tuple[Scene, ZarrPlanes]:
         )
     sizes = dict(zip(axes, array.shape, strict=True))
     steps, step_notes = _steps(multiscale, dataset, len(axes))
-    spaces = [_step(described, axes, steps, axis, _MICROMETRES) for axis in "YX"]
+    spaces = [_step(described, axes, steps, axis) for axis in "YX"]
     size_um, size_notes, fault = pixel_size_of([size for size, _ in spaces])
-    interval, time_note = _step(described, axes, steps, "T", _SECONDS)
+    interval, time_note = _step(described, axes, steps, "T")
     interval_s, time_notes = agreed_interval((), interval, sizes.get("T", 1))
     title = str(multiscale.get("name") or "") if name == "" else name
     notes = dict.fromkeys([note for _, note in spaces] + [time_note if sizes.get("T", 1) > 1 else ""])
@@ -264,19 +263,18 @@ def _steps(multiscale: Any, dataset: Any, count: int) -> tuple[list[float] | Non
     return (steps if found else None), ()
 
 
-def _step(
-    described: list[Any], axes: str, steps: list[float] | None, axis: str, units: dict[str, float]
-) -> tuple[float | None, str]:
+def _step(described: list[Any], axes: str, steps: list[float] | None, axis: str) -> tuple[float | None, str]:
     """Step along an axis in µm or seconds; None, perhaps with a note, where the file does not say."""
     if steps is None or axis not in axes:
         return None, ""
     number = axes.index(axis)
     unit, step = described[number].get("unit"), steps[number]
-    if unit in units:
-        return step * units[unit], ""
-    if unit is None and step == 1:
+    nothing = unit is None or is_no_unit(unit)
+    if nothing and step == 1:
         return None, ""
-    flag = "--frame-interval" if axis == "T" else "--pixel-size"
-    what = "frame interval" if axis == "T" else "pixel size"
-    named = f"the unit {unit!r}, which is unknown" if unit is not None else "no unit"
+    factor = None if nothing else seconds(unit) if axis == "T" else micrometres(unit)
+    if factor is not None:
+        return step * factor, ""
+    flag, what = ("--frame-interval", "frame interval") if axis == "T" else ("--pixel-size", "pixel size")
+    named = "no unit" if nothing else f"the unit {unit!r}, which is unknown"
     return None, f"its {what} of {step:g} has {named}: give it with {flag}"
