@@ -98,3 +98,26 @@ def trackmate_xml(
             "</Settings></TrackMate>",
         ]
     )
+
+
+def write_geff(path: Path, nodes: dict[str, Any], edges: list[tuple[int, int]], **about: Any) -> Path:
+    """As the geff library writes tracks: properties of nodes by name, `id` among them."""
+    zarr = __import__("zarr")
+    zarr_format = about.pop("zarr_format", 2)
+    group = zarr.open_group(str(path), mode="w", zarr_format=zarr_format)
+    axes = [{"name": "t", "type": "time", "unit": "frame"}]
+    axes += [{"name": name, "type": "space", "unit": about.pop("unit", "pixel")} for name in "yx"[:1]]
+    axes += [{"name": "x", "type": "space", "unit": axes[1]["unit"]}]
+    metadata = {"geff_version": "1.3", "directed": True, "axes": axes, "track_node_props": None} | about
+    group.attrs["geff"] = {name: value for name, value in metadata.items() if value != "left out"}
+    ids = np.array(nodes["id"], dtype=np.uint64)
+    group.create_array("nodes/ids", data=ids)
+    group.create_array("edges/ids", data=np.array(edges, dtype=np.uint64).reshape(-1, 2))
+    for name, values in nodes.items():
+        if name != "id":
+            missing = np.array([value is None for value in values])
+            filled = np.array([0 if value is None else value for value in values])
+            group.create_array(f"nodes/props/{name}/values", data=filled)
+            if missing.any():
+                group.create_array(f"nodes/props/{name}/missing", data=missing)
+    return path
