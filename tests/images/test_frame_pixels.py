@@ -15,11 +15,13 @@ from skimage import measure
 import cytodisk as cd
 from cytodisk.errors import MaskError, ReadError
 from cytodisk.images import frame_pixels as module
+from cytodisk.images.file_parameters import KindParameters
 from cytodisk.images.formats.tiff_segments import TiffSegments
 from cytodisk.images.frame_pixels import frame_pixels
 from cytodisk.images.frames import open_frames
-from cytodisk.images.label_boxes import cell_box, count_pieces, label_boxes, share_alike, values_of
+from cytodisk.images.label_boxes import cell_box, label_boxes
 from cytodisk.images.mask_files import SourceCell, list_images, open_mask_files
+from cytodisk.images.value_pieces import count_pieces, share_alike, thick_values, touching_values
 
 Write = Callable[[Path, np.ndarray], Path]
 
@@ -72,7 +74,11 @@ def by_piece(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def cells_of(path: Path, kind: Any = "auto") -> Iterator[SourceCell]:
-    return (cell for image in list_images(open_mask_files(path, kind)) for cell in image.cells())
+    return (
+        cell
+        for image in list_images(open_mask_files(path, KindParameters(kind=kind)))
+        for cell in image.cells()
+    )
 
 
 @pytest.mark.parametrize("dtype", ["uint8", "uint16", "uint32", "int64", "float32"])
@@ -200,7 +206,6 @@ def test_strips_know_what_the_whole_frame_knows() -> None:
         strips = [(first, values[first : first + 6]) for first in range(0, len(values), 6)]
         found = label_boxes(strips)
         wanted = np.unique(values)
-        assert_array_equal(values_of(strips), wanted)
         assert_array_equal(found.labels, wanted[wanted != 0])
         assert (found.least, found.greatest) == (values.min(), values.max())
         for label, box in found:
@@ -212,6 +217,13 @@ def test_strips_know_what_the_whole_frame_knows() -> None:
         both = (left != 0) & (right != 0)
         assert share_alike(strips) == ((left == right)[both].mean() if both.any() else 1.0)
         assert count_pieces(strips) == measure.label(values, background=0, connectivity=2).max()
+        squares = np.lib.stride_tricks.sliding_window_view(values, (3, 3))
+        filled = squares.min(axis=(2, 3)) == squares.max(axis=(2, 3))
+        assert_array_equal(thick_values(strips), np.unique(values[1:-1, 1:-1][filled]))
+        down = zip(values[1:].flat, values[:-1].flat, strict=True)
+        beside = [*down, *zip(right.flat, left.flat, strict=True)]
+        touching = {value for pair in beside if 0 not in pair and pair[0] != pair[1] for value in pair}
+        assert set(touching_values(strips).tolist()) == touching
         box, greatest = cell_box(strips)
         assert greatest == values.max()
         assert (box is None) == (not values.any())

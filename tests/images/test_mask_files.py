@@ -7,7 +7,7 @@ import tifffile
 from numpy.testing import assert_array_equal
 
 from cytodisk.errors import MaskError, ParameterError, ReadError
-from cytodisk.images.file_parameters import Kind
+from cytodisk.images.file_parameters import Kind, KindParameters
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frames import open_frames
 from cytodisk.images.mask_files import (
@@ -17,7 +17,7 @@ from cytodisk.images.mask_files import (
     open_mask_files,
     read_source_cells,
 )
-from cytodisk.images.mask_kinds import understood_as
+from cytodisk.images.what_it_is import look_at
 
 ONE = np.zeros((20, 30), dtype=np.uint8)
 ONE[5:15, 5:12] = 1
@@ -28,6 +28,10 @@ TWO[5:15, 15:25] = 7
 def written(tmp_path: Path, values: np.ndarray) -> FrameFile:
     tifffile.imwrite(tmp_path / "a.tif", values, photometric="minisblack")
     return open_frames(tmp_path / "a.tif", unnamed="T")
+
+
+def understood_as(file: FrameFile, kind: Kind = "auto") -> Kind:
+    return look_at(file, KindParameters(kind=kind)).kind
 
 
 def read_cells(file: FrameFile, kind: Kind) -> list[SourceCell]:

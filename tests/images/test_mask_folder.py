@@ -13,6 +13,7 @@ from hypothesis.extra import numpy as arrays
 from numpy.testing import assert_array_equal
 
 from cytodisk.errors import MaskError, ReadError
+from cytodisk.images.file_parameters import KindParameters
 from cytodisk.images.formats.npy import read_npy
 from cytodisk.images.mask_files import MaskSource, open_mask_files, read_source_cells
 from cytodisk.images.mask_names import base_name
@@ -150,7 +151,8 @@ def test_a_crop_holds_its_cell_and_a_margin_where_the_image_goes_on(
     path = tmp_path_factory.mktemp("labels") / "a.npy"
     labels = image.astype(np.uint64) * np.uint64(factor)
     np.save(path, labels)
-    cells = list(read_source_cells(open_mask_files(path, "labels")))
+    how = KindParameters(kind="labels", fragments="largest")
+    cells = list(read_source_cells(open_mask_files(path, how)))
     if not image.any():
         assert "holds no label" in str(cells[0].fault)
         return
@@ -237,14 +239,14 @@ def test_labels_that_no_table_can_hold_are_refused(tmp_path: Path) -> None:
     for name, factor in (("a", 2**63 + 5), ("b", 2**63 - 1), ("c", 2**64 - 1)):
         np.save(tmp_path / f"{name}.npy", (LABELS == 4).astype(np.uint64) * np.uint64(factor))
     for kind in ("auto", "labels"):
-        (cell,) = read_source_cells(open_mask_files(tmp_path / "a.npy", kind))
+        (cell,) = read_source_cells(open_mask_files(tmp_path / "a.npy", KindParameters(kind=kind)))
         assert isinstance(cell.fault, MaskError)
         assert "has labels up to 9223372036854775813: number the cells from 1" in str(cell.fault)
     (cell,) = read_source_cells(open_mask_files(tmp_path / "b.npy"))
     assert (cell.fault, cell.label) == (None, 2**63 - 1)
     (cell,) = read_source_cells(open_mask_files(tmp_path / "c.npy"))  # as 0 and 255 in 8 bits
     assert (cell.fault, cell.label) == (None, 1)
-    (cell,) = read_source_cells(open_mask_files(tmp_path / "c.npy", "labels"))
+    (cell,) = read_source_cells(open_mask_files(tmp_path / "c.npy", KindParameters(kind="labels")))
     assert "number the cells from 1" in str(cell.fault)
 
 
@@ -317,7 +319,7 @@ def test_a_good_file_stands_in_for_a_damaged_one(tmp_path: Path) -> None:
         content = (tmp_path / name).read_bytes()
         (tmp_path / name).write_bytes(content[: len(content) // 2])
     for kind in ("auto", "labels"):
-        a, b, c = open_mask_files(tmp_path, kind)
+        a, b, c = open_mask_files(tmp_path, KindParameters(kind=kind))
         assert (a.name, a.fault, a.instead_of, a.damaged) == (
             "a_seg.npy",
             None,

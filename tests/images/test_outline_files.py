@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
+from cytodisk.images.mask_kinds import understood_as
 from numpy.testing import assert_array_equal
 from outline_files import RIGHT, SQUARE, Ring, feature, rectangle, write_geojson, write_stardist_rois
 
 from cytodisk.errors import ReadError
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.frames import open_frames
-from cytodisk.images.mask_kinds import understood_as
 
 roifile = pytest.importorskip("roifile")
 

@@ -6,11 +6,11 @@ import tifffile
 from numpy.testing import assert_array_equal
 
 from cytodisk.errors import MaskError, ReadError
-from cytodisk.images.file_parameters import Kind
+from cytodisk.images.file_parameters import Kind, KindParameters
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frames import open_frames
-from cytodisk.images.mask_kinds import look_at
 from cytodisk.images.tracks import CellTrack, MissingLabel, TrackMasks, list_tracks, read_frame
+from cytodisk.images.what_it_is import look_at
 
 SHAPE = 30, 60
 PLACES = {1: np.s_[4:12, 4:12], 2: np.s_[15:25, 20:30], 3: np.s_[5:20, 40:55]}  # of cells that do not move
@@ -38,7 +38,7 @@ def written(tmp_path: Path, values: np.ndarray, damaged: int | None = None) -> F
 
 
 def tracks_of(file: FrameFile, kind: Kind, link: bool) -> list[CellTrack]:
-    return list_tracks(file, look_at(file, kind), link)
+    return list_tracks(look_at(file, KindParameters(kind=kind)), link)
 
 
 def spans(tracks: list[CellTrack]) -> list[tuple[int, int, int, int]]:
@@ -127,7 +127,7 @@ def test_negative_labels_are_refused_with_their_frame(tmp_path: Path, link: bool
 
 @pytest.mark.parametrize("link", [False, True])
 def test_labels_that_are_no_whole_numbers_are_refused(tmp_path: Path, link: bool) -> None:
-    file = written(tmp_path, LATE_EARLY_AND_GAP.astype(np.float32))
+    file = written(tmp_path, LATE_EARLY_AND_GAP.astype(np.float32) / 2)
     with pytest.raises(MaskError, match=r"whole numbers.*float32"):
         tracks_of(file, "labels", link=link)
 

@@ -84,7 +84,7 @@ def test_masks_with_time_on_the_last_axis(tmp_path: Path) -> None:
 
 def test_masks_that_were_saved_as_channels(tmp_path: Path) -> None:
     path = written(tmp_path / "masks.ome.tif", MASKS, "CYX")
-    words = r"one frame with 6 channels \(CYX \(6, 44, 52\)\): if these are frames, save them with axes TYX"
+    words = r"one frame with 6 channels \(CYX \(6, 44, 52\)\): if these are frames, pass --axes TYX"
     with pytest.raises(MaskError, match=words):
         open_movie(path, None, SMALL)
 

@@ -111,6 +111,14 @@ def file_axes(
     return FileAxes(letters, sizes, "nobody" if guessed else "file", doubt)
 
 
+_FLAGS = {"--signal-channels": "--signal-axes", "--mask-channel": "--axes", "channels": "axes"}
+
+
+def axes_named(words: str, flag: str) -> str:
+    """A message that names axes, with the flag of the file whose channels are chosen by another flag."""
+    return words.replace("--axes ", f"{_FLAGS[flag]} ")
+
+
 def axes_flag(letters: str = "") -> str:
     """The flag that names axes, as "--axes TYX"."""
     return f"--axes {letters}" if letters else "--axes"
@@ -125,16 +133,30 @@ def shape_doubt(file: Path, letters: str, shape: Sequence[int]) -> str:
     narrow = _NARROW * width < min(first, height)
     if not (equal or narrow):
         return ""
-    return _last_axis_words(file, letters, shape)
+    return axis_words(file, letters, shape, f"YX{letters[0]}", "its shape")
 
 
-def _last_axis_words(file: Path, letters: str, shape: Sequence[int]) -> str:
+def axis_words(file: Path, letters: str, shape: Sequence[int], likely: str, evidence: str) -> str:
+    """What speaks against a guess of axes, with both remedies.
+
+    Parameters
+    ----------
+    file : Path
+    letters : str
+        As guessed, such as "TYX".
+    shape : sequence of int
+    likely : str
+        What they look like, such as "YXT".
+    evidence : str
+        By what, as "its shape".
+    """
     first, height, width = shape
-    last, what = ("T", "frames") if letters[0] == "T" else ("C", "channels")
+    what = "frames" if letters[0] == "T" else "channels"
+    place = "last" if likely.endswith(letters[0]) else "second"
     return (
-        f"{file} does not name its axes, and its shape {tuple(shape)} speaks against {first} {what} of "
-        f"{height} × {width} pixels: its last axis looks like {what}. If it is, pass "
-        f"{axes_flag('YX' + last)}; else pass {axes_flag(letters)}"
+        f"{file} of shape {tuple(shape)} does not name its axes, and {evidence} speaks against "
+        f"{first} {what} of {height} × {width} pixels: its {place} axis looks like {what}. If it is, "
+        f"pass {axes_flag(likely)}; else pass {axes_flag(letters)}"
     )
 
 

@@ -139,8 +139,10 @@ class MovieKindParameters(KindParameters):
         'What the mask file holds: "stack" is one cell through time, "labels" one cell a label; "auto" looks '
         "at the values.",
     )
-    link: bool = parameter(
-        False, "Labels differ from frame to frame: give overlapping cells one label through time."
+    link: bool | None = parameter(
+        None,
+        "Labels differ from frame to frame: give overlapping cells one label through time. Without it, "
+        "labels that change are refused; --no-link takes them as they are.",
     )
     tracks: str | None = parameter(
         None,

@@ -15,6 +15,7 @@ from cytodisk.checks import is_path, one_of
 from cytodisk.errors import ReadError
 from cytodisk.images.chosen_channels import with_channels, with_names
 from cytodisk.images.claims import check_memory
+from cytodisk.images.file_axes import axes_named
 from cytodisk.images.file_kind import image_kind
 from cytodisk.images.file_parameters import SignalFileParameters
 from cytodisk.images.formats.array_file import open_array
@@ -94,14 +95,20 @@ def open_frames(
         raise ReadError(f"{file} cannot be read: {error.strerror}") from error
     if is_folder_of_files(file):
         raise ReadError(f"{file} is a folder: pass one image file")
-    with reading(file, "its header"):
-        suffix = ".zarr" if is_zarr(file) else image_kind(file) or file.suffix.lower()
-        if suffix not in _OPENERS:
-            raise ReadError(
-                f"{file} is no image that can be read ({', '.join(_OPENERS)}): convert it to TIFF"
-            )
-        found = with_names(_OPENERS[suffix](file, unnamed, replace(choice, channels=None)))
+    try:
+        with reading(file, "its header"):
+            found = with_names(_opened(file, unnamed, replace(choice, channels=None)))
+    except ReadError as error:
+        raise ReadError(axes_named(str(error), flag)) from error
+    found = replace(found, doubt=axes_named(found.doubt, flag))
     return found if choice.channels is None else with_channels(found, choice.channels, flag)
+
+
+def _opened(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
+    suffix = ".zarr" if is_zarr(file) else image_kind(file) or file.suffix.lower()
+    if suffix not in _OPENERS:
+        raise ReadError(f"{file} is no image that can be read ({', '.join(_OPENERS)}): convert it to TIFF")
+    return _OPENERS[suffix](file, unnamed, choice)
 
 
 def read_image(
@@ -163,6 +170,8 @@ def read_image(
     given = {"signal_axes": axes, "scene": scene, "z": z, "signal_channels": wanted}
     choice = SignalFileParameters.called(given, {"signal_axes": "axes", "signal_channels": "channels"})
     file = open_frames(path, unnamed=unnamed, choice=choice.signal_choice, flag="channels")
+    if file.doubt:
+        raise ReadError(file.doubt)
     shape = (file.n_frames, len(file.channels) if "C" in file.axes else 1, *file.image_shape)
     check_memory(
         file.path, "the whole movie", math.prod(shape) * file.dtype.itemsize, "read it frame by frame"

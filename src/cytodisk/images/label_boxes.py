@@ -7,9 +7,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
-from skimage import measure
 
 from cytodisk.arrays import AnyArray, IntArray
 
@@ -21,7 +18,7 @@ Box: TypeAlias = tuple[slice, slice]
 """Rows and columns."""
 
 
-class _Runs(NamedTuple):
+class Runs(NamedTuple):
     """Pixels of one value side by side in a row."""
 
     values: AnyArray
@@ -67,7 +64,7 @@ def label_boxes(strips: Strips) -> LabelBoxes:
     """
     labels, boxes, extremes = [], [], []
     for first, strip in strips:
-        runs = _runs(strip)
+        runs = value_runs(strip)
         extremes += [int(runs.values.min()), int(runs.values.max())]
         kept = np.flatnonzero(runs.values != 0)
         if not kept.size:
@@ -80,12 +77,6 @@ def label_boxes(strips: Strips) -> LabelBoxes:
     if not labels:
         return LabelBoxes(min(extremes), max(extremes), np.empty(0, np.int64), np.empty((0, 4), np.int64))
     return LabelBoxes(min(extremes), max(extremes), *_extents(np.concatenate(labels), np.concatenate(boxes)))
-
-
-def values_of(strips: Strips) -> AnyArray:
-    """The values of a frame, sorted."""
-    found = [np.unique(_runs(strip).values) for _, strip in strips]
-    return np.asarray(np.unique(np.concatenate(found)))
 
 
 def cell_box(strips: Strips) -> tuple[Box | None, Any]:
@@ -114,59 +105,12 @@ def with_margin(box: Box, shape: tuple[int, int]) -> Box:
     return rows, columns
 
 
-def share_alike(strips: Strips) -> float:
-    """Share of neighbours in a row, both with a label, that have the same; 1 without any."""
-    alike, both = 0, 0
-    for _, strip in strips:
-        left, right = strip[:, :-1], strip[:, 1:]
-        inside = (left != 0) & (right != 0)
-        both += int(inside.sum())
-        alike += int(((left == right) & inside).sum())
-    return alike / both if both else 1.0
-
-
-def count_pieces(strips: Strips) -> int:
-    """Number of 8-connected pieces of one value, over all labels of a frame."""
-    total = 0
-    seams: list[IntArray] = []
-    above: tuple[AnyArray, IntArray] | None = None
-    for _, strip in strips:
-        pieces, count = measure.label(  # type: ignore[no-untyped-call,unused-ignore]
-            strip, background=0, connectivity=2, return_num=True
-        )
-        if above is not None:
-            seams.append(_joined(*above, strip[0], pieces[0] + total))
-        above = strip[-1].copy(), pieces[-1].astype(np.int64) + total
-        total += int(count)
-    if not seams:
-        return total
-    ends = np.unique(np.concatenate(seams), axis=0)
-    if not len(ends):
-        return total
-    names, place = np.unique(ends, return_inverse=True)
-    first, second = place.reshape(-1, 2).T
-    graph = sparse.coo_array((np.ones(len(ends), dtype=bool), (first, second)), shape=(len(names),) * 2)
-    together, _ = connected_components(graph, directed=False)
-    return total - (len(names) - int(together))
-
-
-def _joined(above: AnyArray, pieces_above: IntArray, below: AnyArray, pieces_below: IntArray) -> IntArray:
-    """Pieces of two rows that touch, shape (N, 2)."""
-    pairs = []
-    width = len(above)
-    for step in (-1, 0, 1):
-        up = slice(max(0, -step), width - max(0, step))
-        down = slice(max(0, step), width - max(0, -step))
-        joined = (above[up] == below[down]) & (above[up] != 0)
-        pairs.append(np.column_stack([pieces_above[up][joined], pieces_below[down][joined]]))
-    return np.unique(np.concatenate(pairs), axis=0)
-
-
-def _runs(strip: np.ndarray[Any, Any]) -> _Runs:
+def value_runs(strip: np.ndarray[Any, Any]) -> Runs:
+    """Runs of one value in each row of a strip, row after row."""
     begins = np.ones(strip.shape, dtype=bool)
     np.not_equal(strip[:, 1:], strip[:, :-1], out=begins[:, 1:])
     starts = np.flatnonzero(begins)
-    return _Runs(strip[begins], starts, np.append(starts[1:], strip.size))
+    return Runs(strip[begins], starts, np.append(starts[1:], strip.size))
 
 
 def _extents(labels: AnyArray, boxes: IntArray) -> tuple[AnyArray, IntArray]:

@@ -12,14 +12,16 @@ from typing import Any
 import numpy as np
 
 from cytodisk.errors import CytodiskError, EmptyMaskError, MaskError, ReadError, as_data
-from cytodisk.images.file_parameters import Kind
-from cytodisk.images.frame_file import NO_CHOICE, FileChoice, FrameFile
+from cytodisk.geometry.fragments import SeveralCells
+from cytodisk.images.file_parameters import Kind, KindParameters
+from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.frames import open_frames
 from cytodisk.images.image_paths import is_folder_of_files
 from cytodisk.images.label_boxes import Box, LabelBoxes, cell_box, label_boxes, with_margin
-from cytodisk.images.mask_kinds import MaskLook, Reader, check_labels, look_at
 from cytodisk.images.mask_names import mask_names
+from cytodisk.images.one_cell import without_others
+from cytodisk.images.what_it_is import MaskLook, Reader, check_labels, look_at
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,10 @@ class SourceCell:
 
 
 def open_mask_files(
-    path: str | os.PathLike[str], kind: Kind = "auto", images: str = "", choice: FileChoice = NO_CHOICE
+    path: str | os.PathLike[str],
+    how: KindParameters | None = None,
+    images: str = "",
+    choice: FileChoice | None = None,
 ) -> tuple[MaskSource, ...]:
     """Find the mask files of a folder, or open a single one.
 
@@ -104,12 +109,12 @@ def open_mask_files(
         A file, or a folder with `*_masks.tif`, `*_masks.png`, `*_cp_masks.tif`, `*_cp_masks.png` or
         `*_seg.npy`; if it holds none of these, every TIFF and PNG of it. Folders in it are not looked into.
         Of several files for one image only the first in this order that can be used is taken.
-    kind : {"auto", "mask", "stack", "labels"}
-        What each file is; "auto" decides for each by itself.
+    how : KindParameters, optional
+        What the user says of each file; a kind of "auto" is decided for each by itself.
     images : str
         How names of images go on that are no masks, as "_img"; in a folder whose masks have other endings.
     choice : FileChoice, optional
-        Axes, scene, slice and channel of each file, where it leaves a choice.
+        Of a single file, in the place of what `how` says.
 
     Returns
     -------
@@ -121,26 +126,39 @@ def open_mask_files(
     ReadError
         The folder or the file is missing or cannot be read, or the folder holds no image.
     MaskError
-        A single file is no mask.
-    ParameterError
-        An unknown kind.
+        A single file is no mask, or one mask of several cells.
     """
-    place = Path(path)
+    place, how = Path(path), KindParameters() if how is None else how
     if not is_folder_of_files(place):
-        file = open_frames(place, unnamed="T", choice=choice, flag="--mask-channel")
+        file = _frames_of(place, how.mask_choice if choice is None else choice)
         opened = partial(frame_pixels, file)
         reader: Reader = lru_cache(maxsize=1)(opened) if file.n_frames == 1 else opened
-        look = look_at(file, kind, reader)
-        return (MaskSource(place.name, place, file, look.kind, look=look, reader=reader),)
-    return tuple(_source(chosen, others, kind, choice) for chosen, others in mask_names(place, images))
+        look = look_at(file, how, reader)
+        kept = reader if look.file is file else None
+        source = MaskSource(place.name, place, look.file, look.kind, look=look, reader=kept)
+        if look.kind == "mask":
+            _refuse_several(source)
+        return (source,)
+    return tuple(_source(chosen, others, how) for chosen, others in mask_names(place, images))
 
 
-def _source(path: Path, others: list[Path], kind: Kind, choice: FileChoice) -> MaskSource:
+def _frames_of(path: Path, choice: FileChoice) -> FrameFile:
+    return open_frames(path, unnamed="T", choice=choice, flag="--mask-channel")
+
+
+def _refuse_several(source: MaskSource) -> None:
+    """Raise SeveralCells for a single mask that is not one cell's."""
+    for found in read_source_cells([source]):
+        if isinstance(found.fault, SeveralCells):
+            raise SeveralCells(f"{source.path}: {found.fault}")
+
+
+def _source(path: Path, others: list[Path], how: KindParameters) -> MaskSource:
     """The first of an image's mask files that can be used, or the very first with its fault."""
     paths = [path, *others]
     first = None
     for place, taken in enumerate(paths):
-        found = _opened(taken, kind, choice)
+        found = _opened(taken, how)
         first = found if first is None else first
         if found.fault is None:
             left = tuple(file.name for file in paths if file != taken)
@@ -149,14 +167,14 @@ def _source(path: Path, others: list[Path], kind: Kind, choice: FileChoice) -> M
     return replace(first, instead_of=tuple(file.name for file in others))
 
 
-def _opened(path: Path, kind: Kind, choice: FileChoice) -> MaskSource:
+def _opened(path: Path, how: KindParameters) -> MaskSource:
     source = MaskSource(path.name, path, None, None)
     try:
-        file = open_frames(path, unnamed="T", choice=choice, flag="--mask-channel")
-        look = look_at(file, kind)
-        if kind != "auto" and file.n_frames == 1:
+        file = _frames_of(path, how.mask_choice)
+        look = look_at(file, how)
+        if how.kind != "auto" and file.n_frames == 1:
             file.frame(0)  # raises where the picture itself is damaged; "auto" has read it
-        return replace(source, file=file, kind=look.kind, look=look)
+        return replace(source, file=look.file, kind=look.kind, look=look)
     except (ReadError, MaskError) as fault:
         return replace(source, fault=as_data(fault))
 
@@ -249,13 +267,22 @@ def _cells_of(source: MaskSource, number: int) -> Iterator[SourceCell]:
     try:
         frame = source.read(number)
         if source.kind != "labels":
-            yield _single(frame, nothing)
+            yield _of_one_cell(_single(frame, nothing), source, None)
             return
         found = _found_labels(frame, number)
     except (ReadError, MaskError) as fault:
         yield replace(nothing, fault=as_data(fault))
         return
-    yield from (_labelled(frame, label, with_margin(box, shape), nothing) for label, box in found)
+    for label, box in found:
+        yield _of_one_cell(_labelled(frame, label, with_margin(box, shape), nothing), source, label)
+
+
+def _of_one_cell(found: SourceCell, source: MaskSource, label: int | None) -> SourceCell:
+    """The same cell, or its fault where it is several."""
+    if found.mask is None or source.look is None:
+        return found
+    mask = without_others(found.mask, source.look.fragments, label)
+    return replace(found, mask=None, fault=mask) if isinstance(mask, SeveralCells) else found
 
 
 def _found_labels(frame: FramePixels, number: int) -> LabelBoxes:

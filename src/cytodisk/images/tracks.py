@@ -10,12 +10,14 @@ import numpy as np
 
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
 from cytodisk.geometry.placed_mask import PlacedMask
-from cytodisk.images.file_parameters import Kind
+from cytodisk.images.file_parameters import Fragments, Kind
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.label_boxes import Box, cell_box, label_boxes, with_margin
 from cytodisk.images.linking import link_labels
-from cytodisk.images.mask_kinds import MaskLook
+from cytodisk.images.one_cell import without_others
+from cytodisk.images.steady_labels import refuse_changing_labels
+from cytodisk.images.what_it_is import MaskLook
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,8 @@ class CellTrack:
         Frames it is in, both included; between them it may be missing.
     labels : dict of int to int, or None
         Its label in the file by frame; None if every frame is a mask of this one cell.
+    fragments : {"refuse", "largest"}
+        What to do in a frame where it has several pieces.
     """
 
     cell: int
@@ -39,6 +43,7 @@ class CellTrack:
     first: int
     last: int
     labels: dict[int, int] | None
+    fragments: Fragments = "refuse"
 
     @property
     def frames(self) -> range:
@@ -58,13 +63,18 @@ class CellTrack:
         Returns
         -------
         ndarray of shape (H, W), or CytodiskError
-            An error says why there is no mask: the frame is damaged, or the label is not in it.
+            An error says why there is no mask: the frame is damaged, the label is not in it, or it is that of
+            several cells.
         """
-        if isinstance(image, CytodiskError) or self.labels is None:
+        if isinstance(image, CytodiskError):
             return image
-        if frame not in self.labels:
+        if self.labels is not None and frame not in self.labels:
             return MissingLabel(f"label {self.label} is not in frame {frame}")
-        return image == self.labels[frame]
+        mask = image if self.labels is None else image == self.labels[frame]
+        return self._of_one_cell(mask)
+
+    def _of_one_cell(self, mask: Any) -> Any:
+        return without_others(mask, self.fragments, None if self.labels is None else self.label)
 
     def cut_from(self, found: CellsInFrame | CytodiskError, frame: int) -> PlacedMask | CytodiskError:
         """As `mask_in`, but the cell's box alone, with one more pixel on every side where the image goes on.
@@ -80,9 +90,11 @@ class CellTrack:
         if self.labels is not None and frame not in self.labels:
             return MissingLabel(f"label {self.label} is not in frame {frame}")
         try:
-            return found.mask_of(None if self.labels is None else self.labels[frame])
+            placed = found.mask_of(None if self.labels is None else self.labels[frame])
         except ReadError as error:
             return as_data(error)
+        fault = self._of_one_cell(placed.box)
+        return fault if isinstance(fault, CytodiskError) else placed
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,17 +194,17 @@ def read_frame(file: FrameFile, frame: int) -> Any:
 
 
 def list_tracks(
-    file: FrameFile, look: MaskLook, link: bool, given: Sequence[dict[int, int]] | None = None
+    look: MaskLook, link: bool | None = None, given: Sequence[dict[int, int]] | None = None
 ) -> list[CellTrack]:
     """The cells of a mask movie.
 
     Parameters
     ----------
-    file : FrameFile
     look : MaskLook
-        At this file.
-    link : bool
-        Labels are not the same from frame to frame: link them by overlap.
+        At its file.
+    link : bool, optional
+        Whether labels are not the same from frame to frame, so that they must be linked by overlap. Without
+        it, those that plainly change are refused.
     given : sequence of dict of int to int, optional
         For each frame {label: track}, where another program has tracked the labels.
 
@@ -204,16 +216,19 @@ def list_tracks(
     Raises
     ------
     MaskError
-        Labels are not whole numbers, or none is there.
+        Labels are not whole numbers, change from frame to frame, or none is there.
     MissingPartError
         `link` needs a package that is not installed.
     """
+    file = look.file
     if look.kind != "labels":
-        return [CellTrack(0, 1, 0, file.n_frames - 1, None)]
+        return [CellTrack(0, 1, 0, file.n_frames - 1, None, look.fragments)]
     faults = {frame: found for frame, found in enumerate(look.labels) if isinstance(found, CytodiskError)}
     for fault in faults.values():
         if not isinstance(fault, ReadError):
             raise fault
+    if link is None and given is None:
+        refuse_changing_labels(file)
     found: dict[int, dict[int, int]] = {}
     tracks = given
     if tracks is None:
@@ -224,7 +239,7 @@ def list_tracks(
     if not found:
         raise MaskError(f"{file.path} holds no label in any of its {file.n_frames} frames")
     cells = [
-        CellTrack(cell, track, min(found[track]), max(found[track]), found[track])
+        CellTrack(cell, track, min(found[track]), max(found[track]), found[track], look.fragments)
         for cell, track in enumerate(sorted(found))
     ]
     for frame in faults:

@@ -11,6 +11,7 @@ from pathlib import Path
 from cytodisk.checks import is_path
 from cytodisk.errors import ReadError, SignalError, as_data
 from cytodisk.images.chosen_channels import with_names
+from cytodisk.images.file_parameters import KindParameters
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frames import open_frames
 from cytodisk.images.image_paths import is_folder_of_files
@@ -141,7 +142,7 @@ def open_inputs(
     if is_folder_of_files(Path(masks)):
         return _open_folder(Path(masks), signal, parameters)
     choice = sized_like(parameters.mask_choice, masks, signal, parameters.signal_choice, "C")
-    sources = open_mask_files(masks, parameters.kind, choice=choice)
+    sources = open_mask_files(masks, parameters.part(KindParameters), choice=choice)
     found = _open_signal(sources[0], signal, parameters)
     files = [file for file in (found.file, sources[0].file) if file is not None]
     pixel_size_um = parameters.pixel_size_um or agreed(files, "pixel_size_um")
@@ -151,7 +152,7 @@ def open_inputs(
 def _open_folder(
     masks: Path, signal: str | os.PathLike[str] | None, parameters: FileParameters
 ) -> CellInputs:
-    sources = open_mask_files(masks, parameters.kind, _ending_beside(masks, signal), parameters.mask_choice)
+    sources = open_mask_files(masks, parameters.part(KindParameters), images=_ending_beside(masks, signal))
     signals, remarks = _open_signals(sources, signal, parameters)
     pixel_size_um = parameters.pixel_size_um
     if pixel_size_um is None:
@@ -220,6 +221,8 @@ def _open_paired(source: MaskSource, image: Path | SignalError, parameters: File
 def check_signal(masks: FrameFile, signal: FrameFile) -> None:
     """Raise SignalError unless an image can be sampled with masks."""
     if signal.image_shape != masks.image_shape:
+        if signal.doubt:
+            raise SignalError(f"signal {signal.doubt}")
         raise SignalError(
             f"signal {signal.path} has images of {signal.image_shape}, the masks of {masks.image_shape}: "
             "they must have the same height and width"

@@ -8,15 +8,15 @@ from pathlib import Path
 
 from cytodisk.checks import is_path
 from cytodisk.errors import MaskError, ParameterError, SignalError
-from cytodisk.images.file_parameters import Kind
+from cytodisk.images.file_parameters import Kind, KindParameters
 from cytodisk.images.frame_file import FrameFile
-from cytodisk.images.mask_kinds import MaskLook, look_at
 from cytodisk.images.movie_files import open_movie_masks
 from cytodisk.images.movie_signals import open_movie_signal
 from cytodisk.images.outline_sizes import sized_like
 from cytodisk.images.spots.label_spots import LabelTracks, label_tracks
 from cytodisk.images.spots.track_files import read_tracks
 from cytodisk.images.tracks import CellTrack, list_tracks
+from cytodisk.images.what_it_is import MaskLook, look_at
 from cytodisk.motion.still_interior import fade_in_px
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.cells.cell_inputs import check_signal
@@ -153,11 +153,13 @@ def open_movie(
     """
     files = open_movie_files(masks, signal, parameters)
     mask_file, scale = files.masks, files.scale
-    look = look_at(mask_file, parameters.kind)
+    look = look_at(mask_file, parameters.part(KindParameters))
+    mask_file = look.file
     given = None if parameters.tracks is None else _given_tracks(mask_file, look, parameters, scale)
     if given is not None:
         mask_file = replace(mask_file, notes=(*mask_file.notes, *given.remarks))
-    tracks = tuple(list_tracks(mask_file, look, parameters.link, None if given is None else given.frames))
+    link = True if parameters.label else parameters.link  # pieces are numbered frame by frame
+    tracks = tuple(list_tracks(look, link, None if given is None else given.frames))
     grid = polar_grid(parameters.part(PolarGridParameters))
     check_depths(grid, scale)
     mothers = {} if given is None else given.mothers
@@ -226,15 +228,9 @@ def _check_masks(masks: FrameFile) -> None:
         if channels > 1:
             raise MaskError(
                 f"masks {masks.path} were understood as one frame with {channels} channels ({masks.axes} "
-                f"{masks.shape}): if these are frames, save them with axes TYX"
+                f"{masks.shape}): if these are frames, pass --axes {masks.axes.replace('C', 'T')}"
             )
         raise MaskError(f"masks {masks.path} hold one frame: a movie has two at least; use cytodisk map")
-    height, width = masks.image_shape
-    if width < masks.n_frames / 4 and width < height / 4:
-        raise MaskError(
-            f"masks {masks.path} were understood as {masks.n_frames} frames of {height} × {width} pixels, "
-            "which looks like time on the last axis: save them with axes TYX"
-        )
 
 
 def _check_frames(masks: FrameFile, signal: FrameFile) -> None:

@@ -1,0 +1,72 @@
+"""Signs that a frame is a picture, a map of probabilities, or a mask with grey edges, and no label image."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cytodisk.images.frame_pixels import FramePixels
+from cytodisk.images.frame_sight import FrameSight
+from cytodisk.images.value_pieces import count_pieces, share_alike, thick_values, touching_values
+
+_LEAST_ALIKE = 0.5  # of neighbouring pixels within cells must have one label in a label image
+_MOST_PIECES = 3  # connected pieces a label, on average, in a label image
+_IF_LABELS = "threshold it, or pass kind='labels' (--kind labels) if it is one"
+
+
+def picture_words(frame: FramePixels, sight: FrameSight) -> str:
+    """What a frame looks like that is no mask and no label image, with the remedy; empty if it may be one.
+
+    Parameters
+    ----------
+    frame : FramePixels
+    sight : FrameSight
+        Of this frame.
+
+    Returns
+    -------
+    str
+        To follow the name of the file.
+    """
+    if not sight.is_whole:
+        return _fraction_words(sight)
+    values = len(sight.cells)
+    if values < 2:
+        return ""
+    alike, pieces = share_alike(frame.strips()), count_pieces(frame.strips())
+    if alike < _LEAST_ALIKE or pieces > _MOST_PIECES * values:
+        return (
+            f"looks like a picture, not a mask or label image: {values} values of frame {sight.number} "
+            f"lie in {pieces} pieces; {_IF_LABELS}"
+        )
+    rims = _rims(frame, sight)
+    if rims:
+        return (
+            "looks like a picture, not a mask or label image: "
+            f"{rims} of the {values} values of frame {sight.number} are thin rims or specks beside the value "
+            f"{sight.cells.max():g}, as scaling or smoothing a mask makes them; {_IF_LABELS}"
+        )
+    return ""
+
+
+def _fraction_words(sight: FrameSight) -> str:
+    values = sight.values[np.isfinite(sight.values)]
+    if len(values) < len(sight.values) and (values == np.rint(values)).all():
+        return ""  # a mask or labels with NaN in it, of which the frame's own reason tells
+    least, greatest = float(values.min()), float(values.max())
+    between = f"values between {least:.3g} and {greatest:.3g} in frame {sight.number}"
+    if least >= 0 and greatest <= 1:
+        return f"looks like probabilities, not a mask ({between}): threshold it, as image > 0.5"
+    return f"looks like a picture, not a mask or label image ({between}): threshold it"
+
+
+def _rims(frame: FramePixels, sight: FrameSight) -> int:
+    """How many values are no more than rims and specks of the greatest, where most others are; else 0."""
+    greatest = sight.cells.max()
+    thick = thick_values(frame.strips())
+    others = sight.cells[sight.cells != greatest]
+    thin = others[~np.isin(others, thick)]
+    if greatest not in thick or 2 * len(thin) <= len(others):
+        return 0
+    full = np.issubdtype(sight.dtype, np.integer) and greatest == np.iinfo(sight.dtype).max
+    beside = np.isin(thin, touching_values(frame.strips())).sum()
+    return len(thin) if full or 2 * beside > len(thin) else 0
