@@ -154,6 +154,11 @@ def test_flagged_masks_are_said_to_be() -> None:
     holed[10:13, 10:15] = False
     for mask, words in ((two, "more than one cell"), (holed, "touching cells"), (~good, "inverted")):
         assert any(words in doubt for doubt in clean_mask(mask)[1].qc_flags)
+    crumbs = good.copy()
+    crumbs[30:33, 30] = crumbs[35:38, 30] = True
+    assert clean_mask(crumbs)[1].qc_flags == (
+        "2 small pieces dropped (6 px): if they are cells, number the pieces (--label)",
+    )
     speck = good.copy()
     speck[30, 30] = True
     assert clean_mask(speck)[1].qc_flags == ()

@@ -162,7 +162,7 @@ def test_a_z_stack_is_refused(tmp_path: Path) -> None:
 
 def test_two_axes_of_one_kind_are_refused(tmp_path: Path) -> None:
     tifffile.imwrite(tmp_path / "a.tif", STACK)
-    with pytest.raises(ReadError, match=r"4 axes of sizes \(3, 2, 20, 31\).*--axes TCYX"):
+    with pytest.raises(ReadError, match=r"4 axes of sizes \(3, 2, 20, 31\).*axes TCYX"):
         open_frames(tmp_path / "a.tif")
 
 

@@ -35,7 +35,7 @@ def written(folder: Path, values: np.ndarray, axes: str | None = None, **layout:
     layout = {"photometric": "minisblack"} | layout
     values = values.astype(np.uint8) if values.dtype == bool else values
     tifffile.imwrite(folder / "a.tif", values, **layout)
-    return open_frames(folder / "a.tif", choice=FileChoice(axes=axes))
+    return open_frames(folder / "a.tif", choice=FileChoice(axes=axes), flag="--mask-channel")
 
 
 def seen(folder: Path, values: np.ndarray, axes: str | None = None, **how: Any) -> MaskLook:

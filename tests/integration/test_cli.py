@@ -46,6 +46,14 @@ def test_flags_reach_the_parameters(run: Run, mask: Path, tmp_path: Path) -> Non
     found = cd.open_study(tmp_path / "out").provenance["parameters"]
     wanted = {
         "kind": "mask",
+        "axes": None,
+        "label": False,
+        "fragments": "refuse",
+        "mask_channel": None,
+        "scene": None,
+        "z": None,
+        "signal_axes": None,
+        "signal_channels": None,
         "channels": None,
         "method": "harmonic",
         "shape_weight": 0.01,
@@ -114,7 +122,7 @@ def test_a_stack_where_one_image_is_needed(run: Run, tmp_path: Path) -> None:
 def test_a_picture_of_floats(run: Run, tmp_path: Path) -> None:
     values = np.random.default_rng(0).random((30, 30)).astype(np.float32)
     result = run("map", write(tmp_path / "a.tif", values), "-o", tmp_path / "out", *GRID)
-    assert_refused(result, "mask is float32 with values other than 0 and 1", "threshold it first")
+    assert_refused(result, "looks like probabilities, not a mask", "threshold it, as image > 0.5")
 
 
 def test_a_microscope_picture(run: Run, tmp_path: Path) -> None:
@@ -414,11 +422,33 @@ def test_the_program_runs_as_a_module(mask: Path, tmp_path: Path) -> None:
     assert refused.stderr.count("\n") == 1
 
 
-def test_cells_with_qc_flags_are_named(run: Run, tmp_path: Path) -> None:
+def test_a_mask_of_several_cells_is_refused_with_both_remedies(run: Run, tmp_path: Path) -> None:
     mask = np.zeros((30, 60), dtype=np.uint8)
     mask[5:25, 5:25] = mask[5:25, 35:50] = 1
     path = write(tmp_path / "mask.tif", mask)
+    for command in (
+        ("check", path),
+        ("map", path, "-o", tmp_path / "no"),
+        ("shapes", path, "-o", tmp_path / "no"),
+    ):
+        assert_refused(
+            run(*command), "2 pieces, the second 75 % of the largest", "--label", "--fragments largest"
+        )
+    assert not (tmp_path / "no").exists()
+    said = run("map", path, "-o", tmp_path / "largest", "--fragments", "largest", *GRID, "--figures", 0)[1]
+    assert "perhaps more than one cell: a large fragment was dropped; if they are cells, number" in said
+    assert run("map", path, "-o", tmp_path / "two", "--label", *GRID, "--figures", 0)[0] == 0
+    assert cd.open_study(tmp_path / "two").cells["area_px"].tolist() == [400, 300]
+
+
+def test_cells_with_qc_flags_are_named(run: Run, tmp_path: Path) -> None:
+    mask = np.zeros((30, 60), dtype=np.uint8)
+    mask[5:25, 5:25] = mask[5:10, 35:40] = 1
+    path = write(tmp_path / "mask.tif", mask)
+    assert "1 small piece dropped (25 px): if they are cells, number the pieces (--label)" in run(
+        "check", path
+    )[1]
     said = run("map", path, "-o", tmp_path / "out", "--figures", 0)[1]
-    assert "QC flag flagged masks: 1 cell may not be one whole cell (cell 0, frame 0: perhaps more" in said
+    assert "QC flag flagged masks: 1 cell may not be one whole cell (cell 0, frame 0: 1 small piece" in said
     assert "QC flag warnings" not in said
     assert "Look at the mask; correct the segmentation" in said

@@ -12,7 +12,8 @@ from cytodisk.geometry.outline import has_one_outline, pixel_edges
 from cytodisk.geometry.placed_mask import PlacedMask
 
 # Shares from which on a mask gets a QC flag: area in dropped pieces, area in holes, edge on the border.
-_FLAGGED_DROPPED, _FLAGGED_FILLED, _FLAGGED_BORDER = 0.1, 0.02, 0.5
+_LARGE_DROPPED, _FLAGGED_DROPPED, _FLAGGED_FILLED, _FLAGGED_BORDER = 0.1, 0.005, 0.02, 0.5
+_IF_CELLS = "if they are cells, number the pieces (--label)"
 _EIGHT = np.ones((3, 3), dtype=bool)
 _FOUR = ndimage.generate_binary_structure(2, 1)
 
@@ -81,8 +82,11 @@ class MaskReport:
     def qc_flags(self) -> tuple[str, ...]:
         """What speaks against this being the mask of one cell, in words; a user should look at it."""
         qc_flags = []
-        if self.dropped_px > _FLAGGED_DROPPED * self.area_px:
-            qc_flags.append("perhaps more than one cell: a large fragment was dropped")
+        if self.dropped_px > _LARGE_DROPPED * self.area_px:
+            qc_flags.append(f"perhaps more than one cell: a large fragment was dropped; {_IF_CELLS}")
+        elif self.dropped_px > _FLAGGED_DROPPED * self.area_px:
+            found = _count(self.components - 1, "small piece")
+            qc_flags.append(f"{found} dropped ({self.dropped_px} px): {_IF_CELLS}")
         if self.filled_px > _FLAGGED_FILLED * self.area_px:
             qc_flags.append("perhaps several touching cells: what was a hole is measured as cell")
         if self.border_share > _FLAGGED_BORDER:

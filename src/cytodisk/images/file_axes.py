@@ -151,11 +151,11 @@ def axis_words(file: Path, letters: str, shape: Sequence[int], likely: str, evid
         By what, as "its shape".
     """
     first, height, width = shape
-    what = "frames" if letters[0] == "T" else "channels"
+    what, name = ("frames", "time") if letters[0] == "T" else ("channels", "channels")
     place = "last" if likely.endswith(letters[0]) else "second"
     return (
         f"{file} of shape {tuple(shape)} does not name its axes, and {evidence} speaks against "
-        f"{first} {what} of {height} × {width} pixels: its {place} axis looks like {what}. If it is, "
+        f"{first} {what} of {height} × {width} pixels: its {place} axis looks like {name}. If it is, "
         f"pass {axes_flag(likely)}; else pass {axes_flag(letters)}"
     )
 

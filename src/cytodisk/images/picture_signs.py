@@ -27,8 +27,6 @@ def picture_words(frame: FramePixels, sight: FrameSight) -> str:
     str
         To follow the name of the file.
     """
-    if not sight.is_whole:
-        return _fraction_words(sight)
     values = len(sight.cells)
     if values < 2:
         return ""
@@ -48,7 +46,10 @@ def picture_words(frame: FramePixels, sight: FrameSight) -> str:
     return ""
 
 
-def _fraction_words(sight: FrameSight) -> str:
+def fraction_words(sight: FrameSight) -> str:
+    """What a frame with fractions looks like, with the remedy; empty where all values are whole numbers."""
+    if sight.is_whole:
+        return ""
     values = sight.values[np.isfinite(sight.values)]
     if len(values) < len(sight.values) and (values == np.rint(values)).all():
         return ""  # a mask or labels with NaN in it, of which the frame's own reason tells

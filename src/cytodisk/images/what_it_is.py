@@ -16,9 +16,10 @@ from cytodisk.images.file_parameters import Fragments, Kind, KindParameters
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.frame_sight import FrameSight, see_frame
-from cytodisk.images.picture_signs import picture_words
+from cytodisk.images.picture_signs import fraction_words, picture_words
 
 _LARGEST = int(np.iinfo(np.int64).max)  # tables hold labels as 64-bit integers with a sign
+_FEW_FRAMES = 2  # with fractions, and none without, are enough to see a picture
 _BACKGROUND = 0.75  # of the image's border has one value: that of the background
 
 Reader: TypeAlias = Callable[[int], FramePixels]
@@ -97,11 +98,12 @@ def look_at(file: FrameFile, how: KindParameters | None = None, read: Reader | N
 
 def _check_shape(file: FrameFile, how: KindParameters) -> None:
     if "C" in file.axes:
-        frames = "" if "T" in file.axes else f"; or if they are frames, --axes {file.axes.replace('C', 'T')}"
+        axes = file.axes.replace("C", "T")
+        frames = "" if "T" in file.axes else f"; or if they are frames, pass --axes {axes}"
         raise MaskError(
             f"{file.path} has {len(file.channels)} channels ({', '.join(file.channels)}): "
-            "a mask has one value a pixel; save the mask alone, not as a colour picture, or pass its "
-            f"channel, as --mask-channel 0{frames}"
+            "a mask has one value a pixel; pass the channel that holds it, as --mask-channel 0, or save the "
+            f"mask alone, not as a colour picture{frames}"
         )
     if how.kind == "mask" and file.n_frames > 1:
         raise MaskError(
@@ -139,9 +141,14 @@ def _several_words(sight: FrameSight | None) -> str:
 
 
 def _seen(file: FrameFile, read: Reader, pictures_refused: bool) -> list[Seen]:
-    """What is seen of each frame; a picture is refused at the first frame that looks like one."""
+    """What is seen of each frame; a picture is refused as soon as that is plain.
+
+    One frame with fractions in a movie of masks is that frame's fault alone; without a whole one beside it,
+    or among labels, it is the file's.
+    """
     seen: list[Seen] = []
-    looked = False
+    looked = whole = False
+    fractions = ""
     for number in range(file.n_frames):
         try:
             frame = read(number)
@@ -150,11 +157,17 @@ def _seen(file: FrameFile, read: Reader, pictures_refused: bool) -> list[Seen]:
             seen.append(as_data(fault))
             continue
         seen.append(sight)
-        several = len(sight.cells) > 1
-        if pictures_refused and (not sight.is_whole or (several and not looked)):
-            looked |= several
-            if words := picture_words(frame, sight):
-                raise MaskError(f"{file.path} {words}")
+        if not pictures_refused or not len(sight.cells):
+            continue
+        whole |= sight.is_whole
+        fractions = fractions or fraction_words(sight)
+        words = ""
+        if sight.is_whole and len(sight.cells) > 1 and not looked:
+            looked, words = True, picture_words(frame, sight)
+        if words := words or (fractions if looked or (not whole and number >= _FEW_FRAMES) else ""):
+            raise MaskError(f"{file.path} {words}")
+    if fractions and not whole:
+        raise MaskError(f"{file.path} {fractions}")
     return seen
 
 
@@ -206,7 +219,7 @@ def _refuse_axes(file: FrameFile, seen: Sequence[Seen]) -> None:
 
 def _refuse_background(file: FrameFile, usable: Sequence[FrameSight]) -> None:
     """Refuse a file that has the background marked in all of its frames."""
-    held = [sight for sight in usable if len(sight.cells)]
+    held = [sight for sight in usable if len(sight.cells) and len(sight.values) > 1]
     around = [sight.around for sight in held]
     if not held or any(value == 0 or share < _BACKGROUND for value, share in around):
         return
