@@ -15,13 +15,13 @@ from skimage import measure
 import cytodisk as cd
 from cytodisk.errors import MaskError, ReadError
 from cytodisk.images import frame_pixels as module
+from cytodisk.images.evidence.value_pieces import count_pieces, share_alike, thick_values, touching_values
 from cytodisk.images.file_parameters import KindParameters
 from cytodisk.images.formats.tiff_segments import TiffSegments
 from cytodisk.images.frame_pixels import frame_pixels
 from cytodisk.images.frames import open_frames
 from cytodisk.images.label_boxes import cell_box, label_boxes
 from cytodisk.images.mask_files import SourceCell, list_images, open_mask_files
-from cytodisk.images.value_pieces import count_pieces, share_alike, thick_values, touching_values
 
 Write = Callable[[Path, np.ndarray], Path]
 

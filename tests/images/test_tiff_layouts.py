@@ -90,7 +90,7 @@ def test_a_z_stack_says_what_to_pass(tmp_path: Path) -> None:
 
 def test_slices_that_are_times(tmp_path: Path) -> None:
     tifffile.imwrite(tmp_path / "a.tif", PIXELS[0, 0], imagej=True, metadata={"axes": "ZYX"})
-    with pytest.raises(ReadError, match="if they are frames, pass --axes TYX"):
+    with pytest.raises(ReadError, match="if they are frames, pass --signal-axes TYX"):
         open_frames(tmp_path / "a.tif")
     file = open_frames(tmp_path / "a.tif", choice=FileChoice(axes="TYX"))
     assert_array_equal(file.frame(3)[0], PIXELS[0, 0, 3])

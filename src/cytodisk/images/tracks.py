@@ -10,13 +10,13 @@ import numpy as np
 
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
 from cytodisk.geometry.placed_mask import PlacedMask
+from cytodisk.images.evidence.steady_labels import refuse_changing_labels
 from cytodisk.images.file_parameters import Fragments, Kind
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.label_boxes import Box, cell_box, label_boxes, with_margin
 from cytodisk.images.linking import link_labels
 from cytodisk.images.one_cell import without_others
-from cytodisk.images.steady_labels import refuse_changing_labels
 from cytodisk.images.what_it_is import MaskLook
 
 

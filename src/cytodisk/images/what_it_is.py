@@ -11,12 +11,12 @@ import numpy as np
 
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
 from cytodisk.images.changed_frames import changed_file
+from cytodisk.images.evidence.frame_sight import FrameSight, see_frame
+from cytodisk.images.evidence.picture_signs import fraction_words, picture_words
 from cytodisk.images.file_axes import axis_words
 from cytodisk.images.file_parameters import Fragments, Kind, KindParameters
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
-from cytodisk.images.frame_sight import FrameSight, see_frame
-from cytodisk.images.picture_signs import fraction_words, picture_words
 
 _LARGEST = int(np.iinfo(np.int64).max)  # tables hold labels as 64-bit integers with a sign
 _FEW_FRAMES = 2  # with fractions, and none without, are enough to see a picture

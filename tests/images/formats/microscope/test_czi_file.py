@@ -180,7 +180,7 @@ def test_what_cannot_be_told_apart_is_refused(tmp_path: Path, plane: np.ndarray)
     with pytest.raises(ReadError, match=r"pixels of 0.2 × 0.1 µm: resample it to square pixels"):
         open_frames(path)
     path = write_czi(tmp_path / "a.czi", [Tile(plane)])
-    with pytest.raises(ReadError, match="leave out --axes"):
+    with pytest.raises(ReadError, match="leave out --signal-axes"):
         open_frames(path, choice=FileChoice(axes="TYX"))
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from cytodisk.images.evidence.frame_sight import FrameSight
+from cytodisk.images.evidence.value_pieces import count_pieces, share_alike, thick_values, touching_values
 from cytodisk.images.frame_pixels import FramePixels
-from cytodisk.images.frame_sight import FrameSight
-from cytodisk.images.value_pieces import count_pieces, share_alike, thick_values, touching_values
 
 _LEAST_ALIKE = 0.5  # of neighbouring pixels within cells must have one label in a label image
 _MOST_PIECES = 3  # connected pieces a label, on average, in a label image

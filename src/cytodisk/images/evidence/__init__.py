@@ -1,0 +1,1 @@
+"""What pixels say for and against what a mask file is taken for."""
