@@ -445,9 +445,10 @@ def test_cells_with_qc_flags_are_named(run: Run, tmp_path: Path) -> None:
     mask = np.zeros((30, 60), dtype=np.uint8)
     mask[5:25, 5:25] = mask[5:10, 35:40] = 1
     path = write(tmp_path / "mask.tif", mask)
-    assert "1 small piece dropped (25 px): if they are cells, number the pieces (--label)" in run(
-        "check", path
-    )[1]
+    assert (
+        "1 small piece dropped (25 px): if they are cells, number the pieces (--label)"
+        in run("check", path)[1]
+    )
     said = run("map", path, "-o", tmp_path / "out", "--figures", 0)[1]
     assert "QC flag flagged masks: 1 cell may not be one whole cell (cell 0, frame 0: 1 small piece" in said
     assert "QC flag warnings" not in said
