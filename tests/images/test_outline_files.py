@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from cytodisk.images.mask_kinds import understood_as
 from numpy.testing import assert_array_equal
 from outline_files import RIGHT, SQUARE, Ring, feature, rectangle, write_geojson, write_stardist_rois
 
 from cytodisk.errors import ReadError
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.frames import open_frames
+from cytodisk.images.what_it_is import look_at
 
 roifile = pytest.importorskip("roifile")
 
@@ -45,7 +45,7 @@ def test_each_object_of_qupath_is_a_label(tmp_path: Path) -> None:
     file = open_frames(write_geojson(tmp_path / "a.geojson", feature(SQUARE), feature(RIGHT)), choice=LIKE)
     assert (file.axes, file.shape, file.notes) == ("YX", (30, 40), ())
     assert_array_equal(file.frame(0)[0], rectangle((30, 40), SQUARE, RIGHT))
-    assert understood_as(file) == "labels"
+    assert look_at(file).kind == "labels"
 
 
 def test_each_roi_of_imagej_is_a_label(tmp_path: Path) -> None:
@@ -58,7 +58,7 @@ def test_each_roi_of_imagej_is_a_label(tmp_path: Path) -> None:
 def test_one_roi_is_one_mask(tmp_path: Path) -> None:
     file = open_frames(saved(tmp_path / "a.roi", polygon(SQUARE)), choice=LIKE)
     assert_array_equal(file.frame(0)[0], rectangle((30, 40), SQUARE))
-    assert understood_as(file) == "mask"
+    assert look_at(file).kind == "mask"
 
 
 def test_stardists_polygons_count_from_pixel_centres(tmp_path: Path) -> None:
@@ -242,7 +242,7 @@ def test_frames_of_outlines_are_frames(tmp_path: Path, make: Any, name: str) -> 
 def test_one_outline_a_frame_is_one_cell(tmp_path: Path) -> None:
     file = open_frames(saved(tmp_path / "a.zip", *(polygon(SQUARE, t=t) for t in range(4))), choice=LIKE)
     assert [int(file.frame(t).max()) for t in range(4)] == [1, 1, 1, 1]
-    assert understood_as(file) == "stack"
+    assert look_at(file).kind == "stack"
 
 
 def test_slices_without_frames_are_frames_and_told(tmp_path: Path) -> None:
