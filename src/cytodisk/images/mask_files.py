@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.errors import CytodiskError, EmptyMaskError, MaskError, ReadError, as_data
-from cytodisk.geometry.fragments import SeveralCells
+from cytodisk.geometry.fragments import SeveralCells, without_others
 from cytodisk.images.file_parameters import Kind, KindParameters
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
@@ -20,7 +20,6 @@ from cytodisk.images.frames import open_frames
 from cytodisk.images.image_paths import is_folder_of_files
 from cytodisk.images.label_boxes import Box, LabelBoxes, cell_box, label_boxes, with_margin
 from cytodisk.images.mask_names import mask_names
-from cytodisk.images.one_cell import without_others
 from cytodisk.images.what_it_is import MaskLook, Reader, check_labels, look_at
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
+from cytodisk.geometry.fragments import without_others
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.images.evidence.steady_labels import refuse_changing_labels
 from cytodisk.images.file_parameters import Fragments, Kind
@@ -16,7 +17,6 @@ from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.label_boxes import Box, cell_box, label_boxes, with_margin
 from cytodisk.images.linking import link_labels
-from cytodisk.images.one_cell import without_others
 from cytodisk.images.what_it_is import MaskLook
 
 
