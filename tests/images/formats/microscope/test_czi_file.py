@@ -239,8 +239,9 @@ class TestRealFiles:
         np.testing.assert_array_equal(file.frame(1), np.max(slices, axis=0))
         assert file.frame(1).max() == 6559
 
-    def test_channels_without_names_or_scale(self, data_dir: Path) -> None:
+    def test_channels_without_names_or_scale(self, data_dir: Path, capfd: pytest.CaptureFixture[str]) -> None:
         file = open_frames(data_dir / "formats" / "DAPI_GFP.czi")
+        assert capfd.readouterr() == ("", "")  # no line of the library's log
         assert (file.axes, file.shape, file.scale.pixel_size_um) == ("CYX", (2, 640, 640), None)
         assert file.frame(0).std() > 10
 

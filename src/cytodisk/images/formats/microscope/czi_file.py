@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -18,6 +17,7 @@ from cytodisk.errors import MissingPartError, ReadError
 from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
 from cytodisk.images.formats.microscope.czi_blocks import Block, block_pixels
 from cytodisk.images.formats.microscope.plane_frames import Plane, PlaneFrames, scene_file
+from cytodisk.images.formats.microscope.quiet import quiet
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.scenes import Scene, Taken
 from cytodisk.scale import Scale
@@ -100,11 +100,9 @@ def _looked_at(file: Path, changed: int, size: int) -> _Contents:
         import czifile
     except ImportError as error:
         raise MissingPartError.of(f"{file}: reading CZI files needs czifile", "czi") from error
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of a missing list of blocks, which is then made anew
-        with czifile.CziFile(str(file)) as opened:
-            blocks = [Block.of(entry) for entry in opened.subblock_directory]
-            metadata, times, notes = _said(opened)
+    with quiet("czifile"), czifile.CziFile(str(file)) as opened:
+        blocks = [Block.of(entry) for entry in opened.subblock_directory]
+        metadata, times, notes = _said(opened)
     whole = [block for block in blocks if block.is_whole]
     numbers = tuple(sorted({block.start("S") for block in whole}))
     samples = {block.samples for block in whole}

@@ -15,6 +15,7 @@ import numpy as np
 from cytodisk.errors import MissingPartError, ReadError
 from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
 from cytodisk.images.formats.microscope.plane_frames import Plane, PlaneFrames, scene_file
+from cytodisk.images.formats.microscope.quiet import quiet
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.scenes import Scene, Taken
 from cytodisk.scale import Scale
@@ -79,7 +80,7 @@ def _opened(file: Path) -> Iterator[Any]:
         import liffile
     except ImportError as error:
         raise MissingPartError.of(f"{file}: reading LIF files needs liffile", "lif") from error
-    with liffile.LifFile(str(file)) as opened:
+    with quiet("liffile"), liffile.LifFile(str(file)) as opened:
         if opened.type is not liffile.LifFileType.LIF:
             raise ReadError(f"{file} is a part of a Leica project: export the image as LIF")
         yield opened

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -15,6 +14,7 @@ import numpy as np
 from cytodisk.errors import MissingPartError, ReadError
 from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
 from cytodisk.images.formats.microscope.plane_frames import Plane, PlaneFrames, scene_file
+from cytodisk.images.formats.microscope.quiet import quiet
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.scenes import Scene, Taken
 from cytodisk.scale import Scale
@@ -88,15 +88,13 @@ def _opened(file: Path) -> Iterator[Any]:
         import nd2
     except ImportError as error:
         raise MissingPartError.of(f"{file}: reading ND2 files needs nd2", "nd2") from error
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of metadata that it cannot make sense of
-        with nd2.ND2File(file) as opened:
-            if opened.is_legacy:
-                raise ReadError(
-                    f"{file} is of NIS-Elements before 2010 (JPEG 2000): save it anew in NIS-Elements, or "
-                    "export it as TIFF"
-                )
-            yield opened
+    with quiet("nd2"), nd2.ND2File(file) as opened:
+        if opened.is_legacy:
+            raise ReadError(
+                f"{file} is of NIS-Elements before 2010 (JPEG 2000): save it anew in NIS-Elements, or "
+                "export it as TIFF"
+            )
+        yield opened
 
 
 def _scene(opened: Any) -> Scene:
