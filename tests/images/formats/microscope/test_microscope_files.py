@@ -45,7 +45,7 @@ def test_a_choice_for_another_file_is_ignored_where_there_is_one_scene_and_slice
     array[...] = 7
     file = open_frames(tmp_path / "a.zarr", choice=FileChoice(scene="5", z="max"))
     assert (file.frame(0) == 7).all()
-    with pytest.raises(ReadError, match="leave out --axes"):
+    with pytest.raises(ReadError, match="leave out --signal-axes"):
         open_frames(tmp_path / "a.zarr", choice=FileChoice(axes="YX"))
 
 
