@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 import tifffile
 import zarr
-from outline_files import trackmate_xml, write_geff
 
 from cytodisk.errors import MaskError, ReadError
 from cytodisk.images.frames import open_frames
@@ -19,6 +18,7 @@ from cytodisk.images.spots.label_spots import LabelTracks, label_tracks
 from cytodisk.images.spots.spots import Spots, branches
 from cytodisk.images.spots.track_files import read_tracks
 from cytodisk.scale import UNKNOWN, Scale
+from outline_files import trackmate_xml, write_geff
 
 # The first cell divides after frame 1; labels change from frame to frame.
 NODES = {

@@ -362,9 +362,8 @@ def test_info_lists_versions(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     versions = dict(line.split("\t") for line in said.splitlines())
     assert versions["numpy"] == np.__version__
     assert versions["cytodisk"]
-    assert (
-        versions["image formats"] == "TIFF, OME-TIFF, ImageJ TIFF, PNG, OME-Zarr, with extras ND2, CZI, LIF"
-    )
+    formats = "TIFF, OME-TIFF, ImageJ TIFF, PNG, OME-Zarr, GeoJSON, with extras ND2, CZI, LIF, ROI"
+    assert versions["image formats"] == formats
     assert {"report", "link", "cluster"} <= set(versions)
     assert "no-such-package not installed: type pip install 'cytodisk[umap]'" in versions["umap"]
 

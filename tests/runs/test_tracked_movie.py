@@ -8,6 +8,9 @@ import tifffile
 
 import cytodisk as cd
 from cytodisk.errors import MaskError, ParameterError
+from cytodisk.runs.batch.batch_file import read_batch
+from cytodisk.runs.batch.input_row import files_mark
+from cytodisk.runs.movie.movie_parameters import MovieParameters
 from outline_files import feature, trackmate_xml, write_geff, write_geojson
 
 PLACES = [(14.0, 14.0), (14.0, 15.0), (36.0, 40.0), (36.0, 41.0)]  # two cells in two frames, (y, x)
@@ -62,6 +65,20 @@ def test_outlines_of_trackmate_are_masks_with_their_tracks(tmp_path: Path) -> No
     assert study.cells["area"].to_numpy() == pytest.approx(np.pi * 81, rel=0.03)
 
 
+def test_a_division_is_told_and_kept_in_the_study(tmp_path: Path) -> None:
+    nodes = {"id": range(4), "t": [0, 1, 1, 0], "y": [20.0, 12.0, 30.0, 20.0], "x": [15.0, 15.0, 15.0, 45.0]}
+    path = write_geff(tmp_path / "a.geff", nodes, [(0, 1), (0, 2)])
+    y, x = np.mgrid[:50, :60]
+    stack = np.zeros((2, 50, 60), dtype=np.uint8)
+    for number, (t, at_y, at_x) in enumerate(zip(*(nodes[key] for key in "tyx"), strict=True), start=1):
+        stack[t][np.hypot(y - at_y, x - at_x) <= 8] = number
+    tifffile.imwrite(tmp_path / "labels.tif", stack, metadata={"axes": "TYX"}, imagej=True)
+    study = run(tmp_path, tmp_path / "labels.tif", tracks=path)
+    assert study.cells.set_index("label")["frame"].to_dict() == {1: 0, 2: 0, 3: 1, 4: 1}
+    assert study.provenance["mothers"] == {"3": 1, "4": 1}
+    assert any("1 track divide" in words for words in study.provenance["warnings"])
+
+
 def test_tracks_need_labels_and_no_linking(tmp_path: Path) -> None:
     path = session(tmp_path)
     with pytest.raises(ParameterError, match=r"link and tracks exclude each other.*\(--link, --tracks\)"):
@@ -82,3 +99,17 @@ def test_outlines_have_the_size_of_the_signal(tmp_path: Path) -> None:
     assert study.cells["status"].tolist() == ["ok", "ok", "refused"]  # no outline stands in the last frame
     one = cd.run_map(masks, tmp_path / "map", signal=tmp_path / "a.tif", layers=2, sectors=4, workers=1)
     assert len(one.cells) == 3
+
+
+def test_a_batch_finds_the_tracks_of_each_movie(tmp_path: Path) -> None:
+    labels(tmp_path)
+    graph(tmp_path).rename(tmp_path / "labels.geff")
+    (tmp_path / "study.toml").write_text('[[inputs]]\nmasks = "lab*.tif"\ntracks = "{stem}.geff"\n')
+    (item,) = read_batch(tmp_path / "study.toml").inputs
+    assert item.parameters.part(MovieParameters).tracks == str(tmp_path / "labels.geff")
+    before = files_mark(item)
+    (tmp_path / "labels.geff" / "more").write_text("other tracks")
+    assert files_mark(item) != before
+    (tmp_path / "study.toml").write_text('[[inputs]]\nmasks = "lab*.tif"\ntracks = "{stem}.xml"\n')
+    with pytest.raises(ParameterError, match=r"tracks .*labels\.xml do not exist"):
+        read_batch(tmp_path / "study.toml")

@@ -3,8 +3,9 @@
 HELP = {
     "map": """Map masks onto the disk and sample a signal in windows, into a study folder.
 
-MASKS is one mask, a stack of masks, or a label image (each label a cell), as TIFF or PNG; or a folder of such
-files, as Cellpose writes them (_masks.tif, _cp_masks.png, _seg.npy). Cells are counted through all files.
+MASKS is one mask, a stack of masks, or a label image (each label a cell), as TIFF or PNG; or outlines of
+cells (ImageJ's .roi and .zip, QuPath's .geojson); or a folder of mask files, as Cellpose writes them
+(_masks.tif, _cp_masks.png, _seg.npy). Cells are counted through all files.
 
 Examples:
 
@@ -32,6 +33,8 @@ Examples:
   cytodisk movie masks.tif --signal movie.tif -o out/ --pixel-size 0.16 --frame-interval 5 --depth-um 0.5,1,2
 
   cytodisk movie cellpose_folder/ --signal cellpose_folder/ -o out/ --link
+
+  cytodisk movie labels.tif --tracks trackmate.xml --signal movie.tif -o out/
 
   cytodisk movie 'masks/t*.tif' --signal 'images/t*.tif' -o out/ --resume
 

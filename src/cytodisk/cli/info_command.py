@@ -6,6 +6,8 @@ from importlib.util import find_spec
 from cytodisk.errors import install_words
 from cytodisk.runs.versions import NOT_INSTALLED, PACKAGES, PARTS, installed
 
+_FORMATS = "TIFF, OME-TIFF, ImageJ TIFF, PNG, OME-Zarr, GeoJSON, with extras ND2, CZI, LIF, ROI"
+
 
 def info_command() -> None:
     print(f"python\t{platform.python_version()} on {platform.platform()}")
@@ -15,7 +17,7 @@ def info_command() -> None:
             print(f"{name}\t{number}")
     for part, packages in PARTS.items():
         print(f"{part}\t{_part_words(part, installed(packages))}")
-    print("image formats\tTIFF, OME-TIFF, ImageJ TIFF, PNG, OME-Zarr, with extras ND2, CZI, LIF")
+    print(f"image formats\t{_FORMATS}")
     print(f"compressed TIFF\t{'yes' if find_spec('imagecodecs') else 'no: pip install imagecodecs'}")
 
 

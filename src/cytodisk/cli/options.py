@@ -26,7 +26,8 @@ from cytodisk.taking import fields_of
 MaskFiles = Annotated[
     Path,
     typer.Argument(
-        help="Mask, stack of masks or label image (TIFF, PNG, Cellpose's _seg.npy), or a folder of them.",
+        help="Mask, stack of masks or label image (TIFF, PNG, Cellpose's _seg.npy), outlines (.roi, .zip, "
+        ".geojson), or a folder of them.",
         show_default=False,
     ),
 ]

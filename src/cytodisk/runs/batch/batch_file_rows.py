@@ -21,8 +21,9 @@ from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.parameters_file import parameters_from
 
 SCALE = ("pixel_size_um", "frame_interval_s", "channels")  # parameters with a column of their own
+ALONE = (*SCALE, "tracks")  # parameters with a key of their own
 COLUMNS = ("condition", "replicate")
-KEYS = ("masks", "signal", "name", "kind", "parameters", *COLUMNS, *SCALE)
+KEYS = ("masks", "signal", "name", "kind", "parameters", *COLUMNS, *ALONE)
 PARAMETERS_OF: dict[str, type[MapParameters]] = {"movie": MovieParameters, "map": MapParameters}
 FIELDS = ("folder", "parent", "name", "stem", "image")  # of templates
 _LONGEST_NAME = 120  # bytes in UTF-8; folders and files may have 255, of which some go for temporary names
@@ -102,10 +103,11 @@ class RowReader:
         if set(own) - set(of.model_fields):
             self.faults.add_unknown(row.place, "parameter", own, of.model_fields)
             return None
-        own = own | {name: row.values[name] for name in SCALE if name in row.values}
-        if kind == "map" and "frame_interval_s" in own:
-            self.faults.add(row.place, "frame_interval_s is for movies only: take it out")
-            return None
+        own = own | {name: row.values[name] for name in ALONE if name in row.values}
+        for name in ("frame_interval_s", "tracks"):
+            if kind == "map" and name in own:
+                self.faults.add(row.place, f"{name} is for movies only: take it out")
+                return None
         shared = {name: value for name, value in self.parameters.items() if name in of.model_fields}
         for one, other in of.exclusive:
             for given, left_out in ((one, other), (other, one)):
@@ -149,7 +151,14 @@ class RowReader:
             )
             return None
         columns = tuple(self._value(place, column, filled.get(column)) for column in self.columns)
-        return None if parameters is None else BatchInput(name, kind, masks, signal, parameters, columns)
+        if parameters is None:
+            return None
+        if "tracks" in filled:
+            tracks = self.folder / str(filled["tracks"])
+            if not _exists(tracks):
+                self.faults.add(place, f"tracks {tracks} do not exist")
+            parameters = parameters.changed(tracks=str(tracks))
+        return BatchInput(name, kind, masks, signal, parameters, columns)
 
     def _check_templates(self, row: FileRow) -> bool:
         right = True

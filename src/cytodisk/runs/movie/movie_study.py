@@ -66,6 +66,8 @@ def movie_study(
     options = RunOptions.of(**settings)
     provenance = describe_run(inputs.paths, inputs.parameters, inputs.understood, inputs.scale, inputs.notes)
     provenance |= {"layers": inputs.grid.layers, "image_shape": list(inputs.masks.image_shape)}
+    if inputs.parameters.tracks is not None:
+        provenance["mothers"] = {str(label): mother for label, mother in sorted(inputs.mothers.items())}
 
     def work(folder: StudyFolder) -> tuple[list[str], list[str]]:
         with Executor(options.workers) as executor:
