@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 import shapely
 from numpy.testing import assert_array_equal
-from outline_files import RIGHT, SQUARE, Ring, feature, rectangle, write_geojson, write_stardist_rois
 
 from cytodisk.errors import ReadError
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.frames import open_frames
 from cytodisk.images.what_it_is import look_at
+from outline_files import RIGHT, SQUARE, Ring, feature, rectangle, write_geojson, write_stardist_rois
 
 roifile = pytest.importorskip("roifile")
 

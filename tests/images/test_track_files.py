@@ -12,11 +12,12 @@ import tifffile
 import zarr
 
 from cytodisk.errors import MaskError, ReadError
+from cytodisk.images.file_parameters import KindParameters
 from cytodisk.images.frames import open_frames
-from cytodisk.images.mask_kinds import look_at
 from cytodisk.images.spots.label_spots import LabelTracks, label_tracks
 from cytodisk.images.spots.spots import Spots, branches
 from cytodisk.images.spots.track_files import read_tracks
+from cytodisk.images.what_it_is import look_at
 from cytodisk.scale import UNKNOWN, Scale
 from outline_files import trackmate_xml, write_geff
 
@@ -48,7 +49,7 @@ def movie(radius: float = 3.5) -> np.ndarray:
 def matched(spots: Spots, labels: np.ndarray, folder: Path, scale: Scale = UNKNOWN) -> LabelTracks:
     tifffile.imwrite(folder / "labels.tif", labels, metadata={"axes": "TYX"}, imagej=True)
     file = open_frames(folder / "labels.tif")
-    return label_tracks(spots, file, look_at(file, "labels").labels, scale)
+    return label_tracks(spots, file, look_at(file, KindParameters(kind="labels")).labels, scale)
 
 
 def trackmate(folder: Path, text: str) -> Spots:
