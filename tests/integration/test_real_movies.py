@@ -103,12 +103,12 @@ def test_masks_that_jitter_are_flagged(data_dir: Path, tmp_path: Path) -> None:
     given = GRID.model_copy(update={"layers": 4, "sectors": 36})
     study = movie_study(open_movie(masks, signal, given), tmp_path / "out")
     settings: dict[str, Any] = {"max_lag": 10, "surrogates": 0, "geometry": False}
-    found = correlate_study(study, "0", **settings)
+    found = correlate_study(study, "rac1", **settings)
     assert found.cells["velocity_jitter"].item() > 0.1
     assert abs(found.cells["jitter"].item()) > 0.02
     (flag,) = [flag for flag in cd.qc_flags(study) if flag.name == "jitter"]
     assert "--skip-lags=-1,0" in flag.advice
-    without = correlate_study(study, "0", skip_lags=(-1, 0), **settings)
+    without = correlate_study(study, "rac1", skip_lags=(-1, 0), **settings)
     assert without.cells["jitter"].item() == 0.0
 
 

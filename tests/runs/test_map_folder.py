@@ -329,3 +329,14 @@ def test_figures_and_outlines_lie_in_the_image(whole: cd.Study, written: Path, t
     x = [point[0] for feature in outlines for point in feature["geometry"]["coordinates"][0]]
     outline = whole.map(5).outline_yx
     assert (min(x), max(x)) == pytest.approx((outline[:, 1].min() + 0.5, outline[:, 1].max() + 0.5), abs=1e-3)
+
+
+def test_a_pattern_stands_for_those_of_its_files_that_fit(place: Path, tmp_path: Path) -> None:
+    inputs = open_inputs(place / "masks" / "im1*_cp_masks.tif", place / "images" / "*.ome.tif", SMALL)
+    assert [source.name for source in inputs.sources] == ["im10_cp_masks.tif", "im11_cp_masks.tif"]
+    assert [file.path.name for file in inputs.signal_files] == ["im10.ome.tif", "im11.ome.tif"]
+    assert inputs.is_folder
+    with pytest.raises(ReadError, match="fits files of 2 folders"):
+        open_inputs(place / "*" / "im1*.tif", None, SMALL)
+    with pytest.raises(ReadError, match="no file fits the pattern"):
+        open_inputs(place / "masks" / "cell*.tif", None, SMALL)

@@ -12,9 +12,13 @@ from movie_files import SMALL, assert_same_movie
 
 import cytodisk as cd
 from cytodisk.errors import CytodiskError
+from cytodisk.runs.batch.batch_file import read_batch
+from cytodisk.runs.batch.dry_run import understand
+from cytodisk.runs.channel_names import common_signal_name
 from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
 from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.runs.study_signal import find_signal
+from cytodisk.store.tables import read_table
 
 FRAMES = 5
 TRUTH = cd.simulate.movie("growing", frames=FRAMES, radius_px=12.0)
@@ -214,3 +218,52 @@ def test_a_pattern_that_fits_nothing_says_so(tmp_path: Path) -> None:
     assert opened(tmp_path / "*" / "cell000[1-3].tif").n_frames == 3
     with pytest.raises(cd.errors.ReadError, match="no file fits the pattern"):
         opened(tmp_path / "m" / "mask*.tif")
+
+
+BATCH = """
+[parameters]
+layers = 2
+sectors = 6
+[[inputs]]
+masks = "cells/*/masks/"
+signal = "{folder}/VASP*.tif"
+[[inputs]]
+masks = "cp"
+signal = "cp"
+"""
+
+
+def test_folders_are_rows_of_a_batch_and_channels_have_one_name_in_all(tmp_path: Path) -> None:
+    for cell in ("one", "two"):
+        slices(tmp_path / "cells" / cell / "masks", "m", MASKS)
+        slices(tmp_path / "cells" / cell, "VASP", SIGNAL[:, 0])
+    cellpose(tmp_path / "cp")
+    (tmp_path / "batch.toml").write_text(BATCH.replace('[[inputs]]\nmasks = "cp"\nsignal = "cp"\n', ""))
+    cd.run_batch(tmp_path / "batch.toml", tmp_path / "out")
+    assert read_table(tmp_path / "out" / "inputs.parquet")["status"].tolist() == ["ok", "ok"]
+    study = cd.open_study(tmp_path / "out" / "inputs" / "cells-one-masks")
+    assert study.windows["channel"].unique().tolist() == ["VASP"]
+    assert study.provenance["parameters"]["channels"] == ["VASP"]
+    tifffile.imwrite(tmp_path / "cells" / "two" / "masks" / "m0006.tif", MASKS[-1])
+    slices(tmp_path / "cells" / "two", "VASP", SIGNAL[-1:, 0], first=6)
+    cd.run_batch(tmp_path / "batch.toml", tmp_path / "out", resume=True)
+    assert read_table(tmp_path / "out" / "inputs.parquet")["frames"].tolist() == [FRAMES, FRAMES + 1]
+    (tmp_path / "batch.toml").write_text(BATCH)
+    understood = [understand(item) for item in read_batch(tmp_path / "batch.toml").inputs]
+    assert [one.channels for one in understood] == ["signal"] * 3
+
+
+@pytest.mark.parametrize(
+    ("paths", "name"),
+    [
+        (["a/c1_VASP.tif", "b/c2_VASP.tif"], "VASP"),
+        (["day1/signal.ome.tif", "day2/signal.ome.tif"], "signal"),
+        (["images/a.tif", "images/b.tif"], "images"),
+        (["x/a.tif", "y/b.tif"], "signal"),
+        (["x/velocity.tif", "y/velocity.tif"], "velocity signal"),
+        (["x/a.tif"], ""),
+        ([], ""),
+    ],
+)
+def test_what_names_of_files_share_is_the_channels_name(paths: list[str], name: str) -> None:
+    assert common_signal_name([Path(path) for path in paths]) == name

@@ -17,7 +17,7 @@ from cytodisk.images.file_parameters import Kind, KindParameters
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.frames import open_frames
-from cytodisk.images.image_paths import is_folder_of_files
+from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 from cytodisk.images.label_boxes import Box, LabelBoxes, cell_box, label_boxes, with_margin
 from cytodisk.images.mask_names import mask_names
 from cytodisk.images.what_it_is import MaskLook, Reader, check_labels, look_at
@@ -107,6 +107,7 @@ def open_mask_files(
     path : path-like
         A file, or a folder with `*_masks.tif`, `*_masks.png`, `*_cp_masks.tif`, `*_cp_masks.png` or
         `*_seg.npy`; if it holds none of these, every TIFF and PNG of it. Folders in it are not looked into.
+        A pattern, as "folder/a*.tif", stands for those of its files that fit.
         Of several files for one image only the first in this order that can be used is taken.
     how : KindParameters, optional
         What the user says of each file; a kind of "auto" is decided for each by itself.
@@ -128,7 +129,7 @@ def open_mask_files(
         A single file is no mask, or one mask of several cells.
     """
     place, how = Path(path), KindParameters() if how is None else how
-    if not is_folder_of_files(place):
+    if not is_folder_of_files(place) and not is_pattern(place):
         file = _frames_of(place, how.mask_choice if choice is None else choice)
         opened = partial(frame_pixels, file)
         reader: Reader = lru_cache(maxsize=1)(opened) if file.n_frames == 1 else opened

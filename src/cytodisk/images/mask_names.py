@@ -90,7 +90,7 @@ def without_name(reason: str, name: str) -> str:
 
 
 def mask_names(folder: Path, images_end: str = "") -> list[tuple[Path, list[Path]]]:
-    """Find the mask files of a folder.
+    """Find the mask files of a folder, or of a pattern.
 
     Parameters
     ----------
@@ -106,9 +106,14 @@ def mask_names(folder: Path, images_end: str = "") -> list[tuple[Path, list[Path
     Raises
     ------
     ReadError
-        The folder cannot be read, or holds no masks.
+        The folder cannot be read, or holds no masks, or a pattern fits files of several folders.
     """
-    files = visible_files(folder)
+    files = files_of(folder)
+    if len(folders := {file.parent for file in files}) > 1:
+        raise ReadError(
+            f"{folder} fits files of {len(folders)} folders: pass the files of one, or all as inputs of "
+            "cytodisk batch"
+        )
     named = [file for file in files if file.name.lower().endswith(ENDINGS)]
     if not named:
         images = [file for file in files if file.suffix.lower() in _IMAGES]

@@ -15,7 +15,7 @@ from cytodisk.errors import ReadError, SignalError, as_data
 from cytodisk.images.chosen_channels import stem_of
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
-from cytodisk.images.image_paths import is_folder_of_files
+from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 from cytodisk.images.mask_files import MaskSource
 from cytodisk.images.mask_names import base_name, image_stem, visible_files
 from cytodisk.scale import Scale
@@ -139,7 +139,7 @@ def pair_images(
     signal : path-like
         A folder, where `a.tif` or `a_img.tif` (TIFF or PNG) belongs to `a_masks.tif`; or how the names of the
         images go on, as "_img" or "_w1.tif", with the folder in front if it is another than that of the
-        masks.
+        masks; or the same as a pattern, "images/*_w1.tif".
 
     Returns
     -------
@@ -185,6 +185,8 @@ def _where(signal: Path, masks: Path) -> tuple[Path, tuple[str, ...]]:
             f"signal {signal} is one file for a folder of masks: pass a folder of images with names as those "
             "of the masks, or how their names go on, as --signal _img"
         )
+    if is_pattern(signal) and signal.name.startswith("*"):
+        signal = signal.with_name(signal.name.lstrip("*") or "*")
     folder = masks if signal.parent == Path() else signal.parent
     if not signal.name.startswith(_STARTS_OF_ENDINGS) or not folder.is_dir():
         raise ReadError(

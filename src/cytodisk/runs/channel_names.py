@@ -5,13 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
 
 from cytodisk.errors import ParameterError, SignalError
-from cytodisk.images.chosen_channels import with_names
+from cytodisk.images.chosen_channels import stem_of, with_names
+from cytodisk.parameters import Parameters
 
 if TYPE_CHECKING:
     from cytodisk.images.frame_file import FrameFile
+
+ChannelSettings = TypeVar("ChannelSettings", bound=Parameters)
 
 VELOCITIES = ("velocity", "velocity_cell_frame")  # of the edge: no channel can have such a name
 _LONGEST = 24
@@ -52,6 +56,51 @@ def channels_words(signal: FrameFile) -> str:
         return f"1 channel without a name: it is called {names[0]} (name it: --channels {given})"
     called = f"they are called {', '.join(names)} (name them: --channels {given})"
     return f"{len(names)} channels without names: {called}"
+
+
+def common_signal_name(signals: Sequence[Path]) -> str:
+    """What to call channels without a name in many files, so that all have one name.
+
+    Parameters
+    ----------
+    signals : sequence of Path
+
+    Returns
+    -------
+    str
+        The words that all names of the files share, as "VASP" for "a_VASP.tif" and "b_VASP.tif"; or else the
+        name of their folder, or "signal". Empty for a single file, which says it alone.
+    """
+    if len(signals) < 2:
+        return ""
+    words = [re.findall(r"[^\W_]+", stem_of(re.sub(r"[*?\[\]]", " ", path.name))) for path in signals]
+    shared = [word for word in words[0] if all(word in other for other in words[1:])]
+    folders = {path.parent.name for path in signals}
+    name = "_".join(shared) or (folders.pop() if len(folders) == 1 else "") or "signal"
+    return f"{name} signal" if name in VELOCITIES else name
+
+
+def with_common_name(
+    signal: FrameFile | None, name: str, parameters: ChannelSettings
+) -> tuple[FrameFile | None, ChannelSettings]:
+    """A signal with a name that many share, if its file has none, and parameters that say so.
+
+    Parameters
+    ----------
+    signal : FrameFile or None
+    name : str
+        Empty to change nothing.
+    parameters : ChannelParameters
+
+    Returns
+    -------
+    signal : FrameFile or None
+    parameters : ChannelParameters
+    """
+    if signal is None or not signal.unnamed or not name:
+        return signal, parameters
+    named = with_names(signal, name)
+    return named, parameters.changed(channels=named.channels)
 
 
 def correlation_name(names: Sequence[str]) -> str:

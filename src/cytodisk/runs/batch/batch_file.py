@@ -7,7 +7,7 @@ import re
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from cytodisk.runs.batch.batch_faults import Faults
 from cytodisk.runs.batch.batch_file_rows import COLUMNS, KEYS, PARAMETERS_OF, FileRow, RowReader
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.batch.input_columns import OWN_COLUMNS
+from cytodisk.runs.channel_names import common_signal_name
 from cytodisk.store.csv_tables import text_as_meant
 from cytodisk.store.tables import (
     CONSISTENCY_COLUMNS,
@@ -97,7 +98,8 @@ def read_batch(path: Path) -> Batch:
     reader = RowReader(path.absolute().parent, kind, parameters, columns, faults)
     inputs = tuple(_all_different(reader, rows))
     faults.raise_if_any(path)
-    return Batch(path, table, inputs, columns)
+    name = common_signal_name([item.signal for item in inputs if item.signal is not None])
+    return Batch(path, table, tuple(replace(item, signal_name=name) for item in inputs), columns)
 
 
 def _read(path: Path) -> str:

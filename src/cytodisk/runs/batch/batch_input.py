@@ -31,6 +31,8 @@ class BatchInput:
         For a movie `MovieParameters`; with the scale and the names of channels that were given.
     columns : tuple of value
         Condition, replicate and further columns; their names stand in the batch.
+    signal_name : str
+        What to call the channel of a signal whose file has no name for it: the same in all inputs.
     """
 
     name: str
@@ -39,9 +41,10 @@ class BatchInput:
     signal: Path | None
     parameters: MapParameters
     columns: tuple[Value, ...] = ()
+    signal_name: str = ""
 
     @property
     def settings(self) -> str:
         """A hash of what decides the result beside the files."""
-        content = [self.kind, self.parameters.model_dump(mode="json")]
+        content = [self.kind, self.parameters.model_dump(mode="json"), self.signal_name]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cytodisk.errors import CytodiskError
+from cytodisk.images.chosen_channels import with_names
 from cytodisk.runs.batch.batch_file_rows import SCALE
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.cells.cell_inputs import open_inputs
@@ -86,8 +87,10 @@ def _with_files(given: Understood, item: BatchInput) -> Understood:
         files = open_movie_files(item.masks, item.signal, item.parameters)
         given = replace(given, frames=files.masks.n_frames, frame_interval_s=files.scale.frame_interval_s)
         signal, pixel_size_um = files.signal, files.scale.pixel_size_um
+        if signal is not None:
+            signal = with_names(signal, item.signal_name)
     else:
-        inputs = open_inputs(item.masks, item.signal, item.parameters)
+        inputs = open_inputs(item.masks, item.signal, item.parameters, item.signal_name)
         signal, pixel_size_um = next(iter(inputs.signal_files), None), inputs.scale.pixel_size_um
     check_depths(_grid(item.parameters), Scale(pixel_size_um))
     channels = signal.channels if signal is not None else ()

@@ -28,5 +28,8 @@ def run_of(item: BatchInput, folder: Path) -> Callable[..., Study]:
     callable
     """
     if isinstance(item.parameters, MovieParameters):
-        return partial(movie_study, open_movie(item.masks, item.signal, item.parameters), folder)
-    return partial(map_study, open_inputs(item.masks, item.signal, item.parameters), folder)
+        return partial(
+            movie_study, open_movie(item.masks, item.signal, item.parameters, item.signal_name), folder
+        )
+    inputs = open_inputs(item.masks, item.signal, item.parameters, item.signal_name)
+    return partial(map_study, inputs, folder)

@@ -14,13 +14,13 @@ from cytodisk.images.chosen_channels import with_names
 from cytodisk.images.file_parameters import KindParameters
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frames import open_frames
-from cytodisk.images.image_paths import is_folder_of_files
+from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 from cytodisk.images.mask_files import MaskSource, open_mask_files
 from cytodisk.images.outline_sizes import sized_like
 from cytodisk.images.signal_files import common_name, pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
-from cytodisk.runs.channel_names import channels_words, name_channels
+from cytodisk.runs.channel_names import channels_words, name_channels, with_common_name
 from cytodisk.runs.file_notes import file_notes
 from cytodisk.runs.file_scales import agreed
 from cytodisk.scale import Scale
@@ -113,7 +113,10 @@ def _count(number: int, of: str) -> str:
 
 
 def open_inputs(
-    masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: FileParameters
+    masks: str | os.PathLike[str],
+    signal: str | os.PathLike[str] | None,
+    parameters: FileParameters,
+    signal_name: str = "",
 ) -> CellInputs:
     """Open the files of a run and check that they fit.
 
@@ -127,6 +130,8 @@ def open_inputs(
         folder, or an ending of names; see `pair_images`.
     parameters : FileParameters
         Those of the run, which has more.
+    signal_name : str
+        What to call channels without a name, in the place of the file's name.
 
     Returns
     -------
@@ -139,21 +144,25 @@ def open_inputs(
         A file is missing, damaged, or does not fit.
     """
     is_path("masks", masks)
-    if is_folder_of_files(Path(masks)):
-        return _open_folder(Path(masks), signal, parameters)
+    if is_folder_of_files(Path(masks)) or is_pattern(Path(masks)):
+        return _open_folder(Path(masks), signal, parameters, signal_name)
     choice = sized_like(parameters.mask_choice, masks, signal, parameters.signal_choice, "C")
     sources = open_mask_files(masks, parameters.part(KindParameters), choice=choice)
-    found = _open_signal(sources[0], signal, parameters)
-    files = [file for file in (found.file, sources[0].file) if file is not None]
+    image, parameters = with_common_name(
+        _open_signal(sources[0], signal, parameters), signal_name, parameters
+    )
+    files = [file for file in (image, sources[0].file) if file is not None]
     pixel_size_um = parameters.pixel_size_um or agreed(files, "pixel_size_um")
-    return CellInputs(Path(masks), sources, {sources[0].name: found}, parameters, Scale(pixel_size_um))
+    return CellInputs(
+        Path(masks), sources, {sources[0].name: SignalFile(image)}, parameters, Scale(pixel_size_um)
+    )
 
 
 def _open_folder(
-    masks: Path, signal: str | os.PathLike[str] | None, parameters: FileParameters
+    masks: Path, signal: str | os.PathLike[str] | None, parameters: FileParameters, signal_name: str
 ) -> CellInputs:
     sources = open_mask_files(masks, parameters.part(KindParameters), images=_ending_beside(masks, signal))
-    signals, remarks = _open_signals(sources, signal, parameters)
+    signals, remarks = _open_signals(sources, signal, parameters, signal_name)
     pixel_size_um = parameters.pixel_size_um
     if pixel_size_um is None:
         scaled = with_common_scale(sources, signals)
@@ -172,14 +181,15 @@ def _ending_beside(masks: Path, signal: str | os.PathLike[str] | None) -> str:
     if signal is None or Path(signal).exists():
         return ""
     folder = Path(signal).parent
-    return Path(signal).name if folder in (Path(), masks) else ""
+    beside = masks.parent if is_pattern(masks) else masks
+    return Path(signal).name.lstrip("*") if folder in (Path(), beside) else ""
 
 
 def _open_signal(
     source: MaskSource, signal: str | os.PathLike[str] | None, parameters: FileParameters
-) -> SignalFile:
+) -> FrameFile | None:
     found = None if signal is None else _fitting_image(source, Path(signal), parameters)
-    return SignalFile(name_channels(found, parameters.channels))
+    return name_channels(found, parameters.channels)
 
 
 def _fitting_image(source: MaskSource, path: Path, parameters: FileParameters) -> FrameFile | None:
@@ -192,7 +202,10 @@ def _fitting_image(source: MaskSource, path: Path, parameters: FileParameters) -
 
 
 def _open_signals(
-    sources: Sequence[MaskSource], signal: str | os.PathLike[str] | None, parameters: FileParameters
+    sources: Sequence[MaskSource],
+    signal: str | os.PathLike[str] | None,
+    parameters: FileParameters,
+    signal_name: str,
 ) -> tuple[dict[str, SignalFile], list[str]]:
     """The image of each mask file by its name, and remarks."""
     if signal is None:
@@ -203,7 +216,7 @@ def _open_signals(
     if all(found.file is None for found in opened):
         faults = [found.fault for found in opened if found.fault is not None]
         raise SignalError(f"signal {signal}: no image can be used: {faults[0] if faults else 'no mask can'}")
-    name = common_name(Path(signal))
+    name = signal_name or common_name(Path(signal))
     opened = [found if found.file is None else SignalFile(with_names(found.file, name)) for found in opened]
     alike, remarks = with_common_channels(opened, parameters.channels)
     return {source.name: found for source, found in zip(sources, alike, strict=True)}, remarks

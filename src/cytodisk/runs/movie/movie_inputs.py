@@ -20,7 +20,7 @@ from cytodisk.images.what_it_is import MaskLook, look_at
 from cytodisk.motion.still_interior import fade_in_px
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.cells.cell_inputs import check_signal
-from cytodisk.runs.channel_names import channels_words, name_channels
+from cytodisk.runs.channel_names import channels_words, name_channels, with_common_name
 from cytodisk.runs.depth_layers import check_depths, depth_words
 from cytodisk.runs.file_notes import file_notes
 from cytodisk.runs.file_scales import agreed
@@ -130,7 +130,10 @@ class MovieInputs:
 
 
 def open_movie(
-    masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: FollowedCellParameters
+    masks: str | os.PathLike[str],
+    signal: str | os.PathLike[str] | None,
+    parameters: FollowedCellParameters,
+    signal_name: str = "",
 ) -> MovieInputs:
     """Open the files of a run and check that they fit.
 
@@ -141,6 +144,8 @@ def open_movie(
     signal : path-like, optional
         Images of the shape of the masks, as many frames as they.
     parameters : MovieParameters
+    signal_name : str
+        What to call channels without a name, in the place of the file's name.
 
     Returns
     -------
@@ -152,6 +157,7 @@ def open_movie(
         A file is missing, damaged, or does not fit.
     """
     files = open_movie_files(masks, signal, parameters)
+    signal_file, parameters = with_common_name(files.signal, signal_name, parameters)
     mask_file, scale = files.masks, files.scale
     look = look_at(mask_file, parameters.part(KindParameters))
     mask_file = look.file
@@ -163,7 +169,7 @@ def open_movie(
     grid = polar_grid(parameters.part(PolarGridParameters))
     check_depths(grid, scale)
     mothers = {} if given is None else given.mothers
-    return MovieInputs(mask_file, look.kind, tracks, files.signal, parameters, grid, scale, mothers)
+    return MovieInputs(mask_file, look.kind, tracks, signal_file, parameters, grid, scale, mothers)
 
 
 def _given_tracks(
