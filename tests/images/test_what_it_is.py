@@ -160,3 +160,44 @@ def test_pieces_are_numbered(tmp_path: Path) -> None:
         seen(tmp_path, CELLS.astype(np.uint8), label=True)
     with pytest.raises(MaskError, match="leave out --label"):
         seen(tmp_path, cell(), label=True, kind="labels")
+
+
+LABELS = CELLS.astype(np.uint8)
+COLOURS = [0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255] + [0] * 756
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.tif"])
+@pytest.mark.parametrize("bits", [8, 2])
+def test_a_palette_of_colours_holds_labels(tmp_path: Path, name: str, bits: int) -> None:
+    picture = Image.fromarray(LABELS, mode="L").convert("P")
+    picture.putpalette(COLOURS)
+    picture.save(tmp_path / name, **({"bits": bits} if name == "a.png" else {}))
+    file = open_frames(tmp_path / name)
+    look = look_at(file)
+    assert (look.kind, look.labels) == ("labels", ((1, 2, 3),))
+    np.testing.assert_array_equal(file.frame(0)[0], LABELS)
+    assert "numbers of a palette's colours" in file.notes[0]
+
+
+def test_a_palette_of_greys_is_what_it_looks_like(tmp_path: Path) -> None:
+    picture = Image.fromarray(np.where(cell(), 0, 1).astype(np.uint8), mode="L").convert("P")
+    picture.putpalette([255] * 3 + [0] * 765)  # number 0 is white
+    picture.save(tmp_path / "a.png")
+    file = open_frames(tmp_path / "a.png")
+    np.testing.assert_array_equal(file.frame(0)[0], cell() * 255)
+    assert (file.notes, look_at(file).kind) == ((), "mask")
+
+
+@pytest.mark.parametrize("layout", [{}, {"compression": "zlib"}, {"tile": (32, 32), "compression": "zlib"}])
+def test_where_0_is_white_one_bit_is_turned_round(tmp_path: Path, layout: dict[str, Any]) -> None:
+    tifffile.imwrite(tmp_path / "a.tif", ~cell(), photometric="miniswhite", **layout)
+    shown = np.asarray(Image.open(tmp_path / "a.tif")) if not layout else cell()
+    np.testing.assert_array_equal(shown, cell())  # as viewers show it
+    file = open_frames(tmp_path / "a.tif")
+    np.testing.assert_array_equal(file.frame(0)[0], cell())
+    assert (file.dtype, look_at(file).kind) == (bool, "mask")
+    found = file.stored.by_piece(0)
+    if found is not None:
+        np.testing.assert_array_equal(found[0](slice(10, 40), slice(20, 90))[0], cell()[10:40, 20:90])
+    tifffile.imwrite(tmp_path / "b.tif", cell(), photometric="minisblack", **layout)
+    np.testing.assert_array_equal(open_frames(tmp_path / "b.tif").frame(0)[0], cell())

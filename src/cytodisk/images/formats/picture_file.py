@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
-from typing import Any
+from typing import Any, BinaryIO
 
 import imageio.v3 as imageio
 import numpy as np
@@ -20,6 +20,11 @@ from cytodisk.images.frame_file import Cut, FileChoice, FrameFile, as_channels_f
 
 _PNG: dict[str, Any] = {"extension": ".png", "plugin": "pillow"}
 _COLOURS = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha"), 2: ("grey", "alpha")}
+PALETTE = (
+    "its pixels are numbers of a palette's colours, which are taken as labels; as a signal they mean "
+    "nothing: save it in shades of grey"
+)
+"""What to say of a picture that stores the numbers of colours."""
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _SAMPLES = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}  # of a pixel, by type of colour
 _COPIES = 3  # of the pixels that decoding holds at once
@@ -31,10 +36,27 @@ def open_picture(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
     """Look at a PNG without reading its pixels; see `cytodisk.images.frames.open_frames`."""
     pixels = _checked_pixels(file)
     with file.open("rb") as opened, _of_any_size(pixels):  # imageio would leave a damaged file open
+        palette = _palette(opened)
         properties = imageio.improps(opened, **_PNG)
-    shape = tuple(properties.shape)
+    shape, dtype = tuple(properties.shape), properties.dtype
+    notes: tuple[str, ...] = ()
+    if palette is not None:
+        shape, dtype = shape[:2], np.dtype(np.uint8)
+        notes = () if _is_grey(palette) else (PALETTE,)
     axes, names = ("YX", ("0",)) if len(shape) == 2 else ("YXC", _COLOURS[shape[2]])
-    return FrameFile(file, axes, shape, properties.dtype, names, PictureFrames(file, axes))
+    return FrameFile(file, axes, shape, dtype, names, PictureFrames(file, axes), notes=notes)
+
+
+def _palette(opened: BinaryIO) -> np.ndarray[Any, Any] | None:
+    """Colours of a picture that stores their numbers, shape (N, 3); None for any other. Reads no pixels."""
+    with Image.open(opened) as picture:
+        found = picture.getpalette() if picture.mode == "P" else None
+    opened.seek(0)
+    return None if found is None else np.array(found, dtype=np.uint8).reshape(-1, 3)
+
+
+def _is_grey(palette: np.ndarray[Any, Any]) -> bool:
+    return bool((palette == palette[:, :1]).all())
 
 
 def _checked_pixels(file: Path) -> int:
@@ -85,7 +107,12 @@ class PictureFrames:
         """Its pixels, shape (C, H, W)."""
         pixels = _checked_pixels(self.path)
         with self.path.open("rb") as opened, _of_any_size(pixels):
-            return as_channels_first(np.asarray(imageio.imread(opened, **_PNG)), self.axes)
+            palette = _palette(opened)
+            if palette is None:
+                return as_channels_first(np.asarray(imageio.imread(opened, **_PNG)), self.axes)
+            with Image.open(opened) as picture:
+                numbers = np.asarray(picture)
+            return as_channels_first(palette[numbers, 0] if _is_grey(palette) else numbers, self.axes)
 
     def by_piece(self, number: int) -> tuple[Cut, int] | None:
         """None: a PNG is one piece."""

@@ -11,8 +11,10 @@ import numpy as np
 import tifffile
 
 from cytodisk.errors import ReadError
+from cytodisk.images.changed_frames import changed_file
 from cytodisk.images.claims import check_claim
 from cytodisk.images.formats.file_metadata import channel_names
+from cytodisk.images.formats.picture_file import PALETTE
 from cytodisk.images.formats.stored_axes import stored_axes
 from cytodisk.images.formats.tiff_frames import TiffFrames
 from cytodisk.images.formats.tiff_pages import opened_tiff, whole_tiff
@@ -43,9 +45,12 @@ def open_tiff(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
         frames, gaps = _frames_there(found, series, axes, shape)
         _check_claims(file, tiff, series)
         dtype = np.dtype(series.dtype)
-        lossy = series.keyframe.compression in _LOSSY
+        remarks: tuple[str, ...] = _LOSS if series.keyframe.compression in _LOSSY else ()
+        photometric, bits = series.keyframe.photometric, series.keyframe.bitspersample
+        remarks += (PALETTE,) if photometric == tifffile.PHOTOMETRIC.PALETTE else ()
+        black = photometric == tifffile.PHOTOMETRIC.MINISWHITE and bits == 1
     sizes = [frames if axis == "T" else size for axis, size in zip(known.letters, known.shape, strict=True)]
-    return FrameFile(
+    opened = FrameFile(
         file,
         known.letters,
         tuple(sizes),
@@ -53,11 +58,12 @@ def open_tiff(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
         channel_names(says.channels, sizes[known.letters.index("C")] if "C" in known.letters else 1),
         TiffFrames(file, found.number, found.plain, axes, shape, stored.slices, stored.z),
         says.scale,
-        tuple(dict.fromkeys([*found.notes, *says.notes, *gaps, *(_LOSS if lossy else ())])),
+        tuple(dict.fromkeys([*found.notes, *says.notes, *gaps, *remarks])),
         "; ".join(filter(None, [known.evidence, found.evidence])),
         known.said_by,
         known.doubt,
     )
+    return changed_file(opened, "inverted") if black else opened  # of one bit, 0 is white there
 
 
 def _frames_there(
