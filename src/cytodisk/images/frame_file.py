@@ -87,6 +87,8 @@ class FrameFile:
         Who named its axes; where nobody did, they are a guess.
     doubt : str
         What speaks against a guess, in words that end with the remedy; empty if nothing does.
+    offers : tuple of str
+        What a user has to choose in it: "scene" and "z", where there are several.
     unnamed : bool
         The file has no names for its channels: they are called after it.
     files : tuple of Path
@@ -104,6 +106,7 @@ class FrameFile:
     evidence: str = ""
     said_by: Said = "file"
     doubt: str = ""
+    offers: tuple[str, ...] = ()
     unnamed: bool = False
     files: tuple[Path, ...] = ()
 

@@ -13,6 +13,7 @@ import xarray as xr
 
 from cytodisk.checks import is_path, one_of
 from cytodisk.errors import ReadError
+from cytodisk.images.choice_use import check_choice
 from cytodisk.images.chosen_channels import with_channels, with_names
 from cytodisk.images.claims import check_memory
 from cytodisk.images.file_axes import axes_named
@@ -172,6 +173,7 @@ def read_image(
     file = open_frames(path, unnamed=unnamed, choice=choice.signal_choice, flag="channels")
     if file.doubt:
         raise ReadError(file.doubt)
+    check_choice([file], choice.scene, choice.z, flags="")
     shape = (file.n_frames, len(file.channels) if "C" in file.axes else 1, *file.image_shape)
     check_memory(
         file.path, "the whole movie", math.prod(shape) * file.dtype.itemsize, "read it frame by frame"

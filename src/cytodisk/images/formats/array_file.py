@@ -41,6 +41,7 @@ def open_array(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
         evidence=known.evidence,
         said_by=known.said_by,
         doubt=known.doubt,
+        offers=stored.offers,
     )
 
 

@@ -41,6 +41,11 @@ class StoredAxes:
         return self.shape[self.axes.index("Z")] if "Z" in self.axes else 1
 
     @property
+    def offers(self) -> tuple[str, ...]:
+        """What there is to choose, as of a `FrameFile`."""
+        return ("z",) if self.depth > 1 else ()
+
+    @property
     def slices(self) -> tuple[int, ...]:
         """Numbers of the slices that are read."""
         return tuple(range(self.depth)) if isinstance(self.z, str) else (self.z,)

@@ -62,6 +62,7 @@ def open_tiff(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
         "; ".join(filter(None, [known.evidence, found.evidence])),
         known.said_by,
         known.doubt,
+        (("scene",) if found.of > 1 else ()) + stored.offers,
     )
     return changed_file(opened, "inverted") if black else opened  # of one bit, 0 is white there
 

@@ -36,6 +36,8 @@ class TiffSeries:
     notes : tuple of str
         What of the metadata is not believed.
     evidence : str
+    of : int
+        How many series there are to choose from.
     """
 
     number: int
@@ -45,6 +47,7 @@ class TiffSeries:
     image: OmeImage | None = None
     notes: tuple[str, ...] = ()
     evidence: str = ""
+    of: int = 1
 
 
 def chosen_series(
@@ -85,7 +88,7 @@ def chosen_series(
             f"its OME metadata describe {len(images)} images, it holds {len(series)}: scale and names of "
             "channels are not believed; pass --pixel-size, --frame-interval and --channels",
         )
-    return TiffSeries(number, False, series[number].axes, series[number].shape, image, notes)
+    return TiffSeries(number, False, series[number].axes, series[number].shape, image, notes, of=len(series))
 
 
 def _ome(file: Path, tiff: tifffile.TiffFile) -> tuple[tuple[OmeImage, ...], str]:
@@ -187,7 +190,7 @@ def _scene(file: Path, series: Sequence[Any], names: Sequence[str], scene: str |
     if not series:
         raise ReadError(f"{file} holds no image: copy it again")
     names = list(names) if len(names) == len(series) else [one.name for one in series]
-    if scene is None and len(series) == 1:
+    if len(series) == 1:  # a scene is chosen in another file then, as that of the signal
         return 0
     if scene in names:
         return names.index(scene)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from cytodisk.checks import is_path
 from cytodisk.errors import ReadError, SignalError, as_data
+from cytodisk.images.choice_use import check_choice
 from cytodisk.images.chosen_channels import with_names
 from cytodisk.images.file_parameters import KindParameters
 from cytodisk.images.frame_file import FrameFile
@@ -152,6 +153,7 @@ def open_inputs(
         _open_signal(sources[0], signal, parameters), signal_name, parameters
     )
     files = [file for file in (image, sources[0].file) if file is not None]
+    check_choice(files, parameters.scene, parameters.z)
     pixel_size_um = parameters.pixel_size_um or agreed(files, "pixel_size_um")
     return CellInputs(
         Path(masks), sources, {sources[0].name: SignalFile(image)}, parameters, Scale(pixel_size_um)
@@ -163,6 +165,8 @@ def _open_folder(
 ) -> CellInputs:
     sources = open_mask_files(masks, parameters.part(KindParameters), images=_ending_beside(masks, signal))
     signals, remarks = _open_signals(sources, signal, parameters, signal_name)
+    opened = [source.file for source in sources] + [found.file for found in signals.values()]
+    check_choice(opened, parameters.scene, parameters.z)
     pixel_size_um = parameters.pixel_size_um
     if pixel_size_um is None:
         scaled = with_common_scale(sources, signals)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from cytodisk.checks import is_path
 from cytodisk.errors import MaskError, ParameterError, SignalError
+from cytodisk.images.choice_use import check_choice
 from cytodisk.images.file_parameters import Kind, KindParameters
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.movie_files import open_movie_masks
@@ -220,6 +221,7 @@ def open_movie_files(
     if signal_file is not None:
         check_signal(mask_file, signal_file)
     opened = [file for file in (signal_file, mask_file) if file is not None]
+    check_choice(opened, parameters.scene, parameters.z)
     scale = Scale(
         parameters.pixel_size_um or agreed(opened, "pixel_size_um"),
         parameters.frame_interval_s or agreed(opened, "frame_interval_s"),

@@ -91,8 +91,18 @@ def scene_file(
     dtype = np.dtype(np.float32) if taken.z == "mean" else scene.dtype
     names = channel_names(scene.channels if all(scene.channels) else (), len(scene.channels))
     evidence = ", ".join(filter(None, _evidence(scenes, taken)))
+    offers = (("scene",) if len(scenes) > 1 else ()) + (("z",) if scene.slices > 1 else ())
     return FrameFile(
-        file, axes, shape, dtype, names, stored(scene, taken), scene.scale, scene.notes, evidence
+        file,
+        axes,
+        shape,
+        dtype,
+        names,
+        stored(scene, taken),
+        scene.scale,
+        scene.notes,
+        evidence,
+        offers=offers,
     )
 
 
