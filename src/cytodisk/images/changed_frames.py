@@ -12,9 +12,15 @@ from scipy import ndimage
 
 from cytodisk.images.frame_file import Cut, FrameFile, StoredFrames
 
-Change: TypeAlias = Literal["numbered", "whole", "inverted"]
+Change: TypeAlias = Literal["numbered", "whole", "inverted", "class 1", "class 2"]
 
-_DTYPES: dict[str, type] = {"numbered": np.int32, "whole": np.int64, "inverted": bool}
+_DTYPES: dict[str, type] = {
+    "numbered": np.int32,
+    "whole": np.int64,
+    "inverted": bool,
+    "class 1": bool,
+    "class 2": bool,
+}
 _EIGHT = np.ones((3, 3), dtype=bool)
 
 
@@ -24,9 +30,9 @@ def changed_file(file: FrameFile, change: Change) -> FrameFile:
     Parameters
     ----------
     file : FrameFile
-    change : {"numbered", "whole", "inverted"}
+    change : {"numbered", "whole", "inverted", "class 1", "class 2"}
         Pieces (8-connected) of what is not 0 get the numbers 1, 2, …; whole numbers that are stored as floats
-        become integers; or True and False change places.
+        become integers; True and False change places; or the mask is where the value is 1, or 2.
     """
     return replace(file, dtype=np.dtype(_DTYPES[change]), stored=ChangedFrames(file.stored, change))
 
@@ -38,7 +44,7 @@ class ChangedFrames:
     Attributes
     ----------
     stored : StoredFrames
-    change : {"numbered", "whole", "inverted"}
+    change : {"numbered", "whole", "inverted", "class 1", "class 2"}
     """
 
     stored: StoredFrames
@@ -66,4 +72,6 @@ _CHANGES: dict[str, Callable[[np.ndarray[Any, Any]], np.ndarray[Any, Any]]] = {
     "numbered": _numbered,
     "whole": lambda frame: frame.astype(np.int64),
     "inverted": np.logical_not,
+    "class 1": lambda frame: frame == 1,
+    "class 2": lambda frame: frame == 2,
 }

@@ -11,6 +11,7 @@ import numpy as np
 
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
 from cytodisk.images.changed_frames import changed_file
+from cytodisk.images.evidence.classes import TwoClasses, may_be_classes, two_classes
 from cytodisk.images.evidence.frame_sight import FrameSight, see_frame
 from cytodisk.images.evidence.picture_signs import fraction_words, picture_words
 from cytodisk.images.file_axes import axis_words
@@ -100,10 +101,12 @@ def _check_shape(file: FrameFile, how: KindParameters) -> None:
     if "C" in file.axes:
         axes = file.axes.replace("C", "T")
         frames = "" if "T" in file.axes else f"; or if they are frames, pass --axes {axes}"
+        fractions = file.dtype.kind == "f"
+        probabilities = "; of probabilities, export the Simple Segmentation instead" if fractions else ""
         raise MaskError(
             f"{file.path} has {len(file.channels)} channels ({', '.join(file.channels)}): "
             "a mask has one value a pixel; pass the channel that holds it, as --mask-channel 0, or save the "
-            f"mask alone, not as a colour picture{frames}"
+            f"mask alone, not as a colour picture{frames}{probabilities}"
         )
     if how.kind == "mask" and file.n_frames > 1:
         raise MaskError(
@@ -117,6 +120,9 @@ def _check_shape(file: FrameFile, how: KindParameters) -> None:
 def _decided(file: FrameFile, kind: Kind, read: Reader) -> MaskLook:
     seen = _seen(file, read, pictures_refused=kind == "auto")
     usable = [sight for sight in seen if isinstance(sight, FrameSight)]
+    classes = two_classes(usable) if kind == "auto" else None
+    if classes is not None:
+        return _of_classes(file, classes)
     if kind == "auto":
         if not usable:
             raise next(sight for sight in reversed(seen) if isinstance(sight, ReadError))
@@ -134,6 +140,17 @@ def _decided(file: FrameFile, kind: Kind, read: Reader) -> MaskLook:
         return MaskLook("labels", file, labels, _several_words(several))
     found: Kind = "stack" if file.n_frames > 1 else "mask"
     return MaskLook(found, file, evidence="no frame holds two values beside 0" if found == "stack" else "")
+
+
+def _of_classes(file: FrameFile, classes: TwoClasses | str) -> MaskLook:
+    """A file of two classes as masks, where it is plain which one is the background."""
+    if isinstance(classes, str):
+        raise MaskError(f"{file.path} {classes}")
+    if file.doubt:
+        raise MaskError(file.doubt)
+    masks = changed_file(file, "class 1" if classes.cells == 1 else "class 2")
+    masks = replace(masks, notes=(*masks.notes, classes.words))
+    return MaskLook("stack" if file.n_frames > 1 else "mask", masks, evidence=classes.words)
 
 
 def _several_words(sight: FrameSight | None) -> str:
@@ -162,7 +179,7 @@ def _seen(file: FrameFile, read: Reader, pictures_refused: bool) -> list[Seen]:
         whole |= sight.is_whole
         fractions = fractions or fraction_words(sight)
         words = ""
-        if sight.is_whole and len(sight.cells) > 1 and not looked:
+        if sight.is_whole and len(sight.cells) > 1 and not looked and not may_be_classes(sight):
             looked, words = True, picture_words(frame, sight)
         if words := words or (fractions if looked or (not whole and number >= _FEW_FRAMES) else ""):
             raise MaskError(f"{file.path} {words}")
@@ -227,10 +244,12 @@ def _refuse_background(file: FrameFile, usable: Sequence[FrameSight]) -> None:
     what = "each frame" if file.n_frames > 1 else "the image"
     one = "stack" if file.n_frames > 1 else "mask"
     kind = "labels" if any(len(sight.cells) > 1 for sight in held) else one
+    classes = any(may_be_classes(sight) for sight in held)
+    export = " (of classes of ilastik, export Object Identities)" if classes else ""
     raise MaskError(
         f"{file.path} looks inverted, with the background marked as a cell: {share:.0%} of the border of "
-        f"{what} has the value {value:g}. Invert it (in Fiji: Edit > Invert), or set the background to 0; if "
-        f"the cell does fill the image, pass kind={kind!r} (--kind {kind})"
+        f"{what} has the value {value:g}. Invert it (in Fiji: Edit > Invert), or set the background to "
+        f"0{export}; if the cell does fill the image, pass kind={kind!r} (--kind {kind})"
     )
 
 

@@ -56,7 +56,10 @@ def fraction_words(sight: FrameSight) -> str:
     least, greatest = float(values.min()), float(values.max())
     between = f"values between {least:.3g} and {greatest:.3g} in frame {sight.number}"
     if least >= 0 and greatest <= 1:
-        return f"looks like probabilities, not a mask ({between}): threshold it, as image > 0.5"
+        return (
+            f"looks like probabilities, not a mask ({between}): threshold it, as image > 0.5, or export the "
+            "Simple Segmentation (ilastik)"
+        )
     return f"looks like a picture, not a mask or label image ({between}): threshold it"
 
 
