@@ -108,7 +108,7 @@ def value_of_text(field: FieldInfo, text: str) -> Any:
     """
     wanted = kinds(field.annotation)
     if tuple not in wanted:
-        return text
+        return _number_of(text, wanted)
     item = tuple_items(field.annotation)
     parts = [part.strip() for part in text.split(":" if item == (int, int) else ",")]
     if item[0] not in (int, float):
@@ -118,6 +118,12 @@ def value_of_text(field: FieldInfo, text: str) -> Any:
         return text
     values = tuple(item[0](part) for part in parts)
     return values[0] if len(values) == 1 and float in wanted else values
+
+
+def _number_of(text: str, wanted: frozenset[Any]) -> Any:
+    if int in wanted and re.fullmatch(_WHOLE, text):
+        return int(text)
+    return float(text) if float in wanted and re.fullmatch(_NUMBER, text) else text
 
 
 def tuple_items(annotation: Any) -> tuple[Any, ...]:

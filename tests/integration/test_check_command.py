@@ -89,3 +89,17 @@ def test_ranges_of_frames(numbers: list[int], words: str) -> None:
 def test_sizes_show_a_wrong_scale() -> None:
     assert size_words([7854], Scale(0.1)).endswith("as a circle of 10 µm across")
     assert size_words([7854], Scale(100.0)).endswith("as a circle of 1e+04 µm across")
+
+
+def test_a_comma_in_a_number_is_named(run: Run, tmp_path: Path) -> None:
+    mask = np.zeros((30, 60), dtype=np.uint8)
+    mask[5:25, 5:25] = 1
+    path = write(tmp_path / "mask.tif", mask)
+    assert_refused(run("check", path, "--pixel-size", "0,2"), "--pixel-size must be", "got '0,2': write 0.2:")
+    common = ("map", path, "-o", tmp_path / "out")
+    assert_refused(run(*common, "--layers", "1,000"), "--layers must be", "write 1000:")
+    assert_refused(run(*common, "--depth-um", "0,5,1,2"), "--depth-um must be", "write 0.5,1.2")
+    (tmp_path / "p.toml").write_text("layers = 3\nedge_length = 0,7\n")
+    refused = run(*common, "--parameters", tmp_path / "p.toml")
+    assert_refused(refused, "p.toml: line 2 has a number with a comma", "write edge_length = 0.7")
+    assert not (tmp_path / "out").exists()

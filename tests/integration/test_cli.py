@@ -161,7 +161,7 @@ def test_counts_below_1(run: Run, mask: Path, tmp_path: Path, name: str, value: 
 
 
 def test_counts_that_are_no_numbers(run: Run, mask: Path, tmp_path: Path) -> None:
-    assert_refused(run("map", mask, "-o", tmp_path / "out", "--layers", "many"), "--layers", "valid integer")
+    assert_refused(run("map", mask, "-o", tmp_path / "out", "--layers", "many"), "--layers", "whole number")
 
 
 def test_no_workers(run: Run, mask: Path, tmp_path: Path) -> None:

@@ -218,7 +218,11 @@ def test_a_file_that_is_none_is_refused(folder: Path, text: str, words: str) -> 
 @pytest.mark.parametrize(
     ("table", "fault"),
     [
-        ("masks,name\ncontrol/cell1_masks.tif,a,b\n", "2: has more fields than the 2 of the first line"),
+        (
+            "masks,name\ncontrol/cell1_masks.tif,a,b\n",
+            "2: has more fields than the 2 of the first line: put quotes around a field with a comma, and "
+            "write numbers with a point (0.2)",
+        ),
         ("\nmasks,name, name\ncontrol/cell1_masks.tif,a,b\n", "2: column 'name' stands twice"),
         (
             ",masks\n0,control/cell1_masks.tif\n",
@@ -277,3 +281,29 @@ def test_of_both_in_the_file_the_depth_counts_as_in_a_studys_parameters(folder: 
     found = batch_of(folder, text).inputs[0].parameters
     assert isinstance(found, MovieParameters)
     assert (found.layers, found.depth_um) == (10, (1.5,))
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        (("masks;pixel_size_um", "a.tif;0,2"), r"pixel_size_um must be .*got '0,2': write 0\.2"),
+        (("masks,pixel_size_um", 'a.tif,"0,2"'), r"pixel_size_um must be .*got '0,2': write 0\.2"),
+        (("masks,pixel_size_um", "a.tif,0,2"), r"more fields than the 2 of the first line.*point \(0\.2\)"),
+        (("masks;dose", "a.tif;1,5", "b.tif;2"), r"dose '1,5': write 1\.5"),
+        (("masks\tdose", "a.tif\t1", "b.tif\t2,5"), r"dose '2,5': write 2\.5"),
+    ],
+)
+def test_a_comma_in_a_number_of_a_table_is_named(tmp_path: Path, lines: tuple[str, ...], words: str) -> None:
+    for name in ("a.tif", "b.tif"):
+        (tmp_path / name).touch()
+    (tmp_path / "table.csv").write_text("\n".join(lines))
+    (tmp_path / "batch.toml").write_text('[study]\nkind = "map"\ntable = "table.csv"\ncolumns = ["dose"]\n')
+    with pytest.raises(ParameterError, match=words):
+        read_batch(tmp_path / "batch.toml")
+
+
+def test_a_column_of_words_may_have_commas(tmp_path: Path) -> None:
+    (tmp_path / "a.tif").touch()
+    (tmp_path / "table.csv").write_text("masks;dose\na.tif;1,5 and more\n")
+    (tmp_path / "batch.toml").write_text('[study]\nkind = "map"\ntable = "table.csv"\ncolumns = ["dose"]\n')
+    assert read_batch(tmp_path / "batch.toml").inputs[0].columns[-1] == "1,5 and more"

@@ -167,10 +167,10 @@ def _option(name: str, field: FieldInfo, more: str) -> inspect.Parameter:
     kind: Any = str
     if bool in wanted:
         kind, flag = bool, f"{flag}/--no-{flag.removeprefix('--')}"
-    elif not wanted & {str, tuple}:
-        kind = int if int in wanted else float
     words = choices(field.annotation)
     metavar = "|".join(words) if words and tuple not in wanted else None
+    if not wanted & {bool, str, tuple}:  # a text for the parser, so that errors are the model's
+        metavar = "INTEGER" if int in wanted else "FLOAT"
     if tuple in wanted and not words:
         metavar = "FIRST:LAST" if tuple_items(field.annotation) == (int, int) else "A,B,…"
     option = typer.Option(flag, help=help_words(field, more), metavar=metavar, show_default=False)

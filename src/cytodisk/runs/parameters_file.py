@@ -13,6 +13,7 @@ from typing import Any
 from cytodisk.disk.mapping_parameters import MAPS_VERSION
 from cytodisk.errors import EarlierVersionWarning, ParameterError
 from cytodisk.files import replacing
+from cytodisk.number_words import comma_in_toml
 from cytodisk.parameters import Group, Parameters
 from cytodisk.store.provenance_file import (
     MAPS,
@@ -119,9 +120,13 @@ def _of_study(path: Path) -> bool:
 
 def _read(path: Path, of: type[Parameters]) -> dict[str, Any]:
     """Content of a file that has no other names than those of the parameters."""
+    text = ""
     try:
-        found = tomllib.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        found = tomllib.loads(text)
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        if words := comma_in_toml(text):
+            raise ParameterError(f"parameters file {path}: {words}") from error
         raise ParameterError(f"parameters file {path} cannot be read: {error}") from error
     unknown = sorted(set(found) - set(of.model_fields))
     if not unknown:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from cytodisk.errors import ParameterError
+from cytodisk.number_words import comma_advice, comma_in_toml, without_comma
 from cytodisk.runs.batch.batch_faults import Faults
 from cytodisk.runs.batch.batch_file_rows import COLUMNS, KEYS, PARAMETERS_OF, FileRow, RowReader
 from cytodisk.runs.batch.batch_input import BatchInput
@@ -77,7 +78,8 @@ def read_batch(path: Path) -> Batch:
     try:
         content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise ParameterError(f"batch file {path} is no TOML: {error}") from error
+        words = comma_in_toml(text) or f"is no TOML: {error}"
+        raise ParameterError(f"batch file {path}: {words}") from error
     faults = Faults()
     faults.add_unknown("top", "table", content, ("study", "parameters", "inputs"))
     study, parameters = _section(content, "study", faults), _section(content, "parameters", faults)
@@ -156,7 +158,8 @@ def _rows_of_table(table: Path, columns: tuple[str, ...], faults: Faults) -> lis
         for fields in filled:
             place = f"{table.name} line {reader.line_num}"
             if any(fields[len(names) :]):
-                faults.add(place, f"has more fields than the {len(names)} of the first line")
+                advice = "put quotes around a field with a comma, and write numbers with a point (0.2)"
+                faults.add(place, f"has more fields than the {len(names)} of the first line: {advice}")
             given: dict[str, Any] = {name: field for name, field in zip(names, fields, strict=False) if field}
             if "" in given:
                 faults.add(place, f"{given.pop('')!r} stands in a column without a name: name or remove it")
@@ -167,7 +170,19 @@ def _rows_of_table(table: Path, columns: tuple[str, ...], faults: Faults) -> lis
             rows.append(FileRow(place, given))
     except csv.Error as error:
         faults.add(f"{table.name} line {reader.line_num}", f"is no CSV: {error}")
+    _refuse_commas(rows, columns, faults)
     return _with_numbers(rows, columns)
+
+
+def _refuse_commas(rows: list[FileRow], columns: Iterable[str], faults: Faults) -> None:
+    """A fault for columns of numbers of which some have a comma: they would be texts."""
+    for column in columns:
+        given = [row for row in rows if column in row.values]
+        commas = [row for row in given if without_comma(row.values[column])]
+        if commas and all(re.fullmatch(_NUMBER, row.values[column]) for row in given if row not in commas):
+            advice = comma_advice(commas[0].values[column])
+            others = f" (and {len(commas) - 1} more lines)" if len(commas) > 1 else ""
+            faults.add(commas[0].place, f"{column} {commas[0].values[column]!r}{others}: {advice}")
 
 
 def _with_numbers(rows: list[FileRow], columns: Iterable[str]) -> list[FileRow]:

@@ -1,0 +1,67 @@
+"""Numbers that were typed with a comma, as much of Europe writes them: what to type instead."""
+
+import re
+
+_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]+([eE][+-]?[0-9]+)?")
+_THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+(\.[0-9]*)?")
+_POINTS = re.compile(r"[+-]?[1-9][0-9]{0,2}(\.[0-9]{3})+,[0-9]+")  # as 1.234,5
+_LINE = re.compile(r"\s*([\w-]+)\s*=\s*([^#\s\"'\[\]{}]+,[^#\s\"'\[\]{}]+)\s*(#.*)?")
+
+
+def without_comma(text: str, whole: bool = False) -> str:
+    """A number with a comma as it should be typed; empty for other texts.
+
+    Parameters
+    ----------
+    text : str
+    whole : bool
+        A whole number is wanted, so that 1,000 is a thousand; else both ways to read it are given.
+    """
+    given = text.strip()
+    if _POINTS.fullmatch(given):
+        return given.replace(".", "").replace(",", ".")
+    thousands = given.replace(",", "") if _THOUSANDS.fullmatch(given) else ""
+    point = given.replace(",", ".") if _COMMA.fullmatch(given) and not (whole and thousands) else ""
+    return " or ".join(words for words in (point, thousands) if words)
+
+
+def comma_advice(value: object, whole: bool = False) -> str:
+    """What to do about a value that was refused, if it is a number with a comma, or several; else empty.
+
+    Parameters
+    ----------
+    value : object
+        As it was typed, or what came out of a list.
+    whole : bool
+        A whole number is wanted.
+    """
+    if isinstance(value, tuple):
+        return _advice_on_pairs(value)
+    if not isinstance(value, str):
+        return ""
+    if right := without_comma(value, whole):
+        return f"write {right}: numbers have a point, not a comma"
+    parts = [part for part in re.split(r"[;\s]+", value.strip()) if part]
+    if len(parts) > 1 and all(_COMMA.fullmatch(part) for part in parts):
+        right = ",".join(without_comma(part) for part in parts)
+        return f"write {right}: numbers have a point, and commas stand between them"
+    return ""
+
+
+def _advice_on_pairs(values: tuple[object, ...]) -> str:
+    """What to do if 0,5,1,2 was typed for 0.5 and 1.2, so that four whole numbers came out."""
+    numbers = [int(value) for value in values if isinstance(value, float) and value >= 0 and value % 1 == 0]
+    if len(numbers) != len(values) or len(numbers) % 2 or not numbers:
+        return ""
+    right = ",".join(f"{one}.{two}" for one, two in zip(numbers[::2], numbers[1::2], strict=True))
+    return f"if these are numbers with a comma, write {right}"
+
+
+def comma_in_toml(text: str) -> str:
+    """What is wrong with the first line of a TOML file that has a number with a comma; empty if none has."""
+    for number, line in enumerate(text.splitlines(), 1):
+        found = _LINE.fullmatch(line)
+        if found is not None and (right := without_comma(found[2])):
+            name = found[1]
+            return f"line {number} has a number with a comma, {name} = {found[2]}: write {name} = {right}"
+    return ""
