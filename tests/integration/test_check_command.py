@@ -39,7 +39,8 @@ def test_faults_are_named_with_their_frames(run: Run, tmp_path: Path) -> None:
     assert code == 1
     assert "without a cell: 4 frames (2–4, 9): mask of shape (30, 30) is empty" in said
     assert "note: 4 frames (5–8): 1 fragment dropped (1 px, 0.2%), and the like\n" in said
-    assert "8 frames: 8 usable (0 with QC flags), 0 not usable" in said
+    assert "QC flag: frame 8: 2 small pieces dropped (4 px)" in said
+    assert "8 frames: 8 usable (1 with QC flags), 0 not usable" in said
     assert "frames without a cell: 4 empty" in said
     assert "cytodisk movie finds them" in said
 
