@@ -267,3 +267,23 @@ def test_folders_are_rows_of_a_batch_and_channels_have_one_name_in_all(tmp_path:
 )
 def test_what_names_of_files_share_is_the_channels_name(paths: list[str], name: str) -> None:
     assert common_signal_name([Path(path) for path in paths]) == name
+
+
+def test_what_is_said_of_a_signal_needs_one(tmp_path: Path) -> None:
+    masks = slices(tmp_path / "m", "cell", MASKS)
+    with pytest.raises(cd.errors.ParameterError, match="signal_channels is given, but there is no signal"):
+        opened(masks, signal_channels=("1",))
+    with pytest.raises(cd.errors.ParameterError, match="signal_axes is given, but there is no signal"):
+        cd.run_map(masks / "cell0001.tif", tmp_path / "out", signal_axes="CYX")
+
+
+def test_a_scene_or_slice_that_no_frame_has_is_refused(tmp_path: Path) -> None:
+    masks = slices(tmp_path / "m", "cell", MASKS)
+    for given in ({"scene": 3}, {"z": "max"}):
+        with pytest.raises(CytodiskError, match=f"--{next(iter(given))} "):
+            opened(masks, **given)
+    stacks = slices(tmp_path / "s", "VASP", [np.stack([image[0], image[1] * 2]) for image in SIGNAL])
+    inputs = opened(masks, stacks, z="max", signal_axes="TZYX")
+    assert inputs.signal is not None
+    np.testing.assert_array_equal(inputs.signal.frame(1)[0], np.maximum(SIGNAL[1, 0], SIGNAL[1, 1] * 2))
+    assert find_signal(movie_study(inputs, tmp_path / "out")).fault == ""

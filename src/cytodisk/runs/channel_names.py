@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from cytodisk.errors import ParameterError, SignalError
 from cytodisk.images.chosen_channels import stem_of, with_names
+from cytodisk.images.file_parameters import SignalFileParameters
 from cytodisk.parameters import Parameters
 
 if TYPE_CHECKING:
@@ -78,6 +79,18 @@ def common_signal_name(signals: Sequence[Path]) -> str:
     folders = {path.parent.name for path in signals}
     name = "_".join(shared) or (folders.pop() if len(folders) == 1 else "") or "signal"
     return f"{name} signal" if name in VELOCITIES else name
+
+
+def check_signal_given(signal: object, parameters: SignalFileParameters) -> None:
+    """Raise ParameterError where something is said of a signal that is not there."""
+    if signal is not None:
+        return
+    for name in ("signal_axes", "signal_channels"):
+        if getattr(parameters, name) is not None:
+            flag = "--" + name.replace("_", "-")
+            raise ParameterError(
+                f"{name} is given, but there is no signal: pass it as --signal, or take {flag} out"
+            )
 
 
 def with_common_name(

@@ -21,7 +21,7 @@ from cytodisk.images.outline_sizes import sized_like
 from cytodisk.images.signal_files import common_name, pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
-from cytodisk.runs.channel_names import channels_words, name_channels, with_common_name
+from cytodisk.runs.channel_names import channels_words, check_signal_given, name_channels, with_common_name
 from cytodisk.runs.file_notes import file_notes
 from cytodisk.runs.file_scales import agreed
 from cytodisk.scale import Scale
@@ -145,6 +145,7 @@ def open_inputs(
         A file is missing, damaged, or does not fit.
     """
     is_path("masks", masks)
+    check_signal_given(signal, parameters)
     if is_folder_of_files(Path(masks)) or is_pattern(Path(masks)):
         return _open_folder(Path(masks), signal, parameters, signal_name)
     choice = sized_like(parameters.mask_choice, masks, signal, parameters.signal_choice, "C")

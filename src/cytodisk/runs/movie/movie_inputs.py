@@ -21,7 +21,7 @@ from cytodisk.images.what_it_is import MaskLook, look_at
 from cytodisk.motion.still_interior import fade_in_px
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.cells.cell_inputs import check_signal
-from cytodisk.runs.channel_names import channels_words, name_channels, with_common_name
+from cytodisk.runs.channel_names import channels_words, check_signal_given, name_channels, with_common_name
 from cytodisk.runs.depth_layers import check_depths, depth_words
 from cytodisk.runs.file_notes import file_notes
 from cytodisk.runs.file_scales import agreed
@@ -208,6 +208,7 @@ def open_movie_files(
         A file is missing, damaged, or does not fit.
     """
     is_path("masks", masks)
+    check_signal_given(signal, parameters)
     choice = sized_like(parameters.mask_choice, masks, signal, parameters.signal_choice, "T")
     found = open_movie_masks(Path(masks), choice)
     mask_file = found.file
