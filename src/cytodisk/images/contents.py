@@ -16,6 +16,7 @@ from cytodisk.images.image_paths import is_zarr
 from cytodisk.images.reading import reading
 from cytodisk.images.scenes import Scene
 
+_MOST_LINES = 50
 _SCENES = {".nd2": nd2_scenes, ".czi": czi_scenes, ".lif": lif_scenes}
 
 
@@ -38,9 +39,12 @@ class FileContents:
         """In words, a line a scene."""
         if len(self.scenes) == 1:
             return (f"{self.path.name}: {self.scenes[0].words}",)
+        shown = list(enumerate(self.scenes))[:_MOST_LINES]
+        more = len(self.scenes) - len(shown)
         return (
             f"{self.path.name}: {len(self.scenes)} scenes",
-            *(f"  scene {number} ({scene.name}): {scene.words}" for number, scene in enumerate(self.scenes)),
+            *(f"  scene {number} ({scene.name}): {scene.words}" for number, scene in shown),
+            *([f"  … and {more} more"] if more else []),
         )
 
 

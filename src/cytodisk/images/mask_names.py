@@ -32,7 +32,7 @@ def base_name(name: str) -> str:
 
 def image_stem(name: str) -> str:
     """A file's name without the ending that says how it is stored: "a" of "a.ome.tif"."""
-    return re.sub(r"(\.ome)?\.(tiff?|png|npy|nd2|czi|lif)$", "", name, flags=re.IGNORECASE)
+    return re.sub(r"(\.ome)?\.(tiff?|png|npy|nd2|czi|lif|zarr)$", "", name, flags=re.IGNORECASE)
 
 
 def natural_order(name: str) -> list[tuple[int, str]]:

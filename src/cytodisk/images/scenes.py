@@ -103,7 +103,12 @@ def take(file: Path, scenes: Sequence[Scene], choice: FileChoice) -> Taken:
         The file has several scenes, or slices, and none is chosen; or the choice is not in the file; or the
         scene cannot be read.
     """
-    number = _scene_number(file, scenes, choice.scene)
+    number = scene_number(file, [(scene.name, not scene.fault) for scene in scenes], choice.scene)
+    if number is None:
+        first = scenes[0]
+        raise ReadError(
+            f"{file} holds {len(scenes)} scenes and none can be read; the first ({first.name}) {first.fault}"
+        )
     scene = scenes[number]
     if scene.fault:
         of_it = f", scene {number} ({scene.name})," if len(scenes) > 1 else ""
@@ -140,25 +145,38 @@ def chosen_slice(file: Path, slices: int, z: str | None) -> int | str:
     return int(z)
 
 
-def _scene_number(file: Path, scenes: Sequence[Scene], chosen: str | None) -> int:
+def scene_number(file: Path, scenes: Sequence[tuple[str, bool]], chosen: str | None) -> int | None:
+    """Number of the scene that a user takes; None if there are several and none can be read.
+
+    Parameters
+    ----------
+    file : Path
+        For messages.
+    scenes : sequence of (str, bool)
+        Name of each, and whether it can be read.
+    chosen : str or None
+        Name, or number from 0; of a single scene, it is taken whatever the user says.
+
+    Raises
+    ------
+    ReadError
+        There is none, or there are several and none is chosen, or that is not there.
+    """
     if not scenes:
         raise ReadError(f"{file} holds no image: check the file in the microscope's own software")
     if len(scenes) == 1:
         return 0
-    usable = next((number for number, scene in enumerate(scenes) if not scene.fault), None)
-    if usable is None:
-        first = scenes[0]
-        raise ReadError(
-            f"{file} holds {len(scenes)} scenes and none can be read; the first ({first.name}) {first.fault}"
-        )
-    found = None if chosen is None else _number_of(chosen, [scene.name for scene in scenes])
+    readable = [number for number, (_, can_be) in enumerate(scenes) if can_be]
+    if not readable:
+        return None
+    found = None if chosen is None else _number_of(chosen, [name for name, _ in scenes])
     if found is not None:
         return found
-    listed = _listed([f"{number} ({scene.name})" for number, scene in enumerate(scenes) if not scene.fault])
+    listed = _listed([f"{number} ({scenes[number][0]})" for number in readable])
     wrong = "" if chosen is None else f" and none is {chosen!r}"
     raise ReadError(
-        f"{file} holds {len(scenes)} scenes{wrong}: pass one, by number or name, as --scene {usable}, of "
-        f"{listed}"
+        f"{file} holds {len(scenes)} scenes{wrong}: pass one, by number or name, as --scene "
+        f"{readable[0]}, of {listed}"
     )
 
 

@@ -25,7 +25,7 @@ def _element(
     luts: Sequence[str],
     times: Sequence[float],
 ) -> str:
-    """Description of an image; channels, if any, stand right before the last two axes."""
+    """Description of an image; a look-up table may have a dye, as "Green/GFP"."""
     increments = {axis: stack.strides[place] for place, axis in enumerate(axes)}
     described = "".join(
         f'<DimensionDescription DimID="{_DIMENSIONS[axis]}" NumberOfElements="{size}" Origin="0" '
@@ -33,11 +33,13 @@ def _element(
         for axis, size in zip(axes, stack.shape, strict=True)
         if axis != "C"
     )
+    dyed = "<ChannelProperty><Key>DyeName</Key><Value>{}</Value></ChannelProperty>"
+    shown = [lut.partition("/") for lut in luts[: stack.shape[axes.index("C")] if "C" in axes else 1]]
     channels = "".join(
         f'<ChannelDescription DataType="0" ChannelTag="0" Resolution="16" NameOfMeasuredQuantity="" Min="0" '
         f'Max="1" Unit="" LUTName="{lut}" IsLUTInverted="0" BytesInc="{number * increments.get("C", 0)}" '
-        'BitInc="0"/>'
-        for number, lut in enumerate(luts)
+        f'BitInc="0">{dyed.format(dye) if dye else ""}</ChannelDescription>'
+        for number, (lut, _, dye) in enumerate(shown)
     )
     ticks = " ".join(f"{132500000000000000 + round(time * 1e7):x}" for time in times)
     stamps = f'<TimeStampList NumberOfTimeStamps="{len(times)}">{ticks}</TimeStampList>' if times else ""
@@ -143,6 +145,24 @@ def test_sections_and_mosaics_are_refused_with_the_reason(tmp_path: Path, stack:
     path = write_lif(tmp_path / "tiles.lif", {"tiles": (upright, "MYX")})
     with pytest.raises(ReadError, match="holds 4 tiles: export one of them, or merge them, in LAS X"):
         open_frames(path)
+
+
+def test_an_image_of_an_unknown_layout_leaves_the_others_readable(tmp_path: Path, stack: np.ndarray) -> None:
+    images = {"odd": (stack[0, 0].copy(), "CYX"), "cell": (stack[0, 0, 0].copy(), "YX")}
+    path = write_lif(tmp_path / "a.lif", images, luts=("Green", "Red"))
+    raw = path.read_bytes()
+    first = 'Resolution="16"'.encode("utf-16-le")
+    path.write_bytes(raw.replace(first, 'Resolution="08"'.encode("utf-16-le"), 1))
+    odd, cell = contents(path).scenes
+    assert "has a layout that is not known (heterogeneous channel data types" in odd.fault
+    assert not cell.fault
+    with pytest.raises(ReadError, match=r"scene 0 \(odd\), has a layout .*: export it as TIFF"):
+        open_frames(path, choice=FileChoice(scene="odd"))
+
+
+def test_a_channel_is_called_after_its_dye(tmp_path: Path, stack: np.ndarray) -> None:
+    path = write_lif(tmp_path / "a.lif", {"cell": (stack[0, 0].copy(), "CYX")}, luts=("Green/GFP", "Red"))
+    assert open_frames(path).channels == ("GFP", "Red")
 
 
 def test_a_file_that_is_cut_short_loses_its_last_frames_alone(tmp_path: Path, stack: np.ndarray) -> None:

@@ -126,6 +126,25 @@ def test_images_of_a_plate_a_conversion_and_labels_are_scenes(tmp_path: Path, st
     np.testing.assert_array_equal(open_frames(tmp_path / "labels").frame(0)[0], image[0])
 
 
+def test_of_a_plate_the_image_that_is_taken_is_opened_alone(tmp_path: Path, stack: np.ndarray) -> None:
+    plate = tmp_path / "plate.zarr"
+    wells = [{"path": f"A/{column}"} for column in range(60)]
+    zarr.create_group(plate, attributes={"ome": {"plate": {"wells": wells}}})
+    for well in wells:
+        attributes = {"ome": {"well": {"images": [{"path": "0"}]}}}
+        zarr.create_group(plate / well["path"], attributes=attributes)
+        if well["path"] != "A/7":
+            (plate / well["path"] / "0").mkdir()  # what is not taken may be anything
+    write_ome_zarr(plate / "A" / "7" / "0", stack[0, 0, 0], "yx")
+    np.testing.assert_array_equal(
+        open_frames(plate, choice=FileChoice(scene="7")).frame(0)[0], stack[0, 0, 0]
+    )
+    with pytest.raises(ReadError, match=r"60 scenes: .* 11 \(A/11/0\) and 48 more"):
+        open_frames(plate)
+    with pytest.raises(ReadError, match="A/8/0"):
+        open_frames(plate, choice=FileChoice(scene="A/8/0"))
+
+
 @pytest.mark.parametrize(
     ("step", "units", "size", "interval", "said"),
     [

@@ -39,7 +39,7 @@ def open_lif(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
 def lif_scenes(file: Path) -> tuple[Scene, ...]:
     """What a LIF file holds: its images, with the folders in it as part of their names."""
     with _opened(file) as opened:
-        return tuple(_scene(image) for image in opened.images)
+        return tuple(_scene_or_fault(image) for image in opened.images)
 
 
 @dataclass(frozen=True)
@@ -84,6 +84,16 @@ def _opened(file: Path) -> Iterator[Any]:
         if opened.type is not liffile.LifFileType.LIF:
             raise ReadError(f"{file} is a part of a Leica project: export the image as LIF")
         yield opened
+
+
+def _scene_or_fault(image: Any) -> Scene:
+    """An image whose layout the library cannot tell leaves the others readable."""
+    try:
+        return _scene(image)
+    except (ValueError, KeyError, AssertionError, ArithmeticError) as error:
+        words = " ".join(str(error).split()) or type(error).__name__
+        fault = f"has a layout that is not known ({words}): export it as TIFF from LAS X or Fiji"
+        return Scene(image.path, 1, 1, ("",), (1, 1), np.dtype(np.uint8), fault=fault)
 
 
 def _scene(image: Any) -> Scene:
@@ -157,13 +167,17 @@ def _names(image: Any, axis: str) -> tuple[str, ...]:
         return _COLOURS.get(count, ("",) * count)
     if axis == "C":
         described = image.xml_element.findall(_CHANNELS)
-        names = [
-            described[number].get("NameOfMeasuredQuantity") or described[number].get("LUTName") or ""
-            for number in range(0, len(described), max(1, len(described) // count))
-        ]
+        names = [_said(one) for one in described[:: max(1, len(described) // count)]]
         return tuple(names) if len(names) == count else ("",) * count
     wavelengths = _steps(image, axis)
     return tuple(f"{1e9 * length:.0f} {_CHANNEL_AXES[axis]}" for length in wavelengths) or ("",) * count
+
+
+def _said(channel: Any) -> str:
+    """The name of a channel: its dye, what it measures, or the colour that it is shown in."""
+    properties = {e.findtext("Key"): e.findtext("Value") for e in channel.iterfind("ChannelProperty")}
+    names = properties.get("DyeName"), channel.get("NameOfMeasuredQuantity"), channel.get("LUTName")
+    return next((name for name in names if name), "")
 
 
 def _steps(image: Any, axis: str) -> tuple[float, ...]:

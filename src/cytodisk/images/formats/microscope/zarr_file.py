@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,27 +19,37 @@ from cytodisk.images.formats.scale_units import is_no_unit, micrometres, seconds
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile
 from cytodisk.images.image_paths import is_zarr, parts_of
 from cytodisk.images.reading import reading
-from cytodisk.images.scenes import Scene, Taken
+from cytodisk.images.scenes import Scene, Taken, scene_number
 from cytodisk.scale import Scale
 
-_MOST_IMAGES = 1000
+_NOT_OPENED = Scene("", 1, 1, ("",), (1, 1), np.dtype(np.uint8))
 _FEW = 100_000  # pixels, and planes, that need no look
 _MOST_TIMES = 100  # as many pixels as an array has, its chunks may have
 
 
 def open_zarr(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
     """Look at an OME-Zarr image without reading its pixels; see `cytodisk.images.frames.open_frames`."""
-    images = _images(file)
+    names = _image_names(file)
+    if len(names) > 1:  # a plate has hundreds: open the one that is taken
+        chosen = scene_number(file, [(name, True) for name in names], choice.scene)
+        images = [_image(file, name, 0) if at == chosen else None for at, name in enumerate(names)]
+        scenes = [_NOT_OPENED if image is None else image[0] for image in images]
+        scenes = [replace(scene, name=name) for scene, name in zip(scenes, names, strict=True)]
+    else:
+        images = list(_images_in(file, names[0]))
+        scenes = [image[0] for image in images if image is not None]
 
     def stored(scene: Scene, taken: Taken) -> ZarrFrames:
-        return ZarrFrames(images[taken.scene][1], len(scene.channels), scene.slices, taken.z)
+        image = images[taken.scene]
+        assert image is not None  # it is the one that is taken
+        return ZarrFrames(image[1], len(scene.channels), scene.slices, taken.z)
 
-    return scene_file(file, [scene for scene, _ in images], choice, stored)
+    return scene_file(file, scenes, choice, stored)
 
 
 def zarr_scenes(file: Path) -> tuple[Scene, ...]:
     """What an OME-Zarr folder holds: its images, at full resolution."""
-    return tuple(scene for scene, _ in _images(file))
+    return tuple(scene for name in _image_names(file) for scene, _ in _images_in(file, name))
 
 
 @dataclass(frozen=True)
@@ -121,14 +131,10 @@ def _group(file: Path, name: str) -> Any:
     return zarr.open_group(str(file), path=name, mode="r")
 
 
-def _images(file: Path) -> list[tuple[Scene, ZarrPlanes]]:
-    if (file / ".zarray").is_file() or not _is_group(file):
-        raise ReadError(
-            f"{file} is a Zarr array without OME metadata: pass the folder above it that has them "
-            "(multiscales), or save it as OME-Zarr or TIFF"
-        )
-    names = _image_names(file, _ome(file, ""))[:_MOST_IMAGES]
-    return [_image(file, name, number) for name in names for number in range(len(_multiscales(file, name)))]
+def _images_in(file: Path, name: str) -> Iterator[tuple[Scene, ZarrPlanes]]:
+    """Images of a group: nearly always one."""
+    for number in range(len(_multiscales(file, name)) if name == "" else 1):
+        yield _image(file, name, number)
 
 
 def _is_group(file: Path) -> bool:
@@ -151,8 +157,14 @@ def _multiscales(file: Path, name: str) -> list[Any]:
     return found
 
 
-def _image_names(file: Path, ome: dict[str, Any]) -> list[str]:
+def _image_names(file: Path) -> list[str]:
     """Where the images of a folder are: in itself, in a plate or a well, or numbered by Bio-Formats."""
+    if (file / ".zarray").is_file() or not _is_group(file):
+        raise ReadError(
+            f"{file} is a Zarr array without OME metadata: pass the folder above it that has them "
+            "(multiscales), or save it as OME-Zarr or TIFF"
+        )
+    ome = _ome(file, "")
     if "multiscales" in ome:
         return [""]
     if "plate" in ome:
