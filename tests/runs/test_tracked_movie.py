@@ -101,6 +101,24 @@ def test_outlines_have_the_size_of_the_signal(tmp_path: Path) -> None:
     assert len(one.cells) == 3
 
 
+def test_a_folder_of_outlines_and_their_images(tmp_path: Path) -> None:
+    ring = [(5.0, 5.0), (25.0, 5.0), (25.0, 25.0), (5.0, 25.0)]
+    (tmp_path / "cells").mkdir()
+    for name, shape in (("a", (50, 60)), ("b", (40, 45)), ("c", (20, 22))):
+        write_geojson(tmp_path / "cells" / f"{name}.tif.geojson", feature(ring))
+        tifffile.imwrite(tmp_path / "cells" / f"{name}.tif", np.ones(shape, np.uint8))
+    (tmp_path / "cells" / "d.geojson").write_text("{")
+    study = cd.run_map(
+        tmp_path / "cells", tmp_path / "out", signal=tmp_path / "cells", layers=2, sectors=4, workers=1
+    )
+    assert study.cells["source"].tolist() == ["a.tif.geojson", "b.tif.geojson", "c.tif.geojson", "d.geojson"]
+    assert study.cells["status"].tolist() == ["ok", "ok", "ok", "unreadable"]
+    assert study.cells["area"].tolist()[:2] == [400, 400]
+    warnings = "; ".join(study.provenance["warnings"])
+    assert "1 outline cut by the border of the image" in warnings
+    assert "size of the image unknown" not in warnings
+
+
 def test_a_batch_finds_the_tracks_of_each_movie(tmp_path: Path) -> None:
     labels(tmp_path)
     graph(tmp_path).rename(tmp_path / "labels.geff")

@@ -21,12 +21,15 @@ ENDINGS = (
     "_seg.npy",
 )
 _IMAGES = (".tif", ".tiff", ".png")
+_OUTLINES = re.compile(r"(.+?)([-_ ]?roi(s|set)?)?\.(zip|roi|geojson)", re.IGNORECASE)
 
 
 def base_name(name: str) -> str:
     """The name of the image that a mask file belongs to, without its ending: "a" of "a_cp_masks.png"."""
     lower = name.lower()
     fitting = [ending for ending in ENDINGS if lower.endswith(ending)]
+    if (outlines := _OUTLINES.fullmatch(name)) is not None:  # as "a_rois.zip" or "a.tif.geojson"
+        return image_stem(outlines[1])
     return name[: -max(map(len, fitting))] if fitting else image_stem(name)
 
 
@@ -115,6 +118,8 @@ def mask_names(folder: Path, images_end: str = "") -> list[tuple[Path, list[Path
             "cytodisk batch"
         )
     named = [file for file in files if file.name.lower().endswith(ENDINGS)]
+    if not named and (outlines := [file for file in files if _OUTLINES.fullmatch(file.name)]):
+        return [(file, []) for file in outlines]
     if not named:
         images = [file for file in files if file.suffix.lower() in _IMAGES]
         if images_end:
@@ -122,7 +127,7 @@ def mask_names(folder: Path, images_end: str = "") -> list[tuple[Path, list[Path
         if not images:
             raise ReadError(
                 f"folder {folder} holds no masks: neither files that end in {', '.join(ENDINGS)}, "
-                f"nor other images ({', '.join(_IMAGES)})"
+                f"nor outlines (.zip, .roi, .geojson), nor other images ({', '.join(_IMAGES)})"
             )
         return [(file, []) for file in images]
     return best_masks(named)

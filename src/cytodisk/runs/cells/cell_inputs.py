@@ -21,6 +21,7 @@ from cytodisk.images.outline_sizes import sized_like
 from cytodisk.images.signal_files import common_name, pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
+from cytodisk.runs.cells.outline_sources import with_sizes
 from cytodisk.runs.channel_names import channels_words, check_signal_given, name_channels, with_common_name
 from cytodisk.runs.file_notes import file_notes
 from cytodisk.runs.file_scales import agreed
@@ -165,6 +166,7 @@ def _open_folder(
     masks: Path, signal: str | os.PathLike[str] | None, parameters: FileParameters, signal_name: str
 ) -> CellInputs:
     sources = open_mask_files(masks, parameters.part(KindParameters), images=_ending_beside(masks, signal))
+    sources = with_sizes(sources, signal, parameters)
     signals, remarks = _open_signals(sources, signal, parameters, signal_name)
     opened = [source.file for source in sources] + [found.file for found in signals.values()]
     check_choice(opened, parameters.scene, parameters.z)
