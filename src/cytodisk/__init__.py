@@ -7,7 +7,7 @@ from pathlib import Path
 
 import lazy_loader
 
-from cytodisk.files import keep_kernels
+from cytodisk.kernel_cache import keep_kernels
 
 __version__ = "0.2.0"
 

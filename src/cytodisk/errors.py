@@ -96,5 +96,9 @@ class StationarityWarning(UserWarning):
     """The level of many series drifts: what correlates may do so for no other reason."""
 
 
+class DamagedPartWarning(UserWarning):
+    """Part of the results of an earlier run is gone or damaged, and is made anew."""
+
+
 class EarlierVersionWarning(UserWarning):
     """A file of an earlier version lacks something, or its values mean something else now."""

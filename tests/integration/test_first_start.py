@@ -17,7 +17,7 @@ from cytodisk.geometry import lower_envelope
 lower_envelope.outside_in_column(np.eye(4, dtype=bool))
 """
 ASK = """
-from cytodisk.files import has_kernels
+from cytodisk.kernel_cache import has_kernels
 from cytodisk.geometry import lower_envelope
 print(has_kernels(lower_envelope))
 """
@@ -48,7 +48,7 @@ def test_kernels_are_seen_once_they_are_compiled(tmp_path: Path) -> None:
 def test_a_line_says_what_takes_long(
     work: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("cytodisk.files.has_kernels", lambda module: False)
+    monkeypatch.setattr("cytodisk.kernel_cache.has_kernels", lambda module: False)
     say_compiling(False, work)
     said = capsys.readouterr()
     assert said.err.startswith("First start: compiling numerical code, once. ")
@@ -59,14 +59,14 @@ def test_a_line_says_what_takes_long(
     with monkeypatch.context() as unkept:
         unkept.setenv("NUMBA_CACHE_DIR", "/tmp/cytodisk-kernels-abc")
         assert say_compiling(False, work)  # a warning has said that each start compiles
-    monkeypatch.setattr("cytodisk.files.has_kernels", lambda module: True)
+    monkeypatch.setattr("cytodisk.kernel_cache.has_kernels", lambda module: True)
     assert not say_compiling(False, work)
     assert capsys.readouterr().err == ""
 
 
 @pytest.mark.parametrize("work", _LATE)
 def test_the_modules_that_are_asked_have_kernels(work: str, tmp_path: Path) -> None:
-    ask = f"from cytodisk.files import has_kernels; import {_LATE[work]} as late; print(has_kernels(late))"
+    ask = f"from cytodisk.kernel_cache import has_kernels as has; import {_LATE[work]} as m; print(has(m))"
     assert run(ask, tmp_path) == "False"  # a module without kernels has none to miss
 
 

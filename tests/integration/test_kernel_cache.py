@@ -14,7 +14,7 @@ import pytest
 from numba.core.dispatcher import Dispatcher
 
 import cytodisk
-from cytodisk.files import keep_kernels
+from cytodisk.kernel_cache import keep_kernels
 
 LAYERS = ("geometry", "disk", "windows", "motion")
 LOCATE = """

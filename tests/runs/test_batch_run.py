@@ -18,6 +18,7 @@ import tifffile
 
 import cytodisk as cd
 from cytodisk.errors import MaskError, OtherRunError, ParameterError, ReadError, StudyError
+from cytodisk.files import temporary_name
 from cytodisk.runs.batch import compute_input
 from cytodisk.runs.batch.batch_file import Batch, read_batch
 from cytodisk.runs.batch.batch_study import BatchSummary, batch_study, pending_inputs
@@ -152,7 +153,7 @@ def test_killed_and_resumed_by_two_workers_it_is_the_same_to_the_last_bit(
     wait_until(lambda: not children(), "the processes of the run were gone")
     assert 1 <= rows_done(out) < 5
     assert not (out / "cells.parquet").exists()
-    (out / "rows" / ".movie_0.77.tmp.json").touch()  # as a kill in the middle of writing leaves it
+    (out / "rows" / temporary_name(".json")).touch()  # as a kill in the middle of writing leaves it
     summary = batch_study(read_batch(files / "study.toml"), out, workers=2, resume=True)
     assert not list(out.glob("rows/.*"))
     assert summary.statuses == {"ok": 4, "refused": 1}
@@ -225,8 +226,8 @@ def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) ->
         batch_study(batch, quiet, overwrite=True, scheduler="nonsense")
     with pytest.raises(ParameterError, match="must be an address"):
         batch_study(batch, quiet / "new", scheduler="nonsense")
-    inside = replace(batch.inputs[0], masks=quiet / "inputs" / "movie_0" / "masks.tif")
-    with pytest.raises(StudyError, match="lies among the results"):
+    inside = replace(batch.inputs[0], masks=quiet / "inputs" / "movie_0" / "windows.parquet")
+    with pytest.raises(StudyError, match="is among the results"):
         batch_study(replace(batch, inputs=(inside,)), quiet, overwrite=True)
     assert content(quiet) == before
     assert not (quiet / "new").exists()

@@ -9,6 +9,7 @@ from numpy.testing import assert_array_equal
 
 import cytodisk as cd
 from cytodisk.errors import MaskError, ParameterError, ReadError, SignalError, StudyError
+from cytodisk.files import temporary_name
 from cytodisk.runs.cells.cell_inputs import CellInputs, open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_study import check_cells, map_study
@@ -237,7 +238,7 @@ def test_a_run_killed_before_its_first_note_can_be_repeated(write_stack: WriteSt
     masks, signal = write_stack(1)
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / ".lock").touch()
-    (tmp_path / "out" / ".provenance.123.tmp.json").touch()
+    (tmp_path / "out" / temporary_name(".json")).touch()
     assert len(map_study(open_inputs(masks, signal, SMALL), tmp_path / "out").cells) == 1
 
 
@@ -263,7 +264,7 @@ def test_a_missing_part_is_not_passed_over(write_stack: WriteStack, tmp_path: Pa
         if done == total:
             (tmp_path / "out" / ".parts" / f"{part_key(0)}.json").unlink()
 
-    with pytest.raises(StudyError, match="has 1 parts instead of 2"):
+    with pytest.raises(StudyError, match=r"has no part 00000 any more.*--resume"):
         map_study(open_inputs(masks, signal, SMALL), tmp_path / "out", progress=lose_a_part)
 
 

@@ -9,15 +9,21 @@ import pytest
 import cytodisk as cd
 from cytodisk.disk.mapping_parameters import MAPS_VERSION
 from cytodisk.errors import EarlierVersionWarning, ReadError, StudyError
-from cytodisk.store.figures_folder import figure_path
-from cytodisk.store.provenance_file import MAPS, differences, record_files
+from cytodisk.files import temporary_name
+from cytodisk.store.provenance_file import MAPS, differences
 from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import SOURCE_COLUMNS
 from cytodisk.store.window_columns import WINDOW_COLUMNS
+from cytodisk.store.written_files import writing_files
 
 KIND = StudyKind(
-    "map", "cytodisk map", "", SOURCE_COLUMNS, {"windows": WINDOW_COLUMNS}, ("maps/cell_*.npz", "extra.csv")
+    "map",
+    "cytodisk map",
+    "",
+    SOURCE_COLUMNS,
+    {"windows": WINDOW_COLUMNS},
+    ("maps/cell_[0-9]*.npz", "extra.csv"),
 )
 
 EARLIER = {MAPS: None}
@@ -37,8 +43,12 @@ def windows_of(cell: int) -> dict[str, object]:
 
 
 def add(folder: StudyFolder, cell: int, **values: object) -> None:
-    tables = {"windows": windows_of(cell)} if values["status"] == "ok" else {}
-    folder.add(part_key(cell), {"cell": cell, "frame": 0} | values, tables)
+    tables, files = {}, []
+    if values["status"] == "ok":
+        tables, files = {"windows": windows_of(cell)}, [folder.map_path(part_key(cell))]
+        folder.begin(part_key(cell), files)
+        files[0].write_text(f"map of cell {cell}")
+    folder.add(part_key(cell), {"cell": cell, "frame": 0} | values, tables, files)
 
 
 def finished(path: Path, length_unit: str = "px", **settings: object) -> StudyFolder:
@@ -74,7 +84,14 @@ def test_each_column_of_each_table_is_explained(tmp_path: Path) -> None:
 def test_no_temporary_file_is_left(tmp_path: Path) -> None:
     finished(tmp_path / "out")
     names = sorted(str(path.relative_to(tmp_path / "out")) for path in (tmp_path / "out").rglob("*"))
-    assert names == ["cells.parquet", "columns.csv", "maps", "provenance.json", "windows.parquet"]
+    assert names == [
+        "cells.parquet",
+        "columns.csv",
+        "maps",
+        "maps/cell_00000.npz",
+        "provenance.json",
+        "windows.parquet",
+    ]
 
 
 @pytest.mark.parametrize("unit", ["px", "µm"])
@@ -163,6 +180,7 @@ def test_resume_by_another_method_names_both_and_the_way_on(tmp_path: Path) -> N
 def test_resume_keeps_complete_parts(tmp_path: Path) -> None:
     add(StudyFolder.start(tmp_path / "out", run(), KIND), 3, status="ok")
     again = StudyFolder.start(tmp_path / "out", run(), KIND, resume=True)
+    again.expect([part_key(3), part_key(4)])
     assert (again.has(part_key(3)), again.has(part_key(4))) == (True, False)
     assert [row["cell"] for row in again.rows()] == [3]
 
@@ -171,7 +189,9 @@ def test_a_part_without_its_row_is_not_complete(tmp_path: Path) -> None:
     folder = StudyFolder.start(tmp_path / "out", run(), KIND)
     add(folder, 3, status="ok")
     next((tmp_path / "out").glob(".parts/*.json")).unlink()
-    assert not StudyFolder.start(tmp_path / "out", run(), KIND, resume=True).has(part_key(3))
+    again = StudyFolder.start(tmp_path / "out", run(), KIND, resume=True)
+    again.expect([part_key(3)])
+    assert not again.has(part_key(3))
 
 
 def test_arrays_of_parts_are_kept_until_the_run_ends(tmp_path: Path) -> None:
@@ -191,12 +211,17 @@ def test_arrays_of_parts_are_kept_until_the_run_ends(tmp_path: Path) -> None:
 def test_overwrite_removes_the_study_and_nothing_else(tmp_path: Path) -> None:
     finished(tmp_path / "out")
     out = tmp_path / "out"
-    ours = [figure_path(out, "cell_00000.png"), out / "extra.csv", out / "maps" / "cell_00000.npz"]
-    record_files(out, ["report.html", "folder"])
-    (out / "folder").mkdir()
-    ours += [out / "report.html", out / "folder" / "a.csv"]
-    theirs = [out / name for name in ("notes.txt", "figures/mine.png", "maps/mine.npz", "report_2.html")]
-    for path in (*ours, *theirs):
+    names = ("figures/cell_00000.png", "report.html", "folder/a.csv", "folder/below/b.csv")
+    (out / "folder" / "below").mkdir(parents=True)
+    (out / "figures").mkdir()
+    with writing_files(out, *names):
+        for name in names:
+            (out / name).write_text("there")
+    ours = [out / name for name in (*names, "maps/cell_00000.npz")]
+    theirs = [
+        out / name for name in ("notes.txt", "figures/mine.png", "maps/mine.npz", ".mine", "features.csv")
+    ]
+    for path in theirs:
         path.write_text("there")
     folder = StudyFolder.start(out, run(layers=5), KIND, overwrite=True)
     assert folder.rows() == []
@@ -210,19 +235,89 @@ def test_overwrite_removes_nothing_outside_the_folder(tmp_path: Path) -> None:
     out, outside = tmp_path / "out", tmp_path / "notes.txt"
     finished(out)
     outside.write_text("there")
-    record_files(out, ["../notes.txt", "maps/../../notes.txt", str(outside)])
+    change(out, {"../notes.txt": "", "maps/../../notes.txt": "", str(outside): ""})
     StudyFolder.start(out, run(), KIND, overwrite=True)
     assert outside.read_text() == "there"
 
 
-def test_overwrite_keeps_an_input_even_where_a_result_stood(tmp_path: Path) -> None:
+def change(out: Path, files: dict[str, str]) -> None:
+    """Write names into a study's list of files."""
+    told = out / "provenance.json"
+    found = json.loads(told.read_text())
+    told.write_text(json.dumps(found | {"files": found["files"] | files}))
+
+
+@pytest.mark.parametrize("how", ["itself", "link to it", "another name", "folder", "by a link in its place"])
+def test_overwrite_is_refused_where_an_input_would_be_removed(tmp_path: Path, how: str) -> None:
+    out, masks = tmp_path / "out", tmp_path / "masks.tif"
+    finished(out)
+    result = out / "maps" / "cell_00000.npz"
+    files = {}
+    if how == "link to it":
+        masks.symlink_to(result)
+    elif how == "another name":
+        masks.hardlink_to(result)
+    elif how == "by a link in its place":
+        masks.write_text("masks")
+        result.unlink()
+        result.symlink_to(masks)
+    elif how == "folder":
+        masks, files = result.parent, {"files": {result.name: "hash"}}
+    else:
+        masks = result
+    here = run() | {"inputs": {"masks": {"path": str(masks)} | files}}
+    before = everything(out)
+    with pytest.raises(StudyError, match=r"among the results in .*which --overwrite removes: move it"):
+        StudyFolder.start(out, here, KIND, overwrite=True)
+    assert everything(out) == before
+
+
+def everything(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("name", ["maps", "figures", "correlation/a~b"])
+def test_overwrite_is_refused_where_a_folder_is_a_link(tmp_path: Path, name: str) -> None:
     out = tmp_path / "out"
     finished(out)
-    (out / "maps" / "cell_00000.npz").write_text("masks")
-    here = run() | {"inputs": {"masks": {"path": str(out / "maps" / "cell_00000.npz")}}}
-    StudyFolder.start(out, here, KIND, overwrite=True)
-    assert (out / "maps" / "cell_00000.npz").read_text() == "masks"
-    assert not (out / "cells.parquet").exists()
+    (out / name).mkdir(parents=True, exist_ok=True)
+    with writing_files(out, f"{name}/result.csv"):
+        (out / name / "result.csv").write_text("there")
+    (out / name).rename(tmp_path / "elsewhere")
+    (out / name).symlink_to(tmp_path / "elsewhere")
+    before = everything(out), everything(tmp_path / "elsewhere")
+    with pytest.raises(StudyError, match="is a link, which --overwrite does not follow"):
+        StudyFolder.start(out, run(), KIND, overwrite=True)
+    assert (everything(out), everything(tmp_path / "elsewhere")) == before
+
+
+@pytest.mark.parametrize("name", ["maps/cell_00007.npz", "extra.csv"])
+@pytest.mark.parametrize("options", [{"resume": True}, {"overwrite": True}])
+def test_what_the_run_may_write_must_not_be_someone_elses(
+    tmp_path: Path, name: str, options: dict[str, bool]
+) -> None:
+    out = tmp_path / "out"
+    finished(out)
+    change(out, {})
+    (out / name).write_text("mine")
+    before = everything(out)
+    with pytest.raises(StudyError, match=f"holds {name}, which its study did not write"):
+        StudyFolder.start(out, run(), KIND, **options)
+    assert everything(out) == before
+
+
+def test_what_a_killed_run_had_begun_is_its_own(tmp_path: Path) -> None:
+    """Its name is noted before the file is written, and so before the part is done."""
+    out = tmp_path / "out"
+    folder = StudyFolder.start(out, run(), KIND)
+    folder.begin(part_key(3), [folder.map_path(part_key(3))])
+    folder.map_path(part_key(3)).write_text("half a part")
+    (out / ".parts" / "mine.txt").write_text("mine")
+    StudyFolder.start(out, run(), KIND, resume=True)
+    StudyFolder.start(out, run(layers=5), KIND, overwrite=True)
+    assert not folder.map_path(part_key(3)).exists()
+    assert not list(out.glob(".parts/0*"))
+    assert (out / ".parts" / "mine.txt").read_text() == "mine"
 
 
 def test_overwrite_removes_what_a_killed_run_left_in_a_folder_among_the_inputs(tmp_path: Path) -> None:
@@ -239,21 +334,30 @@ def test_overwrite_removes_what_a_killed_run_left_in_a_folder_among_the_inputs(t
 def test_overwrite_keeps_an_input_within_a_folder_of_results(tmp_path: Path) -> None:
     out = tmp_path / "out"
     finished(out)
-    record_files(out, ["results"])
-    (out / "results").mkdir()
-    (out / "results" / "a.tif").write_text("masks")
-    here = run() | {"inputs": {"masks": {"path": str(out / "results"), "files": {"a.tif": "hash"}}}}
+    (out / "maps" / "a.tif").write_text("masks")
+    here = run() | {"inputs": {"masks": {"path": str(out / "maps"), "files": {"a.tif": "hash"}}}}
     StudyFolder.start(out, here, KIND, overwrite=True)
-    assert (out / "results" / "a.tif").read_text() == "masks"
+    assert everything(out / "maps") == {"a.tif": b"masks"}
 
 
 def test_the_provenance_names_all_that_a_run_writes(tmp_path: Path) -> None:
     folder = finished(tmp_path / "out")
-    figure_path(folder.path, "cell_00000.png").write_bytes(b"")
-    patterns = cd.open_study(folder.path).provenance["files"]
-    names = [path.relative_to(folder.path) for path in folder.path.rglob("*") if path.is_file()]
-    assert len(names) == 5
-    assert all(any(name.match(pattern) for pattern in patterns) for name in names)
+    (folder.path / "figures").mkdir()
+    with writing_files(folder.path, "figures/cell_00000.png", "figures/not_drawn.png"):
+        (folder.path / "figures" / "cell_00000.png").write_bytes(b"")
+    told = cd.open_study(folder.path).provenance["files"]
+    assert {*told, "provenance.json"} == {*everything(folder.path)}
+    assert len(told) == 5
+    assert told["figures/cell_00000.png"] == "0 bytes, crc32 00000000"
+
+
+def test_a_file_that_is_the_users_is_not_written_over(tmp_path: Path) -> None:
+    folder = finished(tmp_path / "out")
+    (folder.path / "report.html").write_text("mine")
+    with pytest.raises(StudyError, match="is in the way, and was not written by this study"):  # noqa: SIM117
+        with writing_files(folder.path, "report.html"):
+            (folder.path / "report.html").write_text("ours")
+    assert (folder.path / "report.html").read_text() == "mine"
 
 
 @pytest.mark.parametrize("options", [{"resume": True}, {"overwrite": True}])
@@ -267,7 +371,7 @@ def test_a_study_of_the_version_before_is_left_alone_and_named(
         name: value for name, value in json.loads(told.read_text()).items() if name not in ("format", "files")
     }
     told.write_text(json.dumps(old | {"versions": {"cytodisk": "0.1.0"}}))
-    assert not StudyFolder.is_complete(tmp_path / "out", run())
+    assert not StudyFolder.is_complete(tmp_path / "out", run(), KIND)
     with pytest.raises(StudyError, match=r"0\.1\.0.*another folder"):
         StudyFolder.start(tmp_path / "out", run(), KIND, **options)
     with pytest.raises(ReadError, match=r"0\.1\.0.*that version"):
@@ -277,7 +381,7 @@ def test_a_study_of_the_version_before_is_left_alone_and_named(
 
 def test_left_over_temporary_files_of_a_killed_run_go_and_other_files_stay(tmp_path: Path) -> None:
     StudyFolder.start(tmp_path / "out", run(), KIND)
-    left_over = tmp_path / "out" / "maps" / ".cell_00000.4711.tmp.npz"
+    left_over = tmp_path / "out" / "maps" / temporary_name(".npz")
     theirs = [tmp_path / "out" / ".editor.tmp.txt", tmp_path / "out" / "mine" / ".a.1.tmp.txt"]
     theirs[1].parent.mkdir()
     for path in (left_over, *theirs):

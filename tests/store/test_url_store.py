@@ -1,3 +1,4 @@
+import json
 from pathlib import Path
 
 import pytest
@@ -13,15 +14,21 @@ def test_a_folder_arrives_whole_in_the_place_of_another(tmp_path: Path) -> None:
             file = tmp_path / "here" / name
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(f"{names}")
+        (tmp_path / "here" / "provenance.json").write_text(
+            json.dumps({"fingerprint": {}, "files": dict.fromkeys(names, "")})
+        )
+        (tmp_path / "there" / "inputs" / "one").mkdir(parents=True, exist_ok=True)
+        (tmp_path / "there" / "inputs" / "one" / "mine.txt").write_text("mine")
         store.put_folder(tmp_path / "here", "inputs/one")
         assert not (tmp_path / "here").exists()
     assert store.read_text("inputs/one/a.txt") == "['a.txt', 'maps/new.txt']"
     assert list(store.names("inputs/one/maps")) == ["new.txt"]
     with store.open("inputs/one/maps/new.txt") as file:
         assert file.read() == b"['a.txt', 'maps/new.txt']"
-    store.remove("inputs")
-    store.remove("inputs")
-    assert list(store.names("inputs/one")) == []
+    names = ["inputs/one/a.txt", "inputs/one/maps/new.txt"]
+    store.remove(names)
+    store.remove(names)
+    assert sorted(store.names("inputs/one")) == ["maps", "mine.txt", "provenance.json"]
     assert store.read_text("inputs/one/a.txt") is None
 
 

@@ -33,7 +33,7 @@ def say_compiling(quiet: bool, work: str = "map") -> bool:
     bool
         Whether it is missing.
     """
-    from cytodisk.files import has_kernels, keeps_kernels
+    from cytodisk.kernel_cache import has_kernels, keeps_kernels
 
     missing = not has_kernels(import_module(_LATE[work]))
     if missing and not quiet and keeps_kernels():  # else the warning of `keep_kernels` has told

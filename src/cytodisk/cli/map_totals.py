@@ -24,11 +24,12 @@ _EMPTY = {"no cell": "empty", "no image": "without an image", "unreadable": "dam
 def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool) -> None:
     """Draw the overview and say what came out; exit code 2 if that is nothing, or an input is damaged."""
     from cytodisk.pages.overview import write_overview
-    from cytodisk.store.figures_folder import figure_path
+    from cytodisk.store.figures_folder import drawing
 
     rows = study.cells
     if len(rows) > 1:
-        write_overview(figure_path(study.path, "overview.png"), rows)
+        with drawing(study.path, "overview.png") as folder:
+            write_overview(folder / "overview.png", rows)
     cells, without = rows[rows["label"] != 0], rows[rows["label"] == 0]
     mapped, lost = rows[rows["status"] == "ok"], rows[rows["status"] != "ok"]
     if of_folder:

@@ -57,14 +57,15 @@ def say_movie(console: "Console", inputs: "MovieInputs") -> None:
 
 
 def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int, again: str = RESUME) -> None:
-    """Draw cells that have no figures yet, so that a run that was stopped while drawing goes on."""
+    """Draw cells whose figures are not there or not whole, so that a run stopped while drawing goes on."""
     from cytodisk.images.signal_files import load_image
     from cytodisk.pages.movie_pages import write_movie_figures
+    from cytodisk.store.figures_folder import is_drawn
 
     image = partial(load_image, inputs.signal)
     cells = sorted(study.cells["cell"].unique())
     wanted = cells if figures < 0 else cells[:figures]
-    missing = [cell for cell in wanted if not any((study.path / "figures").glob(f"cell_{cell:05d}*.gif"))]
+    missing = [cell for cell in wanted if not is_drawn(study.path, f"cell_{cell:05d}", ".gif")]
     if not missing:
         return
     with progress_bar(quiet, "drawings", total=len(missing), again=again) as progress:

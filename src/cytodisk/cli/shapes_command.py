@@ -55,11 +55,12 @@ def shapes_command(
 def _draw(inputs: "CellInputs", table: "pd.DataFrame", out: Path) -> None:
     from cytodisk.pages.shape_pages import cells_to_draw, write_shape_figures
     from cytodisk.runs.shapes.shape_study import cleaned_masks
-    from cytodisk.store.figures_folder import figures_folder
+    from cytodisk.store.figures_folder import drawing
 
     if table["complexity"].notna().any():
         masks = cleaned_masks(inputs, cells_to_draw(table))
-        write_shape_figures(figures_folder(out, "complexity.png", "extremes.png"), table, masks, inputs.scale)
+        with drawing(out, "complexity.png", "extremes.png") as folder:
+            write_shape_figures(folder, table, masks, inputs.scale)
 
 
 def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:

@@ -13,6 +13,7 @@ import xarray as xr
 
 from cytodisk.disk.disk_map import DiskMap, load_map
 from cytodisk.errors import CytodiskError, MaskError, StudyError
+from cytodisk.files import make_folder
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
 from cytodisk.motion.following import map_frames
 from cytodisk.motion.still_interior import fade_in_px
@@ -174,7 +175,7 @@ class _Folder:
 
     def __init__(self, folder: Path) -> None:
         try:
-            folder.mkdir(parents=True, exist_ok=True)
+            make_folder(folder)
             taken = any(folder.glob("frame_*.npz"))
         except OSError as error:
             raise StudyError(f"folder {folder} cannot be written: {error.strerror}") from error

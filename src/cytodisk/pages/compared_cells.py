@@ -18,7 +18,7 @@ from cytodisk.plot.field_of_view import frame_field
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, paper_style
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
-from cytodisk.store.figures_folder import figure_path
+from cytodisk.store.figures_folder import drawing
 
 _MOST_CELLS = 5
 _LEFT, _TOP, _GAP, _WORDS = 6.0, 13.0, 2.0, 4.0  # mm
@@ -76,9 +76,9 @@ def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = N
     chosen = chosen_cells(comparison) if cells is None else _asked_for(comparison, cells)
     if not chosen:
         return None
-    path = figure_path(comparison.path, "cells.png")
+    name = "cells.png"
     size = (DOUBLE_COLUMN_MM - _LEFT - 2.0 - _GAP * (_MOST_CELLS - 1)) / _MOST_CELLS
-    with paper_style():
+    with drawing(comparison.path, name) as folder, paper_style():
         sheet = Sheet(_TOP + len(comparison.methods) * (size + _WORDS + _GAP) + _BELOW)
         for column, cell in enumerate(chosen):
             labels = comparison.labels(cell)
@@ -95,7 +95,7 @@ def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = N
         sheet.text(_LEFT, 4.0, _title(comparison, chosen, cells is None), size=7.5)
         for line, words in enumerate(_KEY):
             sheet.text(_LEFT, sheet.height_mm - 5.0 + 3.5 * line, words, color="0.35")
-        return sheet.save(path, _DPI)
+        return sheet.save(folder / name, _DPI)
 
 
 def chosen_cells(comparison: Comparison) -> list[int]:

@@ -17,7 +17,7 @@ from cytodisk.plot.style import paper_style
 from cytodisk.plot.time_axis import TICK_STEPS
 from cytodisk.runs.compare_windows.compare_parameters import TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
-from cytodisk.store.figures_folder import figure_path
+from cytodisk.store.figures_folder import drawing
 
 # Colours that the colour-blind can tell apart (Okabe and Ito), and a mark beside. Where lines lie on each
 # other the thinner ones, and those with gaps, are in front, so that each is seen.
@@ -74,8 +74,8 @@ def write_comparison(comparison: Comparison) -> Path:
     >>> cd.pages.write_comparison(comparison).name
     'comparison.png'
     """
-    path = figure_path(comparison.path, "comparison.png")
-    with paper_style():
+    name = "comparison.png"
+    with drawing(comparison.path, name) as folder, paper_style():
         sheet = Sheet(_TOP + _HEIGHT + 15.0)
         for number, (name, title) in enumerate(PANELS):
             ax = sheet.axes(_LEFT + number * (_PANEL + _GAP), _TOP, _PANEL, _HEIGHT)
@@ -89,7 +89,7 @@ def write_comparison(comparison: Comparison) -> Path:
             f"other lines: median over {what}; bands: their quartiles"
         )
         sheet.text(_LEFT, sheet.height_mm - 1.5, words, color="0.35")
-        return sheet.save(path)
+        return sheet.save(folder / name)
 
 
 def draw_measure_by_layer(

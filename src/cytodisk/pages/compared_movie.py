@@ -30,7 +30,7 @@ from cytodisk.runs.channel_names import file_names, shown_name
 from cytodisk.runs.compare_windows.compare_parameters import TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
 from cytodisk.scale import Scale
-from cytodisk.store.figures_folder import figure_path
+from cytodisk.store.figures_folder import drawing
 
 _LEFT, _TOP, _GAP, _BAR = 14.0, 11.0, 3.0, 16.0  # mm
 _KEY = "By layer: medians over frames, bands are their quartiles. Through time: mean over layers, no bands."
@@ -82,10 +82,9 @@ def write_compared_movie(comparison: Comparison, cell: int, channel: str | None 
         names = _channels(comparison, cell, methods)
         number = names.index(channel)
         name += f"_{file_names(names)[number]}"
-    path = figure_path(comparison.path, f"{name}.png")
     layers = shown_layers(comparison.provenance["parameters"]["layers"]) if channel is not None else []
     maps = _TOP + len(layers) * (_MAP + _MAP_GAP) + 8.0 if layers else 0.0
-    with paper_style():
+    with drawing(comparison.path, f"{name}.png") as folder, paper_style():
         sheet = Sheet(maps + 12.0 + _PANEL + 15.0)
         if channel is not None:
             signals = {method: comparison.activity(cell, method).isel(channel=number) for method in methods}
@@ -93,7 +92,7 @@ def write_compared_movie(comparison: Comparison, cell: int, channel: str | None 
         write_method_key(sheet, methods, _LEFT, maps + 2.0)
         _draw_measures(sheet, comparison, cell, channel, methods, maps + 12.0)
         sheet.text(_LEFT, sheet.height_mm - 1.5, _KEY, color="0.35")
-        return sheet.save(path)
+        return sheet.save(folder / f"{name}.png")
 
 
 def consistency_by_layer(consistency: pd.DataFrame, name: str) -> pd.DataFrame:

@@ -12,8 +12,8 @@ from cytodisk.pages.drawn_correlation import DrawnCorrelation
 from cytodisk.pages.drawn_movie import DrawnMovie
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.style import paper_style
-from cytodisk.store.correlation_store import Correlation
-from cytodisk.store.figures_folder import figures_folder
+from cytodisk.store.correlation_store import CORRELATION, Correlation
+from cytodisk.store.figures_folder import drawing
 from cytodisk.store.study import Study
 from cytodisk.store.study_folder import part_key
 
@@ -95,15 +95,17 @@ def write_correlation_figures(
     chosen = _formats(formats)
     _check_cell(correlation, cell)
     one = DrawnCorrelation(DrawnMovie(study, cell), correlation)
-    folder = figures_folder(correlation.path)
     report = progress or (lambda done, whole: None)
     paths = []
-    for done, (what, draw) in enumerate(_PAGES.items()):
-        report(done, len(_PAGES))
-        with paper_style():
-            sheet = draw(one)
-            if sheet is not None:
-                paths += _save(sheet, folder, f"cell_{part_key(cell)}_{what}", chosen)
+    stems = {what: f"cell_{part_key(cell)}_{what}" for what in _PAGES}
+    names = [f"{stem}.{kind}" for stem in stems.values() for kind in chosen]
+    with drawing(study.path, *names, below=f"{CORRELATION}/{correlation.path.name}") as folder:
+        for done, (what, draw) in enumerate(_PAGES.items()):
+            report(done, len(_PAGES))
+            with paper_style():
+                sheet = draw(one)
+                if sheet is not None:
+                    paths += _save(sheet, folder, stems[what], chosen)
     report(len(_PAGES), len(_PAGES))
     return paths
 

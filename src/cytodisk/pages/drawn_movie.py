@@ -11,8 +11,8 @@ import numpy as np
 from cytodisk.arrays import FloatArray
 from cytodisk.pages.movie_cell import MovieCell
 from cytodisk.pages.sheet import Sheet
-from cytodisk.store.figures_folder import figure_path
 from cytodisk.store.study_folder import part_key
+from cytodisk.store.study_kind import FIGURES
 from cytodisk.windows.polar_windows import CellWindows
 
 HEADING_MM = 12.0
@@ -68,8 +68,8 @@ class DrawnMovie(MovieCell):
         return sheet.save(self.path(f"_{what}.png"))
 
     def path(self, ending: str) -> Path:
-        """Where a figure is to stand."""
-        return figure_path(self.study.path, f"cell_{part_key(self.cell)}{ending}")
+        """Where a figure is to stand; see `cytodisk.store.figures_folder.drawing`."""
+        return self.study.path / FIGURES / f"cell_{part_key(self.cell)}{ending}"
 
     def _facts(self) -> list[str]:
         last = self.first + self.frames - 1

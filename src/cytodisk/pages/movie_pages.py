@@ -22,6 +22,7 @@ from cytodisk.plot.style import DOUBLE_COLUMN_MM, colour_bar, paper_style, signa
 from cytodisk.plot.time_axis import time_stamp
 from cytodisk.plot.time_raster import bar_beside
 from cytodisk.runs.channel_names import file_names
+from cytodisk.store.figures_folder import drawing
 from cytodisk.store.study import Study
 
 SignalAt = Callable[[int], Any]
@@ -99,14 +100,16 @@ def write_movie_figures(
     frames = _evenly(movie.mapped, MOST_ANIMATED) if animation else []
     report = progress or (lambda done, whole: None)
     whole, paths = len(pages) + len(frames), []
-    for done, (what, draw) in enumerate(pages):
-        report(done, whole)
-        with paper_style():
-            sheet = draw()
-            if sheet is not None:
-                paths.append(movie.save(sheet, what))
-    if frames:
-        paths.append(_animate(movie, signal, frames, lambda done: report(len(pages) + done, whole)))
+    names = [movie.path(f"_{what}.png").name for what, _ in pages] + [movie.path(".gif").name] * animation
+    with drawing(study.path, *names):
+        for done, (what, draw) in enumerate(pages):
+            report(done, whole)
+            with paper_style():
+                sheet = draw()
+                if sheet is not None:
+                    paths.append(movie.save(sheet, what))
+        if frames:
+            paths.append(_animate(movie, signal, frames, lambda done: report(len(pages) + done, whole)))
     report(whole, whole)
     return paths
 

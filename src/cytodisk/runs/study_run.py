@@ -45,7 +45,6 @@ class StudyRun:
         work: Callable[[StudyFolder], tuple[Sequence[str], Sequence[str]]],
         read: Callable[[Path], Result],
         tables: Callable[[StudyFolder], None] | None = None,
-        after: Callable[[Path], None] | None = None,
     ) -> Result:
         """Do the work in a folder and mark the study as complete, unless it is.
 
@@ -60,8 +59,6 @@ class StudyRun:
             Opens the complete study.
         tables : callable, optional
             Completes the tables when all parts are in them, before the study counts as complete.
-        after : callable, optional
-            Writes what follows from a complete study; called with its folder, also for one that was there.
 
         Returns
         -------
@@ -76,20 +73,23 @@ class StudyRun:
         is_path("out", out)
         options, place = self.options, Path(out)
         with alone_in(out):
-            kind, tables_of = self.kind, self.kind.table_files
-            csv = options.csv or (options.resume and has_csv_tables(place, tables_of))
-            if csv:
-                check_csv_room(place, tables_of)
-                kind = kind.with_csv
-            if not (options.resume and StudyFolder.is_complete(out, self.provenance)):
+            kind = self._kind(place)
+            complete = options.resume and StudyFolder.is_complete(out, self.provenance, kind)
+            if not complete:
                 folder = StudyFolder.start(out, self.provenance, kind, **options.again)
                 write_parameters(self.parameters, place / PARAMETERS)
                 keys, warnings = work(folder)
                 folder.note("warnings", [*self.provenance["warnings"], *warnings])
                 folder.note("finished", datetime.now(UTC).isoformat(timespec="seconds"))
                 folder.finish(list(keys), tables)
-            if after is not None:
-                after(place)
-            if csv:
-                write_csv_tables(place, tables_of)
+            elif kind is not self.kind:
+                write_csv_tables(place, kind.table_files)
             return read(place)
+
+    def _kind(self, place: Path) -> StudyKind:
+        """The kind with its tables as CSV too: if asked for, or done by the run that goes on."""
+        tables = self.kind.table_files
+        if not (self.options.csv or (self.options.resume and has_csv_tables(place, tables))):
+            return self.kind
+        check_csv_room(place, tables)
+        return self.kind.with_csv

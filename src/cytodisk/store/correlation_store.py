@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
-import os
 import shutil
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -16,13 +16,16 @@ import pandas as pd
 import pyarrow as pa
 
 from cytodisk.errors import ReadError, StudyError
+from cytodisk.files import flush, make_folder, temporary_name
 from cytodisk.store.columns_file import write_columns
 from cytodisk.store.csv_tables import parquet_to_csv
-from cytodisk.store.provenance_file import read_provenance, record_files
+from cytodisk.store.provenance_file import read_provenance
 from cytodisk.store.tables import Columns, read_table, write_table
+from cytodisk.store.written_files import recorded, writing_files
 
 CORRELATION = "correlation"
 SETTINGS = "settings.json"
+_LONGEST_NAME, _MARK = 70, 12  # characters: three such names make one of a folder, which has up to 255
 
 
 @dataclass(frozen=True)
@@ -105,7 +108,7 @@ class Correlation:
 
 
 def correlation_path(study: Path, signal: str, with_: str, name: str = "") -> Path:
-    """Folder of a correlation; what no file name can hold is written with %."""
+    """Folder of a correlation; what no file name can hold is written with %, and long names are cut."""
     names = (signal, with_, name) if name else (signal, with_)
     return study / CORRELATION / "~".join(_quoted(part) for part in names)
 
@@ -148,10 +151,10 @@ def write_correlation(
     target = correlation_path(study, signal, with_, name)
     content = {"signal": signal, "with": with_, "name": name} | settings
     text = json.dumps(content, indent=2, ensure_ascii=False)
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    temporary = target.with_name(temporary_name())
+    place = f"{CORRELATION}/{target.name}"
     try:
-        shutil.rmtree(temporary, ignore_errors=True)  # of an earlier process with this number
-        temporary.mkdir(parents=True)
+        make_folder(temporary)
         for table_name, table in tables.items():
             file = temporary / f"{table_name}.parquet"
             write_table(table, file)
@@ -163,8 +166,11 @@ def write_correlation(
         }
         write_columns(temporary, told, read_provenance(study) or {})
         (temporary / SETTINGS).write_text(text + "\n", encoding="utf-8")
-        _exchange(target, temporary)
-        record_files(study, [f"{CORRELATION}/{target.name}"])
+        flush(temporary.iterdir())
+        there = [name for name in recorded(read_provenance(study) or {}) if name.startswith(f"{place}/")]
+        new = [f"{place}/{file.name}" for file in temporary.iterdir()]
+        with writing_files(study, *dict.fromkeys([*new, *there])):
+            _exchange(target, temporary, [name.removeprefix(f"{place}/") for name in there])
     except OSError as error:
         raise StudyError(f"cannot write {target}: {error.strerror or error}") from error
     finally:
@@ -172,12 +178,15 @@ def write_correlation(
     return read_correlation(study, signal, with_, name)
 
 
-def _exchange(target: Path, new: Path) -> None:
-    """Put a folder in the place of another, which is there until the new one is, or comes back."""
-    old = target.with_name(f".{target.name}.old")
+def _exchange(target: Path, new: Path, own: Collection[str]) -> None:
+    """Put a folder in the place of another, which is there until the new one is, or comes back.
+
+    Of the old one what is `own` is removed; other files move to the new one.
+    """
+    old = target.with_name(f".old~{target.name}")
     if old.exists() and not target.exists():
         old.replace(target)  # an earlier process died between the two steps below
-    shutil.rmtree(old, ignore_errors=True)
+    _dissolve(old, target, own)
     if target.exists():
         target.replace(old)
     try:
@@ -186,7 +195,19 @@ def _exchange(target: Path, new: Path) -> None:
         if old.exists():
             old.replace(target)
         raise
-    shutil.rmtree(old, ignore_errors=True)
+    _dissolve(old, target, own)
+
+
+def _dissolve(old: Path, target: Path, own: Collection[str]) -> None:
+    """Remove a folder that was replaced, but for files that are not its study's: these move."""
+    if not old.exists():
+        return
+    for file in [file for file in old.rglob("*") if not file.is_dir() or file.is_symlink()]:
+        name = file.relative_to(old).as_posix()
+        if name not in own:
+            make_folder((target / name).parent)
+            file.replace(target / name)
+    shutil.rmtree(old)
 
 
 def read_correlation(study: Path, signal: str, with_: str, name: str = "") -> Correlation:
@@ -227,5 +248,8 @@ def _settings(path: Path) -> dict[str, Any] | None:
 
 
 def _quoted(name: str) -> str:
-    quoted = quote(name, safe=" +-,()").replace("~", "%7E")
+    quoted = quote(name, safe=" +-,()", errors="surrogatepass").replace("~", "%7E")
+    if len(quoted) > _LONGEST_NAME:  # what tells it from others that begin alike is its hash
+        mark = hashlib.sha256(name.encode("utf-8", "surrogatepass")).hexdigest()[:_MARK]
+        quoted = f"{quoted[: _LONGEST_NAME - _MARK - 1]}+{mark}"
     return f"%2E{quoted[1:]}" if quoted.startswith(".") else quoted  # a dot in front hides a folder

@@ -16,7 +16,8 @@ import pyarrow.parquet as pq
 
 from cytodisk.errors import StudyError
 from cytodisk.files import replacing
-from cytodisk.store.provenance_file import own_files, read_provenance, record_files
+from cytodisk.store.provenance_file import read_provenance
+from cytodisk.store.written_files import recorded, writing_files
 
 _ROWS_AT_ONCE = 20_000
 # A spreadsheet runs a cell that begins so, also with an apostrophe or blanks in front, or in full width.
@@ -134,7 +135,7 @@ def check_csv_room(folder: Path, tables: Iterable[str]) -> None:
         A file stands where a CSV table is to go, and the provenance does not name it.
     """
     there = read_provenance(folder) or {}
-    ours = own_files(there)
+    ours = recorded(there)
     others = [name for name in map(csv_of, tables) if name not in ours and os.path.lexists(folder / name)]
     if others:
         raise StudyError(other_csv_words(str(folder / others[0])))
@@ -155,12 +156,12 @@ def write_csv_tables(folder: Path, tables: Iterable[str]) -> None:
         Names of the Parquet files.
     """
     names = list(tables)
-    record_files(folder, map(csv_of, names))  # first: what stands there is known as the study's
-    for name in names:
-        parquet_to_csv(folder / name, folder / csv_of(name))
+    with writing_files(folder, *map(csv_of, names)):
+        for name in names:
+            parquet_to_csv(folder / name, folder / csv_of(name))
 
 
 def has_csv_tables(folder: Path, tables: Iterable[str]) -> bool:
     """Whether an earlier run wrote all tables of a study as CSV too, so that they must follow the tables."""
-    ours = own_files(read_provenance(folder) or {})
+    ours = recorded(read_provenance(folder) or {})
     return all(csv_of(name) in ours for name in tables)

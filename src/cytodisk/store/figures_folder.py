@@ -2,41 +2,64 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from cytodisk.errors import WriteError
-from cytodisk.store.provenance_file import record_files
+from cytodisk.files import writing_to
+from cytodisk.store.provenance_file import read_provenance
 from cytodisk.store.study_kind import FIGURES
+from cytodisk.store.written_files import lost_files, recorded, writing_files
 
 
-def figures_folder(study: Path, *names: str) -> Path:
-    """The folder for the figures of a study, which is made; their names are noted as the study's.
+@contextmanager
+def drawing(study: Path, *names: str, below: str = "") -> Iterator[Path]:
+    """The folder for the figures of a study; those that the block writes are noted as the study's.
 
     Parameters
     ----------
     study : Path
-        Folder of a study, or of a correlation in one.
     *names : str
-        Of the figures that are to be written.
+        Of the figures that may be written.
+    below : str
+        Folder of the study whose figures they are, as that of a correlation.
 
-    Returns
-    -------
+    Yields
+    ------
     Path
+        It is there.
 
     Raises
     ------
     WriteError
         It cannot be made.
+    StudyError
+        A file of such a name is there which is not the study's.
     """
-    folder = study / FIGURES
-    try:
-        folder.mkdir(exist_ok=True)
-        record_files(study, [f"{FIGURES}/{name}" for name in names])
-    except OSError as error:
-        raise WriteError(f"cannot write {folder}: {error.strerror or error}") from error
-    return folder
+    within = f"{below}/{FIGURES}" if below else FIGURES
+    with writing_files(study, *(f"{within}/{name}" for name in names)):
+        folder = study / within
+        with writing_to(folder):
+            folder.mkdir(exist_ok=True)
+        yield folder
 
 
-def figure_path(study: Path, name: str) -> Path:
-    """Where a figure of a study is to stand; see `figures_folder`."""
-    return figures_folder(study, name) / name
+def is_drawn(study: Path, name: str, last: str) -> bool:
+    """Whether all figures of a cell are there, and whole.
+
+    Parameters
+    ----------
+    study : Path
+    name : str
+        What the names of the cell's figures begin with.
+    last : str
+        Ending of the one that is drawn last.
+
+    Returns
+    -------
+    bool
+    """
+    files = recorded(read_provenance(study) or {})
+    starts = tuple(f"{FIGURES}/{name}{mark}" for mark in "_.")
+    own = {file: mark for file, mark in files.items() if file.startswith(starts)}
+    return any(file.endswith(last) for file in own) and all(own.values()) and not lost_files(study, own)

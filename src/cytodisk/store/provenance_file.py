@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
-import sys
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import Any
 
 from cytodisk.disk.mapping_parameters import MAPS_VERSION
@@ -17,8 +13,10 @@ from cytodisk.files import replacing
 PROVENANCE = "provenance.json"
 MAPS = "maps version"
 _EARLIER_MAPS = "its maps are of an earlier version, with another mesh and relaxation"
-FORMAT = 2
-"""Of the tables and files of a study: 1 had no list of files, and other names of columns."""
+FORMAT = 3
+"""Of the tables and files of a study: 1 had no list of files, and other names of columns; the list of 2 has
+patterns of names, and no checksums."""
+_READABLE = (2, FORMAT)
 
 
 def read_provenance(folder: Path) -> dict[str, Any] | None:
@@ -61,7 +59,7 @@ def read_complete(folder: Path, *runs: str) -> dict[str, Any]:
         raise ReadError(f"study {folder} does not exist: check the path")
     if found is None:
         raise ReadError(f"{folder} is no study: it has no readable {PROVENANCE}")
-    if words := other_version(found):
+    if words := other_version(found, to_read=True):
         raise ReadError(f"study {folder} {words}: read it with that version, or run the command anew")
     if found.get("run") not in runs:
         raise ReadError(f"study {folder} holds a run of {command_of(found)}: {found.get('reader')}")
@@ -70,12 +68,21 @@ def read_complete(folder: Path, *runs: str) -> dict[str, Any]:
     return found
 
 
-def other_version(provenance: dict[str, Any]) -> str:
-    """Words for a study that another version wrote in another way; empty for one of this version."""
-    if provenance.get("format") == FORMAT:
+def other_version(provenance: dict[str, Any], *, to_read: bool = False) -> str:
+    """Words for a study that another version wrote in another way; empty for one of this version.
+
+    Parameters
+    ----------
+    provenance : dict
+    to_read : bool
+        It is only read: then an earlier one will do that has the same tables.
+    """
+    found = provenance.get("format")
+    if found == FORMAT or (to_read and found in _READABLE):
         return ""
     version = provenance.get("versions", {}).get("cytodisk", "of unknown version")
-    return f"was written by an earlier or later cytodisk ({version}), with other tables"
+    what = "which did not note all files that it wrote" if found in _READABLE else "with other tables"
+    return f"was written by an earlier or later cytodisk ({version}), {what}"
 
 
 def maps_version(provenance: dict[str, Any]) -> int:
@@ -99,55 +106,15 @@ def other_maps(provenance: dict[str, Any]) -> str:
     )
 
 
-def own_files(provenance: dict[str, Any]) -> list[str]:
-    """Names, or patterns of names, of what a run wrote into its folder, beside the provenance.
-
-    Names that lead out of the folder are left out: the file may come from elsewhere, and `--overwrite`
-    removes what is named here.
-    """
-    names = [str(name) for name in provenance.get("files", []) if name and name != PROVENANCE]
-    return [name for name in names if not PurePath(name).is_absolute() and ".." not in PurePath(name).parts]
-
-
 def write_json(path: Path, content: Any) -> None:
     """Write a JSON file whole or not at all."""
     with replacing(path) as temporary:
-        temporary.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+        temporary.write_bytes(json_bytes(content, indent=2) + b"\n")
 
 
-def record_files(folder: Path, names: Iterable[str]) -> None:
-    """Note in the provenance of a study what else is written into its folder; nothing without a study.
-
-    Parameters
-    ----------
-    folder : Path
-    names : iterable of str
-        Relative to the folder; `--overwrite` removes them.
-    """
-    if not (given := list(dict.fromkeys(names))):
-        return
-    with _held(folder):
-        found = read_provenance(folder)
-        known = [] if found is None else found.get("files", [])
-        new = [name for name in given if name not in known]
-        if found is not None and new:
-            write_json(folder / PROVENANCE, found | {"files": [*known, *new]})
-
-
-@contextmanager
-def _held(folder: Path) -> Iterator[None]:
-    """Let one process at a time change the provenance."""
-    if sys.platform == "win32":
-        yield
-        return
-    import fcntl
-
-    held = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(held, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(held)
+def json_bytes(content: Any, indent: int | None = None) -> bytes:
+    """JSON in UTF-8; a name of a file that is not in UTF-8 comes back as it was, too."""
+    return json.dumps(content, indent=indent, ensure_ascii=False).encode("utf-8", "backslashreplace")
 
 
 def command_of(provenance: dict[str, Any]) -> str:

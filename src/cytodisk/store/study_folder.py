@@ -2,33 +2,25 @@
 
 from __future__ import annotations
 
-import json
 import os
-import shutil
-from collections.abc import Callable, Collection, Iterator, Sequence
+import warnings
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import pyarrow as pa
-
-from cytodisk.arrays import FloatArray
-from cytodisk.errors import StudyError, WriteError
-from cytodisk.files import replacing
+from cytodisk.errors import DamagedPartWarning, StudyError, WriteError
+from cytodisk.files import flush, make_folder, mark_of, replacing
 from cytodisk.store.columns_file import write_columns
-from cytodisk.store.merging import merge_tables, read_part, write_part, write_rows
-from cytodisk.store.provenance_file import (
-    PROVENANCE,
-    other_version,
-    read_provenance,
-    write_json,
-)
+from cytodisk.store.csv_tables import csv_of, parquet_to_csv
+from cytodisk.store.merging import merge_tables, write_rows
+from cytodisk.store.provenance_file import PROVENANCE, other_version, read_provenance, write_json
+from cytodisk.store.removal import is_left_over, remove_left_overs, remove_parts
 from cytodisk.store.study_kind import CELLS, FIGURES, MAPS, PARTS, StudyKind
-from cytodisk.store.study_room import is_left_over, make_room, remove_left_overs
-from cytodisk.store.tables import Columns, schema
+from cytodisk.store.study_parts import UNITS, StudyParts
+from cytodisk.store.study_room import make_room
+from cytodisk.store.written_files import FILES, lost_files, recorded, some_of
 
 _DIGITS = (5, 6)  # of a cell or frame in a key; a folder never has a million
-_UNITS = ("length_unit", "velocity_unit")  # of the provenance
 
 
 def part_key(cell: int, frame: int | None = None) -> str:
@@ -51,18 +43,11 @@ def part_patterns(name: str, frames: bool = False) -> tuple[str, ...]:
     return tuple(name.format(key) for key in keys)
 
 
-class StudyFolder:
+class StudyFolder(StudyParts):
     """The writing side of a study: one part a cell, or a frame of a cell, merged into the tables at the end.
 
-    A part's last file marks it as done; every file is written under a temporary name and renamed. So a run
-    that is killed at any moment loses only the cells it was at, and another run can do the rest. Use it
-    within `alone_in`.
+    Use it within `alone_in`.
     """
-
-    def __init__(self, path: Path, provenance: dict[str, Any], kind: StudyKind):
-        self.path = path
-        self.provenance = provenance
-        self.kind = kind
 
     @classmethod
     def start(
@@ -103,9 +88,11 @@ class StudyFolder:
         try:
             if folder.exists() and not folder.is_dir():
                 raise StudyError(f"output {folder} is a file: pass a folder")
-            folder.mkdir(parents=True, exist_ok=True)
+            make_folder(folder)
             if any(not is_left_over(file) for file in folder.iterdir()):
-                make_room(folder, study.provenance, resume, overwrite)
+                make_room(folder, study.provenance, kind, resume, overwrite)
+            there = (read_provenance(folder) if resume else None) or {}
+            study.provenance[FILES] = recorded(there) | dict.fromkeys(kind.names, "")
             study.note("status", "running")  # first, so that a folder that stands is known as a study
             (folder / PARTS).mkdir(exist_ok=True)
             if any(name.startswith(f"{MAPS}/") for name in kind.files):
@@ -119,24 +106,28 @@ class StudyFolder:
         return study
 
     @staticmethod
-    def is_complete(path: str | os.PathLike[str], provenance: dict[str, Any]) -> bool:
-        """Whether a folder holds the whole of the same run already."""
+    def is_complete(path: str | os.PathLike[str], provenance: dict[str, Any], kind: StudyKind) -> bool:
+        """Whether a folder holds the whole of the same run already.
+
+        Warns
+        -----
+        DamagedPartWarning
+            It would, but files of it are gone or damaged.
+        """
         there = read_provenance(Path(path)) or {}
         same = there.get("fingerprint") == provenance["fingerprint"] and not other_version(there)
-        return same and there.get("status") == "complete"
+        if not same or there.get("status") != "complete":
+            return False
+        own = {name: mark for name, mark in recorded(there).items() if kind.may_write(name)}
+        if lost := lost_files(Path(path), own):
+            words = f"study {path} is not whole any more, {some_of(lost)} gone or damaged: it is made anew"
+            warnings.warn(words, DamagedPartWarning, stacklevel=3)
+        return not lost
 
     def note(self, name: str, value: Any) -> None:
         """Set an entry of the provenance and write it."""
         self.provenance[name] = value
         write_json(self.path / PROVENANCE, self.provenance)
-
-    def has(self, key: str) -> bool:
-        """Whether a part is complete."""
-        return self._part(key, "json").exists()
-
-    def has_table(self, key: str, table: str) -> bool:
-        """Whether a part has rows for a table."""
-        return self._part(key, f"{table}.arrow").exists()
 
     def map_path(self, key: str) -> Path:
         """Where a part's map stands."""
@@ -144,110 +135,8 @@ class StudyFolder:
 
     def for_workers(self) -> StudyFolder:
         """The same folder for other processes, without what only the main one needs."""
-        units = {name: self.provenance[name] for name in _UNITS if name in self.provenance}
+        units = {name: self.provenance[name] for name in UNITS if name in self.provenance}
         return StudyFolder(self.path, units, self.kind)
-
-    def add_table(self, key: str, table: str, *columns: dict[str, Any]) -> None:
-        """Write a part's rows for a table.
-
-        Parameters
-        ----------
-        key : str
-            See `part_key`.
-        table : str
-            One of `self.kind.others`.
-        *columns : dict of str to array
-            One below the other, such as those of several cells.
-        """
-        columns_schema = self._schema(self.kind.others[table])
-        rows = pa.concat_tables([pa.table(some, schema=columns_schema) for some in columns])
-        with replacing(self._part(key, f"{table}.arrow")) as temporary:
-            write_part(rows, temporary)
-
-    def add_array(self, key: str, name: str, values: FloatArray) -> None:
-        """Write numbers of a part that only its run needs; they go with the parts when it ends.
-
-        Parameters
-        ----------
-        key : str
-            See `part_key`.
-        name : str
-        values : ndarray and dtype float
-        """
-        with replacing(self._part(key, f"{name}.npy")) as temporary:
-            np.save(temporary, values)
-
-    def add(self, key: str, row: dict[str, Any], tables: dict[str, dict[str, Any]]) -> None:
-        """Write a part: its rows for the tables, then its own row, which marks it as complete.
-
-        Parameters
-        ----------
-        key : str
-            See `part_key`.
-        row : dict
-            Values for the table of cells; missing ones are null.
-        tables : dict of str to columns
-            Empty for a cell without a map.
-        """
-        for table, columns in tables.items():
-            self.add_table(key, table, columns)
-        write_json(self._part(key, "json"), row)
-
-    def add_cells(self, key: str, cells: Sequence[tuple[dict[str, Any], dict[str, dict[str, Any]]]]) -> None:
-        """Write several cells as one part.
-
-        Parameters
-        ----------
-        key : str
-            See `part_key`; that of the first cell.
-        cells : sequence of (row, tables)
-            As `add` takes them.
-        """
-        for table in self.kind.others:
-            columns = [tables[table] for _, tables in cells if table in tables]
-            if columns:
-                self.add_table(key, table, *columns)
-        write_json(self._part(key, "json"), [row for row, _ in cells])
-
-    def read_rows(self, keys: Collection[str]) -> Iterator[dict[str, Any]]:
-        """The rows of all parts, one after the other.
-
-        Parameters
-        ----------
-        keys : collection of str
-
-        Yields
-        ------
-        dict
-            As it was passed to `add` or `add_cells`.
-
-        Raises
-        ------
-        StudyError
-            A part is missing, or there are others.
-        """
-        complete = self._complete()
-        if set(complete) != set(keys):
-            raise StudyError(
-                f"study {self.path} has {len(complete)} parts instead of {len(keys)}: "
-                "run the same command again with --resume"
-            )
-        for key in keys:
-            found = json.loads(self._part(key, "json").read_text(encoding="utf-8"))
-            yield from found if isinstance(found, list) else [found]
-
-    def rows(self) -> list[dict[str, Any]]:
-        """The rows of all complete parts, by cell, then frame."""
-        return sorted(self.read_rows(self._complete()), key=lambda row: (row["cell"], row["frame"]))
-
-    def part_table(self, key: str, table: str) -> Any:
-        """A part's rows for a table, as an Arrow table."""
-        return read_part(self._part(key, f"{table}.arrow"))
-
-    def part_array(self, key: str, name: str) -> FloatArray | None:
-        """Numbers of a part as `add_array` wrote them; None if it did not."""
-        path = self._part(key, f"{name}.npy")
-        return np.load(path) if path.exists() else None
 
     def finish(self, keys: list[str], then: Callable[[StudyFolder], None] | None = None) -> None:
         """Merge the parts into the tables and mark the study as complete.
@@ -273,14 +162,22 @@ class StudyFolder:
         if then is not None:
             then(self)
         write_columns(self.path, self.kind.tables, self.provenance)
+        for table in self.kind.table_files if self.kind.csv else ():
+            parquet_to_csv(self.path / table, self.path / csv_of(table))
+        self.provenance[FILES] = self._written(keys)
         self.note("status", "complete")
-        shutil.rmtree(self.path / PARTS, ignore_errors=True)  # the tables stand; parts are only in the way
+        remove_parts(self.path)  # the tables stand; parts are only in the way
 
-    def _complete(self) -> list[str]:
-        return [part.stem for part in (self.path / PARTS).glob("[0-9]*.json")]
-
-    def _part(self, key: str, suffix: str) -> Path:
-        return self.path / PARTS / f"{key}.{suffix}"
-
-    def _schema(self, columns: Columns) -> Any:
-        return schema(columns, *(str(self.provenance.get(unit, "")) for unit in _UNITS))
+    def _written(self, keys: Iterable[str]) -> dict[str, str]:
+        """Marks of all files of the study, which outlast a loss of power from here on."""
+        parts = (self._done[key] for key in keys)
+        of_parts = {name: mark for part in parts for name, mark in part.items() if not name.startswith(PARTS)}
+        written = [name for name in self.kind.names if (self.path / name).exists()]
+        there = {name: mark for name, mark in self.provenance[FILES].items() if (self.path / name).exists()}
+        # Of this run alone the marks are known; what another one wrote with other options stays its own.
+        others = {name: "" if self.kind.may_write(name) else mark for name, mark in there.items()}
+        try:
+            flush(self.path / name for name in (*written, *of_parts))
+        except OSError as error:
+            raise WriteError(f"cannot write {self.path}: {error.strerror or error}") from error
+        return others | of_parts | {name: mark_of(self.path / name) for name in written}

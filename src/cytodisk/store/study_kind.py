@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
 from typing import Any
 
 from cytodisk.store.columns_file import COLUMNS_CSV
 from cytodisk.store.csv_tables import csv_of
-from cytodisk.store.provenance_file import FORMAT, PROVENANCE
+from cytodisk.store.provenance_file import FORMAT
 from cytodisk.store.tables import Columns
 
 PARAMETERS = "parameters.toml"
@@ -33,7 +34,10 @@ class StudyKind:
     others : dict of str to tuple of Column
         By name of the table.
     files : tuple of str
-        Names, or patterns of names, of all else that it writes.
+        Names, or patterns of names, of all else that it writes. With patterns it is told what may be the
+        run's; the provenance names each file.
+    csv : bool
+        All tables are written as CSV too.
     """
 
     run: str
@@ -42,6 +46,7 @@ class StudyKind:
     cells: Columns
     others: dict[str, Columns]
     files: tuple[str, ...] = ()
+    csv: bool = False
 
     @property
     def tables(self) -> dict[str, Columns]:
@@ -58,16 +63,28 @@ class StudyKind:
     def with_csv(self) -> StudyKind:
         """The same where every table is written as CSV too."""
         new = tuple(name for name in map(csv_of, self.table_files) if name not in self.files)
-        return replace(self, files=(*self.files, *new))
+        return replace(self, files=(*self.files, *new), csv=True)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the files that every such run writes, beside the provenance."""
+        tables = (f"{name}.parquet" for name in self.tables)
+        return (PARAMETERS, COLUMNS_CSV, *tables, *(name for name in self.files if not _is_pattern(name)))
+
+    @property
+    def patterns(self) -> tuple[str, ...]:
+        """Patterns of the names of files whose number depends on the input."""
+        return tuple(name for name in self.files if _is_pattern(name))
+
+    def may_write(self, name: str) -> bool:
+        """Whether such a run, not a later command such as a report, writes a file of this name."""
+        return name in self.names or any(fnmatchcase(name, pattern) for pattern in self.patterns)
 
     @property
     def provenance(self) -> dict[str, Any]:
         """What the provenance says of the kind of run."""
-        tables = (f"{name}.parquet" for name in self.tables)
-        return {
-            "run": self.run,
-            "command": self.command,
-            "reader": self.reader,
-            "format": FORMAT,
-            "files": [PROVENANCE, PARAMETERS, COLUMNS_CSV, *tables, *self.files, PARTS],
-        }
+        return {"run": self.run, "command": self.command, "reader": self.reader, "format": FORMAT}
+
+
+def _is_pattern(name: str) -> bool:
+    return "[" in name or "*" in name

@@ -3,26 +3,31 @@
 from __future__ import annotations
 
 import os
-import re
-import shutil
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from cytodisk.errors import OtherRunError, StudyError, WriteError
-from cytodisk.files import lock
+from cytodisk.files import lock, make_folder, unlock
 from cytodisk.store.provenance_file import (
     PROVENANCE,
     differences,
     other_version,
-    own_files,
     read_provenance,
     way_out,
     write_json,
 )
-
-LOCK = ".lock"
+from cytodisk.store.removal import (
+    LOCK,
+    input_files,
+    known_files,
+    refuse_removal,
+    remove_files,
+    remove_parts,
+)
+from cytodisk.store.study_kind import StudyKind
+from cytodisk.store.written_files import some_of
 
 
 @contextmanager
@@ -43,7 +48,7 @@ def alone_in(path: str | os.PathLike[str]) -> Iterator[None]:
     try:
         if folder.exists() and not folder.is_dir():
             raise StudyError(f"output {folder} is a file: pass a folder")
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         held = lock(folder / LOCK)
     except StudyError:
         raise
@@ -54,49 +59,57 @@ def alone_in(path: str | os.PathLike[str]) -> Iterator[None]:
     try:
         yield
     finally:
-        (folder / LOCK).unlink(missing_ok=True)
-        held.close()
+        unlock(held, folder / LOCK)
 
 
-def make_room(folder: Path, provenance: dict[str, Any], resume: bool, overwrite: bool) -> None:
+def make_room(
+    folder: Path, provenance: dict[str, Any], kind: StudyKind, resume: bool, overwrite: bool
+) -> None:
     """Check that a run may write to a folder that is not empty, and remove what it replaces.
+
+    All is checked before anything is removed.
 
     Parameters
     ----------
     folder : Path
     provenance : dict
         Of the run; its inputs are never removed.
+    kind : StudyKind
+        What the run may write: where that is someone else's, it is refused.
     resume, overwrite : bool
         See `StudyFolder.start`.
 
     Raises
     ------
     StudyError
-        The folder holds something else, or another run (`OtherRunError`).
+        The folder holds something else, or another run (`OtherRunError`); or files are in the way, or would
+        be removed, that are not the study's.
     """
     there = read_provenance(folder)
     check_room(there, provenance, f"output folder {folder}", resume, overwrite)
-    if overwrite and there is not None:
+    if there is None:
+        return
+    known = known_files(folder, there)
+    _refuse_strangers(folder, kind, known)
+    if overwrite:
+        names = [name for name in known if os.path.lexists(folder / name)]
+        refuse_removal(folder, names, input_files(provenance))
         # The old provenance stays, marked, until the new one replaces it: a kill leaves a known study.
         write_json(folder / PROVENANCE, there | {"status": "being replaced", "fingerprint": {}})
-        inputs = _input_files(provenance)
-        names = own_files(there)
-        for file in [file for name in names for file in folder.glob(name)]:
-            if not any(one.is_relative_to(file.resolve()) for one in inputs):
-                _remove(file)
-        for name in {Path(name).parent for name in names} - {Path()}:
-            with suppress(OSError):  # something that is not ours stands there
-                (folder / name).rmdir()
+        remove_files(folder, names)
+        remove_parts(folder)
 
 
-def _input_files(provenance: dict[str, Any]) -> set[Path]:
-    """The files that a run reads; of a folder of masks those that count, not what else stands in it."""
-    inputs = provenance.get("inputs", {}).values()
-    return {
-        file.resolve()
-        for found in inputs
-        for file in (Path(found["path"]) / name for name in found.get("files", [""]))
-    }
+def _refuse_strangers(folder: Path, kind: StudyKind, known: set[str]) -> None:
+    """Raise StudyError if a file that is not the study's has the name of one that a run may write."""
+    matches = (path for pattern in kind.patterns for path in folder.glob(pattern))
+    names = [*kind.names, *(path.relative_to(folder).as_posix() for path in matches)]
+    strange = [name for name in names if name not in known and os.path.lexists(folder / name)]
+    if strange:
+        raise StudyError(
+            f"output folder {folder} holds {some_of(strange)}, which its study did not write but this run "
+            "may: move what is yours, or pass another folder"
+        )
 
 
 def check_room(
@@ -127,23 +140,3 @@ def check_room(
         raise StudyError(f"{place} holds a study: pass --resume to go on, --overwrite to replace it")
     if there.get("fingerprint") != here["fingerprint"]:
         raise OtherRunError(f"{place} holds another run ({differences(there, here)}): {way_out(there, here)}")
-
-
-def remove_left_overs(places: Iterable[Path]) -> None:
-    """Remove the temporary files of a run that was killed while writing; other files are not ours."""
-    for place in places:
-        for file in place.iterdir():
-            if file.name != LOCK and is_left_over(file):
-                _remove(file)
-
-
-def is_left_over(file: Path) -> bool:
-    """Whether a file is the lock, or a temporary file of a run."""
-    return file.name == LOCK or re.fullmatch(r"\..+\.\d+\.tmp\.\w+", file.name) is not None
-
-
-def _remove(target: Path) -> None:
-    if target.is_dir():
-        shutil.rmtree(target)
-    else:
-        target.unlink(missing_ok=True)

@@ -5,17 +5,16 @@ from __future__ import annotations
 import errno
 import os
 import shutil
-import uuid
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO, Protocol
 
 from cytodisk.errors import CytodiskError, StudyError, WriteError
-from cytodisk.files import replacing
+from cytodisk.files import flush, is_temporary, make_folder, replacing, temporary_name
+from cytodisk.store.removal import LOCK, files_of_study, refuse_removal, remove_files
 from cytodisk.store.study_room import alone_in
-
-_WORK = ".work"
+from cytodisk.store.written_files import lost_files
 
 
 class Store(Protocol):
@@ -39,8 +38,20 @@ class Store(Protocol):
     def put_folder(self, folder: Path, key: str) -> None:
         """Move a local folder here, in the place of one that is there."""
 
-    def remove(self, key: str) -> None:
-        """Remove a file, or a folder with all in it, if it is there."""
+    def files_of_study(self, key: str) -> list[str]:
+        """Keys of the files that the runs of a study wrote; none if there is no study."""
+
+    def lost_files(self, key: str, marks: Mapping[str, str]) -> list[str]:
+        """Names of files below a key that are gone, or are not as marked; see `mark_of`."""
+
+    def refuse_removal(self, keys: Collection[str], inputs: Iterable[Path]) -> None:
+        """Raise StudyError if files cannot be removed without harm to an input or to what is elsewhere."""
+
+    def remove(self, keys: Iterable[str]) -> None:
+        """Remove files, if they are there, and folders that are empty then."""
+
+    def remove_left_over(self, key: str) -> None:
+        """Remove a file or folder that a run which was killed was about to write."""
 
     def alone(self) -> AbstractContextManager[None]:
         """Keep other runs out while the block runs."""
@@ -57,6 +68,28 @@ def _folder_may_stand() -> Iterator[None]:
     except OSError as error:
         if error.errno not in (errno.EEXIST, errno.ENOTEMPTY):
             raise
+
+
+def _strangers(folder: Path) -> list[str]:
+    """Files in a folder that are not its study's."""
+    own = {*files_of_study(folder), LOCK}
+    files = (file for file in folder.rglob("*") if file.is_symlink() or not file.is_dir())
+    names = (file.relative_to(folder).as_posix() for file in files if not is_temporary(file.name))
+    return [name for name in names if name not in own]
+
+
+def _refuse_strangers(folder: Path, new: Path) -> None:
+    """Raise StudyError if a study that is to stand in a folder has a file of a name that is taken there."""
+    if taken := [name for name in _strangers(folder) if os.path.lexists(new / name)]:
+        raise StudyError(f"{folder / taken[0]} is in the way, and was not written by a study's run: move it")
+
+
+def _keep_strangers(old: Path, new: Path) -> None:
+    """Move what is not an old study's to the folder of the new one."""
+    for name in _strangers(old):
+        if not os.path.lexists(new / name):
+            make_folder((new / name).parent)
+            (old / name).rename(new / name)
 
 
 class FolderStore:
@@ -102,12 +135,15 @@ class FolderStore:
 
     def put_folder(self, folder: Path, key: str) -> None:
         target = self._with_folder(key)
-        arriving, leaving = (target.with_name(f".{target.name}.{uuid.uuid4().hex}.tmp") for _ in range(2))
+        arriving, leaving = (target.with_name(temporary_name()) for _ in range(2))
         try:
             shutil.move(folder, arriving)
+            _refuse_strangers(target, arriving)
+            flush(file for file in arriving.rglob("*") if file.is_file())
             while arriving.exists():
                 with suppress(FileNotFoundError):
                     target.rename(leaving)
+                    _keep_strangers(leaving, arriving)
                 shutil.rmtree(leaving, ignore_errors=True)
                 with _folder_may_stand():
                     arriving.rename(target)
@@ -116,24 +152,36 @@ class FolderStore:
         finally:
             shutil.rmtree(arriving, ignore_errors=True)
 
-    def remove(self, key: str) -> None:
-        target = self.path / key
+    def files_of_study(self, key: str) -> list[str]:
+        return [f"{key}/{name}" for name in files_of_study(self.path / key)]
+
+    def lost_files(self, key: str, marks: Mapping[str, str]) -> list[str]:
+        return lost_files(self.path / key, marks)
+
+    def refuse_removal(self, keys: Collection[str], inputs: Iterable[Path]) -> None:
+        refuse_removal(self.path, keys, inputs)
+
+    def remove(self, keys: Iterable[str]) -> None:
         try:
-            if target.is_dir():
+            remove_files(self.path, keys)
+        except OSError as error:
+            raise StudyError(f"files in {self.path} cannot be removed: {error.strerror or error}") from error
+
+    def remove_left_over(self, key: str) -> None:
+        target = self.path / key
+        with suppress(OSError):  # it stays; nothing reads it
+            if target.is_dir() and not target.is_symlink():
                 shutil.rmtree(target)
             else:
                 target.unlink(missing_ok=True)
-        except OSError as error:
-            raise StudyError(f"{target} cannot be removed: {error.strerror or error}") from error
 
     def alone(self) -> AbstractContextManager[None]:
         return alone_in(self.path)
 
     @contextmanager
     def work_folder(self) -> Iterator[Path]:
-        work = self._with_folder(_WORK)
+        work = self._with_folder(temporary_name())
         try:
-            shutil.rmtree(work, ignore_errors=True)  # of a run that was killed
             work.mkdir()
             yield work
         except CytodiskError:
@@ -146,7 +194,7 @@ class FolderStore:
     def _with_folder(self, key: str) -> Path:
         target = self.path / key
         try:
-            target.parent.mkdir(parents=True, exist_ok=True)
+            make_folder(target.parent)
         except OSError as error:
             raise WriteError(f"cannot write {target}: {error.strerror or error}") from error
         return target

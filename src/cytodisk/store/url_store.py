@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory, gettempdir
 from typing import Any, BinaryIO
 
 from cytodisk.errors import CytodiskError, MissingPartError, StudyError, WriteError
+from cytodisk.store.provenance_file import PROVENANCE, parse_provenance
+from cytodisk.store.written_files import recorded
 
 
 def is_url(target: str) -> bool:
@@ -76,18 +78,35 @@ class UrlStore:
         targets = [self._at(f"{key}/{file.relative_to(folder).as_posix()}") for file in files]
         with self._faults(key, "written"):
             self._make_folders(targets)
+            before = {self._at(name) for name in self.files_of_study(key)}
             self._files.put([str(file) for file in files], targets)
             # What an earlier study had more goes last: another worker may be writing the same one.
-            if others := sorted({*self._files.find(self._at(key))} - {*targets}):
+            if others := sorted(before & {*self._files.find(self._at(key))} - {*targets}):
                 self._files.rm(others)
         shutil.rmtree(folder)
 
-    def remove(self, key: str) -> None:
-        with self._faults(key, "removed"):
-            try:
-                self._files.rm(self._at(key), recursive=True)
-            except FileNotFoundError:
-                return
+    def files_of_study(self, key: str) -> list[str]:
+        there = parse_provenance(self.read_text(f"{key}/{PROVENANCE}") or "null")
+        return [] if there is None else [f"{key}/{name}" for name in (PROVENANCE, *recorded(there))]
+
+    def lost_files(self, key: str, marks: Mapping[str, str]) -> list[str]:
+        """By their sizes: to read them all takes as long as to make them anew, where the line is slow."""
+        with self._faults(key, "read"):
+            found = self._files.find(self._at(key), detail=True)
+        sizes = {name: f"{facts['size']} bytes" for name, facts in found.items()}
+        there = {name: sizes.get(self._at(f"{key}/{name}"), "gone") for name in marks}
+        return [name for name, mark in marks.items() if mark and mark.split(",")[0] != there[name]]
+
+    def refuse_removal(self, keys: Collection[str], inputs: Iterable[Path]) -> None:
+        """Nothing: inputs are files of a folder, and there are no links."""
+
+    def remove(self, keys: Iterable[str]) -> None:
+        for key in keys:
+            with self._faults(key, "removed"), suppress(FileNotFoundError):
+                self._files.rm(self._at(key))
+
+    def remove_left_over(self, key: str) -> None:
+        self.remove([key])
 
     def alone(self) -> AbstractContextManager[None]:
         """Nothing: an object store has no locks. The run that began last is the one whose results count."""

@@ -26,8 +26,8 @@ from cytodisk.plot.style import DIVERGING_COLOURS
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.study_flags import qc_flags
 from cytodisk.runs.study_signal import FoundSignal, shown_signal
-from cytodisk.store.provenance_file import record_files
 from cytodisk.store.study import Study
+from cytodisk.store.written_files import writing_files
 
 REPORT = "report.html"
 _SCRIPTS = ("decode", "state", "pixels", "views", "controls", "main")
@@ -99,10 +99,9 @@ def write_report(
     if not target.parent.is_dir():
         raise StudyError(f"cannot write {target}: there is no folder {target.parent}")
     html = _render(shown, shown_signal(study, signal), progress)
-    with replacing(target) as temporary:
+    own = [target.name] if target.parent.resolve() == study.path.resolve() else []
+    with writing_files(study.path, *own), replacing(target) as temporary:
         temporary.write_text(html, encoding="utf-8")
-    if path is None:
-        record_files(study.path, [target.name])
     return target
 
 

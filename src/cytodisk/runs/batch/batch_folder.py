@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import platform
 from datetime import UTC, datetime
 from pathlib import Path
@@ -11,34 +10,42 @@ from typing import Any
 
 from cytodisk.disk.mapping_parameters import MAPS_VERSION
 from cytodisk.errors import OtherRunError, StudyError
+from cytodisk.files import is_temporary
 from cytodisk.runs.batch.batch_file import Batch
-from cytodisk.runs.batch.input_row import ROWS, STUDIES
+from cytodisk.runs.batch.batch_target import RUN
+from cytodisk.runs.batch.input_row import ROWS, STUDIES, row_key, study_key
 from cytodisk.runs.versions import NUMERIC, installed
 from cytodisk.store.columns_file import COLUMNS_CSV
 from cytodisk.store.csv_tables import csv_of, other_csv_words
-from cytodisk.store.provenance_file import FORMAT, MAPS, PROVENANCE, command_of, own_files, parse_provenance
+from cytodisk.store.provenance_file import (
+    FORMAT,
+    MAPS,
+    PROVENANCE,
+    command_of,
+    json_bytes,
+    parse_provenance,
+)
+from cytodisk.store.removal import input_files
 from cytodisk.store.study_room import check_room
 from cytodisk.store.targets import Store
-from cytodisk.store.url_store import is_url
+from cytodisk.store.written_files import FILES, recorded, some_of
 
 _TABLES = tuple(f"{name}.parquet" for name in ("inputs", "cells", "windows", "edge", "consistency"))
 _CSV = tuple(map(csv_of, _TABLES))
-_FILES = (
-    PROVENANCE,
-    ROWS,
-    STUDIES,
-    *_TABLES,
-    _CSV[0],
-    COLUMNS_CSV,
-)
+_FILES = (*_TABLES, _CSV[0], COLUMNS_CSV, RUN)
 
 
-def make_room(store: Store, provenance: dict[str, Any], target: str, resume: bool, overwrite: bool) -> None:
+def make_room(
+    store: Store, batch: Batch, provenance: dict[str, Any], target: str, *, resume: bool, overwrite: bool
+) -> dict[str, str]:
     """Check that a batch may write to a folder, and remove what it replaces.
+
+    All is checked before anything is removed.
 
     Parameters
     ----------
     store : Store
+    batch : Batch
     provenance : dict
         Provenance of the batch.
     target : str
@@ -46,44 +53,42 @@ def make_room(store: Store, provenance: dict[str, Any], target: str, resume: boo
     resume, overwrite : bool
         See `batch_study`.
 
+    Returns
+    -------
+    dict of str to str
+        What the list of the batch's files holds from before.
+
     Raises
     ------
     StudyError
-        The folder holds something else, or the results of another batch (`OtherRunError`).
+        The folder holds something else, or the results of another batch (`OtherRunError`); or files are in
+        the way, or would be removed, that are not the batch's.
     """
     there = parse_provenance(store.read_text(PROVENANCE) or "null")
     if there is None and all(name.startswith(".") for name in store.names("")):
-        return
+        return {}
     if there is not None and there.get("run") != "batch":
         raise OtherRunError(
             f"output folder {target} holds a study of {command_of(there)}: pass another folder for a batch"
         )
     check_room(there, provenance, f"output folder {target}", resume, overwrite)
-    if overwrite and there is not None:
-        note(store, there | {"status": "being replaced", "fingerprint": {}})
-        for name in own_files(there):
-            store.remove(name)
-
-
-def refuse_inputs_inside(batch: Batch, target: str) -> None:
-    """Raise StudyError if a file of the batch lies where `--overwrite` removes results.
-
-    Parameters
-    ----------
-    batch : Batch
-    target : str
-        Folder of the results, or a URL, where no input can be.
-    """
-    if is_url(target):
-        return
-    removed = {(Path(target) / name).resolve() for name in (ROWS, STUDIES)}
-    for item in batch.inputs:
-        for file in (item.masks, item.signal):
-            if file is not None and removed & {file.resolve(), *file.resolve().parents}:
-                raise StudyError(
-                    f"input {file} lies among the results in {target}, which --overwrite removes: "
-                    "move it, or pass another folder"
-                )
+    assert there is not None  # it was checked
+    known = recorded(there)
+    places = [*store.names(""), *(f"{ROWS}/{name}" for name in store.names(ROWS))]
+    if strange := sorted({*places} & {*provenance[FILES]} - {*known}):
+        raise StudyError(
+            f"output folder {target} holds {some_of(strange)}, which its batch did not write but this "
+            "one may: move what is yours, or pass another folder"
+        )
+    if not overwrite:
+        return known
+    studies = [study_key(Path(name).stem) for name in known if name.startswith(f"{ROWS}/")]
+    names = [*known, *(name for study in studies for name in store.files_of_study(study))]
+    files = [file for item in batch.inputs for file in (item.masks, item.signal) if file is not None]
+    store.refuse_removal(names, [*files, *input_files(provenance)])
+    note(store, there | {"status": "being replaced", "fingerprint": {}})
+    store.remove(names)
+    return {}
 
 
 def wants_csv(store: Store, target: str, asked: bool, resume: bool) -> bool:
@@ -102,7 +107,7 @@ def wants_csv(store: Store, target: str, asked: bool, resume: bool) -> bool:
         A file that no batch wrote stands in the place of a table.
     """
     there = parse_provenance(store.read_text(PROVENANCE) or "null") or {}
-    ours = {*_FILES, *own_files(there)}
+    ours = {*_FILES, *recorded(there)}
     if ours >= {*_CSV}:
         return asked or resume
     if asked and (others := [name for name in store.names("") if name in _CSV and name not in ours]):
@@ -124,13 +129,14 @@ def describe_batch(batch: Batch, csv: bool = False) -> dict[str, Any]:
     dict
         Its "fingerprint" holds what all results depend on; parameters and files stand in each input's row.
     """
+    names = [item.name for item in batch.inputs]
     files = {"batch file": batch.path} | ({} if batch.table is None else {"table": batch.table})
     return {
         "run": "batch",
         "command": "cytodisk batch",
         "reader": f"open one of the studies in {STUDIES}/, or read its tables with pandas.read_parquet",
         "format": FORMAT,
-        "files": list(dict.fromkeys((*_FILES, *(_CSV if csv else ())))),
+        FILES: dict.fromkeys([*_FILES, *(_CSV if csv else ()), *map(row_key, names)], ""),
         "status": "running",
         "fingerprint": {
             "cytodisk": installed(("cytodisk",))["cytodisk"],
@@ -159,12 +165,12 @@ def now() -> str:
 
 def note(store: Store, provenance: dict[str, Any]) -> None:
     """Write the provenance."""
-    store.write_text(PROVENANCE, json.dumps(provenance, indent=2, ensure_ascii=False) + "\n")
+    store.write_text(PROVENANCE, json_bytes(provenance, indent=2).decode() + "\n")
 
 
 def remove_left_overs(store: Store) -> None:
     """Remove what a run that was killed was about to write."""
-    for folder in (ROWS, STUDIES):
+    for folder in ("", ROWS, STUDIES):
         for name in list(store.names(folder)):
-            if name.startswith("."):
-                store.remove(f"{folder}/{name}")
+            if is_temporary(name):
+                store.remove_left_over(f"{folder}/{name}" if folder else name)

@@ -10,14 +10,13 @@ from dataclasses import dataclass, field, replace
 from threading import TIMEOUT_MAX
 from typing import Any, TypeAlias
 
-from cytodisk.errors import OtherRunError, WriteError
+from cytodisk.errors import OtherRunError, StudyError, WriteError
 from cytodisk.runs.batch.batch_file import Batch
 from cytodisk.runs.batch.batch_folder import (
     describe_batch,
     make_room,
     note,
     now,
-    refuse_inputs_inside,
     remove_left_overs,
     wants_csv,
 )
@@ -25,12 +24,16 @@ from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.batch.batch_target import begin_run, open_store
 from cytodisk.runs.batch.batch_task import LARGE_MB, BatchTask, TaskResult, make_tasks, run_task
 from cytodisk.runs.batch.compute_input import RUNS
-from cytodisk.runs.batch.input_row import ROWS, InputRow, files_mark, read_row, row_key
+from cytodisk.runs.batch.input_row import ROWS, InputRow, files_mark, read_row, row_key, study_key
 from cytodisk.runs.batch.merged_tables import merge_batch
 from cytodisk.runs.executor import Executor
+from cytodisk.runs.map.map_kind import MAP
+from cytodisk.runs.movie.movie_kind import MOVIE
 from cytodisk.runs.run_options import BatchOptions, Progress, silent
+from cytodisk.store.provenance_file import PROVENANCE, parse_provenance
 from cytodisk.store.targets import Store
 from cytodisk.store.url_store import is_url
+from cytodisk.store.written_files import FILES, recorded
 from cytodisk.taking import takes
 
 _CLUSTER_TASK_S = 10.0
@@ -115,13 +118,12 @@ def batch_study(
     if scheduler is not None and not resume:
         _reach(scheduler)  # before the folder is touched
     target = os.fspath(out)
-    if options.overwrite:
-        refuse_inputs_inside(batch, target)
     store = open_store(target)
     with store.alone():
         csv = wants_csv(store, target, options.csv, resume)
         provenance = describe_batch(batch, csv)
-        make_room(store, provenance, target, resume, options.overwrite)
+        before = make_room(store, batch, provenance, target, resume=resume, overwrite=options.overwrite)
+        provenance[FILES] = before | provenance[FILES]
         summary = BatchSummary(target)
         pending = list(batch.inputs)
         if resume:
@@ -185,10 +187,13 @@ def _reach(scheduler: str) -> None:
 
 def pending_inputs(store: Store, batch: Batch, summary: BatchSummary) -> list[BatchInput]:
     """Inputs that are still to be done; what was done must be what the batch file says now."""
-    pending, changed, others = [], [], []
+    pending, changed, others, damaged = [], [], [], []
     for item in batch.inputs:
-        row = read_row(store, item.name)
-        if row is None or row.status != "ok":
+        row = _whole_row(store, item.name)
+        if row is None and store.read_text(row_key(item.name)) is not None:
+            damaged.append(item.name)
+            pending.append(item)
+        elif row is None or row.status != "ok":
             pending.append(item)
         elif row.settings != item.settings:
             others.append(item.name)
@@ -201,6 +206,8 @@ def pending_inputs(store: Store, batch: Batch, summary: BatchSummary) -> list[Ba
             "pass --overwrite to replace all, or another folder; to do only these anew, remove their rows "
             f"(as {row_key(others[0])}) and pass --resume"
         )
+    if damaged:
+        summary.remarks.append(f"damaged since they were done, so they are done anew: {_named(damaged)}")
     names = {item.name for item in batch.inputs}
     gone = sorted(name for name in _with_row(store) if name not in names)
     if changed:
@@ -212,6 +219,21 @@ def pending_inputs(store: Store, batch: Batch, summary: BatchSummary) -> list[Ba
             f"not in the batch file any more, so not in the tables, though their results stay: {_named(gone)}"
         )
     return pending
+
+
+def _whole_row(store: Store, name: str) -> InputRow | None:
+    """The row of an input; None if it was not done, or it or the study is not as it was written."""
+    try:
+        row = read_row(store, name)
+        there = parse_provenance(store.read_text(f"{study_key(name)}/{PROVENANCE}") or "null") or {}
+    except StudyError:
+        return None
+    if row is None or not row.complete:
+        return row
+    kind = MOVIE if row.kind == MOVIE.run else MAP
+    marks = {file: mark for file, mark in recorded(there).items() if kind.may_write(file)}
+    whole = there.get("status") == "complete" and not store.lost_files(study_key(name), marks)
+    return row if whole else None
 
 
 def _with_row(store: Store) -> Iterator[str]:

@@ -9,7 +9,8 @@ from cytodisk.errors import CytodiskError
 from cytodisk.store.targets import FolderStore, Store
 from cytodisk.store.url_store import UrlStore, is_url
 
-_RUN = ".run"
+RUN = ".run"
+"""File with the name of the run that began last."""
 
 
 def open_store(target: str) -> Store:
@@ -50,13 +51,13 @@ def begin_run(target: str) -> str:
         The target cannot be written.
     """
     run = uuid4().hex
-    open_store(target).write_text(_RUN, run)
+    open_store(target).write_text(RUN, run)
     return run
 
 
 def is_latest(run: str, store: Store) -> bool:
     """Whether no other run has begun since; a run without a name is not looked at."""
-    there = store.read_text(_RUN) if run else None
+    there = store.read_text(RUN) if run else None
     return there is None or there == run
 
 
@@ -76,7 +77,7 @@ def what_is_hidden(target: str, run: str, *files: str) -> str:
     str
     """
     try:
-        found = open_store(target).read_text(_RUN)
+        found = open_store(target).read_text(RUN)
     except CytodiskError as error:
         return f"does not reach the results: {error}"
     if found != run:

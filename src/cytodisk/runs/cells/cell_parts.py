@@ -6,9 +6,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
+from pathlib import Path
 from typing import Any, TypeAlias
 
 from cytodisk.errors import CytodiskError, ReadError, as_data
+from cytodisk.files import flushed_later
 from cytodisk.images.frame_pixels import FramePixels
 from cytodisk.images.mask_files import MaskImage, SourceCell, list_images
 from cytodisk.images.signal_files import SignalFrame, SignalPiece, open_image
@@ -47,7 +49,14 @@ class CellTask:
 Rows: TypeAlias = list[tuple[dict[str, Any], dict[str, dict[str, Any]]]]
 """Rows of the table of cells, each with what goes into the other tables, as columns."""
 
+
 Work: TypeAlias = Callable[[CellTask], Rows]
+Files: TypeAlias = Callable[[CellTask], list[Path]]
+
+
+def no_files(_task: CellTask) -> list[Path]:
+    """Of a run that writes nothing but rows."""
+    return []
 
 
 @dataclass(frozen=True)
@@ -63,12 +72,15 @@ class CellRun:
         Cells in a part, at most.
     draw_at_most : int
         How many cells, from the first, are drawn.
+    files : callable
+        What `work` may write for a cell beside its rows; can be pickled.
     """
 
     inputs: CellInputs
     work: Work
     at_once: int
     draw_at_most: int = 0
+    files: Files = no_files
 
     def fill(self, folder: StudyFolder, workers: int, progress: Progress) -> list[str]:
         """Work on all cells that are not done yet.
@@ -87,10 +99,11 @@ class CellRun:
         """
         images = list_images(self.inputs.sources)
         sizes = {part_key(first): size for image in images for first, size in self._parts_of(image)}
+        folder.expect(sizes)
         done, total = sum(size for key, size in sizes.items() if folder.has(key)), sum(sizes.values())
         pending = {key for key in sizes if not folder.has(key)}
         progress(done, total)
-        write = partial(_work_on_part, work=self.work, folder=folder.for_workers())
+        write = partial(_work_on_part, work=self.work, files=self.files, folder=folder.for_workers())
         with Executor(min(workers, max(1, len(pending)))) as executor:
             for size in executor.each(write, self._pending_parts(images, pending)):
                 done += size
@@ -146,8 +159,11 @@ def _around(box: tuple[slice, slice], pixels: FramePixels) -> tuple[slice, slice
     return rows, columns
 
 
-def _work_on_part(cells: Sequence[CellTask], work: Work, folder: StudyFolder) -> int:
+def _work_on_part(cells: Sequence[CellTask], work: Work, files: Files, folder: StudyFolder) -> int:
     """Rows of a part's cells into the folder; how many cells there were."""
-    rows = [row for task in cells for row in work(task)]
-    folder.add_cells(part_key(cells[0].found.cell), rows)
+    key, expected = part_key(cells[0].found.cell), [file for task in cells for file in files(task)]
+    with flushed_later():
+        folder.begin(key, expected)
+        rows = [row for task in cells for row in work(task)]
+        folder.add_cells(key, rows, [file for file in expected if file.exists()])
     return len(cells)

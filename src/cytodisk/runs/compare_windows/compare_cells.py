@@ -83,7 +83,9 @@ def compare_opened_cells(
 
     def work(folder: StudyFolder) -> tuple[list[str], list[str]]:
         compare = partial(compare_cell, parameters=parameters, folder=folder.path)
-        keys = CellRun(inputs, compare, _CELLS_AT_ONCE).fill(folder, options.workers, progress or silent)
+        files = partial(_files, folder=folder.path)
+        run = CellRun(inputs, compare, _CELLS_AT_ONCE, files=files)
+        keys = run.fill(folder, options.workers, progress or silent)
         warnings = [
             f"cell {row['cell']}, {row['method']}: {words}"
             for row in folder.read_rows(keys)
@@ -93,7 +95,7 @@ def compare_opened_cells(
 
     provenance = describe_run(inputs.paths, parameters, inputs.understood, UNKNOWN, inputs.notes)
     run = StudyRun(COMPARED_CELLS, provenance, parameters, options)
-    return run.into(out, work, open_comparison, after=write_summaries)
+    return run.into(out, work, open_comparison, write_summaries)
 
 
 def compare_cell(task: CellTask, parameters: CompareWindowsParameters, folder: Path) -> Rows:
@@ -135,9 +137,14 @@ def compare_cell(task: CellTask, parameters: CompareWindowsParameters, folder: P
         labels[method] = (windows.labels if per_side == 1 else windows.subpixel_labels).astype(np.int32)
         labels["mask"] = windows.mask.repeat(per_side, axis=0).repeat(per_side, axis=1)
     if labels:
-        with replacing(folder / MAPS / f"windows_{part_key(found.cell)}.npz") as temporary:
+        with replacing(*_files(task, folder)) as temporary:
             np.savez_compressed(temporary, **labels)
     return rows
+
+
+def _files(task: CellTask, folder: Path) -> list[Path]:
+    """The file that says which pixel of a cell is in which window."""
+    return [folder / MAPS / f"windows_{part_key(task.found.cell)}.npz"]
 
 
 def _lay(

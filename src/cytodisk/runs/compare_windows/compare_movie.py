@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import os
+import shutil
 import time as clock
+from collections.abc import Iterator
+from concurrent.futures import Future
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from cytodisk.errors import CytodiskError
-from cytodisk.files import replacing
+from cytodisk.files import flushed_later, replacing, temporary_name, writing_to
 from cytodisk.images.tracks import CellTrack, TrackMasks
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.motion.map_movie import map_movie
@@ -29,6 +32,8 @@ from cytodisk.runs.study_run import StudyRun
 from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_kind import MAPS
 from cytodisk.taking import takes
+
+_Measured: TypeAlias = tuple[dict[str, Any], dict[str, dict[str, Any]]]
 
 
 @dataclass(frozen=True)
@@ -88,7 +93,7 @@ def compare_opened_movie(
 
     provenance = describe_run(inputs.paths, parameters, inputs.understood, inputs.scale, inputs.notes)
     run = StudyRun(COMPARED_MOVIE, provenance, parameters, options)
-    return run.into(out, work, open_comparison, after=write_summaries)
+    return run.into(out, work, open_comparison, write_summaries)
 
 
 def _compare_all(
@@ -100,6 +105,7 @@ def _compare_all(
     progress: Progress,
 ) -> None:
     """Do the parts that are not there yet; progress is counted in frames of all parts."""
+    folder.expect([part.key for part in parts])
     pending = [part for part in parts if not folder.has(part.key)]
     total = sum(len(part.track.frames) for part in parts)
     done = total - sum(len(part.track.frames) for part in pending)
@@ -110,11 +116,14 @@ def _compare_all(
 
     report = within if workers == 1 else None  # no call reaches this process from another one
     with Executor(workers) as executor:
-        submitted = (
-            executor.submit(_compare, part, inputs, parameters, folder.path, report) for part in pending
-        )
-        for part, rows in zip(pending, executor.results(submitted), strict=True):
-            folder.add(part.key, *rows)
+
+        def begun(part: _Part) -> Future[_Measured]:
+            folder.begin(part.key, [_activity_path(part, folder.path)])
+            return executor.submit(_compare, part, inputs, parameters, folder.path, report)
+
+        for part, rows in zip(pending, executor.results(map(begun, pending)), strict=True):
+            file = _activity_path(part, folder.path)
+            folder.add(part.key, *rows, [file] if file.exists() else [])
             done += len(part.track.frames)
             progress(done, total)
 
@@ -133,7 +142,7 @@ def _compare(
     parameters: CompareMovieParameters,
     folder: Path,
     report: Progress | None,
-) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+) -> _Measured:
     """Row and tables of one cell by one method; a movie without any map has the reason in its row."""
     track, started = part.track, clock.perf_counter()
     masks = TrackMasks(inputs.masks, track)
@@ -144,7 +153,7 @@ def _compare(
         "label": track.label,
         "method": part.method,
     }
-    with TemporaryDirectory(dir=folder, prefix=".", suffix=f".{os.getpid()}.tmp.maps") as maps:
+    with _folder_for_maps(folder) as maps, flushed_later():
         try:
             movie = _map(part.method, masks, inputs, parameters, maps, report)
         except CytodiskError as fault:
@@ -155,7 +164,7 @@ def _compare(
         measured = measure_frames(followed)
     seconds = (clock.perf_counter() - started) / len(masks)
     activity = measured.activity
-    with replacing(folder / MAPS / f"activity_{part_key(track.cell)}_{part.method}.npz") as temporary:
+    with flushed_later(), replacing(_activity_path(part, folder)) as temporary:
         channels = np.array(activity["channel"].to_numpy(), dtype=str)
         arrays: dict[str, Any] = {name: activity[name].to_numpy() for name in ("mean", "area", "frame")}
         np.savez_compressed(temporary, channel=channels, **arrays)
@@ -167,6 +176,22 @@ def _compare(
         masks[frame] for frame in np.flatnonzero(~movie.mapped).tolist()
     )
     return row | {"frames": frames} | measured.row | outcome, measured.tables
+
+
+@contextmanager
+def _folder_for_maps(folder: Path) -> Iterator[str]:
+    """A folder for the maps of one cell, which is removed."""
+    maps = folder / temporary_name(".maps")
+    try:
+        with writing_to(maps):
+            maps.mkdir()
+        yield str(maps)
+    finally:
+        shutil.rmtree(maps, ignore_errors=True)
+
+
+def _activity_path(part: _Part, folder: Path) -> Path:
+    return folder / MAPS / f"activity_{part_key(part.track.cell)}_{part.method}.npz"
 
 
 def _map(

@@ -26,7 +26,7 @@ from cytodisk.scale import Scale
 from cytodisk.store.csv_tables import write_csv
 from cytodisk.store.provenance_file import read_complete
 from cytodisk.store.study import CONSISTENCY
-from cytodisk.store.study_folder import part_key
+from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_kind import CELLS, MAPS
 from cytodisk.store.tables import read_table
 
@@ -183,13 +183,15 @@ def open_comparison(path: str | os.PathLike[str]) -> Comparison:
     return Comparison(folder, read_table(folder / CELLS), read_table(folder / "layers.parquet"), provenance)
 
 
-def write_summaries(path: Path) -> None:
-    """Write the summaries of a complete comparison, and what their columns are, as CSV files.
+def write_summaries(folder: StudyFolder) -> None:
+    """Write the summaries of a comparison, and what their columns are, as CSV files.
 
     Parameters
     ----------
-    path : Path
-        Its folder.
+    folder : StudyFolder
+        All tables stand.
     """
-    for name, table in open_comparison(path).summaries.items():
+    path = folder.path
+    tables = read_table(path / CELLS), read_table(path / "layers.parquet")
+    for name, table in Comparison(path, *tables, folder.provenance).summaries.items():
         write_csv(table, path / name)

@@ -79,7 +79,7 @@ def map_study(
         parameters = inputs.parameters.part(MapParameters)
         maker = MapWork(parameters, inputs.scale, folder.for_workers(), draw, options.maps, options.geojson)
         at_most = 0 if draw is None else sys.maxsize if draw_at_most is None else draw_at_most
-        keys = CellRun(inputs, maker, _CELLS_AT_ONCE, at_most).fill(
+        keys = CellRun(inputs, maker, _CELLS_AT_ONCE, at_most, maker.files).fill(
             folder, options.workers, progress or silent
         )
         rows = folder.read_rows(keys)

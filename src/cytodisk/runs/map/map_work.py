@@ -19,15 +19,15 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_cell
 from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.errors import CytodiskError
-from cytodisk.files import replacing
+from cytodisk.files import replacing, writing_to
 from cytodisk.images.frame_pixels import WHOLE_BYTES
 from cytodisk.images.mask_files import SourceCell
 from cytodisk.runs.cells.cell_parts import CellTask, Rows
 from cytodisk.runs.frame_rows import FramePlace, cell_status, measure_windows
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.scale import Scale
-from cytodisk.store.figures_folder import figures_folder
 from cytodisk.store.study_folder import StudyFolder, part_key
+from cytodisk.store.study_kind import FIGURES
 from cytodisk.windows.grid_parameters import PolarGridParameters
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid, polar_grid
 
@@ -80,6 +80,13 @@ class MapWork:
             self._draw(self.draw, task, windows)
         return [(row, {"windows": columns})]
 
+    def files(self, task: CellTask) -> list[Path]:
+        """Files that a cell may have: its map, outlines of windows, its figure."""
+        path = self.folder.map_path(part_key(task.found.cell))
+        wanted = {path: self.maps, path.with_suffix(".geojson"): self.geojson}
+        wanted[self.folder.path / FIGURES / f"{path.stem}.png"] = task.drawn and self.draw is not None
+        return [file for file, is_wanted in wanted.items() if is_wanted]
+
     def _draw(self, draw: DrawCell, task: CellTask, windows: CellWindows) -> None:
         found, image, (y, x) = task.found, None, task.found.corner
         disk = windows.disk
@@ -90,7 +97,10 @@ class MapWork:
         elif math.prod(found.image_shape) <= WHOLE_BYTES:
             disk = disk.placed((y, x), found.image_shape)
         placed = CellWindows(windows.grid, disk)
-        draw(figures_folder(self.folder.path), f"cell_{found.cell:05d}", placed, image)
+        folder = self.folder.path / FIGURES
+        with writing_to(folder):
+            folder.mkdir(exist_ok=True)
+        draw(folder, f"cell_{found.cell:05d}", placed, image)
 
     def _map(self, found: SourceCell) -> DiskMap:
         mapping = self._mapping

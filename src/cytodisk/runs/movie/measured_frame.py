@@ -11,6 +11,7 @@ import numpy as np
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import CytodiskError, WindowError
+from cytodisk.files import flushed_later
 from cytodisk.images.formats.file_sequence import MissingFrameError
 from cytodisk.images.signal_files import SignalPiece
 from cytodisk.images.tracks import MissingLabel
@@ -102,7 +103,8 @@ def measure_frame(task: FrameTask) -> FrameRows:
     row |= _track_columns(frame) | {"smallest_window_share": _smallest_share(windows, task.parameters)}
     row["notes"] = "; ".join(filter(None, [row["notes"], _interior_note(frame, task)]))
     row["mask_remarks"] = "; ".join(filter(None, [row["mask_remarks"], _jump(task)]))
-    save_frame(task.map_path, frame)
+    with flushed_later():
+        save_frame(task.map_path, frame)
     motion = _motion_since(task)
     row["swept_area"] = np.nan if motion is None else frame.disk.scale.area(motion.swept_px2)
     edge = None if task.before is None else _edge_before(task, task.before, motion)

@@ -21,7 +21,7 @@ from cytodisk.runs.frame_rows import FramePlace
 from cytodisk.runs.movie.measured_frame import FrameRows, FrameTask, measure_frame, unmapped_rows
 from cytodisk.runs.movie.movie_inputs import MovieInputs
 from cytodisk.runs.movie.movie_kind import MOVIE
-from cytodisk.runs.movie.movie_tables import STRETCHES_PART, finish_tables
+from cytodisk.runs.movie.movie_tables import MOTION_PART, STRETCHES_PART, finish_tables
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.run_options import Progress, RunOptions, silent
 from cytodisk.runs.study_run import StudyRun
@@ -93,20 +93,36 @@ class _Run:
         self._last: dict[int, MappedFrame] = {}
         self._signal: SignalFrame | ReadError | None = None  # of the frame that is being mapped
         self._report = report
+        self._first_pending: dict[int, int] = {}
 
     def all_frames(self) -> None:
         """Do what is not done yet."""
-        done, total = sum(self._folder.has(key) for key in self._inputs.keys), self._inputs.n_frames
+        self._folder.expect(self._inputs.keys)
+        self._first_pending = {track.cell: self._first_undone(track) for track in self._inputs.tracks}
+        done = sum(self._first_pending[track.cell] - track.first for track in self._inputs.tracks)
+        total = self._inputs.n_frames
         self._report(done, total)
         for rows in self._executor.results(self._frames()):
-            before = part_key(rows.cell, rows.frame - 1)
-            if rows.stretches_before is not None:
-                self._folder.add_array(before, STRETCHES_PART, rows.stretches_before)
-            if rows.edge_before is not None:
-                self._folder.add_table(before, "edge", rows.edge_before)
-            self._folder.add(part_key(rows.cell, rows.frame), rows.row, rows.tables)
+            self._add(rows)
             done += 1
             self._report(done, total)
+
+    def _first_undone(self, track: CellTrack) -> int:
+        """The first frame of a cell that is not done; those that follow go on from it, so are done anew."""
+        keys = {frame: part_key(track.cell, frame) for frame in track.frames}
+        return next((frame for frame, key in keys.items() if not self._folder.has(key)), track.last + 1)
+
+    def _add(self, rows: FrameRows) -> None:
+        """Write a frame, with the motion since the one before."""
+        key, before = part_key(rows.cell, rows.frame), part_key(rows.cell, rows.frame - 1)
+        files = []
+        if rows.stretches_before is not None:
+            files.append(self._folder.add_array(before, STRETCHES_PART, rows.stretches_before))
+        if rows.edge_before is not None:
+            files.append(self._folder.add_table(before, "edge", rows.edge_before, name=MOTION_PART))
+        if rows.row["status"] == "ok":
+            files.append(self._folder.map_path(key))
+        self._folder.add(key, rows.row, rows.tables, files)
 
     def _frames(self) -> Iterator[Future[FrameRows]]:
         """Frames on their way to be measured."""
@@ -118,7 +134,7 @@ class _Run:
         """Each frame that is not done, with the masks of its cells that are not."""
         for frame in range(self._inputs.masks.n_frames):
             present = [track for track in self._inputs.tracks if frame in track.frames]
-            pending = [track for track in present if not self._folder.has(part_key(track.cell, frame))]
+            pending = [track for track in present if frame >= self._first_pending[track.cell]]
             if pending:
                 yield frame, self._read(frame, pending)
             for track in present:
@@ -144,6 +160,8 @@ class _Run:
         signal = None
         if isinstance(self._signal, SignalFrame):
             signal = self._signal.cut(*result.mapped.disk.placed_mask.slices)
+        path = self._folder.map_path(part_key(track.cell, frame))
+        self._folder.begin(part_key(track.cell, frame), [path])
         task = FrameTask(
             place,
             result.mapped,
@@ -151,16 +169,16 @@ class _Run:
             signal,
             self._inputs.grid,
             self._inputs.parameters,
-            self._folder.map_path(part_key(track.cell, frame)),
+            path,
             found.seconds,
         )
         return self._executor.submit(measure_frame, task)
 
     def _resume_from(self, track: CellTrack, frame: int) -> None:
         """Read the last frame that has a map back, if an earlier run left any."""
-        done = [t for t in range(track.first, frame) if self._folder.has(part_key(track.cell, t))]
-        paths = {t: self._folder.map_path(part_key(track.cell, t)) for t in done}
-        mapped = {t: path for t, path in paths.items() if path.exists()}
+        keys = {t: part_key(track.cell, t) for t in range(track.first, frame)}
+        paths = {t: self._folder.map_path(key) for t, key in keys.items()}
+        mapped = {t: path for t, path in paths.items() if path in self._folder.files_of(keys[t])}
         if mapped:
             self._last[track.cell] = load_frame(mapped[max(mapped)], mapped)
 

@@ -21,6 +21,7 @@ from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_kind import ACTIVITY
 from cytodisk.windows.polar_windows import PolarGrid
 
+MOTION_PART = "motion"  # rows of the edge table as far as two frames tell them
 STRETCHES_PART = "stretches"  # arrays of how short stretches of the edge moved, one a frame
 
 
@@ -104,17 +105,18 @@ def _complete_edges(
     scale: Scale,
     rows: dict[tuple[int, int], dict[str, Any]],
 ) -> None:
-    """Give frames without a next one their rows of the edge table, with the reason, and all their error."""
+    """Rows of the edge table, with their error; frames without a next one get theirs, with the reason."""
     mapped = [frame for frame in track.frames if rows[track.cell, frame]["status"] == "ok"]
     for frame in mapped:
         key = part_key(track.cell, frame)
-        if folder.has_table(key, "edge"):
+        if folder.has_table(key, MOTION_PART):
             continue
         following = rows.get((track.cell, frame + 1))
         status = "last frame" if following is None else f"the next frame has no map: {following['reason']}"
         place = FramePlace(track.cell, frame, track.label, scale.seconds(frame))
-        folder.add_table(key, "edge", edge_columns(place, sectors, scale, None, None, status))
-    parts = {frame: folder.part_table(part_key(track.cell, frame), "edge") for frame in mapped}
+        columns = edge_columns(place, sectors, scale, None, None, status)
+        folder.add_table(key, "edge", columns, name=MOTION_PART)
+    parts = {frame: folder.part_table(part_key(track.cell, frame), MOTION_PART) for frame in mapped}
     displacement = np.full((len(track.frames), sectors), np.nan)
     length = displacement.copy()
     stretches = np.full((len(track.frames), 2, STRETCHES), np.nan)
@@ -126,7 +128,7 @@ def _complete_edges(
         length[frame - track.first] = part.column("edge_length").to_numpy() / scale.length(1.0)
     error = scale.velocity(velocity_error(displacement, length, stretches))
     for frame, part in parts.items():
-        columns: dict[str, Any] = {name: part.column(name) for name in part.column_names}
+        columns = {name: part.column(name) for name in part.column_names}
         columns["velocity_error"] = error[frame - track.first]
         folder.add_table(part_key(track.cell, frame), "edge", columns)
 
