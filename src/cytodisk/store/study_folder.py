@@ -159,9 +159,9 @@ class StudyFolder(StudyParts):
             parts = (self.part_table(key, name) for key in keys if self.has_table(key, name))
             with replacing(self.path / f"{name}.parquet") as temporary:
                 merge_tables(parts, self._schema(columns), temporary)
+        write_columns(self.path, self.kind.tables, self.provenance)
         if then is not None:
             then(self)
-        write_columns(self.path, self.kind.tables, self.provenance)
         for table in self.kind.table_files if self.kind.csv else ():
             parquet_to_csv(self.path / table, self.path / csv_of(table))
         self.provenance[FILES] = self._written(keys)

@@ -112,7 +112,7 @@ def shape_study(
         return keys, [*inputs.remarks, *_warnings(table)]
 
     run = StudyRun(SHAPE_STUDY, _describe(inputs, parameters), parameters, options)
-    return run.into(out, work, open_shapes, after=write_shape_columns)
+    return run.into(out, work, open_shapes, write_shape_columns)
 
 
 def _describe(inputs: CellInputs, parameters: ShapeParameters) -> dict[str, Any]:

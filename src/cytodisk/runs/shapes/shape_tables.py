@@ -18,6 +18,7 @@ from cytodisk.scale import Scale
 from cytodisk.store.columns_file import write_columns_file
 from cytodisk.store.csv_tables import write_csv
 from cytodisk.store.provenance_file import read_complete
+from cytodisk.store.study_folder import StudyFolder
 from cytodisk.store.study_kind import CELLS, StudyKind
 from cytodisk.store.tables import (
     CELL,
@@ -96,19 +97,20 @@ def write_shapes(table: pd.DataFrame, folder: Path) -> None:
     write_csv(describe_features(table.attrs["units"]), folder / FEATURES_CSV)
 
 
-def write_shape_columns(folder: Path) -> None:
-    """Write what the columns of all tables in the folder of a complete run are.
+def write_shape_columns(folder: StudyFolder) -> None:
+    """Write what the columns of all tables in the folder of a run are.
 
     Parameters
     ----------
-    folder : Path
+    folder : StudyFolder
+        All tables stand.
     """
-    units = read_table(folder / SHAPES).attrs["units"]
+    units = read_table(folder.path / SHAPES).attrs["units"]
     meanings = {column.name: column.meaning for column in _CELL} | _SCORE_WORDS
     meanings |= {feature.name: feature.description for feature in FEATURES}
     told = [(SHAPES, name, unit, meanings[name]) for name, unit in units.items()]
     cells = [(CELLS, column.name, column.unit, column.meaning) for column in _CELL]
-    write_columns_file(folder, [*cells, *told])
+    write_columns_file(folder.path, [*cells, *told])
 
 
 def describe_features(units: dict[str, str]) -> pd.DataFrame:
