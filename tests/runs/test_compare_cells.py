@@ -9,7 +9,7 @@ import pytest
 import tifffile
 
 import cytodisk as cd
-from cytodisk.errors import MapError, ParameterError, ReadError, StudyError
+from cytodisk.errors import DamagedPartWarning, MapError, ParameterError, ReadError, StudyError
 from cytodisk.runs.compare_windows import compare_cells as module
 from cytodisk.runs.compare_windows.compare_summaries import layer_summary, method_summary
 from cytodisk.runs.compare_windows.comparison_words import where_worse
@@ -139,7 +139,10 @@ def test_a_stopped_run_goes_on(
         )
     monkeypatch.setattr(module.CellRun, "fill", None)  # a complete comparison is not run again
     (tmp_path / "out" / "comparison.csv").unlink()
-    assert cd.run_compare_windows(masks, tmp_path / "out", parameters=GRID, resume=True).methods == METHODS
+    with pytest.warns(DamagedPartWarning, match=r"comparison\.csv gone or damaged: these are made anew"):
+        assert (
+            cd.run_compare_windows(masks, tmp_path / "out", parameters=GRID, resume=True).methods == METHODS
+        )
     assert (tmp_path / "out" / "comparison.csv").exists()
 
 

@@ -371,7 +371,7 @@ def test_a_study_of_the_version_before_is_left_alone_and_named(
         name: value for name, value in json.loads(told.read_text()).items() if name not in ("format", "files")
     }
     told.write_text(json.dumps(old | {"versions": {"cytodisk": "0.1.0"}}))
-    assert not StudyFolder.is_complete(tmp_path / "out", run(), KIND)
+    assert StudyFolder.complete(tmp_path / "out", run(), KIND) is None
     with pytest.raises(StudyError, match=r"0\.1\.0.*another folder"):
         StudyFolder.start(tmp_path / "out", run(), KIND, **options)
     with pytest.raises(ReadError, match=r"0\.1\.0.*that version"):

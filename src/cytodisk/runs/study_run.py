@@ -13,7 +13,7 @@ from cytodisk.checks import is_path
 from cytodisk.parameters import Parameters
 from cytodisk.runs.parameters_file import write_parameters
 from cytodisk.runs.run_options import RunOptions
-from cytodisk.store.csv_tables import check_csv_room, has_csv_tables, write_csv_tables
+from cytodisk.store.csv_tables import check_csv_room, has_csv_tables
 from cytodisk.store.study_folder import StudyFolder
 from cytodisk.store.study_kind import PARAMETERS, StudyKind
 from cytodisk.store.study_room import alone_in
@@ -74,16 +74,17 @@ class StudyRun:
         options, place = self.options, Path(out)
         with alone_in(out):
             kind = self._kind(place)
-            complete = options.resume and StudyFolder.is_complete(out, self.provenance, kind)
-            if not complete:
+            complete = StudyFolder.complete(out, self.provenance, kind) if options.resume else None
+            if complete is None:
                 folder = StudyFolder.start(out, self.provenance, kind, **options.again)
                 write_parameters(self.parameters, place / PARAMETERS)
                 keys, warnings = work(folder)
                 folder.note("warnings", [*self.provenance["warnings"], *warnings])
                 folder.note("finished", datetime.now(UTC).isoformat(timespec="seconds"))
                 folder.finish(list(keys), tables)
-            elif kind is not self.kind:
-                write_csv_tables(place, kind.table_files)
+            elif not complete.is_whole:
+                write_parameters(self.parameters, place / PARAMETERS)
+                complete.mend(tables)
             return read(place)
 
     def _kind(self, place: Path) -> StudyKind:

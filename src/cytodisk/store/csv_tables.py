@@ -17,7 +17,7 @@ import pyarrow.parquet as pq
 from cytodisk.errors import StudyError
 from cytodisk.files import replacing
 from cytodisk.store.provenance_file import read_provenance
-from cytodisk.store.written_files import recorded, writing_files
+from cytodisk.store.written_files import recorded
 
 _ROWS_AT_ONCE = 20_000
 # A spreadsheet runs a cell that begins so, also with an apostrophe or blanks in front, or in full width.
@@ -144,21 +144,6 @@ def check_csv_room(folder: Path, tables: Iterable[str]) -> None:
 def other_csv_words(file: str) -> str:
     """What is wrong with a file that stands where a CSV table is to go."""
     return f"{file} was not written by cytodisk, and --csv would replace it: move it, or leave --csv out"
-
-
-def write_csv_tables(folder: Path, tables: Iterable[str]) -> None:
-    """Write CSV beside tables of a study, and note the files in its provenance.
-
-    Parameters
-    ----------
-    folder : Path
-    tables : iterable of str
-        Names of the Parquet files.
-    """
-    names = list(tables)
-    with writing_files(folder, *map(csv_of, names)):
-        for name in names:
-            parquet_to_csv(folder / name, folder / csv_of(name))
 
 
 def has_csv_tables(folder: Path, tables: Iterable[str]) -> bool:

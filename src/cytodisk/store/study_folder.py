@@ -15,10 +15,10 @@ from cytodisk.store.csv_tables import csv_of, parquet_to_csv
 from cytodisk.store.merging import merge_tables, write_rows
 from cytodisk.store.provenance_file import PROVENANCE, other_version, read_provenance, write_json
 from cytodisk.store.removal import is_left_over, remove_left_overs, remove_parts
-from cytodisk.store.study_kind import CELLS, FIGURES, MAPS, PARTS, StudyKind
+from cytodisk.store.study_kind import CELLS, FIGURES, MAPS, PARTS, StudyKind, is_derived
 from cytodisk.store.study_parts import UNITS, StudyParts
 from cytodisk.store.study_room import make_room
-from cytodisk.store.written_files import FILES, lost_files, recorded, some_of
+from cytodisk.store.written_files import FILES, lost_files, recorded, some_of, writing_files
 
 _DIGITS = (5, 6)  # of a cell or frame in a key; a folder never has a million
 
@@ -48,6 +48,9 @@ class StudyFolder(StudyParts):
 
     Use it within `alone_in`.
     """
+
+    is_whole = False
+    """Whether a complete study lacks nothing that follows from its tables."""
 
     @classmethod
     def start(
@@ -105,24 +108,61 @@ class StudyFolder(StudyParts):
             raise WriteError(f"output folder {folder} cannot be written: {error.strerror}") from error
         return study
 
-    @staticmethod
-    def is_complete(path: str | os.PathLike[str], provenance: dict[str, Any], kind: StudyKind) -> bool:
-        """Whether a folder holds the whole of the same run already.
+    @classmethod
+    def complete(
+        cls, path: str | os.PathLike[str], provenance: dict[str, Any], kind: StudyKind
+    ) -> StudyFolder | None:
+        """A folder that holds the whole of the same run already; else None.
+
+        Parameters
+        ----------
+        path : path-like
+        provenance : dict
+            Of the run.
+        kind : StudyKind
+
+        Returns
+        -------
+        StudyFolder or None
+            What follows from its tables alone may be missing; see `mend`.
 
         Warns
         -----
         DamagedPartWarning
-            It would, but files of it are gone or damaged.
+            It would hold it, but files of it are gone or damaged.
         """
-        there = read_provenance(Path(path)) or {}
+        folder = Path(path)
+        there = read_provenance(folder) or {}
         same = there.get("fingerprint") == provenance["fingerprint"] and not other_version(there)
         if not same or there.get("status") != "complete":
-            return False
-        own = {name: mark for name, mark in recorded(there).items() if kind.may_write(name)}
-        if lost := lost_files(Path(path), own):
-            words = f"study {path} is not whole any more, {some_of(lost)} gone or damaged: it is made anew"
+            return None
+        study, files = cls(folder, there, kind), recorded(there)
+        lost = lost_files(folder, {name: mark for name, mark in files.items() if kind.may_write(name)})
+        anew = not all(map(is_derived, lost))
+        if lost:
+            what = "it is made anew" if anew else "these are made anew"
+            words = f"study {path} is not whole any more, {some_of(lost)} gone or damaged: {what}"
             warnings.warn(words, DamagedPartWarning, stacklevel=3)
-        return not lost
+        study.is_whole = not lost and all(name in files for name in kind.names)
+        return None if anew else study
+
+    def mend(self, then: Callable[[StudyFolder], None] | None = None) -> None:
+        """Write what follows from the tables of a complete study.
+
+        Parameters
+        ----------
+        then : callable, optional
+            As `finish` takes it.
+        """
+        with writing_files(self.path, *self.kind.names):
+            self._derive(then)
+
+    def _derive(self, then: Callable[[StudyFolder], None] | None) -> None:
+        write_columns(self.path, self.kind.tables, self.provenance)
+        if then is not None:
+            then(self)
+        for table in self.kind.table_files if self.kind.csv else ():
+            parquet_to_csv(self.path / table, self.path / csv_of(table))
 
     def note(self, name: str, value: Any) -> None:
         """Set an entry of the provenance and write it."""
@@ -159,11 +199,7 @@ class StudyFolder(StudyParts):
             parts = (self.part_table(key, name) for key in keys if self.has_table(key, name))
             with replacing(self.path / f"{name}.parquet") as temporary:
                 merge_tables(parts, self._schema(columns), temporary)
-        write_columns(self.path, self.kind.tables, self.provenance)
-        if then is not None:
-            then(self)
-        for table in self.kind.table_files if self.kind.csv else ():
-            parquet_to_csv(self.path / table, self.path / csv_of(table))
+        self._derive(then)
         self.provenance[FILES] = self._written(keys)
         self.note("status", "complete")
         remove_parts(self.path)  # the tables stand; parts are only in the way

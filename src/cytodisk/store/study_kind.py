@@ -86,5 +86,10 @@ class StudyKind:
         return {"run": self.run, "command": self.command, "reader": self.reader, "format": FORMAT}
 
 
+def is_derived(name: str) -> bool:
+    """Whether a file follows from the tables of a study, so that nothing is computed to write it anew."""
+    return name == PARAMETERS or name.endswith(".csv")
+
+
 def _is_pattern(name: str) -> bool:
     return "[" in name or "*" in name

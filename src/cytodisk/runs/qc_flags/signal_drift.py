@@ -116,7 +116,8 @@ def signal_drifts(study: Study) -> list[Drift]:
     list of Drift
         By cell, then channel; empty without a signal.
     """
-    return list(_drifts(study)) if has_signal(study) else []
+    mapped = (study.cells["status"] == "ok").any()  # else the table of windows has no rows
+    return list(_drifts(study)) if mapped and has_signal(study) else []
 
 
 def _drifts(study: Study) -> Iterator[Drift]:

@@ -26,7 +26,7 @@ from cytodisk.runs.shapes.shape_tables import (
     SHAPE_STUDY,
     open_shapes,
     shape_table,
-    write_shape_columns,
+    write_shape_texts,
     write_shapes,
 )
 from cytodisk.runs.study_run import StudyRun
@@ -112,7 +112,7 @@ def shape_study(
         return keys, [*inputs.remarks, *_warnings(table)]
 
     run = StudyRun(SHAPE_STUDY, _describe(inputs, parameters), parameters, options)
-    return run.into(out, work, open_shapes, write_shape_columns)
+    return run.into(out, work, open_shapes, write_shape_texts)
 
 
 def _describe(inputs: CellInputs, parameters: ShapeParameters) -> dict[str, Any]:

@@ -83,7 +83,7 @@ def shape_table(rows: Iterable[dict[str, Any]], scale: Scale, parameters: ScoreP
 
 
 def write_shapes(table: pd.DataFrame, folder: Path) -> None:
-    """Write the table of shapes, the same as CSV, and what its features mean.
+    """Write the table of shapes.
 
     Parameters
     ----------
@@ -93,19 +93,20 @@ def write_shapes(table: pd.DataFrame, folder: Path) -> None:
     """
     with replacing(folder / SHAPES) as temporary:
         write_table(table, temporary)
-    write_csv(table, folder / SHAPES_CSV)
-    write_csv(describe_features(table.attrs["units"]), folder / FEATURES_CSV)
 
 
-def write_shape_columns(folder: StudyFolder) -> None:
-    """Write what the columns of all tables in the folder of a run are.
+def write_shape_texts(folder: StudyFolder) -> None:
+    """Write the table of shapes as CSV, and what its features and the columns of all tables are.
 
     Parameters
     ----------
     folder : StudyFolder
         All tables stand.
     """
-    units = read_table(folder.path / SHAPES).attrs["units"]
+    table = read_table(folder.path / SHAPES)
+    units = table.attrs["units"]
+    write_csv(table, folder.path / SHAPES_CSV)
+    write_csv(describe_features(units), folder.path / FEATURES_CSV)
     meanings = {column.name: column.meaning for column in _CELL} | _SCORE_WORDS
     meanings |= {feature.name: feature.description for feature in FEATURES}
     told = [(SHAPES, name, unit, meanings[name]) for name, unit in units.items()]
