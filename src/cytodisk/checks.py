@@ -120,14 +120,22 @@ def instance_of(name: str, value: Any, kinds: type | tuple[type, ...], words: st
 
 
 def is_path(name: str, value: Any) -> None:
-    """Check that an argument is a path.
+    """Check that an argument is a path, and one that tables and messages can hold: it may have any bytes.
 
     Raises
     ------
     ParameterError
-        It is something else.
+        It is something else, or not in UTF-8.
     """
     instance_of(name, value, (str, os.PathLike), "a path")
+    try:
+        text = os.fsencode(value).decode("utf-8")
+    except (UnicodeDecodeError, UnicodeEncodeError):
+        raise ParameterError(
+            f"{name} {os.fspath(value)!a} is not in UTF-8: rename that file or folder"
+        ) from None
+    if "\0" in text:
+        raise ParameterError(f"{name} {text!a} holds a null character, which no path can have: leave it out")
 
 
 def as_points(name: str, points: Any) -> tuple[FloatArray, tuple[int, ...]]:
