@@ -10,8 +10,6 @@ from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
 
-from cytodisk.files import make_folder
-
 _OF_ONE_RUN = "cytodisk-kernels-"  # start of the name of a folder of kernels that goes when its run ends
 
 
@@ -88,7 +86,7 @@ def has_kernels(module: ModuleType) -> bool:
 def _can_be_written(folder: Path) -> bool:
     """Whether files can be made in a folder, tried as Numba does: rights alone do not tell."""
     try:
-        make_folder(folder)
+        folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             return True
     except OSError:

@@ -10,6 +10,7 @@ from movie_files import write_masks, write_movie
 
 import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError, StudyError
+from cytodisk.files import is_temporary
 from cytodisk.runs.correlate.cluster_rows import ranges_in_words
 from cytodisk.runs.correlate.correlate_study import correlate_study
 from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
@@ -370,7 +371,7 @@ def test_a_folder_that_cannot_be_exchanged_stays(study: cd.Study, monkeypatch: p
     before, rename = found.windows, Path.replace
 
     def fail(self: Path, target: Path) -> Path:
-        if self.suffix == ".tmp" and not target.suffix:
+        if is_temporary(self.name) and not target.suffix:
             raise OSError(28, "No space left on device")
         return rename(self, target)
 
@@ -379,7 +380,7 @@ def test_a_folder_that_cannot_be_exchanged_stays(study: cd.Study, monkeypatch: p
         with pytest.raises(StudyError, match="No space left on device"):
             correlate_study(study, "edge", max_lag=4, surrogates=0)
     pd.testing.assert_frame_equal(study.correlation("edge").windows, before)
-    found.path.replace(found.path.with_name(f".{found.path.name}.old"))  # as a kill leaves it
+    found.path.replace(found.path.with_name(f".old~{found.path.name}"))  # as a kill leaves it
     with monkeypatch.context() as patch:
         patch.setattr(Path, "replace", fail)
         with pytest.raises(StudyError, match="No space left on device"):

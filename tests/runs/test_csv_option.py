@@ -9,7 +9,7 @@ import pytest
 import tifffile
 
 import cytodisk as cd
-from cytodisk.errors import StudyError
+from cytodisk.errors import DamagedPartWarning, StudyError
 
 GRID = {"layers": 2, "sectors": 6}
 
@@ -99,7 +99,8 @@ def test_csv_on_top_of_a_complete_study(labels: Path, tmp_path: Path) -> None:
     assert (out / "cells.parquet").read_bytes() == before
     assert {"cells.csv", "windows.csv"} <= recorded(out)
     (out / "windows.csv").write_text("damaged")
-    cd.run_map(labels, out, resume=True, **GRID)
+    with pytest.warns(DamagedPartWarning, match=r"windows\.csv gone or damaged: these are made anew"):
+        cd.run_map(labels, out, resume=True, **GRID)
     assert same_tables(out) == ["cells", "windows"]
     cd.run_map(labels, out, overwrite=True, **GRID)
     assert not list(out.glob("windows.csv"))

@@ -4,7 +4,7 @@ import sys
 
 from typer.core import TyperGroup
 
-from cytodisk.cli.console import fail, out_of_memory_words
+from cytodisk.cli.console import damaged_part_lines, fail, out_of_memory_words
 from cytodisk.cli.help_texts import HELP
 from cytodisk.cli.lazy_command import LazyCommand
 from cytodisk.errors import CytodiskError
@@ -30,7 +30,7 @@ app = TyperGroup(
 def main() -> None:
     """Run the command line; errors that a user can mend end in exit code 2, and what stops it in one line."""
     try:
-        with stopping_tidily():
+        with stopping_tidily(), damaged_part_lines():
             app()
     except CytodiskError as error:
         fail(str(error))

@@ -5,11 +5,11 @@ import time as clock
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from cytodisk.errors import EarlierVersionWarning
+from cytodisk.errors import DamagedPartWarning, EarlierVersionWarning
 from cytodisk.reading_files import words_of
 from cytodisk.stopping import Stopped, is_stop
 
@@ -68,6 +68,22 @@ def earlier_version_lines(say: Callable[[str], None]) -> Iterator[None]:
             warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
     for words in told:
         say(words)
+
+
+@contextmanager
+def damaged_part_lines() -> Iterator[None]:
+    """Say at once, in plain lines, what of an earlier run is damaged and made anew."""
+    with warnings.catch_warnings():
+        show = warnings.showwarning
+
+        def say(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+            if issubclass(category, DamagedPartWarning):
+                print(f"Warning: {message}", file=sys.stderr)
+            else:
+                show(message, category, *place, **more)
+
+        warnings.showwarning = say
+        yield
 
 
 @contextmanager

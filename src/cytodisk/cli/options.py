@@ -132,6 +132,10 @@ def with_parameters(
                 if value is not None
             }
             path = values.pop("parameters", None)
+            if path is not None and given.get("overwrite") and "out" in values:
+                from cytodisk.store.removal import refuse_removal_of
+
+                refuse_removal_of(path, values["out"])
             command(**values, given=Given(given, path, flags))
 
         shown: list[inspect.Parameter] = []

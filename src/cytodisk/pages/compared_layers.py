@@ -34,6 +34,7 @@ METHOD_STYLES: dict[str, dict[str, Any]] = {
     | {"linewidth": 1.0, "markersize": 2.5},
 }
 
+FILE = "comparison.png"
 # Column of the table by layer, and its name in words.
 PANELS = (
     ("completeness", "filled windows"),
@@ -74,8 +75,7 @@ def write_comparison(comparison: Comparison) -> Path:
     >>> cd.pages.write_comparison(comparison).name
     'comparison.png'
     """
-    name = "comparison.png"
-    with drawing(comparison.path, name) as folder, paper_style():
+    with drawing(comparison.path, FILE) as folder, paper_style():
         sheet = Sheet(_TOP + _HEIGHT + 15.0)
         for number, (name, title) in enumerate(PANELS):
             ax = sheet.axes(_LEFT + number * (_PANEL + _GAP), _TOP, _PANEL, _HEIGHT)
@@ -89,7 +89,7 @@ def write_comparison(comparison: Comparison) -> Path:
             f"other lines: median over {what}; bands: their quartiles"
         )
         sheet.text(_LEFT, sheet.height_mm - 1.5, words, color="0.35")
-        return sheet.save(folder / name)
+        return sheet.save(folder / FILE)
 
 
 def draw_measure_by_layer(

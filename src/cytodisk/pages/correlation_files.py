@@ -12,7 +12,7 @@ from cytodisk.pages.drawn_correlation import DrawnCorrelation
 from cytodisk.pages.drawn_movie import DrawnMovie
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.style import paper_style
-from cytodisk.store.correlation_store import CORRELATION, Correlation
+from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.figures_folder import drawing
 from cytodisk.store.study import Study
 from cytodisk.store.study_folder import part_key
@@ -99,7 +99,7 @@ def write_correlation_figures(
     paths = []
     stems = {what: f"cell_{part_key(cell)}_{what}" for what in _PAGES}
     names = [f"{stem}.{kind}" for stem in stems.values() for kind in chosen]
-    with drawing(study.path, *names, below=f"{CORRELATION}/{correlation.path.name}") as folder:
+    with drawing(study.path, *names, of=correlation.path) as folder:
         for done, (what, draw) in enumerate(_PAGES.items()):
             report(done, len(_PAGES))
             with paper_style():

@@ -13,7 +13,7 @@ from cytodisk.store.written_files import lost_files, recorded, writing_files
 
 
 @contextmanager
-def drawing(study: Path, *names: str, below: str = "") -> Iterator[Path]:
+def drawing(study: Path, *names: str, of: Path | None = None) -> Iterator[Path]:
     """The folder for the figures of a study; those that the block writes are noted as the study's.
 
     Parameters
@@ -21,8 +21,8 @@ def drawing(study: Path, *names: str, below: str = "") -> Iterator[Path]:
     study : Path
     *names : str
         Of the figures that may be written.
-    below : str
-        Folder of the study whose figures they are, as that of a correlation.
+    of : Path, optional
+        Folder within the study whose figures they are, as that of a correlation.
 
     Yields
     ------
@@ -36,9 +36,9 @@ def drawing(study: Path, *names: str, below: str = "") -> Iterator[Path]:
     StudyError
         A file of such a name is there which is not the study's.
     """
-    within = f"{below}/{FIGURES}" if below else FIGURES
-    with writing_files(study, *(f"{within}/{name}" for name in names)):
-        folder = study / within
+    folder = (of or study) / FIGURES
+    files = [folder / name for name in names] if folder.is_relative_to(study) else []
+    with writing_files(study, *(file.relative_to(study).as_posix() for file in files)):
         with writing_to(folder):
             folder.mkdir(exist_ok=True)
         yield folder

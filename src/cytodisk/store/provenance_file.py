@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from cytodisk.checks import is_path
 from cytodisk.disk.mapping_parameters import MAPS_VERSION
 from cytodisk.errors import ReadError
 from cytodisk.files import replacing
@@ -54,6 +55,7 @@ def read_complete(folder: Path, *runs: str) -> dict[str, Any]:
     ReadError
         The folder does not exist, holds no study or one of another kind or version, or it is not complete.
     """
+    is_path("study", folder)
     found = read_provenance(folder)
     if found is None and not folder.exists():
         raise ReadError(f"study {folder} does not exist: check the path")

@@ -116,6 +116,11 @@ def refuse_removal(folder: Path, names: Collection[str], inputs: Iterable[Path])
             )
 
 
+def refuse_removal_of(file: Path, folder: Path) -> None:
+    """Raise StudyError if a file that a run is given is one of those that `--overwrite` removes."""
+    refuse_removal(folder, files_of_study(folder), [file])
+
+
 def _folders_of(name: str) -> list[PurePosixPath]:
     """The folders that a file stands in, below that of the study."""
     return [*PurePosixPath(name).parents][:-1]

@@ -143,6 +143,8 @@ class StudyFolder(StudyParts):
             what = "it is made anew" if anew else "these are made anew"
             words = f"study {path} is not whole any more, {some_of(lost)} gone or damaged: {what}"
             warnings.warn(words, DamagedPartWarning, stacklevel=3)
+        if not anew:
+            remove_parts(folder)  # of a run that was killed when all else was done
         study.is_whole = not lost and all(name in files for name in kind.names)
         return None if anew else study
 
