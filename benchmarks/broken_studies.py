@@ -169,9 +169,10 @@ def _broken_run(name: str, inputs: Path, out: Path, how: str, point: int) -> Non
 def _harm(out: Path, how: str, rng: np.random.Generator) -> str:
     """Do harm to a file of a study; its name."""
     if how == "extra part":
-        (out / ".parts").mkdir(exist_ok=True)
-        (out / ".parts" / "00777.json").write_text('{"cell": 777}')
-        return ".parts/00777.json"
+        file = out / ".parts" / "00777.json"
+        file.parent.mkdir(exist_ok=True)
+        file.write_text('{"cell": 777}')
+        return file.relative_to(out).as_posix()
     files = sorted(file for file in out.rglob("*") if file.is_file())
     if not files or how == "none":
         return ""
@@ -228,7 +229,9 @@ class Benchmark:
                     options = {"metadata": {"axes": axes}, "photometric": "minisblack"}
                     tifffile.imwrite(inputs / changed, frames, **options)
             elif out.exists():
-                file = _harm(out, harm, rng)
+                studies = sorted(out.glob("inputs/*/"))
+                place = studies[0] if name == "batch" and harm == "extra part" and studies else out
+                file = _harm(place, harm, rng)
             how, words = in_process(lambda: run(name, inputs, out, resume=True))
             if how == "ok" and harm != "changed input":
                 how, words = self._compared(name, out)
