@@ -176,6 +176,9 @@ def test_what_cannot_be_told_apart_is_refused(tmp_path: Path, plane: np.ndarray)
     path = write_czi(tmp_path / "phases.czi", [Tile(plane, f"H{h}") for h in range(3)])
     with pytest.raises(ReadError, match="holds 3 phases: save the processed image"):
         open_frames(path)
+    path = write_czi(tmp_path / "larger.czi", [Tile(plane, shrunk=2)])
+    with pytest.raises(ReadError, match=r"at another size than it shows them .*save the processed image"):
+        open_frames(path)
     path = write_czi(tmp_path / "oblong.czi", [Tile(plane)], _scaled(0.1, axes="X") + _scaled(0.2, axes="Y"))
     with pytest.raises(ReadError, match=r"pixels of 0.2 × 0.1 µm: resample it to square pixels"):
         open_frames(path)

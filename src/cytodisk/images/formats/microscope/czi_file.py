@@ -103,25 +103,30 @@ def _looked_at(file: Path, changed: int, size: int) -> _Contents:
     with quiet("czifile"), czifile.CziFile(str(file)) as opened:
         blocks = [Block.of(entry) for entry in opened.subblock_directory]
         metadata, times, notes = _said(opened)
-    whole = [block for block in blocks if block.is_whole]
-    numbers = tuple(sorted({block.start("S") for block in whole}))
-    samples = {block.samples for block in whole}
+    whole: dict[int, list[Block]] = {}
+    for block in blocks:
+        if block.is_whole:
+            whole.setdefault(block.start("S"), []).append(block)
+    if blocks and not whole:
+        raise ReadError(
+            f"{file} stores its pixels at another size than it shows them (Airyscan or PALM): save the processed "
+            "image in ZEN"
+        )
+    samples = {block.samples for found in whole.values() for block in found}
     if len(samples) > 1:
         raise ReadError(f"{file} mixes grey and colour images: export them as TIFF, each kind alone")
+    numbers = tuple(sorted(whole))
+    scenes = (_scene(number, whole[number], metadata, times) for number in numbers)
     return _Contents(
-        tuple(
-            replace(scene, notes=(*notes, *scene.notes))
-            for scene in (_scene(number, whole, metadata, times) for number in numbers)
-        ),
+        tuple(replace(scene, notes=(*notes, *scene.notes)) for scene in scenes),
         numbers,
         next(iter(samples), 1),
-        {number: _area([block for block in whole if block.start("S") == number]) for number in numbers},
-        {number: _by_plane([block for block in whole if block.start("S") == number]) for number in numbers},
+        {number: _area(found) for number, found in whole.items()},
+        {number: _by_plane(found) for number, found in whole.items()},
     )
 
 
-def _scene(number: int, every: list[Block], metadata: ElementTree.Element, times: Sequence[float]) -> Scene:
-    blocks = [block for block in every if block.start("S") == number]
+def _scene(number: int, blocks: list[Block], metadata: ElementTree.Element, times: Sequence[float]) -> Scene:
     sizes = {axis: _extent(blocks, axis) for axis in "TCZ"}
     rows, columns = _area(blocks)
     names = [e.get("Name", "") for e in metadata.iterfind(".//Information/Image/Dimensions/Channels/Channel")]
