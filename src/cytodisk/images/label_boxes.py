@@ -64,6 +64,9 @@ def label_boxes(strips: Strips) -> LabelBoxes:
     """
     labels, boxes, extremes = [], [], []
     for first, strip in strips:
+        if not strip.any():  # most of a large image, and quickly seen
+            extremes += [0, 0]
+            continue
         runs = value_runs(strip)
         extremes += [int(runs.values.min()), int(runs.values.max())]
         kept = np.flatnonzero(runs.values != 0)

@@ -15,6 +15,8 @@ def share_alike(strips: Strips) -> float:
     """Share of neighbours in a row, both with a label, that have the same; 1 without any."""
     alike, both = 0, 0
     for _, strip in strips:
+        if not strip.any():  # most of a large image, and quickly seen
+            continue
         left, right = strip[:, :-1], strip[:, 1:]
         inside = (left != 0) & (right != 0)
         both += int(inside.sum())
@@ -28,6 +30,9 @@ def count_pieces(strips: Strips) -> int:
     seams: list[IntArray] = []
     above: tuple[AnyArray, IntArray] | None = None
     for _, strip in strips:
+        if not strip.any():
+            above = None
+            continue
         pieces, count = measure.label(  # type: ignore[no-untyped-call,unused-ignore]
             strip, background=0, connectivity=2, return_num=True
         )
@@ -68,6 +73,9 @@ def thick_values(strips: Strips) -> AnyArray:
         before = rows[-2:].copy()
         if len(rows) < 3 or rows.shape[1] < 3:
             continue
+        if not rows.any():
+            found.append(np.zeros(1, rows.dtype))
+            continue
         down, right = rows[1:] == rows[:-1], rows[:, 1:] == rows[:, :-1]
         three = right[:, 1:] & right[:, :-1]
         filled = three[:-2] & three[1:-1] & three[2:] & (down[1:] & down[:-1])[:, 1:-1]
@@ -82,6 +90,8 @@ def touching_values(strips: Strips) -> AnyArray:
     for _, strip in strips:
         rows = strip if before is None else np.concatenate([before, strip])
         before = rows[-1:].copy()
+        if not rows.any():
+            continue
         for one, other in ((rows[1:], rows[:-1]), (rows[:, 1:], rows[:, :-1])):
             touch = (one != other) & (one != 0) & (other != 0)
             found += [np.unique(one[touch]), np.unique(other[touch])]

@@ -14,6 +14,7 @@ from cytodisk.images.claims import check_memory
 from cytodisk.images.formats.tiff_pages import opened_member, opened_tiff, present_page
 
 _KEPT_BYTES = 2**26  # of decoded segments, so that cells side by side do not decode them twice
+_COPIES = 3  # of a segment, while it is decoded
 _WITH_TABLES = (6, 7, 34892, 33007)  # compressions whose segments need more than themselves: kinds of JPEG
 
 
@@ -71,7 +72,12 @@ class TiffSegments:
     def cut(self, rows: slice, columns: slice) -> np.ndarray[Any, Any]:
         """Pixels of some rows and columns of all channels, shape (C, h, w)."""
         out = np.empty((len(self.pages), rows.stop - rows.start, columns.stop - columns.start), self.dtype)
-        check_memory(self.path, "a strip or tile", self.height * self.width * self.dtype.itemsize)
+        check_memory(
+            self.path,
+            "a strip or tile",
+            _COPIES * self.height * self.width * self.dtype.itemsize,
+            "save it again in tiles",
+        )
         with opened_tiff(self.path, self.plain) as tiff:
             for channel, page in enumerate(self.pages):
                 for down in range(rows.start // self.height, -(-rows.stop // self.height)):

@@ -182,7 +182,8 @@ def _plain(
     known = (
         "; scale and names are unknown: pass --pixel-size, --frame-interval and --channels" if unknown else ""
     )
-    note = f"{fault}: its {_product(shape[:-2])} pages are taken as they stand, in their order{known}"
+    there = _product(shape[:-2])
+    note = f"{fault}: its {there} pages are taken as they stand; if their order is wrong, pass --axes{known}"
     return replace(found, image=image, notes=(note,))
 
 
