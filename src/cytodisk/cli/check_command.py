@@ -47,9 +47,10 @@ def check_command(
 
 
 def _say_evidence(console: "Console", inputs: "CellInputs") -> None:
-    """How the axes of the files are known; of a folder those of its first file."""
-    masks, signals = inputs.sources[0].file, inputs.signal_files
-    for role, file in (("masks", masks), ("signal", signals[0] if signals else None)):
-        if file is not None and file.evidence:
-            which = f" (as in {file.path.name})" if inputs.is_folder else ""
-            console.print(f"{role}: {file.evidence}{which}")
+    """Why the files are taken for what they are, and how their axes are known; of a folder its first file."""
+    source, signals = inputs.sources[0], inputs.signal_files
+    found = [("masks", source.name, source.look.words if source.look is not None else "")]
+    found += [("signal", file.path.name, file.evidence) for file in signals[:1]]
+    for role, name, words in found:
+        if words:
+            console.print(f"{role}: {words}" + (f" (as in {name})" if inputs.is_folder else ""))

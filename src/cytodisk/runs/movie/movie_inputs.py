@@ -84,7 +84,9 @@ class MovieInputs:
         height, width = self.masks.image_shape
         size = f"{self.masks.n_frames} frames of {height} × {width} pixels"
         what = "masks of one cell" if self.kind == "stack" else f"labels of {len(self.tracks)} cells"
-        if self.parameters.link and self.kind == "labels":
+        if self.parameters.label:
+            what += ", the pieces of masks numbered and linked by overlap"
+        elif self.parameters.link and self.kind == "labels":
             what += ", linked by overlap"
         words = {"masks": f"{what}, {size} ({self.masks.axes}, {self.masks.dtype})"}
         if self.signal is not None:
