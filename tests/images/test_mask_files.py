@@ -140,7 +140,7 @@ def test_a_single_image_is_read_once_and_a_stack_once_more_after_the_look(
     reads: list[int] = []
     frame = FrameFile.frame
     monkeypatch.setattr(FrameFile, "frame", lambda file, number: reads.append(number) or frame(file, number))
-    for values, wanted in ((ONE, [0]), (np.stack([ONE, 2 * ONE, ONE]), [0, 1, 2, 0, 1, 2])):
+    for values, wanted in ((ONE, [0]), (np.stack([ONE, 2 * ONE, ONE]), [0, 1, 2, 0, 0, 1, 2])):
         reads.clear()
         sources = open_mask_files(written(tmp_path, values).path)
         images = list_images(sources)

@@ -20,7 +20,7 @@ from cytodisk.images.frames import open_frames
 from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 from cytodisk.images.label_boxes import Box, LabelBoxes, cell_box, label_boxes, with_margin
 from cytodisk.images.mask_names import mask_names
-from cytodisk.images.what_it_is import MaskLook, Reader, check_labels, look_at
+from cytodisk.images.what_it_is import MaskLook, Reader, check_labels, look_at, refuse_several
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def open_mask_files(
     ReadError
         The folder or the file is missing or cannot be read, or the folder holds no image.
     MaskError
-        A single file is no mask, or one mask of several cells.
+        A single file is no mask, or holds several cells in each of its masks.
     """
     place, how = Path(path), KindParameters() if how is None else how
     if not is_folder_of_files(place) and not is_pattern(place):
@@ -136,22 +136,13 @@ def open_mask_files(
         reader: Reader = lru_cache(maxsize=1)(opened) if file.n_frames == 1 else opened
         look = look_at(file, how, reader)
         kept = reader if look.file is file else None
-        source = MaskSource(place.name, place, look.file, look.kind, look=look, reader=kept)
-        if look.kind == "mask":
-            _refuse_several(source)
-        return (source,)
+        refuse_several(look, kept)
+        return (MaskSource(place.name, place, look.file, look.kind, look=look, reader=kept),)
     return tuple(_source(chosen, others, how) for chosen, others in mask_names(place, images))
 
 
 def _frames_of(path: Path, choice: FileChoice) -> FrameFile:
     return open_frames(path, unnamed="T", choice=choice, flag="--mask-channel")
-
-
-def _refuse_several(source: MaskSource) -> None:
-    """Raise SeveralCells for a single mask that is not one cell's."""
-    for found in read_source_cells([source]):
-        if isinstance(found.fault, SeveralCells):
-            raise SeveralCells(f"{source.path}: {found.fault}")
 
 
 def _source(path: Path, others: list[Path], how: KindParameters) -> MaskSource:

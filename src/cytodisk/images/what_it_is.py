@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
+from cytodisk.geometry.fragments import SeveralCells, without_others
 from cytodisk.images.changed_frames import changed_file
 from cytodisk.images.evidence.classes import TwoClasses, may_be_classes, two_classes
 from cytodisk.images.evidence.frame_sight import FrameSight, see_frame
@@ -18,6 +19,7 @@ from cytodisk.images.file_axes import axis_words
 from cytodisk.images.file_parameters import Fragments, Kind, KindParameters
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
+from cytodisk.images.label_boxes import cell_box
 
 _LARGEST = int(np.iinfo(np.int64).max)  # tables hold labels as 64-bit integers with a sign
 _FEW_FRAMES = 2  # with fractions, and none without, are enough to see a picture
@@ -251,6 +253,37 @@ def _refuse_background(file: FrameFile, usable: Sequence[FrameSight]) -> None:
         f"{what} has the value {value:g}. Invert it (in Fiji: Edit > Invert), or set the background to "
         f"0{export}; if the cell does fill the image, pass kind={kind!r} (--kind {kind})"
     )
+
+
+def refuse_several(look: MaskLook, read: Reader | None = None) -> None:
+    """Raise SeveralCells for a file of masks of one cell each, if all of them hold several.
+
+    Where some do, each of those costs its own row.
+
+    Parameters
+    ----------
+    look : MaskLook
+    read : callable, optional
+        Opens a frame in the place of `frame_pixels`.
+    """
+    if look.kind == "labels" or look.fragments == "largest":
+        return
+    fault: SeveralCells | None = None
+    for number in range(look.file.n_frames):
+        try:
+            frame = (read or partial(frame_pixels, look.file))(number)
+            box, _ = cell_box(frame.strips())
+            if box is None:
+                continue
+            found = without_others(frame.cut(*box)[0], look.fragments, None)
+        except ReadError:  # whoever reads the frame for good tells of it
+            continue
+        if not isinstance(found, SeveralCells):
+            return
+        fault = fault or found
+    if fault is not None:
+        where = "in each frame " if look.file.n_frames > 1 else ""
+        raise SeveralCells(f"{look.file.path}: {where}{fault}")
 
 
 def _numbered(look: MaskLook) -> MaskLook:

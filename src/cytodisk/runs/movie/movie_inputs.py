@@ -17,7 +17,7 @@ from cytodisk.images.outline_sizes import sized_like
 from cytodisk.images.spots.label_spots import LabelTracks, label_tracks
 from cytodisk.images.spots.track_files import read_tracks
 from cytodisk.images.tracks import CellTrack, list_tracks
-from cytodisk.images.what_it_is import MaskLook, look_at
+from cytodisk.images.what_it_is import MaskLook, look_at, refuse_several
 from cytodisk.motion.still_interior import fade_in_px
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.cells.cell_inputs import check_signal
@@ -163,6 +163,7 @@ def open_movie(
     signal_file, parameters = with_common_name(files.signal, signal_name, parameters)
     mask_file, scale = files.masks, files.scale
     look = look_at(mask_file, parameters.part(KindParameters))
+    refuse_several(look)
     mask_file = look.file
     given = None if parameters.tracks is None else _given_tracks(mask_file, look, parameters, scale)
     if given is not None:
