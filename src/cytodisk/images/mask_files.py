@@ -11,16 +11,17 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.errors import CytodiskError, EmptyMaskError, MaskError, ReadError, as_data
+from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
 from cytodisk.geometry.fragments import SeveralCells, without_others
+from cytodisk.images.evidence.frame_labels import check_labels, found_labels, single_label
 from cytodisk.images.file_parameters import Kind, KindParameters
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.frames import open_frames
 from cytodisk.images.image_paths import is_folder_of_files, is_pattern
-from cytodisk.images.label_boxes import Box, LabelBoxes, cell_box, label_boxes, with_margin
+from cytodisk.images.label_boxes import Box, cell_box, with_margin
 from cytodisk.images.mask_names import mask_names
-from cytodisk.images.what_it_is import MaskLook, Reader, check_labels, look_at, refuse_several
+from cytodisk.images.what_it_is import MaskLook, Reader, look_at, refuse_several
 
 
 @dataclass(frozen=True)
@@ -261,7 +262,7 @@ def _cells_of(source: MaskSource, number: int) -> Iterator[SourceCell]:
         if source.kind != "labels":
             yield _of_one_cell(_single(frame, nothing), source, None)
             return
-        found = _found_labels(frame, number)
+        found = found_labels(frame, number)
     except (ReadError, MaskError) as fault:
         yield replace(nothing, fault=as_data(fault))
         return
@@ -275,16 +276,6 @@ def _of_one_cell(found: SourceCell, source: MaskSource, label: int | None) -> So
         return found
     mask = without_others(found.mask, source.look.fragments, label)
     return replace(found, mask=None, fault=mask) if isinstance(mask, SeveralCells) else found
-
-
-def _found_labels(frame: FramePixels, number: int) -> LabelBoxes:
-    if not np.issubdtype(frame.dtype, np.integer):
-        check_labels(frame.dtype, None, number)
-    found = label_boxes(frame.strips())
-    check_labels(frame.dtype, np.array([found.least, found.greatest], dtype=frame.dtype), number)
-    if not (found.least or found.greatest):
-        raise EmptyMaskError(f"frame {number} is empty: it holds no label")
-    return found
 
 
 def _labelled(frame: FramePixels, label: int, place: Box, nothing: SourceCell) -> SourceCell:
@@ -302,13 +293,5 @@ def _single(frame: FramePixels, nothing: SourceCell) -> SourceCell:
     everything = slice(0, frame.image_shape[0]), slice(0, frame.image_shape[1])
     rows, columns = with_margin(box or everything, frame.image_shape)
     mask = frame.cut(rows, columns)[0].copy()  # so that a waiting cell does not hold its whole image
-    label = _single_label(frame.dtype, greatest, box is not None)
+    label = single_label(frame.dtype, greatest, box is not None)
     return replace(nothing, label=label, mask=mask, corner=(rows.start, columns.start))
-
-
-def _single_label(dtype: np.dtype[Any], greatest: Any, holds_cell: bool) -> int:
-    """The label of a frame that holds just one; 1 for plain masks such as 0/1 and 0/255, 0 without a cell."""
-    if not np.issubdtype(dtype, np.integer):
-        return int(holds_cell)
-    label = int(greatest)
-    return 1 if label == np.iinfo(dtype).max else max(label, 0)

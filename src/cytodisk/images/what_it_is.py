@@ -13,6 +13,7 @@ from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
 from cytodisk.geometry.fragments import SeveralCells, without_others
 from cytodisk.images.changed_frames import changed_file
 from cytodisk.images.evidence.classes import TwoClasses, may_be_classes, two_classes
+from cytodisk.images.evidence.frame_labels import check_labels
 from cytodisk.images.evidence.frame_sight import FrameSight, see_frame
 from cytodisk.images.evidence.picture_signs import fraction_words, picture_words
 from cytodisk.images.file_axes import axis_words
@@ -21,7 +22,6 @@ from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.label_boxes import cell_box
 
-_LARGEST = int(np.iinfo(np.int64).max)  # tables hold labels as 64-bit integers with a sign
 _FEW_FRAMES = 2  # with fractions, and none without, are enough to see a picture
 _BACKGROUND = 0.75  # of the image's border has one value: that of the background
 
@@ -198,18 +198,6 @@ def _labels_of(sight: Seen, dtype: np.dtype[Any]) -> tuple[int, ...] | CytodiskE
     except MaskError as fault:
         return as_data(fault)
     return tuple(int(label) for label in sight.cells.tolist())
-
-
-def check_labels(dtype: Any, values: Any, number: int) -> None:
-    """Raise MaskError unless a frame has labels; `values` are some of it that hold the least and greatest."""
-    if values is None or not np.issubdtype(dtype, np.integer):
-        raise MaskError(f"labels must be whole numbers, got dtype {dtype}: save the labels as uint16")
-    if values.min() < 0:
-        raise MaskError(
-            f"frame {number} has negative labels (down to {values.min()}): set what is no cell to 0"
-        )
-    if int(values.max()) > _LARGEST:
-        raise MaskError(f"frame {number} has labels up to {values.max()}: number the cells from 1")
 
 
 def _refuse_axes(file: FrameFile, seen: Sequence[Seen]) -> None:
