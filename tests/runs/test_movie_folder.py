@@ -86,11 +86,12 @@ def test_a_cellpose_folder_needs_no_flags(tmp_path: Path, signal: str) -> None:
     chosen = {"folder": folder, "ending": Path("_img"), "pattern": folder / "t*.tif"}[signal]
     inputs = opened(folder, chosen)
     assert "5 files in natural order, t000_cp_masks.png to t004_cp_masks.png" in inputs.understood["masks"]
-    assert "5 others left out, as t000" in inputs.understood["masks"]
+    assert "beside them 5 other images, as t000" in inputs.understood["masks"]
     assert inputs.signal is not None
     assert (inputs.signal.channels, inputs.notes) == (("Rac1",), ())
     np.testing.assert_array_equal(inputs.signal.frame(3)[0], SIGNAL[3, 0])
     np.testing.assert_array_equal(inputs.masks.frame(3)[0], MASKS[3])
+    assert f"sample images with --signal {folder}" in opened(folder).understood["masks"]
 
 
 def test_a_gap_is_a_missing_frame_and_time_goes_on(tmp_path: Path) -> None:

@@ -36,7 +36,7 @@ class MovieMasks:
     names: FrameNames | None = None
 
 
-def open_movie_masks(path: Path, choice: FileChoice) -> MovieMasks:
+def open_movie_masks(path: Path, choice: FileChoice, sampled: bool = True) -> MovieMasks:
     """Open the masks of a movie without reading their pixels.
 
     Parameters
@@ -45,6 +45,8 @@ def open_movie_masks(path: Path, choice: FileChoice) -> MovieMasks:
         A file; a folder or a pattern of files of one frame each.
     choice : FileChoice
         What to take of each file.
+    sampled : bool
+        There is a signal; without one, images beside the masks are pointed out.
 
     Returns
     -------
@@ -59,6 +61,8 @@ def open_movie_masks(path: Path, choice: FileChoice) -> MovieMasks:
     if not is_folder_of_files(path) and not is_pattern(path):
         return MovieMasks(open_frames(path, unnamed="T", choice=choice, flag=flag))
     names, others = _mask_frames(path)
+    if others and not sampled:
+        others += f" (sample images with --signal {path})"
     opened = partial(open_frame, choice=choice, flag=flag)
     return MovieMasks(sequence(path, names, opened, others), names)
 
@@ -137,7 +141,7 @@ def left_out(files: Sequence[Path]) -> str:
     """Words for images beside the masks."""
     if not files:
         return ""
-    return f"{len(files)} other{'s' if len(files) > 1 else ''} left out, as {files[0].name}"
+    return f"beside them {len(files)} other image{'s' if len(files) > 1 else ''}, as {files[0].name}"
 
 
 def few(words: Sequence[str]) -> str:

@@ -213,7 +213,7 @@ def open_movie_files(
     is_path("masks", masks)
     check_signal_given(signal, parameters)
     choice = sized_like(parameters.mask_choice, masks, signal, parameters.signal_choice, "T")
-    found = open_movie_masks(Path(masks), choice)
+    found = open_movie_masks(Path(masks), choice, signal is not None)
     mask_file = found.file
     _check_masks(mask_file)
     signal_file = None
