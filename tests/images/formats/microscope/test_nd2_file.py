@@ -150,7 +150,7 @@ def nd2_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     def make(recording: Recording) -> Path:
         monkeypatch.setattr(StandIn, "recording", recording, raising=False)
         path = tmp_path / "a.nd2"
-        path.touch()
+        path.write_bytes(bytes(recording.images.nbytes))
         return path
 
     return make
@@ -269,6 +269,24 @@ def test_a_stopped_recording_is_told_and_missing_frames_are_no_zeros(
             ReadError, match=f"no pixels of frame {frame}, slice 0: the recording was stopped"
         ):
             file.frame(frame)
+
+
+def test_loops_of_one_step_are_no_axes(nd2_file: Any, images: np.ndarray) -> None:
+    once = [time_loop(1, 0.0), structures.CustomLoop(1), time_loop(3, 5000.0), z_stack(1), time_loop(1, 0.0)]
+    file = open_frames(nd2_file(Recording(images[:3], once)))
+    assert (file.axes, file.shape) == ("TCYX", (3, 2, 20, 30))
+    np.testing.assert_array_equal(file.frame(2), images[2])
+    file = open_frames(nd2_file(Recording(images[:5], [time_loop(3, 5000.0)])))
+    assert file.notes == ("it holds 5 images and its loops tell of 3: the others are not read",)
+
+
+def test_claims_that_the_file_does_not_fill_are_refused(nd2_file: Any, images: np.ndarray) -> None:
+    path = nd2_file(Recording(images[:2], [time_loop(10**9, 5000.0)]))
+    with pytest.raises(ReadError, match="it claims 1000000000 images and 2 are there; copy it again"):
+        open_frames(path)
+    path = nd2_file(Recording(images[:2], [time_loop(2, 5000.0)], recorded=10**9))
+    with pytest.raises(ReadError, match=r"says it holds .* are stored"):
+        open_frames(path)
 
 
 def test_what_cannot_be_told_apart_is_refused(nd2_file: Any, images: np.ndarray) -> None:

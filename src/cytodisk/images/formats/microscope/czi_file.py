@@ -109,8 +109,8 @@ def _looked_at(file: Path, changed: int, size: int) -> _Contents:
             whole.setdefault(block.start("S"), []).append(block)
     if blocks and not whole:
         raise ReadError(
-            f"{file} stores its pixels at another size than it shows them (Airyscan or PALM): save the processed "
-            "image in ZEN"
+            f"{file} stores its pixels at another size than it shows them (Airyscan or PALM): save the "
+            "processed image in ZEN"
         )
     samples = {block.samples for found in whole.values() for block in found}
     if len(samples) > 1:

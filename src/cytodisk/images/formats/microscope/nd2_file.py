@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.errors import MissingPartError, ReadError
+from cytodisk.images.claims import check_claim
 from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
 from cytodisk.images.formats.microscope.plane_frames import Plane, PlaneFrames, scene_file
 from cytodisk.images.formats.microscope.quiet import quiet
@@ -20,8 +21,11 @@ from cytodisk.images.scenes import Scene, Taken
 from cytodisk.scale import Scale
 
 _AXES = {"TimeLoop": "T", "NETimeLoop": "T", "XYPosLoop": "P", "ZStackLoop": "Z"}
+_MOST_TIMES = 100  # as many images as are there, a file may claim, as recordings are stopped
 _COLOURS = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha")}
-_MOST_TIMES = 2000  # frames whose times are looked at one by one; of longer movies the set interval is taken
+_MOST_LOOKED_AT = (
+    2000  # frames whose times are looked at one by one; of longer movies the set interval is taken
+)
 
 
 def open_nd2(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
@@ -36,6 +40,10 @@ def open_nd2(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
 def nd2_scenes(file: Path) -> tuple[Scene, ...]:
     """What an ND2 file holds: its positions."""
     with _opened(file) as opened:
+        there = opened.attributes.sequenceCount
+        channels, sizes = max(opened.attributes.componentCount, 1), opened.sizes
+        shape = max(there, 1), channels, sizes["Y"], sizes["X"]
+        check_claim(file, shape, np.dtype(opened.dtype), codec="zlib")
         scene = _scene(opened)
         return tuple(replace(scene, name=name) for name in _position_names(opened))
 
@@ -99,19 +107,25 @@ def _opened(file: Path) -> Iterator[Any]:
 
 def _scene(opened: Any) -> Scene:
     """What each position holds, which is the same for all; the time is that of the first."""
-    sizes, frames = opened.sizes, opened.sizes.get("T", 1)
+    sizes, counts = opened.sizes, _counts(opened)
+    frames = counts.get("T", 1)
     size_um, size_notes, fault = _pixel_size(opened)
     interval_s, time_notes = agreed_interval(_times(opened), _set_interval(opened), frames)
-    others = [loop.type for loop in opened.experiment if loop.count > 1 and loop.type not in _AXES]
-    if others or len(_steps(opened)) != len(opened.experiment):
-        loops = ", ".join(others or [loop.type for loop in opened.experiment])
+    loops = [loop.type for loop in opened.experiment if loop.count > 1]
+    if len({_AXES[loop] for loop in loops if loop in _AXES}) < len(loops):
         fault = (
-            f"was recorded in other loops than one of time, position and z each ({loops}): save it as TIFF"
+            "was recorded in other loops than one of time, position and z each "
+            f"({', '.join(loops)}): save it as TIFF"
+        )
+    elif _planned(opened) > _MOST_TIMES * max(opened.attributes.sequenceCount, 1):
+        fault = (
+            f"is damaged: it claims {_planned(opened)} images and {opened.attributes.sequenceCount} are "
+            "there; copy it again"
         )
     return Scene(
         "",
         frames,
-        sizes.get("Z", 1),
+        counts.get("Z", 1),
         _channels(opened),
         (sizes["Y"], sizes["X"]),
         np.dtype(opened.dtype),
@@ -121,11 +135,17 @@ def _scene(opened: Any) -> Scene:
     )
 
 
+def _counts(opened: Any) -> dict[str, int]:
+    """How many steps there are along each axis, without those of one step."""
+    loops = [loop for loop in opened.experiment if loop.count > 1 and loop.type in _AXES]
+    return {_AXES[loop.type]: loop.count for loop in loops}
+
+
 def _steps(opened: Any) -> dict[str, int]:
     """How far apart stored images are, by axis: the last loop runs fastest."""
     steps, step = {}, 1
     for loop in reversed(opened.experiment):
-        if (axis := _AXES.get(loop.type)) is not None:
+        if loop.count > 1 and (axis := _AXES.get(loop.type)) is not None:
             steps[axis] = step
         step *= loop.count
     return steps
@@ -140,11 +160,16 @@ def _pixel_size(opened: Any) -> tuple[float | None, tuple[str, ...], str]:
     return pixel_size_of([float(height), float(width)])
 
 
+def _planned(opened: Any) -> int:
+    return math.prod(loop.count for loop in opened.experiment)
+
+
 def _stopped(opened: Any) -> tuple[str, ...]:
-    planned = math.prod(loop.count for loop in opened.experiment)
-    there = opened.attributes.sequenceCount
-    if there >= planned:
+    planned, there = _planned(opened), opened.attributes.sequenceCount
+    if there == planned:
         return ()
+    if there > planned:
+        return (f"it holds {there} images and its loops tell of {planned}: the others are not read",)
     return (f"its recording was stopped: {there} of {planned} images are there, later frames are missing",)
 
 
@@ -159,15 +184,16 @@ def _channels(opened: Any) -> tuple[str, ...]:
 
 def _position_names(opened: Any) -> list[str]:
     for loop in opened.experiment:
-        if loop.type == "XYPosLoop":
-            return [point.name or str(number) for number, point in enumerate(loop.parameters.points)]
-    return [str(number) for number in range(opened.sizes.get("P", 1))]
+        if loop.type == "XYPosLoop" and loop.count > 1:
+            names = [point.name or str(number) for number, point in enumerate(loop.parameters.points)]
+            return names if len(names) == loop.count else [str(number) for number in range(loop.count)]
+    return [str(number) for number in range(_counts(opened).get("P", 1))]
 
 
 def _times(opened: Any) -> tuple[float, ...]:
     """When each frame of the first position was taken, in seconds; nothing where the file does not say."""
-    frames, step = opened.sizes.get("T", 1), _steps(opened).get("T", 0)
-    if not 1 < frames <= _MOST_TIMES:
+    frames, step = _counts(opened).get("T", 1), _steps(opened).get("T", 0)
+    if not 1 < frames <= _MOST_LOOKED_AT:
         return ()
     channels = [opened.frame_metadata(frame * step).channels for frame in range(frames)]
     return tuple(float(first[0].time.relativeTimeMs) / 1e3 for first in channels if first)
