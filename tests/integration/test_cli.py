@@ -374,6 +374,7 @@ def test_demo_once_and_again(run: Run, tmp_path: Path, monkeypatch: pytest.Monke
     demo = tmp_path / "demo"
     code, said, _ = run("demo", "-o", demo)
     assert code == 0
+    assert said.count("no QC flags") == 1
     assert "40 of 40 frames of 1 cell mapped, each one to one" in said
     for line in (
         "boundary: after 39 frames",

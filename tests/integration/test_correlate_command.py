@@ -195,3 +195,5 @@ def test_maps_of_an_earlier_version_are_told_once(run: Run, study: Path, tmp_pat
     pytest.importorskip("bokeh")
     code, said, error = run("report", old)
     assert (code, said.splitlines().count(line), "Maps by" in error) == (0, 1, False)
+    assert "QC flag earlier maps" not in said  # the line says it
+    assert "the maps were made by cytodisk 0.1.0" in (old / "report.html").read_text(encoding="utf-8")

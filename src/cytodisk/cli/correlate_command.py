@@ -91,15 +91,18 @@ def write_page(
     out: Path | None = None,
     cell: int | None = None,
     signal: Path | None = None,
+    flags: bool = True,
 ) -> None:
-    """Write the report and say where it is and what is wrong with the study."""
-    from cytodisk.pages.report.page import page_flags, write_report
+    """Write the report and say where it is and, with `flags`, what is wrong with the study."""
+    from cytodisk.pages.report.page import EARLIER_MAPS, page_flags, write_report
     from cytodisk.runs.study_signal import open_signal
 
     image = open_signal(study, signal) if signal is not None else None
     with progress_bar(quiet, "frames", stopped=NOTHING_CHANGED) as progress:
         page = write_report(study, out, cell=cell, signal=image, progress=progress)
-    say_flags(console, page_flags(study, image), "they are first on the page")
+    if flags:
+        shown = [flag for flag in page_flags(study, image) if flag.name != EARLIER_MAPS]  # said at the start
+        say_flags(console, shown, "they are first on the page")
     console.print(f"report: {page} ({page.stat().st_size / 1e6:.1f} MB), open it in a browser")
 
 

@@ -10,6 +10,7 @@ from cytodisk.cli.console import console_for, progress_bar
 from cytodisk.cli.correlate_command import NOTHING_CHANGED, draw_correlation, write_page
 from cytodisk.cli.correlation_words import say_correlation, say_verdicts
 from cytodisk.cli.first_start import say_compiling
+from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.cli.movie_command import draw_movie, finish_movie, say_movie
 from cytodisk.cli.options import Quiet
 from cytodisk.errors import MissingPartError
@@ -57,7 +58,7 @@ def demo_command(
                 progress=progress,
             )
         drawings = [beside.submit(_draw_movie, masks, signal, study.path)]
-        finish_movie(console, study)
+        finish_movie(console, study, flags=False)  # the report's lines have them
         with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
             found = correlate_study(study, "edge", "velocity", progress=progress)
         drawings.append(beside.submit(_draw_correlation, study.path))
@@ -65,6 +66,7 @@ def demo_command(
         try:
             write_page(console, quiet, study)
         except MissingPartError as missing:
+            say_study_flags(console, study)
             console.print(f"no report: {missing}")
         say_verdicts(console, found)
         with progress_bar(quiet, "drawings", total=len(drawings), again=_AGAIN) as progress:

@@ -2,6 +2,7 @@
 
 from functools import cached_property
 from importlib import import_module
+from shutil import get_terminal_size
 from typing import Any
 
 import typer
@@ -10,6 +11,8 @@ from typer.core import TyperCommand
 _QUOTES = (
     "For several files of one movie put the pattern in quotes, as 'frames/t*.tif', or pass their folder."
 )
+
+_WIDTH_OF_TABLES = 120  # letters in a line
 
 
 class LazyCommand(TyperCommand):
@@ -32,7 +35,9 @@ class LazyCommand(TyperCommand):
     def loaded(self) -> Any:
         """The command itself, with its options."""
         function = getattr(import_module(self._module), f"{str(self.name).replace('-', '_')}_command")
-        alone = typer.Typer(add_completion=False, rich_markup_mode="rich")
+        # A table of flags has five columns; in a narrow window it would cut their names.
+        is_wide = get_terminal_size().columns >= _WIDTH_OF_TABLES
+        alone = typer.Typer(add_completion=False, rich_markup_mode="rich" if is_wide else None)
         alone.command(self.name, help=self.help)(function)
         return typer.main.get_command(alone)
 

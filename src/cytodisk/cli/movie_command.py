@@ -74,8 +74,8 @@ def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int,
             progress(number + 1, len(missing))
 
 
-def finish_movie(console: "Console", study: "Study") -> None:
-    """Say what came out; exit code 2 if that is nothing, or a frame is damaged."""
+def finish_movie(console: "Console", study: "Study", flags: bool = True) -> None:
+    """Say what came out, with `flags` what is wrong; exit code 2 if nothing came, or a frame is damaged."""
     frames = study.cells
     mapped = frames[frames["status"] == "ok"]
     cells = frames["cell"].nunique()
@@ -88,7 +88,8 @@ def finish_movie(console: "Console", study: "Study") -> None:
             print(f"cell {row['cell']}, frame {row['frame']} {status}: {row['reason']}", file=sys.stderr)
         if len(lost) > 10:
             print(f"… and {len(lost) - 10} more {status}: column 'reason' of cells.parquet", file=sys.stderr)
-    say_study_flags(console, study)
+    if flags:
+        say_study_flags(console, study)
     console.print(f"results: {study.path}")
     if not len(mapped):
         fail(f"no frame could be mapped: {frames['reason'].iloc[0]}")

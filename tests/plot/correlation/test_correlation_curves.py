@@ -217,3 +217,8 @@ def test_a_peak_at_a_lag_of_jitter_is_an_open_diamond() -> None:
         assert all(line.get_markerfacecolor() == "white" for line in diamonds)
     labels = [handle.get_label() for handle in curve_key(jittered=True)]
     assert labels[-1] == "jitter makes this lag"
+
+
+def test_a_channel_that_is_called_as_a_part_of_the_cell_is_named_as_a_channel() -> None:
+    assert sides("edge", "velocity") == "← velocity first  ·  channel edge first →"
+    assert sides("Rac1", "Edge", upright=True) == "↓ channel Edge first  ·  ↑ Rac1 first"

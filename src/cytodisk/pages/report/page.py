@@ -26,6 +26,7 @@ from cytodisk.plot.style import DIVERGING_COLOURS
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.study_flags import qc_flags
 from cytodisk.runs.study_signal import FoundSignal, shown_signal
+from cytodisk.store.provenance_file import other_maps, writer_of
 from cytodisk.store.study import Study
 from cytodisk.store.written_files import writing_files
 
@@ -148,7 +149,8 @@ def page_flags(study: Study, signal: FrameSource | None = None) -> list[QCFlag]:
     Returns
     -------
     list of QCFlag
-        Those of `qc_flags`, and before them one if the signal cannot be shown.
+        Those of `qc_flags`, and before them one if the maps are of another version, and one if the signal
+        cannot be shown.
 
     Raises
     ------
@@ -159,7 +161,7 @@ def page_flags(study: Study, signal: FrameSource | None = None) -> list[QCFlag]:
 
 
 def _flags(study: Study, found: FoundSignal) -> list[QCFlag]:
-    return [*_signal_flags(study, found), *qc_flags(study)]
+    return [*_map_flags(study), *_signal_flags(study, found), *qc_flags(study)]
 
 
 def _render(cell: ShownCell, found: FoundSignal, progress: Progress | None) -> str:
@@ -197,6 +199,22 @@ def _render(cell: ShownCell, found: FoundSignal, progress: Progress | None) -> s
 
 def _any(pictures: list[dict[str, Any]]) -> bool:
     return any(frame["labels"] for frame in pictures)
+
+
+EARLIER_MAPS = "earlier maps"  # name of a flag
+
+
+def _map_flags(study: Study) -> list[QCFlag]:
+    if not other_maps(study.provenance):
+        return []
+    return [
+        QCFlag(
+            EARLIER_MAPS,
+            f"the maps were made by {writer_of(study.provenance)}",
+            "Windows lie at other places than in studies made now.",
+            "Do not compare window by window with those; run cytodisk movie again where you must.",
+        )
+    ]
 
 
 def _signal_flags(study: Study, found: FoundSignal) -> list[QCFlag]:

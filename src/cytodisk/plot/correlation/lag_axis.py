@@ -74,8 +74,15 @@ def rows_of_cell(table: Any, cell: int, columns: set[str], name: str) -> pd.Data
     return rows
 
 
+_PARTS = ("edge", "cell", "membrane", "nucleus", "cytoplasm")
+
+
 def sides(signal: str, with_: str, *, upright: bool = False) -> str:
-    """What the sides of a lag axis mean: `with_` comes first at negative lags, `signal` at positive ones."""
+    """What the sides of a lag axis mean: `with_` comes first at negative lags, `signal` at positive ones.
+
+    A channel that is called as a part of the cell is named as a channel: "edge first" would mean the edge.
+    """
+    signal, with_ = (f"channel {name}" if name.lower() in _PARTS else name for name in (signal, with_))
     if upright:
         return f"↓ {with_} first  ·  ↑ {signal} first"
     return f"← {with_} first  ·  {signal} first →"

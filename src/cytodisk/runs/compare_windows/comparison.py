@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,7 +13,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cytodisk.errors import ReadError
+from cytodisk.errors import EarlierVersionWarning, ReadError
 from cytodisk.runs.compare_windows.compare_columns import (
     BY_LAYER,
     BY_METHOD,
@@ -24,7 +25,7 @@ from cytodisk.runs.compare_windows.compare_columns import (
 from cytodisk.runs.compare_windows.compare_summaries import layer_summary, method_summary, movie_summary
 from cytodisk.scale import Scale
 from cytodisk.store.csv_tables import write_csv
-from cytodisk.store.provenance_file import read_complete
+from cytodisk.store.provenance_file import other_maps, read_complete
 from cytodisk.store.study import CONSISTENCY
 from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_kind import CELLS, MAPS
@@ -161,6 +162,11 @@ def open_comparison(path: str | os.PathLike[str]) -> Comparison:
     ReadError
         The folder holds no complete comparison.
 
+    Warns
+    -----
+    EarlierVersionWarning
+        Its maps are of another version.
+
     See Also
     --------
     run_compare_windows : Writes the comparison.
@@ -180,6 +186,8 @@ def open_comparison(path: str | os.PathLike[str]) -> Comparison:
     """
     folder = Path(path)
     provenance = read_complete(folder, "comparison", "movie comparison")
+    if words := other_maps(provenance):
+        warnings.warn(f"comparison {folder}: {words}", EarlierVersionWarning, stacklevel=2)
     return Comparison(folder, read_table(folder / CELLS), read_table(folder / "layers.parquet"), provenance)
 
 

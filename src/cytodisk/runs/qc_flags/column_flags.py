@@ -94,7 +94,13 @@ def without_map(study: Study) -> Iterator[QCFlag]:
         if len(rows):
             words = _WITHOUT_MAP.get(status, ("The frame has no numbers.", "Read the reason."))
             places = places_of(rows, lambda row: str(row["reason"]))
-            yield QCFlag(f"{status} frames", f"{frames_of(study, len(rows))} {status}", *words, places)
+            what = frames_of(study, len(rows)) if (rows["label"] != 0).any() else _images(len(rows))
+            yield QCFlag(f"{status} frames", f"{what} {status}", *words, places)
+
+
+def _images(number: int) -> str:
+    """Rows of a map without a cell, each a file or one of its images."""
+    return counted(number, "file or image", "files or images")
 
 
 def said(column: pd.Series[Any], _: Scale) -> pd.Series[bool]:

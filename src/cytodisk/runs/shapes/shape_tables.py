@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -13,11 +14,12 @@ import pandas as pd
 from cytodisk.analysis.shape.complexity import complexity_score, why_unscored
 from cytodisk.analysis.shape.features import FEATURES, GROUPS, SCALE_FREE, feature_table
 from cytodisk.analysis.shape.score_parameters import ScoreParameters
+from cytodisk.errors import EarlierVersionWarning
 from cytodisk.files import replacing
 from cytodisk.scale import Scale
 from cytodisk.store.columns_file import write_columns_file
 from cytodisk.store.csv_tables import write_csv
-from cytodisk.store.provenance_file import read_complete
+from cytodisk.store.provenance_file import other_maps, read_complete, writer_of
 from cytodisk.store.study_folder import StudyFolder
 from cytodisk.store.study_kind import CELLS, StudyKind
 from cytodisk.store.tables import (
@@ -152,6 +154,11 @@ def open_shapes(path: str | os.PathLike[str]) -> pd.DataFrame:
     ReadError
         The folder holds no complete run of `cytodisk shapes`.
 
+    Warns
+    -----
+    EarlierVersionWarning
+        Some features come from maps of another version.
+
     See Also
     --------
     run_shapes : Writes the table.
@@ -168,7 +175,14 @@ def open_shapes(path: str | os.PathLike[str]) -> pd.DataFrame:
     (['ok', 'ok', 'ok'], 'px²')
     """
     folder = Path(path)
-    read_complete(folder, SHAPE_STUDY.run)
+    provenance = read_complete(folder, SHAPE_STUDY.run)
+    if other_maps(provenance):
+        warnings.warn(
+            f"shapes {folder}: features of distortion were measured on maps by {writer_of(provenance)}. Do "
+            "not compare them, or the complexity, with those of tables made now.",
+            EarlierVersionWarning,
+            stacklevel=2,
+        )
     table = read_table(folder / SHAPES)
     table.attrs["scale_free"] = list(SCALE_FREE)
     table.attrs["description"] = {feature.name: feature.description for feature in FEATURES}

@@ -1,0 +1,26 @@
+"""Help in a narrow window: no flag is cut."""
+
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+
+from cytodisk.cli import app
+
+COMMANDS = sorted(app.commands)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_flags_are_whole_at_80_columns(command: str) -> None:
+    told = subprocess.run(
+        [sys.executable, "-m", "cytodisk", command, "--help"],
+        env=os.environ | {"COLUMNS": "80"},
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    flags = [flag for option in app.commands[command].loaded.params for flag in option.opts if "--" in flag]
+    assert set(flags) <= set(re.findall(r"--[a-z0-9-]+(?=[ ,\n])", told))
+    assert max(map(len, told.splitlines())) <= 80
