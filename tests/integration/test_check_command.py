@@ -20,7 +20,7 @@ def test_many_good_frames_take_few_lines(run: Run, tmp_path: Path) -> None:
     assert code == 0
     assert len(said.splitlines()) < 8
     assert "masks: a stack of masks, TYX (300, 30, 30) uint8" in said
-    assert "masks: axes TYX by its metadata" in said
+    assert "axes TYX by its metadata" in said
     assert "pixel size: 0.5 µm" in said
     assert "300 frames: 300 usable (0 with QC flags), 0 not usable, 0 on the image border" in said
     assert "median area 400 px², 100 µm² (from 400 to 400 px²), as a circle of 11.3 µm across" in said
