@@ -11,6 +11,7 @@ import pytest
 
 from cytodisk.errors import ReadError
 from cytodisk.images.contents import contents
+from cytodisk.images.formats.microscope import czi_file
 from cytodisk.images.frame_file import FileChoice
 from cytodisk.images.frames import open_frames
 
@@ -133,7 +134,9 @@ def test_a_z_stack_needs_a_slice_or_a_projection(tmp_path: Path, plane: np.ndarr
     np.testing.assert_allclose(mean.frame(0)[0], plane + 3.5)
 
 
-def test_scenes_are_listed_and_tiles_put_together(tmp_path: Path, plane: np.ndarray) -> None:
+def test_scenes_are_listed_and_tiles_put_together(
+    tmp_path: Path, plane: np.ndarray, monkeypatch: pytest.MonkeyPatch
+) -> None:
     left, right = Tile(plane, "S0 M0 X-10 Y4"), Tile(plane + 1, "S0 M1 X15 Y4")
     small = Tile(plane[::2, ::2].copy(), "S0 X-10 Y4", shrunk=2)
     path = write_czi(tmp_path / "a.czi", [right, left, small, Tile(plane + 2, "S3 X900")])
@@ -145,6 +148,13 @@ def test_scenes_are_listed_and_tiles_put_together(tmp_path: Path, plane: np.ndar
     whole = open_frames(path, choice=FileChoice(scene="0")).frame(0)[0]
     np.testing.assert_array_equal(whole[:, :25], plane[:, :25])
     np.testing.assert_array_equal(whole[:, 25:], plane + 1)  # the later tile lies on top
+    assert open_frames(path, choice=FileChoice(scene="0")).stored.by_piece(0) is None
+    monkeypatch.setattr(czi_file, "WHOLE_BYTES", 0)
+    assert open_frames(path, choice=FileChoice(scene="3")).stored.by_piece(0) is None
+    cut, together = open_frames(path, choice=FileChoice(scene="0")).stored.by_piece(0) or pytest.fail("tiles")
+    assert together == 20
+    np.testing.assert_array_equal(cut(slice(3, 9), slice(20, 40))[0], whole[3:9, 20:40])
+    np.testing.assert_array_equal(cut(slice(0, 20), slice(40, 55))[0], whole[:, 40:])
     np.testing.assert_array_equal(open_frames(path, choice=FileChoice(scene="3")).frame(0)[0], plane + 2)
 
 

@@ -25,6 +25,10 @@ from cytodisk.scale import Scale
 _KNOWN_AXES = {"S", "T", "C", "Z", "Y", "X", "M"}
 _AXIS_WORDS = {"H": "phases", "I": "directions of light", "V": "views", "R": "rotations", "B": "blocks"}
 _COLOURS = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha")}
+WHOLE_BYTES = 2**29
+"""A mosaic up to this size is put together as a whole."""
+
+_ALL = slice(None)
 _MOST_TIMES = 100  # as much as its pixels fill, a file may claim, for what was left out while recording
 _DAYS = (29_000, 90_000)  # days since 1900 of the years 1979 to 2146: some files give times as dates
 
@@ -67,16 +71,26 @@ class CziPlanes:
         area, samples = contents.areas[self.scene], contents.samples
         with self.path.open("rb") as opened:
 
-            def plane(frame: int, channel: int, z: int) -> np.ndarray[Any, Any]:
+            def plane(
+                frame: int, channel: int, z: int, rows: slice = _ALL, columns: slice = _ALL, /
+            ) -> np.ndarray[Any, Any]:
                 key = frame, channel // samples, z
                 if key not in tiles:
                     raise ReadError(
                         f"{self.path} has no pixels of frame {key[0]}, channel {key[1]}, slice {key[2]}: "
                         "the recording was stopped, or the file is damaged"
                     )
-                return _put_together(tiles[key], area, opened, channel % samples)
+                shown = _part_of(area[0], rows), _part_of(area[1], columns)
+                return _put_together(tiles[key], shown, opened, channel % samples)
 
             yield plane
+
+    def rows_together(self) -> int | None:
+        """How many rows lie in a tile of a large mosaic; None for others, as a cut decodes whole tiles."""
+        contents = _contents(self.path)
+        tiles, area = next(iter(contents.tiles[self.scene].values())), contents.areas[self.scene]
+        size = math.prod(extent.stop - extent.start for extent in area) * tiles[0].dtype.itemsize
+        return min(tile.size("Y") for tile in tiles) if len(tiles) > 1 and size > WHOLE_BYTES else None
 
 
 @dataclass(frozen=True)
@@ -205,16 +219,25 @@ def _by_plane(blocks: list[Block]) -> dict[tuple[int, int, int], list[Block]]:
 def _put_together(
     tiles: list[Block], area: tuple[slice, slice], opened: Any, sample: int
 ) -> np.ndarray[Any, Any]:
+    """Rows and columns of a plane out of its tiles; those without a tile are 0."""
     rows, columns = area
     shape = rows.stop - rows.start, columns.stop - columns.start
-    if len(tiles) == 1 and (tiles[0].size("Y"), tiles[0].size("X")) == shape:
-        return block_pixels(tiles[0], opened)[..., sample]
     image = np.zeros(shape, np.result_type(*{tile.dtype for tile in tiles}))
     for tile in tiles:
-        top, left = tile.start("Y") - rows.start, tile.start("X") - columns.start
-        pixels = block_pixels(tile, opened)[..., sample]
-        image[top : top + pixels.shape[0], left : left + pixels.shape[1]] = pixels
+        above, left = tile.start("Y"), tile.start("X")
+        top, bottom = max(rows.start, above), min(rows.stop, above + tile.size("Y"))
+        first, last = max(columns.start, left), min(columns.stop, left + tile.size("X"))
+        if top < bottom and first < last:
+            pixels = block_pixels(tile, opened)[top - above : bottom - above, first - left : last - left]
+            inside = slice(top - rows.start, bottom - rows.start)
+            image[inside, first - columns.start : last - columns.start] = pixels[..., sample]
     return image
+
+
+def _part_of(whole: slice, part: slice) -> slice:
+    """A part of an extent, which is counted from its start."""
+    start, stop, _ = part.indices(whole.stop - whole.start)
+    return slice(whole.start + start, whole.start + stop)
 
 
 def _distance_um(metadata: ElementTree.Element, axis: str) -> float | None:

@@ -23,6 +23,7 @@ from cytodisk.scale import Scale
 _CHANNEL_AXES = {"C": "", "S": "", "λ": "nm emission", "Λ": "nm excitation"}
 _COLOURS = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha")}
 _AXIS_WORDS = {"N": "rotations", "M": "tiles", "Q": "positions", "H": "lifetimes"}
+_ALL = slice(None)
 _MOST_TIMES = 100  # as many bytes as are there, an image may claim
 _CHANNELS = "./Data/Image/ImageDescription/Channels/ChannelDescription"
 
@@ -64,14 +65,19 @@ class LifPlanes:
             axes = [axis for axis in image.dims if axis in _CHANNEL_AXES]
             steps = list(product(*(range(image.sizes[axis]) for axis in axes)))
 
-            def plane(frame: int, channel: int, z: int) -> np.ndarray[Any, Any]:
+            def plane(
+                frame: int, channel: int, z: int, rows: slice = _ALL, columns: slice = _ALL, /
+            ) -> np.ndarray[Any, Any]:
                 place = dict(zip(axes, steps[channel], strict=True)) | {"T": frame, "Z": z}
                 indices = {axis: number for axis, number in place.items() if axis in image.dims}
                 sample = indices.pop("S", 0)
                 pixels = np.asarray(image.frame(**indices))
-                return pixels[..., sample] if "S" in image.dims else pixels
+                return (pixels[..., sample] if "S" in image.dims else pixels)[rows, columns]
 
             yield plane
+
+    def rows_together(self) -> None:
+        """A plane is stored as one piece."""
 
 
 @contextmanager

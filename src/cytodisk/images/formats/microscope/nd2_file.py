@@ -21,6 +21,7 @@ from cytodisk.images.scenes import Scene, Taken
 from cytodisk.scale import Scale
 
 _AXES = {"TimeLoop": "T", "NETimeLoop": "T", "XYPosLoop": "P", "ZStackLoop": "Z"}
+_ALL = slice(None)
 _MOST_TIMES = 100  # as many images as are there, a file may claim, as recordings are stopped
 _COLOURS = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha")}
 _MOST_LOOKED_AT = (
@@ -72,7 +73,9 @@ class Nd2Planes:
             steps = _steps(opened)
             last: dict[int, np.ndarray[Any, Any]] = {}  # channels lie together: read them once
 
-            def plane(frame: int, channel: int, z: int) -> np.ndarray[Any, Any]:
+            def plane(
+                frame: int, channel: int, z: int, rows: slice = _ALL, columns: slice = _ALL, /
+            ) -> np.ndarray[Any, Any]:
                 place = {"T": frame, "P": self.scene, "Z": z}
                 number = sum(place[axis] * step for axis, step in steps.items())
                 if number not in last:
@@ -85,9 +88,12 @@ class Nd2Planes:
                             "stopped, or the file is damaged"
                         )
                     last[number] = pixels.reshape(-1, height, width, samples if opened.is_rgb else 1)
-                return np.array(last[number][channel // samples, ..., channel % samples])
+                return np.array(last[number][channel // samples, rows, columns, channel % samples])
 
             yield plane
+
+    def rows_together(self) -> None:
+        """A plane is stored as one piece."""
 
 
 @contextmanager

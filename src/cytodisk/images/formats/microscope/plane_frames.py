@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any, Protocol, TypeAlias
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -14,17 +15,36 @@ from cytodisk.errors import ReadError
 from cytodisk.images.formats.file_metadata import channel_names
 from cytodisk.images.formats.projection import projected
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile, StoredFrames
+from cytodisk.images.reading import reading
 from cytodisk.images.scenes import Scene, Taken, take
 
-Plane: TypeAlias = Callable[[int, int, int], np.ndarray[Any, Any]]
-"""Pixels (H, W) of a plane, by frame, channel and slice."""
+_ALL = slice(None)
+
+
+class Plane(Protocol):
+    """Gives pixels (H, W) of a plane, or of some rows and columns of it."""
+
+    def __call__(
+        self, frame: int, channel: int, z: int, rows: slice = _ALL, columns: slice = _ALL, /
+    ) -> np.ndarray[Any, Any]:
+        """Read them."""
+        ...
 
 
 class Planes(Protocol):
     """Planes of one scene of a file; can be sent to other processes, so it holds no open file."""
 
+    @property
+    def path(self) -> Path:
+        """The file, for messages."""
+        ...
+
     def opened(self) -> AbstractContextManager[Plane]:
         """Open the file, to read planes of it."""
+        ...
+
+    def rows_together(self) -> int | None:
+        """How many rows are stored together; None where a plane is one piece."""
         ...
 
 
@@ -57,8 +77,14 @@ class PlaneFrames:
             return projected(stacks, self.z)
 
     def by_piece(self, number: int) -> tuple[Cut, int] | None:
-        """None: a plane is read whole."""
-        return None
+        """How to cut pieces out of a frame; None for a projection, and where a plane is one piece."""
+        if isinstance(self.z, str) or (rows := self.planes.rows_together()) is None:
+            return None
+        return partial(self._cut, number, self.z), rows
+
+    def _cut(self, number: int, z: int, rows: slice, columns: slice) -> np.ndarray[Any, Any]:
+        with reading(self.planes.path, f"frame {number}"), self.planes.opened() as plane:
+            return np.stack([plane(number, channel, z, rows, columns) for channel in range(self.channels)])
 
 
 def scene_file(

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +15,12 @@ from cytodisk.errors import ReadError
 from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
 from cytodisk.images.formats.microscope.plane_frames import Plane, PlaneFrames, scene_file
 from cytodisk.images.formats.scale_units import is_no_unit, micrometres, seconds
-from cytodisk.images.frame_file import Cut, FileChoice, FrameFile
+from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.image_paths import is_zarr, parts_of
-from cytodisk.images.reading import reading
 from cytodisk.images.scenes import Scene, Taken, scene_number
 from cytodisk.scale import Scale
 
+_ALL = slice(None)
 _NOT_OPENED = Scene("", 1, 1, ("",), (1, 1), np.dtype(np.uint8))
 _FEW = 100_000  # pixels, and planes, that need no look
 _MOST_TIMES = 100  # as many pixels as an array has, its chunks may have
@@ -39,10 +38,10 @@ def open_zarr(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
         images = list(_images_in(file, names[0]))
         scenes = [image[0] for image in images if image is not None]
 
-    def stored(scene: Scene, taken: Taken) -> ZarrFrames:
+    def stored(scene: Scene, taken: Taken) -> PlaneFrames:
         image = images[taken.scene]
         assert image is not None  # it is the one that is taken
-        return ZarrFrames(image[1], len(scene.channels), scene.slices, taken.z)
+        return PlaneFrames(image[1], len(scene.channels), scene.slices, taken.z)
 
     return scene_file(file, scenes, choice, stored)
 
@@ -72,51 +71,20 @@ class ZarrPlanes:
     @contextmanager
     def opened(self) -> Iterator[Plane]:
         """Open the array, to read planes of it."""
-        everything = slice(None)
         array = _array(self.path, self.array)
-        yield lambda frame, channel, z: self.cut(array, (frame, channel, z), everything, everything)
 
-    def cut(
-        self, array: Any, plane: tuple[int, int, int], rows: slice, columns: slice
-    ) -> np.ndarray[Any, Any]:
-        """Some rows and columns of a plane, by frame, channel and slice."""
-        places: dict[str, Any] = dict(zip("TCZ", plane, strict=True)) | {"Y": rows, "X": columns}
-        piece = np.asarray(array[tuple(places.get(axis, 0) for axis in self.axes)])
-        return piece if self.axes.index("Y") < self.axes.index("X") else piece.T
+        def plane(
+            frame: int, channel: int, z: int, rows: slice = _ALL, columns: slice = _ALL, /
+        ) -> np.ndarray[Any, Any]:
+            places: dict[str, Any] = {"T": frame, "C": channel, "Z": z, "Y": rows, "X": columns}
+            piece = np.asarray(array[tuple(places.get(axis, 0) for axis in self.axes)])
+            return piece if self.axes.index("Y") < self.axes.index("X") else piece.T
 
+        yield plane
 
-@dataclass(frozen=True)
-class ZarrFrames:
-    """Frames of one image of an OME-Zarr folder.
-
-    Attributes
-    ----------
-    planes : ZarrPlanes
-    channels, slices, z
-        As those of `PlaneFrames`.
-    """
-
-    planes: ZarrPlanes
-    channels: int
-    slices: int
-    z: int | str
-
-    def read(self, number: int) -> np.ndarray[Any, Any]:
-        """Pixels of a frame, shape (C, H, W)."""
-        return PlaneFrames(self.planes, self.channels, self.slices, self.z).read(number)
-
-    def by_piece(self, number: int) -> tuple[Cut, int] | None:
-        """How to cut pieces out of a frame, chunk by chunk; None for a projection."""
-        if isinstance(self.z, str):
-            return None
-        array = _array(self.planes.path, self.planes.array)
-        return partial(self._cut, number, self.z), int(array.chunks[self.planes.axes.index("Y")])
-
-    def _cut(self, number: int, z: int, rows: slice, columns: slice) -> np.ndarray[Any, Any]:
-        with reading(self.planes.path, f"frame {number}"):
-            array = _array(self.planes.path, self.planes.array)
-            planes = [(number, channel, z) for channel in range(self.channels)]
-            return np.stack([self.planes.cut(array, plane, rows, columns) for plane in planes])
+    def rows_together(self) -> int:
+        """How many rows lie in a chunk."""
+        return int(_array(self.path, self.array).chunks[self.axes.index("Y")])
 
 
 def _array(file: Path, name: str) -> Any:
