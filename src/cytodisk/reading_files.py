@@ -34,11 +34,11 @@ def reading_file(path: str | os.PathLike[str], what: str, remedy: str) -> Iterat
         yield
     except CytodiskError:
         raise
-    except FileNotFoundError as error:
-        raise ReadError(f"{path} does not exist: {remedy}") from error
     except MemoryError as error:
         raise ReadError(f"{path} is not {what}: it asks for more memory than there is: {remedy}") from error
     except Exception as error:
+        if isinstance(error, FileNotFoundError) and not os.path.lexists(path):
+            raise ReadError(f"{path} does not exist: {remedy}") from error
         raise ReadError(f"{path} is not {what} ({words_of(error)}): {remedy}") from error
 
 

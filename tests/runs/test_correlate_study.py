@@ -201,7 +201,7 @@ def test_events_and_averages_stand_beside(study: cd.Study) -> None:
         ({"cells": [2]}, "has no cell 2"),
         ({"rule": "best"}, "rule must be one of nearest, largest, got 'best'"),
         ({"null": "shuffle"}, "null must be one of phase, shift, got 'shuffle'"),
-        ({"surrogates": -1}, "surrogates must be a whole number of at least 0, got -1"),
+        ({"surrogates": -1}, "surrogates must be a whole number from 0 to 100000, got -1"),
         ({"lag": 3}, "no parameter 'lag'"),
         ({"detrend": "spline"}, "detrend must be one of none, linear, median, got 'spline'"),
     ],
@@ -257,10 +257,10 @@ def test_names_that_no_file_can_have(tmp_path: Path) -> None:
 def test_a_damaged_correlation_says_so(study: cd.Study) -> None:
     found = correlate_study(study, "edge", max_lag=3, surrogates=0)
     (found.path / "windows.parquet").unlink()
-    with pytest.raises(ReadError, match="is damaged, correlate again"):
+    with pytest.raises(ReadError, match="run cytodisk correlate again"):
         _ = study.correlation("edge").windows
     (found.path / "settings.json").write_text("{", encoding="utf-8")
-    with pytest.raises(ReadError, match="no correlation of edge with velocity"):
+    with pytest.raises(ReadError, match="settings\\.json is not the settings of a correlation"):
         study.correlation("edge")
     assert json.loads((correlate_study(study, "edge", surrogates=0).path / "settings.json").read_text())
 
@@ -303,7 +303,7 @@ def test_some_frames_and_sectors(study: cd.Study) -> None:
         ({"name": 5}, "name must be a text, got 5"),
         ({"name": "n" * 300}, "name must be a text of at most 60 letters"),
         ({"surrogates": 5}, "surrogates must be 0, or at least 19"),
-        ({"max_lag": "x"}, "max_lag must be a whole number of at least 0, got 'x'"),
+        ({"max_lag": "x"}, "max_lag must be a whole number from 0 to 1000000, got 'x'"),
     ],
 )
 def test_parts_that_are_not_there(study: cd.Study, settings: dict, message: str) -> None:
@@ -338,7 +338,7 @@ def test_a_cut_off_table_says_so(study: cd.Study) -> None:
     found = correlate_study(study, "edge", max_lag=3, surrogates=0)
     table = found.path / "layers.parquet"
     table.write_bytes(table.read_bytes()[:100])
-    with pytest.raises(ReadError, match="is damaged, correlate again"):
+    with pytest.raises(ReadError, match="run cytodisk correlate again"):
         _ = study.correlation("edge").layers
     correlate_study(study, "edge", max_lag=3, surrogates=0)
 

@@ -410,10 +410,10 @@ def test_open_study_says_why_not(tmp_path: Path) -> None:
         cd.open_study(tmp_path / "half")
     finished(tmp_path / "out")
     (tmp_path / "out" / "cells.parquet").write_bytes(b"PAR1 damaged")
-    with pytest.raises(ReadError, match="is damaged: "):
+    with pytest.raises(ReadError, match=r"is not a table that cytodisk wrote|does not exist"):
         cd.open_study(tmp_path / "out")
     (tmp_path / "out" / "cells.parquet").unlink()
-    with pytest.raises(ReadError, match="is damaged: "):
+    with pytest.raises(ReadError, match=r"is not a table that cytodisk wrote|does not exist"):
         cd.open_study(tmp_path / "out")
     (tmp_path / "out" / "provenance.json").write_bytes(b"\xff\xfe{")
     with pytest.raises(ReadError, match="is no study"):

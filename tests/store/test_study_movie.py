@@ -134,10 +134,14 @@ def test_a_table_that_is_gone_or_damaged(masks: Path, tmp_path: Path, name: str)
         open_movie(masks, None, MovieParameters(layers=1, sectors=2)), tmp_path / "out"
     )
     (study.path / name).write_bytes(b"PAR1 damaged")
-    with pytest.raises(ReadError, match=r"study .*out is damaged: "):
+    with pytest.raises(
+        ReadError, match=r"out.*\.parquet (is not a table that cytodisk wrote|does not exist)"
+    ):
         cd.open_study(study.path)
     (study.path / name).unlink()
-    with pytest.raises(ReadError, match=r"study .*out is damaged: "):
+    with pytest.raises(
+        ReadError, match=r"out.*\.parquet (is not a table that cytodisk wrote|does not exist)"
+    ):
         cd.open_study(study.path)
 
 

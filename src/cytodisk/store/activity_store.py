@@ -10,30 +10,21 @@ import shutil
 import zipfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from cytodisk.analysis.activity import GEOMETRY, STATISTICS, with_places
+from cytodisk.analysis.activity import GEOMETRY, STATISTICS
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.files import replacing
 from cytodisk.scale import Scale
+from cytodisk.store.activity_reading import EDGE_VARIABLES, read_activity
 from cytodisk.windows.polar_windows import PolarGrid
 
 _FRAMES_PER_CHUNK = 64
 _ZARR: dict[str, Any] = {"zarr_format": 2, "consolidated": False}  # format 3 has no strings yet
-EDGE_VARIABLES = (
-    "velocity",
-    "velocity_cell_frame",
-    "velocity_fastest",
-    "velocity_error",
-    "protruded_area",
-    "retracted_area",
-    "edge_length",
-)
 
 
 class ActivityStore:
@@ -191,20 +182,10 @@ def open_activity(path: Path, cell: int) -> xr.Dataset:
         It is not there or damaged.
     """
     folder = path.with_suffix("")
-    try:
-        store = folder if folder.is_dir() and not path.exists() else _opened(path, path.stat().st_mtime_ns)
-        found: xr.Dataset = xr.open_zarr(store, group=group_name(cell), chunks=None, **_ZARR)
-    except (OSError, KeyError, ValueError, zipfile.BadZipFile) as error:
-        raise ReadError(f"{path} has no activity of cell {cell}: {error}") from error
-    return with_places(found.set_xindex("frame"))
-
-
-@lru_cache(maxsize=1)
-def _opened(path: Path, _changed: int) -> Any:
-    """A packed store; it stays open for the next cell, as going through the names in it takes time."""
-    from zarr.storage import ZipStore
-
-    return ZipStore(path, mode="r")
+    place = folder if folder.is_dir() and not path.exists() else path
+    if not place.exists():
+        raise ReadError(f"{path} has no activity of cell {cell}: it does not exist")
+    return read_activity(place, group_name(cell), _ZARR)
 
 
 def _pack(folder: Path, target: Path) -> None:

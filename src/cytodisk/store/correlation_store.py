@@ -14,17 +14,23 @@ from urllib.parse import quote
 
 import pandas as pd
 import pyarrow as pa
+import pyarrow.parquet as pq
 
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.files import flush, make_folder, temporary_name
+from cytodisk.reading_files import checked, json_of, reading_file, text_of
 from cytodisk.store.columns_file import write_columns
 from cytodisk.store.csv_tables import parquet_to_csv
+from cytodisk.store.json_shapes import correlation_settings
 from cytodisk.store.provenance_file import read_provenance
-from cytodisk.store.tables import Columns, read_table, write_table
+from cytodisk.store.table_file import read_checked
+from cytodisk.store.tables import Column, Columns, write_table
 from cytodisk.store.written_files import recorded, writing_files
 
 CORRELATION = "correlation"
 SETTINGS = "settings.json"
+TABLES = "tables"  # in the settings: names and types of the columns of each table
+_REMEDY = "remove the folder that it stands in, and run cytodisk correlate again"
 _LONGEST_NAME, _MARK = 70, 12  # characters: three such names make one of a folder, which has up to 255
 
 
@@ -101,10 +107,9 @@ class Correlation:
         return self._table(name) if (self.path / f"{name}.parquet").exists() else None
 
     def _table(self, name: str) -> pd.DataFrame:
-        try:
-            return read_table(self.path / f"{name}.parquet")
-        except (OSError, pa.ArrowException) as error:
-            raise ReadError(f"{self.path} is damaged, correlate again: {error}") from error
+        told = self.settings.get(TABLES, {}).get(name, {})
+        columns = tuple(Column(column, pa.type_for_alias(kind), "", "") for column, kind in told.items())
+        return read_checked(self.path / f"{name}.parquet", columns, remedy=_REMEDY, finite=False)
 
 
 def correlation_path(study: Path, signal: str, with_: str, name: str = "") -> Path:
@@ -149,8 +154,7 @@ def write_correlation(
         The folder cannot be written.
     """
     target = correlation_path(study, signal, with_, name)
-    content = {"signal": signal, "with": with_, "name": name} | settings
-    text = json.dumps(content, indent=2, ensure_ascii=False)
+    content = {"signal": signal, "with": with_, "name": name} | settings | {TABLES: {}}
     temporary = target.with_name(temporary_name())
     place = f"{CORRELATION}/{target.name}"
     try:
@@ -158,6 +162,7 @@ def write_correlation(
         for table_name, table in tables.items():
             file = temporary / f"{table_name}.parquet"
             write_table(table, file)
+            content[TABLES][table_name] = {one.name: str(one.type) for one in pq.read_schema(file)}
             if csv:
                 parquet_to_csv(file, file.with_suffix(".csv"))
         told = {
@@ -165,6 +170,7 @@ def write_correlation(
             for table_name, table in tables.items()
         }
         write_columns(temporary, told, read_provenance(study) or {})
+        text = json.dumps(content, indent=2, ensure_ascii=False)
         (temporary / SETTINGS).write_text(text + "\n", encoding="utf-8")
         flush(temporary.iterdir())
         there = [name for name in recorded(read_provenance(study) or {}) if name.startswith(f"{place}/")]
@@ -240,11 +246,13 @@ def titled(signal: str, with_: str, name: str = "") -> str:
 
 
 def _settings(path: Path) -> dict[str, Any] | None:
-    try:
-        found = json.loads((path / SETTINGS).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError):
+    file = path / SETTINGS
+    if not file.exists():
         return None
-    return found if isinstance(found, dict) and {"signal", "with"} <= set(found) else None
+    with reading_file(file, "the settings of a correlation", _REMEDY):
+        found: dict[str, Any] = json_of(text_of(file))
+        checked(found, correlation_settings, str(file), _REMEDY)
+    return found
 
 
 def _quoted(name: str) -> str:

@@ -10,9 +10,12 @@ from cytodisk.checks import is_path
 from cytodisk.disk.mapping_parameters import MAPS_VERSION
 from cytodisk.errors import ReadError
 from cytodisk.files import replacing
+from cytodisk.reading_files import checked, json_of, text_of
+from cytodisk.store.json_shapes import provenance_fields
 
 PROVENANCE = "provenance.json"
 MAPS = "maps version"
+_REMEDY = "take it from a copy of the study, or pass another folder and run the command again"
 _EARLIER_MAPS = "its maps are of an earlier version, with another mesh and relaxation"
 FORMAT = 3
 """Of the tables and files of a study: 1 had no list of files, and other names of columns; the list of 2 has
@@ -22,19 +25,37 @@ _READABLE = (2, FORMAT)
 
 def read_provenance(folder: Path) -> dict[str, Any] | None:
     """What a folder says of its run; None if it holds no study."""
+    path = folder / PROVENANCE
     try:
-        return parse_provenance((folder / PROVENANCE).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError):
+        return parse_provenance(text_of(path), str(path))
+    except ReadError:
+        raise
+    except (OSError, ValueError):
         return None
 
 
-def parse_provenance(text: str) -> dict[str, Any] | None:
-    """The content of a provenance file; None if it is none."""
+def parse_provenance(text: str, place: str = PROVENANCE) -> dict[str, Any] | None:
+    """The content of a provenance file; None if it is none.
+
+    Parameters
+    ----------
+    text : str
+    place : str
+        Name of the file, for messages.
+
+    Raises
+    ------
+    ReadError
+        It is one of which a field is not as a run writes it.
+    """
     try:
-        found = json.loads(text)
-    except json.JSONDecodeError:
+        found = json_of(text)
+    except ValueError:
         return None
-    return found if isinstance(found, dict) and "fingerprint" in found else None
+    if not isinstance(found, dict) or "fingerprint" not in found:
+        return None
+    checked(found, provenance_fields, place, _REMEDY)
+    return found
 
 
 def read_complete(folder: Path, *runs: str) -> dict[str, Any]:
@@ -89,7 +110,8 @@ def other_version(provenance: dict[str, Any], *, to_read: bool = False) -> str:
 
 def maps_version(provenance: dict[str, Any]) -> int:
     """Version of the maps of a run, see `MAPS_VERSION`; version 1 did not write it down."""
-    return int(provenance.get("fingerprint", {}).get(MAPS, 1))
+    found = provenance.get("fingerprint", {}).get(MAPS, 1)
+    return found if isinstance(found, int) else 0
 
 
 def writer_of(provenance: dict[str, Any]) -> str:

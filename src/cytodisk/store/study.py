@@ -10,8 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
-import pyarrow as pa
-import pyarrow.parquet as pq
 import xarray as xr
 
 from cytodisk.disk.disk_map import DiskMap, load_map
@@ -24,7 +22,9 @@ from cytodisk.store.correlation_store import Correlation, list_correlations, rea
 from cytodisk.store.provenance_file import other_maps, read_complete
 from cytodisk.store.study_folder import part_key
 from cytodisk.store.study_kind import ACTIVITY, CELLS, MAPS
-from cytodisk.store.tables import read_table
+from cytodisk.store.table_file import REMEDY, opened_table, read_cells, read_checked, units_in
+from cytodisk.store.tables import CONSISTENCY_COLUMNS, EDGE_COLUMNS, Columns
+from cytodisk.store.window_columns import WINDOW_COLUMNS
 
 WINDOWS, EDGE, CONSISTENCY = "windows.parquet", "edge.parquet", "consistency.parquet"
 
@@ -77,17 +77,17 @@ class Study:
     @cached_property
     def windows(self) -> pd.DataFrame:
         """One row a cell, frame, channel, layer and sector; units in `attrs["units"]`."""
-        return read_table(self.path / WINDOWS)
+        return self._table(WINDOWS, WINDOW_COLUMNS, "layer", "sector")
 
     @cached_property
     def edge(self) -> pd.DataFrame:
         """For a movie, one row a cell, frame and sector: edge velocity, areas won and lost."""
-        return self._movie_table(EDGE)
+        return self._movie_table(EDGE, EDGE_COLUMNS, "sector")
 
     @cached_property
     def consistency(self) -> pd.DataFrame:
         """For a movie, one row a cell, frame, channel and layer: the paper's measures."""
-        return self._movie_table(CONSISTENCY)
+        return self._movie_table(CONSISTENCY, CONSISTENCY_COLUMNS, "layer")
 
     @property
     def correlations(self) -> list[tuple[str, ...]]:
@@ -118,10 +118,13 @@ class Study:
         """Whether the run was that of a movie."""
         return self.provenance.get("run") == "movie"
 
-    def _movie_table(self, name: str) -> pd.DataFrame:
+    def _movie_table(self, name: str, columns: Columns, *block: str) -> pd.DataFrame:
         if not self.is_movie:
             raise ReadError(f"study {self.path} is not that of a movie: it has no {name}")
-        return read_table(self.path / name)
+        return self._table(name, columns, *block)
+
+    def _table(self, name: str, columns: Columns, *block: str) -> pd.DataFrame:
+        return read_checked(self.path / name, columns, units=units_in(self.provenance), block=block)
 
     def map(self, cell: int, frame: int | None = None) -> DiskMap:
         """Read the map of one cell, in one frame of a movie.
@@ -177,8 +180,11 @@ class Study:
         ReadError
             The study is not a movie's, or has no such cell.
         """
-        self._rows_of(cell)
-        return open_activity(self.path / ACTIVITY, cell)
+        rows = self._rows_of(cell)
+        found = open_activity(self.path / ACTIVITY, cell)
+        if found["frame"].values.tolist() != sorted(rows["frame"]):
+            raise ReadError(f"{self.path / ACTIVITY}: cell {cell} has other frames than in {CELLS}: {REMEDY}")
+        return found
 
     def movie(self, cell: int = 0) -> DiskMovie:
         """Maps of one cell through time, each read from disk when asked for.
@@ -274,12 +280,10 @@ def open_study(path: str | os.PathLike[str]) -> Study:
     folder = Path(path)
     provenance = read_complete(folder, "map", "movie")
     names = (CELLS, WINDOWS, EDGE, CONSISTENCY) if provenance["run"] == "movie" else (CELLS, WINDOWS)
-    try:
-        for name in names:
-            pq.read_schema(folder / name)
-        study = Study(folder, read_table(folder / CELLS), provenance)
-    except (OSError, pa.ArrowException) as error:
-        raise ReadError(f"study {folder} is damaged: {error}") from error
+    for name in names:
+        with opened_table(folder / name):  # its head alone
+            pass
+    study = Study(folder, read_cells(folder, provenance), provenance)
     if words := other_maps(provenance):
         warnings.warn(f"study {folder}: {words}", EarlierVersionWarning, stacklevel=2)
     return study

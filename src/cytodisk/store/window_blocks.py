@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pandas as pd
-import pyarrow.parquet as pq
 
 from cytodisk.store.merging import ROWS_AT_ONCE
 from cytodisk.store.study import WINDOWS, Study
+from cytodisk.store.table_file import opened_table
 
 
 def has_signal(study: Study) -> bool:
     """Whether the table of windows holds means of a signal."""
-    return "mean" in (study.windows if _is_read(study) else pq.read_schema(study.path / WINDOWS).names)
+    if _is_read(study):
+        return "mean" in study.windows
+    with opened_table(study.path / WINDOWS) as file:
+        return "mean" in file.schema_arrow.names
 
 
 def window_blocks(study: Study, *columns: str) -> Iterator[pd.DataFrame]:
@@ -32,7 +35,7 @@ def window_blocks(study: Study, *columns: str) -> Iterator[pd.DataFrame]:
     if _is_read(study):
         yield study.windows[list(columns)]
         return
-    with pq.ParquetFile(study.path / WINDOWS) as file:
+    with opened_table(study.path / WINDOWS) as file:
         for block in file.iter_batches(batch_size=ROWS_AT_ONCE, columns=list(columns)):
             yield block.to_pandas()
 

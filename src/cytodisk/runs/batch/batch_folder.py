@@ -64,7 +64,7 @@ def make_room(
         The folder holds something else, or the results of another batch (`OtherRunError`); or files are in
         the way, or would be removed, that are not the batch's.
     """
-    there = parse_provenance(store.read_text(PROVENANCE) or "null")
+    there = parse_provenance(store.read_text(PROVENANCE) or "null", f"{target}/{PROVENANCE}")
     if there is None and all(name.startswith(".") for name in store.names("")):
         return {}
     if there is not None and there.get("run") != "batch":
@@ -106,7 +106,7 @@ def wants_csv(store: Store, target: str, asked: bool, resume: bool) -> bool:
     StudyError
         A file that no batch wrote stands in the place of a table.
     """
-    there = parse_provenance(store.read_text(PROVENANCE) or "null") or {}
+    there = parse_provenance(store.read_text(PROVENANCE) or "null", f"{target}/{PROVENANCE}") or {}
     ours = {*_FILES, *recorded(there)}
     if ours >= {*_CSV}:
         return asked or resume

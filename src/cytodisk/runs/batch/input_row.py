@@ -8,10 +8,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from cytodisk.errors import StudyError
+from cytodisk.errors import ReadError, StudyError
 from cytodisk.images.image_paths import is_pattern, is_zarr, parts_of
 from cytodisk.images.mask_names import files_of
+from cytodisk.parameter_words import short_words
+from cytodisk.reading_files import checked, json_of
 from cytodisk.runs.batch.batch_input import BatchInput
+from cytodisk.store.json_shapes import input_row
 from cytodisk.store.targets import Store
 
 ROWS, STUDIES = "rows", "inputs"
@@ -99,12 +102,15 @@ def read_row(store: Store, name: str) -> InputRow | None:
     text = store.read_text(row_key(name))
     if text is None:
         return None
+    place, remedy = f"row {row_key(name)}", "remove it, and its input is done anew"
     try:
-        return InputRow(**json.loads(text))
-    except (TypeError, json.JSONDecodeError) as error:
-        raise StudyError(
-            f"row {row_key(name)} is damaged ({error}): remove it, and its input is done anew"
-        ) from error
+        row = InputRow(**checked(json_of(text), input_row, place, remedy))
+    except (ReadError, ValueError) as error:
+        words = str(error) if isinstance(error, ReadError) else f"{place} is damaged ({error}): {remedy}"
+        raise StudyError(words) from error
+    if row.input != name:
+        raise StudyError(f"{place} is that of input {short_words(row.input)}: {remedy}")
+    return row
 
 
 def files_mark(item: BatchInput) -> str:

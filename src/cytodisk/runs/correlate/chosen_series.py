@@ -6,7 +6,7 @@ import xarray as xr
 
 from cytodisk.errors import ParameterError
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
-from cytodisk.store.activity_store import EDGE_VARIABLES
+from cytodisk.store.activity_reading import EDGE_VARIABLES
 
 
 def chosen_series(activity: xr.Dataset, settings: CorrelateParameters) -> xr.Dataset:

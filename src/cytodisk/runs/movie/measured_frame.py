@@ -23,7 +23,7 @@ from cytodisk.motion.tracking_parameters import InteriorParameters
 from cytodisk.runs.frame_rows import FramePlace, measure_windows
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
-from cytodisk.store.activity_store import EDGE_VARIABLES
+from cytodisk.store.activity_reading import EDGE_VARIABLES
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
 

@@ -16,7 +16,8 @@ from cytodisk.motion.velocity_error import velocity_error
 from cytodisk.runs.frame_rows import FramePlace
 from cytodisk.runs.movie.measured_frame import edge_columns
 from cytodisk.scale import Scale
-from cytodisk.store.activity_store import EDGE_VARIABLES, ActivityStore
+from cytodisk.store.activity_reading import EDGE_VARIABLES
+from cytodisk.store.activity_store import ActivityStore
 from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_kind import ACTIVITY
 from cytodisk.windows.polar_windows import PolarGrid
