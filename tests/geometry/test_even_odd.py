@@ -69,3 +69,10 @@ def test_polygons_that_share_sides_through_pixel_centres_share_no_pixel() -> Non
     parts = [pixels_inside([np.array([corners[i], corners[(i + 1) % 4], centre])], *WINDOW) for i in range(4)]
     assert_array_equal(np.sum(parts, axis=0), pixels_inside([corners], *WINDOW).astype(int))
     assert np.sum(parts) == 20 * 20
+
+
+def test_a_large_window_is_drawn_strip_after_strip(monkeypatch: pytest.MonkeyPatch) -> None:
+    ring = star(3, 12)
+    whole_window = pixels_inside([ring], *WINDOW)
+    monkeypatch.setattr("cytodisk.geometry.even_odd._PIXELS_AT_ONCE", 130)
+    assert_array_equal(pixels_inside([ring], *WINDOW), whole_window)

@@ -8,6 +8,8 @@ import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray
 
+_PIXELS_AT_ONCE = 2**22  # so that memory does not grow with the window
+
 
 def pixels_inside(rings_yx: Sequence[FloatArray], rows: slice, columns: slice) -> BoolArray:
     """Pixels of a window whose centres lie inside closed polygons, by the even-odd rule.
@@ -31,6 +33,10 @@ def pixels_inside(rings_yx: Sequence[FloatArray], rows: slice, columns: slice) -
     In each row, every side that crosses it turns all pixels to its right from outside to inside or back.
     """
     height, width = rows.stop - rows.start, columns.stop - columns.start
+    if height * width > _PIXELS_AT_ONCE and height > 1:
+        step = max(1, _PIXELS_AT_ONCE // width)
+        strips = [slice(top, min(top + step, rows.stop)) for top in range(rows.start, rows.stop, step)]
+        return np.concatenate([pixels_inside(rings_yx, strip, columns) for strip in strips])
     begins = np.concatenate(list(rings_yx))
     ends = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings_yx])
     down = (begins[:, 0] <= ends[:, 0])[:, None]

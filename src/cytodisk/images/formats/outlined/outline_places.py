@@ -20,7 +20,7 @@ from cytodisk.images.formats.outlined.outlines import (
 )
 from cytodisk.images.frame_file import FileChoice
 
-_MOST_PIXELS = 2**30  # of an image whose size is guessed, or told by the file alone
+_PIXELS_AT_LEAST, _PIXELS_AN_OUTLINE = 2**27, 2**20  # larger images, for so few outlines, are an error
 _FRAMES_AT_LEAST, _FRAMES_AN_OUTLINE = 1000, 100  # more frames than that, for so few outlines, are an error
 
 
@@ -144,11 +144,11 @@ def _image_shape(
         if not outlines:
             raise ReadError(f"{path} holds no outline")
         corner = np.max([one.box[1] for one in outlines], axis=0)
-        if max(corner) > _MOST_PIXELS:
+        if max(corner) > _PIXELS_AT_LEAST:
             raise ReadError(f"{path} has outlines as far as {max(corner):g} px: {_SIZE_REMEDY}")
         height, width = np.maximum(np.floor(corner).astype(int) + 2, 1).tolist()
         shape, evidence = (height, width), "size of the image unknown: a box around the outlines"
-    if shape[0] * shape[1] > _MOST_PIXELS:
+    if shape[0] * shape[1] > max(_PIXELS_AT_LEAST, _PIXELS_AN_OUTLINE * len(outlines)):
         raise ReadError(f"{path}: an image of {shape[0]} × {shape[1]} pixels: {_SIZE_REMEDY}")
     return shape, evidence
 
