@@ -14,7 +14,7 @@ from cytodisk.arrays import AnyArray, FloatArray, IntArray
 from cytodisk.errors import ReadError
 from cytodisk.images.reading import reading
 from cytodisk.images.spots.spots import PIXEL, Spots
-from cytodisk.images.spots.units import frame_interval_s, length_unit, micrometres
+from cytodisk.images.spots.track_units import frame_interval_s, length_unit, micrometres
 from cytodisk.scale import Scale
 
 _METADATA = "geff"

@@ -14,8 +14,8 @@ from cytodisk.geometry.even_odd import pixels_inside
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.spots.spots import PIXEL, Spots, branches
+from cytodisk.images.spots.track_units import micrometres
 from cytodisk.images.spots.track_words import branch_words, first_words, number_words
-from cytodisk.images.spots.units import micrometres
 from cytodisk.scale import Scale
 
 _LEAST_MATCHED = 0.5  # share of spots that lie in a label, below which the files do not belong together

@@ -13,7 +13,7 @@ import numpy as np
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError
 from cytodisk.images.spots.spots import Spots
-from cytodisk.images.spots.units import frame_interval_s, length_unit, pixel_size_um
+from cytodisk.images.spots.track_units import frame_interval_s, length_unit, pixel_size_um
 from cytodisk.scale import Scale
 
 _SESSION, _TRACKS = "TrackMate", "Tracks"  # kinds of files, by their root

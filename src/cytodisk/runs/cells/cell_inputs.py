@@ -17,11 +17,10 @@ from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frames import open_frames
 from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 from cytodisk.images.mask_files import MaskSource, open_mask_files
-from cytodisk.images.outline_sizes import sized_like
 from cytodisk.images.signal_files import common_name, pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
-from cytodisk.runs.cells.outline_sources import with_sizes
+from cytodisk.runs.cells.outline_sources import sized_like, with_sizes
 from cytodisk.runs.channel_names import channels_words, check_signal_given, name_channels, with_common_name
 from cytodisk.runs.file_notes import file_notes
 from cytodisk.runs.file_scales import agreed

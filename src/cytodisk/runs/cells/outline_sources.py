@@ -1,4 +1,4 @@
-"""Files of outlines in a folder: the size of each one's image."""
+"""Files of outlines do not say how large their image is: the image that goes with them does."""
 
 from __future__ import annotations
 
@@ -9,10 +9,55 @@ from pathlib import Path
 
 from cytodisk.errors import MaskError, ReadError, as_data
 from cytodisk.images.file_parameters import KindParameters
+from cytodisk.images.frame_file import FileChoice
+from cytodisk.images.frames import open_frames
 from cytodisk.images.mask_files import MaskSource, open_mask_files
-from cytodisk.images.outline_sizes import is_of_outlines, sized_like
+from cytodisk.images.movie_signals import open_movie_images
 from cytodisk.images.signal_files import pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
+
+_OUTLINES = (".roi", ".zip", ".geojson", ".json", ".xml")
+
+
+def is_of_outlines(path: str | os.PathLike[str]) -> bool:
+    """Whether a file's name says that it holds outlines."""
+    return Path(path).suffix.lower() in _OUTLINES
+
+
+def sized_like(
+    choice: FileChoice,
+    masks: str | os.PathLike[str],
+    signal: str | os.PathLike[str] | None,
+    signal_choice: FileChoice,
+    unnamed: str,
+) -> FileChoice:
+    """A choice with the size of the signal, if the masks are outlines.
+
+    Parameters
+    ----------
+    choice : FileChoice
+        Of the file of masks.
+    masks, signal : path-like
+    signal_choice : FileChoice
+    unnamed : {"T", "C"}
+        What an axis without a name in the signal's file is.
+
+    Returns
+    -------
+    FileChoice
+
+    Raises
+    ------
+    ReadError
+        The signal cannot be read.
+    """
+    if signal is None or not is_of_outlines(masks):
+        return choice
+    if unnamed == "T":
+        image = open_movie_images(Path(signal), signal_choice)
+    else:
+        image = open_frames(signal, unnamed=unnamed, choice=signal_choice)
+    return replace(choice, like=(image.n_frames, *image.image_shape))
 
 
 def with_sizes(

@@ -13,7 +13,6 @@ from cytodisk.images.file_parameters import Kind, KindParameters
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.movie_files import open_movie_masks
 from cytodisk.images.movie_signals import open_movie_signal
-from cytodisk.images.outline_sizes import sized_like
 from cytodisk.images.spots.label_spots import LabelTracks, label_tracks
 from cytodisk.images.spots.track_files import read_tracks
 from cytodisk.images.tracks import CellTrack, list_tracks
@@ -21,6 +20,7 @@ from cytodisk.images.what_it_is import MaskLook, look_at, refuse_several
 from cytodisk.motion.still_interior import fade_in_px
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.cells.cell_inputs import check_signal
+from cytodisk.runs.cells.outline_sources import sized_like
 from cytodisk.runs.channel_names import channels_words, check_signal_given, name_channels, with_common_name
 from cytodisk.runs.depth_layers import check_depths, depth_words
 from cytodisk.runs.file_notes import file_notes

@@ -13,7 +13,7 @@ import numpy as np
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError
 from cytodisk.images.formats.outlined.outline_file import open_outlines
-from cytodisk.images.formats.outlined.outlines import Outline, OutlineSet
+from cytodisk.images.formats.outlined.outline_set import Outline, OutlineSet
 from cytodisk.images.frame_file import FileChoice, FrameFile
 
 _CORNER = 0.5  # QuPath counts from the corner of the first pixel

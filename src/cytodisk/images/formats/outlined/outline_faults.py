@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from cytodisk.geometry.even_odd import pixels_inside
-from cytodisk.images.formats.outlined.outlines import Outline, PlacedOutlines, names_of
+from cytodisk.images.formats.outlined.outline_set import Outline, PlacedOutlines, names_of
 
 _LEAST_OVERLAP_PX2 = 1.0  # below, sides of neighbours that were smoothed
 _WITHIN = 0.99  # share of an outline that lies in others, from which on nothing is left of it

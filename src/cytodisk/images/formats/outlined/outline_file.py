@@ -14,7 +14,7 @@ from cytodisk.errors import ReadError
 from cytodisk.geometry.even_odd import pixels_inside
 from cytodisk.images.formats.outlined.outline_faults import doubts_about
 from cytodisk.images.formats.outlined.outline_places import place_outlines
-from cytodisk.images.formats.outlined.outlines import OutlineSet, PlacedOutlines
+from cytodisk.images.formats.outlined.outline_set import OutlineSet, PlacedOutlines
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile
 from cytodisk.images.reading import reading
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from cytodisk.errors import ReadError
-from cytodisk.images.formats.outlined.outlines import (
+from cytodisk.images.formats.outlined.outline_set import (
     FrameOutlines,
     Outline,
     OutlineSet,

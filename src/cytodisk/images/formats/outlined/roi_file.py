@@ -15,7 +15,7 @@ import numpy as np
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import MissingPartError, ReadError
 from cytodisk.images.formats.outlined.outline_file import open_outlines
-from cytodisk.images.formats.outlined.outlines import Outline, OutlineSet
+from cytodisk.images.formats.outlined.outline_set import Outline, OutlineSet
 from cytodisk.images.frame_file import FileChoice, FrameFile
 
 _LARGEST_ROI, _LARGEST_SET = 2**26, 2**30  # bytes

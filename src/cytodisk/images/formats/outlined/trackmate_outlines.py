@@ -8,7 +8,7 @@ import numpy as np
 
 from cytodisk.errors import ReadError
 from cytodisk.images.formats.outlined.outline_file import open_outlines
-from cytodisk.images.formats.outlined.outlines import Outline, OutlineSet
+from cytodisk.images.formats.outlined.outline_set import Outline, OutlineSet
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.spots.spots import PIXEL, branches
 from cytodisk.images.spots.track_words import branch_words
