@@ -28,7 +28,9 @@ def measure(masks: Path, work: Path, workers: int) -> dict[str, Comparison]:
     for name, (layers, sectors, methods) in GRIDS.items():
         print(f"osteosarcoma, {name}: {', '.join(methods)}", flush=True)
         out = work / f"cells_{name}"
-        parameters = CompareWindowsParameters(layers=layers, sectors=sectors, methods=methods)
+        parameters = CompareWindowsParameters(
+            layers=layers, sectors=sectors, methods=methods, fragments="largest"
+        )
         found[name] = run_compare_windows(
             masks, out, parameters=parameters, workers=workers, **shapes.again(out)
         )

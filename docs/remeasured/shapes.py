@@ -20,8 +20,9 @@ SEEDS = (1, 2, 3, 4, 5)
 def measure(masks: Path, work: Path, workers: int) -> dict[str, Any]:
     """The table of shapes, its folder, and the scores by other seeds."""
     out = work / "shapes"
-    inputs = open_shape_inputs(masks, ShapeParameters())
-    table = shape_study(inputs, out, ShapeParameters(), workers=workers, **again(out))
+    parameters = ShapeParameters(fragments="largest")  # as in the published figures
+    inputs = open_shape_inputs(masks, parameters)
+    table = shape_study(inputs, out, parameters, workers=workers, **again(out))
     (out / "figures").mkdir(exist_ok=True)
     write_shape_figures(out / "figures", table, cleaned_masks(inputs, cells_to_draw(table)))
     scores = [cd.complexity_score(table, seed=seed) for seed in SEEDS]
