@@ -73,6 +73,35 @@ def test_a_tiff_that_claims_more_than_it_holds(tmp_path: Path, compression: str 
         open_frames(path)
 
 
+@pytest.mark.parametrize("name", ["ImageWidth", "ImageLength"])
+def test_a_page_without_pixels(tmp_path: Path, name: str) -> None:
+    tifffile.imwrite(tmp_path / "a.tif", np.ones((8, 8), np.uint8), metadata=None)
+    with tifffile.TiffFile(tmp_path / "a.tif", mode="r+") as tiff:
+        tiff.pages[0].tags[name].overwrite(0)
+    with pytest.raises(ReadError, match=r"it is damaged; copy it again|holds no image"):
+        open_frames(tmp_path / "a.tif")
+
+
+@pytest.mark.parametrize("pages", [1, 3, 150])
+@pytest.mark.parametrize("bigtiff", [False, True])
+def test_pages_that_go_in_a_circle(tmp_path: Path, pages: int, bigtiff: bool) -> None:
+    path = tmp_path / "a.tif"
+    movie = np.ones((pages, 8, 8), np.uint8)
+    tifffile.imwrite(
+        path, movie, photometric="minisblack", metadata=None, bigtiff=bigtiff, compression="zlib"
+    )
+    with tifffile.TiffFile(path) as tiff:
+        first, last = tiff.pages[0].offset, tiff.pages[-1].offset
+        count = len(tiff.pages[-1].tags)
+    assert open_frames(path).n_frames == pages
+    content = bytearray(path.read_bytes())
+    end = last + (8 + 20 * count if bigtiff else 2 + 12 * count)
+    content[end : end + 4] = struct.pack("<I", first)
+    path.write_bytes(content)
+    with pytest.raises(ReadError, match="its pages go in a circle"):
+        open_frames(path)
+
+
 @pytest.mark.parametrize("codec", ["none", "packbits", "zlib", "lzw"])
 def test_what_compresses_best_is_not_refused(tmp_path: Path, codec: str) -> None:
     path = tmp_path / "a.tif"

@@ -38,12 +38,12 @@ def open_tiff(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
         says = tiff_says(file, tiff, found.image)
     with opened_tiff(file, found.plain) as tiff:
         series = tiff.series[found.number]
+        _check_claims(file, tiff, series)
         colour = series.keyframe.photometric == tifffile.PHOTOMETRIC.RGB
         said = found.axes.replace("S", "C") if colour else found.axes
         stored = stored_axes(file, said, found.shape, unnamed, choice)
         known, axes, shape = stored.known, stored.axes, stored.shape
         frames, gaps = _frames_there(found, series, axes, shape)
-        _check_claims(file, tiff, series)
         dtype = np.dtype(series.dtype)
         remarks: tuple[str, ...] = _LOSS if series.keyframe.compression in _LOSSY else ()
         photometric, bits = series.keyframe.photometric, series.keyframe.bitspersample
@@ -101,6 +101,8 @@ def _frames_there(
 def _check_claims(file: Path, tiff: tifffile.TiffFile, series: Any) -> None:
     """Compare what a series claims with the bytes that are stored, before anything is allocated."""
     page, dtype = series.keyframe, np.dtype(series.dtype)
+    if min(page.shape, default=0) < 1 or len(series.shape) < 2:
+        raise ReadError(f"{file} has pages of shape {page.shape}: it is damaged; copy it again")
     if series.dataoffset is not None and not series.is_multifile:
         check_claim(file, series.shape, dtype, tiff.filehandle.size - int(series.dataoffset))
         return

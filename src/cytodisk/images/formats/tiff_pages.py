@@ -15,6 +15,7 @@ from typing import Any, TypeAlias
 import tifffile
 
 from cytodisk.errors import ReadError
+from cytodisk.images.formats.tiff_chain import check_chain
 
 _CUT_SHORT = re.compile("invalid (page|value) offset")
 _FILE_WORDS = re.compile(r"<tifffile\.\w+ [^>]*> ?")
@@ -119,6 +120,7 @@ def whole_tiff(file: Path) -> Iterator[tuple[tifffile.TiffFile, list[str]]]:
 
     With it come the messages that tifffile logs meanwhile.
     """
+    check_chain(file)
     with caught_messages() as logged, tiff_opened(file) as tiff:
         pages = len(tiff.pages)
         lost = [message for message in logged if _CUT_SHORT.search(message)]
