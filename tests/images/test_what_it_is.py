@@ -190,7 +190,7 @@ def test_a_palette_of_greys_is_what_it_looks_like(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("layout", [{}, {"compression": "zlib"}, {"tile": (32, 32), "compression": "zlib"}])
 def test_where_0_is_white_one_bit_is_turned_round(tmp_path: Path, layout: dict[str, Any]) -> None:
-    tifffile.imwrite(tmp_path / "a.tif", ~cell(), photometric="miniswhite", **layout)
+    tifffile.imwrite(tmp_path / "a.tif", ~cell(), photometric="miniswhite", software="Fiji", **layout)
     shown = np.asarray(Image.open(tmp_path / "a.tif")) if not layout else cell()
     np.testing.assert_array_equal(shown, cell())  # as viewers show it
     file = open_frames(tmp_path / "a.tif")

@@ -46,9 +46,8 @@ def open_tiff(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
         frames, gaps = _frames_there(found, series, axes, shape)
         dtype = np.dtype(series.dtype)
         remarks: tuple[str, ...] = _LOSS if series.keyframe.compression in _LOSSY else ()
-        photometric, bits = series.keyframe.photometric, series.keyframe.bitspersample
-        remarks += (PALETTE,) if photometric == tifffile.PHOTOMETRIC.PALETTE else ()
-        black = photometric == tifffile.PHOTOMETRIC.MINISWHITE and bits == 1
+        remarks += (PALETTE,) if series.keyframe.photometric == tifffile.PHOTOMETRIC.PALETTE else ()
+        black = _is_black_on_white(series.keyframe)
     sizes = [frames if axis == "T" else size for axis, size in zip(known.letters, known.shape, strict=True)]
     opened = FrameFile(
         file,
@@ -65,6 +64,12 @@ def open_tiff(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
         (("scene",) if found.of > 1 else ()) + stored.offers,
     )
     return changed_file(opened, "inverted") if black else opened  # of one bit, 0 is white there
+
+
+def _is_black_on_white(page: Any) -> bool:
+    """Whether 1 means black on pages of one bit; tifffile says so of all that it writes, and means True."""
+    meant = page.photometric == tifffile.PHOTOMETRIC.MINISWHITE and page.bitspersample == 1
+    return bool(meant and page.software != "tifffile.py")
 
 
 def _frames_there(
