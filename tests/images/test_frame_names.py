@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from cytodisk.errors import ReadError
-from cytodisk.images.frame_names import FrameNames, by_series, frame_names, series_of
+from cytodisk.images.sequences.frame_names import FrameNames, by_series, frame_names, series_of
 
 
 def named(folder: Path, *names: str) -> FrameNames:

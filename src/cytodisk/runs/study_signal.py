@@ -11,7 +11,7 @@ from cytodisk.errors import ReadError, SignalError
 from cytodisk.files import file_name
 from cytodisk.images.file_parameters import SignalFileParameters
 from cytodisk.images.frame_file import FrameFile
-from cytodisk.images.movie_signals import open_movie_images, reopened
+from cytodisk.images.sequences.movie_signals import open_movie_images, reopened
 from cytodisk.images.signal_files import FrameSource
 from cytodisk.runs.input_hashes import described
 from cytodisk.store.study import Study

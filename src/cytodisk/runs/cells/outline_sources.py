@@ -12,7 +12,7 @@ from cytodisk.images.file_parameters import KindParameters
 from cytodisk.images.frame_file import FileChoice
 from cytodisk.images.frames import open_frames
 from cytodisk.images.mask_files import MaskSource, open_mask_files
-from cytodisk.images.movie_signals import open_movie_images
+from cytodisk.images.sequences.movie_signals import open_movie_images
 from cytodisk.images.signal_files import pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
 

@@ -11,8 +11,8 @@ from cytodisk.errors import MaskError, ParameterError, SignalError
 from cytodisk.images.choice_use import check_choice
 from cytodisk.images.file_parameters import Kind, KindParameters
 from cytodisk.images.frame_file import FrameFile
-from cytodisk.images.movie_files import open_movie_masks
-from cytodisk.images.movie_signals import open_movie_signal
+from cytodisk.images.sequences.movie_files import open_movie_masks
+from cytodisk.images.sequences.movie_signals import open_movie_signal
 from cytodisk.images.spots.label_spots import LabelTracks, label_tracks
 from cytodisk.images.spots.track_files import read_tracks
 from cytodisk.images.tracks import CellTrack, list_tracks
