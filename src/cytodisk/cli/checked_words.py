@@ -46,6 +46,7 @@ class Checked:
         self._without: Counter[str] = Counter()
         self._kinds: dict[tuple[str, str], _Kind] = {}
         self._areas: list[int] = []
+        self._by_label: dict[tuple[str, int], list[tuple[int, int]]] = {}  # frame and area
         self._looked_at = self._unusable = self._flagged = self._on_border = 0
 
     @property
@@ -84,6 +85,7 @@ class Checked:
         if report is None:
             return
         self._areas.append(report.area_px)
+        self._by_label.setdefault((found.source, found.label), []).append((found.frame, report.area_px))
         self._flagged += bool(report.qc_flags)
         self._on_border += report.touches_border
         for flag in report.qc_flags:
@@ -116,6 +118,8 @@ class Checked:
     def summary(self) -> Iterator[str]:
         """Lines on what is wrong, the gravest first, then on all masks together."""
         for wanted in (_NOT_USABLE, _WITHOUT, _FLAG, _NOTE):
+            if wanted == _NOTE:
+                yield from self._jumps()
             found = [kind for (what, _), kind in self._kinds.items() if what == wanted]
             for kind in sorted(found, key=lambda kind: -len(kind.places)):
                 more = ", and the like" if kind.differs else ""
@@ -132,7 +136,23 @@ class Checked:
             diameters = 2.0 * np.sqrt(np.asarray(self._areas, dtype=np.float64) / np.pi)
             yield from scale_words(self._inputs.scale.length(diameters), self._inputs.scale)
         if self._is_stack:
-            yield "Masks were looked at one by one. Jumps between frames: cytodisk movie finds them."
+            yield "Masks were looked at one by one. Other faults between frames: cytodisk movie finds them."
+
+    def _jumps(self) -> Iterator[str]:
+        """Lines on masks of one cell through time whose area leaps."""
+        from cytodisk.runs.qc_flags.area_jumps import area_steps, follows_one_cell, leaps, without_returns
+
+        for (_, label), rows in self._by_label.items():
+            frame, area = np.array(rows).T
+            step = area_steps(frame, area.astype(np.float64))
+            found = without_returns(leaps(step), step) if follows_one_cell(step) else []
+            if not found:
+                continue
+            words = [f"frames {frame[k]} and {frame[k + 1]}: {np.expm1(step[k]):+.0%}" for k in found]
+            more = f"; … {len(words) - _MOST_PLACES} more" if len(words) > _MOST_PLACES else ""
+            of_label = "" if self._is_stack else f" of label {label}"
+            listed = "; ".join(words[:_MOST_PLACES]).replace("-", "−")
+            yield f"{_FLAG} area jumps: the mask's area{of_label} jumps ({listed}{more})"
 
     def _places(self, places: Sequence[str | int]) -> str:
         what = "frame" if self._is_stack else "cell"

@@ -1,9 +1,20 @@
 """Leaps of a mask's area, put into series that waver, grow or pulse by themselves."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+import tifffile
 
-from cytodisk.runs.qc_flags.area_jumps import flickers, leaps, without_returns
+import cytodisk as cd
+from cytodisk.cli import app
+from cytodisk.runs.qc_flags.area_jumps import (
+    area_steps,
+    flickers,
+    follows_one_cell,
+    leaps,
+    without_returns,
+)
 
 FRAMES = 60
 AT = [12, 25, 41]
@@ -114,3 +125,32 @@ def test_a_large_step_is_a_leap_in_a_restless_cell_too() -> None:
 )
 def test_two_or_three_frames(areas: tuple[float, ...], found: list[int]) -> None:
     assert leaps(np.diff(np.log(areas))) == found
+
+
+def test_masks_of_one_cell_are_told_from_a_collection_of_cells() -> None:
+    one = area_steps(np.arange(6), np.array([100.0, 101, 100, 190, 100, 102]))
+    assert follows_one_cell(one)
+    assert without_returns(leaps(one), one) == [2]
+    assert not follows_one_cell(area_steps(np.arange(6), np.array([100.0, 300, 80, 500, 120, 260])))
+    assert not follows_one_cell(area_steps(np.arange(3), np.array([100.0, 101, 190])))  # too few to tell
+    assert np.isnan(area_steps(np.array([0, 2]), np.ones(2))).all()
+
+
+def test_a_jump_is_told_by_map_and_check_as_by_movie(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    masks = np.zeros((6, 40, 60), dtype=np.uint8)
+    masks[:, 10:30, 10:30] = 1
+    masks[3, 10:30, 30:50] = 1  # a neighbour, merged for one frame
+    tifffile.imwrite(tmp_path / "a.tif", masks, metadata={"axes": "TYX"})
+    size = {"layers": 2, "sectors": 6}
+    for study in (
+        cd.run_map(tmp_path / "a.tif", tmp_path / "map", **size),
+        cd.run_movie(tmp_path / "a.tif", tmp_path / "movie", **size),
+    ):
+        (flag,) = (flag for flag in cd.qc_flags(study) if flag.name == "area jumps")
+        assert [(place.frame, place.other_frame, place.note) for place in flag.places] == [(3, 2, "+100%")]
+        named = study.cells["qc_flags"].str.contains("area jumps")
+        assert named.tolist() == [False, False, False, True, False, False]
+    app(["check", str(tmp_path / "a.tif")], standalone_mode=False)
+    assert "QC flag area jumps: the mask's area jumps (frames 2 and 3: +100%)" in capsys.readouterr().out

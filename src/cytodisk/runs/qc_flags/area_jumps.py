@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+import pandas as pd
 
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted, frames_of, mapped_rows
 from cytodisk.runs.qc_flags.remedy import without_frames
 from cytodisk.store.study import Study
@@ -29,26 +30,26 @@ _QUIET_SDS = 0.5244  # standard deviations that so many of a normal distribution
 
 
 def area_jumps(study: Study) -> Iterator[QCFlag]:
-    """Frames whose mask leaps."""
-    if not study.is_movie:
-        return
+    """Frames whose mask leaps: of a movie, or of a stack of masks that plainly is one."""
     places: list[Place] = []
     flickering: list[tuple[float, str]] = []
-    for cell, rows in mapped_rows(study).groupby("cell"):
-        frame, area = rows["frame"].to_numpy(), rows["area"].to_numpy(dtype=np.float64)
-        step = np.where(np.diff(frame) == 1, np.diff(np.log(area)), np.nan)
+    for rows in _series(study):
+        cell, frame = rows["cell"].to_numpy(), rows["frame"].to_numpy()
+        step = area_steps(frame, rows["area"].to_numpy(dtype=np.float64))
+        if not study.is_movie and not follows_one_cell(step):
+            continue
         found = leaps(step)
         if flickers(step):
             size = float(np.expm1(np.median(np.abs(step[found]))))
             steps = int(np.isfinite(step).sum())
             flickering.append(
-                (size, f"by ±{size:.0%} in {len(found)} of {counted(steps, 'step')} of cell {cell}")
+                (size, f"by ±{size:.0%} in {len(found)} of {counted(steps, 'step')} of cell {cell[0]}")
             )
         else:
             found = without_returns(found, step)
         places += [
             Place(
-                int(str(cell)),
+                int(cell[k + 1]),
                 int(frame[k + 1]),
                 f"{np.expm1(step[k]):+.0%}".replace("-", "−"),
                 None,
@@ -62,9 +63,37 @@ def area_jumps(study: Study) -> Iterator[QCFlag]:
             "area jumps",
             f"the mask's area jumps in {frames_of(study, len(places))}{flicker}",
             "Cells do not gain or lose so much at once: the mask did. Windows and velocity are wrong there.",
-            "Look at both masks, and correct the wrong one." + without_frames(study, places),
+            "Look at both masks, and correct the wrong one."
+            + (without_frames(study, places) if study.is_movie else ""),
             tuple(places),
         )
+
+
+def _series(study: Study) -> Iterator[pd.DataFrame]:
+    """Rows of one cell each; without tracking, of one label of a file."""
+    rows = mapped_rows(study)
+    if not study.is_movie and not {"source", "label"} <= set(rows):
+        return
+    for _, one in rows.groupby("cell" if study.is_movie else ["source", "label"]):
+        if not one["frame"].duplicated().any():
+            yield one
+
+
+def area_steps(frame: IntArray, area: FloatArray) -> FloatArray:
+    """Change of ln(area) from each frame to the next; NaN where a frame is missing, shape (T - 1,)."""
+    return np.where(np.diff(frame) == 1, np.diff(np.log(area)), np.nan)
+
+
+def follows_one_cell(step: FloatArray) -> bool:
+    """Whether masks that nobody calls a movie are of one cell through time: most steps of area are small.
+
+    Parameters
+    ----------
+    step : ndarray of shape (T - 1,) and dtype float
+        Of `area_steps`.
+    """
+    known = np.abs(step[np.isfinite(step)])
+    return bool(known.size >= _FEW_STEPS and np.median(known) <= np.log1p(LARGEST_AREA_STEP))
 
 
 def leaps(step: FloatArray) -> list[int]:
