@@ -216,7 +216,7 @@ def test_faults_of_the_input_end_in_a_message(run: Run, masks: Path, signal: Pat
         ((short, "--signal", signal), "the masks have 4 frames: pass as many"),
         ((masks, "--tracker", "snake"), "--tracker must be one of matching, demons, got 'snake'"),
         ((masks, "--kind", "mask"), "--kind must be one of auto, stack, labels, got 'mask'"),
-        ((masks, "--workers", 0), "workers must be a whole number of at least 1, got 0"),
+        ((masks, "--workers", 0), "workers must be a whole number from 1 to 1024, got 0"),
         ((masks, "--sectors", 0), "--sectors must be a whole number from 1 to 100000, got 0"),
         ((masks, "--resume", "--overwrite"), "--resume and --overwrite exclude each other"),
         (("gone.tif", "--resume", "--overwrite"), "--resume and --overwrite exclude each other"),
