@@ -84,7 +84,13 @@ def parquet_to_csv(table: Path, path: Path) -> None:
         Is replaced when all is written.
     """
     with pq.ParquetFile(table) as source, replacing(path) as temporary, temporary.open("wb") as file:
-        _write(file, source.schema_arrow.names, source.iter_batches(_ROWS_AT_ONCE))
+        _write(file, source.schema_arrow.names, _blocks(source))
+
+
+def _blocks(source: Any) -> Iterator[Any]:
+    """The rows of a Parquet file; no group of rows is read before the last one is written."""
+    for group in range(source.num_row_groups):
+        yield from source.read_row_group(group, use_threads=False).to_batches(_ROWS_AT_ONCE)
 
 
 def _write(file: IO[bytes], names: Iterable[str], blocks: Iterable[Any]) -> None:
@@ -107,7 +113,9 @@ def _fields(column: Any) -> Any:
     """The values of a column as they stand in the file."""
     if pa.types.is_floating(column.type):
         known = pc.if_else(pc.is_nan(column), pa.scalar(None, column.type), column)
-        return pc.replace_substring_regex(known.cast(pa.string()), _WHOLE, r"\1.0")
+        text = known.cast(pa.string())
+        has_whole = pc.any(pc.equal(known, pc.floor(known))).as_py()
+        return pc.replace_substring_regex(text, _WHOLE, r"\1.0") if has_whole else text
     text = column.cast(pa.string())
     if pa.types.is_integer(column.type) or pa.types.is_boolean(column.type):
         return text
