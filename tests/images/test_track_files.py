@@ -231,6 +231,18 @@ def test_frames_of_a_geff_by_their_times(tmp_path: Path) -> None:
     assert "tracks stand on every 5th frame" in read_tracks(path).remarks[0]
 
 
+def test_a_geff_of_trackmate_has_other_names_for_its_axes(tmp_path: Path) -> None:
+    names = {"FRAME": "time", "POSITION_X": "space", "POSITION_Y": "space"}
+    axes = [{"name": name, "type": kind, "unit": "pixel"} for name, kind in names.items()]
+    hints = {"display_horizontal": "POSITION_X", "display_vertical": "POSITION_Y", "display_time": "FRAME"}
+    nodes = NODES | {"radius": [4.0] * 7, "TRACK_ID": [0, 0, 0, 0, 1, 1, 1]}
+    more = {"axes": axes, "display_hints": hints, "track_node_props": {"lineage": "TRACK_ID"}}
+    spots = read_tracks(write_geff(tmp_path / "a.geff", nodes, EDGES, **more))
+    assert (spots.frame.tolist(), spots.yx.T.tolist()) == (NODES["t"], [NODES["y"], NODES["x"]])
+    assert spots.radius.tolist() == [4.0] * 7
+    assert len(matched(spots, movie(), tmp_path).mothers) == 2
+
+
 def test_a_geff_within_a_group_is_found(tmp_path: Path) -> None:
     zarr.open_group(str(tmp_path / "a.zarr"), mode="w", zarr_format=2)
     write_geff(tmp_path / "a.zarr" / "tracks", NODES, EDGES)

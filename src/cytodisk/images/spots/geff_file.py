@@ -180,7 +180,8 @@ def _axes(path: Path, group: zarr.Group, about: Mapping[str, Any]) -> tuple[_Axi
     down = _named(space, hints.get("display_vertical"), "y", -2)
     across = _named(space, hints.get("display_horizontal"), "x", -1)
     others = [axis for axis in space if axis is not down and axis is not across]
-    return _axis(times[0]), _axis(down), _axis(across), [_axis(axis) for axis in others]
+    named = [_axis(group, *pair) for pair in ((times[0], "t"), (down, "y"), (across, "x"))]
+    return named[0], named[1], named[2], [_axis(group, axis, "z") for axis in others]
 
 
 def _named(space: list[dict[str, Any]], hint: Any, ending: str, place: int) -> dict[str, Any]:
@@ -191,14 +192,18 @@ def _named(space: list[dict[str, Any]], hint: Any, ending: str, place: int) -> d
     return ends[0] if len(ends) == 1 else space[place]
 
 
-def _axis(said: dict[str, Any]) -> _Axis:
+def _axis(group: zarr.Group, said: dict[str, Any], usual: str) -> _Axis:
+    """An axis; TrackMate writes its positions under the usual name, whatever it calls the axis."""
+    name = str(said["name"])
+    if f"nodes/props/{name}/values" not in group and f"nodes/props/{usual}/values" in group:
+        name = usual
     unit = str(said.get("unit") or "")
     scale = said.get("scale")
     factor = micrometres(length_unit(str(said.get("scaled_unit") or "")))
     known = None
     if isinstance(scale, int | float) and 0 < scale < np.inf and factor is not None:
         known = float(scale) * factor
-    return _Axis(str(said["name"]), unit if said.get("type") == "time" else length_unit(unit), known)
+    return _Axis(name, unit if said.get("type") == "time" else length_unit(unit), known)
 
 
 def _frames(path: Path, time: FloatArray, unit: str, interval_s: float | None) -> tuple[IntArray, str]:
@@ -248,7 +253,7 @@ def _labels(path: Path, group: zarr.Group, about: Mapping[str, Any], count: int)
 
 
 def _radius(path: Path, group: zarr.Group, about: Mapping[str, Any], count: int) -> FloatArray:
-    name = about.get("sphere")
+    name = about.get("sphere") or "radius"
     if not isinstance(name, str) or f"nodes/props/{name}/values" not in group:
         return np.full(count, np.nan)
     values = _array(path, group, f"nodes/props/{name}/values")
