@@ -219,6 +219,10 @@ def test_a_pattern_that_fits_nothing_says_so(tmp_path: Path) -> None:
     assert opened(tmp_path / "*" / "cell000[1-3].tif").n_frames == 3
     with pytest.raises(cd.errors.ReadError, match="no file fits the pattern"):
         opened(tmp_path / "m" / "mask*.tif")
+    bracketed = slices(tmp_path / "exp [1]", "cell", MASKS)
+    assert opened(bracketed / "cell*.tif").n_frames == opened(bracketed).n_frames == FRAMES
+    with pytest.raises(cd.errors.ReadError, match="does not exist"):
+        opened(bracketed / "mask.tif")
 
 
 BATCH = """

@@ -37,7 +37,9 @@ def is_folder_of_files(path: Path) -> bool:
 
 def is_pattern(path: Path) -> bool:
     """Whether a path stands for several files, as "frames/t*.tif"; a file of that very name comes first."""
-    return glob.has_magic(str(path)) and not os.path.lexists(path)
+    if os.path.lexists(path):
+        return False
+    return glob.has_magic(path.name if path.parent.is_dir() else str(path))
 
 
 def parts_of(image: Path) -> list[Path]:

@@ -68,7 +68,10 @@ def files_of(place: Path) -> list[Path]:
     """
     if not is_pattern(place):
         return visible_files(place)
-    found = [Path(name) for name in glob.glob(str(place), recursive=True)]  # noqa: PTH207  may be absolute
+    if place.parent.is_dir():  # whose own name may have brackets
+        found = [file for file in place.parent.glob(place.name) if not file.name.startswith(".")]
+    else:
+        found = [Path(name) for name in glob.glob(str(place), recursive=True)]  # noqa: PTH207  may be absolute
     files = [file for file in found if not is_folder_of_files(file)]
     if not files:
         raise ReadError(f"no file fits the pattern {place}: check the folder and the names")
