@@ -39,8 +39,8 @@ def refuse_changing_labels(file: FrameFile) -> None:
         share = changed / (same + changed)
         raise MaskError(
             f"{file.path} has labels that change from frame to frame ({example}; so it is for {share:.0%} of "
-            "the cells that were looked at): pass --link to give each cell one label through time, or "
-            "--no-link if they are right"
+            "the cells that were looked at): pass --link to give each cell one label through time, "
+            "or --tracks with a file of tracks, or --no-link if they are right"
         )
 
 

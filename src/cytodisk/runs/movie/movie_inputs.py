@@ -95,9 +95,8 @@ class MovieInputs:
                 f"({self.signal.axes}, {self.signal.dtype})"
             )
         if self.parameters.tracks is not None:
-            words["tracks"] = (
-                f"tracks of {len(self.tracks)} cells, {len(self.mothers)} of them born in the movie"
-            )
+            born = f", {len(self.mothers)} of them daughters of others" if self.mothers else ""
+            words["tracks"] = f"tracks of {len(self.tracks)} cells{born}"
         if self.grid.depth_um is not None:
             words["windows"] = depth_words(self.grid)
         for role, file in self._files.items():
