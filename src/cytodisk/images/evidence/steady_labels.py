@@ -7,6 +7,7 @@ import numpy as np
 from cytodisk.arrays import AnyArray
 from cytodisk.errors import MaskError, ReadError
 from cytodisk.images.frame_file import FrameFile
+from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 
 _PAIRS = 24  # of neighbouring frames that are looked at
 _PIXELS = 2**17  # of a frame that are looked at, spread over it
@@ -27,7 +28,7 @@ def refuse_changing_labels(file: FrameFile) -> None:
     example = ""
     for start in starts if file.n_frames > 1 else []:
         try:
-            before, after = (_thinned(file.frame(number)[0]) for number in (start, start + 1))
+            before, after = (_thinned(frame_pixels(file, number)) for number in (start, start + 1))
         except ReadError:  # whoever reads the frame for good tells of it
             continue
         for label, other in _in_place(before, after):
@@ -44,9 +45,10 @@ def refuse_changing_labels(file: FrameFile) -> None:
         )
 
 
-def _thinned(frame: AnyArray) -> AnyArray:
-    step = max(1, int(np.sqrt(frame.size / _PIXELS)))
-    return frame[::step, ::step]
+def _thinned(frame: FramePixels) -> AnyArray:
+    height, width = frame.image_shape
+    step = max(1, int(np.sqrt(height * width / _PIXELS)))
+    return np.concatenate([strip[-first % step :: step, ::step].copy() for first, strip in frame.strips()])
 
 
 def _in_place(before: AnyArray, after: AnyArray) -> list[tuple[int, int]]:
