@@ -345,4 +345,4 @@ def test_a_file_of_the_geff_library(tmp_path: Path) -> None:
 
 def test_files_of_tracks_do_not_slow_the_start() -> None:
     code = "import sys, cytodisk.images.spots.track_files; assert 'zarr' not in sys.modules"
-    subprocess.run([sys.executable, "-c", code], check=True)
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
