@@ -41,7 +41,7 @@ def test_a_folder_is_mapped_and_its_totals_are_given(run: Run, folder: Path, tmp
     assert_refused(result, "damaged files or frames of the input: 1; all others are in")
     said, error = result[1:]
     assert "masks: 6 files: 3 label images, 2 single masks, 1 unusable file" in said
-    assert "signal: 5 images with the channels red, green, blue" in said
+    assert "signal: 5 images with channels red, green, blue" in said
     assert "6 files, 12 cells: 12 mapped, one to one\n" in said
     assert "files or images without a cell: 2 empty, 1 damaged\n" in said
     assert "figures" not in said  # none were asked for

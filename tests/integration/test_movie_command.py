@@ -103,7 +103,7 @@ def test_quiet_says_nothing(run: Run, masks: Path, tmp_path: Path) -> None:
 
 def test_flags_reach_the_parameters(run: Run, masks: Path, tmp_path: Path) -> None:
     flags = ("--tension", 0.5, "--no-registration", "--spacing", "radius", "--nan", "omit", "--align", 30)
-    more = ("--inertia", 0.25, "--method", "harmonic", "--kind", "stack", "--tracker", "matching")
+    more = ("--inertia", 0.25, "--method", "harmonic", "--kind", "stack", "--no-link")
     assert run("movie", masks, "-o", tmp_path / "out", *GRID, *flags, *more)[0] == 0
     study = cd.open_study(tmp_path / "out")
     found = study.provenance["parameters"]
