@@ -22,4 +22,4 @@ def reading(path: Path, part: str) -> Iterator[None]:
         ) from error
     except Exception as error:
         words = " ".join(str(error).split()) or type(error).__name__  # on one line, for tables of reasons
-        raise ReadError(f"{path}: {part} cannot be read as an image ({words})") from error
+        raise ReadError(f"{path}: {part} cannot be read as an image ({words}); copy it again") from error
