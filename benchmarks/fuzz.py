@@ -161,6 +161,7 @@ class Worker:
         self._command = [sys.executable, __file__, "--files", str(files), "--seed", str(seed)]
         self._command += ["--kinds", ",".join(kinds), "--work"]
         self._process: subprocess.Popen[str] | None = None
+        self._errors: Any = None
 
     def outcome(self, number: int) -> Outcome:
         """What becomes of a mutant."""
@@ -181,13 +182,27 @@ class Worker:
 
     def close(self) -> None:
         """End the process."""
-        if self._process is not None:
-            self._process.kill()
-            self._process.wait()
-            self._process = None
+        if self._process is None:
+            return
+        self._process.kill()
+        self._process.wait()
+        self._reader.join()
+        for pipe in (self._process.stdin, self._process.stdout):
+            with suppress(BrokenPipeError):
+                if pipe is not None:
+                    pipe.close()
+        self._process = None
+
+    def forget(self) -> None:
+        """Close what the last process said."""
+        if self._errors is not None:
+            self._errors.close()
 
     def _ready(self) -> "subprocess.Popen[str]":
-        if self._process is None or self._process.poll() is not None:
+        if self._process is not None and self._process.poll() is not None:
+            self.close()
+        if self._process is None:
+            self.forget()
             self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115  as long as the process
             environment = os.environ | dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
             self._process = subprocess.Popen(
@@ -199,7 +214,8 @@ class Worker:
                 env=environment,
             )
             self._lines: SimpleQueue[str] = SimpleQueue()
-            Thread(target=_pass_on, args=(self._process.stdout, self._lines), daemon=True).start()
+            self._reader = Thread(target=_pass_on, args=(self._process.stdout, self._lines), daemon=True)
+            self._reader.start()
             if self._line(_READY_S).strip() != "ready":
                 raise RuntimeError(f"a worker does not start:\n{self._log()}")
         return self._process
@@ -211,8 +227,10 @@ class Worker:
             return ""
 
     def _log(self) -> str:
-        self._errors.seek(0)
-        return self._errors.read()[-4000:]
+        """What the last process said; its file is closed."""
+        with self._errors:
+            self._errors.seek(0)
+            return self._errors.read()[-4000:]
 
     def _kind_of(self, number: int) -> str:
         from fuzz_targets import target_of
@@ -254,6 +272,7 @@ def outcomes(
             found.put(error)
         finally:
             worker.close()
+            worker.forget()
 
     with ThreadPoolExecutor(workers) as threads:
         for _ in range(workers):

@@ -4,6 +4,7 @@ import io
 import json
 import shutil
 import zlib
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,8 @@ from cytodisk.runs.correlate.correlate_study import correlate_study
 
 STUDY, MAPPED, COMPARED = "movie_study", "map_study", "compared"
 IMAGES = "images"
+
+_write = partial(tifffile.imwrite, photometric="minisblack")
 
 
 def make_files(folder: Path) -> None:
@@ -36,9 +39,9 @@ def make_files(folder: Path) -> None:
     _write_tiffs(images, masks, counts, labels)
     _write_arrays(images, labels)
     _write_exports(images, labels)
-    tifffile.imwrite(folder / "masks.tif", masks, metadata={"axes": "TYX"})
-    tifffile.imwrite(folder / "signal.tif", counts, metadata={"axes": "TYX"})
-    tifffile.imwrite(folder / "labels.tif", labels, metadata={"axes": "YX"})
+    _write(folder / "masks.tif", masks, metadata={"axes": "TYX"})
+    _write(folder / "signal.tif", counts, metadata={"axes": "TYX"})
+    _write(folder / "labels.tif", labels, metadata={"axes": "YX"})
     _write_texts(folder)
     study = cd.run_movie(
         folder / "masks.tif",
@@ -62,23 +65,21 @@ def _write_tiffs(folder: Path, masks: np.ndarray, counts: np.ndarray, labels: np
     size = {"PhysicalSizeX": 0.1, "PhysicalSizeXUnit": "µm", "PhysicalSizeY": 0.1, "PhysicalSizeYUnit": "µm"}
     two = np.stack([counts[:3], counts[3:6]], axis=1)
     names = {"Channel": {"Name": ["Rac1", "RhoA"]}}
-    tifffile.imwrite(folder / "plain.tif", few, photometric="minisblack")
-    tifffile.imwrite(folder / "shaped.tif", few, metadata={"axes": "TYX"})
-    tifffile.imwrite(folder / "labels.tif", labels, compression="zlib", predictor=True)
-    tifffile.imwrite(folder / "tiled.tif", labels, tile=(32, 32), compression="lzw")
-    tifffile.imwrite(folder / "packed.tif", few[0], compression="packbits")
-    tifffile.imwrite(folder / "zstd.tif", counts[0], compression="zstd")
-    tifffile.imwrite(folder / "float.tif", counts[0].astype(np.float32))
-    tifffile.imwrite(folder / "big.tif", few, bigtiff=True, byteorder=">")
-    tifffile.imwrite(
-        folder / "movie.ome.tif", two, metadata={"axes": "TCYX", "TimeIncrement": 5.0, **size, **names}
-    )
+    _write(folder / "plain.tif", few)
+    _write(folder / "shaped.tif", few, metadata={"axes": "TYX"})
+    _write(folder / "labels.tif", labels, compression="zlib", predictor=True)
+    _write(folder / "tiled.tif", labels, tile=(32, 32), compression="lzw")
+    _write(folder / "packed.tif", few[0], compression="packbits")
+    _write(folder / "zstd.tif", counts[0], compression="zstd")
+    _write(folder / "float.tif", counts[0].astype(np.float32))
+    _write(folder / "big.tif", few, bigtiff=True, byteorder=">")
+    _write(folder / "movie.ome.tif", two, metadata={"axes": "TCYX", "TimeIncrement": 5.0, **size, **names})
     imagej = {"axes": "TCYX", "unit": "um", "finterval": 5.0}
-    tifffile.imwrite(folder / "imagej.tif", two, imagej=True, resolution=(10.0, 10.0), metadata=imagej)
+    _write(folder / "imagej.tif", two, imagej=True, resolution=(10.0, 10.0), metadata=imagej)
     tifffile.imwrite(folder / "rgb.tif", np.stack([few[0]] * 3, axis=-1), photometric="rgb")
     with tifffile.TiffWriter(folder / "pages.tif") as file:
         for page in few:
-            file.write(page, contiguous=False, compression="zlib")
+            file.write(page, contiguous=False, compression="zlib", photometric="minisblack")
 
 
 def _write_arrays(folder: Path, labels: np.ndarray) -> None:

@@ -183,7 +183,17 @@ def _read_arrays(archive: ArrayArchive) -> dict[str, Any]:
         raise archive.fault("boundary", f"has {len(boundary)} vertices around {len(triangles)} triangles")
     if not _runs_round_once(in_disk[boundary]):
         raise archive.fault("boundary", "does not run once around the disk")
+    if not _have_area(in_cell, triangles):
+        raise archive.fault("triangles", "have corners in one line in the cell")
     return {"vertices_yx": in_cell, "vertices_uv": in_disk, "triangles": triangles, "boundary": boundary}
+
+
+def _have_area(vertices_yx: FloatArray, triangles: IntArray) -> bool:
+    """Whether no triangle of the cell is a line, of which stretches would be infinite."""
+    y, x = vertices_yx.T
+    first, second, third = triangles.T
+    across = (y[second] - y[first]) * (x[third] - x[first]) - (x[second] - x[first]) * (y[third] - y[first])
+    return bool(across.all())
 
 
 def _runs_round_once(on_circle: FloatArray) -> bool:

@@ -109,7 +109,11 @@ def _opened(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
     suffix = ".zarr" if is_zarr(file) else image_kind(file) or file.suffix.lower()
     if suffix not in _OPENERS:
         raise ReadError(f"{file} is no image that can be read ({', '.join(_OPENERS)}): convert it to TIFF")
-    return _OPENERS[suffix](file, unnamed, choice)
+    found = _OPENERS[suffix](file, unnamed, choice)
+    if min(found.shape) < 1:
+        words = " × ".join(map(str, found.shape))
+        raise ReadError(f"{file} holds no pixels: its shape is {words} ({found.axes}); save it anew")
+    return found
 
 
 def read_image(

@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from cytodisk.disk.mapping_parameters import MAPS_VERSION
-from cytodisk.errors import EarlierVersionWarning, ParameterError
+from cytodisk.errors import CytodiskError, EarlierVersionWarning, ParameterError
 from cytodisk.files import replacing
 from cytodisk.number_words import comma_in_toml
 from cytodisk.parameters import Group, Parameters
+from cytodisk.reading_files import text_of
 from cytodisk.store.provenance_file import (
     MAPS,
     command_of,
@@ -67,10 +68,20 @@ def parameters_from(
         if one in found and other in found and path is not None and _of_study(path):
             found.pop(one)  # studies of earlier versions have both, of which the second counts
     shown = {name: shown for name, shown in (names or {}).items() if name in given}
+    if path is not None:
+        _check_alone({name: value for name, value in found.items() if name not in given}, path, of)
     chosen = of.called(found | given, shown)
     if path is not None and (words := _meant_otherwise(path, found, given)):
         warnings.warn(words, EarlierVersionWarning, stacklevel=2)
     return chosen
+
+
+def _check_alone(found: Mapping[str, Any], path: Path, of: type[Parameters]) -> None:
+    """What a file says and no flag overrules must be right by itself; the message names the file."""
+    try:
+        of.called(found, {})
+    except CytodiskError as error:
+        raise type(error)(f"parameters file {path}: {error}") from None
 
 
 def _meant_otherwise(path: Path, found: Mapping[str, Any], given: Mapping[str, Any]) -> str:
@@ -122,9 +133,9 @@ def _read(path: Path, of: type[Parameters]) -> dict[str, Any]:
     """Content of a file that has no other names than those of the parameters."""
     text = ""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = text_of(path)
         found = tomllib.loads(text)
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (OSError, ValueError, RecursionError) as error:  # numbers of thousands of digits, deep nesting
         if words := comma_in_toml(text):
             raise ParameterError(f"parameters file {path}: {words}") from error
         raise ParameterError(f"parameters file {path} cannot be read: {error}") from error

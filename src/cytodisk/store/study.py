@@ -19,7 +19,7 @@ from cytodisk.motion.frame_file import load_boundary
 from cytodisk.scale import Scale
 from cytodisk.store.activity_store import open_activity
 from cytodisk.store.correlation_store import Correlation, list_correlations, read_correlation
-from cytodisk.store.provenance_file import other_maps, read_complete
+from cytodisk.store.provenance_file import PROVENANCE, other_maps, read_complete
 from cytodisk.store.study_folder import part_key
 from cytodisk.store.study_kind import ACTIVITY, CELLS, MAPS
 from cytodisk.store.table_file import REMEDY, opened_table, read_cells, read_checked, units_in
@@ -280,6 +280,8 @@ def open_study(path: str | os.PathLike[str]) -> Study:
     folder = Path(path)
     provenance = read_complete(folder, "map", "movie")
     names = (CELLS, WINDOWS, EDGE, CONSISTENCY) if provenance["run"] == "movie" else (CELLS, WINDOWS)
+    if provenance["run"] == "movie" and "image_shape" not in provenance:
+        raise ReadError(f"{folder / PROVENANCE}: image_shape is missing: {REMEDY}")
     for name in names:
         with opened_table(folder / name):  # its head alone
             pass

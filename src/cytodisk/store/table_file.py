@@ -179,6 +179,8 @@ def read_cells(folder: Path, provenance: dict[str, Any]) -> pd.DataFrame:
     """The table of cells of a study; a movie has each cell once in a frame."""
     optional = (SOURCE, *TRACK_COLUMNS, *WINDOW_SIZE_COLUMNS)
     cells = read_checked(folder / CELLS, CELL_COLUMNS, optional, units=units_in(provenance))
+    if not len(cells):
+        raise ReadError(f"{folder / CELLS} has no rows: {REMEDY}")
     twice = cells.duplicated(["cell", "frame"])
     if twice.any():
         row = cells[twice].iloc[0]

@@ -14,6 +14,7 @@ from typing import Any
 
 from cytodisk.errors import ParameterError
 from cytodisk.number_words import comma_advice, comma_in_toml, without_comma
+from cytodisk.reading_files import text_of
 from cytodisk.runs.batch.batch_faults import Faults
 from cytodisk.runs.batch.batch_file_rows import COLUMNS, KEYS, PARAMETERS_OF, FileRow, RowReader
 from cytodisk.runs.batch.batch_input import BatchInput
@@ -77,7 +78,7 @@ def read_batch(path: Path) -> Batch:
     text = _read(path)
     try:
         content = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # numbers of thousands of digits, deep nesting
         words = comma_in_toml(text) or f"is no TOML: {error}"
         raise ParameterError(f"batch file {path}: {words}") from error
     faults = Faults()
@@ -106,8 +107,8 @@ def read_batch(path: Path) -> Batch:
 
 def _read(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
+        return text_of(path)
+    except (OSError, ValueError) as error:
         raise ParameterError(f"batch file {path} cannot be read: {error}") from error
 
 

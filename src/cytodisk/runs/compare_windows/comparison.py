@@ -13,7 +13,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from cytodisk.array_archive import reading_arrays
 from cytodisk.errors import EarlierVersionWarning, ReadError
+from cytodisk.parameter_words import short_words
 from cytodisk.runs.compare_windows.compare_columns import (
     BY_LAYER,
     BY_METHOD,
@@ -22,14 +24,19 @@ from cytodisk.runs.compare_windows.compare_columns import (
     describe_columns,
     units_of,
 )
+from cytodisk.runs.compare_windows.compare_parameters import TITLES
 from cytodisk.runs.compare_windows.compare_summaries import layer_summary, method_summary, movie_summary
+from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS, COMPARED_MOVIE
 from cytodisk.scale import Scale
 from cytodisk.store.csv_tables import write_csv
-from cytodisk.store.provenance_file import other_maps, read_complete
+from cytodisk.store.provenance_file import PROVENANCE, other_maps, read_complete
 from cytodisk.store.study import CONSISTENCY
 from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_kind import CELLS, MAPS
+from cytodisk.store.table_file import REMEDY, read_checked, units_in
 from cytodisk.store.tables import read_table
+
+_MOST_SIDE, _MOST_WINDOWS = 1_000_000, 10_000_000
 
 
 @dataclass(frozen=True)
@@ -89,7 +96,8 @@ class Comparison:
         """For a movie, one row a cell, method, frame, channel and layer."""
         if not self.is_movie:
             raise ReadError(f"comparison {self.path} is not that of a movie: it has no {CONSISTENCY}")
-        return read_table(self.path / CONSISTENCY)
+        columns = COMPARED_MOVIE.others["consistency"]
+        return read_checked(self.path / CONSISTENCY, columns, units=units_in(self.provenance))
 
     @cached_property
     def by_layer(self) -> pd.DataFrame:
@@ -125,25 +133,33 @@ class Comparison:
         In cells of up to 4000 pixels each pixel is divided into 4×4.
         """
         path = self.path / MAPS / f"windows_{part_key(cell)}.npz"
-        try:
-            with np.load(path) as file:
-                return {name: file[name] for name in file.files}
-        except OSError as error:
-            raise ReadError(f"cell {cell} has no windows in comparison {self.path}") from error
+        if not path.exists():
+            raise ReadError(f"cell {cell} has no windows in comparison {self.path}")
+        with reading_arrays(path, "the windows of a comparison", REMEDY) as file:
+            mask = file.truths("mask", (None, None), most=(_MOST_SIDE, _MOST_SIDE))
+            others = (name for name in file.names if name != "mask")
+            labels = {name: file.integers(name, mask.shape, least=-1, most=_MOST_WINDOWS) for name in others}
+        return {"mask": mask} | labels
 
     def activity(self, cell: int, method: str) -> xr.DataArray:
         """For a movie, the signal in the windows of a method, dims (time, channel, layer, sector)."""
         path = self.path / MAPS / f"activity_{part_key(cell)}_{method}.npz"
-        try:
-            with np.load(path) as file:
-                _, _, layers, sectors = file["mean"].shape
-                coords = self.scale.time_coords(file["frame"]) | {"channel": file["channel"]}
-                coords |= {"layer": np.arange(layers), "sector": np.arange(sectors)}
-                dims = ("time", "channel", "layer", "sector")
-                values = xr.DataArray(file["mean"], coords, dims, attrs={"units": "a.u."} | self.scale.attrs)
-                return values.set_xindex("frame")
-        except OSError as error:
-            raise ReadError(f"cell {cell} has no activity by {method} in comparison {self.path}") from error
+        if not path.exists():
+            raise ReadError(f"cell {cell} has no activity by {method} in comparison {self.path}")
+        with reading_arrays(path, "the activity of a comparison", REMEDY) as file:
+            frames = file.integers("frame", (None,), least=0, most=_MOST_SIDE)
+            channels = file.texts("channel", (None,))
+            mean = file.numbers("mean", (len(frames), len(channels), None, None))
+            if (np.diff(frames) <= 0).any() or len(set(channels)) < len(channels):
+                raise file.fault(
+                    "frame" if len(set(channels)) == len(channels) else "channel", "repeats itself"
+                )
+        _, _, layers, sectors = mean.shape
+        coords = self.scale.time_coords(frames) | {"channel": channels}
+        coords |= {"layer": np.arange(layers), "sector": np.arange(sectors)}
+        dims = ("time", "channel", "layer", "sector")
+        values = xr.DataArray(mean, coords, dims, attrs={"units": "a.u."} | self.scale.attrs)
+        return values.set_xindex("frame")
 
 
 def open_comparison(path: str | os.PathLike[str]) -> Comparison:
@@ -188,7 +204,15 @@ def open_comparison(path: str | os.PathLike[str]) -> Comparison:
     provenance = read_complete(folder, "comparison", "movie comparison")
     if words := other_maps(provenance):
         warnings.warn(f"comparison {folder}: {words}", EarlierVersionWarning, stacklevel=2)
-    return Comparison(folder, read_table(folder / CELLS), read_table(folder / "layers.parquet"), provenance)
+    methods = provenance.get("parameters", {}).get("methods")
+    if not isinstance(methods, list) or not methods or not set(map(str, methods)) <= set(TITLES):
+        raise ReadError(
+            f"{folder / PROVENANCE}: parameters.methods names none, got {short_words(methods)}: {REMEDY}"
+        )
+    kind, units = COMPARED_CELLS, units_in(provenance)
+    cells = read_checked(folder / CELLS, kind.cells, units=units)
+    layers = read_checked(folder / "layers.parquet", kind.others["layers"], units=units)
+    return Comparison(folder, cells, layers, provenance)
 
 
 def write_summaries(folder: StudyFolder) -> None:

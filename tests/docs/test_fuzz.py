@@ -1,0 +1,52 @@
+"""Two hundred damaged files: each is read, or refused in words that name it."""
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+MUTANTS, FIRST, SEED = 200, 0, 16
+
+
+@pytest.fixture(scope="module")
+def fuzz() -> Iterator[Any]:
+    sys.path.insert(0, str(ROOT / "benchmarks"))
+    try:
+        yield __import__("fuzz")
+    finally:
+        sys.path.remove(str(ROOT / "benchmarks"))
+
+
+@pytest.fixture(scope="module")
+def files(fuzz: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place: Path = tmp_path_factory.mktemp("fuzz") / "files"
+    __import__("fuzz_files").make_files(place)
+    return place
+
+
+@pytest.mark.slow
+def test_no_mutant_ends_in_a_traceback_a_crash_or_hangs(fuzz: Any, files: Path) -> None:
+    found = list(fuzz.outcomes(files, range(FIRST, FIRST + MUTANTS), SEED, workers=2))
+    assert [one for one in found if one.result not in fuzz.GOOD] == []
+    results = {result: sum(one.result == result for one in found) for result in fuzz.GOOD}
+    assert results["refused"] > MUTANTS // 4, "damage is not noticed: do mutations still change files?"
+    assert results["read"] > MUTANTS // 20, "everything is refused: are the good files read?"
+
+
+@pytest.mark.slow
+def test_undamaged_each_kind_is_read(files: Path, tmp_path: Path) -> None:
+    targets, copied = __import__("fuzz_targets"), __import__("fuzz_files").copied
+    done = set()
+    for number, target in enumerate(targets.TARGETS):
+        if target.root in done or target.root.startswith("images") or target.kind.startswith("batch"):
+            continue
+        done.add(target.root)
+        place = tmp_path / str(number)
+        place.mkdir()
+        path = copied(files, target.root, place)
+        damaged = next(iter(sorted(path.glob(target.pattern)))) if target.pattern else path
+        target.use(path, damaged, 0)
+    assert len(done) == 4
