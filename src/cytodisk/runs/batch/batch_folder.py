@@ -88,6 +88,10 @@ def make_room(
     store.refuse_removal(names, [*files, *input_files(provenance)])
     note(store, there | {"status": "being replaced", "fingerprint": {}})
     store.remove(names)
+    for study in studies:
+        if any(store.names(study)):  # what is left is the user's, and the study comes back
+            replaced = there | {"status": "being replaced", "fingerprint": {}, FILES: {}}
+            store.write_text(f"{study}/{PROVENANCE}", json_bytes(replaced, indent=2).decode() + "\n")
     return {}
 
 
