@@ -34,7 +34,7 @@ import pandas as pd
 import tifffile
 
 import cytodisk as cd
-from cytodisk.errors import CytodiskError
+from cytodisk.errors import CytodiskError, StudyError
 
 RUNS = ("map", "movie", "shapes", "compare", "batch")
 BREAKS = ("killed", "full disk", "complete")
@@ -92,7 +92,9 @@ def run(name: str, inputs: Path, out: Path, **options: Any) -> None:
         methods = ("newton", "edge")
         cd.run_compare_windows(inputs / "movie.tif", out, movie=True, methods=methods, **_SMALL, **options)
     else:
-        cd.run_batch(inputs / "batch.toml", out, tell=lambda words: None, **options)
+        summary = cd.run_batch(inputs / "batch.toml", out, tell=lambda words: None, **options)
+        if summary.failed:  # of an input: the others are done
+            raise StudyError(f"{summary.failed[0].input}: {summary.failed[0].reason}")
 
 
 def contents(out: Path) -> dict[str, Any]:

@@ -5,7 +5,6 @@ It is one file, the Zip of a Zarr store: with shards each of a cell's arrays, ab
 
 from __future__ import annotations
 
-import os
 import shutil
 import zipfile
 from collections.abc import Iterator, Sequence
@@ -18,7 +17,7 @@ import xarray as xr
 
 from cytodisk.analysis.activity import GEOMETRY, STATISTICS
 from cytodisk.errors import ReadError, StudyError
-from cytodisk.files import replacing
+from cytodisk.files import replacing, temporary_name
 from cytodisk.scale import Scale
 from cytodisk.store.activity_reading import EDGE_VARIABLES, read_activity
 from cytodisk.windows.polar_windows import PolarGrid
@@ -51,9 +50,8 @@ class ActivityStore:
         StudyError
             The folder cannot be written.
         """
-        work = target.with_name(f".{target.stem}.{os.getpid()}.tmp.zarr")
+        work = target.with_name(temporary_name(".zarr"))
         try:
-            shutil.rmtree(work, ignore_errors=True)  # of an earlier process with this number
             work.mkdir()
             yield cls(work)
             with replacing(target) as temporary:

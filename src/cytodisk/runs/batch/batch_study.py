@@ -31,6 +31,7 @@ from cytodisk.runs.map.map_kind import MAP
 from cytodisk.runs.movie.movie_kind import MOVIE
 from cytodisk.runs.run_options import BatchOptions, Progress, silent
 from cytodisk.store.provenance_file import PROVENANCE, parse_provenance
+from cytodisk.store.study_kind import PARTS
 from cytodisk.store.targets import Store
 from cytodisk.store.url_store import is_url
 from cytodisk.store.written_files import FILES, recorded
@@ -232,7 +233,8 @@ def _whole_row(store: Store, name: str) -> InputRow | None:
         return row
     kind = MOVIE if row.kind == MOVIE.run else MAP
     marks = {file: mark for file, mark in recorded(there).items() if kind.may_write(file)}
-    whole = there.get("status") == "complete" and not store.lost_files(study_key(name), marks)
+    whole = there.get("status") == "complete" and not any(store.names(f"{study_key(name)}/{PARTS}"))
+    whole = whole and not store.lost_files(study_key(name), marks)
     return row if whole else None
 
 
