@@ -12,6 +12,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from cytodisk.cli import app as cytodisk_app
+from cytodisk.cli.help_groups import flag_name, grouped
 
 
 class CommandLine(SphinxDirective):
@@ -31,8 +32,13 @@ def command_lines(name: str, command: Any) -> list[str]:
     title = f"cytodisk {name}"
     lines = [title, "-" * len(title), "", *help_lines(command.help or ""), ""]
     types = get_type_hints(inspect.unwrap(command.callback))
-    rows = [row for option in command.params if not option.hidden for row in option_row(option, types)]
-    if rows:
+    options = {flag_name(option): option for option in command.params if not option.hidden}
+    is_flag = {name: option.opts[0].startswith("-") for name, option in options.items()}
+    arguments = [name for name in options if not is_flag[name]]
+    groups = grouped([name for name in options if is_flag[name]])
+    for heading, names in [("", arguments), *groups] if arguments else groups:
+        rows = [row for name in names for row in option_row(options[name], types)]
+        lines += [f"*{heading}*", ""] if heading else []
         lines += [".. list-table::", "   :class: options", "   :widths: auto", "", *rows, ""]
     return lines
 

@@ -93,11 +93,25 @@ def help_words(field: FieldInfo, more: str = "") -> str:
     default = default_words(field)
     notes = [
         unit_of(field),
-        limits(field).strip().removeprefix("of "),
+        _plain_limits(field),
         f"default {default}" if default else "",
     ]
     said = "; ".join(words for words in (", ".join(note for note in notes if note), more) if words)
     return f"{field.description} ({said})" if said else str(field.description)
+
+
+_MOST_PLAIN = 1e5  # a limit from here on, or below its inverse, is there for mistakes: help leaves it out
+
+
+def _plain_limits(field: FieldInfo) -> str:
+    """The range of a number without what nobody would type, as "at least 1"; empty if nothing is left."""
+    found = {name: getattr(part, name) for part in field.metadata for name in _LIMITS if hasattr(part, name)}
+    shown = {name: limit for name, limit in found.items() if abs(limit) < _MOST_PLAIN}
+    if 0 < shown.get("ge", 0) <= 1 / _MOST_PLAIN:
+        del shown["ge"]
+    if {"ge", "le"} <= shown.keys():
+        return f"from {number_words(shown['ge'])} to {number_words(shown['le'])}"
+    return " and ".join(f"{_LIMITS[name].removeprefix('of ')} {number_words(shown[name])}" for name in shown)
 
 
 def value_of_text(field: FieldInfo, text: str) -> Any:

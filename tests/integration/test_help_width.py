@@ -8,6 +8,7 @@ import sys
 import pytest
 
 from cytodisk.cli import app
+from cytodisk.cli.help_groups import flag_name, grouped
 
 COMMANDS = sorted(app.commands)
 
@@ -24,3 +25,12 @@ def test_flags_are_whole_at_80_columns(command: str) -> None:
     flags = [flag for option in app.commands[command].loaded.params for flag in option.opts if "--" in flag]
     assert set(flags) <= set(re.findall(r"--[a-z0-9-]+(?=[ ,\n])", told))
     assert max(map(len, told.splitlines())) <= 80
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_flag_is_under_a_heading(command: str) -> None:
+    params = app.commands[command].loaded.params
+    flags = [flag_name(option) for option in params if option.opts[0].startswith("-")]
+    found = grouped([*flags, "help"])
+    assert "More" not in dict(found)
+    assert sorted(flag for _, names in found for flag in names) == sorted([*flags, "help"])

@@ -21,11 +21,15 @@ if TYPE_CHECKING:
 
 @with_parameters(BatchOptions, file=False)
 def batch_command(
-    study: Annotated[Path, typer.Argument(help="Batch file: TOML.", show_default=False)],
+    study: Annotated[Path, typer.Argument(metavar="STUDY", help="Batch file: TOML.", show_default=False)],
     out: Annotated[
         str,
         typer.Option(
-            "--out", "-o", help="Folder for the results, or a URL as s3://bucket/batch.", show_default=False
+            "--out",
+            "-o",
+            metavar="FOLDER",
+            help="Folder for the results, or a URL as s3://bucket/batch.",
+            show_default=False,
         ),
     ],
     given: Given,

@@ -36,11 +36,16 @@ def compare_windows_command(
     movie: Annotated[bool, typer.Option("--movie", help="MASKS are frames of a movie.")] = False,
     signal: Annotated[
         Path | None,
-        typer.Option(help="Image to sample, of the same height and width: TIFF or PNG (only with --movie)."),
+        typer.Option(
+            metavar="PATH",
+            help="Image to measure, of the same height and width, in any format (only with --movie).",
+        ),
     ] = None,
     cells: Annotated[
         str | None,
-        typer.Option(help="Cells to draw, at most five, as 3,17,20 (default: from simple to complex)."),
+        typer.Option(
+            metavar="A,B,…", help="Cells to draw, at most five, as 3,17,20 (default: from simple to complex)."
+        ),
     ] = None,
     quiet: Quiet = False,
 ) -> None:

@@ -27,14 +27,19 @@ def correlate_command(
     study: MovieStudy,
     given: Given,
     signal: Annotated[
-        str | None, typer.Option(help="Channel of the study; not needed if there is only one.")
+        str | None,
+        typer.Option(metavar="CHANNEL", help="Channel of the study; not needed if there is only one."),
     ] = None,
     with_: Annotated[
-        str, typer.Option("--with", help="velocity, velocity_cell_frame or a channel.")
+        str, typer.Option("--with", metavar="CHANNEL", help="velocity, velocity_cell_frame or a channel.")
     ] = "velocity",
-    cell: Annotated[list[int] | None, typer.Option(help="Only this cell; can be given again.")] = None,
+    cell: Annotated[
+        list[int] | None, typer.Option(metavar="NUMBER", help="Only this cell; can be given again.")
+    ] = None,
     figures: Figures = 4,
-    formats: Annotated[str, typer.Option("--format", help="Of figures: png, pdf, svg, or several.")] = "png",
+    formats: Annotated[
+        str, typer.Option("--format", metavar="A,B,…", help="Of figures: png, pdf, svg, or several.")
+    ] = "png",
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.runs.correlate.correlate_study import channels_of, correlate_study
@@ -58,13 +63,14 @@ def correlate_command(
 def report_command(
     study: MovieStudy,
     cell: Annotated[
-        int | None, typer.Option(help="The cell to show (default that with the most frames).")
+        int | None,
+        typer.Option(metavar="NUMBER", help="The cell to show (default that with the most frames)."),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="The page (default STUDY/report.html).")
+        Path | None, typer.Option("--out", "-o", metavar="PATH", help="The page (default STUDY/report.html).")
     ] = None,
     signal: Annotated[
-        Path | None, typer.Option(help="The movie's image, if it is no longer where it was.")
+        Path | None, typer.Option(metavar="PATH", help="The movie's image, if it is no longer where it was.")
     ] = None,
     quiet: Quiet = False,
 ) -> None:

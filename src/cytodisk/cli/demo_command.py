@@ -19,9 +19,11 @@ _AGAIN = "run the same command again"
 
 
 def demo_command(
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the demo.")] = Path("cytodisk_demo"),
-    seed: Annotated[int, typer.Option(help="Seed of the simulated movie.")] = 0,
-    workers: Annotated[int, typer.Option(help="Processes that map; one more draws.")] = 1,
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="FOLDER", help="Folder for the demo.")] = Path(
+        "cytodisk_demo"
+    ),
+    seed: Annotated[int, typer.Option(metavar="NUMBER", help="Seed of the simulated movie.")] = 0,
+    workers: Annotated[int, typer.Option(metavar="NUMBER", help="Processes that map; one more draws.")] = 1,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the study in OUT/study.")] = False,
     quiet: Quiet = False,
 ) -> None:

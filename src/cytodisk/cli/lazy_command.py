@@ -2,17 +2,16 @@
 
 from functools import cached_property
 from importlib import import_module
-from shutil import get_terminal_size
 from typing import Any
 
 import typer
 from typer.core import TyperCommand
 
+from cytodisk.cli.help_groups import WIDTH, GroupedCommand
+
 _QUOTES = (
     "For several files of one movie put the pattern in quotes, as 'frames/t*.tif', or pass their folder."
 )
-
-_WIDTH_OF_TABLES = 120  # letters in a line
 
 
 class LazyCommand(TyperCommand):
@@ -35,10 +34,9 @@ class LazyCommand(TyperCommand):
     def loaded(self) -> Any:
         """The command itself, with its options."""
         function = getattr(import_module(self._module), f"{str(self.name).replace('-', '_')}_command")
-        # A table of flags has five columns; in a narrow window it would cut their names.
-        is_wide = get_terminal_size().columns >= _WIDTH_OF_TABLES
-        alone = typer.Typer(add_completion=False, rich_markup_mode="rich" if is_wide else None)
-        alone.command(self.name, help=self.help)(function)
+        alone = typer.Typer(add_completion=False, rich_markup_mode=None)  # tables would cut names of flags
+        width = {"max_content_width": WIDTH}
+        alone.command(self.name, cls=GroupedCommand, help=self.help, context_settings=width)(function)
         return typer.main.get_command(alone)
 
     def make_context(self, *call: Any, **extra: Any) -> Any:

@@ -26,39 +26,54 @@ from cytodisk.taking import fields_of
 MaskFiles = Annotated[
     Path,
     typer.Argument(
-        help="Mask, stack of masks or label image (TIFF, PNG, Cellpose's _seg.npy), outlines (.roi, .zip, "
-        ".geojson), or a folder of them.",
+        metavar="MASKS",
+        help="Masks or label images (TIFF, PNG, _seg.npy, OME-Zarr, ND2, CZI, LIF) or outlines (.roi, .zip, "
+        ".geojson): a file, a folder, or a pattern in quotes, such as 'day1/*.tif'.",
         show_default=False,
     ),
 ]
 MovieFile = Annotated[
     Path,
     typer.Argument(
-        help="Masks or label images by frame: one file, or a folder, or a pattern in quotes, of one file a "
-        "frame.",
+        metavar="MASKS",
+        help="Masks or label images by frame: one file; or a folder, or a pattern in quotes such as "
+        "'t*.tif', of one file a frame.",
         show_default=False,
     ),
 ]
-MovieStudy = Annotated[Path, typer.Argument(help="Folder of a movie's study.", show_default=False)]
+MovieStudy = Annotated[
+    Path, typer.Argument(metavar="STUDY", help="Folder of a movie's study.", show_default=False)
+]
 Signal = Annotated[
     Path | None,
     typer.Option(
-        help="Image to sample, of the same height and width: one file, or a folder, or a pattern in quotes, "
-        "of one file a frame."
+        metavar="PATH",
+        help="Image to measure, of the same height and width: one file; or a folder, or a pattern in quotes, "
+        "of one file a frame.",
     ),
 ]
 SignalFiles = Annotated[
     Path | None,
     typer.Option(
-        help="Image to sample, of the same height and width: TIFF, PNG, OME-Zarr, ND2, CZI or LIF. For a "
-        "folder of masks: a folder of images with the same names, or the ending of their names, such as _img."
+        metavar="PATH",
+        help="Image to measure, of the same height and width, in any of these formats. For a folder of "
+        "masks: a folder of images with the same names, or how their names end, such as _img.",
     ),
 ]
-OutFolder = Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.", show_default=False)]
-ParametersFile = Annotated[
-    Path | None, typer.Option(help="TOML file with parameters, as in every study. Flags overrule it.")
+OutFolder = Annotated[
+    Path,
+    typer.Option("--out", "-o", metavar="FOLDER", help="Folder for the results.", show_default=False),
 ]
-Figures = Annotated[int, typer.Option(help="Number of cells to draw, from the first; -1 for all.")]
+ParametersFile = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="PATH",
+        help="File with parameters, such as parameters.toml of an earlier study. Flags overrule it.",
+    ),
+]
+Figures = Annotated[
+    int, typer.Option(metavar="NUMBER", help="Number of cells to draw, from the first; -1 for all.")
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 
@@ -174,11 +189,17 @@ def _option(name: str, field: FieldInfo, more: str) -> inspect.Parameter:
     words = choices(field.annotation)
     metavar = "|".join(words) if words and tuple not in wanted else None
     if not wanted & {bool, str, tuple}:  # a text for the parser, so that errors are the model's
-        metavar = "INTEGER" if int in wanted else "FLOAT"
+        metavar = "NUMBER"
     if tuple in wanted and not words:
         metavar = "FIRST:LAST" if tuple_items(field.annotation) == (int, int) else "A,B,…"
+    if str in wanted and (not words or tuple in wanted):
+        metavar = _TEXTS.get(name, "TEXT")
     option = typer.Option(flag, help=help_words(field, more), metavar=metavar, show_default=False)
     return _keyword(name, Annotated[kind | None, option])
+
+
+_TEXTS = {"scene": "NAME", "mask_channel": "NAME", "z": "SLICE", "tracks": "PATH", "align": "ANGLE"}
+"""What stands behind a flag in its help where that is more than some text."""
 
 
 def _keyword(name: str, annotation: Any) -> inspect.Parameter:

@@ -46,12 +46,12 @@ class ChoiceParameters(Parameters):
 
     scene: str | None = parameter(
         None,
-        "Scene (position, series, image) of a file that holds several: its number from 0, or its name.",
+        "Scene (position, series, image) of a file with several: its number from 0, or its name.",
         words="a number from 0, or a name",
     )
     z: str | None = parameter(
         None,
-        "Slice of a z-stack: its number from 0; or max or mean, for a projection.",
+        "Slice of a z-stack: its number from 0, or a projection: max or mean.",
         words="a number from 0, max or mean",
     )
 
@@ -75,19 +75,21 @@ class KindParameters(ChoiceParameters):
     )
     axes: str | None = parameter(
         None,
-        "Axes of the mask file, one letter each, such as TYX or YXT; overrules what the file says.",
+        "Axes of the mask file, a letter each, such as TYX or YXT; overrules what the file says.",
         words=_AXES_WORDS,
     )
-    label: bool = parameter(False, "Number the pieces of a mask: each is a cell.")
+    label: bool = parameter(
+        False, "For several cells in one mask of 0 and 1: number its pieces; each is a cell."
+    )
     fragments: Fragments = parameter(
         "refuse",
-        'What to do with a mask whose second piece has a tenth of the largest or more: "refuse" it, as it '
-        'holds several cells, or measure the "largest" piece. Smaller pieces are dropped.',
+        'A mask whose second piece has 10 % of the largest or more: "refuse" it, as it holds several cells, '
+        'or measure the "largest" piece alone. Smaller pieces are always dropped.',
     )
 
     mask_channel: str | None = parameter(
         None,
-        "Channel of the mask file that holds the masks, where it has several: its name, or number from 0.",
+        "Channel that holds the masks, if their file has several channels: its name, or its number from 0.",
         words="a name, or a number from 0",
     )
 
@@ -106,13 +108,13 @@ class SignalFileParameters(ChoiceParameters):
 
     signal_axes: str | None = parameter(
         None,
-        "Axes of the signal's file, one letter each, such as TCYX; overrules what the file says.",
+        "Axes of the signal's file, a letter each, such as TCYX; overrules what the file says.",
         words=_AXES_WORDS,
     )
 
     signal_channels: tuple[str, ...] | None = parameter(
         None,
-        "Channels of the signal's file to take, in this order: names, or numbers from 0; without it all.",
+        "Channels to take from the signal's file, in this order: names, or numbers from 0. Without it, all.",
         words="names, or numbers from 0",
     )
 
@@ -141,12 +143,12 @@ class MovieKindParameters(KindParameters):
     )
     link: bool | None = parameter(
         None,
-        "Labels differ from frame to frame: give overlapping cells one label through time. Without it, "
-        "labels that change are refused; --no-link takes them as they are.",
+        "For labels that change from frame to frame: cells that overlap get one label through time. Without "
+        "it, such labels are refused; --no-link takes them as they are.",
     )
     tracks: str | None = parameter(
         None,
-        "File of tracks that give each label its cell through time: TrackMate's XML, or a GEFF.",
+        "File of tracks that say which label is which cell through time: XML of TrackMate, or a GEFF.",
         words="a path",
     )
 

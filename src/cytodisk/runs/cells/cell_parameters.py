@@ -18,7 +18,8 @@ class ChannelParameters(Parameters):
 
     channels: tuple[str, ...] | None = parameter(
         None,
-        "Names of the channels of the signal; without them those in the file are used.",
+        "Names for the channels of the signal, such as Rac1,RhoA. Without it, those in the file, "
+        "or the file's name.",
         words="names, such as Rac1,RhoA",
     )
 
