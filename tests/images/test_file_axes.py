@@ -2,10 +2,13 @@
 
 from pathlib import Path
 
+import imageio.v3 as imageio
 import numpy as np
 import pytest
 import tifffile
+import xarray as xr
 
+import cytodisk as cd
 from cytodisk.errors import ReadError
 from cytodisk.images.file_axes import FileAxes, file_axes
 from cytodisk.images.frame_file import FileChoice
@@ -86,3 +89,36 @@ def test_planes_of_a_colour_picture_are_no_frames(tmp_path: Path) -> None:
     tifffile.imwrite(tmp_path / "a.tif", planes, photometric="rgb", planarconfig="separate")
     assert open_frames(tmp_path / "a.tif").axes == "CYX"
     assert open_frames(tmp_path / "a.tif", choice=FileChoice(axes="TYX")).n_frames == 3
+
+
+@pytest.mark.parametrize("name", ["a.npy", "a.tif"])
+@pytest.mark.parametrize("axes", ["TZCYX", "TZYX"])
+@pytest.mark.parametrize("z", ["3", "max"])
+def test_axes_of_length_one_may_be_named_beside_slices(tmp_path: Path, name: str, axes: str, z: str) -> None:
+    stack = np.arange(3 * 5 * 20 * 30, dtype=np.uint16).reshape(3, 5, 1, 20, 30)
+    path = tmp_path / name
+    if name == "a.npy":
+        np.save(path, stack)
+    else:
+        tifffile.imwrite(path, stack, photometric="minisblack")
+    file = open_frames(path, choice=FileChoice(axes=axes, z=z))
+    assert (file.axes, file.offers) == ("TYX", ("z",))
+    np.testing.assert_array_equal(file.frame(1)[0], stack[1, 4 if z == "max" else 3, 0])
+
+
+@pytest.mark.parametrize(("axes", "letters"), [("YXT", "YXT"), ("yxc", "YXC"), ("CYX", "CYX")])
+def test_axes_of_a_colour_png_are_those_that_are_said(tmp_path: Path, axes: str, letters: str) -> None:
+    colour = np.arange(20 * 30 * 3, dtype=np.uint8).reshape(20, 30, 3)
+    imageio.imwrite(tmp_path / "a.png", colour)
+    image = cd.read_image(tmp_path / "a.png", axes=axes)
+    wanted = xr.DataArray(
+        colour, dims=[{"T": "time", "C": "channel", "Y": "y", "X": "x"}[a] for a in letters]
+    )
+    np.testing.assert_array_equal(image, wanted.transpose(*image.dims))
+
+
+@pytest.mark.parametrize("axes", ["TYX", "YXC"])
+def test_axes_that_a_grey_png_has_not_are_refused(tmp_path: Path, axes: str) -> None:
+    imageio.imwrite(tmp_path / "a.png", np.zeros((20, 30), np.uint8))
+    with pytest.raises(ReadError, match=rf"2 axes .* axes {axes} names 3: pass one letter an axis"):
+        cd.read_image(tmp_path / "a.png", axes=axes)

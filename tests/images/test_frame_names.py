@@ -2,10 +2,15 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
+import tifffile
 
 from cytodisk.errors import ReadError
+from cytodisk.images.frame_file import NO_CHOICE
 from cytodisk.images.sequences.frame_names import FrameNames, by_series, frame_names, series_of
+from cytodisk.images.sequences.movie_files import open_movie_masks
+from cytodisk.images.sequences.movie_signals import open_movie_signal
 
 
 def named(folder: Path, *names: str) -> FrameNames:
@@ -93,3 +98,24 @@ def test_series_differ_in_more_than_numbers() -> None:
     assert series_of(["VASP_t001.tif", "VASP_t002.tif"]) == "VASP"
     assert series_of(["cell3_time_1.tif", "cell3_time_2.tif"]) == "cell3"
     assert series_of(["t001.tif", "t002.tif"]) == ""
+
+
+def test_thousands_of_files_are_looked_at_once_each(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    count = 300
+    for number in range(count):
+        tifffile.imwrite(tmp_path / f"t{number:04d}.tif", np.ones((4, 4), np.uint8))
+        tifffile.imwrite(tmp_path / f"t{number:04d}_masks.tif", np.ones((4, 4), np.uint8))
+    resolved: list[Path] = []
+    resolve = Path.resolve
+    monkeypatch.setattr(Path, "resolve", lambda file, *how: resolved.append(file) or resolve(file, *how))
+    masks = open_movie_masks(tmp_path, NO_CHOICE)
+    signal = open_movie_signal(tmp_path, masks, NO_CHOICE)
+    assert [file.name for file in signal.files] == [f"t{number:04d}.tif" for number in range(count)]
+    assert len(resolved) < 5 * count
+
+
+@pytest.mark.parametrize("number", [0, 4, 7, 99, 101])
+def test_a_missing_file_is_named_after_the_nearest(tmp_path: Path, number: int) -> None:
+    found = named(tmp_path, "a005.tif", "a006.tif", "a100.tif", "a102.tif").taken([5, number])
+    assert names_of(found) == ["a005.tif", f"a{number:03d}.tif"]
+    assert found.missing == {tmp_path / f"a{number:03d}.tif"}

@@ -42,7 +42,7 @@ def piece_areas(mask: Any) -> IntArray:
 
 
 def several_words(mask: Any) -> str:
-    """What makes a mask that of several cells, in words; empty for one cell, with or without crumbs.
+    """What makes a mask that of several cells, in words; empty for one cell, with or without crumbs, or none.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def several_words(mask: Any) -> str:
         As "2 pieces, the second 45 % of the largest".
     """
     inside = np.asarray(mask) != 0
-    if has_one_outline(inside):
+    if not inside.any() or has_one_outline(inside):
         return ""
     areas = piece_areas(inside)
     if len(areas) < 2 or areas[1] < SEVERAL_FROM * areas[0]:

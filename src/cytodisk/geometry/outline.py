@@ -31,7 +31,7 @@ def trace_outline(mask: BoolArray) -> FloatArray:
     MaskError
         The mask is empty, in several pieces or has holes.
     """
-    padded = np.pad(mask, 1)
+    padded = _with_border(mask)
     outline = _first_outline(padded, pixel_edges(padded))
     if outline is None:
         _, pieces = ndimage.label(mask, structure=np.ones((3, 3)))
@@ -43,8 +43,16 @@ def trace_outline(mask: BoolArray) -> FloatArray:
 
 def has_one_outline(mask: BoolArray) -> bool:
     """Whether a mask is one 8-connected piece without holes."""
-    padded = np.pad(mask, 1)
+    padded = _with_border(mask)
     return _first_outline(padded, pixel_edges(padded)) is not None
+
+
+def _with_border(mask: BoolArray) -> BoolArray:
+    """A mask with one more pixel outside of it on every side; `numpy.pad` takes ten times as long."""
+    height, width = mask.shape
+    padded = np.zeros((height + 2, width + 2), dtype=bool)
+    padded[1:-1, 1:-1] = mask
+    return padded
 
 
 def pixel_edges(padded: BoolArray) -> int:

@@ -91,17 +91,18 @@ def file_axes(
         The axes are not those of a movie or an image, or there are not as many as the user says.
     """
     shape = tuple(int(size) for size in shape)
+    kept = long_axes(file, said, shape, chosen)
+    sizes = tuple(size for _, size in kept)
+    for axis, _ in kept:
+        if axis in _OTHERS:
+            raise ReadError(_other_words(file, axis, chosen or said, shape))
     if chosen is not None:
-        return _chosen(file, chosen, shape)
-    kept = [(axis, size) for axis, size in zip(said, shape, strict=True) if size > 1 or axis in "YX"]
+        return FileAxes("".join(axis for axis, _ in kept), sizes, said_by="user")
     letters, guessed = "", False
     for place, (axis, _) in enumerate(kept):
-        if axis in _OTHERS:
-            raise ReadError(_other_words(file, axis, said, shape))
         colour = axis == "S" and place == len(kept) - 1
         guessed |= axis not in _PLAIN and not colour
         letters += axis if axis in _PLAIN else "C" if colour else unnamed
-    sizes = tuple(size for _, size in kept)
     if len(set(letters)) != len(letters) or not {"Y", "X"} <= set(letters):
         raise ReadError(
             f"{file} has {len(shape)} axes of sizes {shape}, which it calls {said}: Q and I name none. Pass "
@@ -109,6 +110,32 @@ def file_axes(
         )
     doubt = shape_doubt(file, letters, sizes) if guessed else ""
     return FileAxes(letters, sizes, "nobody" if guessed else "file", doubt)
+
+
+def long_axes(
+    file: Path, said: str, shape: Sequence[int], chosen: str | None = None
+) -> list[tuple[str, int]]:
+    """Letter and size of each axis of a file's array, without those of length 1 beside Y and X.
+
+    Parameters
+    ----------
+    file, said, shape, chosen
+        As of `file_axes`.
+
+    Raises
+    ------
+    ReadError
+        There are not as many as the user says, with or without those of length 1.
+    """
+    letters, sizes = chosen or said, list(shape)
+    if len(letters) != len(sizes):
+        sizes = [size for size in shape if size > 1]
+    if len(letters) != len(sizes):
+        raise ReadError(
+            f"{file} has {len(shape)} axes of sizes {tuple(shape)}, {axes_flag(letters)} names "
+            f"{len(letters)}: pass one letter an axis"
+        )
+    return [(axis, size) for axis, size in zip(letters, sizes, strict=True) if size > 1 or axis in "YX"]
 
 
 _FLAGS = {"--signal-channels": "--signal-axes", "--mask-channel": "--axes", "channels": "axes"}
@@ -157,24 +184,6 @@ def axis_words(file: Path, letters: str, shape: Sequence[int], likely: str, evid
         f"{file} of shape {tuple(shape)} does not name its axes, and {evidence} speaks against "
         f"{first} {what} of {height} × {width} pixels: its {place} axis looks like {name}. If it is, "
         f"pass {axes_flag(likely)}; else pass {axes_flag(letters)}"
-    )
-
-
-def _chosen(file: Path, chosen: str, shape: tuple[int, ...]) -> FileAxes:
-    pairs = list(zip(chosen, shape, strict=False))
-    if len(chosen) != len(shape):
-        kept = [size for size in shape if size > 1]
-        if len(chosen) != len(kept):
-            raise ReadError(
-                f"{file} has {len(shape)} axes of sizes {shape}, {axes_flag(chosen)} names {len(chosen)}: "
-                "pass one letter an axis"
-            )
-        pairs = list(zip(chosen, kept, strict=True))
-    kept_pairs = [(axis, size) for axis, size in pairs if size > 1 or axis in "YX"]
-    if "Z" in (axis for axis, _ in kept_pairs):
-        raise ReadError(_other_words(file, "Z", chosen, shape))
-    return FileAxes(
-        "".join(axis for axis, _ in kept_pairs), tuple(size for _, size in kept_pairs), said_by="user"
     )
 
 

@@ -102,7 +102,8 @@ def look_at(file: FrameFile, how: KindParameters | None = None, read: Reader | N
 def _check_shape(file: FrameFile, how: KindParameters) -> None:
     if "C" in file.axes:
         axes = file.axes.replace("C", "T")
-        frames = "" if "T" in file.axes else f"; or if they are frames, pass --axes {axes}"
+        may_be_frames = file.unnamed and "T" not in file.axes
+        frames = f"; or if they are frames, pass --axes {axes}" if may_be_frames else ""
         fractions = file.dtype.kind == "f"
         probabilities = "; of probabilities, export the Simple Segmentation instead" if fractions else ""
         raise MaskError(

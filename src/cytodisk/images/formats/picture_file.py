@@ -16,6 +16,8 @@ from PIL import Image
 
 from cytodisk.errors import ReadError
 from cytodisk.images.claims import check_claim, check_memory
+from cytodisk.images.file_axes import file_axes
+from cytodisk.images.formats.file_metadata import channel_names
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile, as_channels_first
 
 _PNG: dict[str, Any] = {"extension": ".png", "plugin": "pillow"}
@@ -43,8 +45,18 @@ def open_picture(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
     if palette is not None:
         shape, dtype = shape[:2], np.dtype(np.uint8)
         notes = () if _is_grey(palette) else (PALETTE,)
-    axes, names = ("YX", ("0",)) if len(shape) == 2 else ("YXC", _COLOURS[shape[2]])
-    return FrameFile(file, axes, shape, dtype, names, PictureFrames(file, axes), notes=notes)
+    known = file_axes(file, "YXC"[: len(shape)], shape, unnamed, choice.axes)
+    colours = _COLOURS[shape[2]] if known.letters == "YXC" else ()
+    return FrameFile(
+        file,
+        known.letters,
+        known.shape,
+        dtype,
+        channel_names(colours, known.shape[known.letters.index("C")] if "C" in known.letters else 1),
+        PictureFrames(file, known.letters),
+        notes=notes,
+        said_by=known.said_by,
+    )
 
 
 def _palette(opened: BinaryIO) -> np.ndarray[Any, Any] | None:
@@ -92,7 +104,7 @@ def _of_any_size(pixels: int) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class PictureFrames:
-    """The one frame of a picture.
+    """The one frame of a picture, or its colours as frames where a user says so.
 
     Attributes
     ----------
@@ -109,10 +121,13 @@ class PictureFrames:
         with self.path.open("rb") as opened, _of_any_size(pixels):
             palette = _palette(opened)
             if palette is None:
-                return as_channels_first(np.asarray(imageio.imread(opened, **_PNG)), self.axes)
-            with Image.open(opened) as picture:
-                numbers = np.asarray(picture)
-            return as_channels_first(palette[numbers, 0] if _is_grey(palette) else numbers, self.axes)
+                values = np.asarray(imageio.imread(opened, **_PNG))
+            else:
+                with Image.open(opened) as picture:
+                    numbers = np.asarray(picture)
+                values = palette[numbers, 0] if _is_grey(palette) else numbers
+        taken = values[tuple(number if axis == "T" else slice(None) for axis in self.axes)]
+        return as_channels_first(taken, self.axes)
 
     def by_piece(self, number: int) -> tuple[Cut, int] | None:
         """None: a PNG is one piece."""

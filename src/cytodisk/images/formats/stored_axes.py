@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.images.file_axes import FileAxes, file_axes
+from cytodisk.images.file_axes import FileAxes, file_axes, long_axes
 from cytodisk.images.frame_file import FileChoice
 from cytodisk.images.scenes import chosen_slice
 
@@ -72,17 +72,15 @@ def stored_axes(file: Path, said: str, shape: Sequence[int], unnamed: str, choic
     ReadError
         The axes are not those of a movie or an image, or there is no such slice.
     """
-    pairs = [(axis, size) for axis, size in zip(said, shape, strict=True) if size > 1 or axis in "YX"]
-    chosen = choice.axes
-    letters = [axis for axis, _ in pairs] if chosen is None else list(chosen)
-    if choice.z is None or "Z" not in letters or len(letters) != len(pairs):
-        known = file_axes(file, said, shape, unnamed, chosen)
+    pairs = long_axes(file, said, shape, choice.axes)
+    letters = "".join(axis for axis, _ in pairs)
+    if choice.z is None or "Z" not in letters:
+        known = file_axes(file, said, shape, unnamed, choice.axes)
         return StoredAxes(known, known.letters, known.shape)
     place = letters.index("Z")
     _, depth = pairs.pop(place)
-    rest = "".join(axis for axis, _ in pairs)
-    chosen = None if chosen is None else chosen.replace("Z", "")
-    known = file_axes(file, rest, [size for _, size in pairs], unnamed, chosen)
+    rest, sizes_left = letters.replace("Z", ""), [size for _, size in pairs]
+    known = file_axes(file, rest, sizes_left, unnamed, None if choice.axes is None else rest)
     axes, sizes = known.letters, known.shape
     return StoredAxes(
         known,

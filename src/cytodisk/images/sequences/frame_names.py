@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from bisect import bisect
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -58,7 +59,8 @@ class FrameNames:
         """Those with some numbers only, in their order; a number without a file is missing."""
         assert self.numbers is not None  # whoever asks for numbers knows that there are some
         by_number = dict(zip(self.numbers, self.files, strict=True))
-        here = {number: by_number.get(number) or _file_of(number, by_number) for number in numbers}
+        ordered = sorted(by_number)
+        here = {number: by_number.get(number) or _file_of(number, ordered, by_number) for number in numbers}
         lost = {file for number, file in here.items() if number not in by_number or file in self.missing}
         return FrameNames(tuple(here.values()), tuple(here), frozenset(lost), self.series, self.note)
 
@@ -216,9 +218,10 @@ def _missing_words(names: Sequence[str]) -> str:
     )
 
 
-def _file_of(number: int, by_number: Mapping[int, Path]) -> Path:
-    """The name that a file with this number would have."""
-    near, least = min(by_number, key=lambda other: abs(other - number)), min(by_number)
+def _file_of(number: int, ordered: Sequence[int], by_number: Mapping[int, Path]) -> Path:
+    """The name that a file with this number would have, after that of the nearest number and the least."""
+    above = bisect(ordered, number)
+    near, least = min(ordered[max(above - 1, 0) : above + 1], key=lambda one: abs(one - number)), ordered[0]
     place, width = _place_of(near, by_number[near].name), _place_of(least, by_number[least].name)
     name = by_number[near].name
     digits = f"{number:0{width.stop - width.start}d}"

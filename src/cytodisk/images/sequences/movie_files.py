@@ -89,11 +89,11 @@ def _mask_frames(place: Path) -> tuple[FrameNames, str]:
     if named:
         chosen = {base_name(first.name): first for first, _ in best_masks(named)}
         names = one_series(place, chosen)
-        return names, left_out([file for file in files if file not in names.files])
-    images = not_masks(files)
+        return names, left_out(files, names)
+    images = set(not_masks(files))
     of_masks = files if len(images) == len(files) else [file for file in files if file not in images]
     names = one_series(place, {file.name: file for file in of_masks})
-    return names, left_out([file for file in files if file not in names.files])
+    return names, left_out(files, names)
 
 
 def not_masks(files: Sequence[Path]) -> list[Path]:
@@ -137,11 +137,13 @@ def _series_words(names: Sequence[str]) -> str:
     return f"{shown}, {len(names)} files" if len(names) > 1 else shown
 
 
-def left_out(files: Sequence[Path]) -> str:
-    """Words for images beside the masks."""
-    if not files:
+def left_out(files: Sequence[Path], names: FrameNames) -> str:
+    """Words for the images of a folder that are not among those that are taken."""
+    taken = set(names.files)
+    others = [file for file in files if file not in taken]
+    if not others:
         return ""
-    return f"beside them {len(files)} other image{'s' if len(files) > 1 else ''}, as {files[0].name}"
+    return f"beside them {len(others)} other image{'s' if len(others) > 1 else ''}, as {others[0].name}"
 
 
 def few(words: Sequence[str]) -> str:

@@ -85,23 +85,23 @@ def reopened(path: Path, files: Sequence[Path], choice: FileChoice) -> FrameFile
 
 def _signal_frames(place: Path, masks: MovieMasks) -> tuple[FrameNames, str]:
     """The images of the frames of masks, and which others there are."""
-    files = not_masks([file for file in readable(place) if not _is_mask(file, masks)])
+    files = not_masks(_without_masks(readable(place), masks))
     if not files:
         raise SignalError(f"signal {place} holds masks only: pass the folder or the pattern of the images")
     if masks.names is not None and is_folder_of_files(place):
         by_mask = _by_base_name(files, masks.names, _USUAL_ENDINGS)
         if by_mask is not None:
-            return by_mask, left_out([file for file in files if file not in by_mask.files])
+            return by_mask, left_out(files, by_mask)
     names = one_series(place, {file.name: file for file in files})
     if masks.names is None or masks.names.numbers is None or names.numbers is None:
         return names, ""
     return _aligned(place, names, masks.names)
 
 
-def _is_mask(file: Path, masks: MovieMasks) -> bool:
-    if file.name.lower().endswith(ENDINGS):
-        return True
-    return masks.names is not None and file.resolve() in {mask.resolve() for mask in masks.names.files}
+def _without_masks(files: Sequence[Path], masks: MovieMasks) -> list[Path]:
+    of_masks = set() if masks.names is None else {mask.resolve() for mask in masks.names.files}
+    images = [file for file in files if not file.name.lower().endswith(ENDINGS)]
+    return [file for file in images if file.resolve() not in of_masks]
 
 
 def _by_base_name(files: Sequence[Path], masks: FrameNames, endings: Sequence[str]) -> FrameNames | None:
@@ -119,10 +119,11 @@ def _by_base_name(files: Sequence[Path], masks: FrameNames, endings: Sequence[st
                 f"{mask.name} has several images ({names}): pass a pattern that fits one of them"
             )
         found += fitting or [files[0].parent / f"{base_name(mask.name)}{endings[0]}{files[0].suffix}"]
-    there = [file for file in found if file in files]
+    known = set(files)
+    there = [file for file in found if file in known]
     if not there or len(set(there)) < len(there):
         return None
-    lost = [file for file in found if file not in files]
+    lost = [file for file in found if file not in known]
     series = series_of([file.name for file in there])
     return FrameNames(tuple(found), masks.numbers, frozenset(lost), series, _lost_words(lost))
 
