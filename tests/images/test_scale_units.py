@@ -2,8 +2,10 @@
 
 import pytest
 
+from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
 from cytodisk.images.formats.said_scale import duration, length, print_resolution
 from cytodisk.images.formats.scale_units import is_no_unit, micrometres, number, seconds
+from cytodisk.images.spots.track_units import frame_interval_s, pixel_size_um
 
 LENGTHS = {
     1.0: [
@@ -80,9 +82,31 @@ def test_what_cannot_be_read_is_named_with_the_flag() -> None:
     assert value is None
     assert "TimeIncrement is 'fast', which is no number above 0" in note
     assert note.endswith("pass --frame-interval, in seconds")
-    assert length("1e308", "m", "PhysicalSizeX")[0] is None
+    for value, unit in [("1e308", "m"), ("1e300", "µm"), ("1e-300", "µm"), ("2", "km")]:
+        size, (note,) = length(value, unit, "PhysicalSizeX")
+        assert size is None
+        assert note.endswith("is beyond all measure; the pixel size is unknown: pass --pixel-size, in µm")
+    assert duration("1e-9", "s", "TimeIncrement")[0] is None
     assert length("-1", "µm", "PhysicalSizeX")[0] is None
     assert length("0", "µm", "PhysicalSizeX") == (None, ())  # how programs say that they do not know
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-300, 1e300, float("inf"), float("nan")])
+def test_what_a_microscope_cannot_have_measured_is_not_believed(size: float) -> None:
+    value, (note,), fault = pixel_size_of([size, size])
+    assert (value, fault) == (None, "")
+    assert "makes no sense; give it with --pixel-size" in note
+
+
+@pytest.mark.parametrize("step", [1e-300, 1e300])
+def test_intervals_that_no_movie_has_are_not_believed(step: float) -> None:
+    for times, planned in [((), step), ((0.0, step, 2 * step), None), ((0.0, step, 2 * step), step)]:
+        value, (note,) = agreed_interval(times, planned, 3)
+        assert value is None
+        assert "makes no sense" in note
+        assert note.endswith("--frame-interval")
+    assert frame_interval_s(str(step), "s") is None
+    assert pixel_size_um((step, step), "µm") is None
 
 
 @pytest.mark.parametrize("dpi", [72, 96, 300])

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from cytodisk.checks import LARGEST_SCALE, SMALLEST_SCALE
+
 UNEVEN = 0.2
 """Frames are unevenly spaced where a step differs by more than this share from the median step."""
 
@@ -73,13 +75,23 @@ def agreed_interval(
     if frames < 2:
         return None, ()
     if len(times_s) != frames:
-        return planned, ()
+        return _believable(planned, ())
     measured, notes = interval_of(times_s)
     if measured is None or planned is None or abs(measured - planned) <= UNEVEN * planned:
-        return measured, notes
+        return _believable(measured, notes)
     return None, (
         f"its frames were {measured:.4g} s apart and {planned:.4g} s was set: the frame interval is taken as "
         "unknown; give it with --frame-interval",
+    )
+
+
+def _believable(interval_s: float | None, notes: tuple[str, ...]) -> tuple[float | None, tuple[str, ...]]:
+    """An interval that a movie can have, or a note on what is wrong with it."""
+    if interval_s is None or SMALLEST_SCALE <= interval_s <= LARGEST_SCALE:
+        return interval_s, notes
+    return None, (
+        f"its frame interval of {interval_s:g} s makes no sense: it is taken as unknown; give it with "
+        "--frame-interval",
     )
 
 
@@ -100,7 +112,7 @@ def pixel_size_of(sizes_um: Sequence[float | None]) -> tuple[float | None, tuple
     known = [size for size in sizes_um if size is not None]
     if len(known) < len(sizes_um):
         return None, (), ""
-    if not np.isfinite(known).all() or min(known) <= 0:
+    if not all(SMALLEST_SCALE <= size <= LARGEST_SCALE for size in known):
         words = " × ".join(f"{size:g}" for size in known)
         return None, (f"its pixel size of {words} µm makes no sense; give it with --pixel-size",), ""
     if max(known) > 1.01 * min(known):

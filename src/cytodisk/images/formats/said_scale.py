@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from cytodisk.checks import LARGEST_SCALE, SMALLEST_SCALE
 from cytodisk.errors import ReadError
 from cytodisk.images.formats.scale_units import is_no_unit, micrometres, number, seconds
 
@@ -54,7 +54,7 @@ def _measured(value: Any, unit: Any, field: str, factor_of: Any, kind: str, reme
         return None, (
             f"its {field} is {_shown(value)} {_shown(unit)}, which is no known unit of {kind}; {remedy}",
         )
-    if not math.isfinite(amount * factor):
+    if not SMALLEST_SCALE <= amount * factor <= LARGEST_SCALE:
         return None, (f"its {field} of {_shown(value)} {_shown(unit)} is beyond all measure; {remedy}",)
     return amount * factor, ()
 

@@ -14,7 +14,7 @@ from cytodisk.arrays import AnyArray, FloatArray, IntArray
 from cytodisk.errors import ReadError
 from cytodisk.images.reading import reading
 from cytodisk.images.spots.spots import PIXEL, Spots
-from cytodisk.images.spots.track_units import frame_interval_s, length_unit, micrometres
+from cytodisk.images.spots.track_units import frame_interval_s, length_unit, pixel_size_um
 from cytodisk.scale import Scale
 
 _METADATA = "geff"
@@ -199,10 +199,8 @@ def _axis(group: zarr.Group, said: dict[str, Any], usual: str) -> _Axis:
         name = usual
     unit = str(said.get("unit") or "")
     scale = said.get("scale")
-    factor = micrometres(length_unit(str(said.get("scaled_unit") or "")))
-    known = None
-    if isinstance(scale, int | float) and 0 < scale < np.inf and factor is not None:
-        known = float(scale) * factor
+    scaled_unit = length_unit(str(said.get("scaled_unit") or ""))
+    known = pixel_size_um((scale, scale), scaled_unit) if isinstance(scale, int | float) else None
     return _Axis(name, unit if said.get("type") == "time" else length_unit(unit), known)
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from cytodisk.checks import LARGEST_SCALE, SMALLEST_SCALE
 from cytodisk.images.spots.spots import PIXEL
 
 _MICROMETRES = {
@@ -43,7 +44,7 @@ def pixel_size_um(size: tuple[float, float] | None, unit: str) -> float | None:
     factor = micrometres(unit)
     if size is None or factor is None or not np.isclose(*size, rtol=0.01):
         return None
-    return size[1] * factor
+    return size[1] * factor if SMALLEST_SCALE <= size[1] * factor <= LARGEST_SCALE else None
 
 
 def frame_interval_s(interval: str | None, unit: str) -> float | None:
@@ -54,4 +55,4 @@ def frame_interval_s(interval: str | None, unit: str) -> float | None:
         value = float(interval or "nan") * (factor or np.nan)
     except ValueError:
         return None
-    return value if np.isfinite(value) and value > 0 else None
+    return value if SMALLEST_SCALE <= value <= LARGEST_SCALE else None
