@@ -102,3 +102,10 @@ class DamagedPartWarning(UserWarning):
 
 class EarlierVersionWarning(UserWarning):
     """A file of an earlier version lacks something, or its values mean something else now."""
+
+
+def words_of(error: BaseException) -> str:
+    """What an error says, on one line; the name of its kind where it says nothing."""
+    said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    words = " ".join(said.split()) or type(error).__name__
+    return words if len(words) <= 200 else f"{words[:200]}…"

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from cytodisk.errors import CytodiskError, ReadError
+from cytodisk.errors import CytodiskError, ReadError, words_of
 from cytodisk.parameter_words import short_words
 
 Content = TypeVar("Content")
@@ -40,13 +40,6 @@ def reading_file(path: str | os.PathLike[str], what: str, remedy: str) -> Iterat
         if isinstance(error, FileNotFoundError) and not os.path.lexists(path):
             raise ReadError(f"{path} does not exist: {remedy}") from error
         raise ReadError(f"{path} is not {what} ({words_of(error)}): {remedy}") from error
-
-
-def words_of(error: BaseException) -> str:
-    """What an error says, on one line; the name of its kind where it says nothing."""
-    said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-    words = " ".join(said.split()) or type(error).__name__
-    return words if len(words) <= 200 else f"{words[:200]}…"
 
 
 def text_of(path: str | os.PathLike[str]) -> str:

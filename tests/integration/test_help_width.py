@@ -1,4 +1,4 @@
-"""Help in a narrow window: no flag is cut."""
+"""Help: no flag is cut in a narrow window, and its start is quick."""
 
 import os
 import re
@@ -34,3 +34,9 @@ def test_every_flag_is_under_a_heading(command: str) -> None:
     found = grouped([*flags, "help"])
     assert "More" not in dict(found)
     assert sorted(flag for _, names in found for flag in names) == sorted([*flags, "help"])
+
+
+def test_the_list_of_commands_loads_nothing_slow() -> None:
+    code = "import sys, cytodisk.cli; print({'numpy', 'numba', 'pydantic', 'zarr'} & set(sys.modules))"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert loaded.stdout == "set()\n"

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from cytodisk.errors import DamagedPartWarning, EarlierVersionWarning
-from cytodisk.reading_files import words_of
+from cytodisk.errors import DamagedPartWarning, EarlierVersionWarning, words_of
 from cytodisk.stopping import Stopped, is_stop
 
 if TYPE_CHECKING:
