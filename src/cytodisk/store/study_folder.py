@@ -218,4 +218,5 @@ class StudyFolder(StudyParts):
             flush(self.path / name for name in (*written, *of_parts))
         except OSError as error:
             raise WriteError(f"cannot write {self.path}: {error.strerror or error}") from error
-        return others | of_parts | {name: mark_of(self.path / name) for name in written}
+        marks = others | of_parts | {name: mark_of(self.path / name) for name in written}
+        return dict(sorted(marks.items()))

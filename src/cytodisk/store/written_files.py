@@ -115,7 +115,7 @@ def _change(folder: Path, marks: Mapping[str, str], *, check: bool = False) -> N
         else:
             changed = known | dict(marks)
             gone = [name for name in marks if not check and not os.path.lexists(folder / name)]
-            changed = {name: mark for name, mark in changed.items() if name not in gone}
+            changed = {name: changed[name] for name in sorted(changed) if name not in gone}
         if changed != there.get(FILES):
             write_json(folder / PROVENANCE, there | {FILES: changed})
 
