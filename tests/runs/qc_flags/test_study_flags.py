@@ -28,7 +28,8 @@ def made(frames: int = 20, n_cells: int = 1, **provenance: object) -> MadeStudy:
     """Cells without any fault: areas, velocities and signals that waver a little."""
     rng = np.random.default_rng(0)
     number, time = np.divmod(np.arange(n_cells * frames), frames)
-    cells = pd.DataFrame({"cell": number, "frame": time, "status": "ok", "reason": "", "mask_remarks": ""})
+    cells = pd.DataFrame({"cell": number, "frame": time, "label": number + 1, "status": "ok"})
+    cells = cells.assign(reason="", mask_remarks="")
     cells = cells.assign(area=100 + rng.normal(0, 0.5, len(cells)), touches_border=False, border_share=0.0)
     cells["perimeter"] = np.sqrt(4 * np.pi * cells["area"])
     cells = cells.assign(
@@ -211,6 +212,7 @@ def test_single_masks() -> None:
     cells = pd.DataFrame(
         {
             "cell": [0, 1, 2],
+            "label": [1, 1, 1],
             "status": ["ok", "refused", "ok"],
             "reason": ["", "two cells", ""],
             "mask_remarks": ["", "", "mostly on the border"],
