@@ -1,11 +1,8 @@
 """Small good files of every kind that cytodisk reads, for `fuzz.py` to damage."""
 
 import io
-import json
 import shutil
-import zlib
 from functools import partial
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +11,7 @@ import tifffile
 
 import cytodisk as cd
 from cytodisk.runs.correlate.correlate_study import correlate_study
+from fuzz_exports import write_exports, write_folders
 
 STUDY, MAPPED, COMPARED = "movie_study", "map_study", "compared"
 IMAGES = "images"
@@ -38,7 +36,8 @@ def make_files(folder: Path) -> None:
     labels[5:25, 5:30], labels[30:52, 35:60] = 1, 2
     _write_tiffs(images, masks, counts, labels)
     _write_arrays(images, labels)
-    _write_exports(images, labels)
+    write_exports(images, labels)
+    write_folders(folder, masks, counts, labels)
     _write(folder / "masks.tif", masks, metadata={"axes": "TYX"})
     _write(folder / "signal.tif", counts, metadata={"axes": "TYX"})
     _write(folder / "labels.tif", labels, metadata={"axes": "YX"})
@@ -101,63 +100,6 @@ def _write_arrays(folder: Path, labels: np.ndarray) -> None:
     palette = Image.fromarray(labels.astype(np.uint8))
     palette.putpalette([value for grey in range(256) for value in (grey, 0, 0)])
     palette.save(folder / "palette.png")
-
-
-def _write_exports(folder: Path, labels: np.ndarray) -> None:
-    """What other programs write: outlines, tracks, OME-Zarr."""
-    ring = [[5, 5], [30, 5], [30, 25], [5, 25], [5, 5]]
-    feature = {
-        "type": "Feature",
-        "geometry": {"type": "Polygon", "coordinates": [ring]},
-        "properties": {"objectType": "annotation", "name": "cell 1"},
-    }
-    collection = {"type": "FeatureCollection", "features": [feature, feature]}
-    (folder / "cells.geojson").write_text(json.dumps(collection))
-    (folder / "tracks.xml").write_text(_TRACKMATE)
-    if find_spec("roifile"):
-        import roifile
-
-        roi = roifile.ImagejRoi.frompoints(np.array(ring[:4], dtype=np.float32))
-        roi.tofile(folder / "cell.roi")
-        roifile.roiwrite(folder / "cells.zip", [roi, roi], mode="w", name=["a", "b"])
-    _write_zarr(folder / "labels.ome.zarr", labels)
-
-
-_TRACKMATE = """<?xml version="1.0" encoding="UTF-8"?>
-<TrackMate version="7.11.1"><Model spatialunits="pixel" timeunits="frame"><AllSpots nspots="2">
-<SpotsInFrame frame="0"><Spot ID="1" name="a" FRAME="0" POSITION_X="15.0" POSITION_Y="15.0" POSITION_Z="0.0"
- RADIUS="8.0" POSITION_T="0.0" ROI_N_POINTS="4">-5 -5 5 -5 5 5 -5 5</Spot></SpotsInFrame>
-<SpotsInFrame frame="1"><Spot ID="2" name="b" FRAME="1" POSITION_X="16.0" POSITION_Y="15.0" POSITION_Z="0.0"
- RADIUS="8.0" POSITION_T="1.0" ROI_N_POINTS="4">-5 -5 5 -5 5 5 -5 5</Spot></SpotsInFrame></AllSpots>
-<AllTracks><Track name="Track_0" TRACK_ID="0">
-<Edge SPOT_SOURCE_ID="1" SPOT_TARGET_ID="2"/></Track></AllTracks>
-<FilteredTracks><TrackID TRACK_ID="0"/></FilteredTracks></Model>
-<Settings><ImageData filename="a.tif" width="70" height="60" nframes="2" pixelwidth="1.0" pixelheight="1.0"/>
-</Settings></TrackMate>
-"""
-
-
-def _write_zarr(folder: Path, labels: np.ndarray) -> None:
-    """An OME-Zarr of version 0.4 with one resolution."""
-    chunk = folder / "0" / "0.0"
-    chunk.parent.mkdir(parents=True)
-    chunk.write_bytes(zlib.compress(labels.tobytes()))
-    array = {
-        "zarr_format": 2,
-        "shape": labels.shape,
-        "chunks": labels.shape,
-        "dtype": "<u2",
-        "compressor": {"id": "zlib", "level": 1},
-        "fill_value": 0,
-        "order": "C",
-        "filters": None,
-    }
-    axes = [{"name": name, "type": "space", "unit": "micrometer"} for name in "yx"]
-    scale = {"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [0.1, 0.1]}]}
-    multiscales = [{"version": "0.4", "axes": axes, "datasets": [scale]}]
-    (folder / "0" / ".zarray").write_text(json.dumps(array))
-    (folder / ".zgroup").write_text('{"zarr_format": 2}')
-    (folder / ".zattrs").write_text(json.dumps({"multiscales": multiscales}))
 
 
 def _write_texts(folder: Path) -> None:

@@ -323,6 +323,46 @@ def of_tiff(random: Generator, content: bytes) -> bytes:
     return bytes(changed)
 
 
+def of_fields(random: Generator, content: bytes) -> bytes:
+    """Whole numbers of 2, 4 or 8 bytes overwritten at even places, most of them where heads are."""
+    changed = bytearray(content)
+    for _ in range(int(random.integers(1, 4))):
+        form = str(_one(random, ["<H", ">H", "<I", ">I", "<i", "<q", "<Q", "<f", "<d"]))
+        size = struct.calcsize(form)
+        reach = len(content) if random.random() < 0.5 else min(len(content), 2048)
+        place = int(random.integers(max(1, (reach - size) // 2))) * 2
+        if place + size > len(content):
+            continue
+        if form[1] in "fd":
+            value = _one(random, [float("nan"), float("inf"), 0.0, -1.0, 1e30])
+        else:
+            lowest, most = (-(2 ** (8 * size - 1)), 2 ** (8 * size - 1) - 1)
+            if form[1].isupper():
+                lowest, most = 0, 2 ** (8 * size) - 1
+            value = _one(
+                random, [0, 1, 2, 3, 8, 255, 65535, 2**31 - 1, 2**31, most, lowest, -1, len(content)]
+            )
+            value = min(max(value, lowest), most)
+        struct.pack_into(form, changed, place, value)
+    return bytes(changed)
+
+
+def of_inner_xml(random: Generator, content: bytes) -> bytes:
+    """The XML in a file of a microscope changed as text, of the same length; its coding is kept."""
+    for coding in ("utf-8", "utf-16-le"):
+        first, last = "<ImageDocument>".encode(coding), "</ImageDocument>".encode(coding)
+        if coding == "utf-16-le":
+            first, last = "<LMSData".encode(coding), "</LMSDataContainerHeader>".encode(coding)
+        start, end = content.find(first), content.find(last)
+        if 0 <= start < end:
+            end += len(last)
+            text = content[start:end].decode(coding)
+            changed = of_text(random, text.encode()).decode(errors="replace").ljust(len(text))[: len(text)]
+            packed = changed.encode(coding, errors="replace").ljust(end - start)[: end - start]
+            return content[:start] + packed + content[end:]
+    return of_bytes(random, content)
+
+
 def of_png(random: Generator, content: bytes) -> bytes:
     """Bytes of a chunk of a PNG changed; its checksum is right."""
     chunks, place = [], 8

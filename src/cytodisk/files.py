@@ -228,6 +228,11 @@ def _lock(file: IO[bytes]) -> None:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
+def real_path(path: Path) -> Path:
+    """Where a file stands once links are followed; a link in a circle stays as it is."""
+    return Path(os.path.realpath(path))  # Path.resolve raises RuntimeError on a circle
+
+
 def file_name(path: str) -> str:
     """Last part of a path of any system: folders are nobody's business but the owner's."""
     return PureWindowsPath(path).name or path

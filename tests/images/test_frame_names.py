@@ -81,6 +81,12 @@ def test_names_that_count_something_else_are_refused(tmp_path: Path, names: list
         named(tmp_path, *names)
 
 
+def test_a_number_that_no_integer_holds(tmp_path: Path) -> None:
+    found = named(tmp_path, "t1.tif", "t2.tif", f"t{'9' * 40}.tif")
+    assert len(found.files) == 3
+    assert "most left out" in found.note
+
+
 def test_a_pattern_says_that_slices_are_frames(tmp_path: Path) -> None:
     pattern = tmp_path / "z*.tif"
     found = frame_names(pattern, {name: tmp_path / name for name in ("z1.tif", "z2.tif")})

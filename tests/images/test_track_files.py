@@ -296,6 +296,8 @@ def test_a_claim_of_a_geff_is_compared_with_what_is_stored(tmp_path: Path) -> No
         (('FRAME="1"', 'FRAME="1.5"'), "frame is 1.5, no whole number"),
         (('SPOT_TARGET_ID="11"', 'SPOT_TARGET_ID="99"'), "1 links lead to spots that the file has not"),
         (("</TrackMate>", ""), "is no XML file, or is cut short"),
+        (("UTF-8", "UTF1"), "unknown encoding: UTF1.: save it again"),
+        (("UTF-8", "UTF-7"), "multi-byte encodings are not supported: save it again"),
         (("<Edge ", "<Other "), "holds no track: track the cells"),
     ],
 )

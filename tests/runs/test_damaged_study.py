@@ -1,5 +1,6 @@
 """A part counts as done only if its row, its tables and its map are as they were written."""
 
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -7,7 +8,7 @@ import pytest
 from movie_files import SMALL, Stopped, assert_same_movie, stop_after, write_movie
 
 import cytodisk as cd
-from cytodisk.errors import DamagedPartWarning, StudyError
+from cytodisk.errors import DamagedPartWarning, ReadError, StudyError
 from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
 from cytodisk.runs.movie.movie_study import movie_study
 
@@ -86,3 +87,44 @@ def test_a_part_of_something_else_is_named(inputs: MovieInputs, tmp_path: Path) 
     (tmp_path / "out" / ".parts" / "00009_t00000.json").write_text("{}")
     with pytest.raises(StudyError, match=r"parts that are not of this run: 00009_t00000\. Remove them"):
         movie_study(inputs, tmp_path / "out", resume=True)
+
+
+def swapped(folder: Path) -> None:
+    first, second = (folder / f"maps/cell_00000_t0000{frame}.npz" for frame in (1, 2))
+    content = first.read_bytes()
+    first.write_bytes(second.read_bytes())
+    second.write_bytes(content)
+
+
+def without_a_chunk(folder: Path) -> None:
+    """The activity without some of its numbers, which would read as NaN."""
+    packed = folder / "activity.zarr.zip"
+    with zipfile.ZipFile(packed) as archive:
+        held = {name: archive.read(name) for name in archive.namelist()}
+    del held["cell_00000/velocity/0.0"]
+    with zipfile.ZipFile(packed, "w") as archive:
+        for name, content in held.items():
+            archive.writestr(name, content)
+
+
+@pytest.mark.parametrize(
+    ("harm", "read", "named"),
+    [
+        (swapped, lambda study: study.map(0, 1), "cell_00000_t00001.npz"),
+        (swapped, lambda study: study.movie()[2], "cell_00000_t00002.npz"),
+        (swapped, lambda study: study.movie().points_yx, "cell_00000_t00001.npz"),
+        (without_a_chunk, lambda study: study.activity().load(), "activity.zarr.zip"),
+    ],
+)
+def test_what_the_run_did_not_write_is_not_read(
+    inputs: MovieInputs,
+    tmp_path: Path,
+    harm: Callable[[Path], None],
+    read: Callable[[cd.Study], object],
+    named: str,
+) -> None:
+    study = movie_study(inputs, tmp_path / "out")
+    read(study)
+    harm(tmp_path / "out")
+    with pytest.raises(ReadError, match=rf"{named} is not the file that the run wrote.*--resume"):
+        read(cd.open_study(tmp_path / "out"))

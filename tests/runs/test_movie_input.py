@@ -1,5 +1,6 @@
 """What a user may hand in by mistake: each ends in a message, or in a row with its reason."""
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -359,3 +360,18 @@ def test_a_channel_with_the_name_of_the_velocity(masks: Path, named: Any, opened
     words = f"named.ome.tif has a channel '{name}', which is the name of the edge's velocity: .* --channels"
     with pytest.raises(SignalError, match=words):
         opened(masks, named("Rac1", name), SMALL)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links take rights there")
+@pytest.mark.parametrize("part", ["masks", "signal"])
+def test_a_link_in_a_circle_is_a_missing_frame(tmp_path: Path, part: str) -> None:
+    for name in ("masks", "signal"):
+        (tmp_path / name).mkdir()
+        for number in range(3):
+            tifffile.imwrite(tmp_path / name / f"t{number}.tif", np.ones((4, 4), np.uint8))
+    link = tmp_path / part / "t1.tif"
+    link.unlink()
+    link.symlink_to(link)
+    assert "t1.tif is not there" in "; ".join(
+        open_movie(tmp_path / "masks", tmp_path / "signal", SMALL).notes
+    )

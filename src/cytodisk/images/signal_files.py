@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.errors import ReadError, SignalError, as_data
+from cytodisk.files import real_path
 from cytodisk.images.chosen_channels import stem_of
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
@@ -173,7 +174,7 @@ def common_name(signal: Path) -> str:
         As `pair_images` takes it.
     """
     if is_folder_of_files(signal):
-        return signal.resolve().name
+        return real_path(signal).name
     return stem_of(signal.name).strip(" _-.")
 
 

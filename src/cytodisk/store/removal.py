@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cytodisk.errors import StudyError, WriteError
-from cytodisk.files import is_temporary
+from cytodisk.files import is_temporary, real_path
 from cytodisk.store.provenance_file import PROVENANCE, read_provenance
 from cytodisk.store.study_kind import PARTS
 from cytodisk.store.written_files import FILES, recorded
@@ -103,10 +103,10 @@ def refuse_removal(folder: Path, names: Collection[str], inputs: Iterable[Path])
     if blocked := [name for name in names if (folder / name).is_dir() and not (folder / name).is_symlink()]:
         raise StudyError(f"{folder / blocked[0]} is a folder where the study wrote a file: move it")
     there = {found: name for name in names if (found := _identity(folder / name)) is not None}
-    places = {(folder / name).resolve() for name in names}
+    places = {real_path(folder / name) for name in names}
     for file in inputs:
         own = there.get(_identity(file) or (0, 0))
-        resolved = file.resolve()
+        resolved = real_path(file)
         if own is None and (file.is_dir() or resolved in places):
             own = next((str(place) for place in places if place.is_relative_to(resolved)), None)
         if own is not None:

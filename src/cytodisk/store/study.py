@@ -25,6 +25,7 @@ from cytodisk.store.study_kind import ACTIVITY, CELLS, MAPS
 from cytodisk.store.table_file import REMEDY, opened_table, read_cells, read_checked, units_in
 from cytodisk.store.tables import CONSISTENCY_COLUMNS, EDGE_COLUMNS, Columns
 from cytodisk.store.window_columns import WINDOW_COLUMNS
+from cytodisk.store.written_files import recorded, unchanged
 
 WINDOWS, EDGE, CONSISTENCY = "windows.parquet", "edge.parquet", "consistency.parquet"
 
@@ -160,7 +161,7 @@ class Study:
             place = "" if frame is None else f", frame {frame},"
             reason = rows["reason"].iloc[0] or "it was not kept (--no-maps)"
             raise ReadError(f"cell {cell}{place} of {self.path} has no map: {reason}")
-        return replace(load_map(path), scale=self.scale)
+        return self._load(path)
 
     def activity(self, cell: int = 0) -> xr.Dataset:
         """Activity of one cell of a movie, read from disk when asked for.
@@ -184,7 +185,7 @@ class Study:
         found = open_activity(self.path / ACTIVITY, cell)
         if found["frame"].values.tolist() != sorted(rows["frame"]):
             raise ReadError(f"{self.path / ACTIVITY}: cell {cell} has other frames than in {CELLS}: {REMEDY}")
-        return found
+        return unchanged(found, self.path / ACTIVITY, self._marks)
 
     def movie(self, cell: int = 0) -> DiskMovie:
         """Maps of one cell through time, each read from disk when asked for.
@@ -214,7 +215,7 @@ class Study:
             tuple(records),
             (height, width),
             self.scale,
-            lambda frame: replace(load_map(self._map_path(part_key(cell, frame))), scale=self.scale),
+            lambda frame: self._load(self._map_path(part_key(cell, frame))),
         )
 
     def _record(self, cell: int, frame: int, row: Any) -> FrameRecord:
@@ -223,7 +224,14 @@ class Study:
         if row["status"] != "ok":
             return FrameRecord(row["status"], row["reason"], None)
         path = self._map_path(part_key(cell, frame))
-        return FrameRecord("ok", "", lambda: load_boundary(path))
+        return FrameRecord("ok", "", lambda: unchanged(load_boundary(path), path, self._marks))
+
+    def _load(self, path: Path) -> DiskMap:
+        return unchanged(replace(load_map(path), scale=self.scale), path, self._marks)
+
+    @cached_property
+    def _marks(self) -> dict[Path, str]:
+        return {self.path / name: mark for name, mark in recorded(self.provenance).items()}
 
     def _map_path(self, key: str) -> Path:
         return self.path / MAPS / f"cell_{key}.npz"

@@ -6,14 +6,16 @@ import os
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import lru_cache
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Any, TypeVar
 
-from cytodisk.errors import StudyError
+from cytodisk.errors import ReadError, StudyError
 from cytodisk.files import has_mark, mark_of
 from cytodisk.store.provenance_file import PROVENANCE, read_provenance, write_json
 
+Content = TypeVar("Content")
 FILES = "files"  # of the provenance
 _READ_AT_ONCE = 8  # files; checksums are computed side by side
 _SHOWN = 3
@@ -66,6 +68,42 @@ def lost_files(folder: Path, marks: Mapping[str, str]) -> list[str]:
     with ThreadPoolExecutor(_READ_AT_ONCE) as threads:
         whole = threads.map(lambda name: has_mark(folder / name, known[name]), known)
         return [name for name, is_whole in zip(known, whole, strict=True) if not is_whole]
+
+
+def unchanged(found: Content, path: Path, marks: Mapping[Path, str]) -> Content:
+    """What was read of a file, if it is the one that the run wrote, and not another one under its name.
+
+    Parameters
+    ----------
+    found : object
+    path : Path
+    marks : dict of Path to str
+        See `recorded`; a file without a mark, as of an earlier version, is not looked at.
+
+    Raises
+    ------
+    ReadError
+        It is another one.
+    """
+    mark = marks.get(path, "")
+    if mark and not _is_as_written(path, mark, *_state(path)):
+        raise ReadError(
+            f"{path} is not the file that the run wrote: it was changed, cut or swapped; run the same "
+            "command again with --resume, which makes it anew"
+        )
+    return found
+
+
+@lru_cache(maxsize=10_000)
+def _is_as_written(path: Path, mark: str, _changed_ns: int, _size: int) -> bool:
+    return has_mark(path, mark)
+
+
+def _state(path: Path) -> tuple[int, int]:
+    with suppress(OSError):
+        there = path.stat()
+        return there.st_mtime_ns, there.st_size
+    return 0, 0
 
 
 def some_of(names: Iterable[str]) -> str:

@@ -185,7 +185,7 @@ def _with_gaps(found: FrameNames) -> FrameNames:
     numbers, there = found.numbers, set(found.numbers)
     step = math.gcd(*(after - before for before, after in pairwise(numbers)))
     every = range(numbers[0], numbers[-1] + 1, step)
-    n_lost = len(every) - len(numbers)
+    n_lost = (numbers[-1] - numbers[0]) // step + 1 - len(numbers)  # len(every) knows no number of 20 digits
     if n_lost > _MOST_LISTED * len(numbers):
         return replace(found, note=_apart_words(numbers))
     lost = [number for number in every if number not in there]

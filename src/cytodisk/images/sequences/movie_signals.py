@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from cytodisk.errors import SignalError
+from cytodisk.files import real_path
 from cytodisk.images.chosen_channels import with_names
 from cytodisk.images.formats.file_sequence import open_sequence
 from cytodisk.images.frame_file import FileChoice, FrameFile
@@ -66,7 +67,7 @@ def open_movie_signal(signal: Path, masks: MovieMasks, choice: FileChoice) -> Fr
 
 def _channel_name(names: FrameNames) -> str:
     """What to call a channel without a name: what the files have in common, or else their folder."""
-    return names.series if len(names.series) > 1 else names.files[0].resolve().parent.name
+    return names.series if len(names.series) > 1 else real_path(names.files[0]).parent.name
 
 
 def open_movie_images(path: Path, choice: FileChoice) -> FrameFile:
@@ -99,9 +100,9 @@ def _signal_frames(place: Path, masks: MovieMasks) -> tuple[FrameNames, str]:
 
 
 def _without_masks(files: Sequence[Path], masks: MovieMasks) -> list[Path]:
-    of_masks = set() if masks.names is None else {mask.resolve() for mask in masks.names.files}
+    of_masks = set() if masks.names is None else {real_path(mask) for mask in masks.names.files}
     images = [file for file in files if not file.name.lower().endswith(ENDINGS)]
-    return [file for file in images if file.resolve() not in of_masks]
+    return [file for file in images if real_path(file) not in of_masks]
 
 
 def _by_base_name(files: Sequence[Path], masks: FrameNames, endings: Sequence[str]) -> FrameNames | None:
@@ -116,7 +117,8 @@ def _by_base_name(files: Sequence[Path], masks: FrameNames, endings: Sequence[st
         if len(fitting) > 1:
             names = ", ".join(file.name for file in fitting)
             raise SignalError(
-                f"{mask.name} has several images ({names}): pass a pattern that fits one of them"
+                f"{mask} has several images in {fitting[0].parent} ({names}): pass a pattern that fits one "
+                "of them"
             )
         found += fitting or [files[0].parent / f"{base_name(mask.name)}{endings[0]}{files[0].suffix}"]
     known = set(files)

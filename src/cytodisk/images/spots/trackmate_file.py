@@ -56,6 +56,8 @@ def read_trackmate(path: Path) -> Spots:
         words = f"has no {error.args[0]}" if isinstance(error, KeyError) else str(error)
         line = parser.CurrentLineNumber
         raise ReadError(f"{path}, line {line}: {words}: save it again with TrackMate") from error
+    except LookupError as error:  # of its coding
+        raise ReadError(f"{path} cannot be read ({error}): save it again with TrackMate") from error
     return _session(path, found) if found.root == _SESSION else _exported(path, found)
 
 

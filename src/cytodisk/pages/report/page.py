@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.errors import ParameterError, StudyError
-from cytodisk.files import replacing
+from cytodisk.files import real_path, replacing
 from cytodisk.images.signal_files import FrameSource
 from cytodisk.pages.report.bokeh_parts import bokeh, palette
 from cytodisk.pages.report.encode import json_for_script
@@ -100,7 +100,7 @@ def write_report(
     if not target.parent.is_dir():
         raise StudyError(f"cannot write {target}: there is no folder {target.parent}")
     html = _render(shown, shown_signal(study, signal), progress)
-    own = [target.name] if target.parent.resolve() == study.path.resolve() else []
+    own = [target.name] if real_path(target.parent) == real_path(study.path) else []
     with writing_files(study.path, *own), replacing(target) as temporary:
         temporary.write_text(html, encoding="utf-8")
     return target

@@ -10,7 +10,7 @@ from typing import Any
 
 import pandas as pd
 
-from cytodisk.files import file_name
+from cytodisk.files import file_name, real_path
 from cytodisk.pages.report.pictures import Box
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_names import without_folders
@@ -62,7 +62,7 @@ def page_words(
     study = cell.study
     statuses, others = _other_cells(study)
     return {
-        "title": study.path.resolve().name,
+        "title": real_path(study.path).name,
         "facts": list(_facts(cell)),
         "flags": [_flag(flag, cell.cell, study) for flag in flags],
         "pixels_words": "with its windows" if found.source else "as windows: no pixels to show",

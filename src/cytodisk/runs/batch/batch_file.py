@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from cytodisk.errors import ParameterError
+from cytodisk.files import real_path
 from cytodisk.number_words import comma_advice, comma_in_toml, without_comma
 from cytodisk.reading_files import text_of
 from cytodisk.runs.batch.batch_faults import Faults
@@ -205,7 +206,7 @@ def _all_different(reader: RowReader, rows: Iterable[FileRow]) -> Iterator[Batch
     for row in rows:
         for item in reader.inputs(row):
             place = f"{row.place}, {item.masks.name}"
-            file = item.masks.resolve()
+            file = real_path(item.masks)
             if file in files:
                 reader.faults.add(place, f"the masks {item.masks} are an input already, in {files[file]}")
             elif item.name.casefold() in names:

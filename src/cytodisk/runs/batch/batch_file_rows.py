@@ -12,6 +12,7 @@ from string import Formatter
 from typing import Any
 
 from cytodisk.errors import ParameterError
+from cytodisk.files import real_path
 from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 from cytodisk.images.mask_names import base_name, image_stem, natural_order
 from cytodisk.runs.batch.batch_faults import Faults
@@ -187,7 +188,7 @@ class RowReader:
             return Path(signal)  # how the names of images go on beside the masks
         if not _exists(path) and not (is_pattern(path) and glob.glob(str(path), recursive=True)):  # noqa: PTH207
             self.faults.add(place, f"signal {path} does not exist")
-        elif not is_folder_of_files(masks) and path.resolve() == masks.resolve():
+        elif not is_folder_of_files(masks) and real_path(path) == real_path(masks):
             self.faults.add(
                 place, f"signal {path} is the mask file itself: name its image, or take signal out"
             )

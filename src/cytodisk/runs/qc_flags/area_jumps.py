@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import pandas as pd
 
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted, frames_of, mapped_rows
@@ -33,9 +32,8 @@ def area_jumps(study: Study) -> Iterator[QCFlag]:
     """Frames whose mask leaps: of a movie, or of a stack of masks that plainly is one."""
     places: list[Place] = []
     flickering: list[tuple[float, str]] = []
-    for rows in _series(study):
-        cell, frame = rows["cell"].to_numpy(), rows["frame"].to_numpy()
-        step = area_steps(frame, rows["area"].to_numpy(dtype=np.float64))
+    for cell, frame, area in _series(study):
+        step = area_steps(frame, area)
         if not study.is_movie and not follows_one_cell(step):
             continue
         found = leaps(step)
@@ -69,14 +67,19 @@ def area_jumps(study: Study) -> Iterator[QCFlag]:
         )
 
 
-def _series(study: Study) -> Iterator[pd.DataFrame]:
-    """Rows of one cell each; without tracking, of one label of a file."""
+def _series(study: Study) -> Iterator[tuple[IntArray, IntArray, FloatArray]]:
+    """Cells, frames and areas of one cell each; without tracking, of one label of a file."""
     rows = mapped_rows(study)
-    if not study.is_movie and not {"source", "label"} <= set(rows):
+    by = ["cell"] if study.is_movie else ["source", "label"]
+    if not {*by} <= set(rows):
         return
-    for _, one in rows.groupby("cell" if study.is_movie else ["source", "label"]):
-        if not one["frame"].duplicated().any():
-            yield one
+    fewest = 1 if study.is_movie else _FEW_STEPS + 1  # most images have one frame and thousands of cells
+    groups = rows.groupby(by).indices.values()
+    cell, frame = rows["cell"].to_numpy(), rows["frame"].to_numpy()
+    area = rows["area"].to_numpy(dtype=np.float64)
+    for one in groups:
+        if len(one) >= fewest and len(np.unique(frame[one])) == len(one):
+            yield cell[one], frame[one], area[one]
 
 
 def area_steps(frame: IntArray, area: FloatArray) -> FloatArray:
