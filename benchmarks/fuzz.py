@@ -83,8 +83,7 @@ def damage(files: Path, place: Path, number: int, seed: int, kinds: Sequence[str
     content = mutation(random, damaged.read_bytes())
     damaged.unlink()
     damaged.write_bytes(content)
-    is_image = target.root.startswith("images") and not target.root.endswith(".zarr")
-    return target, damaged if is_image else path, damaged
+    return target, damaged if target.alone else path, damaged
 
 
 def try_mutant(files: Path, number: int, seed: int, kinds: Sequence[str] = ()) -> Outcome:

@@ -73,6 +73,11 @@ class Target:
     use: Use
     weight: float = 1.0
 
+    @property
+    def alone(self) -> bool:
+        """Whether the damaged file is used, rather than the folder that it is in."""
+        return self.root == IMAGES
+
 
 def _use_image(path: Path, _: Path, number: int) -> None:
     file = open_frames(path)
