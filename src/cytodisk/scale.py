@@ -14,6 +14,14 @@ from cytodisk.parameter_words import number_words, short_words
 Number = TypeVar("Number", float, FloatArray)
 """A number or an array of numbers."""
 
+_ALIKE = 1.01
+
+
+def alike(first: float, *others: float, ratio: float = _ALIKE) -> bool:
+    """Whether sizes or times above 0 differ by 1 % at most, or by another ratio of largest to least."""
+    values = (first, *others)
+    return max(values) <= ratio * min(values)
+
 
 @dataclass(frozen=True)
 class Scale:

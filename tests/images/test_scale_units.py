@@ -4,7 +4,7 @@ import pytest
 
 from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
 from cytodisk.images.formats.said_scale import duration, length, print_resolution
-from cytodisk.images.formats.scale_units import is_no_unit, micrometres, number, seconds
+from cytodisk.images.scale_units import is_no_unit, micrometres, number, seconds
 from cytodisk.images.spots.track_units import frame_interval_s, pixel_size_um
 
 LENGTHS = {

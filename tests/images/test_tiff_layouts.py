@@ -181,3 +181,15 @@ def test_a_long_set_is_opened_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     for number in (1, 2, 0, 1):
         file.frame(number)
     assert not opened
+
+
+def test_a_scene_whose_name_stands_twice_is_chosen_by_number(tmp_path: Path) -> None:
+    path = tmp_path / "a.ome.tif"
+    with tifffile.TiffWriter(path, ome=True) as writer:
+        for number, name in enumerate(["cell", "cell", "field"]):
+            image = np.full((20 + number, 30), number, np.uint8)
+            writer.write(image, metadata={"axes": "YX", "Name": name}, photometric="minisblack")
+    for chosen, value in (("1", 1), ("field", 2)):
+        assert open_frames(path, choice=FileChoice(scene=chosen)).frame(0).max() == value
+    with pytest.raises(ReadError, match=r"has no scene 'cell'.*0 .cell: 20 × 30.*1 .cell: 21 × 30"):
+        open_frames(path, choice=FileChoice(scene="cell"))

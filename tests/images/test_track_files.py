@@ -17,6 +17,7 @@ from cytodisk.images.frames import open_frames
 from cytodisk.images.spots.label_spots import LabelTracks, label_tracks
 from cytodisk.images.spots.spots import Spots, branches
 from cytodisk.images.spots.track_files import read_tracks
+from cytodisk.images.spots.track_units import frame_interval_s, length_unit, pixel_size_um
 from cytodisk.images.what_it_is import look_at
 from cytodisk.scale import UNKNOWN, Scale
 from outline_files import trackmate_xml, write_geff
@@ -348,3 +349,25 @@ def test_a_file_of_the_geff_library(tmp_path: Path) -> None:
 def test_files_of_tracks_do_not_slow_the_start() -> None:
     code = "import sys, cytodisk.images.spots.track_files; assert 'zarr' not in sys.modules"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("unit", "side_um"),
+    [("microns", 0.2), ("Micrometres", 0.2), ("\u03bcm", 0.2), ("Å", 2e-5), ("nm", 2e-4), ("pixel", None)],
+)
+def test_units_of_tracks_are_those_of_images(unit: str, side_um: float | None) -> None:
+    assert pixel_size_um((0.2, 0.2), length_unit(unit)) == pytest.approx(side_um)
+
+
+@pytest.mark.parametrize(
+    ("interval", "unit", "seconds"),
+    [
+        ("0,5", "min", 30.0),
+        ("250", "msec", 0.25),
+        ("2", "hrs", 7200.0),
+        ("1", "frame", None),
+        (None, "s", None),
+    ],
+)
+def test_intervals_of_tracks(interval: str | None, unit: str, seconds: float | None) -> None:
+    assert frame_interval_s(interval, unit) == pytest.approx(seconds)

@@ -13,6 +13,17 @@ import numpy as np
 from cytodisk.errors import ReadError
 from cytodisk.images.frame_file import Cut, FrameFile, StoredFrames
 
+COLOURS = {2: ("grey", "alpha"), 3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha")}
+"""Names of the samples of a colour image, by their number."""
+
+
+def channel_names(given: Sequence[str], count: int) -> tuple[str, ...]:
+    """A name for each channel: those given, each made unique, or "0", "1", … where they are not as many."""
+    if len(given) != count:
+        return tuple(str(number) for number in range(count))
+    again = [given[:place].count(name) for place, name in enumerate(given)]
+    return tuple(f"{name} ({n + 1})" if n else name for name, n in zip(given, again, strict=True))
+
 
 def with_names(file: FrameFile, name: str = "") -> FrameFile:
     """A file with names for its channels, those of the file, or else made of the file's own name.

@@ -169,7 +169,7 @@ def scene_number(file: Path, scenes: Sequence[tuple[str, bool]], chosen: str | N
     readable = [number for number, (_, can_be) in enumerate(scenes) if can_be]
     if not readable:
         return None
-    found = None if chosen is None else _number_of(chosen, [name for name, _ in scenes])
+    found = None if chosen is None else place_of(chosen, [name for name, _ in scenes])
     if found is not None:
         return found
     listed = _listed([f"{number} ({scenes[number][0]})" for number in readable])
@@ -180,8 +180,8 @@ def scene_number(file: Path, scenes: Sequence[tuple[str, bool]], chosen: str | N
     )
 
 
-def _number_of(chosen: str, names: Sequence[str]) -> int | None:
-    """Where a name is, or a number where there is no such name."""
+def place_of(chosen: str, names: Sequence[str]) -> int | None:
+    """Where a name is that stands once, or the number that it is; None where there is neither."""
     if list(names).count(chosen) == 1:
         return list(names).index(chosen)
     if chosen.isdecimal() and int(chosen) < len(names):

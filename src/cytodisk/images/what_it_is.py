@@ -14,7 +14,7 @@ from cytodisk.geometry.fragments import SeveralCells, without_others
 from cytodisk.images.changed_frames import changed_file
 from cytodisk.images.evidence.classes import TwoClasses, may_be_classes, two_classes
 from cytodisk.images.evidence.frame_labels import check_labels
-from cytodisk.images.evidence.frame_sight import FrameSight, see_frame
+from cytodisk.images.evidence.frame_sight import BACKGROUND_SHARE, FrameSight, see_frame
 from cytodisk.images.evidence.picture_signs import fraction_words, picture_words
 from cytodisk.images.file_axes import axis_words
 from cytodisk.images.file_parameters import Fragments, Kind, KindParameters
@@ -23,7 +23,6 @@ from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.label_boxes import cell_box
 
 _FEW_FRAMES = 2  # with fractions, and none without, are enough to see a picture
-_BACKGROUND = 0.75  # of the image's border has one value: that of the background
 
 Reader: TypeAlias = Callable[[int], FramePixels]
 Seen: TypeAlias = FrameSight | ReadError
@@ -229,7 +228,7 @@ def _refuse_background(file: FrameFile, usable: Sequence[FrameSight]) -> None:
     """Refuse a file that has the background marked in all of its frames."""
     held = [sight for sight in usable if len(sight.cells) and len(sight.values) > 1]
     around = [sight.around for sight in held]
-    if not held or any(value == 0 or share < _BACKGROUND for value, share in around):
+    if not held or any(value == 0 or share < BACKGROUND_SHARE for value, share in around):
         return
     value, share = min(around, key=lambda pair: pair[1])
     what = "each frame" if file.n_frames > 1 else "the image"

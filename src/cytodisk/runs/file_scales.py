@@ -8,6 +8,7 @@ from typing import Literal, TypeAlias
 
 from cytodisk.errors import SignalError
 from cytodisk.images.frame_file import FrameFile
+from cytodisk.scale import alike
 
 Quantity: TypeAlias = Literal["pixel_size_um", "frame_interval_s"]
 
@@ -15,7 +16,6 @@ _WORDS = {
     "pixel_size_um": ("pixel size", "µm", "--pixel-size"),
     "frame_interval_s": ("frame interval", "s", "--frame-interval"),
 }
-_ALIKE = 1.01  # largest over least size of files that agree
 
 
 def agreed(files: Sequence[FrameFile], quantity: Quantity) -> float | None:
@@ -67,8 +67,3 @@ def most_common_size(sizes: Iterable[float]) -> float | None:
     counts = Counter(sizes)
     supporters = {size: sum(n for other, n in counts.items() if alike(size, other)) for size in counts}
     return max(supporters, key=lambda size: supporters[size], default=None)
-
-
-def alike(size: float, other: float) -> bool:
-    """Whether two sizes differ by 1 % at most."""
-    return max(size, other) <= _ALIKE * min(size, other)

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from cytodisk.images.evidence.frame_sight import FrameSight
+from cytodisk.images.evidence.frame_sight import BACKGROUND_SHARE, FrameSight
 
 _MOST_CLASSES = 5
-_BACKGROUND = 0.75  # of the image's border belongs to the background
 _EXPORT = "export Object Identities"
 
 
@@ -61,7 +60,7 @@ def two_classes(sights: Sequence[FrameSight]) -> TwoClasses | str | None:
         return None
     around = [sight.around for sight in sights if len(sight.values) > 1]
     background, share = min(around, key=lambda pair: pair[1])
-    if values != [1, 2] and share >= _BACKGROUND:
+    if values != [1, 2] and share >= BACKGROUND_SHARE:
         return None  # which is refused as inverted, whatever the other values are
     if values != [1, 2]:
         shown = ", ".join(f"{value:g}" for value in values)
@@ -70,7 +69,7 @@ def two_classes(sights: Sequence[FrameSight]) -> TwoClasses | str | None:
             "make a mask of the class of the cells; if each value is a cell, pass kind='labels' "
             "(--kind labels)"
         )
-    if share < _BACKGROUND or any(value != background for value, _ in around):
+    if share < BACKGROUND_SHARE or any(value != background for value, _ in around):
         return (
             "holds the values 1 and 2 and no 0, as classes of ilastik's Simple Segmentation, and both lie at "
             f"the border of the image, so which one is the background is not plain: {_EXPORT}, or set the "

@@ -11,6 +11,9 @@ from cytodisk.arrays import AnyArray
 from cytodisk.images.frame_pixels import FramePixels
 from cytodisk.images.label_boxes import value_runs
 
+BACKGROUND_SHARE = 0.75
+"""Share of the image's border that has one value, from which on this value is that of the background."""
+
 
 @dataclass(frozen=True, eq=False)
 class FrameSight:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.errors import ReadError
-from cytodisk.images.formats.file_metadata import channel_names
+from cytodisk.images.chosen_channels import channel_names
 from cytodisk.images.formats.npy import read_npy
 from cytodisk.images.formats.projection import projected
 from cytodisk.images.formats.stored_axes import stored_axes

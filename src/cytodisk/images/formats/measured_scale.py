@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from cytodisk.checks import LARGEST_SCALE, SMALLEST_SCALE
+from cytodisk.scale import alike
 
 UNEVEN = 0.2
 """Frames are unevenly spaced where a step differs by more than this share from the median step."""
@@ -115,7 +116,7 @@ def pixel_size_of(sizes_um: Sequence[float | None]) -> tuple[float | None, tuple
     if not all(SMALLEST_SCALE <= size <= LARGEST_SCALE for size in known):
         words = " × ".join(f"{size:g}" for size in known)
         return None, (f"its pixel size of {words} µm makes no sense; give it with --pixel-size",), ""
-    if max(known) > 1.01 * min(known):
+    if not alike(*known):
         words = " × ".join(f"{size:.4g}" for size in known)
         return None, (), f"has pixels of {words} µm: resample it to square pixels"
     return float(f"{known[-1]:.9g}"), (), ""

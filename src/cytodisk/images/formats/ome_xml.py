@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 from cytodisk.images.formats.measured_scale import agreed_interval
 from cytodisk.images.formats.said_scale import Said, duration, length, square
-from cytodisk.images.formats.scale_units import number, seconds
+from cytodisk.images.scale_units import number, seconds
 from cytodisk.scale import Scale
 
 _BARE = re.compile(r"&(?!(?:\w+|#\d+|#x[0-9a-fA-F]+);)")

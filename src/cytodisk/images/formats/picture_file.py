@@ -15,13 +15,12 @@ import numpy as np
 from PIL import Image
 
 from cytodisk.errors import ReadError
+from cytodisk.images.chosen_channels import COLOURS, channel_names
 from cytodisk.images.claims import check_claim, check_memory
 from cytodisk.images.file_axes import file_axes
-from cytodisk.images.formats.file_metadata import channel_names
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile, as_channels_first
 
 _PNG: dict[str, Any] = {"extension": ".png", "plugin": "pillow"}
-_COLOURS = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha"), 2: ("grey", "alpha")}
 PALETTE = (
     "its pixels are numbers of a palette's colours, which are taken as labels; as a signal they mean "
     "nothing: save it in shades of grey"
@@ -46,7 +45,7 @@ def open_picture(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
         shape, dtype = shape[:2], np.dtype(np.uint8)
         notes = () if _is_grey(palette) else (PALETTE,)
     known = file_axes(file, "YXC"[: len(shape)], shape, unnamed, choice.axes)
-    colours = _COLOURS[shape[2]] if known.letters == "YXC" else ()
+    colours = COLOURS[shape[2]] if known.letters == "YXC" else ()
     return FrameFile(
         file,
         known.letters,

@@ -8,7 +8,8 @@ from typing import Any, TypeAlias
 
 from cytodisk.checks import LARGEST_SCALE, SMALLEST_SCALE
 from cytodisk.errors import ReadError
-from cytodisk.images.formats.scale_units import is_no_unit, micrometres, number, seconds
+from cytodisk.images.scale_units import is_no_unit, micrometres, number, seconds
+from cytodisk.scale import alike
 
 Said: TypeAlias = tuple[float | None, tuple[str, ...]]
 """A value, None if it is unknown, and notes on what is wrong."""
@@ -17,7 +18,6 @@ NO_PIXEL_SIZE = "the pixel size is unknown: pass --pixel-size, in µm"
 NO_INTERVAL = "the frame interval is unknown: pass --frame-interval, in seconds"
 NOTHING: Said = (None, ())
 
-_ALIKE = 1.01  # largest over least of values that agree
 _PRINT_DPI = (72, 75, 90, 96, 100, 120, 144, 150, 180, 200, 220, 240, 250, 300, 350, 360, 400, 600, 1200)
 _INCH_UM = 25400.0
 
@@ -90,12 +90,6 @@ def square(file: Path, sides: Sequence[Said]) -> Said:
 def print_resolution(side_um: float) -> int | None:
     """The dots per inch, if a side of a pixel stands for one of those that programs fill in by themselves."""
     return next((dpi for dpi in _PRINT_DPI if alike(side_um, _INCH_UM / dpi, ratio=1.002)), None)
-
-
-def alike(first: float, *others: float, ratio: float = _ALIKE) -> bool:
-    """Whether values above 0 differ by 1 % at most, or by another ratio."""
-    values = (first, *others)
-    return max(values) <= ratio * min(values)
 
 
 def _shown(value: Any) -> str:

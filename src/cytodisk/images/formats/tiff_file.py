@@ -12,8 +12,8 @@ import tifffile
 
 from cytodisk.errors import ReadError
 from cytodisk.images.changed_frames import changed_file
+from cytodisk.images.chosen_channels import channel_names
 from cytodisk.images.claims import check_claim
-from cytodisk.images.formats.file_metadata import channel_names
 from cytodisk.images.formats.picture_file import PALETTE
 from cytodisk.images.formats.stored_axes import stored_axes
 from cytodisk.images.formats.tiff_frames import TiffFrames

@@ -13,13 +13,12 @@ from cytodisk.images.formats.said_scale import (
     NO_PIXEL_SIZE,
     NOTHING,
     Said,
-    alike,
     duration,
     length,
     print_resolution,
     square,
 )
-from cytodisk.scale import UNKNOWN, Scale
+from cytodisk.scale import UNKNOWN, Scale, alike
 
 _TAG_UNITS = {2: "inch", 3: "cm", 4: "mm", 5: "µm"}
 _LEAST_UM, _MOST_UM = 1e-3, 10.0  # sides of pixels of a microscope

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,6 +13,7 @@ import tifffile
 from cytodisk.errors import ReadError
 from cytodisk.images.formats.ome_xml import OmeError, OmeImage, ome_images
 from cytodisk.images.formats.tiff_pages import tiff_opened
+from cytodisk.images.scenes import place_of
 
 _MOST_PLANES = 10_000_000  # each takes 100 bytes of a file at least
 _NAMES = {"ome": "OME", "imagej": "ImageJ", "shaped": "tifffile"}
@@ -142,7 +144,7 @@ def _page_fault(tiff: tifffile.TiffFile, series: Any) -> str:
     if series.kind not in _NAMES:
         return ""
     name, page = _NAMES[series.kind], series.keyframe
-    planes = _product(series.shape) // max(_product(page.shape), 1)
+    planes = math.prod(series.shape) // max(math.prod(page.shape), 1)
     there = len(tiff.pages)
     if series.is_multifile or len(tiff.series) > 1 or there == planes:
         return ""
@@ -182,7 +184,7 @@ def _plain(
     known = (
         "; scale and names are unknown: pass --pixel-size, --frame-interval and --channels" if unknown else ""
     )
-    there = _product(shape[:-2])
+    there = math.prod(shape[:-2])
     note = f"{fault}: its {there} pages are taken as they stand; if their order is wrong, pass --axes{known}"
     return replace(found, image=image, notes=(note,))
 
@@ -193,10 +195,8 @@ def _scene(file: Path, series: Sequence[Any], names: Sequence[str], scene: str |
     names = list(names) if len(names) == len(series) else [one.name for one in series]
     if len(series) == 1:  # a scene is chosen in another file then, as that of the signal
         return 0
-    if scene in names:
-        return names.index(scene)
-    if scene is not None and scene.isdecimal() and int(scene) < len(series):
-        return int(scene)
+    if scene is not None and (found := place_of(scene, names)) is not None:
+        return found
     there = ", ".join(
         f"{place} ({name + ': ' if name else ''}{' × '.join(map(str, one.shape))})"
         for place, (one, name) in enumerate(zip(series, names, strict=True))
@@ -207,10 +207,3 @@ def _scene(file: Path, series: Sequence[Any], names: Sequence[str], scene: str |
             "as one stack"
         )
     raise ReadError(f"{file} has no scene {scene!r}: pass --scene with one of {there}")
-
-
-def _product(sizes: Sequence[int]) -> int:
-    product = 1
-    for size in sizes:
-        product *= int(size)
-    return product

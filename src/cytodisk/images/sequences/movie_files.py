@@ -9,11 +9,11 @@ from functools import partial
 from pathlib import Path
 
 from cytodisk.errors import ReadError
-from cytodisk.images.formats.file_sequence import open_sequence
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.frames import open_frames
 from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 from cytodisk.images.mask_names import ENDINGS, base_name, best_masks, files_of, image_stem
+from cytodisk.images.sequences.file_sequence import open_sequence
 from cytodisk.images.sequences.frame_names import FrameNames, by_series, frame_names
 
 _IMAGES = (".tif", ".tiff", ".png", ".npy")

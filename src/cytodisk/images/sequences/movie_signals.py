@@ -12,11 +12,11 @@ from pathlib import Path
 from cytodisk.errors import SignalError
 from cytodisk.files import real_path
 from cytodisk.images.chosen_channels import with_names
-from cytodisk.images.formats.file_sequence import open_sequence
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.frames import open_frames
 from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 from cytodisk.images.mask_names import ENDINGS, base_name, image_stem, visible_files
+from cytodisk.images.sequences.file_sequence import open_sequence
 from cytodisk.images.sequences.frame_names import FrameNames, series_of
 from cytodisk.images.sequences.movie_files import (
     MovieMasks,

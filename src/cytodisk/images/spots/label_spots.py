@@ -13,8 +13,8 @@ from cytodisk.errors import CytodiskError, MaskError, ReadError
 from cytodisk.geometry.even_odd import pixels_inside
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
+from cytodisk.images.scale_units import micrometres
 from cytodisk.images.spots.spots import PIXEL, Spots, branches
-from cytodisk.images.spots.track_units import micrometres
 from cytodisk.images.spots.track_words import branch_words, first_words, number_words
 from cytodisk.scale import Scale
 

@@ -10,7 +10,8 @@ from cytodisk.errors import CytodiskError, MaskError, SignalError
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.mask_files import MaskSource
 from cytodisk.runs.channel_names import name_channels
-from cytodisk.runs.file_scales import alike, most_common_size
+from cytodisk.runs.file_scales import most_common_size
+from cytodisk.scale import alike
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import numpy as np
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import CytodiskError, WindowError
 from cytodisk.files import flushed_later
-from cytodisk.images.formats.file_sequence import MissingFrameError
+from cytodisk.images.sequences.file_sequence import MissingFrameError
 from cytodisk.images.signal_files import SignalPiece
 from cytodisk.images.tracks import MissingLabel
 from cytodisk.motion.edge import EdgeMotion, displacement_by_sector, edge_motion

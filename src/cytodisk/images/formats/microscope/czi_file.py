@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from cytodisk.errors import MissingPartError, ReadError
+from cytodisk.images.chosen_channels import COLOURS
 from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
 from cytodisk.images.formats.microscope.czi_blocks import Block, block_pixels
 from cytodisk.images.formats.microscope.plane_frames import Plane, PlaneFrames, scene_file
@@ -24,7 +25,6 @@ from cytodisk.scale import Scale
 
 _KNOWN_AXES = {"S", "T", "C", "Z", "Y", "X", "M"}
 _AXIS_WORDS = {"H": "phases", "I": "directions of light", "V": "views", "R": "rotations", "B": "blocks"}
-_COLOURS = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha")}
 WHOLE_BYTES = 2**29
 """A mosaic up to this size is put together as a whole."""
 
@@ -146,7 +146,7 @@ def _scene(number: int, blocks: list[Block], metadata: ElementTree.Element, time
     names = [e.get("Name", "") for e in metadata.iterfind(".//Information/Image/Dimensions/Channels/Channel")]
     if len(names) != sizes["C"]:
         names = [""] * sizes["C"]
-    colours = _COLOURS.get(blocks[0].samples, ("",))
+    colours = COLOURS.get(blocks[0].samples, ("",))
     size_um, size_notes, fault = pixel_size_of([_distance_um(metadata, axis) for axis in "YX"])
     interval_s, time_notes = _interval(metadata, times, sizes["T"])
     scene_name = next(

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.errors import MissingPartError, ReadError
+from cytodisk.images.chosen_channels import COLOURS
 from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
 from cytodisk.images.formats.microscope.plane_frames import Plane, PlaneFrames, scene_file
 from cytodisk.images.formats.microscope.quiet import quiet
@@ -21,7 +22,6 @@ from cytodisk.images.scenes import Scene, Taken
 from cytodisk.scale import Scale
 
 _CHANNEL_AXES = {"C": "", "S": "", "λ": "nm emission", "Λ": "nm excitation"}
-_COLOURS = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha")}
 _AXIS_WORDS = {"N": "rotations", "M": "tiles", "Q": "positions", "H": "lifetimes"}
 _ALL = slice(None)
 _MOST_TIMES = 100  # as many bytes as are there, an image may claim
@@ -170,7 +170,7 @@ def _channels(image: Any) -> tuple[str, ...]:
 def _names(image: Any, axis: str) -> tuple[str, ...]:
     count: int = image.sizes[axis]
     if axis == "S":
-        return _COLOURS.get(count, ("",) * count)
+        return COLOURS.get(count, ("",) * count)
     if axis == "C":
         described = image.xml_element.findall(_CHANNELS)
         names = [_said(one) for one in described[:: max(1, len(described) // count)]]

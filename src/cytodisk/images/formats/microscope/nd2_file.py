@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.errors import MissingPartError, ReadError
+from cytodisk.images.chosen_channels import COLOURS
 from cytodisk.images.claims import check_claim
 from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
 from cytodisk.images.formats.microscope.plane_frames import Plane, PlaneFrames, scene_file
@@ -23,7 +24,6 @@ from cytodisk.scale import Scale
 _AXES = {"TimeLoop": "T", "NETimeLoop": "T", "XYPosLoop": "P", "ZStackLoop": "Z"}
 _ALL = slice(None)
 _MOST_TIMES = 100  # as many images as are there, a file may claim, as recordings are stopped
-_COLOURS = {3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha")}
 _MOST_LOOKED_AT = (
     2000  # frames whose times are looked at one by one; of longer movies the set interval is taken
 )
@@ -185,7 +185,7 @@ def _channels(opened: Any) -> tuple[str, ...]:
     if not opened.is_rgb:
         return tuple(names) if len(names) == count else ("",) * count
     names = names if len(names) == count else [""] * count
-    return tuple(f"{name} {colour}".strip() for name in names for colour in _COLOURS[samples])
+    return tuple(f"{name} {colour}".strip() for name in names for colour in COLOURS[samples])
 
 
 def _position_names(opened: Any) -> list[str]:

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from cytodisk.errors import ReadError
-from cytodisk.images.formats.file_metadata import channel_names
+from cytodisk.images.chosen_channels import channel_names
 from cytodisk.images.formats.projection import projected
 from cytodisk.images.frame_file import Cut, FileChoice, FrameFile, StoredFrames
 from cytodisk.images.reading import reading

@@ -14,9 +14,9 @@ import numpy as np
 from cytodisk.errors import ReadError
 from cytodisk.images.formats.measured_scale import agreed_interval, pixel_size_of
 from cytodisk.images.formats.microscope.plane_frames import Plane, PlaneFrames, scene_file
-from cytodisk.images.formats.scale_units import is_no_unit, micrometres, seconds
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.image_paths import is_zarr, parts_of
+from cytodisk.images.scale_units import is_no_unit, micrometres, seconds
 from cytodisk.images.scenes import Scene, Taken, scene_number
 from cytodisk.scale import Scale
 

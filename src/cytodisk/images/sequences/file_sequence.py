@@ -13,10 +13,9 @@ import numpy as np
 
 from cytodisk.errors import ReadError, as_data
 from cytodisk.images.frame_file import Cut, FrameFile, StoredFrames
-from cytodisk.scale import Scale
+from cytodisk.scale import Scale, alike
 
 _SHOWN = 3  # names of files in a message
-_ALIKE = 1.01  # largest over least size of files that agree
 
 
 class MissingFrameError(ReadError):
@@ -143,7 +142,7 @@ def _check_same(
     odd = [file for file in frames if of(file) != usual]
     if odd:
         raise ReadError(
-            f"{place}: {_names(odd)} {'has' if len(odd) == 1 else 'have'} another {what} "
+            f"{place}: {_names(odd)} {_have(odd)} another {what} "
             f"({words(of(odd[0]))}) than the other {count} files ({words(usual)}): move "
             f"{'it' if len(odd) == 1 else 'them'} elsewhere, or pass the others as a pattern, in quotes"
         )
@@ -159,7 +158,7 @@ def _check_channels(place: Path, frames: Sequence[FrameFile]) -> None:
     odd = [file for file in named if file.channels != named[0].channels]
     if odd:
         raise ReadError(
-            f"{place}: {_names(odd)} {'has' if len(odd) == 1 else 'have'} the channels "
+            f"{place}: {_names(odd)} {_have(odd)} the channels "
             f"{', '.join(odd[0].channels)}, {named[0].path.name} has {', '.join(named[0].channels)}: "
             "all frames of a movie must have the same"
         )
@@ -174,13 +173,12 @@ def _common_type(place: Path, frames: Sequence[FrameFile]) -> tuple[np.dtype[Any
     common = np.result_type(*{file.dtype for file in frames})
     if {file.dtype.kind for file in frames} <= set("biu") and common.kind == "f":
         raise ReadError(
-            f"{place}: {_names(odd)} has the type {odd[0].dtype}, most others {usual}, and no type holds "
-            "both: save all in one type, as uint16"
+            f"{place}: {_names(odd)} {_have(odd)} the type {odd[0].dtype}, most others {usual}, and no type "
+            "holds both: save all in one type, as uint16"
         )
-    verb = "has" if len(odd) == 1 else "have"
     return common, [
-        f"{_names(odd)} {verb} another type ({odd[0].dtype}) than the others ({usual}): all are read as "
-        f"{common}; save all in one type if their values do not mean the same"
+        f"{_names(odd)} {_have(odd)} another type ({odd[0].dtype}) than the others ({usual}): all are read "
+        f"as {common}; save all in one type if their values do not mean the same"
     ]
 
 
@@ -199,7 +197,7 @@ def _agreed(
     if not known:
         return None, []
     least, most = min(known, key=known.__getitem__), max(known, key=known.__getitem__)
-    if known[most] > _ALIKE * known[least]:
+    if not alike(known[least], known[most]):
         return None, [
             f"{name} differ ({least} {known[least]:g} {unit}, {most} {known[most]:g} {unit}), so none is "
             f"taken: pass the right one as {flag}"
@@ -214,6 +212,10 @@ def _notes_of(frames: Sequence[FrameFile]) -> list[str]:
         for note in file.notes:
             by_note.setdefault(note, []).append(file)
     return [f"{_names(files)}: {note}" for note, files in by_note.items()]
+
+
+def _have(files: Sequence[FrameFile]) -> str:
+    return "has" if len(files) == 1 else "have"
 
 
 def _names(files: Sequence[FrameFile]) -> str:
