@@ -102,7 +102,7 @@ def contents(out: Path) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for file in sorted(path for path in out.rglob("*") if path.is_file()):
         name = file.relative_to(out).as_posix()
-        if file.name in ("provenance.json", ".run") or name.startswith("rows/"):
+        if file.name in ("provenance.json", ".cytodisk.run") or name.startswith("rows/"):
             found[name] = ""
         elif file.name in ("cells.parquet", "cells.csv"):
             read = pd.read_parquet if file.suffix == ".parquet" else pd.read_csv

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, TypeVar
@@ -45,6 +46,8 @@ def reading_file(path: str | os.PathLike[str], what: str, remedy: str) -> Iterat
 def text_of(path: str | os.PathLike[str]) -> str:
     """The text of a file in UTF-8, which is no pipe and no larger than any that a run writes."""
     with open(path, "rb", opener=_opened_at_once) as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise ValueError("it is a pipe or a device, not a file")
         content = file.read(_MOST_TEXT + 1)
     if len(content) > _MOST_TEXT:
         raise ValueError(f"it is larger than {_MOST_TEXT // 10**6} MB")

@@ -369,6 +369,18 @@ def test_info_lists_versions(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "no-such-package not installed: type pip install 'cytodisk[umap]'" in versions["umap"]
 
 
+@pytest.mark.parametrize("name", ["masks.tif", "signal.ome.tif"])
+def test_demo_leaves_files_of_the_user_alone(run: Run, mask: Path, tmp_path: Path, name: str) -> None:
+    theirs = tmp_path / "demo" / "input" / name
+    theirs.parent.mkdir(parents=True)
+    for mine in (mask.read_bytes(), b"mine"):
+        theirs.write_bytes(mine)
+        assert_refused(
+            run("demo", "-o", tmp_path / "demo", "--overwrite"), name, "was not written by", "folder"
+        )
+        assert theirs.read_bytes() == mine
+
+
 def test_demo_once_and_again(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One run of the demo, shortened, then the same again, then another seed in the same folder."""
     monkeypatch.setattr("cytodisk.runs.demo_input.FRAMES", 40)
@@ -394,7 +406,7 @@ def test_demo_once_and_again(run: Run, tmp_path: Path, monkeypatch: pytest.Monke
     assert (code, again) == (0, "")
     after = content(demo)
     assert without_the_report(after) == without_the_report(before)
-    assert_refused(run("demo", "-o", demo, "--seed", 1), "holds something else", "--overwrite")
+    assert_refused(run("demo", "-o", demo, "--seed", 1), "is of another demo", "--overwrite")
     assert content(demo) == after
 
 

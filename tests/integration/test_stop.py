@@ -57,5 +57,7 @@ def test_it_ends_in_one_line_and_leaves_no_lock(
     told = [line for line in error.splitlines() if not line.startswith("First start")]
     assert len(told) == 1, error
     assert told[0].startswith("Stopped; what was done is kept")
-    left = [path.name for path in tmp_path.rglob("*") if path.name == ".lock" or ".tmp" in path.name]
+    left = [
+        path.name for path in tmp_path.rglob("*") if path.name.startswith(".cytodisk") or ".tmp" in path.name
+    ]
     assert left == []

@@ -207,7 +207,7 @@ def test_of_many_faults_the_first_are_shown(folder: Path) -> None:
     [
         ("[study", "is no TOML"),
         ("[study]", "has no inputs"),
-        ("[study]\ntable = 'none.csv'", r"batch file .*none\.csv cannot be read"),
+        ("[study]\ntable = 'none.csv'", r"table of inputs .*none\.csv cannot be read: No such"),
     ],
 )
 def test_a_file_that_is_none_is_refused(folder: Path, text: str, words: str) -> None:
@@ -307,3 +307,11 @@ def test_a_column_of_words_may_have_commas(tmp_path: Path) -> None:
     (tmp_path / "table.csv").write_text("masks;dose\na.tif;1,5 and more\n")
     (tmp_path / "batch.toml").write_text('[study]\nkind = "map"\ntable = "table.csv"\ncolumns = ["dose"]\n')
     assert read_batch(tmp_path / "batch.toml").inputs[0].columns[-1] == "1,5 and more"
+
+
+@pytest.mark.parametrize("number", ["9" * 5000, "1" * 200 + ".5", "1e" + "9" * 5000])
+def test_a_number_that_no_table_holds_stays_a_text(folder: Path, number: str) -> None:
+    (folder / "inputs.csv").write_text(f"masks,mouse\nlabels,{number}\n")
+    (folder / "batch.toml").write_text("[study]\ntable = 'inputs.csv'\ncolumns = ['mouse']\nkind = 'map'\n")
+    [item] = read_batch(folder / "batch.toml").inputs
+    assert item.columns[-1] == number

@@ -231,13 +231,13 @@ def test_two_runs_do_not_write_into_one_folder(write_stack: WriteStack, tmp_path
     with alone_in(tmp_path / "out"), pytest.raises(StudyError, match="another run is writing there"):
         map_study(open_inputs(masks, signal, SMALL), tmp_path / "out")
     assert map_study(open_inputs(masks, signal, SMALL), tmp_path / "out").cells["status"].tolist() == ["ok"]
-    assert not (tmp_path / "out" / ".lock").exists()
+    assert not list((tmp_path / "out").glob(".cytodisk*"))
 
 
 def test_a_run_killed_before_its_first_note_can_be_repeated(write_stack: WriteStack, tmp_path: Path) -> None:
     masks, signal = write_stack(1)
     (tmp_path / "out").mkdir()
-    (tmp_path / "out" / ".lock").touch()
+    (tmp_path / "out" / ".cytodisk.lock").touch()
     (tmp_path / "out" / temporary_name(".json")).touch()
     assert len(map_study(open_inputs(masks, signal, SMALL), tmp_path / "out").cells) == 1
 

@@ -1,5 +1,7 @@
+import os
 import tomllib
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -8,6 +10,7 @@ from hypothesis import strategies as st
 
 from cytodisk.disk.mapping_parameters import MAPS_VERSION
 from cytodisk.errors import EarlierVersionWarning, ParameterError
+from cytodisk.runs.batch.batch_file import read_batch
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.parameters_file import parameters_from, write_parameters
@@ -233,3 +236,17 @@ def test_a_file_says_which_maps_it_is_for_and_a_file_by_hand_need_not(tmp_path: 
     assert (tmp_path / "a.toml").read_text().startswith(f"# {MAPS} {MAPS_VERSION};")
     (tmp_path / "parameters.toml").write_text(EARLIER)
     assert parameters_from({}, tmp_path / "parameters.toml", MapParameters).edge_length == 0.9
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes in the file system")
+@pytest.mark.parametrize("read", [lambda path: parameters_from({}, path, MapParameters), read_batch])
+def test_a_pipe_is_no_file_of_parameters(tmp_path: Path, read: Callable[[Path], object]) -> None:
+    os.mkfifo(tmp_path / "a.toml")  # of which a look that does not wait would read nothing, so no parameters
+    with pytest.raises(ParameterError, match=r"a\.toml cannot be read: it is a pipe or a device, not a file"):
+        read(tmp_path / "a.toml")
+
+
+@pytest.mark.parametrize("path", ['a"b.xml', "a\\b.xml", "a\x7fb.xml", "ä\t.xml"])
+def test_texts_with_any_characters_survive_the_file(tmp_path: Path, path: str) -> None:
+    write_parameters(MovieParameters(tracks=path), tmp_path / "a.toml")
+    assert parameters_from({}, tmp_path / "a.toml", MovieParameters).tracks == path

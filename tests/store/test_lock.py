@@ -8,6 +8,7 @@ import pytest
 
 from cytodisk.errors import StudyError
 from cytodisk.files import lock, unlock
+from cytodisk.store.removal import LOCK
 from cytodisk.store.study_room import alone_in
 
 RACE = """
@@ -32,7 +33,7 @@ print(entered)
 @pytest.mark.skipif(sys.platform == "win32", reason="a file that is open cannot be removed there")
 def test_a_lock_whose_file_was_removed_is_no_lock(tmp_path: Path) -> None:
     """One waits with the file open while another lets go: a third must not get a file of its own."""
-    path = tmp_path / ".lock"
+    path = tmp_path / LOCK
     first = lock(path)
     with pytest.raises(BlockingIOError):
         lock(path)
@@ -56,20 +57,15 @@ def test_processes_that_race_for_a_folder_are_never_in_it_together(tmp_path: Pat
 
 def test_a_lock_of_a_killed_process_is_free_and_one_by_a_link_is_the_same(tmp_path: Path) -> None:
     held = "import sys, pathlib, cytodisk.files as files; file = files.lock(pathlib.Path(sys.argv[1]))"
-    process = subprocess.Popen(
-        [sys.executable, "-c", f"{held}; print('held', flush=True); input()", str(tmp_path / ".lock")],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    assert process.stdout is not None
-    assert process.stdout.readline() == "held\n"
+    command = [sys.executable, "-c", f"{held}; print('held', flush=True); input()", str(tmp_path / LOCK)]
     (tmp_path / "link").symlink_to(tmp_path)
-    for path in (tmp_path, tmp_path / "link"):
-        with pytest.raises(StudyError, match="another run is writing there"), alone_in(path):
-            pass
-    process.kill()
-    process.communicate(timeout=30)
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "held\n"
+        for path in (tmp_path, tmp_path / "link"):
+            with pytest.raises(StudyError, match="another run is writing there"), alone_in(path):
+                pass
+        process.kill()
     with alone_in(tmp_path / "link"):
-        assert (tmp_path / ".lock").exists()
-    assert not (tmp_path / ".lock").exists()
+        assert (tmp_path / LOCK).exists()
+    assert not (tmp_path / LOCK).exists()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,7 @@ from cytodisk.store.study import Study
 FRAMES = 40
 LAYERS = 8  # of windows of 10 px at least
 _COUPLED = 0.5  # share of the edge along which the signal follows its velocity
+_SOFTWARE = "cytodisk demo"  # by which its files are known
 _MOSTLY = 0.95  # share of a sector that must be coupled, or not, for it to count
 
 
@@ -162,10 +164,21 @@ def _signal(truth: SimulatedMovie) -> Any:
 def _write(path: Path, values: Any, metadata: dict[str, Any], overwrite: bool) -> None:
     if path.exists() and _holds(path, values):
         return
+    if os.path.lexists(path) and not _is_of_demo(path):
+        raise StudyError(f"{path} was not written by cytodisk demo: pass another folder")
     if path.exists() and not overwrite:
-        raise StudyError(f"{path} holds something else than this demo: pass --overwrite, or another folder")
+        raise StudyError(f"{path} is of another demo: pass --overwrite to replace it, or another folder")
     with replacing(path) as temporary:
-        tifffile.imwrite(temporary, values, metadata=metadata, ome=path.name.endswith(".ome.tif"))
+        ome = path.name.endswith(".ome.tif")
+        tifffile.imwrite(temporary, values, metadata=metadata, ome=ome, software=_SOFTWARE)
+
+
+def _is_of_demo(path: Path) -> bool:
+    try:
+        with tifffile.TiffFile(path) as file:
+            return bool(file.pages.first.tags.valueof("Software") == _SOFTWARE)
+    except (OSError, ValueError):  # no file, or no TIFF
+        return False
 
 
 def _holds(path: Path, values: Any) -> bool:
@@ -178,4 +191,4 @@ def _holds(path: Path, values: Any) -> bool:
             for number, frame in enumerate(values)
         )
     except ReadError:
-        return False  # a file that cannot be read is written anew
+        return False

@@ -187,7 +187,7 @@ def _toml(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)  # its escapes are those of TOML
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")  # else its escapes are TOML's
     if isinstance(value, tuple):
         return "[" + ", ".join(_toml(item) for item in value) + "]"
     return repr(value)

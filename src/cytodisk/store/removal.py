@@ -15,9 +15,9 @@ from cytodisk.errors import StudyError, WriteError
 from cytodisk.files import is_temporary, real_path
 from cytodisk.store.provenance_file import PROVENANCE, read_provenance
 from cytodisk.store.study_kind import PARTS
-from cytodisk.store.written_files import FILES, recorded
+from cytodisk.store.written_files import CHANGES, FILES, recorded
 
-LOCK = ".lock"
+LOCK = ".cytodisk.lock"
 BEGUN = ".begun"
 """Ending of the file of a part with the names of what it is about to write beside its rows."""
 _PART = r"\d{5,6}(_t\d{5,6})?\.(json|begun|npy|[a-z_]+\.(arrow|npy))"
@@ -172,8 +172,8 @@ def remove_left_overs(places: Iterable[Path]) -> None:
 
 
 def is_left_over(file: Path) -> bool:
-    """Whether a file is the lock, or a temporary file of a run."""
-    return file.name == LOCK or is_temporary(file.name)
+    """Whether a file is a lock, or a temporary file of a run."""
+    return file.name in (LOCK, CHANGES) or is_temporary(file.name)
 
 
 def _remove(target: Path) -> None:

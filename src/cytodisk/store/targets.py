@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import BinaryIO, Protocol
 
 from cytodisk.errors import CytodiskError, StudyError, WriteError
-from cytodisk.files import flush, is_temporary, make_folder, replacing, temporary_name
-from cytodisk.store.removal import LOCK, files_of_study, refuse_removal, remove_files
+from cytodisk.files import flush, make_folder, replacing, temporary_name
+from cytodisk.store.provenance_file import PROVENANCE, read_provenance, write_json
+from cytodisk.store.removal import files_of_study, is_left_over, refuse_removal, remove_files
 from cytodisk.store.study_room import alone_in
-from cytodisk.store.written_files import lost_files
+from cytodisk.store.written_files import FILES, lost_files, recorded
 
 
 class Store(Protocol):
@@ -72,24 +73,40 @@ def _folder_may_stand() -> Iterator[None]:
 
 def _strangers(folder: Path) -> list[str]:
     """Files in a folder that are not its study's."""
-    own = {*files_of_study(folder), LOCK}
+    own = set(files_of_study(folder))
     files = (file for file in folder.rglob("*") if file.is_symlink() or not file.is_dir())
-    names = (file.relative_to(folder).as_posix() for file in files if not is_temporary(file.name))
+    names = (file.relative_to(folder).as_posix() for file in files if not is_left_over(file))
     return [name for name in names if name not in own]
 
 
-def _refuse_strangers(folder: Path, new: Path) -> None:
-    """Raise StudyError if a study that is to stand in a folder has a file of a name that is taken there."""
-    if taken := [name for name in _strangers(folder) if os.path.lexists(new / name)]:
-        raise StudyError(f"{folder / taken[0]} is in the way, and was not written by a study's run: move it")
+def _exchange_folder(old: Path, new: Path) -> None:
+    """Put a study's folder in the place of another, which is there until the new one is."""
+    leaving = old.with_name(temporary_name())
+    while new.exists():
+        with suppress(FileNotFoundError):
+            old.rename(leaving)
+        shutil.rmtree(leaving, ignore_errors=True)
+        with _folder_may_stand():
+            new.rename(old)
 
 
-def _keep_strangers(old: Path, new: Path) -> None:
-    """Move what is not an old study's to the folder of the new one."""
-    for name in _strangers(old):
-        if not os.path.lexists(new / name):
-            make_folder((new / name).parent)
-            (old / name).rename(new / name)
+def _exchange_files(old: Path, new: Path, strangers: Collection[str]) -> None:
+    """Put the files of a new study in the place of an old one's, beside files that are not the study's.
+
+    These stay where they are, so that they outlast a run that is killed here. What is there until the last
+    file stands is known as a study that is not complete.
+    """
+    files = [path.relative_to(new).as_posix() for path in new.rglob("*") if not path.is_dir()]
+    if taken := [name for name in strangers if name in files]:
+        raise StudyError(f"{old / taken[0]} is in the way, and was not written by a study's run: move it")
+    before = files_of_study(old)
+    there = read_provenance(new) or {}
+    both = dict.fromkeys([*before, *recorded(there)], "")
+    write_json(old / PROVENANCE, there | {"status": "being replaced", "fingerprint": {}, FILES: both})
+    remove_files(old, [name for name in before if name not in files])
+    for name in sorted(files, key=lambda name: name == PROVENANCE):
+        make_folder((old / name).parent)
+        (new / name).replace(old / name)
 
 
 class FolderStore:
@@ -135,18 +152,14 @@ class FolderStore:
 
     def put_folder(self, folder: Path, key: str) -> None:
         target = self._with_folder(key)
-        arriving, leaving = (target.with_name(temporary_name()) for _ in range(2))
+        arriving = target.with_name(temporary_name())
         try:
             shutil.move(folder, arriving)
-            _refuse_strangers(target, arriving)
             flush(file for file in arriving.rglob("*") if file.is_file())
-            while arriving.exists():
-                with suppress(FileNotFoundError):
-                    target.rename(leaving)
-                    _keep_strangers(leaving, arriving)
-                shutil.rmtree(leaving, ignore_errors=True)
-                with _folder_may_stand():
-                    arriving.rename(target)
+            if strangers := _strangers(target):
+                _exchange_files(target, arriving, strangers)
+            else:
+                _exchange_folder(target, arriving)
         except OSError as error:
             raise WriteError(f"cannot write {target}: {error.strerror or error}") from error
         finally:

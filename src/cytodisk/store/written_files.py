@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-import sys
+import time
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
@@ -12,13 +12,15 @@ from pathlib import Path, PurePosixPath
 from typing import Any, TypeVar
 
 from cytodisk.errors import ReadError, StudyError
-from cytodisk.files import has_mark, mark_of
+from cytodisk.files import has_mark, lock, mark_of, unlock, writing_to
 from cytodisk.store.provenance_file import PROVENANCE, read_provenance, write_json
 
 Content = TypeVar("Content")
 FILES = "files"  # of the provenance
+CHANGES = ".cytodisk.changes"
 _READ_AT_ONCE = 8  # files; checksums are computed side by side
 _SHOWN = 3
+_WAIT_S = 0.01
 
 
 def recorded(provenance: Mapping[str, Any]) -> dict[str, str]:
@@ -160,15 +162,15 @@ def _change(folder: Path, marks: Mapping[str, str], *, check: bool = False) -> N
 
 @contextmanager
 def _held(folder: Path) -> Iterator[None]:
-    """Let one process at a time change the provenance."""
-    if sys.platform == "win32":
-        yield
-        return
-    import fcntl
-
-    held = os.open(folder, os.O_RDONLY)
+    """Let one process at a time change the provenance; another one waits."""
+    held = None
+    with writing_to(folder):
+        while held is None:
+            try:
+                held = lock(folder / CHANGES)  # a file: folders know no locks on NFS
+            except BlockingIOError:
+                time.sleep(_WAIT_S)
     try:
-        fcntl.flock(held, fcntl.LOCK_EX)
         yield
     finally:
-        os.close(held)
+        unlock(held, folder / CHANGES)

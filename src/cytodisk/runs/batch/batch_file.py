@@ -15,7 +15,7 @@ from typing import Any
 from cytodisk.errors import ParameterError
 from cytodisk.files import real_path
 from cytodisk.number_words import comma_advice, comma_in_toml, without_comma
-from cytodisk.reading_files import text_of
+from cytodisk.reading_files import text_of, words_of
 from cytodisk.runs.batch.batch_faults import Faults
 from cytodisk.runs.batch.batch_file_rows import COLUMNS, KEYS, PARAMETERS_OF, FileRow, RowReader
 from cytodisk.runs.batch.batch_input import BatchInput
@@ -35,6 +35,7 @@ _CELLS = (*SOURCE_COLUMNS, *TRACK_COLUMNS, *WINDOW_SIZE_COLUMNS)
 _TABLES = (_CELLS, WINDOW_COLUMNS, EDGE_COLUMNS, CONSISTENCY_COLUMNS)
 _WHOLE = r"[+-]?(0|[1-9][0-9]*)"
 _NUMBER = _WHOLE + r"(\.[0-9]*)?([eE][+-]?[0-9]+)?"
+_LONGEST_NUMBER = 100  # characters; what is longer stays a text
 _TAKEN = {*KEYS, *OWN_COLUMNS, *(column.name for columns in _TABLES for column in columns)}
 
 
@@ -76,7 +77,7 @@ def read_batch(path: Path) -> Batch:
     ParameterError
         The file cannot be read, or anything in it cannot be used; all faults are said at once.
     """
-    text = _read(path)
+    text = _read(path, "batch file")
     try:
         content = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # numbers of thousands of digits, deep nesting
@@ -106,11 +107,11 @@ def read_batch(path: Path) -> Batch:
     return Batch(path, table, tuple(replace(item, signal_name=name) for item in inputs), columns)
 
 
-def _read(path: Path) -> str:
+def _read(path: Path, what: str) -> str:
     try:
         return text_of(path)
     except (OSError, ValueError) as error:
-        raise ParameterError(f"batch file {path} cannot be read: {error}") from error
+        raise ParameterError(f"{what} {path} cannot be read: {words_of(error)}") from error
 
 
 def _section(content: dict[str, Any], name: str, faults: Faults) -> dict[str, Any]:
@@ -147,7 +148,7 @@ def _inputs_of(given: Any, text: str, faults: Faults) -> Iterator[FileRow]:
 
 def _rows_of_table(table: Path, columns: tuple[str, ...], faults: Faults) -> list[FileRow]:
     """Rows of a CSV file; an empty field is one that is not given."""
-    text = _read(table)
+    text = _read(table, "table of inputs")
     separator = max(",;\t", key=text.lstrip().partition("\n")[0].count)
     reader = csv.reader(StringIO(text), delimiter=separator, strict=True)
     stripped = ([field.strip() for field in fields] for fields in reader)
@@ -191,6 +192,8 @@ def _with_numbers(rows: list[FileRow], columns: Iterable[str]) -> list[FileRow]:
     """Columns in which all fields are numbers become numbers: "1", but not "001" or "1_2"."""
     for column in columns:
         given = [row.values for row in rows if column in row.values]
+        if any(len(values[column]) > _LONGEST_NUMBER for values in given):
+            continue
         for kind, pattern in ((int, _WHOLE), (float, _NUMBER)):
             if all(re.fullmatch(pattern, values[column]) for values in given):
                 for values in given:

@@ -9,7 +9,7 @@ from cytodisk.errors import CytodiskError
 from cytodisk.store.targets import FolderStore, Store
 from cytodisk.store.url_store import UrlStore, is_url
 
-RUN = ".run"
+RUN = ".cytodisk.run"
 """File with the name of the run that began last."""
 
 
