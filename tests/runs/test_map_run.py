@@ -1,4 +1,5 @@
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,8 @@ from cytodisk.runs.cells.cell_inputs import CellInputs, open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_study import check_cells, map_study
 from cytodisk.runs.parameters_file import parameters_from
-from cytodisk.store.study_folder import part_key
+from cytodisk.runs.run_options import MapOptions
+from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_room import alone_in
 
 WriteStack = Callable[[int], tuple[Path, Path]]
@@ -232,6 +234,40 @@ def test_two_runs_do_not_write_into_one_folder(write_stack: WriteStack, tmp_path
         map_study(open_inputs(masks, signal, SMALL), tmp_path / "out")
     assert map_study(open_inputs(masks, signal, SMALL), tmp_path / "out").cells["status"].tolist() == ["ok"]
     assert not list((tmp_path / "out").glob(".cytodisk*"))
+
+
+@pytest.mark.parametrize("kill", [True, False])
+@pytest.mark.parametrize(
+    ("then", "now", "words"),
+    [
+        ({}, {"geojson": True}, "without outlines of windows: .*--overwrite .* leave --geojson out"),
+        ({"maps": False}, {}, "without maps: .*--overwrite .* pass --no-maps"),
+        ({"geojson": True}, {}, ""),
+        ({"geojson": True}, {"maps": False, "geojson": True}, ""),
+    ],
+)
+def test_cells_that_are_done_do_not_silently_lack_what_is_asked_for(
+    write_stack: WriteStack,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    kill: bool,
+    then: dict[str, bool],
+    now: dict[str, bool],
+    words: str,
+) -> None:
+    masks, signal = write_stack(2)
+    inputs = open_inputs(masks, signal, SMALL)
+    with monkeypatch.context() as patch, suppress(Stopped):
+        if kill:
+            patch.setattr(StudyFolder, "finish", _stop)
+        map_study(inputs, tmp_path / "out", **then)
+    if not words:
+        assert len(map_study(inputs, tmp_path / "out", resume=True, **now).cells) == 2
+        return
+    with pytest.raises(StudyError, match=words):
+        map_study(inputs, tmp_path / "out", resume=True, **now)
+    study = map_study(inputs, tmp_path / "out", overwrite=True, **now)
+    assert len([*(study.path / "maps").iterdir()]) == 2 * len(MapOptions(**now).writes)
 
 
 def test_a_run_killed_before_its_first_note_can_be_repeated(write_stack: WriteStack, tmp_path: Path) -> None:

@@ -56,6 +56,13 @@ class MapOptions(RunOptions):
     maps: bool = parameter(True, "Keep the map of each cell. Without them the study takes less disk space.")
     geojson: bool = parameter(False, "Write the outlines of windows beside the maps.")
 
+    @property
+    def writes(self) -> dict[str, str]:
+        """What is written for each cell, and how to do without; see `StudyRun`."""
+        wanted = {"maps": (self.maps, "pass --no-maps")}
+        wanted["outlines of windows"] = (self.geojson, "leave --geojson out")
+        return {what: instead for what, (is_wanted, instead) in wanted.items() if is_wanted}
+
 
 class BatchOptions(RunOptions):
     """How a batch is done."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, TypeVar
@@ -16,7 +16,7 @@ from cytodisk.runs.run_options import RunOptions
 from cytodisk.store.csv_tables import check_csv_room, has_csv_tables
 from cytodisk.store.study_folder import StudyFolder
 from cytodisk.store.study_kind import PARAMETERS, StudyKind
-from cytodisk.store.study_room import alone_in
+from cytodisk.store.study_room import WRITES, alone_in, refuse_to_add
 
 Result = TypeVar("Result")
 
@@ -32,12 +32,15 @@ class StudyRun:
         As `describe_run` returns it.
     parameters : Parameters
     options : RunOptions
+    writes : dict of str to str
+        What it writes for each cell because its options say so, and how to do without.
     """
 
     kind: StudyKind
     provenance: dict[str, Any]
     parameters: Parameters
     options: RunOptions
+    writes: Mapping[str, str] = field(default_factory=dict)
 
     def into(
         self,
@@ -73,10 +76,12 @@ class StudyRun:
         is_path("out", out)
         options, place = self.options, Path(out)
         with alone_in(out):
-            kind = self._kind(place)
-            complete = StudyFolder.complete(out, self.provenance, kind) if options.resume else None
+            kind, provenance = self._kind(place), self.provenance | {WRITES: [*self.writes]}
+            if options.resume:
+                refuse_to_add(place, provenance, self.writes)
+            complete = StudyFolder.complete(out, provenance, kind) if options.resume else None
             if complete is None:
-                folder = StudyFolder.start(out, self.provenance, kind, **options.again)
+                folder = StudyFolder.start(out, provenance, kind, **options.again)
                 write_parameters(self.parameters, place / PARAMETERS)
                 keys, warnings = work(folder)
                 folder.note("warnings", [*self.provenance["warnings"], *warnings])

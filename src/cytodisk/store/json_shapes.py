@@ -83,6 +83,7 @@ class _Provenance(TypedDict, total=False):
     seed: _Count | None
     layers: Annotated[int, Field(strict=True, ge=1, le=_MOST_SIDE)]
     image_shape: Annotated[list[_Side], _Two]
+    writes: list[_Text]
 
 
 @with_config(ConfigDict(extra="forbid"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,8 @@ from cytodisk.store.removal import (
 )
 from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.written_files import some_of
+
+WRITES = "writes"  # of the provenance
 
 
 @contextmanager
@@ -140,3 +142,31 @@ def check_room(
         raise StudyError(f"{place} holds a study: pass --resume to go on, --overwrite to replace it")
     if there.get("fingerprint") != here["fingerprint"]:
         raise OtherRunError(f"{place} holds another run ({differences(there, here)}): {way_out(there, here)}")
+
+
+def refuse_to_add(folder: Path, provenance: dict[str, Any], writes: Mapping[str, str]) -> None:
+    """Check that a run which goes on with another writes nothing for each cell that the other did not.
+
+    Parameters
+    ----------
+    folder : Path
+    provenance : dict
+        Of the run.
+    writes : dict of str to str
+        What it writes for each cell, and how to do without.
+
+    Raises
+    ------
+    StudyError
+        Cells that are done would lack it.
+    """
+    there = read_provenance(folder) or {}
+    known = there.get(WRITES)
+    if known is None or there.get("fingerprint") != provenance["fingerprint"]:
+        return
+    for what, instead in writes.items():
+        if what not in known:
+            raise StudyError(
+                f"output folder {folder} holds this run without {what}: pass --overwrite to do all anew with "
+                f"them, or {instead}"
+            )

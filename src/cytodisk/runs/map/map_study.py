@@ -86,7 +86,8 @@ def map_study(
         warnings = [words for row in rows if (words := _warning(row, inputs.is_folder))]
         return keys, [*inputs.remarks, *warnings]
 
-    return StudyRun(MAP, provenance, inputs.parameters, options).into(out, work, open_study, fill_flags)
+    run = StudyRun(MAP, provenance, inputs.parameters, options, options.writes)
+    return run.into(out, work, open_study, fill_flags)
 
 
 def _warning(row: dict[str, Any], of_many: bool) -> str:
