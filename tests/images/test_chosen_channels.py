@@ -8,9 +8,12 @@ import tifffile
 from numpy.testing import assert_array_equal
 
 import cytodisk as cd
+from cytodisk.errors import MaskError, ReadError
+from cytodisk.images.chosen_channels import with_channels
 from cytodisk.images.frame_file import FileChoice
 from cytodisk.images.frame_pixels import frame_pixels
 from cytodisk.images.frames import open_frames
+from cytodisk.images.what_it_is import look_at
 
 STACK = np.arange(3 * 2 * 20 * 31, dtype=np.uint16).reshape(3, 2, 20, 31)
 
@@ -87,3 +90,12 @@ def test_the_mask_may_be_a_channel_of_its_file(tmp_path: Path) -> None:
     assert study.cells["status"].tolist() == ["ok"]
     with pytest.raises(cd.errors.StudyError, match="mask_channel"):
         cd.run_map(tmp_path / "m.ome.tif", tmp_path / "out", layers=2, sectors=4, mask_channel=0, resume=True)
+
+
+def test_messages_name_some_of_many_channels(tmp_path: Path) -> None:
+    np.save(tmp_path / "a.npy", np.zeros((50, 20, 30), np.uint8))
+    file = open_frames(tmp_path / "a.npy", unnamed="C")
+    with pytest.raises(ReadError, match=r"no channel 'GFP'.* 11 \(a 12\) and 38 more$"):
+        with_channels(file, ["GFP"], "--signal-channels")
+    with pytest.raises(MaskError, match=r"50 channels \(a 1, .*, a 8 and 42 more\)"):
+        look_at(file)

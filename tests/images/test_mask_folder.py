@@ -355,3 +355,12 @@ def test_an_image_without_a_cell_has_the_label_0(tmp_path: Path, dtype: type) ->
     np.save(tmp_path / "a.npy", np.zeros((4, 5), dtype=dtype))
     (cell,) = read_source_cells(open_mask_files(tmp_path / "a.npy"))
     assert cell.label == 0
+
+
+def test_a_folder_of_arrays_holds_masks_as_one_of_pictures_does(tmp_path: Path) -> None:
+    mask = np.zeros((20, 20), np.uint8)
+    mask[5:15, 5:15] = 1
+    for number in (10, 2):
+        np.save(tmp_path / f"m{number}.npy", mask)
+    assert [source.name for source in open_mask_files(tmp_path)] == ["m2.npy", "m10.npy"]
+    assert [cell.fault for cell in read_source_cells(open_mask_files(tmp_path))] == [None, None]

@@ -166,7 +166,7 @@ def no_images(folder: Path) -> None:
         (odd_shape, r"cell0003\.tif has another size \(.* pixels\) than the other 4 files"),
         (stack, r"files of several frames \(cell0003\.tif\).* pass such a file alone"),
         (colour, r"cell0003\.tif has another number of channels \(3\)"),
-        (second_movie, r"2 kinds of names \(cell\*\.tif, 5 files; other\*\.tif, 5 files\).*'.*cell\*\.tif'"),
+        (second_movie, r"2 kinds of names \(5 × cell\*\.tif, 5 × other\*\.tif\).*'.*cell\*\.tif'"),
         (nothing_but_one, "one image alone: a movie has two frames at least; use cytodisk map"),
         (no_images, "holds no frames"),
     ],

@@ -12,7 +12,9 @@ import numpy as np
 
 from cytodisk.errors import ReadError
 from cytodisk.images.frame_file import Cut, FrameFile, StoredFrames
+from cytodisk.images.short_lists import shortened
 
+_NAMED = 12  # channels that a message names
 COLOURS = {2: ("grey", "alpha"), 3: ("red", "green", "blue"), 4: ("red", "green", "blue", "alpha")}
 """Names of the samples of a colour image, by their number."""
 
@@ -100,7 +102,7 @@ def _number(file: FrameFile, wanted: str, flag: str) -> int:
         return file.channels.index(wanted)
     if wanted.isdecimal() and int(wanted) < len(file.channels):
         return int(wanted)
-    there = ", ".join(f"{number} ({name})" for number, name in enumerate(file.channels))
+    there = shortened([f"{number} ({name})" for number, name in enumerate(file.channels)], _NAMED)
     raise ReadError(f"{file.path} has no channel {wanted!r}: pass {flag} with one of those it has: {there}")
 
 

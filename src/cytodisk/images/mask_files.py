@@ -108,7 +108,7 @@ def open_mask_files(
     path : path-like
         A file, or a folder with `*_masks.tif`, `*_masks.png`, `*_cp_masks.tif`, `*_cp_masks.png` or
         `*_seg.npy`; if it holds none of these, every file of outlines (.zip, .roi, .geojson), or else every
-        TIFF and PNG of it. Folders in it are not looked into.
+        TIFF, PNG and array (.npy) of it. Folders in it are not looked into.
         A pattern, as "folder/a*.tif", stands for those of its files that fit.
         Of several files for one image only the first in this order that can be used is taken.
     how : KindParameters, optional

@@ -20,7 +20,8 @@ ENDINGS = (
     "_cp_masks.png",
     "_seg.npy",
 )
-_IMAGES = (".tif", ".tiff", ".png")
+IMAGES = (".tif", ".tiff", ".png", ".npy")
+"""Endings of images, of which a folder can hold many."""
 _OUTLINES = re.compile(r"(.+?)([-_ ]?roi(s|set)?)?\.(zip|roi|geojson)", re.IGNORECASE)
 
 
@@ -124,13 +125,13 @@ def mask_names(folder: Path, images_end: str = "") -> list[tuple[Path, list[Path
     if not named and (outlines := [file for file in files if _OUTLINES.fullmatch(file.name)]):
         return [(file, []) for file in outlines]
     if not named:
-        images = [file for file in files if file.suffix.lower() in _IMAGES]
+        images = [file for file in files if file.suffix.lower() in IMAGES]
         if images_end:
             images = [file for file in images if not _ends(file.name, images_end)]
         if not images:
             raise ReadError(
                 f"folder {folder} holds no masks: neither files that end in {', '.join(ENDINGS)}, "
-                f"nor outlines (.zip, .roi, .geojson), nor other images ({', '.join(_IMAGES)})"
+                f"nor outlines (.zip, .roi, .geojson), nor other images ({', '.join(IMAGES)})"
             )
         return [(file, []) for file in images]
     return best_masks(named)

@@ -11,6 +11,7 @@ import numpy as np
 
 from cytodisk.errors import ReadError
 from cytodisk.images.frame_file import FileChoice
+from cytodisk.images.short_lists import shortened
 from cytodisk.scale import UNKNOWN, Scale
 
 PROJECTIONS = ("max", "mean")
@@ -60,7 +61,8 @@ class Scene:
         if self.slices > 1:
             parts.append(f"{self.slices} slices in z")
         named = [name or str(number) for number, name in enumerate(self.channels)]
-        parts.append("1 channel" if named == ["0"] else f"{_count(len(named), 'channel')} ({_listed(named)})")
+        count = _count(len(named), "channel")
+        parts.append(count if named == ["0"] else f"{count} ({shortened(named, _LISTED)})")
         parts.append(f"{self.image_shape[0]} × {self.image_shape[1]} px of {self.dtype}")
         if self.scale.pixel_size_um is not None:
             parts.append(f"{self.scale.pixel_size_um:.4g} µm a pixel")
@@ -172,7 +174,7 @@ def scene_number(file: Path, scenes: Sequence[tuple[str, bool]], chosen: str | N
     found = None if chosen is None else place_of(chosen, [name for name, _ in scenes])
     if found is not None:
         return found
-    listed = _listed([f"{number} ({scenes[number][0]})" for number in readable])
+    listed = shortened([f"{number} ({scenes[number][0]})" for number in readable], _LISTED)
     wrong = "" if chosen is None else f" and none is {chosen!r}"
     raise ReadError(
         f"{file} holds {len(scenes)} scenes{wrong}: pass one, by number or name, as --scene "
@@ -191,8 +193,3 @@ def place_of(chosen: str, names: Sequence[str]) -> int | None:
 
 def _count(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
-
-
-def _listed(words: Sequence[str]) -> str:
-    rest = f" and {len(words) - _LISTED} more" if len(words) > _LISTED else ""
-    return ", ".join(words[:_LISTED]) + rest

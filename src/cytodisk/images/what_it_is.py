@@ -21,7 +21,9 @@ from cytodisk.images.file_parameters import Fragments, Kind, KindParameters
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.label_boxes import cell_box
+from cytodisk.images.short_lists import shortened
 
+_NAMED = 8  # channels that a message names
 _FEW_FRAMES = 2  # with fractions, and none without, are enough to see a picture
 
 Reader: TypeAlias = Callable[[int], FramePixels]
@@ -106,7 +108,7 @@ def _check_shape(file: FrameFile, how: KindParameters) -> None:
         fractions = file.dtype.kind == "f"
         probabilities = "; of probabilities, export the Simple Segmentation instead" if fractions else ""
         raise MaskError(
-            f"{file.path} has {len(file.channels)} channels ({', '.join(file.channels)}): "
+            f"{file.path} has {len(file.channels)} channels ({shortened(file.channels, _NAMED)}): "
             "a mask has one value a pixel; pass the channel that holds it, as --mask-channel 0, or save the "
             f"mask alone, not as a colour picture{frames}{probabilities}"
         )

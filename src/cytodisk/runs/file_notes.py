@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from cytodisk.images.frame_file import FrameFile
-
-_SHOWN = 3  # names of files with the same note
+from cytodisk.images.short_lists import shortened
 
 
 def file_notes(files: Iterable[FrameFile | None]) -> tuple[str, ...]:
@@ -25,9 +24,4 @@ def file_notes(files: Iterable[FrameFile | None]) -> tuple[str, ...]:
     for file in filter(None, files):
         for note in file.notes:
             by_note.setdefault(note, {})[file.path.name or str(file.path)] = None
-    return tuple(f"{_names(list(names))}: {note}" for note, names in by_note.items())
-
-
-def _names(names: list[str]) -> str:
-    shown = ", ".join(names[:_SHOWN])
-    return f"{shown} and {len(names) - _SHOWN} more" if len(names) > _SHOWN else shown
+    return tuple(f"{shortened(list(names))}: {note}" for note, names in by_note.items())

@@ -22,6 +22,7 @@ from cytodisk.images.formats.tiff_scale import tiff_says
 from cytodisk.images.formats.tiff_segments import segment_shape
 from cytodisk.images.formats.tiff_series import TiffSeries, chosen_series
 from cytodisk.images.frame_file import FileChoice, FrameFile
+from cytodisk.images.short_lists import shortened
 
 _CODECS = {1: "none", 5: "lzw", 8: "zlib", 32946: "zlib", 32773: "packbits"}
 _LOSSY = (6, 7, 33007, 34892)  # kinds of JPEG
@@ -80,7 +81,7 @@ def _frames_there(
     absent = np.array([page is None for page in series._pages], dtype=bool)
     notes: list[str] = []
     if found.image is not None and found.image.missing:
-        names = ", ".join(found.image.missing[:5]) + (" and more" if len(found.image.missing) > 5 else "")
+        names = shortened(found.image.missing, 5)
         notes.append(
             f"files of its set are missing ({names}): frames in them cannot be read; put them beside it"
         )

@@ -13,9 +13,10 @@ import numpy as np
 
 from cytodisk.errors import ReadError, as_data
 from cytodisk.images.frame_file import Cut, FrameFile, StoredFrames
+from cytodisk.images.short_lists import shortened
 from cytodisk.scale import Scale, alike
 
-_SHOWN = 3  # names of files in a message
+_SHOWN = 3  # damaged files that are told
 
 
 class MissingFrameError(ReadError):
@@ -219,6 +220,4 @@ def _have(files: Sequence[FrameFile]) -> str:
 
 
 def _names(files: Sequence[FrameFile]) -> str:
-    """As "t001.tif, t002.tif, t003.tif and 4 more"."""
-    names = ", ".join(file.path.name for file in files[:_SHOWN])
-    return f"{names} and {len(files) - _SHOWN} more" if len(files) > _SHOWN else names
+    return shortened([file.path.name for file in files])

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from cytodisk.errors import ReadError
 from cytodisk.images.mask_names import natural_order
+from cytodisk.images.short_lists import shortened
 
 _TIMES = ("t", "tp", "time", "timepoint", "frame")
 _NO_TIMES = {
@@ -211,9 +212,8 @@ def _missing_words(names: Sequence[str]) -> str:
             f"{names[0]} is not there: this frame counts as missing; "
             "number the files without a gap if there was none in time"
         )
-    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
     return (
-        f"{', '.join(names[:_SHOWN])}{more} are not there: these frames count as missing; "
+        f"{shortened(names)} are not there: these frames count as missing; "
         "number the files without gaps if there were none in time"
     )
 

@@ -12,13 +12,12 @@ from cytodisk.errors import ReadError
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.frames import open_frames
 from cytodisk.images.image_paths import is_folder_of_files, is_pattern
-from cytodisk.images.mask_names import ENDINGS, base_name, best_masks, files_of, image_stem
+from cytodisk.images.mask_names import ENDINGS, IMAGES, base_name, best_masks, files_of, image_stem
 from cytodisk.images.sequences.file_sequence import open_sequence
 from cytodisk.images.sequences.frame_names import FrameNames, by_series, frame_names
+from cytodisk.images.short_lists import shortened
 
-_IMAGES = (".tif", ".tiff", ".png", ".npy")
 _OF_MASKS = re.compile(r"(^|[^a-z])(masks?|labels?|segmentations?|segmented|seg)([^a-z]|$)", re.IGNORECASE)
-_SHOWN = 3
 
 
 @dataclass(frozen=True)
@@ -104,13 +103,13 @@ def not_masks(files: Sequence[Path]) -> list[Path]:
 def readable(place: Path) -> list[Path]:
     """Images of a folder or a pattern, in natural order; raises ReadError without any."""
     files = files_of(place)
-    images = [file for file in files if file.suffix.lower() in _IMAGES]
+    images = [file for file in files if file.suffix.lower() in IMAGES]
     if images:
         return images
     if is_pattern(place):
         return files  # whoever opens them says what they are
     raise ReadError(
-        f"folder {place} holds no frames, which are images ({', '.join(_IMAGES)}) of one frame each: "
+        f"folder {place} holds no frames, which are images ({', '.join(IMAGES)}) of one frame each: "
         "check the path, or pass a pattern in quotes, as 'frames/t*.tif'"
     )
 
@@ -124,8 +123,8 @@ def one_series(place: Path, named: dict[str, Path]) -> FrameNames:
         listed = [_series_words(names) for names in kinds]
         first = (place if place.is_dir() else place.parent) / re.sub(r"\d+", "*", kinds[0][0])
         raise ReadError(
-            f"{place} holds images of {len(series)} kinds of names ({few(listed)}): pass those of one movie "
-            f"as a pattern, in quotes, as '{first}'"
+            f"{place} holds images of {len(series)} kinds of names ({shortened(listed)}): pass those of one "
+            f"movie as a pattern, in quotes, as '{first}'"
         )
     if len(named) == 1:
         raise ReadError(f"{place} holds one image alone: a movie has two frames at least; use cytodisk map")
@@ -134,7 +133,7 @@ def one_series(place: Path, named: dict[str, Path]) -> FrameNames:
 
 def _series_words(names: Sequence[str]) -> str:
     shown = names[0] if len(names) == 1 else re.sub(r"\d+", "*", names[0])
-    return f"{shown}, {len(names)} files" if len(names) > 1 else shown
+    return f"{len(names)} × {shown}" if len(names) > 1 else shown
 
 
 def left_out(files: Sequence[Path], names: FrameNames) -> str:
@@ -144,9 +143,3 @@ def left_out(files: Sequence[Path], names: FrameNames) -> str:
     if not others:
         return ""
     return f"beside them {len(others)} other image{'s' if len(others) > 1 else ''}, as {others[0].name}"
-
-
-def few(words: Sequence[str]) -> str:
-    """The first of some words, and how many more there are."""
-    shown = "; ".join(words[:_SHOWN]) if any("," in word for word in words) else ", ".join(words[:_SHOWN])
-    return f"{shown} and {len(words) - _SHOWN} more" if len(words) > _SHOWN else shown

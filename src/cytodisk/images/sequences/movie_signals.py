@@ -20,7 +20,6 @@ from cytodisk.images.sequences.file_sequence import open_sequence
 from cytodisk.images.sequences.frame_names import FrameNames, series_of
 from cytodisk.images.sequences.movie_files import (
     MovieMasks,
-    few,
     left_out,
     not_masks,
     one_series,
@@ -28,6 +27,7 @@ from cytodisk.images.sequences.movie_files import (
     readable,
     sequence,
 )
+from cytodisk.images.short_lists import shortened
 
 _USUAL_ENDINGS = ("", "_img")  # of an image's name, after that of its mask file without the masks' ending
 _FLAG = "--signal-channels"
@@ -133,8 +133,8 @@ def _by_base_name(files: Sequence[Path], masks: FrameNames, endings: Sequence[st
 def _lost_words(files: Sequence[Path]) -> str:
     if not files:
         return ""
-    verb = "is" if len(files) == 1 else "are"
-    return f"{few([file.name for file in files])} {verb} not there: frames without an image are not measured"
+    names, verb = shortened([file.name for file in files]), "is" if len(files) == 1 else "are"
+    return f"{names} {verb} not there: frames without an image are not measured"
 
 
 def _aligned(place: Path, names: FrameNames, masks: FrameNames) -> tuple[FrameNames, str]:
