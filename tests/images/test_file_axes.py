@@ -122,3 +122,17 @@ def test_axes_that_a_grey_png_has_not_are_refused(tmp_path: Path, axes: str) -> 
     imageio.imwrite(tmp_path / "a.png", np.zeros((20, 30), np.uint8))
     with pytest.raises(ReadError, match=rf"2 axes .* axes {axes} names 3: pass one letter an axis"):
         cd.read_image(tmp_path / "a.png", axes=axes)
+
+
+@pytest.mark.parametrize(
+    ("stored", "axes"), [((20, 31, 1), "YX"), ((5, 20, 31, 1), "TYX"), ((1, 20, 31, 1), "YX")]
+)
+def test_a_last_axis_of_one_is_the_only_channel(tmp_path: Path, stored: tuple[int, ...], axes: str) -> None:
+    movie = np.random.default_rng(0).integers(0, 255, stored).astype(np.uint8)
+    np.save(tmp_path / "a.npy", movie)
+    file = open_frames(tmp_path / "a.npy")
+    assert file.axes == axes
+    frames = movie.reshape(-1, 20, 31)
+    assert file.n_frames == len(frames)
+    for number, frame in enumerate(frames):
+        np.testing.assert_array_equal(file.frame(number)[0], frame)

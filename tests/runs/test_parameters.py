@@ -250,3 +250,12 @@ def test_a_pipe_is_no_file_of_parameters(tmp_path: Path, read: Callable[[Path], 
 def test_texts_with_any_characters_survive_the_file(tmp_path: Path, path: str) -> None:
     write_parameters(MovieParameters(tracks=path), tmp_path / "a.toml")
     assert parameters_from({}, tmp_path / "a.toml", MovieParameters).tracks == path
+
+
+def test_an_empty_file_is_one_that_was_not_written_to_its_end(tmp_path: Path) -> None:
+    path = tmp_path / "a.toml"
+    path.write_text("\n")
+    with pytest.raises(ParameterError, match=r"a\.toml is empty: .*leave --parameters out"):
+        parameters_from({}, path, MapParameters)
+    path.write_text("# all as by default\n")
+    assert parameters_from({}, path, MapParameters) == MapParameters()

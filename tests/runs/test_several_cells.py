@@ -1,5 +1,6 @@
 """Several cells in masks of 0 and 1: refused with both remedies, numbered, or the largest alone."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -92,3 +93,16 @@ def test_labels_that_change_name_the_remedy(tmp_path: Path, share: float) -> Non
         cd.run_movie(tmp_path / "a.tif", tmp_path / "out", **SIZE)
     kept = cd.run_movie(tmp_path / "a.tif", tmp_path / "kept", link=False, **SIZE).cells
     assert kept["cell"].nunique() == 3
+
+
+def test_one_label_that_changes_is_told(tmp_path: Path) -> None:
+    labels = np.zeros((4, 80, 110), dtype=np.uint8)
+    for frame, image in enumerate(labels):
+        for number, place in enumerate(((22, 22), (55, 25), (40, 85)), start=1):
+            image[disk(*place, 12)] = 9 if (number, frame) == (3, 3) else number
+    tifffile.imwrite(tmp_path / "a.tif", labels, photometric="minisblack")
+    for link, said in [(None, True), (False, False), (True, False)]:
+        cd.run_movie(tmp_path / "a.tif", tmp_path / str(link), link=link, **SIZE)
+        told = json.loads((tmp_path / str(link) / "provenance.json").read_text())["warnings"]
+        assert any("label 3 of frame 2 is label 9 in frame 3" in words for words in told) is said
+        assert any(words.endswith("pass --link") for words in told) is said

@@ -1,4 +1,5 @@
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import cytodisk as cd
 from cytodisk.disk.mapping_parameters import MAPS_VERSION
 from cytodisk.errors import EarlierVersionWarning, ReadError, StudyError
 from cytodisk.files import temporary_name
+from cytodisk.store.csv_tables import check_csv_room
 from cytodisk.store.provenance_file import MAPS, differences
 from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_kind import StudyKind
@@ -130,6 +132,25 @@ def test_a_provenance_of_something_else_is_no_study(tmp_path: Path) -> None:
     with pytest.raises(StudyError, match="holds no study"):
         StudyFolder.start(tmp_path, run(), KIND, overwrite=True)
     assert json.loads((tmp_path / "provenance.json").read_text()) == {"made by": "another program"}
+
+
+@pytest.mark.parametrize("options", [{}, {"resume": True}, {"overwrite": True}])
+@pytest.mark.parametrize(
+    "damage", [lambda text: text[: len(text) // 2], lambda text: "", lambda text: "\0" * 9]
+)
+def test_a_study_with_a_damaged_provenance_is_left_and_told(
+    tmp_path: Path, damage: Callable[[str], str], options: dict[str, bool]
+) -> None:
+    folder = StudyFolder.start(tmp_path / "out", run(), KIND)
+    add(folder, 0, status="ok")
+    folder.finish([part_key(0)])
+    path = tmp_path / "out" / "provenance.json"
+    path.write_text(damage(path.read_text()))
+    before = sorted((tmp_path / "out").rglob("*"))
+    with pytest.raises(StudyError, match=r"as its provenance\.json is damaged .*: pass another folder"):
+        StudyFolder.start(tmp_path / "out", run(), KIND, **options)
+    check_csv_room(tmp_path / "out", ["cells.parquet"])  # whose reason would be another one
+    assert sorted((tmp_path / "out").rglob("*")) == before
 
 
 def test_a_study_is_not_overwritten_unasked(tmp_path: Path) -> None:

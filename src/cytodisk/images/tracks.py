@@ -11,7 +11,6 @@ import numpy as np
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
 from cytodisk.geometry.fragments import without_others
 from cytodisk.geometry.placed_mask import PlacedMask
-from cytodisk.images.evidence.steady_labels import refuse_changing_labels
 from cytodisk.images.file_parameters import Fragments, Kind
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
@@ -203,8 +202,7 @@ def list_tracks(
     look : MaskLook
         At its file.
     link : bool, optional
-        Whether labels are not the same from frame to frame, so that they must be linked by overlap. Without
-        it, those that plainly change are refused.
+        Whether labels are not the same from frame to frame, so that they must be linked by overlap.
     given : sequence of dict of int to int, optional
         For each frame {label: track}, where another program has tracked the labels.
 
@@ -216,7 +214,7 @@ def list_tracks(
     Raises
     ------
     MaskError
-        Labels are not whole numbers, change from frame to frame, or none is there.
+        Labels are not whole numbers, or none is there.
     MissingPartError
         `link` needs a package that is not installed.
     """
@@ -227,8 +225,6 @@ def list_tracks(
     for fault in faults.values():
         if not isinstance(fault, ReadError):
             raise fault
-    if link is None and given is None:
-        refuse_changing_labels(file)
     found: dict[int, dict[int, int]] = {}
     tracks = given
     if tracks is None:

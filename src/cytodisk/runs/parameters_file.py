@@ -139,6 +139,11 @@ def _read(path: Path, of: type[Parameters]) -> dict[str, Any]:
         if words := comma_in_toml(text):
             raise ParameterError(f"parameters file {path}: {words}") from error
         raise ParameterError(f"parameters file {path} cannot be read: {error}") from error
+    if not text.strip():
+        raise ParameterError(
+            f"parameters file {path} is empty: it was not written to its end; copy it again, or leave "
+            "--parameters out"
+        )
     unknown = sorted(set(found) - set(of.model_fields))
     if not unknown:
         return found

@@ -16,7 +16,7 @@ import pyarrow.parquet as pq
 
 from cytodisk.errors import StudyError
 from cytodisk.files import replacing
-from cytodisk.store.provenance_file import read_provenance
+from cytodisk.store.provenance_file import PROVENANCE, read_provenance
 from cytodisk.store.written_files import recorded
 
 _ROWS_AT_ONCE = 20_000
@@ -142,8 +142,10 @@ def check_csv_room(folder: Path, tables: Iterable[str]) -> None:
     StudyError
         A file stands where a CSV table is to go, and the provenance does not name it.
     """
-    there = read_provenance(folder) or {}
-    ours = recorded(there)
+    there = read_provenance(folder)
+    if there is None and os.path.lexists(folder / PROVENANCE):
+        return  # the run is refused, for this reason
+    ours = recorded(there or {})
     others = [name for name in map(csv_of, tables) if name not in ours and os.path.lexists(folder / name)]
     if others:
         raise StudyError(other_csv_words(str(folder / others[0])))

@@ -88,6 +88,11 @@ def make_room(
         be removed, that are not the study's.
     """
     there = read_provenance(folder)
+    if there is None and os.path.lexists(folder / PROVENANCE):
+        raise StudyError(
+            f"output folder {folder} holds no study that can be read, as its {PROVENANCE} is damaged or that "
+            "of another program: pass another folder"
+        )
     check_room(there, provenance, f"output folder {folder}", resume, overwrite)
     if there is None:
         return

@@ -15,13 +15,23 @@ _CHANGED = 0.25  # of cells that stay in place have another label in the next fr
 _IN_PLACE = 0.5  # of the pixels of both that cells share which are the same
 
 
-def refuse_changing_labels(file: FrameFile) -> None:
-    """Raise MaskError if cells that stay in place have other labels from frame to frame.
+def changing_label_words(file: FrameFile) -> str:
+    """What is to be said of cells that stay in place and have another label in the next frame.
 
     Parameters
     ----------
     file : FrameFile
         Label images by frame.
+
+    Returns
+    -------
+    str
+        Empty where there is none of them.
+
+    Raises
+    ------
+    MaskError
+        They are so many that labels cannot be tracks.
     """
     starts = np.unique(np.linspace(0, max(0, file.n_frames - 2), _PAIRS).astype(int)).tolist()
     same = changed = 0
@@ -43,6 +53,12 @@ def refuse_changing_labels(file: FrameFile) -> None:
             "the cells that were looked at): pass --link to give each cell one label through time, "
             "or --tracks with a file of tracks, or --no-link if they are right"
         )
+    if not changed:
+        return ""
+    return (
+        f"a cell that stays in place gets another label, where its track ends and one begins ({example}; so "
+        f"it is for {changed} of the {same + changed} that were looked at): if it is one cell, pass --link"
+    )
 
 
 def _thinned(frame: FramePixels) -> AnyArray:

@@ -28,6 +28,8 @@ def open_array(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
         raise ReadError(f"{file} has dtype {array.dtype}: save an array of numbers, labels as uint16")
     of_cellpose = file.name.lower().endswith("_seg.npy")
     said = ("Z" if of_cellpose and array.ndim == 3 else "Q" * (array.ndim - 2)) + "YX"
+    if array.ndim > 2 and array.shape[-1] == 1:  # no image is one pixel wide: it is the only channel
+        said = "Q" * (array.ndim - 3) + "YXC"
     stored = stored_axes(file, said, array.shape, unnamed, choice)
     known = stored.known
     channels = channel_names((), known.shape[known.letters.index("C")] if "C" in known.letters else 1)

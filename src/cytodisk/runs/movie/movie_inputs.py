@@ -9,6 +9,7 @@ from pathlib import Path
 from cytodisk.checks import is_path
 from cytodisk.errors import MaskError, ParameterError, SignalError
 from cytodisk.images.choice_use import check_choice
+from cytodisk.images.evidence.steady_labels import changing_label_words
 from cytodisk.images.file_parameters import Kind, KindParameters
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.sequences.movie_files import open_movie_masks
@@ -165,10 +166,12 @@ def open_movie(
     refuse_several(look)
     mask_file = look.file
     given = None if parameters.tracks is None else _given_tracks(mask_file, look, parameters, scale)
-    if given is not None:
-        mask_file = replace(mask_file, notes=(*mask_file.notes, *given.remarks))
     link = True if parameters.label else parameters.link  # pieces are numbered frame by frame
     tracks = tuple(list_tracks(look, link, None if given is None else given.frames))
+    remarks = () if given is None else given.remarks
+    if look.kind == "labels" and given is None and link is None:
+        remarks = tuple(filter(None, [changing_label_words(mask_file)]))
+    mask_file = replace(mask_file, notes=(*mask_file.notes, *remarks))
     grid = polar_grid(parameters.part(PolarGridParameters))
     check_depths(grid, scale)
     mothers = {} if given is None else given.mothers
