@@ -12,10 +12,10 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from cytodisk.errors import ParameterError
+from cytodisk.errors import ParameterError, words_of
 from cytodisk.files import real_path
 from cytodisk.number_words import comma_advice, comma_in_toml, without_comma
-from cytodisk.reading_files import text_of, words_of
+from cytodisk.reading_files import text_of
 from cytodisk.runs.batch.batch_faults import Faults
 from cytodisk.runs.batch.batch_file_rows import COLUMNS, KEYS, PARAMETERS_OF, FileRow, RowReader
 from cytodisk.runs.batch.batch_input import BatchInput
