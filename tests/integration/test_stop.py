@@ -9,7 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import tifffile
+from command_line import content
 
+import cytodisk as cd
 from cytodisk import simulate
 from deadlines import wait_until
 
@@ -61,3 +63,49 @@ def test_it_ends_in_one_line_and_leaves_no_lock(
         path.name for path in tmp_path.rglob("*") if path.name.startswith(".cytodisk") or ".tmp" in path.name
     ]
     assert left == []
+
+
+# The command line in a process that says when it opens a file of the study with a given ending.
+_TOLD = """
+import sys
+from pathlib import Path
+said, ending = Path(sys.argv[1]), sys.argv[2]
+def hear(event, arguments):
+    if event == "open" and str(arguments[0]).endswith(ending) and not said.exists():
+        said.touch()
+sys.addaudithook(hear)
+sys.argv = ["cytodisk", *sys.argv[3:]]
+from cytodisk.cli import main
+main()
+"""
+
+
+@pytest.mark.parametrize(
+    ("command", "ending"),
+    [
+        (("correlate", "--surrogates", "100000", "--pairs"), "activity.zarr.zip"),
+        (("report",), "00_t00020.npz"),
+    ],
+)
+def test_what_reads_a_study_leaves_it_as_it_was(
+    files: Path, tmp_path: Path, command: tuple[str, ...], ending: str
+) -> None:
+    signal_file = files / "signal.tif"
+    counts = np.random.default_rng(0).poisson(90, tifffile.imread(files / "masks.tif").shape)
+    tifffile.imwrite(
+        signal_file, counts.astype(np.uint16), metadata={"axes": "TYX"}, photometric="minisblack"
+    )
+    study = tmp_path / "study"
+    cd.run_movie(files / "masks.tif", study, signal=signal_file, layers=3, sectors=12)
+    before, said = content(study), tmp_path / "said"
+    given = [sys.executable, "-c", _TOLD, str(said), ending, command[0], str(study), *command[1:]]
+    started = subprocess.Popen(given, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        wait_until(lambda: said.exists() or started.poll() is not None, f"{ending} was read")
+        started.send_signal(signal.SIGTERM)
+        _, error = started.communicate(timeout=30)
+    finally:
+        started.kill()
+    assert started.returncode == 143
+    assert error in ("Stopped.\n", "Stopped; nothing was changed.\n")
+    assert content(study) == before
