@@ -4,7 +4,7 @@ import pytest
 
 import cytodisk as cd
 from cytodisk.errors import ParameterError, WindowError
-from cytodisk.number_words import comma_advice, comma_in_toml, without_comma
+from cytodisk.number_words import comma_advice, comma_in_toml, unit_advice, without_comma
 from cytodisk.runs.map.map_parameters import MapParameters
 
 
@@ -51,3 +51,31 @@ def test_parameters_name_the_remedy() -> None:
         MapParameters(pixel_size_um="0,2")
     with pytest.raises(WindowError, match=r"depth_um must be .*: if these are .* write 0\.5"):
         cd.polar_windows(depth_um=(0.0, 5.0))
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "words"),
+    [
+        ("0.2um", "pixel_size_um", "write 0.2: it is in µm"),
+        ("153 nm", "pixel_size_um", "write 0.153: it is in µm"),
+        ("0,2 µm", "pixel_size_um", "write 0.2: it is in µm"),
+        ("5min", "frame_interval_s", "write 300: it is in seconds"),
+        ("200 ms", "frame_interval_s", "write 0.2: it is in seconds"),
+        ("3 parsecs", "pixel_size_um", "write the number alone, in µm"),
+        ("5px", "layers", "write 5: a number without a unit"),
+    ],
+)
+def test_a_number_with_a_unit(text: str, name: str, words: str) -> None:
+    assert unit_advice(text, name).startswith(words)
+
+
+@pytest.mark.parametrize("value", ["0.2", "1e-3", "five", "um", "", 0.2, None])
+def test_no_unit_no_advice(value: object) -> None:
+    assert unit_advice(value, "pixel_size_um") == ""
+
+
+def test_the_unit_is_named_where_a_parameter_is_refused() -> None:
+    with pytest.raises(ParameterError, match=r"pixel_size_um must be .*got '153nm': write 0\.153"):
+        MapParameters(pixel_size_um="153nm")
+    with pytest.raises(ParameterError, match=r"layers must be .*got '5px': write 5:"):
+        MapParameters(layers="5px")

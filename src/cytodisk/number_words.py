@@ -1,10 +1,22 @@
-"""Numbers that were typed with a comma, as much of Europe writes them: what to type instead."""
+"""Numbers that were typed with a comma, as much of Europe writes them, or with a unit: what to type."""
 
 import re
 
 _COMMA = re.compile(r"[+-]?[0-9]+,[0-9]+([eE][+-]?[0-9]+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+(\.[0-9]*)?")
 _POINTS = re.compile(r"[+-]?[1-9][0-9]{0,2}(\.[0-9]{3})+,[0-9]+")  # as 1.234,5
+_WITH_UNIT = re.compile(r"([+-]?[0-9]+(?:[.,][0-9]+)?(?:[eE][+-]?[0-9]+)?)\s*([^\W\d_][\w/ .]*)")
+_MICRO = {
+    "um": 1.0,
+    "micron": 1.0,
+    "microns": 1.0,
+    "micrometer": 1.0,
+    "micrometre": 1.0,
+    "nm": 1e-3,
+    "mm": 1e3,
+}
+_SECONDS = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.0, "minutes": 60.0, "h": 3600.0}
+_UNITS = {"um": ("µm", _MICRO), "s": ("seconds", _SECONDS)}  # by the ending of a parameter's name
 _LINE = re.compile(r"\s*([\w-]+)\s*=\s*([^#\s\"'\[\]{}]+,[^#\s\"'\[\]{}]+)\s*(#.*)?")
 
 
@@ -46,6 +58,29 @@ def comma_advice(value: object, whole: bool = False) -> str:
         right = ",".join(without_comma(part) for part in parts)
         return f"write {right}: numbers have a point, and commas stand between them"
     return ""
+
+
+def unit_advice(value: object, name: str) -> str:
+    """What to do about a value that was refused, if it is a number with a unit behind it; else empty.
+
+    Parameters
+    ----------
+    value : object
+        As it was typed.
+    name : str
+        Of the parameter, which ends in its unit: "pixel_size_um".
+    """
+    found = _WITH_UNIT.fullmatch(value.strip()) if isinstance(value, str) else None
+    if found is None:
+        return ""
+    number, unit = float(found[1].replace(",", ".")), found[2].strip().replace("µ", "u").replace("μ", "u")
+    wanted, known = _UNITS.get(name.rsplit("_", 1)[-1], ("", {}))
+    if not wanted:
+        return f"write {number:.12g}: a number without a unit"
+    factor = known.get(unit, known.get(unit.lower()))
+    if factor is None:
+        return f"write the number alone, in {wanted}"
+    return f"write {number * factor:.12g}: it is in {wanted}, without the unit"
 
 
 def _advice_on_pairs(values: tuple[object, ...]) -> str:

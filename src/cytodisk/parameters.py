@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationIn
 from pydantic_core import PydanticCustomError
 
 from cytodisk.errors import CytodiskError, ParameterError
-from cytodisk.number_words import comma_advice
+from cytodisk.number_words import comma_advice, unit_advice
 from cytodisk.parameter_words import choices, kinds, range_words, short_words, unknown_words, value_words
 
 MOST_SEED = 2**32 - 1
@@ -198,7 +198,9 @@ def _fault_words(error: ValidationError, model: type[Parameters], names: Mapping
             words.append(f"{names.get(name, name)}{colon} {said}")
         else:
             default = "" if field.default is None else f"{value_words(field.default)} is the default"
-            advice = comma_advice(fault["input"], kinds(field.annotation) & {int, float} == {int}) or default
+            numeric = kinds(field.annotation) & {int, float}
+            advice = comma_advice(fault["input"], numeric == {int})
+            advice = advice or (unit_advice(fault["input"], name) if numeric else "") or default
             must = f"must be {range_words(field)}, got {short_words(fault['input'])}"
             must += f": {advice}" if advice else ""
             words.append(f"{names.get(name, name)} {must}")

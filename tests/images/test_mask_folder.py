@@ -49,6 +49,13 @@ def fill(folder: Path, *names: str) -> None:
             (folder / name).write_text("no image")
 
 
+def test_exports_of_ilastik_are_known_by_their_names(tmp_path: Path) -> None:
+    wanted = ["a_Object Identities.tif", "b_Simple Segmentation.png"]
+    fill(tmp_path, *wanted, "a.tif", "b.tif", "a_Simple Segmentation.tif", "b_Probabilities.tif")
+    found = open_mask_files(tmp_path)
+    assert names(found) == wanted
+
+
 def names(sources: tuple[MaskSource, ...]) -> list[str]:
     return [source.name for source in sources]
 

@@ -1,3 +1,4 @@
+import re
 from pathlib import Path
 
 import pytest
@@ -26,6 +27,8 @@ def fill(folder: Path, *names: str) -> Path:
         ("img_001_seg.npy", "img_001.png"),
         ("000_masks.png", "000_img.png"),
         ("img_001.tif", "img_001.tiff"),
+        ("img_001_Simple Segmentation.tif", "img_001.tif"),
+        ("img_001_Object Identities.tiff", "img_001.png"),
     ],
 )
 def test_images_pair_by_name(tmp_path: Path, mask: str, image: str) -> None:
@@ -73,3 +76,27 @@ def test_what_cannot_be_paired_at_all(tmp_path: Path) -> None:
         pair_images(masks, fill(tmp_path / "one", "a.tif") / "a.tif")
     with pytest.raises(ReadError, match="gone does not exist"):
         pair_images(masks, "gone")
+
+
+@pytest.mark.parametrize(
+    ("mask", "image", "signal", "words"),
+    [
+        ("a_cp_masks.png", "a.tif", "_img", "but a.tif is: pass --signal {folder}$"),
+        ("a_seg.npy", "a_w1.tif", "_img", "but a_w1.tif is: pass --signal _w1.tif$"),
+        ("a_masks.tif", "a_w1.tif", "images", "but a_w1.tif is: pass --signal {images}/_w1.tif$"),
+        ("mask0001.tif", "vasp0001.tif", "images", "vasp0001.tif and others .*, use cytodisk movie$"),
+        ("a_masks.tif", "b_masks.tif", "_img", "[)] is not there$"),
+    ],
+)
+def test_where_no_image_fits_the_message_says_what_to_type(
+    tmp_path: Path, mask: str, image: str, signal: str, words: str
+) -> None:
+    images = tmp_path / "images"
+    fill(tmp_path, mask)
+    fill(images if signal == "images" else tmp_path, image)
+    given = images if signal == "images" else signal
+    words = words.format(folder=re.escape(str(tmp_path)), images=re.escape(str(images)))
+    with pytest.raises(SignalError, match=words) as caught:
+        pair_images(sources(tmp_path, mask), given)
+    if "--signal" in (message := str(caught.value)):  # what it says works
+        assert pair_images(sources(tmp_path, mask), message.rsplit("--signal ")[-1])[0].name == image

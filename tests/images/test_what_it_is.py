@@ -67,6 +67,12 @@ def test_a_mask_with_grey_pixels_is_no_label_image(tmp_path: Path, name: str) ->
         seen(tmp_path, GREY[name])
 
 
+@pytest.mark.parametrize("name", ["scaled down", "scaled up", "rotated", "of 16 bits"])
+def test_grey_edges_are_named_with_the_remedy(tmp_path: Path, name: str) -> None:
+    with pytest.raises(MaskError, match=r"scaling or smoothing a mask makes .*again without interpolation"):
+        seen(tmp_path, GREY[name])
+
+
 @pytest.mark.parametrize(
     "labels",
     [

@@ -470,3 +470,11 @@ def test_cells_with_qc_flags_are_named(run: Run, tmp_path: Path) -> None:
     assert "QC flag flagged masks: 1 cell may not be one whole cell (cell 0, frame 0: 1 small piece" in said
     assert "QC flag warnings" not in said
     assert "Look at the mask; correct the segmentation" in said
+
+
+def test_a_signal_without_its_flag_and_no_folder_for_results(run: Run, mask: Path, tmp_path: Path) -> None:
+    result = run("map", mask, "y.tif", "-o", tmp_path / "out")
+    assert_refused(result, "y.tif")
+    assert "--signal y.tif" in " ".join(result[2].replace("│", " ").split())
+    assert "--signal" not in run("map", mask, "y.tif", "z.tif", "-o", tmp_path / "out")[2]
+    assert_refused(run("map", mask), "as -o results/")

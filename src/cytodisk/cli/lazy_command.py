@@ -1,5 +1,7 @@
 """A command whose module is imported when it runs: the list of commands needs none of them."""
 
+import re
+import shlex
 from functools import cached_property
 from importlib import import_module
 from typing import Any
@@ -12,6 +14,8 @@ from cytodisk.cli.help_groups import WIDTH, GroupedCommand
 _QUOTES = (
     "For several files of one movie put the pattern in quotes, as 'frames/t*.tif', or pass their folder."
 )
+
+_EXTRA = re.compile(r"unexpected extra argument(?:\(s\))? \(([^() ]+)\)$")  # one alone
 
 
 class LazyCommand(TyperCommand):
@@ -45,6 +49,17 @@ class LazyCommand(TyperCommand):
             return self.loaded.make_context(*call, **extra)
         except Exception as error:  # of which class depends on the version of typer
             words = str(getattr(error, "message", ""))
-            if "unexpected extra argument" in words:
-                error.message = f"{words}. {_QUOTES}"  # type: ignore[attr-defined]
+            if advice := self._advice(words, getattr(error, "param", None)):
+                error.message = advice  # type: ignore[attr-defined]
             raise
+
+    def _advice(self, words: str, param: Any) -> str:
+        """A message with the remedy; empty where it has none to add."""
+        if not words and getattr(param, "name", None) == "out":  # is missing, which is said before
+            return "Name a folder for the results, as -o results/"
+        if "unexpected extra argument" not in words:
+            return ""
+        one = _EXTRA.search(words)
+        if one is not None and any("--signal" in option.opts for option in self.loaded.params):
+            return f"{words}. For the image of the signal write --signal {shlex.quote(one[1])}. {_QUOTES}"
+        return f"{words}. {_QUOTES}"

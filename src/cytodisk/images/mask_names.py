@@ -19,6 +19,11 @@ ENDINGS = (
     "_cp_masks.tiff",
     "_cp_masks.png",
     "_seg.npy",
+    *(
+        f"_{kind}{suffix}"  # as ilastik calls its exports
+        for kind in ("object identities", "simple segmentation", "object predictions")
+        for suffix in (".tif", ".tiff", ".png")
+    ),
 )
 IMAGES = (".tif", ".tiff", ".png", ".npy")
 """Endings of images, of which a folder can hold many."""
@@ -130,7 +135,7 @@ def mask_names(folder: Path, images_end: str = "") -> list[tuple[Path, list[Path
             images = [file for file in images if not _ends(file.name, images_end)]
         if not images:
             raise ReadError(
-                f"folder {folder} holds no masks: neither files that end in {', '.join(ENDINGS)}, "
+                f"folder {folder} holds no masks: neither files that end in {', '.join(ENDINGS[:7])}, "
                 f"nor outlines (.zip, .roi, .geojson), nor other images ({', '.join(IMAGES)})"
             )
         return [(file, []) for file in images]

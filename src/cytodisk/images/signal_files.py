@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,10 +19,11 @@ from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
 from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 from cytodisk.images.mask_files import MaskSource
-from cytodisk.images.mask_names import base_name, image_stem, visible_files
+from cytodisk.images.mask_names import base_name, image_stem, natural_order, visible_files
 from cytodisk.scale import Scale
 
 _USUAL_ENDINGS = ("", "_img")
+_PIXELS = (".tif", ".tiff", ".png", ".nd2", ".czi", ".lif")
 _STARTS_OF_ENDINGS = ("_", "-", ".")
 
 
@@ -161,8 +163,36 @@ def pair_images(
             images.setdefault(name, []).append(file)
     found = tuple(_image_of(source, folder, images, endings) for source in sources)
     if all(isinstance(image, SignalError) for image in found):
-        raise SignalError(f"signal {signal} fits no mask file: {found[0]}")
+        advice = _advice(sources, folder, images)
+        raise SignalError(f"signal {signal} fits no mask file: {found[0]}{advice}")
     return found
+
+
+def _advice(sources: Sequence[MaskSource], folder: Path, images: dict[str, list[Path]]) -> str:
+    """What to type, or to rename, where no mask file has an image; empty where nothing fits."""
+    masks, first = {source.path for source in sources}, base_name(sources[0].name)
+    others = [file for files in images.values() for file in files if file not in masks]
+    named = [file for file in images.get(first, []) if file not in masks]
+    if named:
+        return f", but {named[0].name} is: pass --signal {shlex.quote(str(folder))}"
+    images_only = [
+        file.name
+        for file in others
+        if file.suffix.lower() in _PIXELS and base_name(file.name) == image_stem(file.name)
+    ]
+    longer = [
+        name for name in images_only if name.startswith(first) and name[len(first)] in _STARTS_OF_ENDINGS
+    ]
+    if longer:
+        ending = Path(longer[0][len(first) :])
+        place = ending if folder == sources[0].path.parent else folder / ending
+        return f", but {longer[0]} is: pass --signal {shlex.quote(str(place))}"
+    if not images_only:
+        return ""
+    return (
+        f"; {min(images_only, key=natural_order)} and others are there: give the images the names of their "
+        "masks, or if the files are the frames of one movie, use cytodisk movie"
+    )
 
 
 def common_name(signal: Path) -> str:

@@ -10,6 +10,7 @@ from cytodisk.images.frame_pixels import FramePixels
 
 _LEAST_ALIKE = 0.5  # of neighbouring pixels within cells must have one label in a label image
 _MOST_PIECES = 3  # connected pieces a label, on average, in a label image
+_MOST_FULL = 0.8  # of the pixels of a mask with grey edges have the greatest value
 _IF_LABELS = "threshold it, or pass kind='labels' (--kind labels) if it is one"
 
 
@@ -32,6 +33,12 @@ def picture_words(frame: FramePixels, sight: FrameSight) -> str:
         return ""
     alike, pieces = share_alike(frame.strips()), count_pieces(frame.strips())
     if alike < _LEAST_ALIKE or pieces > _MOST_PIECES * values:
+        if _share_of(frame, sight.cells.max()) > _MOST_FULL:
+            return (
+                "looks like a picture, not a mask or label image: most of the cell has the value "
+                f"{sight.cells.max():g} and its edge is grey ({values - 1} other values), as scaling or "
+                f"smoothing a mask makes it; make it again without interpolation, or {_IF_LABELS}"
+            )
         return (
             f"looks like a picture, not a mask or label image: {values} values of frame {sight.number} "
             f"lie in {pieces} pieces; {_IF_LABELS}"
@@ -41,7 +48,8 @@ def picture_words(frame: FramePixels, sight: FrameSight) -> str:
         return (
             "looks like a picture, not a mask or label image: "
             f"{rims} of the {values} values of frame {sight.number} are thin rims or specks beside the value "
-            f"{sight.cells.max():g}, as scaling or smoothing a mask makes them; {_IF_LABELS}"
+            f"{sight.cells.max():g}, as scaling or smoothing a mask makes them; make it again without "
+            f"interpolation, or {_IF_LABELS}"
         )
     return ""
 
@@ -61,6 +69,12 @@ def fraction_words(sight: FrameSight) -> str:
             "Simple Segmentation (ilastik)"
         )
     return f"looks like a picture, not a mask or label image ({between}): threshold it"
+
+
+def _share_of(frame: FramePixels, value: float) -> float:
+    """Share of a frame's pixels beside 0 that have a value."""
+    counts = np.sum([((strip == value).sum(), (strip != 0).sum()) for _, strip in frame.strips()], axis=0)
+    return float(counts[0] / counts[1])
 
 
 def _rims(frame: FramePixels, sight: FrameSight) -> int:
