@@ -78,7 +78,7 @@ FRAME_STAGES = (
     Stage(
         "files",
         "tables",
-        ("cytodisk.store.study_folder:StudyFolder.add", "cytodisk.store.study_folder:StudyFolder.add_table"),
+        ("cytodisk.store.study_parts:StudyParts.add", "cytodisk.store.study_parts:StudyParts.add_table"),
     ),
 )
 COUNTED = ("outline", "mesh", "map", "tracking", "windows", "sampling")

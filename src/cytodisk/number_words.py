@@ -100,3 +100,15 @@ def comma_in_toml(text: str) -> str:
             name = found[1]
             return f"line {number} has a number with a comma, {name} = {found[2]}: write {name} = {right}"
     return ""
+
+
+def rounded(value: float, digits: int = 3) -> str:
+    """A measured number with so many digits that count, without a power of ten up to a million.
+
+    Examples
+    --------
+    >>> from cytodisk.number_words import rounded
+    >>> rounded(2534.1), rounded(0.0412345), rounded(103.2, digits=2)
+    ('2530', '0.0412', '100')
+    """
+    return f"{float(f'{value:.{digits}g}'):g}"

@@ -225,10 +225,10 @@ def test_a_seg_file_cut_short_is_unreadable(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("array", "words"),
     [
-        (np.zeros((4, 5), dtype=[("a", "i4"), ("b", "f8")]), "has dtype .*'a'"),
-        (np.ones((4, 5), dtype=complex), "has dtype complex128: save an array of numbers"),
-        (np.ones((4, 5), dtype="datetime64[s]"), "has dtype datetime64"),
-        (np.full((4, 5), "a"), "has dtype <U1"),
+        (np.zeros((4, 5), dtype=[("a", "i4"), ("b", "f8")]), "has the type .*'a'"),
+        (np.ones((4, 5), dtype=complex), "has the type complex128: save an array of numbers"),
+        (np.ones((4, 5), dtype="datetime64[s]"), "has the type datetime64"),
+        (np.full((4, 5), "a"), "has the type <U1"),
     ],
 )
 def test_an_array_without_numbers_costs_its_own_file_alone(

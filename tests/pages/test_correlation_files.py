@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError, StudyError
 from cytodisk.pages.correlation_files import write_correlation_figures
+from cytodisk.runs.channel_names import shortened
 from cytodisk.runs.correlate.correlate_study import correlate_study
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
@@ -92,7 +93,7 @@ def test_pages_of_two_signals(study: cd.Study, saved: list[Figure]) -> None:
 def test_notes_of_pairs_say_which_way_is_up(study: cd.Study, saved: list[Figure]) -> None:
     write_correlation_figures(study, correlate_study(study, SHORT, LONG, **FEW, pairs=True))
     words = [text.get_text() for text in saved[-1].texts]
-    assert f"lag: ↓ {LONG[:17]}… first  ·  ↑ Rac1 first" in words
+    assert f"lag: ↓ {shortened(LONG, 18)} first  ·  ↑ Rac1 first" in words
     assert sum("left out" in line for line in words) == 1
 
 
@@ -171,7 +172,7 @@ def test_what_cannot_be_drawn_is_refused(study: cd.Study, with_velocity: Correla
     refused.__dict__["cells"] = pd.DataFrame({"cell": [0], "status": ["refused"], "reason": ["too short"]})
     with pytest.raises(ParameterError, match="cell 0 has no correlation to draw: too short"):
         write_correlation_figures(study, refused)
-    with pytest.raises(ReadError, match="damaged"):
+    with pytest.raises(ReadError, match="does not exist"):
         write_correlation_figures(study, replace(with_velocity, path=tmp_path))
     blocked = replace(with_velocity, path=tmp_path)
     for name in ("cells", "windows", "layers", "layer_curves"):

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from cytodisk.cli.console import count
 from cytodisk.cli.map_totals import without_cell_words
 from cytodisk.images.mask_names import without_name
+from cytodisk.number_words import rounded
 
 if TYPE_CHECKING:
     from cytodisk.runs.cells.cell_inputs import CellInputs
@@ -191,10 +192,10 @@ def size_words(areas_px: Sequence[int], scale: "Scale") -> str:
     diameter = scale.length(2.0 * np.sqrt(median / np.pi))
     area = f"{median:.0f} px²"
     if scale.pixel_size_um is not None:
-        area += f", {scale.area(median):.3g} {scale.area_unit}"
+        area += f", {rounded(scale.area(median))} {scale.area_unit}"
     spread = f" (from {least} to {most} px²)" if len(areas_px) > 1 else ""
     of = "median area" if len(areas_px) > 1 else "area"
-    return f"{of} {area}{spread}, as a circle of {diameter:.3g} {scale.length_unit} across"
+    return f"{of} {area}{spread}, as a circle of {rounded(diameter)} {scale.length_unit} across"
 
 
 def scale_words(diameters: ArrayLike, scale: "Scale") -> Iterator[str]:

@@ -95,7 +95,7 @@ def _through_time(found: "Comparison") -> Iterator[str]:
     in_all = table[table["layer"].isna()]
     for channel in in_all["channel"].dropna().unique():
         values = in_all[in_all["channel"] == channel].set_index("method")["correlation"]
-        shown = textwrap.shorten(f"correlation, {shown_name(channel)}", _NAME, placeholder="…")
+        shown = f"correlation, {shown_name(channel, _NAME - 13)}"
         cells = [_value(values.get(method), "{:.3f}".format) for method in found.methods]
         yield _line(shown, cells, "of a layer's windows with the next frame's")
     moved = in_all.drop_duplicates("method").set_index("method")[name]

@@ -60,9 +60,12 @@ class Scene:
         parts = [_count(self.frames, "frame")]
         if self.slices > 1:
             parts.append(f"{self.slices} slices in z")
-        named = [name or str(number) for number, name in enumerate(self.channels)]
-        count = _count(len(named), "channel")
-        parts.append(count if named == ["0"] else f"{count} ({shortened(named, _LISTED)})")
+        names = [name or f"{number} without a name" for number, name in enumerate(self.channels)]
+        channels = _count(len(names), "channel")
+        if any(self.channels):
+            parts.append(f"{channels} ({shortened(names, _LISTED)})")
+        else:
+            parts.append(channels if len(names) == 1 else f"{channels} without names")
         parts.append(f"{self.image_shape[0]} × {self.image_shape[1]} px of {self.dtype}")
         if self.scale.pixel_size_um is not None:
             parts.append(f"{self.scale.pixel_size_um:.4g} µm a pixel")
@@ -137,7 +140,7 @@ def chosen_slice(file: Path, slices: int, z: str | None) -> int | str:
     """
     if slices == 1:
         return 0
-    remedy = f"pass one of them, as --z {slices // 2} (0 to {slices - 1}), or a projection, as --z max"
+    remedy = f"pass one slice (0 to {slices - 1}), as --z {slices // 2}, or a projection, as --z max"
     if z is None:
         raise ReadError(f"{file} is a z-stack of {slices} slices: {remedy}")
     if z in PROJECTIONS:
@@ -177,8 +180,8 @@ def scene_number(file: Path, scenes: Sequence[tuple[str, bool]], chosen: str | N
     listed = shortened([f"{number} ({scenes[number][0]})" for number in readable], _LISTED)
     wrong = "" if chosen is None else f" and none is {chosen!r}"
     raise ReadError(
-        f"{file} holds {len(scenes)} scenes{wrong}: pass one, by number or name, as --scene "
-        f"{readable[0]}, of {listed}"
+        f"{file} holds {len(scenes)} scenes{wrong}: pass the number or the name of one, as --scene "
+        f"{readable[0]}; there are {listed}"
     )
 
 

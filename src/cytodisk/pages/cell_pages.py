@@ -17,6 +17,7 @@ from cytodisk.plot.cell.disk_axes import draw_disk_image, draw_disk_means, draw_
 from cytodisk.plot.cell.window_polygons import draw_window_means, draw_windows
 from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, paper_style, signal_limits
 from cytodisk.plot.units import scale_for
+from cytodisk.runs.channel_names import shortened, shown_name
 from cytodisk.scale import Scale
 from cytodisk.windows.polar_windows import CellWindows
 from cytodisk.windows.sample import sample
@@ -127,7 +128,7 @@ def _draw_channel(
     sheet.text(
         3.5,
         top + 0.5 * height,
-        _shortened(channel, _LONGEST_CHANNEL),
+        shown_name(channel, _LONGEST_CHANNEL),
         rotation=90,
         ha="center",
         va="center",
@@ -142,13 +143,13 @@ def _draw_channel(
     draw_windows(cell, windows, linewidth=0.15, alpha=0.6)
     draw_disk_image(wheel, windows.disk, image, limits=limits)
     bar = _bar_axes(sheet, top, height, second - _BAR)
-    colour_bar(drawn, bar, _shortened(channel, _LONGEST_CHANNEL), "a.u.", extend="both")
+    colour_bar(drawn, bar, shown_name(channel, _LONGEST_CHANNEL), "a.u.", extend="both")
     headings = ("window means", "window means on the disk")
     cell, wheel = _row_of_axes(sheet, top, height, _PANEL, headings, left=second)
     filled = draw_window_means(cell, windows, means, scale=scale)
     draw_disk_means(wheel, windows.grid, means)
     bar = _bar_axes(sheet, top, height, second + _PAIR - _BAR)
-    colour_bar(filled, bar, f"mean {_shortened(channel, _LONGEST_CHANNEL)}", "a.u.", extend="both")
+    colour_bar(filled, bar, f"mean {shown_name(channel, _LONGEST_CHANNEL)}", "a.u.", extend="both")
 
 
 def _draw_map_row(sheet: Sheet, top: float, height: float, disk: DiskMap, scale: Scale) -> None:
@@ -239,13 +240,5 @@ def _write_heading(sheet: Sheet, name: str, windows: CellWindows, scale: Scale, 
     grid = f"{windows.grid.layers} layers × {windows.grid.sectors} sectors"
     distortion = windows.disk.distortion
     facts = [area, grid, f"area distortion {distortion.area:.3f}", f"angle distortion {distortion.angle:.3g}"]
-    sheet.text(_LEFT, 5.0, _shortened(name, _LONGEST_NAME), fontsize=8, weight="bold")
+    sheet.text(_LEFT, 5.0, shortened(name, _LONGEST_NAME), fontsize=8, weight="bold")
     sheet.text(_LEFT, 8.6, " · ".join([*facts, more] if more else facts), color="0.3")
-
-
-def _shortened(name: str, longest: int) -> str:
-    """A name short enough for its place, cut in its middle."""
-    if len(name) <= longest:
-        return name
-    half = (longest - 1) // 2
-    return f"{name[:half]}…{name[-half:]}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -196,7 +195,7 @@ def _draw_measures(
     name, label, title = motion, f"{motion} ({unit})", "motion of windows a frame"
     if channel is not None:
         name, title = "correlation", "likeness to the next frame"
-        label = textwrap.shorten(f"correlation, {shown_name(channel)}", _LONGEST_LABEL, placeholder="…")
+        label = f"correlation, {shown_name(channel, _LONGEST_LABEL - 13)}"
     draw_measure_by_layer(axes[0], consistency_by_layer(rows, name), name, label, methods)
     axes[0].set_title(title, loc="left")
     axes[0].yaxis.label.set_parse_math(False)

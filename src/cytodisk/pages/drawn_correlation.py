@@ -15,6 +15,7 @@ from cytodisk.pages.drawn_movie import LEFT_MM, DrawnMovie
 from cytodisk.pages.settings_words import settings_words, used_windows
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.correlation.correlation_peaks import PeakMap
+from cytodisk.runs.channel_names import shortened
 from cytodisk.runs.correlate.verdict import jittered_rows
 from cytodisk.runs.partial_words import lost_clusters, lost_rows, without_words
 from cytodisk.store.correlation_store import Correlation
@@ -69,7 +70,7 @@ class DrawnCorrelation:
         """Signal and other quantity in a few characters, for the words about which comes first."""
         channels, other = self.movie.channels, self.correlation.with_
         last = "velocity" if self.by_velocity else self.movie.shown_name(channels.index(other))
-        return _shortened(self.signal_name), _shortened(last)
+        return shortened(self.signal_name, _LONGEST_NAME), shortened(last, _LONGEST_NAME)
 
     @property
     def with_words(self) -> str:
@@ -212,7 +213,3 @@ def broken_lines(
         else:
             lines.append(part)
     return lines
-
-
-def _shortened(name: str) -> str:
-    return name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"

@@ -11,6 +11,7 @@ import numpy as np
 from cytodisk.arrays import FloatArray
 from cytodisk.pages.movie_cell import MovieCell
 from cytodisk.pages.sheet import Sheet
+from cytodisk.runs.channel_names import shown_name
 from cytodisk.store.study_folder import part_key
 from cytodisk.store.study_kind import FIGURES
 from cytodisk.windows.polar_windows import CellWindows
@@ -44,8 +45,7 @@ class DrawnMovie(MovieCell):
         """Name of a channel for headings and labels."""
         if not self.channels:
             return "signal"
-        name = self.channels[channel]
-        return name if len(name) <= _LONGEST_CHANNEL else f"{name[: _LONGEST_CHANNEL - 1]}…"
+        return shown_name(self.channels[channel], _LONGEST_CHANNEL)
 
     @cached_property
     def points_yx(self) -> FloatArray:

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.arrays import FloatArray
+from cytodisk.number_words import rounded
 from cytodisk.plot.style import LAYER_COLOURS
 
 _MOST_LAYERS = 4
@@ -63,7 +64,7 @@ def layer_names(layers: Sequence[int], count: int, depths: xr.DataArray | None =
 
 def depth_words(depth: float, depths: xr.DataArray) -> str:
     """A depth as ", 0.4 µm deep"; empty where it is NaN."""
-    return f", {depth:.2g} {depths.attrs.get('units', 'px')} deep" if np.isfinite(depth) else ""
+    return f", {rounded(depth, 2)} {depths.attrs.get('units', 'px')} deep" if np.isfinite(depth) else ""
 
 
 def layer_colours(layers: Sequence[int]) -> FloatArray:

@@ -22,19 +22,35 @@ VELOCITIES = ("velocity", "velocity_cell_frame")  # of the edge: no channel can 
 _LONGEST = 24
 
 
-def shown_name(name: str) -> str:
+def shown_name(name: str, longest: int = 0) -> str:
     """Name of a channel in words.
 
     Parameters
     ----------
     name : str
+    longest : int
+        Letters that there is room for; 0 for any number.
 
     Returns
     -------
     str
         As "VASP"; "channel 488" where the name is a number.
+
+    Examples
+    --------
+    >>> from cytodisk.runs.channel_names import shown_name
+    >>> shown_name("488"), shown_name("2026-11-03_cell-7_VASP-mCherry 2", longest=20)
+    ('channel 488', '2026-11-03_…Cherry 2')
     """
-    return f"channel {name}" if name.isdigit() else name
+    return shortened(f"channel {name}" if name.isdigit() else name, longest)
+
+
+def shortened(name: str, longest: int) -> str:
+    """A name that has room in its place: cut in the middle, as names of files often differ at their end."""
+    if not longest or len(name) <= longest:
+        return name
+    end = 2 * (longest - 1) // 5 + 1
+    return f"{name[: longest - 1 - end]}…{name[-end:]}"
 
 
 def channels_words(signal: FrameFile) -> str:

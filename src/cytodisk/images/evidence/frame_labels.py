@@ -16,7 +16,7 @@ _LARGEST = int(np.iinfo(np.int64).max)  # tables hold labels as 64-bit integers 
 def check_labels(dtype: Any, values: Any, number: int) -> None:
     """Raise MaskError unless a frame has labels; `values` are some of it that hold the least and greatest."""
     if values is None or not np.issubdtype(dtype, np.integer):
-        raise MaskError(f"labels must be whole numbers, got dtype {dtype}: save the labels as uint16")
+        raise MaskError(f"labels must be whole numbers, got the type {dtype}: save the labels as uint16")
     if values.min() < 0:
         raise MaskError(
             f"frame {number} has negative labels (down to {values.min()}): set what is no cell to 0"

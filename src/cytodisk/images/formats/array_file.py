@@ -25,7 +25,7 @@ def open_array(file: Path, unnamed: str, choice: FileChoice) -> FrameFile:
     if array.ndim < 2 or not array.size:
         raise ReadError(f"{file} has shape {array.shape}: save an array of shape (H, W) or (frames, H, W)")
     if array.dtype.kind not in "biuf":
-        raise ReadError(f"{file} has dtype {array.dtype}: save an array of numbers, labels as uint16")
+        raise ReadError(f"{file} has the type {array.dtype}: save an array of numbers, labels as uint16")
     of_cellpose = file.name.lower().endswith("_seg.npy")
     said = ("Z" if of_cellpose and array.ndim == 3 else "Q" * (array.ndim - 2)) + "YX"
     if array.ndim > 2 and array.shape[-1] == 1:  # no image is one pixel wide: it is the only channel

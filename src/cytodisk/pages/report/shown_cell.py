@@ -24,6 +24,7 @@ from cytodisk.runs.depth_layers import layer_borders
 MOST_ARRAY_BYTES = 5_000_000
 """Of numbers by frame and window; more frames are thinned out."""
 
+_LONGEST_NAME = 24  # letters of a channel: what a list to choose from has room for
 _BY_WINDOW = ("mean", "sd")
 _SHOWN = (*_BY_WINDOW, "n_pixels", "area", "depth", "velocity", "velocity_error", "status", "reason")
 _STRIP_MARGIN = 0.12  # of the range, above and below
@@ -121,7 +122,7 @@ class ShownCell(MovieCell):
         for number, name in enumerate(self.channels):
             values, whole = self.shown.isel(channel=number), self.whole_mean(number)
             yield {
-                "name": shown_name(name),
+                "name": shown_name(name, _LONGEST_NAME),
                 "unit": self.unit("mean"),
                 "mean": pack_floats(values["mean"]),
                 "sd": pack_floats(values["sd"]),

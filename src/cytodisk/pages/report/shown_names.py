@@ -7,8 +7,10 @@ from typing import Any
 
 from cytodisk.files import file_name
 from cytodisk.pages.settings_words import settings_words
-from cytodisk.runs.channel_names import correlation_name
+from cytodisk.runs.channel_names import correlation_name, shortened
 from cytodisk.store.study import Study
+
+_LONGEST_NAME = 24  # letters of a channel in the label of a correlation
 
 
 def labels_of(correlations: Sequence[tuple[Sequence[str], Mapping[str, Any]]]) -> list[str]:
@@ -25,7 +27,7 @@ def labels_of(correlations: Sequence[tuple[Sequence[str], Mapping[str, Any]]]) -
     """
     labels = []
     for names, settings in correlations:
-        words = correlation_name(names)
+        words = correlation_name([shortened(name, _LONGEST_NAME) for name in names[:2]] + list(names[2:]))
         alike = [other for other, _ in correlations if tuple(other[:2]) == tuple(names[:2])]
         differs = differences({**settings, "name": ""}) if len(alike) > 1 else ""
         labels.append(f"{words}: {differs}" if differs else words)

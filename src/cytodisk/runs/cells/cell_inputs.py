@@ -247,7 +247,9 @@ def check_signal(masks: FrameFile, signal: FrameFile) -> None:
             "they must have the same height and width"
         )
     if signal.dtype.kind not in "biuf":
-        raise SignalError(f"signal {signal.path} has dtype {signal.dtype}: it must be numbers")
+        raise SignalError(
+            f"signal {signal.path} has the type {signal.dtype}, which is no type of numbers: save it anew"
+        )
     if len(signal.channels) > _MOST_UNNAMED and signal.unnamed:
         raise SignalError(
             f"signal {signal.path} has {len(signal.channels)} planes without names, where one image is due: "

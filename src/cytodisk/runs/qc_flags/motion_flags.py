@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from cytodisk.number_words import rounded
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted, frames_of, mapped_rows, places_of
 from cytodisk.runs.qc_flags.remedy import correlate_again, run_again, without_frames
 from cytodisk.runs.qc_flags.signal_drift import signal_drifts
@@ -73,7 +74,7 @@ def edge_mismatch(study: Study) -> Iterator[QCFlag]:
             "Look at the outlines of both frames: is a mask wrong there? If the cell moves far between "
             "frames, take them more often; if it was turned wrongly: "
             + run_again(study, "not_registered", registration=False),
-            places_of(rows, lambda row: f"{row['swept_area']:.3g} {study.scale.area_unit} swept"),
+            places_of(rows, lambda row: f"{rounded(row['swept_area'])} {study.scale.area_unit} swept"),
         )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from cytodisk.arrays import FloatArray
+from cytodisk.number_words import rounded
 from cytodisk.runs.qc_flags.finest_grid import finest_grid
 from cytodisk.runs.qc_flags.qc_flag import QCFlag, frames_of, mapped_rows, places_of
 from cytodisk.runs.qc_flags.remedy import run_again
@@ -33,7 +34,7 @@ def small_windows(study: Study) -> Iterator[QCFlag]:
     yield QCFlag(
         "small windows",
         f"windows are small in {frames_of(study, len(rows))}: the median down to "
-        f"{rows['median_window_px'].min():.2g} px, "
+        f"{rounded(rows['median_window_px'].min(), 2)} px, "
         f"up to {percent(rows['windows_below_10px'].max())} below 10 px"
         + _below_1px(rows["windows_below_1px"].max()),
         "The mean of a few pixels is noisy. A window below 1 px is a part of a pixel: it shares its value "
@@ -57,7 +58,9 @@ def percent(share: float) -> str:
 
 
 def _note(row: pd.Series[float]) -> str:
-    words = f"median {row['median_window_px']:.3g} px, smallest {row['smallest_window_px']:.2g} px"
+    words = (
+        f"median {rounded(row['median_window_px'])} px, smallest {rounded(row['smallest_window_px'], 2)} px"
+    )
     between = int(row["windows_between_pixels"])
     return f"{words}, {between} without a pixel's centre" if between else words
 

@@ -123,7 +123,7 @@ def test_frames_channels_scale_and_times(tmp_path: Path, plane: np.ndarray) -> N
 
 def test_a_z_stack_needs_a_slice_or_a_projection(tmp_path: Path, plane: np.ndarray) -> None:
     path = write_czi(tmp_path / "a.czi", [Tile(plane + np.uint16(z * z), f"Z{z}") for z in range(4)])
-    with pytest.raises(ReadError, match=r"4 slices: pass one of them, as --z 2 \(0 to 3\).*--z max"):
+    with pytest.raises(ReadError, match=r"4 slices: pass one slice \(0 to 3\), as --z 2.*--z max"):
         open_frames(path)
     with pytest.raises(ReadError, match=r"no slice '4'.*--z max"):
         open_frames(path, choice=FileChoice(z="4"))
@@ -141,7 +141,8 @@ def test_scenes_are_listed_and_tiles_put_together(
     small = Tile(plane[::2, ::2].copy(), "S0 X-10 Y4", shrunk=2)
     path = write_czi(tmp_path / "a.czi", [right, left, small, Tile(plane + 2, "S3 X900")])
     with pytest.raises(
-        ReadError, match=r"2 scenes: pass one, by number or name, as --scene 0, of 0 \(0\), 1 \(3\)"
+        ReadError,
+        match=r"2 scenes: pass the number or the name of one, as --scene 0; there are 0 \(0\), 1 \(3\)",
     ):
         open_frames(path)
     assert [scene.image_shape for scene in contents(path).scenes] == [(20, 55), (20, 30)]
@@ -263,7 +264,7 @@ class TestRealFiles:
 
     def test_scenes_with_tiles(self, data_dir: Path) -> None:
         path = data_dir / "formats" / "S3_1Pos_2Mosaic_T1_Z1_CH1.czi"
-        with pytest.raises(ReadError, match=r"3 scenes: .* --scene 0, of 0 \(TR1\), 1 \(P1\), 2 \(TR2\)"):
+        with pytest.raises(ReadError, match=r"3 scenes: .* there are 0 \(TR1\), 1 \(P1\), 2 \(TR2\)"):
             open_frames(path)
         shapes = [scene.image_shape for scene in contents(path).scenes]
         assert shapes == [(122, 295), (64, 64), (237, 352)]

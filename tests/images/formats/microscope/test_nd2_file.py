@@ -182,9 +182,9 @@ def test_the_stand_in_has_the_interface_of_the_package() -> None:
 def test_positions_slices_channels_and_scale(nd2_file: Any, images: np.ndarray) -> None:
     loops = [time_loop(3, 5000.0), positions("first", None), z_stack(4)]
     path = nd2_file(Recording(images, loops))
-    with pytest.raises(ReadError, match=r"2 scenes: .* --scene 0, of 0 \(first\), 1 \(1\)"):
+    with pytest.raises(ReadError, match=r"2 scenes: .* --scene 0; there are 0 \(first\), 1 \(1\)"):
         open_frames(path)
-    with pytest.raises(ReadError, match="z-stack of 4 slices: pass one of them, as --z 2"):
+    with pytest.raises(ReadError, match=r"z-stack of 4 slices: pass one slice \(0 to 3\), as --z 2"):
         open_frames(path, choice=FileChoice(scene="first"))
     file = pickle.loads(pickle.dumps(open_frames(path, choice=FileChoice(scene="1", z="2"))))
     assert (file.axes, file.shape, file.channels) == ("TCYX", (3, 2, 20, 30), ("GFP", "mCherry"))
