@@ -12,7 +12,7 @@ from cytodisk.errors import CytodiskError, ParameterError
 from cytodisk.number_words import comma_advice, unit_advice
 from cytodisk.parameter_words import choices, kinds, range_words, short_words, unknown_words, value_words
 
-MOST_SEED = 2**32 - 1
+MOST_SEED = 2**128  # as long as those that NumPy draws itself
 
 Group = TypeVar("Group", bound="Parameters")
 

@@ -164,7 +164,7 @@ def test_channels_and_times(movie: DiskMovie, signals: xr.DataArray) -> None:
         (-1.0, {}, "depth must be a number of at least 0, got -1.0"),
         (np.inf, {}, "depth"),
         ("1", {}, "depth"),
-        (1.0, {"points": 0}, "points must be a whole number of at least 1, got 0"),
+        (1.0, {"points": 0}, "points must be a whole number from 1 to 1000000, got 0"),
         (1.0, {"points": 10.5}, "points"),
     ],
 )

@@ -354,7 +354,7 @@ def test_the_longest_lag() -> None:
 @pytest.mark.parametrize("name", ["max_lag", "min_pairs", "surrogates", "seed"])
 def test_numbers_that_make_no_sense(name: str, value: Any) -> None:
     options = {"max_lag": 2, "surrogates": 3} | {name: value}
-    message = rf"{name} must be a whole number of at least \d, got {re.escape(repr(value))}"
+    message = rf"{name} must be a whole number (of at least \d|from \d to \d+), got {re.escape(repr(value))}"
     with pytest.raises(ParameterError, match=message):
         cross_correlate(GOOD, GOOD, **options)
 

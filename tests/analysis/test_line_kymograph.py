@@ -125,9 +125,9 @@ LINE = [(2, 2), (8, 8)]
         ),
         ([(-1, 2), (5, 2)], {}, r"leaves the image at \(row, column\) \(-1.0, 2.0\)"),
         ([(0, 2), (0, 9)], {"width_px": 3}, "leaves the image .* width_px is 3"),
-        (LINE, {"width_px": 0}, "width_px must be a whole number of at least 1, got 0"),
+        (LINE, {"width_px": 0}, "width_px must be a whole number from 1 to 10000, got 0"),
         (LINE, {"width_px": 1.5}, "width_px"),
-        (LINE, {"spacing_px": 0.0}, "spacing_px must be a positive number, got 0.0"),
+        (LINE, {"spacing_px": 0.0}, "spacing_px must be a number from 0.001 to 1e\\+06, got 0.0"),
         (LINE, {"spacing_px": "1"}, "spacing_px"),
     ],
 )

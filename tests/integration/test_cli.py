@@ -381,6 +381,7 @@ def test_demo_leaves_files_of_the_user_alone(run: Run, mask: Path, tmp_path: Pat
         assert theirs.read_bytes() == mine
 
 
+@pytest.mark.slow
 def test_demo_once_and_again(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One run of the demo, shortened, then the same again, then another seed in the same folder."""
     monkeypatch.setattr("cytodisk.runs.demo_input.FRAMES", 40)

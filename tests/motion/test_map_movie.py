@@ -126,7 +126,7 @@ def test_a_folder_holds_the_same_maps_bit_for_bit(
 
 def test_a_folder_that_is_a_file_is_refused(masks: np.ndarray, tmp_path: Path) -> None:
     (tmp_path / "maps").write_text("here")
-    with pytest.raises(StudyError, match="cannot be written"):
+    with pytest.raises(StudyError, match=r"cannot write .*maps.*: Not a directory"):
         map_movie(masks, folder=tmp_path / "maps", **QUICK)
 
 

@@ -35,6 +35,7 @@ def contents(out: Path) -> dict[str, bytes]:
     return {str(path.relative_to(out)): path.read_bytes() for path in out.rglob("*") if path.is_file()}
 
 
+@pytest.mark.slow
 def test_a_study_that_is_not_whole_is_done_anew(batch: Batch, tmp_path: Path) -> None:
     out = tmp_path / "out"
     batch_study(batch, out)
@@ -50,6 +51,7 @@ def test_a_study_that_is_not_whole_is_done_anew(batch: Batch, tmp_path: Path) ->
     assert batch_study(batch, out, resume=True).remarks == []
 
 
+@pytest.mark.slow
 def test_overwrite_leaves_what_is_not_the_batchs(batch: Batch, tmp_path: Path) -> None:
     out = tmp_path / "out"
     batch_study(batch, out)
@@ -81,6 +83,7 @@ def test_overwrite_is_refused_where_an_input_would_go(batch: Batch, tmp_path: Pa
     assert contents(tmp_path / "elsewhere") == before
 
 
+@pytest.mark.slow
 def test_a_url_is_checked_too(batch: Batch, tmp_path: Path) -> None:
     out, url = tmp_path / "out", f"file://{tmp_path}/out"
     batch_study(batch, url)

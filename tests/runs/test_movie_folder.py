@@ -238,6 +238,7 @@ signal = "cp"
 """
 
 
+@pytest.mark.slow
 def test_folders_are_rows_of_a_batch_and_channels_have_one_name_in_all(tmp_path: Path) -> None:
     for cell in ("one", "two"):
         slices(tmp_path / "cells" / cell / "masks", "m", MASKS)

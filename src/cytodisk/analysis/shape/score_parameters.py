@@ -1,6 +1,6 @@
 """Parameters of `complexity_score`."""
 
-from cytodisk.parameters import MOST_SEED, Parameters, parameter
+from cytodisk.parameters import Parameters, parameter
 
 
 class ScoreParameters(Parameters):
@@ -10,7 +10,7 @@ class ScoreParameters(Parameters):
         0,
         "Seed of UMAP. The same seed gives the same result for the same cells in the same order.",
         least=0,
-        most=MOST_SEED,
+        most=2**32 - 1,  # of UMAP
     )
     n_neighbors: int = parameter(
         15,
