@@ -26,6 +26,7 @@ from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.parameters_file import parameters_from
 from cytodisk.runs.qc_flags.study_flags import qc_flags
+from cytodisk.store.activity_store import open_activity
 from cytodisk.store.study import open_study
 from fuzz_exports import FRAMES, MASKS, TRACKED
 from fuzz_files import COMPARED, IMAGES, MAPPED, STUDY
@@ -221,9 +222,16 @@ def _use_study(path: Path, _: Path, number: int) -> None:
         write_report(study, path / "page.html")
 
 
+def _use_activity(path: Path, damaged: Path, number: int) -> None:
+    open_activity(damaged, 0).load()  # beside the study, which looks whether the file is the run's own
+    _use_study(path, damaged, number)
+
+
 def _use_comparison(path: Path, _: Path, __: int) -> None:
     found = cd.open_comparison(path)
     found.summaries, repr(found)
+    if found.cells.empty:
+        return
     found.labels(int(found.cells["cell"].iloc[0]))
 
 
@@ -270,7 +278,7 @@ TARGETS = (
     Target("map of study", STUDY, "maps/*.npz", (of_zip(of_array),), _use_study, 2.0),
     Target("table", STUDY, "*.parquet", (of_bytes, of_parquet, of_parquet), _use_study, 3.0),
     Target("table of map", MAPPED, "*.parquet", (of_bytes, of_parquet), _use_study),
-    Target("activity", STUDY, "activity.zarr.zip", (of_bytes, of_zip(of_json_or_bytes)), _use_study, 3.0),
+    Target("activity", STUDY, "activity.zarr.zip", (of_bytes, of_zip(of_json_or_bytes)), _use_activity, 3.0),
     Target("correlation", STUDY, "correlation/*/*.parquet", (of_bytes, of_parquet), _use_study, 2.0),
     Target("settings", STUDY, _SETTINGS, (of_bytes, of_json, of_json), _use_study),
     Target("provenance", STUDY, "provenance.json", (of_bytes, of_json, of_json), _use_study, 2.0),

@@ -185,6 +185,8 @@ def test_another_array_file_and_another_format_are_refused(disk: DiskMap, tmp_pa
         ({"boundary": np.array([-1, 0, 1])}, "boundary has -1"),
         ({"boundary": np.empty(0, dtype=int)}, "boundary has 0 vertices"),
         ({"boundary": np.array([0, 0, 0, 0])}, "boundary does not run once around the disk"),
+        ({"triangles": np.array([[0, 1, 2]])}, "triangles has 1 rows, which do not fill a disk"),
+        ({"triangles": np.array([[0, 1, 2]] * 4)}, "triangles has 4 rows, which do not fill a disk"),
     ],
 )
 def test_arrays_that_do_not_fit_each_other_are_refused(

@@ -183,6 +183,8 @@ def _read_arrays(archive: ArrayArchive) -> dict[str, Any]:
         raise archive.fault("boundary", f"has {len(boundary)} vertices around {len(triangles)} triangles")
     if not _runs_round_once(in_disk[boundary]):
         raise archive.fault("boundary", "does not run once around the disk")
+    if len(triangles) != 2 * n_vertices - len(boundary) - 2 or len(np.unique(triangles)) != n_vertices:
+        raise archive.fault("triangles", f"has {len(triangles)} rows, which do not fill a disk")
     if not _have_area(in_cell, triangles):
         raise archive.fault("triangles", "have corners in one line in the cell")
     return {"vertices_yx": in_cell, "vertices_uv": in_disk, "triangles": triangles, "boundary": boundary}
