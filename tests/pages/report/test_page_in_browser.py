@@ -12,11 +12,14 @@ from selenium.webdriver.support.ui import Select
 
 import cytodisk as cd
 from cytodisk.pages.report.page import write_report
+from cytodisk.runs.channel_names import shown_name
 from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.store.correlation_store import write_correlation
 from cytodisk.store.study import Study
 
 pytestmark = pytest.mark.slow
+
+SHOWN = [shown_name(name, 24) for name in NAMES]  # cut in the middle, as lists have little room
 
 
 @pytest.fixture
@@ -46,11 +49,11 @@ def test_loads_alone_and_in_silence(page: Page, browser: webdriver.Chrome) -> No
 def test_names_stay_names(page: Page, browser: webdriver.Chrome) -> None:
     assert browser.title == "study – cytodisk report"
     options = [option.get_property("textContent") for option in Select(page.control("channel")).options]
-    assert options == [*NAMES, "window area"]
-    assert page.text("disk-title") == f"mean {NAMES[0]}"
+    assert options == [*SHOWN, "window area"]
+    assert page.text("disk-title") == f"mean {SHOWN[0]}"
     Select(page.control("channel")).select_by_index(1)
     page.settle()
-    assert page.text("disk-title") == f"mean {NAMES[1]}"
+    assert page.text("disk-title") == f"mean {SHOWN[1]}"
     assert errors(browser) == []
 
 
@@ -304,7 +307,7 @@ def test_choices_change_what_is_drawn(page: Page) -> None:
     page.settle()
     deep = page.js("cytodisk.data.layer_depths[2]")
     assert deep.endswith(" deep")
-    assert page.text("activity-title") == f"mean {NAMES[0]}, layer 2{deep}"
+    assert page.text("activity-title") == f"mean {SHOWN[0]}, layer 2{deep}"
     shared = page.js("cytodisk.figures.activity.select('colours')[0].low")
     Select(page.control("colours")).select_by_value("layer")
     page.settle()
