@@ -200,3 +200,15 @@ def test_a_picture_above_the_limit_of_pillow(tmp_path: Path, monkeypatch: pytest
 def test_words_for_sizes() -> None:
     sizes: dict[int, Any] = {3: "3 bytes", 37_400: "37.4 kB", 18 * 10**12: "18 TB", 10**25: "1e+07 EB"}
     assert {size: claims._size(size) for size in sizes} == sizes
+
+
+def test_a_large_image_in_one_compressed_piece_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("cytodisk.images.formats.tiff_file._LARGEST_SEGMENT", 100 * 100 - 1)
+    image = np.eye(100, dtype=np.uint8)
+    tifffile.imwrite(tmp_path / "one.tif", image, compression="zlib", rowsperstrip=100)
+    tifffile.imwrite(tmp_path / "tiles.tif", image, compression="zlib", tile=(16, 16))
+    with pytest.raises(ReadError, match=r"compressed in one piece of 100 × 100 pixels.*in tiles"):
+        open_frames(tmp_path / "one.tif")
+    assert open_frames(tmp_path / "tiles.tif").image_shape == (100, 100)

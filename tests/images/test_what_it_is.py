@@ -57,6 +57,9 @@ GREY = {
     "of 16 bits": ndimage.zoom((cell() * 65535.0), 1.5, order=1).astype(np.uint16),
     "of labels": scaled(CELLS * 60, 140, Image.Resampling.BILINEAR),
     "one pixel of 254": np.where((np.indices((96, 96)) == 48).all(0), 254, cell() * 255).astype(np.uint8),
+    "one pixel of 2 in a mask of 1": np.where((np.indices((96, 96)) == 48).all(0), 2, cell()).astype(
+        np.uint8
+    ),
     "one speck of 254": np.where((np.indices((96, 96)) == 2).all(0), 254, cell() * 255).astype(np.uint8),
 }
 

@@ -70,3 +70,15 @@ def test_a_pattern_without_quotes_says_what_to_do(run: Run, tmp_path: Path) -> N
     code, _, error = run("movie", "t1.tif", "t2.tif", "-o", tmp_path)
     assert code == 2
     assert "put the pattern in quotes" in " ".join(error.replace("│", " ").split())
+
+
+def test_a_scale_that_was_passed_counts_and_one_that_differs_is_told(run: Run, tmp_path: Path) -> None:
+    metadata = {"axes": "TYX", "PhysicalSizeX": 0.153, "PhysicalSizeY": 0.153, "TimeIncrement": 5.0}
+    masks = movie("growing", frames=2, radius_px=12.0).masks.astype(np.uint8)
+    tifffile.imwrite(tmp_path / "m.ome.tif", masks, metadata=metadata)
+    files = (tmp_path / "m.ome.tif", "-o", tmp_path / "out", *GRID, "--figures", "0")
+    code, out, error = run("movie", *files, "--pixel-size", "0.2", "--frame-interval", "5.01")
+    assert code == 0
+    assert "pixel size: 0.2 µm" in out
+    assert "m.ome.tif: it says that its pixel size is 0.153 µm; 0.2 µm counts, as you passed it" in error
+    assert "frame interval is" not in error

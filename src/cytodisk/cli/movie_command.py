@@ -99,17 +99,23 @@ def finish_movie(console: "Console", study: "Study", flags: bool = True) -> None
 
 
 def _say_measures(console: "Console", study: "Study", mapped: Any) -> None:
-    speed, unit = study.edge["velocity"], study.edge.attrs["units"]["velocity"]
+    _say_velocity(console, study)
     length = study.consistency.attrs["units"]["centroid_displacement"]
+    correlation = study.consistency["correlation"].mean()
+    alike = f"consecutive frames correlate by {correlation:.2f}; " if correlation == correlation else ""
+    moved = study.consistency["centroid_displacement"].mean()
+    still = f"window centroids move {moved:.3g} {length} a frame; " if moved == moved else ""
+    console.print(f"{still}{alike}empty windows {int(mapped['empty_windows'].sum())}")
+
+
+def _say_velocity(console: "Console", study: "Study") -> None:
+    speed, unit = study.edge["velocity"], study.edge.attrs["units"]["velocity"]
+    if not speed.notna().any():
+        console.print("edge velocity: none, as no two frames that follow each other were mapped")
+        return
     error = " ".join(["error of one sector", *_bounds(study.edge)])
     span = f"{speed.min():.3g} to {speed.max():.3g}".replace("-", "−")
     console.print(f"edge velocity: {span} {unit}, {error} {study.edge['velocity_error'].median():.2g} {unit}")
-    correlation = study.consistency["correlation"].mean()
-    alike = f"consecutive frames correlate by {correlation:.2f}; " if correlation == correlation else ""
-    console.print(
-        f"window centroids move {study.consistency['centroid_displacement'].mean():.3g} {length} a frame; "
-        f"{alike}empty windows {int(mapped['empty_windows'].sum())}"
-    )
 
 
 def _bounds(edge: Any) -> list[str]:

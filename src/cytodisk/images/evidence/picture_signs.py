@@ -43,12 +43,12 @@ def picture_words(frame: FramePixels, sight: FrameSight) -> str:
             f"looks like a picture, not a mask or label image: {values} values of frame {sight.number} "
             f"lie in {pieces} pieces; {_IF_LABELS}"
         )
-    rims = _rims(frame, sight)
+    rims, full = _rims(frame, sight)
     if rims:
         return (
             "looks like a picture, not a mask or label image: "
             f"{rims} of the {values} values of frame {sight.number} are thin rims or specks beside the value "
-            f"{sight.cells.max():g}, as scaling or smoothing a mask makes them; make it again without "
+            f"{full:g}, as scaling or smoothing a mask makes them; make it again without "
             f"interpolation, or {_IF_LABELS}"
         )
     return ""
@@ -77,14 +77,17 @@ def _share_of(frame: FramePixels, value: float) -> float:
     return float(counts[0] / counts[1])
 
 
-def _rims(frame: FramePixels, sight: FrameSight) -> int:
-    """How many values are no more than rims and specks of the greatest, where most others are; else 0."""
-    greatest = sight.cells.max()
-    thick = thick_values(frame.strips())
+def _rims(frame: FramePixels, sight: FrameSight) -> tuple[int, float]:
+    """How many values are no more than rims and specks of another one, where most are, and that one; else 0.
+
+    That one is the greatest value; of two values the one that is thick.
+    """
+    thick = np.intersect1d(thick_values(frame.strips()), sight.cells)
+    greatest = thick[0] if len(sight.cells) == 2 and len(thick) == 1 else sight.cells.max()
     others = sight.cells[sight.cells != greatest]
     thin = others[~np.isin(others, thick)]
     if greatest not in thick or 2 * len(thin) <= len(others):
-        return 0
+        return 0, 0.0
     full = np.issubdtype(sight.dtype, np.integer) and greatest == np.iinfo(sight.dtype).max
     beside = np.isin(thin, touching_values(frame.strips())).sum()
-    return len(thin) if full or 2 * beside > len(thin) else 0
+    return (len(thin) if full or 2 * beside > len(thin) else 0), float(greatest)

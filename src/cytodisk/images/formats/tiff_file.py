@@ -24,6 +24,7 @@ from cytodisk.images.formats.tiff_series import TiffSeries, chosen_series
 from cytodisk.images.frame_file import FileChoice, FrameFile
 from cytodisk.images.short_lists import shortened
 
+_LARGEST_SEGMENT = 2**31  # bytes of a strip or tile, decoded: more than 40 000 × 40 000 labels of one byte
 _CODECS = {1: "none", 5: "lzw", 8: "zlib", 32946: "zlib", 32773: "packbits"}
 _LOSSY = (6, 7, 33007, 34892)  # kinds of JPEG
 _LOSS = (
@@ -124,3 +125,9 @@ def _check_claims(file: Path, tiff: tifffile.TiffFile, series: Any) -> None:
     if all(counts):  # strips that are left out hold nothing
         bits = math.prod(page.shape) * max(1, int(page.bitspersample)) / 8
         check_claim(file, (max(1, int(bits)),), np.dtype(np.uint8), sum(counts), codec)
+    pixels = min(height, page.imagelength) * min(width, page.imagewidth)
+    if pixels * dtype.itemsize > _LARGEST_SEGMENT:
+        raise ReadError(
+            f"{file} is compressed in one piece of {page.imagelength} × {page.imagewidth} pixels, which can "
+            "only be read whole: save it again in tiles (tifffile: tile=(512, 512)), or uncompressed"
+        )

@@ -69,7 +69,10 @@ class CellInputs:
     @property
     def notes(self) -> tuple[str, ...]:
         """What is wrong with the files, in words."""
-        return file_notes([*(source.file for source in self.sources), *self.signal_files])
+        return file_notes(
+            [*(source.file for source in self.sources), *self.signal_files],
+            Scale(self.parameters.pixel_size_um),
+        )
 
     @property
     def paths(self) -> Mapping[str, Path | list[Path]]:

@@ -108,7 +108,8 @@ class MovieInputs:
     @property
     def notes(self) -> tuple[str, ...]:
         """What is wrong with the files, in words."""
-        return file_notes(self._files.values())
+        given = self.parameters
+        return file_notes(self._files.values(), Scale(given.pixel_size_um, given.frame_interval_s))
 
     @property
     def _files(self) -> dict[str, FrameFile]:
