@@ -79,3 +79,9 @@ def test_the_unit_is_named_where_a_parameter_is_refused() -> None:
         MapParameters(pixel_size_um="153nm")
     with pytest.raises(ParameterError, match=r"layers must be .*got '5px': write 5:"):
         MapParameters(layers="5px")
+
+
+def test_an_odd_list_with_a_decimal_comma() -> None:
+    assert comma_advice((0.0, 5.0, 1.0)) == "if these are numbers with a comma, write 0.5,1"
+    assert comma_advice((5.0, 0.0, 1.0)) == ""
+    assert comma_advice((0.0, 5.0, 1.0, 2.0, 3.0)).endswith("write 0.5,1,2.3 or 0.5,1.2,3")

@@ -1,6 +1,7 @@
 """Numbers that were typed with a comma, as much of Europe writes them, or with a unit: what to type."""
 
 import re
+from itertools import pairwise
 
 _COMMA = re.compile(r"[+-]?[0-9]+,[0-9]+([eE][+-]?[0-9]+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+(\.[0-9]*)?")
@@ -86,10 +87,27 @@ def unit_advice(value: object, name: str) -> str:
 def _advice_on_pairs(values: tuple[object, ...]) -> str:
     """What to do if 0,5,1,2 was typed for 0.5 and 1.2, so that four whole numbers came out."""
     numbers = [int(value) for value in values if isinstance(value, float) and value >= 0 and value % 1 == 0]
-    if len(numbers) != len(values) or len(numbers) % 2 or not numbers:
+    if len(numbers) != len(values) or not numbers:
         return ""
+    if len(numbers) % 2:
+        return _advice_on_odd(numbers)
     right = ",".join(f"{one}.{two}" for one, two in zip(numbers[::2], numbers[1::2], strict=True))
     return f"if these are numbers with a comma, write {right}"
+
+
+def _advice_on_odd(numbers: list[int]) -> str:
+    """What to do if 0,5,1 was typed for 0.5 and 1: one of the numbers is whole, and they increase."""
+    if all(one < two for one, two in pairwise([0, *numbers])):
+        return ""  # as it should be
+    readings = []
+    for whole in range(0, len(numbers), 2):
+        before, after = numbers[:whole], numbers[whole + 1 :]
+        words = [f"{one}.{two}" for one, two in zip(before[::2], before[1::2], strict=True)]
+        words += [str(numbers[whole])]
+        words += [f"{one}.{two}" for one, two in zip(after[::2], after[1::2], strict=True)]
+        if len(words) > 1 and all(float(a) < float(b) for a, b in pairwise(["0", *words])):
+            readings.append(",".join(words))
+    return f"if these are numbers with a comma, write {' or '.join(readings)}" if readings else ""
 
 
 def comma_in_toml(text: str) -> str:

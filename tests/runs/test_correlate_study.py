@@ -18,7 +18,7 @@ from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.simulate import movie
-from cytodisk.store.correlation_store import list_correlations, write_correlation
+from cytodisk.store.correlation_store import correlation_path, list_correlations, write_correlation
 
 SMALL = MovieParameters(layers=4, sectors=12)
 FEW = {"surrogates": 49}
@@ -406,3 +406,17 @@ def test_the_usual_lag_leaves_enough_pairs_of_frames(study: cd.Study) -> None:
     frames = study.activity(0).sizes["time"]
     found = correlate_study(study, "edge", name="short", min_pairs=frames - 2, **FEW)
     assert found.settings["max_lag"] == 2
+
+
+def test_a_link_in_the_place_of_a_correlation_is_refused(tmp_path: Path) -> None:
+    behind = tmp_path / "mine"
+    behind.mkdir()
+    (behind / "notes.txt").write_text("mine")
+    link = correlation_path(tmp_path, "edge", "velocity")
+    link.parent.mkdir()
+    link.symlink_to(behind)
+    with pytest.raises(StudyError, match=r"it is a link to .*mine; remove the link"):
+        write_correlation(tmp_path, "edge", "velocity", {}, {}, {})
+    assert link.is_symlink()
+    assert (behind / "notes.txt").read_text() == "mine"
+    assert [path.name for path in link.parent.iterdir()] == [link.name]

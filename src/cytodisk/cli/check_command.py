@@ -49,7 +49,9 @@ def check_command(
 def _say_evidence(console: "Console", inputs: "CellInputs") -> None:
     """Why the files are taken for what they are, and how their axes are known; of a folder its first file."""
     source, signals = inputs.sources[0], inputs.signal_files
-    found = [("masks", source.name, source.look.words if source.look is not None else "")]
+    look = source.look
+    words = "" if look is None else look.file.evidence if look.evidence in look.file.notes else look.words
+    found = [("masks", source.name, words)]  # notes were printed as warnings
     found += [("signal", file.path.name, file.evidence) for file in signals[:1]]
     for role, name, words in found:
         if words:

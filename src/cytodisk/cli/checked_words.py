@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from cytodisk.scale import Scale
 
 _MOST_PLACES = 8
+_BORDER = "QC flag image border"
 _NOT_USABLE, _WITHOUT, _FLAG, _NOTE = "not usable", "without a cell", "QC flag", "note"
 
 
@@ -68,7 +69,8 @@ class Checked:
         """One cell, with tabs between columns."""
         found, report = checked.found, checked.report
         remarks = [] if report is None else [*report.qc_flags, *report.notes]
-        usable = "no" if checked.reason else "QC flag" if report is not None and report.qc_flags else "yes"
+        flagged = report is not None and (report.qc_flags or report.touches_border)
+        usable = "no" if checked.reason else "QC flag" if flagged else "yes"
         place = f"{found.cell}\t{found.source}" if self._inputs.is_folder else f"{found.cell}"
         said = self._reason(checked) or "; ".join(remarks)
         return f"{place}\t{found.frame}\t{found.label}\t{usable}\t{said}"
@@ -87,12 +89,12 @@ class Checked:
             return
         self._areas.append(report.area_px)
         self._by_label.setdefault((found.source, found.label), []).append((found.frame, report.area_px))
-        self._flagged += bool(report.qc_flags)
+        self._flagged += bool(report.qc_flags or report.touches_border)
         self._on_border += report.touches_border
         for flag in report.qc_flags:
             self._note(_FLAG, flag, checked)
         for note in report.notes:
-            self._note(_NOTE, note, checked)
+            self._note(_BORDER if note.startswith("touches the image border") else _NOTE, note, checked)
 
     def _reason(self, checked: "CheckedCell") -> str:
         is_folder = self._inputs.is_folder
@@ -118,7 +120,7 @@ class Checked:
 
     def summary(self) -> Iterator[str]:
         """Lines on what is wrong, the gravest first, then on all masks together."""
-        for wanted in (_NOT_USABLE, _WITHOUT, _FLAG, _NOTE):
+        for wanted in (_NOT_USABLE, _WITHOUT, _FLAG, _BORDER, _NOTE):
             if wanted == _NOTE:
                 yield from self._jumps()
             found = [kind for (what, _), kind in self._kinds.items() if what == wanted]

@@ -149,7 +149,8 @@ def _parse_integers(array: np.ndarray[Any, Any]) -> BoolArray:
     if values.size and values.min() != values.max():
         labels = np.unique(values)
         raise MaskError(
-            f"mask holds {len(labels)} labels ({labels[0]} … {labels[-1]}): pass one cell, as mask == label"
+            f"mask holds {len(labels)} labels ({labels[0]} … {labels[-1]}): pass one cell, as mask == label, "
+            "or where each label is a cell, kind='labels' (--kind labels)"
         )
     return inside
 

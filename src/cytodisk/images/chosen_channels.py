@@ -106,6 +106,31 @@ def _number(file: FrameFile, wanted: str, flag: str) -> int:
     raise ReadError(f"{file.path} has no channel {wanted!r}: pass {flag} with one of those it has: {there}")
 
 
+def filled_channels(file: FrameFile) -> tuple[int, ...]:
+    """Numbers of the channels that hold something beside 0 in the first frame; none where it is damaged."""
+    return _filled(file.stored)
+
+
+def with_empty_note(file: FrameFile) -> FrameFile:
+    """A file whose chosen channel is empty, with a note on those that hold something, if any does."""
+    held = _filled(file.stored.stored) if isinstance(file.stored, ChosenChannels) else ()
+    if not held:
+        return file
+    some = "channel" if len(held) == 1 else "channels"
+    note = (
+        f"the channel that was taken is empty; {some} {shortened(list(map(str, held)), _NAMED)} of the file "
+        f"(from 0) hold{'s' if len(held) == 1 else ''} something: pass --mask-channel {held[0]}"
+    )
+    return replace(file, notes=(*file.notes, note))
+
+
+def _filled(stored: StoredFrames) -> tuple[int, ...]:
+    try:
+        return tuple(number for number, plane in enumerate(stored.read(0)) if plane.any())
+    except (ReadError, OSError, ValueError):
+        return ()  # whoever reads the frame for good tells of it
+
+
 @dataclass(frozen=True)
 class ChosenChannels:
     """Frames of a file with some of its channels.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cytodisk.checks import is_path
+from cytodisk.images.chosen_channels import names_after, stem_of
 from cytodisk.images.formats.microscope.czi_file import czi_scenes
 from cytodisk.images.formats.microscope.lif_file import lif_scenes
 from cytodisk.images.formats.microscope.nd2_file import nd2_scenes
@@ -38,14 +39,18 @@ class FileContents:
     def lines(self) -> tuple[str, ...]:
         """In words, a line a scene."""
         if len(self.scenes) == 1:
-            return (f"{self.path.name}: {self.scenes[0].words}",)
+            return (f"{self.path.name}: {self._words(self.scenes[0])}",)
         shown = list(enumerate(self.scenes))[:_MOST_LINES]
         more = len(self.scenes) - len(shown)
         return (
             f"{self.path.name}: {len(self.scenes)} scenes",
-            *(f"  scene {number} ({scene.name}): {scene.words}" for number, scene in shown),
+            *(f"  scene {number} ({scene.name}): {self._words(scene)}" for number, scene in shown),
             *([f"  … and {more} more"] if more else []),
         )
+
+    def _words(self, scene: Scene) -> str:
+        """What a scene holds, with the names that a run gives to channels without one."""
+        return scene.words_with(names_after(stem_of(self.path.name), len(scene.channels)))
 
 
 def contents(path: str | os.PathLike[str]) -> FileContents:

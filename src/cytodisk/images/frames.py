@@ -30,7 +30,7 @@ from cytodisk.images.formats.outlined.trackmate_outlines import open_trackmate
 from cytodisk.images.formats.picture_file import open_picture
 from cytodisk.images.formats.tiff_file import open_tiff
 from cytodisk.images.frame_file import NO_CHOICE, FileChoice, FrameFile
-from cytodisk.images.image_paths import is_folder_of_files, is_zarr
+from cytodisk.images.image_paths import is_folder_of_files, is_zarr, path_advice
 from cytodisk.images.reading import reading
 
 _OPENERS = {
@@ -91,7 +91,7 @@ def open_frames(
     except FileNotFoundError as error:
         if file.is_symlink():
             raise ReadError(f"{file} is a link to a file that is not there: {file.readlink()}") from error
-        raise ReadError(f"{file} does not exist: check the path") from error
+        raise ReadError(f"{file} does not exist: {path_advice(file)}") from error
     except OSError as error:
         raise ReadError(f"{file} cannot be read: {error.strerror}") from error
     if is_folder_of_files(file):

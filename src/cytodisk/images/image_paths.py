@@ -47,6 +47,23 @@ def parts_of(image: Path) -> list[Path]:
     return sorted(part for part in image.rglob("*") if part.is_file()) if image.is_dir() else [image]
 
 
+def path_advice(gone: Path) -> str:
+    """What to do about a path that is not there: files whose names begin as it does, or else check it."""
+    try:
+        names = sorted(file.name for file in gone.parent.iterdir() if file.name.startswith(gone.name))
+    except OSError:
+        names = []
+    if not names or not gone.name:
+        return "check the path"
+    if len(names) == 1:
+        return f"check the path, or pass {gone.with_name(names[0])}, which is there"
+    endings = {Path(name).suffix for name in names}
+    pattern = f"{glob.escape(str(gone))}*{endings.pop() if len(endings) == 1 else ''}"
+    return (
+        f"check the path, or pass the {len(names)} that begin with it as a pattern, in quotes, as '{pattern}'"
+    )
+
+
 def sha256_of(image: Path) -> str:
     """A hash of what an image holds, also of one that is a folder.
 

@@ -55,6 +55,10 @@ class Scene:
     @property
     def words(self) -> str:
         """What it holds, as "3 frames, 2 channels (DAPI, GFP), 170 × 240 px of uint16"; or its fault."""
+        return self.words_with(())
+
+    def words_with(self, called: Sequence[str]) -> str:
+        """The same, with what channels are called in a run if none has a name."""
         if self.fault:
             return f"cannot be read: it {self.fault}"
         parts = [_count(self.frames, "frame")]
@@ -62,10 +66,11 @@ class Scene:
             parts.append(f"{self.slices} slices in z")
         names = [name or f"{number} without a name" for number, name in enumerate(self.channels)]
         channels = _count(len(names), "channel")
-        if any(self.channels):
+        if any(self.channels) and self.channels != tuple(map(str, range(len(names)))):
             parts.append(f"{channels} ({shortened(names, _LISTED)})")
         else:
-            parts.append(channels if len(names) == 1 else f"{channels} without names")
+            shown = f", called {shortened(list(called), _LISTED)}" if called else ""
+            parts.append(channels if len(names) == 1 else f"{channels} without names{shown}")
         parts.append(f"{self.image_shape[0]} × {self.image_shape[1]} px of {self.dtype}")
         if self.scale.pixel_size_um is not None:
             parts.append(f"{self.scale.pixel_size_um:.4g} µm a pixel")

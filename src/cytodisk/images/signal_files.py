@@ -196,7 +196,7 @@ def _advice(sources: Sequence[MaskSource], folder: Path, images: dict[str, list[
 
 
 def common_name(signal: Path) -> str:
-    """A name for the channel of many images, as "VASP" for the folder VASP, or "w1" for "_w1.tif".
+    """A name for the channel of images: "VASP" of the folder VASP, "w1" of "_w1.tif", "signal" of ".tif".
 
     Parameters
     ----------
@@ -205,7 +205,8 @@ def common_name(signal: Path) -> str:
     """
     if is_folder_of_files(signal):
         return real_path(signal).name
-    return stem_of(signal.name).strip(" _-.")
+    ending = signal.name.lstrip("*")
+    return stem_of(image_stem(ending) and ending).strip(" _-.") or "signal"
 
 
 def _where(signal: Path, masks: Path) -> tuple[Path, tuple[str, ...]]:

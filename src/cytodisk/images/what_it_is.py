@@ -12,6 +12,7 @@ import numpy as np
 from cytodisk.errors import CytodiskError, MaskError, ReadError, as_data
 from cytodisk.geometry.fragments import SeveralCells, without_others
 from cytodisk.images.changed_frames import changed_file
+from cytodisk.images.chosen_channels import filled_channels, with_empty_note
 from cytodisk.images.evidence.classes import TwoClasses, may_be_classes, two_classes
 from cytodisk.images.evidence.frame_labels import check_labels
 from cytodisk.images.evidence.frame_sight import BACKGROUND_SHARE, FrameSight, see_frame
@@ -107,10 +108,11 @@ def _check_shape(file: FrameFile, how: KindParameters) -> None:
         frames = f"; or if they are frames, pass --axes {axes}" if may_be_frames else ""
         fractions = file.dtype.kind == "f"
         probabilities = "; of probabilities, export the Simple Segmentation instead" if fractions else ""
+        held = next(iter(filled_channels(file)), 0)
         raise MaskError(
             f"{file.path} has {len(file.channels)} channels ({shortened(file.channels, _NAMED)}): "
-            "a mask has one value a pixel; pass the channel that holds it, as --mask-channel 0, or save the "
-            f"mask alone, not as a colour picture{frames}{probabilities}"
+            f"a mask has one value a pixel; pass the channel that holds it, as --mask-channel {held}, or "
+            f"save the mask alone, not as a colour picture{frames}{probabilities}"
         )
     if how.kind == "mask" and file.n_frames > 1:
         raise MaskError(
@@ -134,6 +136,8 @@ def _decided(file: FrameFile, kind: Kind, read: Reader) -> MaskLook:
         _refuse_background(file, usable)
     elif file.doubt:
         raise MaskError(file.doubt)
+    if usable and not any(len(sight.cells) for sight in usable):
+        file = with_empty_note(file)
     several = next((sight for sight in usable if len(sight.cells) > 1), None)
     if file.dtype.kind == "f" and all(sight.is_whole for sight in usable):
         greatest = max((float(sight.values.max()) for sight in usable), default=0.0)

@@ -151,9 +151,11 @@ def write_correlation(
     Raises
     ------
     StudyError
-        The folder cannot be written.
+        The folder cannot be written, or is a link: what lies behind it may be another's.
     """
     target = correlation_path(study, signal, with_, name)
+    if target.is_symlink():
+        raise StudyError(f"cannot write {target}: it is a link to {target.readlink()}; remove the link")
     content = {"signal": signal, "with": with_, "name": name} | settings | {TABLES: {}}
     temporary = target.with_name(temporary_name())
     place = f"{CORRELATION}/{target.name}"

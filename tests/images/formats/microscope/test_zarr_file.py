@@ -84,7 +84,7 @@ def test_slices_are_chosen_or_projected(tmp_path: Path, stack: np.ndarray) -> No
         open_frames(path, choice=FileChoice(z="max")).frame(1), stack[1].max(axis=1)
     )
     assert contents(path).lines == (
-        "a.zarr: 3 frames, 4 slices in z, 2 channels without names, 20 × 30 px of uint16, "
+        "a.zarr: 3 frames, 4 slices in z, 2 channels without names, called a 1, a 2, 20 × 30 px of uint16, "
         "1 µm a pixel, 1 s a frame",
     )
 
