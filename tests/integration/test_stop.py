@@ -30,6 +30,7 @@ COMMANDS = {
 def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("files")
     masks = simulate.movie("growing", frames=60, radius_px=30.0).masks.astype(np.uint8)
+    masks = np.concatenate([masks, masks[::-1]] * 8)  # longer than it takes to see that a part is done
     tifffile.imwrite(folder / "masks.tif", masks, metadata={"axes": "TYX"}, photometric="minisblack")
     (folder / "study.toml").write_text("[study]\nkind = 'movie'\n[[inputs]]\nmasks = 'masks.tif'\n")
     return folder

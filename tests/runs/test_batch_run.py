@@ -167,13 +167,15 @@ def test_killed_and_resumed_by_two_workers_it_is_the_same_to_the_last_bit(
 @pytest.mark.slow
 def test_an_input_that_hangs_or_crashes_has_a_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("crashes.tif", "hangs.tif"):
-        os.mkfifo(tmp_path / name)  # whoever reads it waits for ever
+        write(tmp_path / name, np.ones((2, 4, 4)), "TYX")
     answer, tries = WorkerProcess.answer, []
 
     def crash(process: WorkerProcess, task: bytes, time_limit: float | None) -> object:
+        os.kill(process.pid, signal.SIGSTOP)  # it hangs
         if b"crashes" in task:
             tries.append(task)
-            Timer(0.1, os.kill, (process.pid, signal.SIGSEGV)).start()
+            os.kill(process.pid, signal.SIGSEGV)
+            Timer(0.1, os.kill, (process.pid, signal.SIGCONT)).start()
         return answer(process, task, time_limit)
 
     monkeypatch.setattr(WorkerProcess, "answer", crash)
