@@ -12,6 +12,8 @@ from cytodisk.geometry.outline import trace_outline
 from cytodisk.geometry.polygon import edge_lengths
 from cytodisk.simulate.drawing import half_covered
 
+ALIKE = 1e-4  # rad; outlines of fewer than 100 vertices differ by up to 3.4e-5 in 1 694 random masks
+
 
 def raster(outline_yx: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Mask of an outline, and the shift of the outline into the mask's frame."""
@@ -110,8 +112,8 @@ def test_one_turn_in_order_mirrored_and_turned_with_the_cell(kind: str, seed: in
     assert angles[-1] - angles[0] < 2.0 * np.pi
     mirrored = outline[::-1] * [1.0, -1.0]
     quarter = np.column_stack([outline[:, 1], -outline[:, 0]])
-    np.testing.assert_allclose(off(boundary_angles(mirrored)[::-1], np.pi - angles), 0.0, atol=1e-6)
-    np.testing.assert_allclose(off(boundary_angles(quarter), angles + 0.5 * np.pi), 0.0, atol=1e-6)
+    np.testing.assert_allclose(off(boundary_angles(mirrored)[::-1], np.pi - angles), 0.0, atol=ALIKE)
+    np.testing.assert_allclose(off(boundary_angles(quarter), angles + 0.5 * np.pi), 0.0, atol=ALIKE)
 
 
 def test_a_mask_of_one_pixel_has_even_angles() -> None:

@@ -251,7 +251,8 @@ def check_signal(masks: FrameFile, signal: FrameFile) -> None:
         )
     if signal.dtype.kind not in "biuf":
         raise SignalError(
-            f"signal {signal.path} has the type {signal.dtype}, which is no type of numbers: save it anew"
+            f"signal {signal.path} holds values of type {signal.dtype}, which cannot be measured: "
+            "save it as uint16 or float32"
         )
     if len(signal.channels) > _MOST_UNNAMED and signal.unnamed:
         raise SignalError(
