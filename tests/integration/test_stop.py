@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -47,7 +48,11 @@ def test_it_ends_in_one_line_and_leaves_no_lock(
     source = files / ("study.toml" if command == "batch" else "masks.tif")
     given = [command, str(source), "-o", str(tmp_path / "out"), *COMMANDS[command]]
     started = subprocess.Popen(
-        [sys.executable, "-m", "cytodisk", *given], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-m", "cytodisk", *given],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=partial(signal.signal, number, signal.SIG_DFL),  # tests under nohup ignore SIGHUP
     )
     try:
         wait_until(
