@@ -5,6 +5,7 @@ from cytodisk.simulate.label_images import label_image
 from cytodisk.simulate.mask_faults import flipped_masks, scaled_up_masks
 from cytodisk.simulate.movie_kinds import EDGE_KINDS, MOVIE_KINDS
 from cytodisk.simulate.moving_cells import SimulatedMovie, movie
+from cytodisk.simulate.nuclei.random_pairs import PAIR_CELLS, PAIR_NUCLEI, random_pair, random_pair_kinds
 from cytodisk.simulate.null_series import SERIES_KINDS, coupled_series, independent_series
 from cytodisk.simulate.passive_signals import PASSIVE_KINDS, passive_signal
 from cytodisk.simulate.random_cells import branching, migrating, random_smooth, random_spiky
@@ -22,6 +23,8 @@ __all__ = [
     "EDGE_KINDS",
     "KINDS",
     "MOVIE_KINDS",
+    "PAIR_CELLS",
+    "PAIR_NUCLEI",
     "PASSIVE_KINDS",
     "SERIES_KINDS",
     "STRESS_KINDS",
@@ -42,6 +45,8 @@ __all__ = [
     "movie",
     "passive_signal",
     "random_mask",
+    "random_pair",
+    "random_pair_kinds",
     "random_smooth",
     "random_spiky",
     "ring_signal",
