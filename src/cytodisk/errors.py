@@ -20,6 +20,10 @@ class EmptyMaskError(MaskError):
     """No pixel of the mask or label image belongs to a cell."""
 
 
+class NucleusError(MaskError):
+    """The nucleus cannot be used with its cell: wrong shape, empty, several, outside, or at the edge."""
+
+
 class SignalError(CytodiskError):
     """The signal does not fit the mask, or is not an image."""
 
