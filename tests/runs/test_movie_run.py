@@ -22,7 +22,7 @@ from cytodisk.store.tables import (
     TRACK_COLUMNS,
 )
 from cytodisk.store.window_columns import WINDOW_COLUMNS, WINDOW_SIZE_COLUMNS
-from cytodisk.windows.polar_windows import polar_grid_of
+from cytodisk.windows.study_grid import polar_grid_of
 
 FRAMES, GAP = 8, 6
 PIXEL_UM, INTERVAL_S = 0.16, 5.0

@@ -4,7 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cytodisk.errors import WindowError
-from cytodisk.windows.polar_windows import PolarGrid, polar_grid_of, polar_windows
+from cytodisk.windows.polar_windows import PolarGrid, polar_windows
+from cytodisk.windows.study_grid import polar_grid_of
 
 SPACINGS = ("area", "radius")
 JUST_BELOW_A_TURN = -1e-17  # its remainder modulo one turn rounds to a whole turn

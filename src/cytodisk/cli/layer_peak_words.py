@@ -27,7 +27,7 @@ def layer_lines(found: "Correlation", study: "Study", cell: int, without: str) -
     """
     from cytodisk.runs.correlate.verdict import jittered_rows
     from cytodisk.runs.depth_layers import layer_borders
-    from cytodisk.windows.polar_windows import polar_grid_of
+    from cytodisk.windows.study_grid import polar_grid_of
 
     borders = layer_borders(polar_grid_of(study.provenance))
     interval = study.scale.frame_interval_s or math.nan

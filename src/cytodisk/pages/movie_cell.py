@@ -12,7 +12,8 @@ from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.runs.depth_layers import layer_borders
 from cytodisk.scale import Scale
 from cytodisk.store.study import Study
-from cytodisk.windows.polar_windows import PolarGrid, polar_grid_of
+from cytodisk.windows.polar_windows import PolarGrid
+from cytodisk.windows.study_grid import polar_grid_of
 
 _FRAMES = 9  # from which the radii of layers by depth are taken, at most
 

@@ -15,7 +15,9 @@ _CIRCLES = 64  # that are looked at first
 _HALVINGS = 8  # of the step between two of them
 
 
-def radii_at_depths(disk: DiskMap, distance: EdgeDistance, depths_px: Sequence[float]) -> FloatArray:
+def radii_at_depths(
+    disk: DiskMap, distance: EdgeDistance, depths_px: Sequence[float], innermost: float = 0.0
+) -> FloatArray:
     """Radius of the outermost circle of the disk whose median depth in the cell is each of some depths.
 
     Parameters
@@ -25,11 +27,13 @@ def radii_at_depths(disk: DiskMap, distance: EdgeDistance, depths_px: Sequence[f
         Of the same cell.
     depths_px : sequence of float
         In pixels, increasing.
+    innermost : float
+        Radius of the last circle: that of the nucleus, or 0.
 
     Returns
     -------
     ndarray of shape (depths,) and dtype float
-        Strictly decreasing, less than 1; 0 from the first depth on that no circle reaches.
+        Strictly decreasing, less than 1; `innermost` from the first depth on that no circle reaches.
 
     Raises
     ------
@@ -43,7 +47,7 @@ def radii_at_depths(disk: DiskMap, distance: EdgeDistance, depths_px: Sequence[f
     first. The inside of a cell with a neck may be less deep again; it lies within all borders.
     """
     rays, wanted = _rays(disk), np.asarray(depths_px, dtype=np.float64)
-    circles = np.linspace(1.0, 0.0, _CIRCLES + 1)
+    circles = np.linspace(1.0, innermost, _CIRCLES + 1)
     medians = np.append(0.0, _median_depths(disk, distance, rays, circles[1:]))
     reached = medians[:, None] >= wanted
     wanted = wanted[reached.any(axis=0)]
@@ -56,15 +60,15 @@ def radii_at_depths(disk: DiskMap, distance: EdgeDistance, depths_px: Sequence[f
         deep = median >= wanted
         inner, below = np.where(deep, middle, inner), np.where(deep, median, below)
         outer, above = np.where(deep, outer, middle), np.where(deep, above, median)
-    radii = np.zeros(len(depths_px))
+    radii = np.full(len(depths_px), innermost)
     radii[: len(wanted)] = outer - (wanted - above) / (below - above) * (outer - inner)
-    return _decreasing(radii)
+    return _decreasing(radii, innermost)
 
 
-def _decreasing(radii: FloatArray) -> FloatArray:
-    """Radii of which each is less than the one before, or 0, whatever rounding did."""
+def _decreasing(radii: FloatArray, innermost: float) -> FloatArray:
+    """Radii of which each is less than the one before, or the innermost, whatever rounding did."""
     for number in range(1, len(radii)):
-        radii[number] = max(min(radii[number], np.nextafter(radii[number - 1], 0.0)), 0.0)
+        radii[number] = max(min(radii[number], np.nextafter(radii[number - 1], 0.0)), innermost)
     return radii
 
 

@@ -51,10 +51,16 @@ class PolarGridParameters(GridParameters):
     depth_um: tuple[float, ...] | None = parameter(
         None,
         "Depths of the borders between layers below the cell's edge, in place of a number of layers: in each "
-        "cell and frame the circles of the disk with that median depth. What lies deeper is one more layer. "
-        "Needs the pixel size.",
+        "cell and frame the circles of the disk with that median depth. What lies deeper is one more layer, "
+        "with a nucleus the cytoplasm around it. Needs the pixel size.",
         unit="µm",
         words="a depth above 0 or several that increase, such as 0.5,1,2",
+    )
+    nucleus_layers: int | None = parameter(
+        None,
+        "Number of layers in the nucleus, which follow those of the cytoplasm. Needs a nucleus in each cell.",
+        least=1,
+        most=MOST,
     )
 
     @field_validator("depth_um", mode="before")
@@ -80,6 +86,21 @@ class PolarGridParameters(GridParameters):
         ):
             raise ValueError("must be a depth above 0 or several that increase, such as 0.5,1,2")
         return depth_um
+
+    @property
+    def cell_layers(self) -> int:
+        """Number of layers between the cell's edge and its nucleus, or its centre."""
+        return self.layers if self.depth_um is None else len(self.depth_um) + 1
+
+    @model_validator(mode="after")
+    def _not_too_many_with_nucleus(self) -> Self:
+        nucleus = self.nucleus_layers or 0
+        if (self.cell_layers + nucleus) * self.sectors > _MOST_WINDOWS:
+            given = f"({self.cell_layers} + {nucleus}) × {self.sectors}"
+            raise ValueError(
+                f"(layers + nucleus_layers) × sectors must be at most {_MOST_WINDOWS}, got {given}"
+            )
+        return self
 
 
 class EdgeGridParameters(CountParameters):

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from cytodisk.errors import WindowError
 from cytodisk.windows.grid_parameters import Spacing
 
@@ -16,17 +16,25 @@ from cytodisk.windows.grid_parameters import Spacing
 class PolarLayout:
     """Layers from the edge (0) inwards, sectors from angle 0 (+u) towards +v.
 
-    Window (layer, sector) has number layer · sectors + sector.
+    Window (layer, sector) has number layer · sectors + sector. With a nucleus, layers of the cytoplasm come
+    first, those of the nucleus follow.
 
     Attributes
     ----------
     layers, sectors : int
+        All layers, those of the nucleus too.
     spacing : {"area", "radius"}
+        Within the cytoplasm, and within the nucleus.
     depth_um : tuple of float or None
-        Depths of the borders between layers in µm, one less than there are layers; then the radii differ from
-        cell to cell.
+        Depths of the borders between layers in µm, one less than there are layers from the edge to the
+        nucleus or the centre; then the radii differ from cell to cell.
     borders : tuple of float or None
-        Radii of these borders in one cell, decreasing; 0 for layers that are deeper than the cell.
+        Radii of these borders in one cell, decreasing; for layers that are deeper than the cell or its
+        cytoplasm the radius of the nucleus, or 0.
+    nucleus_layers : int
+        How many of the layers are in the nucleus, the last ones.
+    nucleus_radius : float or None
+        Of the nucleus in the disk of one cell, or of all cells of a study.
     """
 
     layers: int
@@ -34,11 +42,24 @@ class PolarLayout:
     spacing: Spacing = "area"
     depth_um: tuple[float, ...] | None = None
     borders: tuple[float, ...] | None = None
+    nucleus_layers: int = 0
+    nucleus_radius: float | None = None
 
     @property
     def n_windows(self) -> int:
         """layers × sectors."""
         return self.layers * self.sectors
+
+    @property
+    def cytoplasm_layers(self) -> int:
+        """How many of the layers are not in the nucleus, the first ones."""
+        return self.layers - self.nucleus_layers
+
+    @property
+    def compartments(self) -> AnyArray:
+        """Compartment of each layer, "cytoplasm" or "nucleus", or "cell" without a nucleus; (layers,)."""
+        outer = "cytoplasm" if self.nucleus_layers else "cell"
+        return np.array([outer] * self.cytoplasm_layers + ["nucleus"] * self.nucleus_layers)
 
     @cached_property
     def radii(self) -> FloatArray:
@@ -47,24 +68,43 @@ class PolarLayout:
         Raises
         ------
         WindowError
-            The borders between layers are given by their depth, and the grid is not on a cell yet.
+            The borders between layers are given by their depth, or there are layers of a nucleus, and the
+            grid is not on a cell yet.
         """
+        within = self._nucleus_radius
         if self.borders is not None:
-            return np.array([1.0, *self.borders, 0.0])
-        if self.depth_um is not None:
-            raise WindowError(
-                "the radii of a grid by depth_um differ from cell to cell: take the grid of the windows on "
-                "one, grid.on(disk).grid"
-            )
-        steps = np.linspace(1.0, 0.0, self.layers + 1)
-        return np.sqrt(steps) if self.spacing == "area" else steps
+            outer = np.array([1.0, *self.borders, within])
+        elif self.depth_um is not None:
+            raise WindowError(_ON_A_CELL.format("by depth_um"))
+        else:
+            outer = _radii(self.cytoplasm_layers, self.spacing, within)
+        if not self.nucleus_layers:
+            return outer
+        return np.concatenate([outer, within * _radii(self.nucleus_layers, self.spacing)[1:]])
+
+    @property
+    def _nucleus_radius(self) -> float:
+        """Radius at which the layers from the edge end; 0 without a nucleus."""
+        if not self.nucleus_layers:
+            return 0.0
+        if self.nucleus_radius is None:
+            raise WindowError(_ON_A_CELL.format("with nucleus_layers"))
+        return self.nucleus_radius
 
     @property
     def present(self) -> BoolArray:
-        """Whether each layer is one of the cell, not deeper than it, shape (layers,)."""
+        """Whether each layer is one of the cell, not deeper than it or its cytoplasm, shape (layers,)."""
         if self.borders is None:
             return np.ones(self.layers, dtype=bool)
-        return np.asarray(self.radii[:-1] > 0.0)
+        return np.asarray(self.radii[:-1] > self.radii[1:])
+
+    @cached_property
+    def area_shares(self) -> FloatArray:
+        """Share of its compartment's area in the disk that each window of a layer has, shape (layers,)."""
+        squares = np.square(self.radii)
+        border = squares[self.cytoplasm_layers]
+        whole = np.where(np.arange(self.layers) < self.cytoplasm_layers, 1.0 - border, border)
+        return np.asarray(-np.diff(squares) / (whole * self.sectors))
 
     @cached_property
     def angles(self) -> FloatArray:
@@ -85,7 +125,8 @@ class PolarLayout:
         Parameters
         ----------
         points_uv : ndarray of shape (N, 2) and dtype float
-            (u, v) in the disk; points on or beyond the rim belong to layer 0.
+            (u, v) in the disk; points on or beyond the rim belong to layer 0, those on the nuclear outline to
+            the cytoplasm.
 
         Returns
         -------
@@ -93,6 +134,27 @@ class PolarLayout:
         """
         radius = np.hypot(points_uv[:, 0], points_uv[:, 1])
         layer = np.searchsorted(-self.radii[1:-1], -radius, side="left")
+        return np.asarray(layer * self.sectors + self.sector_of(points_uv))
+
+    def sector_of(self, points_uv: FloatArray) -> IntArray:
+        """Sector that holds each point of the disk, (u, v) of shape (N, 2); shape (N,)."""
         turn = np.arctan2(points_uv[:, 1], points_uv[:, 0]) / (2.0 * np.pi)
         sector = np.floor(np.mod(turn, 1.0) * self.sectors).astype(np.int64)
-        return np.asarray(layer * self.sectors + np.minimum(sector, self.sectors - 1))
+        return np.asarray(np.minimum(sector, self.sectors - 1))
+
+
+_ON_A_CELL = (
+    "the radii of a grid {} differ from cell to cell: take the grid of the windows on one, grid.on(disk).grid"
+)
+
+
+def _radii(layers: int, spacing: Spacing, within: float = 0.0) -> FloatArray:
+    """Radii from 1 to the one within, by equal shares of the area between or in equal steps."""
+    if not within:
+        steps = np.linspace(1.0, 0.0, layers + 1)
+        return np.sqrt(steps) if spacing == "area" else steps
+    if spacing == "radius":
+        return np.linspace(1.0, within, layers + 1)
+    radii = np.sqrt(np.linspace(1.0, within * within, layers + 1))
+    radii[-1] = within
+    return radii

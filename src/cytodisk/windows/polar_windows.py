@@ -10,15 +10,16 @@ from typing import Any
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
-from cytodisk.checks import is_number
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
 from cytodisk.geometry.edge_distance import EdgeDistance
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import Scale
 from cytodisk.taking import takes
+from cytodisk.windows.area_ratios import area_ratios
 from cytodisk.windows.depth_borders import radii_at_depths
 from cytodisk.windows.grid_parameters import PolarGridParameters
+from cytodisk.windows.nucleus.nucleus_grid import with_nucleus_of
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.outlines import window_polygons
 from cytodisk.windows.polar_layout import PolarLayout
@@ -31,17 +32,25 @@ from cytodisk.windows.window_features import window_features
 class PolarGrid(PolarLayout):
     """Layers from the edge (0) inwards, sectors from angle 0 (+u) towards +v.
 
-    Window (layer, sector) has number layer · sectors + sector.
+    Window (layer, sector) has number layer · sectors + sector. With a nucleus, layers of the cytoplasm come
+    first, those of the nucleus follow.
 
     Attributes
     ----------
     layers, sectors : int
+        All layers, those of the nucleus too.
     spacing : {"area", "radius"}
+        Within the cytoplasm, and within the nucleus.
     depth_um : tuple of float or None
-        Depths of the borders between layers in µm, one less than there are layers; then the radii differ from
-        cell to cell.
+        Depths of the borders between layers in µm, one less than there are layers from the edge to the
+        nucleus or the centre; then the radii differ from cell to cell.
     borders : tuple of float or None
-        Radii of these borders in one cell, decreasing; 0 for layers that are deeper than the cell.
+        Radii of these borders in one cell, decreasing; for layers that are deeper than the cell or its
+        cytoplasm the radius of the nucleus, or 0.
+    nucleus_layers : int
+        How many of the layers are in the nucleus, the last ones.
+    nucleus_radius : float or None
+        Of the nucleus in the disk of one cell, or of all cells of a study.
 
     Examples
     --------
@@ -64,33 +73,36 @@ class PolarGrid(PolarLayout):
         Returns
         -------
         CellWindows
-            No window is empty, whatever the grid, but for layers by depth that are deeper than the cell. Its
-            grid has the radii of this cell.
+            No window is empty, whatever the grid, but for layers by depth that are deeper than the cell or
+            its cytoplasm. Its grid has the radii of this cell.
 
         Raises
         ------
         WindowError
-            `disk` is not a map; or layers are by depth, and its scale is unknown or the image shows no edge.
+            `disk` is not a map; or layers are by depth, and its scale is unknown or the image shows no edge;
+            or only one of the grid and the map has a nucleus.
         """
         if not isinstance(disk, DiskMap):
             raise WindowError(f"disk must be a DiskMap, got {type(disk).__name__}: pass map_to_disk(mask)")
+        grid = with_nucleus_of(self, disk)
         if self.depth_um is None:
-            return CellWindows(self, disk)
+            return CellWindows(grid, disk)
         pixel_size_um = disk.scale.pixel_size_um
         if pixel_size_um is None:
             raise WindowError(
                 "depth_um needs the scale of the map: pass pixel_size_um to map_to_disk or map_movie"
             )
         distance = EdgeDistance(disk.placed_mask, disk.outline_yx)
-        radii = radii_at_depths(disk, distance, [depth / pixel_size_um for depth in self.depth_um])
-        windows = CellWindows(replace(self, borders=tuple(radii.tolist())), disk)
+        depths_px = [depth / pixel_size_um for depth in self.depth_um]
+        radii = radii_at_depths(disk, distance, depths_px, grid.nucleus_radius or 0.0)
+        windows = CellWindows(replace(grid, borders=tuple(radii.tolist())), disk)
         windows.__dict__["edge_distance"] = distance  # which took some time
         return windows
 
     @property
     def of_any_cell(self) -> PolarGrid:
         """The same grid without the radii of one cell."""
-        return replace(self, borders=None)
+        return replace(self, borders=None, nucleus_radius=None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,11 +183,17 @@ class CellWindows(WindowsOnCell):
     def area_error(self) -> float:
         """Mean |ln| of each window's share of the cell over its share of the disk; 0 is perfect.
 
-        At 0.1 the areas of windows are about 10 % off. Layers deeper than the cell do not count.
+        At 0.1 the areas of windows are about 10 % off. Layers deeper than the cell do not count. With a
+        nucleus, shares are those of the window's compartment.
         """
-        in_disk = -np.diff(np.square(self.grid.radii))[self.grid.present]
-        in_cell = self.areas[self.grid.present] / self.areas.sum() * self.grid.sectors
-        return float(np.abs(np.log(in_cell / in_disk[:, None])).mean())
+        return float(np.abs(np.log(area_ratios(self.grid, self.areas))).mean())
+
+    @property
+    def area_errors(self) -> dict[str, float]:
+        """`area_error` by compartment."""
+        found = np.abs(np.log(area_ratios(self.grid, self.areas)))
+        compartment = self.grid.compartments[self.grid.present]
+        return {str(name): float(found[compartment == name].mean()) for name in np.unique(compartment)}
 
     def polygons(self) -> list[FloatArray]:
         """Outline of each window in the cell, by window number.
@@ -264,25 +282,18 @@ def polar_windows(*in_order: Any, **settings: Any) -> PolarGrid:
     >>> windows = grid.on(cd.map_to_disk(cd.simulate.disk(30), pixel_size_um=0.1))
     >>> windows.layers, windows.depths[:, :, 2].mean(axis=1).round()  # in pixels: the last one is the rest
     (3, array([ 5., 10., 25.]))
+
+    Layers of the cytoplasm, then of the nucleus:
+
+    >>> grid = cd.polar_windows(layers=2, sectors=60, nucleus_layers=1)
+    >>> grid.layers, grid.compartments.tolist()
+    (3, ['cytoplasm', 'cytoplasm', 'nucleus'])
     """
     return polar_grid(PolarGridParameters.of(*in_order, **settings))
 
 
 def polar_grid(parameters: PolarGridParameters) -> PolarGrid:
     """The grid that some parameters describe."""
-    layers = parameters.layers if parameters.depth_um is None else len(parameters.depth_um) + 1
-    return PolarGrid(layers, parameters.sectors, parameters.spacing, parameters.depth_um)
-
-
-def polar_grid_of(provenance: Mapping[str, Any]) -> PolarGrid:
-    """The grid of a study, from its provenance.
-
-    In movies of earlier versions `depth_um` is one number, the wanted thickness of the first layer; their
-    provenance says how many layers that gave.
-    """
-    known = {name: provenance["parameters"].get(name) for name in PolarGridParameters.model_fields}
-    if is_number(known["depth_um"]):
-        known |= {"depth_um": None, "layers": provenance["layers"]}
-    left_out = ("depth_um",) if known["depth_um"] is None else ("layers", "spacing")
-    given = {name: value for name, value in known.items() if value is not None and name not in left_out}
-    return polar_windows(**given)
+    nucleus, chosen = parameters.nucleus_layers or 0, parameters
+    layers = parameters.cell_layers + nucleus
+    return PolarGrid(layers, chosen.sectors, chosen.spacing, chosen.depth_um, nucleus_layers=nucleus)

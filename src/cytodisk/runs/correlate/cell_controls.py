@@ -19,7 +19,7 @@ from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.run_options import Progress
 from cytodisk.runs.study_signal import FoundSignal, find_signal
 from cytodisk.store.study import Study
-from cytodisk.windows.polar_windows import polar_grid_of
+from cytodisk.windows.study_grid import polar_grid_of
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,7 +36,7 @@ from cytodisk.runs.correlate.partial_correlation import Partial, partial_correla
 from cytodisk.runs.correlate.stress_columns import stress_row
 from cytodisk.runs.run_options import Progress
 from cytodisk.store.study import Study
-from cytodisk.windows.polar_windows import polar_grid_of
+from cytodisk.windows.study_grid import polar_grid_of
 
 _LEAST_LAG_FOR_JITTER, _LAG_FOR_JITTER = 6, 10
 _SIDES = (("signal", "a"), ("with", "b"))

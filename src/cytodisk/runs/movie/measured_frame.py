@@ -24,6 +24,7 @@ from cytodisk.runs.frame_rows import FramePlace, measure_windows
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
 from cytodisk.store.activity_reading import EDGE_VARIABLES
+from cytodisk.windows.area_ratios import area_ratios
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
 
@@ -116,9 +117,7 @@ def _smallest_share(windows: CellWindows, parameters: FollowedCellParameters) ->
     """Area of the smallest window over that in a map of equal areas; NaN unless the interior stands still."""
     if parameters.part(InteriorParameters).interior != "still":
         return np.nan
-    present = windows.grid.present
-    by_layer = -np.diff(windows.grid.radii**2)[present] / windows.grid.sectors
-    return float((windows.areas[present] / (by_layer[:, None] * windows.areas.sum())).min())
+    return float(area_ratios(windows.grid, windows.areas).min())
 
 
 def _interior_note(frame: MappedFrame, task: FrameTask) -> str:
