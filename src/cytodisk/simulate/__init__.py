@@ -5,6 +5,13 @@ from cytodisk.simulate.label_images import label_image
 from cytodisk.simulate.mask_faults import flipped_masks, scaled_up_masks
 from cytodisk.simulate.movie_kinds import EDGE_KINDS, MOVIE_KINDS
 from cytodisk.simulate.moving_cells import SimulatedMovie, movie
+from cytodisk.simulate.nuclei.cells_with_nuclei import (
+    CELL_SHAPES,
+    NUCLEUS_KINDS,
+    CellWithNucleus,
+    cell_with_nucleus,
+)
+from cytodisk.simulate.nuclei.profile_signals import between_nucleus_and_membrane, profile_signal
 from cytodisk.simulate.nuclei.random_pairs import PAIR_CELLS, PAIR_NUCLEI, random_pair, random_pair_kinds
 from cytodisk.simulate.null_series import SERIES_KINDS, coupled_series, independent_series
 from cytodisk.simulate.passive_signals import PASSIVE_KINDS, passive_signal
@@ -20,18 +27,23 @@ from cytodisk.simulate.signals import (
 from cytodisk.simulate.stress_series import STRESS_KINDS
 
 __all__ = [
+    "CELL_SHAPES",
     "EDGE_KINDS",
     "KINDS",
     "MOVIE_KINDS",
+    "NUCLEUS_KINDS",
     "PAIR_CELLS",
     "PAIR_NUCLEI",
     "PASSIVE_KINDS",
     "SERIES_KINDS",
     "STRESS_KINDS",
+    "CellWithNucleus",
     "SimulatedCell",
     "SimulatedMovie",
+    "between_nucleus_and_membrane",
     "branching",
     "cell_with_cortex",
+    "cell_with_nucleus",
     "cell_with_signal",
     "coupled_series",
     "disk",
@@ -44,6 +56,7 @@ __all__ = [
     "migrating",
     "movie",
     "passive_signal",
+    "profile_signal",
     "random_mask",
     "random_pair",
     "random_pair_kinds",

@@ -9,8 +9,8 @@ from cytodisk.simulate.resting_shapes import of_area
 
 EIGHT = np.ones((3, 3), dtype=bool)
 _POINTS = 720
-_BEAN_BEND = 0.9  # radians from the middle of a bean to each end
-_BEAN_LENGTH = 1.0  # from the middle to each end, in widths
+_BEAN_BEND = 0.8  # radians from the middle of a bean to each end
+_BEAN_LENGTH = 0.7  # from the middle to each end, in widths
 
 
 def room_for_nucleus(mask: BoolArray, gap: int = 1) -> BoolArray:
