@@ -36,6 +36,8 @@ FUNCTIONS = (
     cd.polar_windows,
     cd.edge_windows,
     cd.ring_windows,
+    cd.nucleus_ring_windows,
+    cd.interpolated_ring_windows,
     cd.sample,
     cd.sample_movie,
     cd.map_movie,

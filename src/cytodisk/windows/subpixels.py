@@ -51,16 +51,38 @@ def depths_and_angles(
     angle : ndarray of shape (P, subpixels) and dtype float
         In radians.
     """
+    depth, angle = distances_and_angles(places_yx, outline_yx, angles)
+    rim = depth < 1.0  # subpixels further off are within pixels that the outline does not cut
+    rim[rim] = ~shapely.contains_xy(shapely.Polygon(outline_yx), *places_yx[rim].T)
+    depth[rim] = 0.0
+    return depth, angle
+
+
+def distances_and_angles(
+    places_yx: FloatArray, outline_yx: FloatArray, angles: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """As `depths_and_angles`, but the distance of places outside the outline is that to it, too.
+
+    Parameters
+    ----------
+    places_yx : ndarray of shape (P, subpixels, 2) and dtype float
+        Subpixels of P pixels, on either side of the outline.
+    outline_yx : ndarray of shape (B, 2) and dtype float
+        Closed polygon, (row, column) in pixels.
+    angles : ndarray of shape (B,) and dtype float
+        In radians, increasing within one turn.
+
+    Returns
+    -------
+    distance, angle : ndarray of shape (P, subpixels) and dtype float
+    """
     if not len(places_yx):
         return np.empty(places_yx.shape[:2]), np.empty(places_yx.shape[:2])
     ends = np.append(angles[1:], angles[0] + 2.0 * np.pi)
     shape = places_yx.shape[:2]
     flat = np.ascontiguousarray(places_yx.reshape(-1, 2))
-    depth, angle = (found.reshape(shape) for found in _nearest(flat, shape[1], outline_yx, angles, ends))
-    rim = depth < 1.0  # subpixels further off are within pixels that the outline does not cut
-    rim[rim] = ~shapely.contains_xy(shapely.Polygon(outline_yx), *places_yx[rim].T)
-    depth[rim] = 0.0
-    return depth, angle
+    distance, angle = (found.reshape(shape) for found in _nearest(flat, shape[1], outline_yx, angles, ends))
+    return distance, angle
 
 
 @njit(cache=True)

@@ -1,0 +1,194 @@
+"""Rings by the share of the way from a cell's edge to its nucleus, as CellProfiler's users have them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.scale import Scale
+from cytodisk.taking import takes
+from cytodisk.windows.on_cell import WindowsOnCell
+from cytodisk.windows.ring_windows import RingGrid, RingWindows
+from cytodisk.windows.rings.nucleus_edges import NucleusEdges
+from cytodisk.windows.rings.nucleus_ring_parameters import NucleusRingParameters
+from cytodisk.windows.shares import PER_SIDE
+from cytodisk.windows.subpixels import subpixel_places
+
+
+@dataclass(frozen=True)
+class NucleusRingGrid:
+    """Rings by the share of the way from the edge (0) to the nucleus, rings in it, and wedges around it.
+
+    Attributes
+    ----------
+    cytoplasm_layers, sectors, nucleus_layers : int
+
+    Raises
+    ------
+    WindowError
+        A count is not a positive whole number.
+
+    See Also
+    --------
+    nucleus_ring_windows : The same in one step.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> grid = cd.NucleusRingGrid(cytoplasm_layers=4, sectors=8, nucleus_layers=2)
+    >>> grid.layers
+    6
+    """
+
+    cytoplasm_layers: int
+    sectors: int
+    nucleus_layers: int = 3
+
+    def __post_init__(self) -> None:
+        NucleusRingParameters(
+            layers=self.cytoplasm_layers, sectors=self.sectors, nucleus_layers=self.nucleus_layers
+        )
+
+    @property
+    def layers(self) -> int:
+        """Number of layers of the cytoplasm and of the nucleus."""
+        return self.cytoplasm_layers + self.nucleus_layers
+
+
+@dataclass(frozen=True, eq=False)
+class NucleusRingWindows(WindowsOnCell):
+    """Rings and wedges around the nucleus of a cell; they cover it, but areas differ and windows are empty.
+
+    Attributes
+    ----------
+    grid : NucleusRingGrid
+    edges : NucleusEdges
+
+    See Also
+    --------
+    CellWindows : Windows of a map, of equal area in the cytoplasm and in the nucleus.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import cytodisk as cd
+    >>> cell, nucleus = cd.simulate.disk(20), np.pad(cd.simulate.disk(8), 12)
+    >>> windows = cd.nucleus_ring_windows(cell, nucleus, layers=4, sectors=8, nucleus_layers=1)
+    >>> windows.areas.shape
+    (5, 8)
+    """
+
+    grid: NucleusRingGrid
+    edges: NucleusEdges
+
+    def windows_of_subpixels(self, pixels_yx: IntArray) -> IntArray:
+        """Number of the window that each subpixel of some pixels lies in, shape (P, 16).
+
+        Parameters
+        ----------
+        pixels_yx : ndarray of shape (P, 2) and dtype int
+            (row, column).
+        """
+        in_nucleus = self.nucleus_mask[tuple(pixels_yx.T)]
+        layer = np.empty((len(pixels_yx), PER_SIDE**2), dtype=np.int64)
+        layer[~in_nucleus] = self._cytoplasm_layers_of(pixels_yx[~in_nucleus])
+        layer[in_nucleus] = self.grid.cytoplasm_layers + self._within_nucleus.windows_of_subpixels(
+            pixels_yx[in_nucleus]
+        )
+        turn = self.edges.turns(subpixel_places(pixels_yx, PER_SIDE))
+        sector = np.minimum((turn * self.sectors).astype(np.int64), self.sectors - 1)
+        return np.asarray(layer * self.sectors + sector)
+
+    def _cytoplasm_layers_of(self, pixels_yx: IntArray) -> IntArray:
+        depth, _ = self.edges.cell.subpixels_of(pixels_yx)
+        way = self.edges.ways_from_nucleus(pixels_yx)
+        share = depth / np.maximum(depth + way, 1e-12)
+        count = self.grid.cytoplasm_layers
+        return np.minimum((share * count).astype(np.int64), count - 1)
+
+    @cached_property
+    def _within_nucleus(self) -> RingWindows:
+        """Rings of the nucleus around its deepest point; without wedges, so windows are layers."""
+        return RingWindows(RingGrid(self.grid.nucleus_layers, 1), self.edges.nucleus)
+
+    @property
+    def mask(self) -> BoolArray:
+        """The cell's mask, shape (H, W) and dtype bool."""
+        return self.edges.cell.mask
+
+    @property
+    def nucleus_mask(self) -> BoolArray:
+        """The nucleus' mask, shape (H, W) and dtype bool."""
+        return self.edges.nucleus.mask
+
+    @property
+    def outline_yx(self) -> FloatArray:
+        """Outline of the cell, shape (B, 2), (row, column) in pixels."""
+        return self.edges.cell.outline_yx
+
+    @property
+    def scale(self) -> Scale:
+        """Scale of the cell's image."""
+        return self.edges.cell.scale
+
+
+@takes(NucleusRingParameters)
+def nucleus_ring_windows(cell: Any, nucleus: Any, *in_order: Any, **settings: Any) -> NucleusRingWindows:
+    """Rings and wedges around the nucleus of one cell, to compare with `polar_windows`.
+
+    A place of the cytoplasm belongs to a ring by d_membrane / (d_membrane + d_nucleus): its distance from
+    the edge of the cell over the sum of that and of its way through the cell from the nucleus. A place of
+    the nucleus belongs to a ring by its distance from the nuclear outline over the sum of that and of its way
+    from the deepest point of the nucleus. Wedges are by angle around the nucleus' centroid.
+
+    Parameters
+    ----------
+    cell : array_like of shape (H, W), or DiskMap
+        A mask, which `clean_mask` cleans, or a map, of which only the mask is used.
+    nucleus : array_like of shape (H, W)
+        Mask of the nucleus in the same image.
+    **settings
+        See `NucleusRingParameters`.
+
+    Returns
+    -------
+    NucleusRingWindows
+        Layer 0 is at the edge of the cell; layers of the nucleus follow those of the cytoplasm. Sector 0
+        begins at +x and goes towards +y.
+
+    Raises
+    ------
+    MaskError
+        A mask is not that of one cell, or of its nucleus.
+    WindowError
+        A count is not a positive whole number.
+
+    See Also
+    --------
+    polar_windows : Windows of equal area by the map onto the disk.
+    interpolated_ring_windows : Rings between the two outlines, point by point.
+    ring_windows : Rings around the deepest point of the cell.
+
+    References
+    ----------
+    Carpenter et al., "CellProfiler", Genome Biology 7:R100 (2006), doi:10.1186/gb-2006-7-10-r100:
+    MeasureObjectIntensityDistribution with the edges of other objects (the nuclei) as centres, where layers
+    are counted from the nucleus, in eight wedges.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import cytodisk as cd
+    >>> cell, nucleus = cd.simulate.disk(20), np.pad(cd.simulate.disk(8), 12)
+    >>> windows = cd.nucleus_ring_windows(cell, nucleus, layers=4, sectors=8, nucleus_layers=1)
+    >>> shares = windows.areas.sum(axis=1) / cell.sum()  # by layer, the nucleus last
+    >>> shares.round(2)
+    array([0.29, 0.23, 0.18, 0.14, 0.16])
+    """
+    counts = NucleusRingParameters.of(*in_order, **settings)
+    grid = NucleusRingGrid(counts.layers, counts.sectors, counts.nucleus_layers)
+    return NucleusRingWindows(grid, NucleusEdges.of(cell, nucleus))
