@@ -11,6 +11,11 @@ from cytodisk.simulate.nuclei.cells_with_nuclei import (
     CellWithNucleus,
     cell_with_nucleus,
 )
+from cytodisk.simulate.nuclei.label_images_with_nuclei import (
+    NUCLEUS_CASES,
+    CellsWithNuclei,
+    label_image_with_nuclei,
+)
 from cytodisk.simulate.nuclei.profile_signals import between_nucleus_and_membrane, profile_signal
 from cytodisk.simulate.nuclei.random_pairs import PAIR_CELLS, PAIR_NUCLEI, random_pair, random_pair_kinds
 from cytodisk.simulate.null_series import SERIES_KINDS, coupled_series, independent_series
@@ -31,6 +36,7 @@ __all__ = [
     "EDGE_KINDS",
     "KINDS",
     "MOVIE_KINDS",
+    "NUCLEUS_CASES",
     "NUCLEUS_KINDS",
     "PAIR_CELLS",
     "PAIR_NUCLEI",
@@ -38,6 +44,7 @@ __all__ = [
     "SERIES_KINDS",
     "STRESS_KINDS",
     "CellWithNucleus",
+    "CellsWithNuclei",
     "SimulatedCell",
     "SimulatedMovie",
     "between_nucleus_and_membrane",
@@ -52,6 +59,7 @@ __all__ = [
     "flipped_masks",
     "independent_series",
     "label_image",
+    "label_image_with_nuclei",
     "linear_signal",
     "migrating",
     "movie",

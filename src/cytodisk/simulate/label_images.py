@@ -35,6 +35,7 @@ def label_image(cells: int = 50, seed: int = 0) -> np.ndarray[Any, np.dtype[np.u
 
     See Also
     --------
+    label_image_with_nuclei : Cells with their nuclei.
     movie : One cell through time.
 
     Examples
@@ -45,17 +46,21 @@ def label_image(cells: int = 50, seed: int = 0) -> np.ndarray[Any, np.dtype[np.u
     5
     """
     number_between("cells", cells, 1)
-    random = np.random.default_rng([7, seed])
-    makers = [_MAKERS[kind] for kind in random.choice(len(_MAKERS), cells, p=_SHARES)]
-    masks = [make(random) for make in makers]
-    corners, shape = _packed(masks)
+    masks = cell_masks(cells, np.random.default_rng([7, seed]))
+    corners, shape = packed(masks)
     image = np.zeros(shape, dtype=np.uint16)
     for label, (mask, (y, x)) in enumerate(zip(masks, corners, strict=True), start=1):
         image[y : y + mask.shape[0], x : x + mask.shape[1]][mask] = label
     return image[_CUT_PX:, _CUT_PX:]
 
 
-def _packed(masks: list[BoolArray]) -> tuple[list[tuple[int, int]], tuple[int, int]]:
+def cell_masks(cells: int, random: np.random.Generator) -> list[BoolArray]:
+    """Masks of cells of all kinds, without a margin."""
+    makers = [_MAKERS[kind] for kind in random.choice(len(_MAKERS), cells, p=_SHARES)]
+    return [make(random) for make in makers]
+
+
+def packed(masks: list[BoolArray]) -> tuple[list[tuple[int, int]], tuple[int, int]]:
     """Corners of boxes that stand in rows, in a picture about as high as wide."""
     total = sum((mask.shape[0] + _GAP_PX) * (mask.shape[1] + _GAP_PX) for mask in masks)
     width = max(int(1.1 * total**0.5), *(mask.shape[1] for mask in masks), 1)
