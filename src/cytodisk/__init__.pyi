@@ -18,6 +18,7 @@ from .geometry.mask import clean_mask as clean_mask
 from .geometry.mask import MaskReport as MaskReport
 from .geometry.nucleus_mask import fit_nucleus as fit_nucleus
 from .geometry.nucleus_report import NucleusReport as NucleusReport
+from .images.nuclei.match_nuclei import match_nuclei as match_nuclei
 from .disk.mapping import map_to_disk as map_to_disk
 from .disk.disk_map import DiskMap as DiskMap
 from .disk.disk_map import load_map as load_map

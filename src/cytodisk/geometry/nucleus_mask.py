@@ -23,10 +23,12 @@ MOST_OUTSIDE = 0.1
 MOST_AT_EDGE = 0.2
 """Share of a nucleus' outline that may lie at the cell's edge, and is clipped; above, it is refused."""
 
+THE_CELL = 0.95
+"""Share of a cell from which on a nucleus that covers it is the cell itself."""
+
 SEVERAL = ("refuse", "largest", "join")
 SeveralPolicy = Literal["refuse", "largest", "join"]
 
-_THE_CELL = 0.95  # share of the cell from which on a nucleus is the cell itself
 _EIGHT = np.ones((3, 3), dtype=bool)
 
 
@@ -179,9 +181,9 @@ def _count_holes(holes: BoolArray) -> int:
 def _check_other(cell: BoolArray, nucleus: BoolArray) -> None:
     """Raise NucleusError for a nucleus that is a cell: this one, or one around it."""
     covered = _count(cell & nucleus) / _count(cell)
-    if covered <= _THE_CELL:
+    if covered <= THE_CELL:
         return
-    if _count(cell) < _THE_CELL * _count(nucleus):
+    if _count(cell) < THE_CELL * _count(nucleus):
         raise NucleusError(
             "the cell lies inside the nucleus: are the two masks swapped? Pass the cell's first, and then "
             "nucleus=…"

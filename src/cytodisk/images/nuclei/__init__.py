@@ -1,0 +1,1 @@
+"""Nuclei of cells: their masks numbered, and which nucleus belongs to which cell."""
