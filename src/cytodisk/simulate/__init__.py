@@ -16,6 +16,7 @@ from cytodisk.simulate.nuclei.label_images_with_nuclei import (
     CellsWithNuclei,
     label_image_with_nuclei,
 )
+from cytodisk.simulate.nuclei.movies_with_nuclei import MovieWithNuclei, movie_with_nuclei
 from cytodisk.simulate.nuclei.profile_signals import between_nucleus_and_membrane, profile_signal
 from cytodisk.simulate.nuclei.random_pairs import PAIR_CELLS, PAIR_NUCLEI, random_pair, random_pair_kinds
 from cytodisk.simulate.null_series import SERIES_KINDS, coupled_series, independent_series
@@ -45,6 +46,7 @@ __all__ = [
     "STRESS_KINDS",
     "CellWithNucleus",
     "CellsWithNuclei",
+    "MovieWithNuclei",
     "SimulatedCell",
     "SimulatedMovie",
     "between_nucleus_and_membrane",
@@ -63,6 +65,7 @@ __all__ = [
     "linear_signal",
     "migrating",
     "movie",
+    "movie_with_nuclei",
     "passive_signal",
     "profile_signal",
     "random_mask",

@@ -130,6 +130,7 @@ def movie(kind: MovieKind = "migrating", seed: int = 0, **settings: Any) -> Simu
     See Also
     --------
     cell_with_signal : One frame.
+    movie_with_nuclei : With a nucleus.
     coupled_series : Series of windows, without a cell.
 
     Examples
@@ -151,7 +152,7 @@ def movie(kind: MovieKind = "migrating", seed: int = 0, **settings: Any) -> Simu
         path.boundary_yx[shown], habits.jitter_px, habits.jitter_length_px, np.random.default_rng([seed, 1])
     )
     shape, shift = _image_frame(drawn, how.margin)
-    present = _present(frames, habits.dropped, np.random.default_rng([seed, 2]))
+    present = present_frames(frames, habits.dropped, np.random.default_rng([seed, 2]))
     displacement = normal_displacement(path.boundary_yx)
     boundary = path.boundary_yx[shown] + shift
     stretch = coupled_stretch(how.coupled, np.random.default_rng([seed, 5]))
@@ -191,7 +192,8 @@ def _image_frame(drawn_yx: FloatArray, margin: int) -> tuple[tuple[int, int], Fl
     return (int(height), int(width)), -low
 
 
-def _present(frames: int, dropped: float, random: np.random.Generator) -> BoolArray:
+def present_frames(frames: int, dropped: float, random: np.random.Generator) -> BoolArray:
+    """False in a share of the frames, never in the first or the last; shape (T,)."""
     present = np.ones(frames, dtype=bool)
     count = min(round(dropped * frames), frames - 2)
     present[1 + random.permutation(frames - 2)[:count]] = False

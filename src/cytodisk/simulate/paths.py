@@ -64,6 +64,34 @@ def paths(plan: Plan, first: int, stop: int, *, interior: bool = True) -> Paths:
     return Paths(path[:, :places], image[:, :BOUNDARY_POINTS], image[:, BOUNDARY_POINTS:])
 
 
+def carried_from_start(plan: Plan, starts_yx: FloatArray) -> FloatArray:
+    """Carry points inside a cell from frame 0, those of each frame on to that frame.
+
+    Parameters
+    ----------
+    plan : Plan
+    starts_yx : ndarray of shape (T, N, 2) and dtype float
+        For each frame the points that are asked for in it, where they are in frame 0; in pixels of the image,
+        from where the cell's centre is in frame 0.
+
+    Returns
+    -------
+    ndarray of shape (T, N, 2) and dtype float
+        Where they are in that frame.
+    """
+    frames, count = starts_yx.shape[:2]
+    moving = plan.flow.shape_at_start(plan.places_yx) if isinstance(plan.flow, Flow) else plan.places_yx
+    places = len(moving)
+    moving = np.concatenate([moving, plan.pose.to_cell(starts_yx.reshape(-1, 2), 0.0)])
+    arrived = np.empty_like(starts_yx)
+    for frame in range(frames):
+        arrived[frame] = plan.pose.to_image(moving[places : places + count], frame)
+        moving = np.delete(moving, np.s_[places : places + count], axis=0)
+        if frame + 1 < frames:
+            moving = plan.flow.carry(moving, frame, frame + 1)
+    return arrived
+
+
 def normal_displacement(boundary_yx: FloatArray) -> FloatArray:
     """How far points of an edge move until the next frame along their outward normal.
 

@@ -100,7 +100,7 @@ def cell_with_nucleus(
     --------
     profile_signal : A signal between nucleus and membrane.
     label_image_with_nuclei : Many cells.
-    movie_with_nucleus : A cell that moves.
+    movie_with_nuclei : A cell that moves.
     random_pair : Every shape that could break a map.
 
     Examples
