@@ -349,12 +349,12 @@ def test_a_link_that_leads_nowhere_is_a_fault(tmp_path: Path) -> None:
 
 def test_images_beside_plain_masks_are_no_masks(tmp_path: Path) -> None:
     fill(tmp_path, "a.tif", "a_img.tif", "b.tif", "b_img.png")
-    assert names(open_mask_files(tmp_path, images="_img")) == ["a.tif", "b.tif"]
-    assert names(open_mask_files(tmp_path, images="_img.png")) == ["a.tif", "a_img.tif", "b.tif"]
+    assert names(open_mask_files(tmp_path, images=("_img",))) == ["a.tif", "b.tif"]
+    assert names(open_mask_files(tmp_path, images=("_img.png",))) == ["a.tif", "a_img.tif", "b.tif"]
     (tmp_path / "a.tif").unlink()
     (tmp_path / "b.tif").unlink()
     with pytest.raises(ReadError, match="holds no masks"):
-        open_mask_files(tmp_path, images="_img")
+        open_mask_files(tmp_path, images=("_img",))
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, bool, np.float32])

@@ -98,7 +98,7 @@ class SourceCell:
 def open_mask_files(
     path: str | os.PathLike[str],
     how: KindParameters | None = None,
-    images: str = "",
+    images: tuple[str, ...] = (),
     choice: FileChoice | None = None,
 ) -> tuple[MaskSource, ...]:
     """Find the mask files of a folder, or open a single one.
@@ -113,7 +113,7 @@ def open_mask_files(
         Of several files for one image only the first in this order that can be used is taken.
     how : KindParameters, optional
         What the user says of each file; a kind of "auto" is decided for each by itself.
-    images : str
+    images : tuple of str
         How names of images go on that are no masks, as "_img"; in a folder whose masks have other endings.
     choice : FileChoice, optional
         Of a single file, in the place of what `how` says.

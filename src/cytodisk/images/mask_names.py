@@ -39,6 +39,11 @@ def base_name(name: str) -> str:
     return name[: -max(map(len, fitting))] if fitting else image_stem(name)
 
 
+def is_mask_name(name: str) -> bool:
+    """Whether a file's name ends as those of masks do."""
+    return name.lower().endswith(ENDINGS)
+
+
 def image_stem(name: str) -> str:
     """A file's name without the ending that says how it is stored: "a" of "a.ome.tif"."""
     return re.sub(r"(\.ome)?\.(tiff?|png|npy|nd2|czi|lif|zarr)$", "", name, flags=re.IGNORECASE)
@@ -101,13 +106,13 @@ def without_name(reason: str, name: str) -> str:
     return after.lstrip(": ") if found and ": " not in before and after.startswith((":", " ")) else reason
 
 
-def mask_names(folder: Path, images_end: str = "") -> list[tuple[Path, list[Path]]]:
+def mask_names(folder: Path, images_end: tuple[str, ...] = ()) -> list[tuple[Path, list[Path]]]:
     """Find the mask files of a folder, or of a pattern.
 
     Parameters
     ----------
     folder : Path
-    images_end : str
+    images_end : tuple of str
         As `open_mask_files` takes it.
 
     Returns
@@ -126,13 +131,13 @@ def mask_names(folder: Path, images_end: str = "") -> list[tuple[Path, list[Path
             f"{folder} fits files of {len(folders)} folders: pass the files of one, or all as inputs of "
             "cytodisk batch"
         )
-    named = [file for file in files if file.name.lower().endswith(ENDINGS)]
+    named = [file for file in files if is_mask_name(file.name)]
     if not named and (outlines := [file for file in files if _OUTLINES.fullmatch(file.name)]):
         return [(file, []) for file in outlines]
     if not named:
         images = [file for file in files if file.suffix.lower() in IMAGES]
         if images_end:
-            images = [file for file in images if not _ends(file.name, images_end)]
+            images = [file for file in images if not any(_ends(file.name, end) for end in images_end)]
         if not images:
             raise ReadError(
                 f"folder {folder} holds no masks: neither files that end in {', '.join(ENDINGS[:7])}, "

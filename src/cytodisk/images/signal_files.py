@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,19 +11,16 @@ from typing import Any, Protocol
 import numpy as np
 import xarray as xr
 
-from cytodisk.errors import ReadError, SignalError, as_data
+from cytodisk.errors import CytodiskError, ReadError, as_data
 from cytodisk.files import real_path
 from cytodisk.images.chosen_channels import stem_of
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frame_pixels import FramePixels, frame_pixels
-from cytodisk.images.image_paths import is_folder_of_files, is_pattern
+from cytodisk.images.image_paths import is_folder_of_files
 from cytodisk.images.mask_files import MaskSource
-from cytodisk.images.mask_names import base_name, image_stem, natural_order, visible_files
+from cytodisk.images.mask_names import image_stem
+from cytodisk.images.paired_files import IMAGES, pair_files
 from cytodisk.scale import Scale
-
-_USUAL_ENDINGS = ("", "_img")
-_PIXELS = (".tif", ".tiff", ".png", ".nd2", ".czi", ".lif")
-_STARTS_OF_ENDINGS = ("_", "-", ".")
 
 
 class FrameSource(Protocol):
@@ -132,7 +128,7 @@ def open_image(file: FrameFile | None, frame: int) -> SignalFrame | ReadError | 
 
 def pair_images(
     sources: Sequence[MaskSource], signal: str | os.PathLike[str]
-) -> tuple[Path | SignalError, ...]:
+) -> tuple[Path | CytodiskError, ...]:
     """Find the image of each mask file of a folder, by its name.
 
     Parameters
@@ -146,7 +142,7 @@ def pair_images(
 
     Returns
     -------
-    tuple of (Path or SignalError)
+    tuple of (Path or CytodiskError)
         By mask file; the error says that there is no image, or more than one.
 
     Raises
@@ -156,43 +152,7 @@ def pair_images(
     SignalError
         `signal` is a single file, or no mask file has an image.
     """
-    folder, endings = _where(Path(signal), sources[0].path.parent)
-    images: dict[str, list[Path]] = {}
-    for file in visible_files(folder):
-        for name in {file.name, image_stem(file.name)}:
-            images.setdefault(name, []).append(file)
-    found = tuple(_image_of(source, folder, images, endings) for source in sources)
-    if all(isinstance(image, SignalError) for image in found):
-        advice = _advice(sources, folder, images)
-        raise SignalError(f"signal {signal} fits no mask file: {found[0]}{advice}")
-    return found
-
-
-def _advice(sources: Sequence[MaskSource], folder: Path, images: dict[str, list[Path]]) -> str:
-    """What to type, or to rename, where no mask file has an image; empty where nothing fits."""
-    masks, first = {source.path for source in sources}, base_name(sources[0].name)
-    others = [file for files in images.values() for file in files if file not in masks]
-    named = [file for file in images.get(first, []) if file not in masks]
-    if named:
-        return f", but {named[0].name} is: pass --signal {shlex.quote(str(folder))}"
-    images_only = [
-        file.name
-        for file in others
-        if file.suffix.lower() in _PIXELS and base_name(file.name) == image_stem(file.name)
-    ]
-    longer = [
-        name for name in images_only if name.startswith(first) and name[len(first)] in _STARTS_OF_ENDINGS
-    ]
-    if longer:
-        ending = Path(longer[0][len(first) :])
-        place = ending if folder == sources[0].path.parent else folder / ending
-        return f", but {longer[0]} is: pass --signal {shlex.quote(str(place))}"
-    if not images_only:
-        return ""
-    return (
-        f"; {min(images_only, key=natural_order)} and others are there: give the images the names of their "
-        "masks, or if the files are the frames of one movie, use cytodisk movie"
-    )
+    return pair_files(sources, signal, IMAGES)
 
 
 def common_name(signal: Path) -> str:
@@ -207,39 +167,3 @@ def common_name(signal: Path) -> str:
         return real_path(signal).name
     ending = signal.name.lstrip("*")
     return stem_of(image_stem(ending) and ending).strip(" _-.") or "signal"
-
-
-def _where(signal: Path, masks: Path) -> tuple[Path, tuple[str, ...]]:
-    if is_folder_of_files(signal):
-        return signal, _USUAL_ENDINGS
-    if signal.exists():
-        raise SignalError(
-            f"signal {signal} is one file for a folder of masks: pass a folder of images with names as those "
-            "of the masks, or how their names go on, as --signal _img"
-        )
-    if is_pattern(signal) and signal.name.startswith("*"):
-        signal = signal.with_name(signal.name.lstrip("*") or "*")
-    folder = masks if signal.parent == Path() else signal.parent
-    if not signal.name.startswith(_STARTS_OF_ENDINGS) or not folder.is_dir():
-        raise ReadError(
-            f"signal {signal} does not exist: pass a folder of images, or how the names of images go on "
-            "beside the masks, as --signal _img"
-        )
-    return folder, (signal.name,)
-
-
-def _image_of(
-    source: MaskSource, folder: Path, images: dict[str, list[Path]], endings: tuple[str, ...]
-) -> Path | SignalError:
-    names = [base_name(source.name) + ending for ending in endings]
-    found = [file for name in names for file in images.get(name, []) if file != source.path]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        several = ", ".join(file.name for file in found)
-        return SignalError(
-            f"{source.name} has several images in {folder} ({several}): "
-            "pass how the names of the right ones go on, as --signal _img.tif"
-        )
-    looked_for = " or ".join(name if Path(name).suffix else f"{name}.tif" for name in names)
-    return SignalError(f"{source.name} has no image in {folder}: {looked_for} (or .png) is not there")

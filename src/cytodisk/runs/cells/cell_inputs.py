@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cytodisk.checks import is_path
-from cytodisk.errors import ReadError, SignalError, as_data
+from cytodisk.errors import CytodiskError, ReadError, SignalError, as_data
 from cytodisk.images.choice_use import check_choice
 from cytodisk.images.chosen_channels import with_names
 from cytodisk.images.file_parameters import KindParameters
@@ -167,7 +167,7 @@ def open_inputs(
 def _open_folder(
     masks: Path, signal: str | os.PathLike[str] | None, parameters: FileParameters, signal_name: str
 ) -> CellInputs:
-    sources = open_mask_files(masks, parameters.part(KindParameters), images=_ending_beside(masks, signal))
+    sources = open_mask_files(masks, parameters.part(KindParameters), images=_endings_beside(masks, signal))
     sources = with_sizes(sources, signal, parameters)
     signals, remarks = _open_signals(sources, signal, parameters, signal_name)
     opened = [source.file for source in sources] + [found.file for found in signals.values()]
@@ -185,13 +185,14 @@ def _open_folder(
     return CellInputs(masks, sources, signals, parameters, Scale(pixel_size_um), (*replaced, *remarks))
 
 
-def _ending_beside(masks: Path, signal: str | os.PathLike[str] | None) -> str:
-    """How the names of images go on that lie in the folder of the masks."""
-    if signal is None or Path(signal).exists():
-        return ""
-    folder = Path(signal).parent
+def _endings_beside(masks: Path, *others: str | os.PathLike[str] | None) -> tuple[str, ...]:
+    """How the names of files go on that lie in the folder of the masks, and are none."""
     beside = masks.parent if is_pattern(masks) else masks
-    return Path(signal).name.lstrip("*") if folder in (Path(), beside) else ""
+    return tuple(
+        Path(other).name.lstrip("*")
+        for other in others
+        if other is not None and not Path(other).exists() and Path(other).parent in (Path(), beside)
+    )
 
 
 def _open_signal(
@@ -231,8 +232,8 @@ def _open_signals(
     return {source.name: found for source, found in zip(sources, alike, strict=True)}, remarks
 
 
-def _open_paired(source: MaskSource, image: Path | SignalError, parameters: FileParameters) -> SignalFile:
-    if isinstance(image, SignalError):
+def _open_paired(source: MaskSource, image: Path | CytodiskError, parameters: FileParameters) -> SignalFile:
+    if isinstance(image, CytodiskError):
         return SignalFile(fault=image)
     try:
         return SignalFile(_fitting_image(source, image, parameters))
