@@ -38,10 +38,10 @@ from .windows.ring_windows import ring_windows as ring_windows
 from .windows.ring_windows import RingGrid as RingGrid
 from .windows.ring_windows import RingWindows as RingWindows
 from .windows.rings.nucleus_rings import nucleus_ring_windows as nucleus_ring_windows
-from .windows.rings.nucleus_rings import NucleusRingGrid as NucleusRingGrid
+from .windows.rings.nucleus_ring_grid import NucleusRingGrid as NucleusRingGrid
 from .windows.rings.nucleus_rings import NucleusRingWindows as NucleusRingWindows
 from .windows.rings.interpolated_rings import interpolated_ring_windows as interpolated_ring_windows
-from .windows.rings.interpolated_rings import InterpolatedRingGrid as InterpolatedRingGrid
+from .windows.rings.nucleus_ring_grid import InterpolatedRingGrid as InterpolatedRingGrid
 from .windows.rings.interpolated_rings import InterpolatedRingWindows as InterpolatedRingWindows
 from .windows.on_cell import WindowsOnCell as WindowsOnCell
 from .analysis.window_measures import window_measures as window_measures

@@ -122,10 +122,15 @@ def test_neighbours_share_no_point_of_their_common_side() -> None:
 
 
 def test_sectors_have_equally_many_points() -> None:
-    grid = cd.InterpolatedRingGrid(3, 7, points=100)
+    grid = cd.InterpolatedRingGrid(4, 7, 1, points=100)
     assert grid.n_points == 105
     windows = cd.interpolated_ring_windows(CELL, disk_in(CELL.shape, (50, 50), 15), 3, 7, 1, 100)
     assert windows.points_yx.shape == (5, 105, 2)
+
+
+def test_a_grid_counts_all_layers() -> None:
+    with pytest.raises(WindowError, match=r"layers must be more than nucleus_layers.*got 3 and 3"):
+        cd.InterpolatedRingGrid(3, 8)
 
 
 @pytest.mark.parametrize(("name", "least"), [("layers", 1), ("points", 3), ("harmonics", 1)])

@@ -13,6 +13,7 @@ from cytodisk.scale import Scale
 from cytodisk.taking import takes
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.rings.nucleus_edges import NucleusEdges
+from cytodisk.windows.rings.nucleus_ring_grid import InterpolatedRingGrid
 from cytodisk.windows.rings.nucleus_ring_parameters import InterpolatedRingParameters
 from cytodisk.windows.rings.paint_triangles import paint_triangles
 from cytodisk.windows.rings.ring_points import (
@@ -23,60 +24,6 @@ from cytodisk.windows.rings.ring_points import (
     window_of_triangles,
 )
 from cytodisk.windows.shares import PER_SIDE
-
-
-@dataclass(frozen=True)
-class InterpolatedRingGrid:
-    """Rings interpolated point by point between two outlines, and sectors along both.
-
-    Attributes
-    ----------
-    cytoplasm_layers, sectors, nucleus_layers : int
-    points : int
-        On each ring, at least; there are equally many in each sector.
-    harmonics : int or None
-        Fourier harmonics of the outlines that are kept; None for the outlines as they are.
-
-    Raises
-    ------
-    WindowError
-        A count is not a positive whole number.
-
-    See Also
-    --------
-    interpolated_ring_windows : The same in one step.
-
-    Examples
-    --------
-    >>> import cytodisk as cd
-    >>> cd.InterpolatedRingGrid(cytoplasm_layers=4, sectors=60, nucleus_layers=2).n_points
-    300
-    """
-
-    cytoplasm_layers: int
-    sectors: int
-    nucleus_layers: int = 3
-    points: int = 256
-    harmonics: int | None = None
-
-    def __post_init__(self) -> None:
-        InterpolatedRingParameters(
-            layers=self.cytoplasm_layers,
-            sectors=self.sectors,
-            nucleus_layers=self.nucleus_layers,
-            points=self.points,
-            harmonics=self.harmonics,
-        )
-
-    @property
-    def layers(self) -> int:
-        """Number of layers of the cytoplasm and of the nucleus."""
-        return self.cytoplasm_layers + self.nucleus_layers
-
-    @property
-    def n_points(self) -> int:
-        """Number of points on each ring: a multiple of the sectors."""
-        return -(-self.points // self.sectors) * self.sectors
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,7 +153,7 @@ def interpolated_ring_windows(
     cell : array_like of shape (H, W), or DiskMap
         A mask, which `clean_mask` cleans, or a map, of which only the mask is used.
     nucleus : array_like of shape (H, W)
-        Mask of the nucleus in the same image.
+        Mask of the nucleus in the same image, which `fit_nucleus` fits into the cell.
     **settings
         See `InterpolatedRingParameters`.
 
@@ -220,7 +167,9 @@ def interpolated_ring_windows(
     Raises
     ------
     MaskError
-        A mask is not that of one cell, or of its nucleus.
+        The mask is not that of one cell.
+    NucleusError
+        The other one is not that of its nucleus.
     WindowError
         A count is not a positive whole number.
 
@@ -246,7 +195,8 @@ def interpolated_ring_windows(
     (0, 0.0)
     """
     chosen = InterpolatedRingParameters.of(*in_order, **settings)
+    layers = chosen.layers + chosen.nucleus_layers
     grid = InterpolatedRingGrid(
-        chosen.layers, chosen.sectors, chosen.nucleus_layers, chosen.points, chosen.harmonics
+        layers, chosen.sectors, chosen.nucleus_layers, chosen.points, chosen.harmonics
     )
     return InterpolatedRingWindows(grid, NucleusEdges.of(cell, nucleus))

@@ -11,6 +11,7 @@ from scipy.ndimage import distance_transform_edt
 from skimage.graph import MCP_Geometric
 
 from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.geometry.nucleus_mask import fit_nucleus
 from cytodisk.windows.edge_windows import CellEdge
 from cytodisk.windows.shares import PER_SIDE
 from cytodisk.windows.subpixels import distances_and_angles, subpixel_places
@@ -31,9 +32,9 @@ class NucleusEdges:
 
     @classmethod
     def of(cls, cell: Any, nucleus: Any) -> NucleusEdges:
-        """Edges of two masks of one image; the first may be a map, of which only the mask is used."""
+        """Edges of a cell, or of that of a map, and of a nucleus, which is fitted into the cell."""
         edge = CellEdge.of(cell)
-        fitted = np.asarray(nucleus) > 0
+        fitted, _ = fit_nucleus(edge.mask, nucleus)
         return cls(edge, CellEdge.of(fitted))
 
     @cached_property

@@ -14,49 +14,10 @@ from cytodisk.taking import takes
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.ring_windows import RingGrid, RingWindows
 from cytodisk.windows.rings.nucleus_edges import NucleusEdges
+from cytodisk.windows.rings.nucleus_ring_grid import NucleusRingGrid
 from cytodisk.windows.rings.nucleus_ring_parameters import NucleusRingParameters
 from cytodisk.windows.shares import PER_SIDE
 from cytodisk.windows.subpixels import subpixel_places
-
-
-@dataclass(frozen=True)
-class NucleusRingGrid:
-    """Rings by the share of the way from the edge (0) to the nucleus, rings in it, and wedges around it.
-
-    Attributes
-    ----------
-    cytoplasm_layers, sectors, nucleus_layers : int
-
-    Raises
-    ------
-    WindowError
-        A count is not a positive whole number.
-
-    See Also
-    --------
-    nucleus_ring_windows : The same in one step.
-
-    Examples
-    --------
-    >>> import cytodisk as cd
-    >>> grid = cd.NucleusRingGrid(cytoplasm_layers=4, sectors=8, nucleus_layers=2)
-    >>> grid.layers
-    6
-    """
-
-    cytoplasm_layers: int
-    sectors: int
-    nucleus_layers: int = 3
-
-    def __post_init__(self) -> None:
-        NucleusRingParameters(
-            layers=self.cytoplasm_layers, sectors=self.sectors, nucleus_layers=self.nucleus_layers
-        )
-
-    @property
-    def layers(self) -> int:
-        """Number of layers of the cytoplasm and of the nucleus."""
-        return self.cytoplasm_layers + self.nucleus_layers
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +111,7 @@ def nucleus_ring_windows(cell: Any, nucleus: Any, *in_order: Any, **settings: An
     cell : array_like of shape (H, W), or DiskMap
         A mask, which `clean_mask` cleans, or a map, of which only the mask is used.
     nucleus : array_like of shape (H, W)
-        Mask of the nucleus in the same image.
+        Mask of the nucleus in the same image, which `fit_nucleus` fits into the cell.
     **settings
         See `NucleusRingParameters`.
 
@@ -163,7 +124,9 @@ def nucleus_ring_windows(cell: Any, nucleus: Any, *in_order: Any, **settings: An
     Raises
     ------
     MaskError
-        A mask is not that of one cell, or of its nucleus.
+        The mask is not that of one cell.
+    NucleusError
+        The other one is not that of its nucleus.
     WindowError
         A count is not a positive whole number.
 
@@ -190,5 +153,5 @@ def nucleus_ring_windows(cell: Any, nucleus: Any, *in_order: Any, **settings: An
     array([0.29, 0.23, 0.18, 0.14, 0.16])
     """
     counts = NucleusRingParameters.of(*in_order, **settings)
-    grid = NucleusRingGrid(counts.layers, counts.sectors, counts.nucleus_layers)
+    grid = NucleusRingGrid(counts.layers + counts.nucleus_layers, counts.sectors, counts.nucleus_layers)
     return NucleusRingWindows(grid, NucleusEdges.of(cell, nucleus))
