@@ -94,4 +94,4 @@ def test_a_triangle_without_area_is_refused_as_such() -> None:
     flat = even_out(np.concatenate([outline, [[0.0, 1.0]]]), triangles[:2], 4)  # all of its triangles are
     assert np.isnan(flat[4]).all()
     with pytest.raises(MeshError, match="4 triangles have no area"):
-        mesh_module._check(Mesh(flat, triangles, 4), outline)
+        mesh_module.check_mesh(Mesh(flat, triangles, 4), outline)

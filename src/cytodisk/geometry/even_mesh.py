@@ -17,7 +17,9 @@ _PASSES = 3
 _LEAST_AREA = 0.1  # of what a triangle had before a pass
 
 
-def join_circles(points_yx: FloatArray, triangles: IntArray, n_boundary: int) -> IntArray:
+def join_circles(
+    points_yx: FloatArray, triangles: IntArray, n_boundary: int, following: IntArray | None = None
+) -> IntArray:
     """Join points that lie on one circle by edges from the one nearest to a place that moves with the cell.
 
     Parameters
@@ -27,6 +29,9 @@ def join_circles(points_yx: FloatArray, triangles: IntArray, n_boundary: int) ->
     triangles : ndarray of shape (F, 3) and dtype int
         A constrained Delaunay triangulation, all areas positive.
     n_boundary : int
+    following : ndarray of shape (P,) and dtype int, optional
+        The next vertex of each vertex of an outline, where there are several; these are the first ones.
+        Edges of outlines stay.
 
     Returns
     -------
@@ -34,8 +39,13 @@ def join_circles(points_yx: FloatArray, triangles: IntArray, n_boundary: int) ->
         Another constrained Delaunay triangulation of these points.
     """
     triangles = np.ascontiguousarray(triangles).copy()
-    distance = distances(points_yx, n_boundary)
-    _join(points_yx, distance, triangles, triangle_neighbours(triangles))
+    distance, neighbours = distances(points_yx, n_boundary), triangle_neighbours(triangles)
+    if following is not None:
+        ends = np.roll(triangles, -1, axis=1)
+        within = (triangles < len(following)) & (ends < len(following))
+        start, stop = np.where(within, triangles, 0), np.where(within, ends, 0)
+        neighbours[within & ((following[start] == stop) | (following[stop] == start))] = -1
+    _join(points_yx, distance, triangles, neighbours)
     return triangles
 
 

@@ -11,7 +11,13 @@ from cytodisk.geometry.depth import depth_of
 _COARSEST = 16  # √3¹⁶ = 6561 times the finest spacing: beyond any image
 
 
-def graded_lattice(mask: BoolArray, edge_length: float, growth: float, clearance: float = 0.75) -> FloatArray:
+def graded_lattice(
+    mask: BoolArray,
+    edge_length: float,
+    growth: float,
+    clearance: float = 0.75,
+    around: BoolArray | None = None,
+) -> FloatArray:
     """Points inside a mask whose spacing grows with depth.
 
     Every third point of a triangular lattice lies on a coarser one, √3 times as wide and turned by 30°,
@@ -27,6 +33,8 @@ def graded_lattice(mask: BoolArray, edge_length: float, growth: float, clearance
         How much the spacing grows for each pixel of depth.
     clearance : float
         Smallest depth of a point, in units of `edge_length`.
+    around : ndarray of shape (H, W) and dtype bool, optional
+        A mask whose lattice this is a part of; by default the mask's own.
 
     Returns
     -------
@@ -34,7 +42,7 @@ def graded_lattice(mask: BoolArray, edge_length: float, growth: float, clearance
         (row, column) in pixels; may be empty for thin cells.
     """
     depth = depth_of(np.pad(mask, 1)) - 0.5
-    row, column = np.nonzero(mask)
+    row, column = np.nonzero(mask if around is None else around)
     centre = np.array([row.mean(), column.mean()])
     axis = _long_axis(row - centre[0], column - centre[1])
     return _fill(depth, centre, axis, edge_length, growth, clearance)

@@ -89,13 +89,39 @@ def mesh_inside(
     """
     points = np.concatenate([outline_yx, graded_lattice(mask, edge_length, growth, clearance)])
     n_boundary = len(outline_yx)
-    triangles = join_circles(points, _constrained_delaunay(points, n_boundary), n_boundary)
-    points, triangles = _split_chords(points, triangles, n_boundary)
+    points, triangles = triangulated(points, (n_boundary,))
     if growth > 0.0:
         points = even_out(points, triangles, n_boundary)
     mesh = Mesh(points, triangles, n_boundary)
-    _check(mesh, outline_yx)
+    check_mesh(mesh, outline_yx)
     return mesh
+
+
+def triangulated(points_yx: FloatArray, loops: tuple[int, ...]) -> tuple[FloatArray, IntArray]:
+    """Constrained Delaunay triangulation inside a loop, with a vertex on every edge that joins two of a loop.
+
+    Parameters
+    ----------
+    points_yx : ndarray of shape (P, 2) and dtype float
+        The first are closed polygons, one after the other, of which the first holds all other points.
+    loops : tuple of int
+        Points of each polygon.
+
+    Returns
+    -------
+    points : ndarray of shape (V, 2) and dtype float
+        The same with more behind.
+    triangles : ndarray of shape (F, 3) and dtype int
+
+    Raises
+    ------
+    MeshError
+        Two edges of the polygons cross.
+    """
+    following = np.concatenate([np.roll(np.arange(n), -1) + sum(loops[:i]) for i, n in enumerate(loops)])
+    found = _constrained_delaunay(points_yx, following, loops[0])
+    triangles = join_circles(points_yx, found, loops[0], following if len(loops) > 1 else None)
+    return _split_chords(points_yx, triangles, loops[0], following)
 
 
 def triangle_areas(points_ab: FloatArray, triangles: IntArray) -> FloatArray:
@@ -158,14 +184,13 @@ def _hats(vertices_yx: FloatArray, triangles: IntArray) -> FloatArray:
     return hats
 
 
-def _constrained_delaunay(points_yx: FloatArray, n_boundary: int) -> IntArray:
+def _constrained_delaunay(points_yx: FloatArray, following: IntArray, n_boundary: int) -> IntArray:
     triangulation = pythoncdt.Triangulation(
         pythoncdt.VertexInsertionOrder.AUTO, pythoncdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0
     )
     points_xy: Any = np.ascontiguousarray(points_yx[:, ::-1])
     triangulation.insert_vertices(points_xy)
-    loop = np.arange(n_boundary, dtype=np.uint32)
-    edges: Any = np.column_stack([loop, np.roll(loop, -1)])
+    edges: Any = np.column_stack([np.arange(len(following)), following]).astype(np.uint32)
     crossed = f"outline ({n_boundary} points) crosses itself: use trace_outline"
     try:
         triangulation.insert_edges(edges)
@@ -218,20 +243,22 @@ def _within_loop(triangles: IntArray, n_boundary: int) -> IntArray:
     return inside
 
 
-def _split_chords(points_yx: FloatArray, triangles: IntArray, n_boundary: int) -> tuple[FloatArray, IntArray]:
-    """Put a vertex on the middle of each interior edge between two boundary vertices."""
-    first, second, third = np.ascontiguousarray((triangles < n_boundary).T)
+def _split_chords(
+    points_yx: FloatArray, triangles: IntArray, n_boundary: int, following: IntArray
+) -> tuple[FloatArray, IntArray]:
+    """Put a vertex on the middle of each edge between two vertices of outlines that is no outline's own."""
+    n_pinned = len(following)
+    first, second, third = np.ascontiguousarray((triangles < n_pinned).T)
     near = np.flatnonzero((first & second) | (second & third) | (third & first))
     start, stop = triangle_edges(triangles[near]).T
-    pinned = (start < n_boundary) & (stop < n_boundary)
-    on_outline = pinned & ((start + 1) % n_boundary == stop)
-    chord = pinned & ~on_outline
+    chord = (start < n_pinned) & (stop < n_pinned)
+    chord[chord] = (following[start[chord]] != stop[chord]) & (following[stop[chord]] != start[chord])
     low, high = np.minimum(start, stop)[chord], np.maximum(start, stop)[chord]
-    chords, which = np.unique(low * n_boundary + high, return_inverse=True)
+    chords, which = np.unique(low * n_pinned + high, return_inverse=True)
     added = np.full(len(start), -1)
     added[chord] = len(points_yx) + which
     middle = added.reshape(3, -1).T  # of edge k of each triangle
-    low, high = chords // n_boundary, chords % n_boundary
+    low, high = chords // n_pinned, chords % n_pinned
     points = np.concatenate([points_yx, 0.5 * (points_yx[low] + points_yx[high])])
     split = (middle >= 0).any(axis=1)
     pieces = _subdivide(triangles[near[split]], middle[split], distances(points, n_boundary))
@@ -270,7 +297,8 @@ def _subdivide(triangles: IntArray, middle: IntArray, distance: FloatArray) -> l
     return parts
 
 
-def _check(mesh: Mesh, outline_yx: FloatArray) -> None:
+def check_mesh(mesh: Mesh, outline_yx: FloatArray) -> None:
+    """Raise a MeshError if an invariant of `mesh_inside` does not hold."""
     areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
     edges = mesh.half_edges
     faults = []
