@@ -72,7 +72,7 @@ def test_areas_by_triangle_give_the_maps_of_before(
     kind: str, seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # That version left the mesh as the triangulation gave it.
-    monkeypatch.setattr(mesh_module, "join_circles", lambda points, triangles, n_boundary: triangles)
+    monkeypatch.setattr(mesh_module, "join_circles", lambda points, triangles, *_: triangles)
     monkeypatch.setattr(mesh_module, "even_out", lambda points, triangles, n_boundary: points)
     monkeypatch.setattr(mesh_module, "distances", lambda points, n_boundary: np.zeros(len(points)))
     monkeypatch.setitem(mesh_module.mesh_inside.__kwdefaults__, "growth", 0.5)

@@ -50,7 +50,7 @@ def harmonic_map(
     choices: tuple[Weights, ...] = ("cotangent", "uniform")
     flipped = 0
     for weights in choices:
-        edge_weights = _cotangents(mesh) if weights == "cotangent" else np.full(3 * len(mesh.triangles), 0.5)
+        edge_weights = cotangents(mesh) if weights == "cotangent" else np.full(3 * len(mesh.triangles), 0.5)
         uv = weighted_means(mesh, edge_weights, boundary_uv, system)
         flipped = int((~(triangle_areas(uv[:, ::-1], mesh.triangles) > 0)).sum())
         if not flipped:
@@ -78,7 +78,7 @@ def harmonic_extension(
     -------
     ndarray of shape (V, 2) and dtype float
     """
-    return weighted_means(mesh, _cotangents(mesh), boundary_values, system or BlockSystem(mesh))
+    return weighted_means(mesh, cotangents(mesh), boundary_values, system or BlockSystem(mesh))
 
 
 def fading_extension(
@@ -103,7 +103,7 @@ def fading_extension(
     ndarray of shape (V, 2) and dtype float
     """
     pull = vertex_areas(mesh) / fade_px**2
-    return weighted_means(mesh, _cotangents(mesh), boundary_values, system or BlockSystem(mesh), pull)
+    return weighted_means(mesh, cotangents(mesh), boundary_values, system or BlockSystem(mesh), pull)
 
 
 def vertex_areas(mesh: Mesh) -> FloatArray:
@@ -112,7 +112,7 @@ def vertex_areas(mesh: Mesh) -> FloatArray:
     return np.asarray(np.bincount(mesh.triangles.ravel(), corner_area, minlength=len(mesh.vertices_yx)))
 
 
-def _cotangents(mesh: Mesh) -> FloatArray:
+def cotangents(mesh: Mesh) -> FloatArray:
     """Half the cotangent opposite each edge of each triangle, edge k → k + 1 of triangle t in row k F + t."""
     hats = hat_gradients(mesh.vertices_yx, mesh.triangles)
     areas = triangle_areas(mesh.vertices_yx, mesh.triangles)

@@ -13,6 +13,10 @@ which would move about one pixel in ten into the next of 10 × 60 windows, and c
 by less than 0.01 (`tests/disk/test_newton.py`). In cells without arms next to nothing is left to move.
 """
 
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+
 import numpy as np
 
 from cytodisk.arrays import FloatArray
@@ -77,9 +81,31 @@ def relax(
     "F-bar-based linear triangles and tetrahedra for finite strain analysis of nearly incompressible solids",
     2005, doi:10.1002/nme.1187
     """
-    anchored = (start_uv, 0.0) if anchor_uv is None else (anchor_uv, inertia)
-    problem = _Problem(mesh, system or BlockSystem(mesh), start_uv, shape_weight, *anchored)
-    uv, value = start_uv, problem.energy(start_uv)
+    problem = _Problem(mesh, system or BlockSystem(mesh), start_uv, shape_weight)
+    if anchor_uv is not None and inertia:
+        problem.pull_to(anchor_uv, inertia * problem.vertex_shares[:, None])
+    return descended(problem, start_uv)
+
+
+def descended(problem: GaussNewton, start: FloatArray) -> Relaxed:
+    """Go down the energy of a problem from a valid map until a step saves next to nothing.
+
+    Parameters
+    ----------
+    problem : GaussNewton
+    start : ndarray of shape (V, 2) and dtype float
+
+    Returns
+    -------
+    Relaxed
+
+    Raises
+    ------
+    MapError
+        The start is not valid.
+    """
+    shape_weight = problem.shape_weight
+    uv, value = start, problem.energy(start)
     if not np.isfinite(value):
         raise MapError("relaxation needs a start without flipped triangles")
     most = np.inf  # of the shape weight
@@ -105,34 +131,42 @@ def _shape_weight_far_out(shape_weight: float, decrement: float) -> float:
     return shape_weight * (1.0 + min(_STIFFER * decrement, _STIFFEST))
 
 
-class _Problem:
-    """The energy of one mesh with everything that stays the same between steps."""
+class GaussNewton(ABC):
+    """An energy of places of vertices, with everything that stays the same between steps.
 
-    def __init__(
-        self,
-        mesh: Mesh,
-        system: BlockSystem,
-        uv: FloatArray,
-        shape_weight: float,
-        anchor_uv: FloatArray,
-        inertia: float,
-    ):
-        areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
-        scale = np.sqrt(triangle_areas(uv[:, ::-1], mesh.triangles).sum() / areas.sum())
-        hats = hat_gradients(mesh.vertices_yx * scale, mesh.triangles)
-        share = areas / areas.sum()
-        self._cell = averaged_elements(mesh.triangles, hats, share, system.unknown)
+    Attributes
+    ----------
+    shape_weight : float
+        May change between steps.
+    """
+
+    def __init__(self, system: BlockSystem, shape_weight: float):
         self.shape_weight = shape_weight
         self._system = PressureSystem(system.pattern)
         self._vertex = system.vertex
-        self._anchor = anchor_uv[self._vertex]
-        thirds = np.bincount(mesh.triangles.ravel(), np.repeat(share / 3.0, 3), minlength=len(uv))
-        self._inertia = inertia * thirds[self._vertex, None] if inertia else None
+        self._pull: FloatArray | None = None
+        self._anchor = np.empty((0, 2))
+
+    def pull_to(self, anchor: FloatArray, pull: FloatArray) -> None:
+        """Add the squared distance of each vertex from an anchor (V, 2) times a weight (V, 2) or (V, 1)."""
+        self._anchor, self._pull = anchor[self._vertex], pull[self._vertex]
+
+    @abstractmethod
+    def own_energy(self, uv: FloatArray) -> float:
+        """Energy without the pull; infinite where a triangle is not positive."""
+
+    @abstractmethod
+    def fill(self, uv: FloatArray, system: PressureSystem, right: FloatArray) -> None:
+        """Fill the blocks and the right-hand side of a step, as `vertex_energy.fill_step`."""
+
+    @abstractmethod
+    def largest_step(self, uv: FloatArray, direction: FloatArray) -> float:
+        """Largest step that keeps every triangle positive, to first order at least."""
 
     def energy(self, uv: FloatArray) -> float:
-        value = float(averaged_energy(uv, self._cell, self.shape_weight))
-        if self._inertia is not None:
-            value += float((self._inertia * np.square(uv[self._vertex] - self._anchor)).sum())
+        value = self.own_energy(uv)
+        if self._pull is not None:
+            value += float((self._pull * np.square(uv[self._vertex] - self._anchor)).sum())
         return value
 
     def descent(self, uv: FloatArray) -> tuple[FloatArray, float]:
@@ -151,12 +185,12 @@ class _Problem:
         """The step with the diagonal raised by a share of it, and what it saves."""
         system, diagonal = self._system, self._system.pattern.diagonal
         right = np.empty((len(self._vertex), 3))
-        fill_step(uv, self._cell, self.shape_weight, system.pattern.place, diagonal, system.blocks, right)
-        if self._inertia is not None:
-            pull = 2.0 * self._inertia
+        self.fill(uv, system, right)
+        if self._pull is not None:
+            pull = np.broadcast_to(2.0 * self._pull, (len(self._vertex), 2))
             right[:, :2] -= pull * (uv[self._vertex] - self._anchor)
             for axis in (0, 1):
-                system.blocks[diagonal, axis, axis] += pull[:, 0]
+                system.blocks[diagonal, axis, axis] += pull[:, axis]
         if damping:
             for axis in (0, 1):
                 system.blocks[diagonal, axis, axis] *= 1.0 + damping
@@ -171,7 +205,7 @@ class _Problem:
 
         A step that is too long is followed by the lowest point of the parabola through what is known.
         """
-        size = min(1.0, _SAFE_SHARE * largest_step(uv, direction, self._cell.triangles, self._cell.hats))
+        size = min(1.0, _SAFE_SHARE * self.largest_step(uv, direction))
         for _ in range(_TRIALS):
             moved = uv + size * direction
             new_value = self.energy(moved)
@@ -181,3 +215,33 @@ class _Problem:
             lowest = 0.5 * size * decrement / excess if np.isfinite(excess) else 0.5
             size *= min(max(lowest, _SHORTEST), _LONGEST)
         return None
+
+
+class _Problem(GaussNewton):
+    """The energy of one mesh without a nucleus."""
+
+    def __init__(self, mesh: Mesh, system: BlockSystem, uv: FloatArray, shape_weight: float):
+        super().__init__(system, shape_weight)
+        areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
+        scale = np.sqrt(triangle_areas(uv[:, ::-1], mesh.triangles).sum() / areas.sum())
+        hats = hat_gradients(mesh.vertices_yx * scale, mesh.triangles)
+        share = areas / areas.sum()
+        self._cell = averaged_elements(mesh.triangles, hats, share, system.unknown)
+
+    @property
+    def vertex_shares(self) -> FloatArray:
+        """A third of the shares of the triangles around each vertex, shape (V,)."""
+        corner_share = np.repeat(self._cell.share / 3.0, 3)
+        return np.bincount(self._cell.triangles.ravel(), corner_share)
+
+    def own_energy(self, uv: FloatArray) -> float:
+        return float(averaged_energy(uv, self._cell, self.shape_weight))
+
+    def fill(self, uv: FloatArray, system: PressureSystem, right: FloatArray) -> None:
+        pattern = system.pattern
+        fill_step(
+            uv, self._cell, self.shape_weight, pattern.place, pattern.diagonal, system.blocks, right
+        )
+
+    def largest_step(self, uv: FloatArray, direction: FloatArray) -> float:
+        return float(largest_step(uv, direction, self._cell.triangles, self._cell.hats))

@@ -1,0 +1,282 @@
+"""The relaxation energy of a cell with its nucleus: Numba kernels.
+
+It is that of `vertex_energy`, compartment by compartment: each has its own share of the disk's area, and
+triangles give their areas to the interior vertices of their compartment. Triangles of the nucleus lie in its
+own unit disk, (u, v). Those of the cytoplasm lie in (θ, p), p = (1 - r²) / 2 with r the radius in the whole
+disk: there dθ dp is the disk's area, both borders are straight, and so are triangles. Shape is measured in the
+disk, in which dθ counts r and dp counts 1/r, at the triangle's middle, r² = 1 - 2 p.
+
+Vertices on the nuclear outline slide along their circle: of them θ alone is free, and in the nucleus they lie
+at (cos θ, sin θ).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.disk.vertex_energy import SHAPE_CURVATURE
+
+EDGE_WEIGHT = 0.2
+"""Weight of each area at an outline, as in `vertex_energy`."""
+
+
+class CompartmentElements(NamedTuple):
+    """The triangles of a cell with its nucleus, and the vertices that their areas are averaged at.
+
+    Attributes
+    ----------
+    triangles : ndarray of shape (F, 3) and dtype int
+    hats : ndarray of shape (F, 3, 2) and dtype float
+        Gradients of their hat functions in the cell, scaled so that the compartment has its area of the disk.
+    share : ndarray of shape (F,) and dtype float
+        Their shares of the disk's area.
+    corner : ndarray of shape (F, 3) and dtype int
+        Unknown whose area each corner counts for; -1 on the outlines.
+    parts : ndarray of shape (F, 3) and dtype float
+        What each triangle gives of its share to each corner; 0 on the outlines.
+    target : ndarray of shape (N,) and dtype float
+        The share that each unknown gets in the cell; 0 on the nuclear outline.
+    edge : ndarray of shape (F,) and dtype float
+        Weight of the area by itself of triangles at an outline, else 0.
+    inside : ndarray of shape (F,) and dtype bool
+        Whether each triangle lies in the nucleus.
+    turned : ndarray of shape (F, 3) and dtype float
+        Angle to add to that of each corner: whole turns.
+    sliding : ndarray of shape (V,) and dtype bool
+        Vertices on the nuclear outline.
+    """
+
+    triangles: IntArray
+    hats: FloatArray
+    share: FloatArray
+    corner: IntArray
+    parts: FloatArray
+    target: FloatArray
+    edge: FloatArray
+    inside: BoolArray
+    turned: FloatArray
+    sliding: BoolArray
+
+
+@njit(cache=True)
+def shared_out(
+    triangles: IntArray, share: FloatArray, unknown: IntArray, n_outline: int
+) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+    """`corner`, `parts`, `target` and `edge` of elements; the first `n_outline` vertices are on outlines."""
+    corner, parts = np.empty(triangles.shape, dtype=np.int64), np.zeros(triangles.shape)
+    target, edge = np.zeros(unknown.max() + 1), np.zeros(len(share))
+    for t in range(len(share)):
+        interior = 0
+        for k in range(3):
+            free = triangles[t, k] >= n_outline
+            corner[t, k] = unknown[triangles[t, k]] if free else -1
+            interior += free
+        if interior < 3:
+            edge[t] = EDGE_WEIGHT * share[t]
+        for k in range(3):
+            if corner[t, k] >= 0:
+                parts[t, k] = share[t] / interior
+                target[corner[t, k]] += parts[t, k]
+    return corner, parts, target, edge
+
+
+@njit(cache=True, inline="always")
+def _corner(
+    places: FloatArray, vertex: int, inside: bool, turned: float, sliding: BoolArray
+) -> tuple[float, float]:
+    """Where a corner lies in its triangle's frame."""
+    if not inside:
+        return places[vertex, 0] + turned, places[vertex, 1]
+    if sliding[vertex]:
+        return math.cos(places[vertex, 0]), math.sin(places[vertex, 0])
+    return places[vertex, 0], places[vertex, 1]
+
+
+@njit(cache=True, error_model="numpy")
+def _jacobian(
+    places: FloatArray, t: int, cell: CompartmentElements
+) -> tuple[float, float, float, float, float]:
+    """J of one triangle, and the radius at its middle in the cytoplasm, 1 in the nucleus."""
+    a = b = c = d = deep = 0.0
+    for k in range(3):
+        x, y = _corner(places, cell.triangles[t, k], cell.inside[t], cell.turned[t, k], cell.sliding)
+        a += x * cell.hats[t, k, 0]
+        b += x * cell.hats[t, k, 1]
+        c += y * cell.hats[t, k, 0]
+        d += y * cell.hats[t, k, 1]
+        deep += y
+    radius = 1.0 if cell.inside[t] else math.sqrt(1.0 - 2.0 * deep / 3.0)
+    return a, b, c, d, radius
+
+
+@njit(cache=True)
+def compartment_energy(places: FloatArray, cell: CompartmentElements, weight: float) -> float:
+    """E of a map; infinite if any triangle is not positive."""
+    area = np.zeros(len(cell.target))
+    shape = at_edge = 0.0
+    for t in range(cell.triangles.shape[0]):
+        a, b, c, d, radius = _jacobian(places, t, cell)
+        det = a * d - b * c
+        if not det > 0.0:
+            return np.inf
+        r1, r2 = radius * a - d / radius, radius * b + c / radius
+        shape += cell.share[t] * (r1 * r1 + r2 * r2) / det
+        if cell.edge[t] > 0.0:
+            at_edge += cell.edge[t] * math.log(det) ** 2
+        for k in range(3):
+            if cell.corner[t, k] >= 0:
+                area[cell.corner[t, k]] += cell.parts[t, k] * det
+    total = weight * shape + at_edge
+    for n in range(len(area)):
+        if cell.target[n] > 0.0:
+            total += cell.target[n] * math.log(area[n] / cell.target[n]) ** 2
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def fill_compartments(
+    places: FloatArray,
+    cell: CompartmentElements,
+    weight: float,
+    free: BoolArray,
+    unknown: IntArray,
+    place: IntArray,
+    diagonal: IntArray,
+    blocks: FloatArray,
+    right: FloatArray,
+) -> None:
+    """Fill the system of a Gauss-Newton step, as `vertex_energy.fill_step` does.
+
+    `free` (V, 2) says which of the two numbers of a vertex may change: rows of others are those of the
+    identity.
+    """
+    right[:] = 0.0
+    blocks[:] = 0.0
+    slope, jacobians = _fill_areas(places, cell, diagonal, blocks, right)
+    numbers = blocks.reshape(-1)  # the nine of each block, one row after the other
+    corners = np.empty((3, 7))  # gradients of det J and of two residuals of shape, and m, at each corner
+    for t in range(cell.triangles.shape[0]):
+        a, b, c, d = jacobians[t, 0], jacobians[t, 1], jacobians[t, 2], jacobians[t, 3]
+        radius = jacobians[t, 4]
+        over = 1.0 / radius
+        det = a * d - b * c
+        inverse = 1.0 / det
+        root = math.sqrt(2.0 * weight * cell.share[t] * inverse)
+        r1, r2 = root * (radius * a - over * d), root * (radius * b + over * c)
+        s1, s2 = 0.5 * r1 * inverse, 0.5 * r2 * inverse
+        by_depth = 0.0 if cell.inside[t] else -over / 3.0  # of the radius at the middle, by p of a corner
+        m1, m2 = root * (a + d * over * over) * by_depth, root * (b - c * over * over) * by_depth
+        stiff = slant = 0.0
+        if cell.edge[t] > 0.0:
+            stiff, slant = 2.0 * cell.edge[t] * inverse**2, 2.0 * cell.edge[t] * math.log(det) * inverse
+        for k in range(3):
+            x, y = cell.hats[t, k, 0], cell.hats[t, k, 1]
+            vertex = cell.triangles[t, k]
+            g0, g1 = d * x - c * y, a * y - b * x
+            e0, e1 = root * radius * x - s1 * g0, -root * over * y - s1 * g1 + m1
+            f0, f1 = root * radius * y - s2 * g0, root * over * x - s2 * g1 + m2
+            if cell.inside[t] and cell.sliding[vertex]:
+                along_u, along_v = -math.sin(places[vertex, 0]), math.cos(places[vertex, 0])
+                g0, g1 = along_u * g0 + along_v * g1, 0.0
+                e0, e1 = along_u * e0 + along_v * e1, 0.0
+                f0, f1 = along_u * f0 + along_v * f1, 0.0
+            if not free[vertex, 0]:
+                g0 = e0 = f0 = 0.0
+            if not free[vertex, 1]:
+                g1 = e1 = f1 = 0.0
+            corners[k, 0], corners[k, 1] = g0, g1
+            corners[k, 2], corners[k, 3], corners[k, 4], corners[k, 5] = e0, e1, f0, f1
+            own = cell.corner[t, k]
+            corners[k, 6] = cell.parts[t, k] * slope[own] if own >= 0 else 0.0
+            n = unknown[vertex]
+            if n >= 0:
+                right[n, 0] -= r1 * e0 + r2 * f0 + slant * g0
+                right[n, 1] -= r1 * e1 + r2 * f1 + slant * g1
+        _add_triangle(t, corners, stiff, place, numbers)
+    for vertex in range(len(unknown)):
+        n = unknown[vertex]
+        if n >= 0:
+            for axis in range(2):
+                if not free[vertex, axis]:
+                    blocks[diagonal[n], axis, axis] = 1.0
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _add_triangle(t: int, corners: FloatArray, stiff: float, place: IntArray, numbers: FloatArray) -> None:
+    """Add what a triangle gives to the blocks of its corners."""
+    for k in range(3):
+        g0, g1, m = corners[k, 0], corners[k, 1], corners[k, 6]
+        e0, e1 = SHAPE_CURVATURE * corners[k, 2], SHAPE_CURVATURE * corners[k, 3]
+        f0, f1 = SHAPE_CURVATURE * corners[k, 4], SHAPE_CURVATURE * corners[k, 5]
+        s0, s1 = stiff * g0, stiff * g1
+        for l in range(k + 1):
+            block = max(place[t, k, l], place[t, l, k])
+            if block < 0:
+                continue
+            at = 9 * block
+            turned = 1 if place[t, k, l] < 0 else 0  # the block of (l, k) is stored: this one's transpose
+            h0, h1, i0, i1 = corners[l, 0], corners[l, 1], corners[l, 2], corners[l, 3]
+            j0, j1, o = corners[l, 4], corners[l, 5], corners[l, 6]
+            numbers[at] += e0 * i0 + f0 * j0 + s0 * h0
+            numbers[at + 1 + 2 * turned] += e0 * i1 + f0 * j1 + s0 * h1
+            numbers[at + 2 + 4 * turned] += g0 * o
+            numbers[at + 4] += e1 * i1 + f1 * j1 + s1 * h1
+            numbers[at + 5 + 2 * turned] += g1 * o
+            if l < k:
+                numbers[at + 3 - 2 * turned] += e1 * i0 + f1 * j0 + s1 * h0
+                numbers[at + 6 - 4 * turned] += m * h0
+                numbers[at + 7 - 2 * turned] += m * h1
+
+
+@njit(cache=True, error_model="numpy")
+def _fill_areas(
+    places: FloatArray, cell: CompartmentElements, diagonal: IntArray, blocks: FloatArray, right: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Fill in what belongs to the pressures alone; √a_v / A_v of each vertex, and the Jacobians."""
+    area = np.zeros(len(cell.target))
+    jacobians = np.empty((cell.triangles.shape[0], 5))
+    for t in range(cell.triangles.shape[0]):
+        a, b, c, d, radius = _jacobian(places, t, cell)
+        jacobians[t, 0], jacobians[t, 1], jacobians[t, 2], jacobians[t, 3] = a, b, c, d
+        jacobians[t, 4] = radius
+        for k in range(3):
+            if cell.corner[t, k] >= 0:
+                area[cell.corner[t, k]] += cell.parts[t, k] * (a * d - b * c)
+    slope = np.zeros(len(cell.target))
+    for n in range(len(cell.target)):
+        blocks[diagonal[n], 2, 2] = -0.5
+        if cell.target[n] > 0.0:
+            root = math.sqrt(cell.target[n])
+            slope[n] = root / area[n]
+            right[n, 2] = -root * math.log(area[n] / cell.target[n])
+    return slope, jacobians
+
+
+@njit(cache=True, error_model="numpy")
+def largest_compartment_step(places: FloatArray, direction: FloatArray, cell: CompartmentElements) -> float:
+    """First positive root of any det J(s) along places + s · direction, to first order where vertices slide."""
+    first = np.inf
+    for t in range(cell.triangles.shape[0]):
+        a, b, c, d, _ = _jacobian(places, t, cell)
+        p = q = r = s = 0.0
+        for k in range(3):
+            vertex, x, y = cell.triangles[t, k], cell.hats[t, k, 0], cell.hats[t, k, 1]
+            du, dv = direction[vertex, 0], direction[vertex, 1]
+            if cell.inside[t] and cell.sliding[vertex]:
+                du, dv = -math.sin(places[vertex, 0]) * du, math.cos(places[vertex, 0]) * du
+            p += du * x
+            q += du * y
+            r += dv * x
+            s += dv * y
+        constant, linear, square = a * d - b * c, a * s + d * p - b * r - c * q, p * s - q * r
+        discriminant = linear * linear - 4.0 * square * constant
+        if discriminant < 0.0:
+            continue
+        half = -0.5 * (linear + math.copysign(math.sqrt(discriminant), linear))
+        for root in (half / square if square != 0.0 else np.inf, constant / half if half != 0.0 else np.inf):
+            if 0.0 < root < first:
+                first = root
+    return first

@@ -1,0 +1,145 @@
+"""Equiareal relaxation of a cell with its nucleus, compartment by compartment (design of this package).
+
+The steps are those of `disk.newton`, the energy is that of `compartment_energy`: a barrier, so that from a
+valid start no accepted step leaves the valid maps. The nuclear outline slides along its circle until the two
+compartments agree where it is best.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.disk.blocks import BlockSystem
+from cytodisk.disk.newton import GaussNewton, descended
+from cytodisk.disk.nucleus.compartment_energy import (
+    CompartmentElements,
+    compartment_energy,
+    fill_compartments,
+    largest_compartment_step,
+    shared_out,
+)
+from cytodisk.disk.nucleus.cylinder_start import TURN
+from cytodisk.disk.pressure_blocks import PressureSystem
+from cytodisk.disk.relaxed import Relaxed
+from cytodisk.geometry.mesh import hat_gradients, triangle_areas
+from cytodisk.geometry.nucleus_mesh import NucleusMesh
+
+_WIDEST_GAP = 0.45 * TURN  # between neighbours on the nuclear outline: below half a turn
+
+
+def relax_compartments(
+    mesh: NucleusMesh,
+    start: FloatArray,
+    lifts: IntArray,
+    radius: float,
+    shape_weight: float,
+    system: BlockSystem,
+    *,
+    anchor: FloatArray | None = None,
+    inertia: float = 0.0,
+    slide: bool = True,
+) -> Relaxed:
+    """Move vertices of a valid map until each has its share of the area of its compartment.
+
+    Parameters
+    ----------
+    mesh : NucleusMesh
+    start : ndarray of shape (V, 2) and dtype float
+        Of the cytoplasm and the nuclear outline (θ, p), p = (1 - r²) / 2; inside the nucleus (u, v) of its own
+        unit disk. Every triangle positive; the membrane stays where it is.
+    lifts : ndarray of shape (F, 3) and dtype int
+        Whole turns to add to the angles of corners.
+    radius : float
+        Of the nucleus in the disk.
+    shape_weight : float
+        Weight of shape against area in the energy; > 0.
+    system : BlockSystem
+        Of this mesh.
+    anchor : ndarray of shape (V, 2) and dtype float, optional
+        Where the vertices would rather be, in the same frames as the start.
+    inertia : float
+        Weight of the mean squared distance from there.
+    slide : bool
+        Whether vertices of the nuclear outline may change their angles.
+
+    Returns
+    -------
+    Relaxed
+        Its places are in the frames of the start.
+
+    Raises
+    ------
+    MapError
+        The start is not valid.
+    """
+    problem = _Compartments(mesh, system, lifts, radius, shape_weight, slide)
+    if anchor is not None and inertia:
+        problem.pull_to(anchor, inertia * problem.metric(anchor))
+    return descended(problem, start)
+
+
+class _Compartments(GaussNewton):
+    """The energy of one mesh with a nucleus."""
+
+    def __init__(
+        self,
+        mesh: NucleusMesh,
+        system: BlockSystem,
+        lifts: IntArray,
+        radius: float,
+        shape_weight: float,
+        slide: bool,
+    ):
+        super().__init__(system, shape_weight)
+        areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
+        hats = hat_gradients(mesh.vertices_yx, mesh.triangles)
+        share = np.empty(len(areas))
+        for part, of_disk, own_area in (
+            (mesh.inside, radius**2, np.pi),
+            (~mesh.inside, 1.0 - radius**2, np.pi * (1.0 - radius**2)),
+        ):
+            total = areas[part].sum()
+            share[part] = of_disk * areas[part] / total
+            hats[part] /= np.sqrt(own_area / total)
+        n_outline = mesh.n_boundary + mesh.n_nucleus
+        self._loop = mesh.nucleus_boundary
+        sliding = np.zeros(len(mesh.vertices_yx), dtype=bool)
+        sliding[self._loop] = True
+        self._cell = CompartmentElements(
+            mesh.triangles,
+            hats,
+            share,
+            *shared_out(mesh.triangles, share, system.unknown, n_outline),
+            mesh.inside,
+            TURN * lifts,
+            sliding,
+        )
+        self._free: BoolArray = np.ones((len(sliding), 2), dtype=bool)
+        self._free[sliding, 1] = False
+        self._free[sliding, 0] = slide
+        self._radius, self._inside = radius, mesh.vertex_inside
+
+    def metric(self, places: FloatArray) -> FloatArray:
+        """Share of the disk around each vertex, times the squared length of its two steps there, (V, 2)."""
+        corner_share = np.repeat(self._cell.share / 3.0, 3)
+        shares = np.bincount(self._cell.triangles.ravel(), corner_share)
+        square = 1.0 - 2.0 * places[:, 1]
+        lengths = np.column_stack([square, 1.0 / square])
+        lengths[self._inside] = self._radius**2
+        lengths[~self._free] = 0.0
+        return np.asarray(shares[:, None] * lengths)
+
+    def own_energy(self, uv: FloatArray) -> float:
+        at_nucleus = uv[self._loop, 0]
+        if np.mod(np.roll(at_nucleus, -1) - at_nucleus, TURN).max() > _WIDEST_GAP:
+            return np.inf  # or two of them have changed places
+        return float(compartment_energy(uv, self._cell, self.shape_weight))
+
+    def fill(self, uv: FloatArray, system: PressureSystem, right: FloatArray) -> None:
+        pattern = system.pattern
+        arrays = pattern.unknown, pattern.place, pattern.diagonal, system.blocks, right
+        fill_compartments(uv, self._cell, self.shape_weight, self._free, *arrays)
+
+    def largest_step(self, uv: FloatArray, direction: FloatArray) -> float:
+        return float(largest_compartment_step(uv, direction, self._cell))

@@ -1,0 +1,300 @@
+"""Cytoplasm → cylinder: a one-to-one map to start from, whatever the outlines.
+
+The cytoplasm is a ring between membrane and nuclear outline. On it a function g is harmonic, 0 at the membrane
+and 1 at the nucleus, and the angle θ is harmonic with one turn around the nucleus, given at the membrane. With
+positive weights, the same for both, (θ, g) is one to one, with θ free at the nucleus or given there: Tutte's
+theorem on the cylinder. The free side is one, too: mirror the mesh across the nuclear outline; by symmetry the
+map of both halves, with θ given on either membrane, has the outline on a straight circle.
+
+References
+----------
+Gortler, Gotsman & Thurston, "Discrete one-forms on meshes and applications to 3D mesh parameterization", 2006,
+doi:10.1016/j.cagd.2005.05.002.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.disk.blocks import BlockSystem
+from cytodisk.disk.harmonic import Weights, cotangents
+from cytodisk.errors import MapError
+from cytodisk.geometry.mesh import triangle_areas
+from cytodisk.geometry.nucleus_mesh import NucleusMesh
+
+TURN = 2.0 * np.pi
+LARGEST_GAP = 0.4 * TURN
+"""Largest angle between neighbours on the nuclear outline: from half a turn on, its polygon in the disk would
+leave out the centre.
+"""
+
+_BLENDS = np.linspace(0.0, 1.0, 33)  # of the free angles on the nuclear outline with those by arc length
+_SHARES = 0.5 ** np.arange(0, 12)  # of the way from g to the share of area with less g
+_LEAST_AREA = 0.0
+
+
+class CylinderMap(NamedTuple):
+    """A map of the cytoplasm onto a cylinder.
+
+    Attributes
+    ----------
+    angles : ndarray of shape (V,) and dtype float
+        θ in radians of each vertex of the cytoplasm, up to whole turns; 0 in the nucleus.
+    depth : ndarray of shape (V,) and dtype float
+        0 at the membrane, 1 at the nuclear outline and in the nucleus.
+    lifts : ndarray of shape (F, 3) and dtype int
+        Whole turns to add to the angles of each triangle's corners, so that they fit together; 0 in the
+        nucleus.
+    weights : {"cotangent", "uniform"}
+    """
+
+    angles: FloatArray
+    depth: FloatArray
+    lifts: IntArray
+    weights: Weights
+
+
+def lifted_angles(angles: FloatArray, lifts: IntArray, triangles: IntArray) -> FloatArray:
+    """Angles of the corners of triangles, shape (F, 3), which differ within a triangle as the map does."""
+    return np.asarray(angles[triangles] + TURN * lifts)
+
+
+def cylinder_areas(angles: FloatArray, depth: FloatArray, lifts: IntArray, triangles: IntArray) -> FloatArray:
+    """Signed area of triangles on the cylinder (θ, depth), positive as in the cell, shape (F,)."""
+    return np.asarray(_areas(lifted_angles(angles, lifts, triangles), depth[triangles]))
+
+
+def cylinder_start(
+    mesh: NucleusMesh,
+    membrane_angles: FloatArray,
+    centre_yx: FloatArray,
+    system: BlockSystem,
+    nucleus_angles: FloatArray | None = None,
+) -> CylinderMap:
+    """Map the cytoplasm one to one onto the cylinder, with the membrane at given angles.
+
+    Parameters
+    ----------
+    mesh : NucleusMesh
+    membrane_angles : ndarray of shape (B,) and dtype float
+        In radians, strictly increasing, all within one turn.
+    centre_yx : ndarray of shape (2,) and dtype float
+        A point strictly inside the nuclear outline.
+    system : BlockSystem
+        Of this mesh.
+    nucleus_angles : ndarray of shape (N,) and dtype float, optional
+        Angles of the nuclear outline, strictly increasing within one turn, counted so that they are near
+        those of the membrane they lie under; by default θ is free there.
+
+    Returns
+    -------
+    CylinderMap
+        With `depth` the share of the cytoplasm's area that has less g, as far as triangles allow.
+
+    Raises
+    ------
+    MapError
+        Rounding turns triangles over with all weights.
+    """
+    form = _Form.around(mesh, centre_yx)
+    choices: tuple[Weights, ...] = ("cotangent", "uniform")
+    for weights in choices:
+        edge_weights = cotangents(mesh) if weights == "cotangent" else np.full(3 * len(mesh.triangles), 0.5)
+        found = _solved(mesh, form, edge_weights, membrane_angles, system, nucleus_angles)
+        if found is not None:
+            angles, g, lifts = found
+            return CylinderMap(angles, _even_depth(mesh, angles, g, lifts), lifts, weights)
+    raise MapError(
+        f"no map of the cytoplasm was found ({len(mesh.vertices_yx)} vertices): in double precision triangles "
+        "turn over; the cell is too branched for its size; try a larger edge_length"
+    )
+
+
+class _Form(NamedTuple):
+    """The angle around a point in the nucleus.
+
+    Attributes
+    ----------
+    angles : ndarray of shape (V,) and dtype float
+        From -π to π.
+    steps : ndarray of shape (F, 3) and dtype float
+        From corner k to corner k + 1 of each triangle, from -π to π; their sum is 0 in the cytoplasm.
+    """
+
+    angles: FloatArray
+    steps: FloatArray
+
+    @classmethod
+    def around(cls, mesh: NucleusMesh, centre_yx: FloatArray) -> _Form:
+        away = mesh.vertices_yx - centre_yx
+        angles = np.arctan2(away[:, 0], away[:, 1])
+        corners = angles[mesh.triangles]
+        return cls(angles, _wrapped(np.roll(corners, -1, axis=1) - corners))
+
+    def around_loop(self, loop: IntArray) -> FloatArray:
+        """Angles along a loop around the point, without jumps."""
+        return np.asarray(self.angles[loop[0]] + np.append(0.0, np.cumsum(_wrapped(np.diff(self.angles[loop])))))
+
+
+def _wrapped(angles: FloatArray) -> FloatArray:
+    return np.asarray(angles - TURN * np.round(angles / TURN))
+
+
+def _solved(
+    mesh: NucleusMesh,
+    form: _Form,
+    edge_weights: FloatArray,
+    membrane_angles: FloatArray,
+    system: BlockSystem,
+    nucleus_angles: FloatArray | None,
+) -> tuple[FloatArray, FloatArray, IntArray] | None:
+    """θ, g and lifts; None if a triangle is not positive."""
+    given = np.full(len(mesh.vertices_yx), np.nan)
+    given[mesh.boundary] = membrane_angles - form.around_loop(mesh.boundary)
+    inner = mesh.nucleus_boundary
+    around = form.around_loop(inner)
+    if nucleus_angles is not None:
+        given[inner] = nucleus_angles - around
+    free = _harmonic(mesh, form, edge_weights, given, system)
+    for blend in _BLENDS:  # until no gap on the nuclear outline is too wide
+        angles, g = free
+        at_nucleus = angles[inner] - form.angles[inner] + around
+        if _widest_gap(at_nucleus) > LARGEST_GAP and nucleus_angles is None:
+            at_nucleus = (1.0 - blend) * at_nucleus + blend * _by_length(mesh, at_nucleus)
+            if _widest_gap(at_nucleus) > LARGEST_GAP and blend < 1.0:
+                continue
+            given[inner] = at_nucleus - around
+            angles, g = _harmonic(mesh, form, edge_weights, given, system)
+        break
+    lifts = _lifts(mesh, form, angles)
+    areas = cylinder_areas(angles, g, lifts, mesh.triangles)[~mesh.inside]
+    return (angles, g, lifts) if (areas > 0.0).all() else None
+
+
+def _widest_gap(angles: FloatArray) -> float:
+    return float(np.diff(angles, append=angles[0] + TURN).max())
+
+
+def _by_length(mesh: NucleusMesh, angles: FloatArray) -> FloatArray:
+    """Angles on the nuclear outline by its arc length, turned to be near given ones."""
+    outline = mesh.vertices_yx[mesh.nucleus_boundary]
+    lengths = np.hypot(*(np.roll(outline, -1, axis=0) - outline).T)
+    even = TURN * np.append(0.0, np.cumsum(lengths[:-1])) / lengths.sum()
+    weight = lengths + np.roll(lengths, 1)
+    return np.asarray(even + ((angles - even) * weight).sum() / weight.sum())
+
+
+def _lifts(mesh: NucleusMesh, form: _Form, angles: FloatArray) -> IntArray:
+    """Whole turns that make the corners' angles differ as the form with what is single-valued of θ does."""
+    own = (angles - form.angles)[mesh.triangles]
+    one = form.steps[:, 0] + own[:, 1] - own[:, 0]
+    two = -form.steps[:, 2] + own[:, 2] - own[:, 0]
+    corners = angles[mesh.triangles]
+    lifts = np.zeros((len(mesh.triangles), 3), dtype=np.int64)
+    lifts[:, 1] = np.round((one - (corners[:, 1] - corners[:, 0])) / TURN)
+    lifts[:, 2] = np.round((two - (corners[:, 2] - corners[:, 0])) / TURN)
+    lifts[mesh.inside] = 0
+    return lifts
+
+
+def _harmonic(
+    mesh: NucleusMesh, form: _Form, edge_weights: FloatArray, given: FloatArray, system: BlockSystem
+) -> tuple[FloatArray, FloatArray]:
+    """θ and g of all vertices; `given` holds θ less the form's angle where θ is given."""
+    n_vertices = len(mesh.vertices_yx)
+    values = np.zeros((n_vertices, 2))
+    values[:, 0] = np.where(np.isnan(given), 0.0, given)
+    values[mesh.nucleus_boundary, 1] = 1.0
+    pinned = np.zeros((n_vertices, 2), dtype=bool)
+    pinned[mesh.vertex_inside] = True
+    pinned[:, 0] |= ~np.isnan(given)
+    pinned[: mesh.n_boundary + mesh.n_nucleus, 1] = True
+    right = np.zeros((len(system.vertex), 2))
+    weights = edge_weights.reshape(3, -1)
+    arrays = mesh.triangles, mesh.inside, weights, form.steps, values, pinned
+    _fill(*arrays, system.unknown, system.place, system.blocks, right)
+    pins = pinned[system.vertex]
+    for axis in (0, 1):
+        system.blocks[system.diagonal[pins[:, axis]], axis, axis] = 1.0
+    right = np.where(pins, values[system.vertex], right)
+    system.factorise()
+    values[system.vertex] = system.solve(right)
+    angles, g = values[:, 0] + form.angles, values[:, 1]
+    angles[mesh.vertex_inside], g[mesh.vertex_inside] = 0.0, 1.0
+    return angles, g
+
+
+@njit(cache=True)
+def _fill(
+    triangles: IntArray,
+    inside: BoolArray,
+    weights: FloatArray,
+    steps: FloatArray,
+    values: FloatArray,
+    pinned: BoolArray,
+    unknown: IntArray,
+    place: IntArray,
+    blocks: FloatArray,
+    right: FloatArray,
+) -> None:
+    """Laplacians of θ less the form's angle (axis 0), and of g (axis 1), on the cytoplasm's triangles."""
+    blocks[:] = 0.0
+    for t in range(triangles.shape[0]):
+        if inside[t]:
+            continue
+        for k in range(3):
+            l = (k + 1) % 3
+            weight = weights[k, t]
+            for own, other, step in ((k, l, steps[t, k]), (l, k, -steps[t, k])):
+                i, j = triangles[t, own], triangles[t, other]
+                n = unknown[i]
+                if n < 0:
+                    continue
+                for axis in range(2):
+                    if pinned[i, axis]:
+                        continue
+                    blocks[place[t, own, own], axis, axis] += weight
+                    if axis == 0:
+                        right[n, 0] += weight * step
+                    if pinned[j, axis]:
+                        right[n, axis] += weight * values[j, axis]
+                    elif place[t, own, other] >= 0:
+                        blocks[place[t, own, other], axis, axis] -= weight
+
+
+def _even_depth(mesh: NucleusMesh, angles: FloatArray, g: FloatArray, lifts: IntArray) -> FloatArray:
+    """Depth between g and the share of the cytoplasm's area with less g, as near to the latter as goes.
+
+    Every increasing function of g is one to one with θ, but not when it is taken vertex by vertex.
+    """
+    ring = mesh.triangles[~mesh.inside]
+    areas = triangle_areas(mesh.vertices_yx, ring)
+    n_vertices = len(g)
+    held = np.bincount(ring.ravel(), np.repeat(areas / 3.0, 3), minlength=n_vertices)
+    order = np.argsort(g, kind="stable")
+    order = order[held[order] > 0.0]
+    below = np.cumsum(held[order])
+    level, first, which = np.unique(g[order], return_index=True, return_inverse=True)
+    total = np.bincount(which, held[order])
+    middle = below[first] - held[order][first] + 0.5 * total
+    middle[0], middle[-1] = 0.0, below[-1]
+    share = np.interp(g, level, middle / below[-1])
+    for way in _SHARES:
+        depth = (1.0 - way) * g + way * share
+        if (cylinder_areas(angles, depth, lifts, mesh.triangles)[~mesh.inside] > _LEAST_AREA).all():
+            return np.asarray(depth)
+    return g
+
+
+@njit(cache=True)
+def _areas(angles: FloatArray, depth: FloatArray) -> FloatArray:
+    areas = np.empty(len(angles))
+    for t in range(len(angles)):
+        x1, y1 = angles[t, 1] - angles[t, 0], depth[t, 1] - depth[t, 0]
+        x2, y2 = angles[t, 2] - angles[t, 0], depth[t, 2] - depth[t, 0]
+        areas[t] = 0.5 * (x1 * y2 - x2 * y1)
+    return areas
