@@ -9,7 +9,7 @@ import pandas as pd
 import tifffile
 
 import cytodisk as cd
-from cytodisk.disk.advection import advect
+from cytodisk.disk.by_advection.advection import advect
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.disk.mapping import mesh_cell

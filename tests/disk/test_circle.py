@@ -68,5 +68,5 @@ def test_a_number_turns_the_upright_disk_by_degrees(outline: np.ndarray) -> None
 
 @pytest.mark.parametrize("align", ["up", None, (1.0, 2.0, 3.0), np.nan, (np.nan, 1.0)])
 def test_other_alignments_are_refused(outline: np.ndarray, align: object) -> None:
-    with pytest.raises(ParameterError, match=r"align must be 'upright', a point .* got"):
+    with pytest.raises(ParameterError, match=r"align must be 'upright', 'nucleus', a point .* got"):
         boundary_angles(outline, align)

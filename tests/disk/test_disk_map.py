@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from cytodisk import simulate
-from cytodisk.disk.disk_map import DiskMap, load_map
+from cytodisk.disk.disk_map import DiskMap
+from cytodisk.disk.loading import load_map
 from cytodisk.disk.mapping import map_to_disk
 from cytodisk.errors import ParameterError, ReadError, SignalError, StudyError
 

@@ -159,7 +159,7 @@ def test_the_report_of_cleaning_comes_with_the_map() -> None:
         ),
         ({"shape_weight": np.nan}, "shape_weight must be a number above 0 and at most 1000000, got nan"),
         ({"edge_length": 0.1}, "edge_length must be a number from 0.25 to 10, got 0.1"),
-        ({"align": "left"}, "align must be 'upright', a point .* got 'left'"),
+        ({"align": "left"}, "align must be 'upright', 'nucleus', a point .* got 'left'"),
     ],
 )
 def test_bad_parameters_are_refused(change: dict[str, object], message: str) -> None:

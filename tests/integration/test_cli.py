@@ -78,7 +78,7 @@ def test_a_point_to_align_to(run: Run, mask: Path, tmp_path: Path) -> None:
     disk = cd.open_study(tmp_path / "out").map(0)
     assert disk.to_disk([[20.0, 39.0]])[0, 1] == pytest.approx(0.0, abs=0.05)
     refused = run("map", mask, "-o", tmp_path / "other", "--align", "left")
-    assert_refused(refused, "--align must be 'upright', a point", "got 'left'")
+    assert_refused(refused, "--align must be 'upright', 'nucleus', a point", "got 'left'")
 
 
 def test_figures_are_drawn(run: Run, mask: Path, tmp_path: Path) -> None:

@@ -77,7 +77,7 @@ def test_given_values_overrule_the_file(tmp_path: Path) -> None:
         ({"edge_length": "0.5"}, "edge_length must be a number from 0.25 to 10, got '0.5'"),
         ({"method": "demons"}, "method must be one of newton, newton-triangles, .*, got 'demons'"),
         ({"kind": "cells"}, "kind must be one of auto, mask, stack, labels, got 'cells'"),
-        ({"align": "left"}, "align must be 'upright', a point .* got 'left'"),
+        ({"align": "left"}, "align must be 'upright', 'nucleus', a point .* got 'left'"),
         ({"pixel_size_um": -1.0}, "pixel_size_um must be a number from 0.000001 to 1000000, got -1.0"),
         ({"channels": ()}, r"channels: every channel needs a name that can be printed, got \(\)"),
         ({"channels": ("Rac1", " ")}, "channels: every channel needs a name"),

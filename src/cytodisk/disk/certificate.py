@@ -87,9 +87,9 @@ def certify(
     >>> cd.certify(disk.vertices_yx, mirrored, disk.triangles, disk.boundary).valid
     False
     """
-    malformed = _malformed(vertices_yx, vertices_uv, triangles, boundary)
-    if malformed:
-        return Certificate(malformed, (), (), len(triangles), 0, 0)
+    broken = malformed(vertices_yx, vertices_uv, triangles, boundary)
+    if broken:
+        return Certificate(broken, (), (), len(triangles), 0, 0)
     in_cell, exact_cell = orientations(vertices_yx, triangles)
     in_disk, exact_disk = orientations(vertices_uv[:, ::-1], triangles)
     edges = half_edges(triangles, len(vertices_yx))
@@ -98,13 +98,8 @@ def certify(
         for sign, frame in ((in_cell, "cell"), (in_disk, "disk"))
         if (sign <= 0).any()
     ]
-    if edges.euler_characteristic != 1:
-        faults.append(f"the Euler characteristic is {edges.euler_characteristic}, not 1")
-    if edges.repeated:
-        faults.append("two triangles are on the same side of an edge")
-    if not edges.all_used:
-        faults.append("a vertex belongs to no triangle")
-    faults += _boundary_faults(vertices_yx, vertices_uv, edges, boundary)
+    faults += mesh_faults(edges)
+    faults += boundary_faults(vertices_yx, vertices_uv, edges, boundary)
     return Certificate(
         faults=tuple(faults),
         flipped_in_cell=tuple(np.flatnonzero(in_cell <= 0).tolist()),
@@ -115,7 +110,19 @@ def certify(
     )
 
 
-def _malformed(
+def mesh_faults(edges: HalfEdges) -> list[str]:
+    """What speaks against a triangulation being that of a topological disk."""
+    faults = []
+    if edges.euler_characteristic != 1:
+        faults.append(f"the Euler characteristic is {edges.euler_characteristic}, not 1")
+    if edges.repeated:
+        faults.append("two triangles are on the same side of an edge")
+    if not edges.all_used:
+        faults.append("a vertex belongs to no triangle")
+    return faults
+
+
+def malformed(
     vertices_yx: FloatArray, vertices_uv: FloatArray, triangles: IntArray, boundary: IntArray
 ) -> tuple[str, ...]:
     """Faults that leave nothing to be checked."""
@@ -133,30 +140,34 @@ def _malformed(
     return tuple(faults)
 
 
-def _boundary_faults(
+def boundary_faults(
     vertices_yx: FloatArray, vertices_uv: FloatArray, edges: HalfEdges, boundary: IntArray
 ) -> list[str]:
+    """What speaks against a boundary being the one loop of a mesh, on the circle in order."""
     faults = []
-    if not _is_the_loop(edges, boundary):
+    if not is_the_loop(edges, (boundary,)):
         faults.append("the boundary is not the one loop of edges that belong to one triangle")
     if not LinearRing(vertices_yx[boundary]).is_simple:
         faults.append("the boundary crosses itself in the cell")
     on_circle = vertices_uv[boundary]
     if not np.abs(np.hypot(*on_circle.T) - 1.0).max() <= _ON_CIRCLE:
         faults.append("a boundary vertex is not on the unit circle")
-    if not _runs_round_once(on_circle):
+    if not runs_round_once(on_circle):
         faults.append("the boundary's angles do not increase strictly through one turn")
     return faults
 
 
-def _is_the_loop(edges: HalfEdges, boundary: IntArray) -> bool:
+def is_the_loop(edges: HalfEdges, loops: tuple[IntArray, ...]) -> bool:
+    """Whether loops of vertices, in their directions, are all edges that belong to one triangle."""
     n_vertices = len(edges.first) - 1
     outer = (edges.start * n_vertices + edges.end)[edges.outer]
-    loop = np.sort(boundary * n_vertices + np.roll(boundary, -1))
-    return len(np.unique(boundary)) == len(boundary) and np.array_equal(outer, loop)
+    along = np.sort(np.concatenate([loop * n_vertices + np.roll(loop, -1) for loop in loops]))
+    vertices = np.concatenate(loops)
+    return len(np.unique(vertices)) == len(vertices) and np.array_equal(outer, along)
 
 
-def _runs_round_once(on_circle: FloatArray) -> bool:
+def runs_round_once(on_circle: FloatArray) -> bool:
+    """Whether points in their order, (u, v), are the corners of a convex polygon around the centre, once."""
     following = np.roll(on_circle, -1, axis=0)
     corners = np.arange(len(on_circle))[:, None] + np.arange(3)
     turns, _ = orientations(on_circle[:, ::-1], corners % len(on_circle))

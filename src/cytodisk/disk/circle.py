@@ -121,20 +121,20 @@ def parse_align(align: Any) -> Align:
 
     Parameters
     ----------
-    align : {"upright"}, point or number
-        As in `boundary_angles`.
+    align : {"upright", "nucleus"}, point or number
+        As in `boundary_angles`, or by the nucleus, which `map_to_disk` knows.
 
     Returns
     -------
-    {"upright"}, (float, float) or float
+    {"upright", "nucleus"}, (float, float) or float
 
     Raises
     ------
     ParameterError
         `align` is none of these.
     """
-    if isinstance(align, str) and align == "upright":
-        return "upright"
+    if isinstance(align, str) and align in ("upright", "nucleus"):
+        return align
     try:
         numbers = np.asarray(align, dtype=np.float64)
     except (TypeError, ValueError):
@@ -143,7 +143,7 @@ def parse_align(align: Any) -> Align:
     if in_reach and not isinstance(align, bool | str):
         return float(numbers) if numbers.shape == () else (float(numbers[0]), float(numbers[1]))
     raise ParameterError(
-        "align must be 'upright', a point (row, column) or an angle in degrees, at most "
+        "align must be 'upright', 'nucleus', a point (row, column) or an angle in degrees, at most "
         f"{_FURTHEST}, got {short_words(align)}"
     )
 

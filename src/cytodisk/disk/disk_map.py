@@ -13,13 +13,17 @@ import numpy as np
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.checks import as_points
 from cytodisk.disk.certificate import Certificate, certify
-from cytodisk.disk.circle import polygon_radius
 from cytodisk.disk.disk_image import image_on_disk
 from cytodisk.disk.distortion import Distortion, distortion_of
-from cytodisk.disk.map_file import read_map_file, write_map_file
+from cytodisk.disk.map_file import write_map_file
 from cytodisk.disk.mapping_parameters import Method
+from cytodisk.disk.nucleus.nucleus import Nucleus, loop_angles
+from cytodisk.disk.nucleus.nucleus_certificate import certify_compartments
+from cytodisk.disk.nucleus.nucleus_chart import NucleusChart
+from cytodisk.disk.nucleus.nucleus_distortion import distortion_by_compartment
+from cytodisk.disk.polygon_chart import Chart, PolygonChart
 from cytodisk.errors import ParameterError
-from cytodisk.geometry.locate import TriangleLocator, nearest_on_outline
+from cytodisk.geometry.locate import nearest_on_outline
 from cytodisk.geometry.mask import MaskReport
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import UNKNOWN, Scale
@@ -61,6 +65,8 @@ class DiskMap:
         False when Newton's method stopped before its criterion; the map is valid all the same.
     scale : Scale
         Scale of the image: µm per pixel, and in a movie seconds per frame, where they are known.
+    nucleus : Nucleus or None
+        The cell's nucleus, where it was given: then the map is linear in other places, as `Nucleus` says.
 
     Examples
     --------
@@ -86,6 +92,7 @@ class DiskMap:
     steps: int
     converged: bool
     scale: Scale = UNKNOWN
+    nucleus: Nucleus | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """What is computed from the fields is not sent to other processes."""
@@ -110,18 +117,41 @@ class DiskMap:
     @cached_property
     def certificate(self) -> Certificate:
         """The proof that the map is a bijection, or what speaks against it."""
-        return certify(self.vertices_yx, self.vertices_uv, self.triangles, self.boundary)
+        arrays = self.vertices_yx, self.vertices_uv, self.triangles, self.boundary
+        return certify(*arrays) if self.nucleus is None else certify_compartments(*arrays, self.nucleus)
 
     @cached_property
     def distortion(self) -> Distortion:
-        """Area and angle distortion, by triangle and in sum."""
-        return distortion_of(self.vertices_yx, self.vertices_uv, self.triangles)
+        """Area and angle distortion, by triangle and in sum; with a nucleus, areas within its compartment."""
+        arrays = self.vertices_yx, self.vertices_uv, self.triangles
+        return (
+            distortion_of(*arrays)
+            if self.nucleus is None
+            else distortion_by_compartment(*arrays, self.nucleus)
+        )
 
     @cached_property
     def boundary_angles(self) -> FloatArray:
         """Angle of each boundary vertex in radians, strictly increasing through one turn, shape (B,)."""
+        if self.nucleus is not None:
+            return loop_angles(self.nucleus.places[self.boundary, 1])
         angles = np.arctan2(self.vertices_uv[self.boundary, 1], self.vertices_uv[self.boundary, 0])
         return np.unwrap(angles)
+
+    @property
+    def nucleus_radius(self) -> float | None:
+        """Radius of the nucleus' circle in the disk; None without a nucleus."""
+        return None if self.nucleus is None else self.nucleus.radius
+
+    @property
+    def nucleus_boundary(self) -> IntArray | None:
+        """Vertices of the nuclear outline in order, shape (N,); None without a nucleus."""
+        return None if self.nucleus is None else self.nucleus.boundary
+
+    @property
+    def nucleus_outline_yx(self) -> FloatArray | None:
+        """The nuclear outline, shape (N, 2), (row, column) in pixels; None without a nucleus."""
+        return None if self.nucleus is None else self.vertices_yx[self.nucleus.boundary]
 
     def to_disk(self, points_yx: Any, *, outside: Literal["nan", "nearest"] = "nan") -> FloatArray:
         """Map points of the cell into the disk.
@@ -146,11 +176,8 @@ class DiskMap:
         if outside not in ("nan", "nearest"):
             raise ParameterError(f"outside must be 'nan' or 'nearest', got {outside!r}")
         points, shape = as_points("points_yx", points_yx)
-        uv = self._in_cell.carry(points, self.vertices_uv)
+        uv = self.chart.to_disk(points)
         lost = np.isnan(uv[:, 0]) & np.isfinite(points).all(axis=1)
-        uv /= polygon_radius(uv, self.boundary_angles)[:, None]
-        if self.method == "advection":
-            uv /= np.maximum(np.hypot(uv[:, 0], uv[:, 1]), 1.0)[:, None]
         if outside == "nearest" and lost.any():
             uv[lost] = self.nearest_on_circle(points[lost])
         return uv.reshape(shape)
@@ -174,15 +201,11 @@ class DiskMap:
             The last dimension is not 2.
         """
         points, shape = as_points("points_uv", points_uv)
-        inner = points * polygon_radius(points, self.boundary_angles)[:, None]
-        return self._in_disk.carry(inner, self.vertices_yx).reshape(shape)
+        return self.chart.to_cell(points).reshape(shape)
 
     def nearest_on_circle(self, points_yx: FloatArray) -> FloatArray:
         """Image (u, v) of the outline point nearest to each of some points (row, column), shape (N, 2)."""
-        edge, fraction = nearest_on_outline(points_yx, self.outline_yx)
-        circle = self.vertices_uv[self.boundary]
-        chord = circle[edge] + fraction[:, None] * (circle[(edge + 1) % len(circle)] - circle[edge])
-        return np.asarray(chord / np.hypot(chord[:, 0], chord[:, 1])[:, None])
+        return self.chart.on_circle(*nearest_on_outline(points_yx, self.outline_yx))
 
     def image(self, signal: Any, size: int = 256) -> FloatArray:
         """The signal on the disk, read from the cell by linear interpolation between pixels.
@@ -222,7 +245,9 @@ class DiskMap:
             Its mask has the shape of the image, its points are pixels of the image.
         """
         moved = self.vertices_yx + np.array(corner, dtype=np.float64)
-        return replace(self, placed_mask=self.placed_mask.within(corner, image_shape), vertices_yx=moved)
+        mask = self.placed_mask.within(corner, image_shape)
+        nucleus = None if self.nucleus is None else self.nucleus.placed(corner, image_shape)
+        return replace(self, placed_mask=mask, vertices_yx=moved, nucleus=nucleus)
 
     def save(self, path: str | os.PathLike[str], beside: Mapping[str, FloatArray] | None = None) -> None:
         """Write the map to a `.npz` file that `load_map` reads back.
@@ -241,60 +266,21 @@ class DiskMap:
         ParameterError
             The name does not end in `.npz`.
         """
-        facts = {name: getattr(self, name) for name in _FACTS}
+        facts: dict[str, Any] = {name: getattr(self, name) for name in FACTS}
         header = {"report": asdict(self.report), **asdict(self.scale), **facts}
         arrays = {name: getattr(self, name) for name in _ARRAYS if name != "vertices_uv"}
         beside = {**(beside or {}), "vertices_uv": self.vertices_uv}
-        write_map_file(path, header, self.placed_mask, arrays, beside)
+        write_map_file(path, header, self.placed_mask, arrays, beside, self.nucleus)
 
     @cached_property
-    def _in_cell(self) -> TriangleLocator:
-        return TriangleLocator(self.vertices_yx, self.triangles)
-
-    @cached_property
-    def _in_disk(self) -> TriangleLocator:
-        return TriangleLocator(self.vertices_uv, self.triangles)
+    def chart(self) -> Chart:
+        """The map as functions of points."""
+        angles = self.boundary_angles
+        if self.nucleus is not None:
+            return NucleusChart(self.vertices_yx, self.triangles, self.nucleus, angles)
+        arrays = self.vertices_yx, self.vertices_uv, self.triangles, self.boundary
+        return PolygonChart(*arrays, angles, onto_rim=self.method == "advection")
 
 
 _ARRAYS = ("vertices_yx", "vertices_uv", "triangles", "boundary")
-_FACTS = ("method", "start", "shape_weight", "edge_length", "steps", "converged")
-
-
-def load_map(path: str | os.PathLike[str]) -> DiskMap:
-    """Read a map that `DiskMap.save` wrote.
-
-    Parameters
-    ----------
-    path : path-like
-
-    Returns
-    -------
-    DiskMap
-        Its certificate is computed anew from the arrays that were read.
-
-    Raises
-    ------
-    ReadError
-        The file is missing, damaged, or not a map.
-
-    See Also
-    --------
-    DiskMap.save : Writes the file.
-    open_study : The maps of a whole run.
-
-    Examples
-    --------
-    >>> import cytodisk as cd
-    >>> cd.map_to_disk(cd.simulate.disk(10)).save("cell.npz")
-    >>> disk = cd.load_map("cell.npz")
-    >>> disk.certificate.valid
-    True
-    """
-    header, mask, arrays = read_map_file(path)
-    return DiskMap(
-        placed_mask=mask,
-        report=MaskReport(**header["report"]),
-        **arrays,
-        **{name: header[name] for name in _FACTS},
-        scale=Scale(header.get("pixel_size_um"), header.get("frame_interval_s")),
-    )
+FACTS = ("method", "start", "shape_weight", "edge_length", "steps", "converged")

@@ -17,14 +17,16 @@ from typing_extensions import TypedDict
 from cytodisk.array_archive import ArrayArchive, reading_arrays
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.mapping_parameters import Method
+from cytodisk.disk.nucleus.nucleus import Nucleus
+from cytodisk.disk.nucleus.nucleus_file import NucleusHeader, nucleus_arrays, nucleus_header, read_nucleus
 from cytodisk.errors import ParameterError, ReadError
 from cytodisk.files import replacing
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.parameter_words import short_words
 from cytodisk.reading_files import checked, json_of
 
-_FORMAT = 3
-_OLDER = 2  # differs in one word: its "newton" relaxed as "newton-triangles" does in format 3
+_FORMAT = 4
+_OLDER = (2, 3)  # without nuclei; in 2 "newton" relaxed as "newton-triangles" does in later ones
 _FASTEST = 1  # level of compression
 _WHAT = "a map that DiskMap.save wrote"
 _REMEDY = "make it again, with cytodisk map or map_to_disk"
@@ -40,6 +42,7 @@ def write_map_file(
     mask: PlacedMask,
     arrays: Mapping[str, FloatArray | IntArray],
     numbers: Mapping[str, Any],
+    nucleus: Nucleus | None = None,
 ) -> None:
     """Write a map's header, mask and arrays to a `.npz` file.
 
@@ -54,6 +57,7 @@ def write_map_file(
         files of nearly the same size.
     numbers : dict of str to ndarray
         Arrays that are written as they are: few digits of them repeat, or they are small.
+    nucleus : Nucleus, optional
 
     Raises
     ------
@@ -65,6 +69,9 @@ def write_map_file(
     if Path(path).suffix != ".npz":
         raise ParameterError(f"path must end in .npz, got {path}")
     place = {"corner": mask.corner, "image_shape": mask.image_shape}
+    if nucleus is not None:
+        header = {**header, "nucleus": nucleus_header(nucleus)}
+        arrays, numbers = {**arrays, **nucleus_arrays(nucleus)}, {**numbers, "nucleus_places": nucleus.places}
     text = json.dumps({"format": _FORMAT, **header, **place})
     with replacing(path) as temporary, zipfile.ZipFile(temporary, "w") as archive:
         _write(archive, {"mask": mask.box, **arrays}, zipfile.ZIP_DEFLATED)
@@ -89,11 +96,13 @@ class MapContent(NamedTuple):
     mask : PlacedMask
     arrays : dict of str to ndarray
         "vertices_yx", "vertices_uv", "triangles" and "boundary".
+    nucleus : Nucleus or None
     """
 
     header: dict[str, Any]
     mask: PlacedMask
     arrays: dict[str, Any]
+    nucleus: Nucleus | None
 
 
 _Count = Annotated[int, Field(ge=0, lt=2**53)]
@@ -126,6 +135,7 @@ class _Header(TypedDict, total=False):
     converged: Required[bool]
     corner: Required[Annotated[list[_Count], Field(min_length=2, max_length=2)]]
     image_shape: Required[Annotated[list[_Side], Field(min_length=2, max_length=2)]]
+    nucleus: NucleusHeader
 
 
 @cache
@@ -155,19 +165,21 @@ def read_map_file(path: str | os.PathLike[str]) -> MapContent:
         header = _read_header(path, archive)
         arrays = _read_arrays(archive)
         placed = _read_mask(archive, header, arrays["vertices_yx"])
-    return MapContent(header, placed, arrays)
+        about = header.get("nucleus")
+        nucleus = None if about is None else read_nucleus(archive, about, arrays, placed)
+    return MapContent(header, placed, arrays, nucleus)
 
 
 def _read_header(path: str | os.PathLike[str], archive: ArrayArchive) -> dict[str, Any]:
     header = json_of(*archive.texts("header"))
     version = header.get("format") if isinstance(header, dict) else None
-    if version not in (_OLDER, _FORMAT):
+    if version not in (*_OLDER, _FORMAT):
         raise ReadError(
-            f"{path} is a map of format {short_words(version)}, this version reads formats {_OLDER} and "
+            f"{path} is a map of format {short_words(version)}, this version reads formats {_OLDER[0]} to "
             f"{_FORMAT}: {_REMEDY}"
         )
     found: dict[str, Any] = checked(header, _header, f"{path}: header", _REMEDY)
-    if version == _OLDER and found["method"] == "newton":
+    if version == _OLDER[0] and found["method"] == "newton":
         found["method"] = "newton-triangles"
     return found
 

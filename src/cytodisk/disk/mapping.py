@@ -1,50 +1,52 @@
 """`map_to_disk`: from a mask to a map with its certificate."""
 
-from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from cytodisk.arrays import FloatArray, IntArray
-from cytodisk.disk.advection import advect
-from cytodisk.disk.blocks import BlockSystem
+from cytodisk.disk.by_advection.advection import advect
+from cytodisk.disk.cell_mesh import CellMesh, mesh_cell
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.disk_map import DiskMap, Start
 from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.disk.mapping_parameters import NEWTON_METHODS, Align, MappingParameters, MapToDiskParameters
 from cytodisk.disk.newton import relax
 from cytodisk.disk.newton_triangles import relax_triangles
+from cytodisk.disk.nucleus.nucleus import Nucleus
+from cytodisk.disk.nucleus.nucleus_mapping import map_compartments
+from cytodisk.disk.nucleus.nucleus_parameters import NucleusParameters
 from cytodisk.disk.relaxed import Relaxed
 from cytodisk.disk.untangle import untangled
-from cytodisk.errors import MapError
-from cytodisk.geometry.mask import MaskReport, clean_mask
-from cytodisk.geometry.mesh import Mesh, mesh_inside
-from cytodisk.geometry.outline import trace_outline
-from cytodisk.geometry.placed_mask import PlacedMask
+from cytodisk.errors import MapError, ParameterError
+from cytodisk.geometry.polygon import centroid
 from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.taking import takes
 
-# Triangles of nearly one area up to the edge: at this clearance they differ least on the reference masks.
-_ISOTROPIC = {"growth": 0.0, "clearance": 0.5}
+_PLAIN = NucleusParameters()
 
 
 @takes(MapToDiskParameters)
 def map_to_disk(
     mask: Any,
+    nucleus: Any = None,
     **settings: Any,
 ) -> DiskMap:
-    """Map one cell one to one onto the unit disk.
+    """Map one cell one to one onto the unit disk, with its nucleus on a circle of its own if it is given.
 
     The mask is first reduced to its largest piece without holes (`clean_mask`); the map's `report` says what
-    that changed.
+    that changed. The nucleus is fitted into the cell (`fit_nucleus`), as the report of the map's `nucleus`
+    says.
 
     Parameters
     ----------
     mask : array_like of shape (H, W), or DataArray with dims (y, x)
         One cell: boolean, whole numbers with one value beside 0, or floats that are 0 and 1.
+    nucleus : array_like of shape (H, W), optional
+        The cell's nucleus, in the same image. Then the places between membrane and nucleus, and those inside
+        the nucleus, keep their share of their compartment's area.
     **settings
-        See `MapToDiskParameters`.
+        See `MapToDiskParameters`; `nucleus_radius` and `several` count with a nucleus alone.
 
     Returns
     -------
@@ -55,8 +57,10 @@ def map_to_disk(
     ------
     MaskError
         The mask is not the mask of one cell.
+    NucleusError
+        The nucleus is not that of this cell.
     ParameterError
-        A parameter is out of its range.
+        A parameter is out of its range, or does not go with a nucleus.
     MapError
         No valid map was found; never an invalid map instead. "advection" raises it only if the harmonic map
         it starts from is not valid.
@@ -79,84 +83,46 @@ def map_to_disk(
     True
     >>> disk.to_cell([[0.0, 0.0]]).round(1)  # the cell's point at the disk's centre, (row, column)
     array([[37. , 27.6]])
+
+    With a nucleus, which lies within half of the disk's radius:
+
+    >>> nucleus = cd.simulate.disk(5, margin=20)
+    >>> disk = cd.map_to_disk(cd.simulate.disk(20), nucleus=nucleus)
+    >>> disk.certificate.valid, disk.nucleus_radius
+    (True, 0.5)
     """
     parameters = MapToDiskParameters.of(**settings)
-    return map_cell(mask, parameters, Scale.of(mask).given(parameters.pixel_size_um))
+    scale = Scale.of(mask).given(parameters.pixel_size_um)
+    return map_cell(mask, parameters, scale, nucleus, parameters.part(NucleusParameters))
 
 
-def map_cell(mask: Any, parameters: MappingParameters, scale: Scale = UNKNOWN) -> DiskMap:
+def map_cell(
+    mask: Any,
+    parameters: MappingParameters,
+    scale: Scale = UNKNOWN,
+    nucleus: Any = None,
+    of_nucleus: NucleusParameters = _PLAIN,
+) -> DiskMap:
     """As `map_to_disk`, with parameters that are known already."""
-    cell = mesh_cell(mask, parameters, scale)
-    angles = boundary_angles(cell.outline, _relative(parameters.align, cell.corner))
-    return map_mesh(cell, angles, parameters)
+    cell = mesh_cell(mask, parameters, scale, nucleus, of_nucleus.several)
+    angles = boundary_angles(cell.outline, align_of(cell, parameters.align))
+    return map_mesh(cell, angles, parameters, nucleus_radius=of_nucleus.nucleus_radius)
 
 
-@dataclass(frozen=True, eq=False)
-class CellMesh:
-    """A cleaned mask with the mesh that is to be mapped.
-
-    Attributes
-    ----------
-    placed_mask : PlacedMask
-    report : MaskReport
-    mesh : Mesh
-        In the frame of the mask's bounding box, so that a shifted mask gives the same mesh.
-    corner : ndarray of shape (2,) and dtype float
-        First pixel of the bounding box.
-    edge_length : float
-    scale : Scale
-    """
-
-    placed_mask: PlacedMask
-    report: MaskReport
-    mesh: Mesh
-    corner: FloatArray
-    edge_length: float
-    scale: Scale
-
-    @cached_property
-    def system(self) -> BlockSystem:
-        """For functions on the mesh that are given at its boundary."""
-        return BlockSystem(self.mesh)
-
-    @property
-    def outline(self) -> FloatArray:
-        """Outline in the frame of the bounding box, shape (B, 2)."""
-        return self.mesh.vertices_yx[: self.mesh.n_boundary]
-
-
-def mesh_cell(mask: Any, parameters: MappingParameters, scale: Scale = UNKNOWN) -> CellMesh:
-    """Clean a mask and triangulate its inside.
-
-    Parameters
-    ----------
-    mask : array_like of shape (H, W), or PlacedMask
-        As for `map_to_disk`; or its box, with one more pixel on every side where the image goes on.
-    parameters : MappingParameters
-        Method "advection" needs triangles of one size, the others take larger ones inside.
-    scale : Scale
-        Scale of the image.
-
-    Returns
-    -------
-    CellMesh
+def align_of(cell: CellMesh, align: Align) -> Align:
+    """Where the disk's rotation is to end, in the frame of the cell's box.
 
     Raises
     ------
-    MaskError
-        The mask is not the mask of one cell.
-    MeshError
-        It could not be triangulated.
+    ParameterError
+        It goes by the nucleus, and there is none.
     """
-    corner, image_shape = (0, 0), ()
-    if isinstance(mask, PlacedMask):
-        mask, corner, image_shape = mask.box, mask.corner, mask.image_shape
-    cleaned, report = clean_mask(mask)
-    placed = PlacedMask.of(cleaned, corner, image_shape)
-    spacing = _ISOTROPIC if parameters.method == "advection" else {}
-    mesh = mesh_inside(trace_outline(placed.box), placed.box, edge_length=parameters.spacing_px, **spacing)
-    first = np.array(placed.corner, dtype=np.float64)
-    return CellMesh(placed, report, mesh, first, parameters.spacing_px, scale)
+    if align != "nucleus":
+        return _relative(align, cell.corner)
+    if cell.nucleus_outline is None:
+        raise ParameterError('align "nucleus" needs a nucleus: pass it (nucleus=…, --nuclei)')
+    away = centroid(cell.outline) - centroid(cell.nucleus_outline)
+    return -float(np.degrees(np.arctan2(away[0], away[1])))
 
 
 def map_mesh(
@@ -166,6 +132,8 @@ def map_mesh(
     *,
     anchor_uv: FloatArray | None = None,
     inertia: float = 0.0,
+    nucleus_radius: float | Literal["area"] = _PLAIN.nucleus_radius,
+    nucleus_angles: FloatArray | None = None,
 ) -> DiskMap:
     """Map a meshed cell onto the disk, with its boundary at given angles.
 
@@ -181,6 +149,11 @@ def map_mesh(
         of the map says which it was. "advection" always starts from the harmonic map.
     inertia : float
         How much the inside is to stay at the anchor, against equal areas; see `relax`.
+    nucleus_radius : float or "area"
+        Of the circle of a nucleus.
+    nucleus_angles : ndarray of shape (N,) and dtype float, optional
+        Angles of the nuclear outline, strictly increasing within one turn; by default it slides to where
+        cytoplasm and nucleus are mapped best.
 
     Returns
     -------
@@ -192,6 +165,9 @@ def map_mesh(
     MapError
         No valid map was found.
     """
+    if cell.nucleus is not None:
+        found = map_compartments(cell, angles, parameters.shape_weight, nucleus_radius, nucleus_angles)
+        return disk_map(cell, found.relaxed, found.start, parameters, nucleus=found.nucleus)
     method, shape_weight = parameters.method, parameters.shape_weight
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
     uv, start = _start(cell, circle, None if method == "advection" else anchor_uv)
@@ -212,6 +188,7 @@ def disk_map(
     start: Start,
     parameters: MappingParameters,
     triangles: IntArray | None = None,
+    nucleus: Nucleus | None = None,
 ) -> DiskMap:
     """Map of a cell from where its vertices lie in the disk.
 
@@ -224,6 +201,7 @@ def disk_map(
     parameters : MappingParameters
     triangles : ndarray of shape (F, 3) and dtype int, optional
         Where they are not those of the mesh.
+    nucleus : Nucleus, optional
 
     Returns
     -------
@@ -248,6 +226,7 @@ def disk_map(
         steps=relaxed.steps,
         converged=relaxed.converged,
         scale=cell.scale,
+        nucleus=nucleus,
     )
     if parameters.method != "advection" and not disk.certificate.valid:
         raise MapError(f"no valid map was found: {'; '.join(disk.certificate.faults)}")

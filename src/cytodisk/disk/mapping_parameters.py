@@ -2,11 +2,12 @@
 
 from typing import Literal, TypeAlias
 
+from cytodisk.disk.nucleus.nucleus_parameters import NucleusParameters
 from cytodisk.parameters import Parameters, parameter
 from cytodisk.scale_parameters import PixelSizeParameters
 
 Method: TypeAlias = Literal["newton", "newton-triangles", "harmonic", "advection"]
-Align: TypeAlias = Literal["upright"] | tuple[float, float] | float
+Align: TypeAlias = Literal["upright", "nucleus"] | tuple[float, float] | float
 
 NEWTON_METHODS: tuple[Method, ...] = ("newton", "newton-triangles")
 """Methods that relax by Newton's method, so that a movie's frames can start from the frame before."""
@@ -52,10 +53,11 @@ class MeshParameters(Parameters):
     )
     align: Align = parameter(
         "upright",
-        'How the disk is turned. "upright": the disk looks like the cell. A point (row, column), such as '
+        'How the disk is turned. "upright": the disk looks like the cell. "nucleus": the direction from the '
+        "centroid of the nucleus to that of the cell is at angle 0. A point (row, column), such as "
         "30,40: the part of the edge nearest to it is at angle 0. A number: the upright disk turned by so "
         "many degrees from +u towards +v.",
-        words="'upright', a point (row, column) or an angle in degrees",
+        words="'upright', 'nucleus', a point (row, column) or an angle in degrees",
     )
 
 
@@ -70,5 +72,5 @@ class MappingParameters(MeshParameters, MethodParameters):
         return ADVECTION_EDGE_LENGTH_PX if self.method == "advection" else EDGE_LENGTH_PX
 
 
-class MapToDiskParameters(MappingParameters, PixelSizeParameters):
+class MapToDiskParameters(NucleusParameters, MappingParameters, PixelSizeParameters):
     """What `map_to_disk` takes."""

@@ -239,9 +239,7 @@ class _Problem(GaussNewton):
 
     def fill(self, uv: FloatArray, system: PressureSystem, right: FloatArray) -> None:
         pattern = system.pattern
-        fill_step(
-            uv, self._cell, self.shape_weight, pattern.place, pattern.diagonal, system.blocks, right
-        )
+        fill_step(uv, self._cell, self.shape_weight, pattern.place, pattern.diagonal, system.blocks, right)
 
     def largest_step(self, uv: FloatArray, direction: FloatArray) -> float:
         return float(largest_step(uv, direction, self._cell.triangles, self._cell.hats))

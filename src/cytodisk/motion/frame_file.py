@@ -11,7 +11,8 @@ import numpy as np
 
 from cytodisk.array_archive import ArrayArchive, reading_arrays
 from cytodisk.arrays import FloatArray
-from cytodisk.disk.disk_map import DiskMap, load_map
+from cytodisk.disk.disk_map import DiskMap
+from cytodisk.disk.loading import load_map
 from cytodisk.errors import EarlierVersionWarning, ReadError
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.mapped_frame import MappedFrame

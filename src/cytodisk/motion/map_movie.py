@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cytodisk.disk.disk_map import DiskMap, load_map
+from cytodisk.disk.disk_map import DiskMap
+from cytodisk.disk.loading import load_map
 from cytodisk.errors import CytodiskError, MaskError, StudyError
 from cytodisk.files import make_folder
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord

@@ -12,7 +12,8 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
-from cytodisk.disk.disk_map import DiskMap, load_map
+from cytodisk.disk.disk_map import DiskMap
+from cytodisk.disk.loading import load_map
 from cytodisk.errors import EarlierVersionWarning, ReadError
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
 from cytodisk.motion.frame_file import load_boundary

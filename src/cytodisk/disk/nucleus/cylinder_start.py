@@ -137,7 +137,9 @@ class _Form(NamedTuple):
 
     def around_loop(self, loop: IntArray) -> FloatArray:
         """Angles along a loop around the point, without jumps."""
-        return np.asarray(self.angles[loop[0]] + np.append(0.0, np.cumsum(_wrapped(np.diff(self.angles[loop])))))
+        return np.asarray(
+            self.angles[loop[0]] + np.append(0.0, np.cumsum(_wrapped(np.diff(self.angles[loop]))))
+        )
 
 
 def _wrapped(angles: FloatArray) -> FloatArray:

@@ -4,7 +4,7 @@ import numpy as np
 from scipy import sparse
 
 from cytodisk.arrays import FloatArray, IntArray
-from cytodisk.disk.advection_field import laplacian_times
+from cytodisk.disk.by_advection.advection_field import laplacian_times
 from cytodisk.disk.ldl import Factorisation
 from cytodisk.geometry.half_edges import triangle_edges
 

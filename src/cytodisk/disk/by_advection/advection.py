@@ -11,14 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from cytodisk.arrays import FloatArray, IntArray
-from cytodisk.disk.advection_field import (
+from cytodisk.disk.by_advection.advection_field import (
     area_factors,
     edge_cotangents,
     signed_areas,
     vertex_gradients,
     vertex_sources,
 )
-from cytodisk.disk.poisson import PoissonSolver
+from cytodisk.disk.by_advection.poisson import PoissonSolver
 from cytodisk.geometry.flips import flip_to_delaunay, triangle_neighbours
 from cytodisk.geometry.mesh import Mesh, triangle_areas
 

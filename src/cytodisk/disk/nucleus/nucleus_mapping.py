@@ -1,0 +1,123 @@
+"""A meshed cell with its nucleus → the map of both."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.disk.cell_mesh import CellMesh, FittedNucleus
+from cytodisk.disk.harmonic import Weights, harmonic_map
+from cytodisk.disk.nucleus.compartment_newton import relax_compartments
+from cytodisk.disk.nucleus.cone import TURN
+from cytodisk.disk.nucleus.cylinder_start import CylinderMap, cylinder_start
+from cytodisk.disk.nucleus.nucleus import Nucleus
+from cytodisk.disk.relaxed import Relaxed
+from cytodisk.geometry.mesh import Mesh, triangle_areas
+from cytodisk.geometry.nucleus_mesh import NucleusMesh
+
+_STEPS_A_TURN = 2.0**50
+"""Turns are whole numbers of such steps, so that adding whole turns is exact."""
+
+
+class MappedCompartments(NamedTuple):
+    """A cell with its nucleus on the disk.
+
+    Attributes
+    ----------
+    relaxed : Relaxed
+    start : {"cotangent", "uniform"}
+    nucleus : Nucleus
+    """
+
+    relaxed: Relaxed
+    start: Weights
+    nucleus: Nucleus
+
+
+def map_compartments(
+    cell: CellMesh,
+    angles: FloatArray,
+    shape_weight: float,
+    nucleus_radius: float | Literal["area"],
+    nucleus_angles: FloatArray | None = None,
+) -> MappedCompartments:
+    """Map a cell and its nucleus onto the disk, with the membrane at given angles.
+
+    Parameters
+    ----------
+    cell : CellMesh
+        With a nucleus.
+    angles : ndarray of shape (B,) and dtype float
+        Of the membrane in radians, strictly increasing, all within one turn.
+    shape_weight : float
+    nucleus_radius : float or "area"
+        "area": the nucleus has its own share of the disk.
+    nucleus_angles : ndarray of shape (N,) and dtype float, optional
+        Of the nuclear outline; by default it slides.
+
+    Returns
+    -------
+    MappedCompartments
+
+    Raises
+    ------
+    MapError
+        No valid start was found.
+    """
+    mesh, fitted = _with_nucleus(cell)
+    radius = _own_radius(mesh) if nucleus_radius == "area" else float(nucleus_radius)
+    start = cylinder_start(mesh, angles, fitted.centre, cell.system, nucleus_angles)
+    inner = mesh.nucleus_boundary
+    circle = np.column_stack([np.cos(start.angles[inner]), np.sin(start.angles[inner])])
+    vertices, uv, weights = _nucleus_start(mesh, circle)
+    half = 0.5 * (1.0 - radius**2)
+    places = np.column_stack([start.angles, half * start.depth])
+    places[vertices] = uv
+    relaxed = relax_compartments(
+        mesh, places, start.lifts, radius, shape_weight, cell.system, slide=nucleus_angles is None
+    )
+    turned, lifts = _in_turns(mesh, relaxed.vertices_uv, start, half)
+    nucleus = Nucleus(radius, inner, mesh.inside, turned, lifts, fitted.placed_mask, fitted.report)
+    uv = nucleus.in_disk(mesh.vertex_inside)
+    worse: Weights = "uniform" if "uniform" in (weights, start.weights) else "cotangent"
+    return MappedCompartments(Relaxed(uv, relaxed.steps, relaxed.converged), worse, nucleus)
+
+
+def _with_nucleus(cell: CellMesh) -> tuple[NucleusMesh, FittedNucleus]:
+    if cell.nucleus is None or not isinstance(cell.mesh, NucleusMesh):
+        raise TypeError("the cell has no nucleus")
+    return cell.mesh, cell.nucleus
+
+
+def _own_radius(mesh: NucleusMesh) -> float:
+    areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
+    return float(np.sqrt(areas[mesh.inside].sum() / areas.sum()))
+
+
+def _nucleus_start(mesh: NucleusMesh, circle: FloatArray) -> tuple[IntArray, FloatArray, Weights]:
+    """Vertices inside the nucleus, and where the harmonic map of the nucleus alone has them in its own disk."""
+    vertices = np.flatnonzero(mesh.vertex_inside)
+    used = np.concatenate([mesh.nucleus_boundary, vertices])
+    number = np.empty(len(mesh.vertices_yx), dtype=np.int64)
+    number[used] = np.arange(len(used))
+    own = Mesh(mesh.vertices_yx[used], number[mesh.triangles[mesh.inside]], mesh.n_nucleus)
+    uv, weights = harmonic_map(own, circle)
+    return vertices, uv[mesh.n_nucleus :], weights
+
+
+def _in_turns(
+    mesh: NucleusMesh, places: FloatArray, start: CylinderMap, half: float
+) -> tuple[FloatArray, IntArray]:
+    """Places as (share, turn) in the cytoplasm, and the lifts of turns from 0 to 1."""
+    outer = ~mesh.vertex_inside
+    steps = np.round(places[:, 0] / TURN * _STEPS_A_TURN)
+    whole = np.floor(steps / _STEPS_A_TURN)
+    turned = places.copy()
+    turned[outer, 0] = np.clip(places[outer, 1] / half, 0.0, 1.0)
+    turned[outer, 1] = steps[outer] / _STEPS_A_TURN - whole[outer]
+    turned[: mesh.n_boundary, 0], turned[mesh.nucleus_boundary, 0] = 0.0, 1.0
+    lifts = start.lifts + whole[mesh.triangles].astype(np.int64)
+    lifts[mesh.inside] = 0
+    return turned, lifts
