@@ -30,9 +30,10 @@ from scipy import ndimage
 import cytodisk as cd
 from cell_outlines import Drawing, Shape, branched, ellipse, others, polar
 from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.disk.cell_mesh import CellMesh, mesh_cell
 from cytodisk.disk.circle import angles_of_lengths, arc_lengths
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.disk.mapping import CellMesh, map_mesh, mesh_cell
+from cytodisk.disk.mapping import map_mesh
 from cytodisk.disk.mapping_parameters import MapToDiskParameters
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.outline import trace_outline

@@ -20,9 +20,9 @@ from scipy import sparse
 from cytodisk import simulate
 from cytodisk.arrays import BoolArray
 from cytodisk.disk.blocks import BlockSystem
+from cytodisk.disk.cell_mesh import mesh_cell
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.harmonic import harmonic_map
-from cytodisk.disk.mapping import mesh_cell
 from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.disk.pressure_blocks import PressureSystem
 from cytodisk.disk.vertex_energy import averaged_elements, fill_step

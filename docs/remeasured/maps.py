@@ -10,9 +10,9 @@ import tifffile
 
 import cytodisk as cd
 from cytodisk.disk.by_advection.advection import advect
+from cytodisk.disk.cell_mesh import mesh_cell
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.harmonic import harmonic_map
-from cytodisk.disk.mapping import mesh_cell
 from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.geometry.mesh import triangle_areas
 

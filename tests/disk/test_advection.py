@@ -10,11 +10,12 @@ from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.by_advection import advection_field as kernels
 from cytodisk.disk.by_advection.advection import STEPS, advect
 from cytodisk.disk.by_advection.poisson import TOLERANCE, PoissonSolver
+from cytodisk.disk.cell_mesh import mesh_cell
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.distortion import distortion_of
 from cytodisk.disk.harmonic import harmonic_map
 from cytodisk.disk.loading import load_map
-from cytodisk.disk.mapping import map_to_disk, mesh_cell
+from cytodisk.disk.mapping import map_to_disk
 from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.geometry.half_edges import half_edges
 from cytodisk.geometry.mesh import triangle_areas

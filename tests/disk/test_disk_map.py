@@ -95,7 +95,7 @@ def test_a_map_comes_back_from_its_file(tmp_path: Path) -> None:
         assert getattr(read, name) == getattr(disk, name)
     assert read.certificate == disk.certificate
     assert [path.name for path in tmp_path.iterdir()] == ["a.npz"]
-    assert json.loads(str(np.load(tmp_path / "a.npz")["header"]))["format"] == 3
+    assert json.loads(str(np.load(tmp_path / "a.npz")["header"]))["format"] == 4
 
 
 def test_saving_into_a_missing_folder_is_refused(disk: DiskMap, tmp_path: Path) -> None:
@@ -155,7 +155,7 @@ def test_another_array_file_and_another_format_are_refused(disk: DiskMap, tmp_pa
     with pytest.raises(ReadError):
         load_map(tmp_path / "plain.npy")
     np.savez(other, header=np.array(json.dumps({"format": 99})))
-    with pytest.raises(ReadError, match=r"format 99.*formats 2 and 3.*cytodisk map"):
+    with pytest.raises(ReadError, match=r"format 99.*formats 2 to 4.*cytodisk map"):
         load_map(other)
     np.savez(other, header=np.array(json.dumps([1])))
     with pytest.raises(ReadError):

@@ -10,10 +10,11 @@ import pytest
 from cytodisk import polar_windows, simulate
 from cytodisk.arrays import FloatArray
 from cytodisk.disk import newton
+from cytodisk.disk.cell_mesh import mesh_cell
 from cytodisk.disk.circle import angles_of_lengths
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.loading import load_map
-from cytodisk.disk.mapping import map_mesh, map_to_disk, mesh_cell
+from cytodisk.disk.mapping import map_mesh, map_to_disk
 from cytodisk.disk.mapping_parameters import MapToDiskParameters
 from cytodisk.disk.newton import relax
 from cytodisk.disk.newton_triangles import relax_triangles

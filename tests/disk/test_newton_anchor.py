@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from cytodisk import simulate
+from cytodisk.disk.cell_mesh import mesh_cell
 from cytodisk.disk.certificate import certify
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.harmonic import harmonic_map
-from cytodisk.disk.mapping import mesh_cell
 from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.disk.newton import Relaxed, relax
 from cytodisk.geometry.mesh import Mesh, hat_gradients, triangle_areas

@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 
 from cytodisk import simulate
+from cytodisk.disk.cell_mesh import CellMesh, mesh_cell
 from cytodisk.disk.certificate import certify
 from cytodisk.disk.circle import boundary_angles
-from cytodisk.disk.mapping import CellMesh, map_mesh, mesh_cell
+from cytodisk.disk.mapping import map_mesh
 from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.disk.untangle import untangled
 from cytodisk.geometry.mesh import Mesh, triangle_areas

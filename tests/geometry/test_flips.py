@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from cytodisk import simulate
 from cytodisk.arrays import FloatArray, IntArray
-from cytodisk.disk.mapping import mesh_cell
+from cytodisk.disk.cell_mesh import mesh_cell
 from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.geometry.flips import flip_to_delaunay, triangle_neighbours
 from cytodisk.geometry.half_edges import half_edges, triangle_edges

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.testing import assert_array_equal
 
 import cytodisk as cd
-from cytodisk.disk.mapping import mesh_cell
+from cytodisk.disk.cell_mesh import mesh_cell
 from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.simulate import disk as round_cell

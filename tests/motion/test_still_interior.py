@@ -10,7 +10,7 @@ from curves import circle, masks_of, polar
 from scipy import ndimage
 
 import cytodisk as cd
-from cytodisk.disk.mapping import mesh_cell
+from cytodisk.disk.cell_mesh import mesh_cell
 from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.errors import ParameterError
 from cytodisk.motion.still_interior import FADE_PX, fade_in_px, origins

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cytodisk import map_to_disk, simulate
+from cytodisk.disk.cell_mesh import mesh_cell
 from cytodisk.disk.circle import boundary_angles
-from cytodisk.disk.mapping import mesh_cell
 from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.temporal import carried_inside, tracked_angles

@@ -4,42 +4,26 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.mapping_parameters import MappingParameters
+from cytodisk.disk.nucleus.nucleus_mapping import FittedNucleus
 from cytodisk.errors import ParameterError
 from cytodisk.geometry.depth import depth_of
 from cytodisk.geometry.mask import MaskReport, clean_mask
 from cytodisk.geometry.mesh import Mesh, mesh_inside
 from cytodisk.geometry.nucleus_mask import SeveralPolicy, fit_nucleus
 from cytodisk.geometry.nucleus_mesh import NucleusMesh, mesh_with_nucleus
-from cytodisk.geometry.nucleus_report import NucleusReport
 from cytodisk.geometry.outline import trace_outline
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import UNKNOWN, Scale
 
 # Triangles of nearly one area up to the edge: at this clearance they differ least on the reference masks.
 _ISOTROPIC = {"growth": 0.0, "clearance": 0.5}
-
-
-class FittedNucleus(NamedTuple):
-    """A nucleus that fits its cell.
-
-    Attributes
-    ----------
-    placed_mask : PlacedMask
-    report : NucleusReport
-    centre : ndarray of shape (2,) and dtype float
-        A place well inside it, in the frame of the cell's box.
-    """
-
-    placed_mask: PlacedMask
-    report: NucleusReport
-    centre: FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -133,8 +133,10 @@ def parse_align(align: Any) -> Align:
     ParameterError
         `align` is none of these.
     """
-    if isinstance(align, str) and align in ("upright", "nucleus"):
-        return align
+    if isinstance(align, str) and align == "upright":
+        return "upright"
+    if isinstance(align, str) and align == "nucleus":
+        return "nucleus"
     try:
         numbers = np.asarray(align, dtype=np.float64)
     except (TypeError, ValueError):

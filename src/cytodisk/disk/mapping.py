@@ -19,6 +19,7 @@ from cytodisk.disk.nucleus.nucleus_parameters import NucleusParameters
 from cytodisk.disk.relaxed import Relaxed
 from cytodisk.disk.untangle import untangled
 from cytodisk.errors import MapError, ParameterError
+from cytodisk.geometry.nucleus_mesh import NucleusMesh
 from cytodisk.geometry.polygon import centroid
 from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.taking import takes
@@ -165,8 +166,9 @@ def map_mesh(
     MapError
         No valid map was found.
     """
-    if cell.nucleus is not None:
-        found = map_compartments(cell, angles, parameters.shape_weight, nucleus_radius, nucleus_angles)
+    if cell.nucleus is not None and isinstance(cell.mesh, NucleusMesh):
+        parts = cell.mesh, cell.nucleus, angles, parameters.shape_weight
+        found = map_compartments(*parts, nucleus_radius, nucleus_angles, cell.system)
         return disk_map(cell, found.relaxed, found.start, parameters, nucleus=found.nucleus)
     method, shape_weight = parameters.method, parameters.shape_weight
     circle = np.column_stack([np.cos(angles), np.sin(angles)])

@@ -232,7 +232,7 @@ class _Problem(GaussNewton):
     def vertex_shares(self) -> FloatArray:
         """A third of the shares of the triangles around each vertex, shape (V,)."""
         corner_share = np.repeat(self._cell.share / 3.0, 3)
-        return np.bincount(self._cell.triangles.ravel(), corner_share)
+        return np.asarray(np.bincount(self._cell.triangles.ravel(), corner_share), dtype=np.float64)
 
     def own_energy(self, uv: FloatArray) -> float:
         return float(averaged_energy(uv, self._cell, self.shape_weight))

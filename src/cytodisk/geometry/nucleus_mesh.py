@@ -142,6 +142,6 @@ def _check_parts(mesh: NucleusMesh) -> None:
         edges = half_edges(renumbered.reshape(-1, 3), len(used))
         if edges.euler_characteristic != expected:
             raise MeshError(
-                f"mesh of the {name} has the Euler characteristic {edges.euler_characteristic}, not {expected}: "
-                "the nuclear outline does not run once around inside the cell"
+                f"mesh of the {name} has the Euler characteristic {edges.euler_characteristic}, not "
+                f"{expected}: the nuclear outline does not run once around inside the cell"
             )

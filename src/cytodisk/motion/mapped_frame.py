@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from cytodisk.disk.cell_mesh import CellMesh, mesh_cell
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.disk.mapping import CellMesh, map_mesh, mesh_cell
+from cytodisk.disk.mapping import map_mesh
 from cytodisk.disk.mapping_parameters import NEWTON_METHODS
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.still_interior import fade_in_px, still_map

@@ -9,9 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from cytodisk.arrays import FloatArray
+from cytodisk.disk.cell_mesh import CellMesh
 from cytodisk.disk.disk_map import DiskMap, Start
 from cytodisk.disk.harmonic import fading_extension, harmonic_map, vertex_areas
-from cytodisk.disk.mapping import CellMesh, disk_map
+from cytodisk.disk.mapping import disk_map
 from cytodisk.disk.mapping_parameters import NEWTON_METHODS
 from cytodisk.disk.newton_triangles import relax_triangles
 from cytodisk.disk.untangle import untangled

@@ -4,9 +4,9 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from cytodisk.arrays import FloatArray
+from cytodisk.disk.cell_mesh import CellMesh
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.harmonic import harmonic_extension
-from cytodisk.disk.mapping import CellMesh
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.matching import carry
 

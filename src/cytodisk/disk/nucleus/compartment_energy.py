@@ -1,10 +1,10 @@
 """The relaxation energy of a cell with its nucleus: Numba kernels.
 
 It is that of `vertex_energy`, compartment by compartment: each has its own share of the disk's area, and
-triangles give their areas to the interior vertices of their compartment. Triangles of the nucleus lie in its
-own unit disk, (u, v). Those of the cytoplasm lie in (θ, p), p = (1 - r²) / 2 with r the radius in the whole
-disk: there dθ dp is the disk's area, both borders are straight, and so are triangles. Shape is measured in the
-disk, in which dθ counts r and dp counts 1/r, at the triangle's middle, r² = 1 - 2 p.
+triangles give their areas to the interior vertices of their compartment. Triangles of the nucleus lie in
+its own unit disk, (u, v). Those of the cytoplasm lie in (θ, p), p = (1 - r²) / 2 with r the radius in the
+whole disk: there dθ dp is the disk's area, both borders are straight, and so are triangles. Shape is measured
+in the disk, in which dθ counts r and dp counts 1/r, at the triangle's middle, r² = 1 - 2 p.
 
 Vertices on the nuclear outline slide along their circle: of them θ alone is free, and in the nucleus they lie
 at (cos θ, sin θ).
@@ -257,7 +257,7 @@ def _fill_areas(
 
 @njit(cache=True, error_model="numpy")
 def largest_compartment_step(places: FloatArray, direction: FloatArray, cell: CompartmentElements) -> float:
-    """First positive root of any det J(s) along places + s · direction, to first order where vertices slide."""
+    """First positive root of any det J(s) along places + s · direction, to first order if vertices slide."""
     first = np.inf
     for t in range(cell.triangles.shape[0]):
         a, b, c, d, _ = _jacobian(places, t, cell)

@@ -46,8 +46,8 @@ def relax_compartments(
     ----------
     mesh : NucleusMesh
     start : ndarray of shape (V, 2) and dtype float
-        Of the cytoplasm and the nuclear outline (θ, p), p = (1 - r²) / 2; inside the nucleus (u, v) of its own
-        unit disk. Every triangle positive; the membrane stays where it is.
+        Of the cytoplasm and the nuclear outline (θ, p), p = (1 - r²) / 2; inside the nucleus (u, v) of its
+        own unit disk. Every triangle positive; the membrane stays where it is.
     lifts : ndarray of shape (F, 3) and dtype int
         Whole turns to add to the angles of corners.
     radius : float
@@ -112,7 +112,7 @@ class _Compartments(GaussNewton):
             share,
             *shared_out(mesh.triangles, share, system.unknown, n_outline),
             mesh.inside,
-            TURN * lifts,
+            np.asarray(TURN * lifts, dtype=np.float64),
             sliding,
         )
         self._free: BoolArray = np.ones((len(sliding), 2), dtype=bool)

@@ -2,7 +2,8 @@
 
 The polygon has its corners on the circle at given angles. A point at a share s of the way from the centre to
 the point at fraction t of the side from corner i to corner i + 1 goes to radius s and to the angle
-θ_i + t (θ_{i+1} - θ_i). So along the outline the angle is linear from vertex to vertex, as it is in the cytoplasm.
+θ_i + t (θ_{i+1} - θ_i). So along the outline the angle is linear from vertex to vertex, as it is in the
+cytoplasm.
 """
 
 import math
@@ -19,7 +20,8 @@ TURN = 2.0 * math.pi
 def _side_at(angle: float, angles: FloatArray) -> tuple[int, float, float]:
     """Number of the side that holds a direction, and the angles of its ends."""
     angle = angles[0] + (angle - angles[0]) % TURN
-    side = min(max(np.searchsorted(angles, angle, side="right") - 1, 0), len(angles) - 1)
+    found = int(np.searchsorted(angles, angle, side="right")) - 1
+    side = min(max(found, 0), len(angles) - 1)
     end = angles[side + 1] if side < len(angles) - 1 else angles[0] + TURN
     return side, angles[side], end
 

@@ -1,15 +1,15 @@
 """Cytoplasm → cylinder: a one-to-one map to start from, whatever the outlines.
 
-The cytoplasm is a ring between membrane and nuclear outline. On it a function g is harmonic, 0 at the membrane
-and 1 at the nucleus, and the angle θ is harmonic with one turn around the nucleus, given at the membrane. With
-positive weights, the same for both, (θ, g) is one to one, with θ free at the nucleus or given there: Tutte's
-theorem on the cylinder. The free side is one, too: mirror the mesh across the nuclear outline; by symmetry the
-map of both halves, with θ given on either membrane, has the outline on a straight circle.
+The cytoplasm is a ring between membrane and nuclear outline. On it a function g is harmonic, 0 at the
+membrane and 1 at the nucleus, and the angle θ is harmonic with one turn around the nucleus, given at the
+membrane. With positive weights, the same for both, (θ, g) is one to one, with θ free at the nucleus or given
+there: Tutte's theorem on the cylinder. Where θ is free, mirror the mesh across the nuclear outline: by
+symmetry the map of both halves, with θ given on either membrane, has the outline on a straight circle.
 
 References
 ----------
-Gortler, Gotsman & Thurston, "Discrete one-forms on meshes and applications to 3D mesh parameterization", 2006,
-doi:10.1016/j.cagd.2005.05.002.
+Gortler, Gotsman & Thurston, "Discrete one-forms on meshes and applications to 3D mesh parameterization",
+2006, doi:10.1016/j.cagd.2005.05.002.
 """
 
 from __future__ import annotations
@@ -109,8 +109,8 @@ def cylinder_start(
             angles, g, lifts = found
             return CylinderMap(angles, _even_depth(mesh, angles, g, lifts), lifts, weights)
     raise MapError(
-        f"no map of the cytoplasm was found ({len(mesh.vertices_yx)} vertices): in double precision triangles "
-        "turn over; the cell is too branched for its size; try a larger edge_length"
+        f"no map of the cytoplasm was found ({len(mesh.vertices_yx)} vertices): in double precision "
+        "triangles turn over; the cell is too branched for its size; try a larger edge_length"
     )
 
 

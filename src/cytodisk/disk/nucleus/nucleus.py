@@ -18,9 +18,10 @@ from cytodisk.geometry.placed_mask import PlacedMask
 class Nucleus:
     """A nucleus on a circle of its own in the disk.
 
-    On a triangle of the cytoplasm the map is linear in the share of the cytoplasm's disk area between a place
-    and the membrane, (1 - r²) / (1 - R²), and in the turn, θ / 2π. On one of the nucleus it is linear in (u, v)
-    of the nucleus' own unit disk, whose polygon goes to the round disk as `cone` says, and then to radius R.
+    On a triangle of the cytoplasm the map is linear in the share of the cytoplasm's disk area between a
+    place and the membrane, (1 - r²) / (1 - R²), and in the turn, θ / 2π. On one of the nucleus it is linear
+    in (u, v) of the nucleus' own unit disk, whose polygon goes to the round disk as `cone` says, and then to
+    radius R.
 
     Attributes
     ----------
@@ -31,8 +32,8 @@ class Nucleus:
     inside : ndarray of shape (F,) and dtype bool
         Whether each triangle lies in the nucleus.
     places : ndarray of shape (V, 2) and dtype float
-        (share, turn) of the cytoplasm's vertices and of the nuclear outline, shares 0 at the membrane and 1 at
-        the outline; (u, v) in the nucleus' own disk of the others.
+        (share, turn) of the cytoplasm's vertices and of the nuclear outline, shares 0 at the membrane and 1
+        at the outline; (u, v) in the nucleus' own disk of the others.
     lifts : ndarray of shape (F, 3) and dtype int
         Whole turns to add to those of each corner of a triangle of the cytoplasm, so that they fit together.
     placed_mask : PlacedMask
@@ -68,7 +69,7 @@ class Nucleus:
 
     @cached_property
     def boundary_angles(self) -> FloatArray:
-        """Angle of each vertex of the nuclear outline in radians, strictly increasing through one turn, (N,)."""
+        """Angles of the nuclear outline's vertices in radians, increasing through one turn, shape (N,)."""
         return loop_angles(self.places[self.boundary, 1])
 
     def corners(self, triangles: IntArray) -> FloatArray:
@@ -120,6 +121,6 @@ class Nucleus:
 
 
 def loop_angles(turns: FloatArray) -> FloatArray:
-    """Angles in radians along a loop, from its vertices' turns up to whole ones: increasing through one turn."""
+    """Angles in radians along a loop, from turns that leave whole ones open: increasing through one turn."""
     steps = np.mod(np.diff(turns), 1.0)
     return np.asarray(TURN * (turns[0] + np.append(0.0, np.cumsum(steps))))

@@ -1,10 +1,10 @@
 """The proof that a map with a nucleus is a bijection, compartment by compartment, from its arrays alone.
 
-The cytoplasm is mapped onto a cylinder, (share, turn): its corners' turns, with whole turns added, agree along
-every edge that two triangles share, so that the map is continuous. Where all triangles are positive and the two
-border loops go once around their straight circles, the map has degree 1 and every point is reached once. The
-nucleus is mapped onto a convex polygon, as a cell without a nucleus is. On the nuclear outline both have the
-same angles, linear along each edge: together they are a bijection onto the disk.
+The cytoplasm is mapped onto a cylinder, (share, turn): its corners' turns, with whole turns added, agree
+along every edge that two triangles share, so that the map is continuous. Where all triangles are positive and
+the two border loops go once around their straight circles, the map has degree 1 and every point is reached
+once. The nucleus is mapped onto a convex polygon, as a cell without a nucleus is. On the nuclear outline both
+have the same angles, linear along each edge: together they are a bijection onto the disk.
 """
 
 from __future__ import annotations

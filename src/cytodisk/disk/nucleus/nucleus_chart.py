@@ -85,7 +85,7 @@ def circle_points(angles: FloatArray, edge: IntArray, fraction: FloatArray) -> F
 
 
 def _unrolled(corners: FloatArray, numbers: IntArray) -> tuple[FloatArray, IntArray]:
-    """Triangles of the cylinder where turns are from 0 to 1, twice if they cross that cut; and their numbers."""
+    """Triangles of the cylinder at turns from 0 to 1, twice if they cross that cut; and their numbers."""
     low = np.floor(corners[..., 1].min(axis=1))
     first = corners - np.stack([np.zeros_like(low), low], axis=-1)[:, None]
     copies, which = [first], [numbers]

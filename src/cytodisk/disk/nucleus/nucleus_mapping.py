@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from cytodisk.arrays import FloatArray, IntArray
-from cytodisk.disk.cell_mesh import CellMesh, FittedNucleus
+from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.harmonic import Weights, harmonic_map
 from cytodisk.disk.nucleus.compartment_newton import relax_compartments
 from cytodisk.disk.nucleus.cone import TURN
@@ -16,9 +16,27 @@ from cytodisk.disk.nucleus.nucleus import Nucleus
 from cytodisk.disk.relaxed import Relaxed
 from cytodisk.geometry.mesh import Mesh, triangle_areas
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
+from cytodisk.geometry.nucleus_report import NucleusReport
+from cytodisk.geometry.placed_mask import PlacedMask
 
 _STEPS_A_TURN = 2.0**50
 """Turns are whole numbers of such steps, so that adding whole turns is exact."""
+
+
+class FittedNucleus(NamedTuple):
+    """A nucleus that fits its cell.
+
+    Attributes
+    ----------
+    placed_mask : PlacedMask
+    report : NucleusReport
+    centre : ndarray of shape (2,) and dtype float
+        A place well inside it, in the frame of the cell's box.
+    """
+
+    placed_mask: PlacedMask
+    report: NucleusReport
+    centre: FloatArray
 
 
 class MappedCompartments(NamedTuple):
@@ -37,18 +55,20 @@ class MappedCompartments(NamedTuple):
 
 
 def map_compartments(
-    cell: CellMesh,
+    mesh: NucleusMesh,
+    fitted: FittedNucleus,
     angles: FloatArray,
     shape_weight: float,
     nucleus_radius: float | Literal["area"],
     nucleus_angles: FloatArray | None = None,
+    system: BlockSystem | None = None,
 ) -> MappedCompartments:
     """Map a cell and its nucleus onto the disk, with the membrane at given angles.
 
     Parameters
     ----------
-    cell : CellMesh
-        With a nucleus.
+    mesh : NucleusMesh
+    fitted : FittedNucleus
     angles : ndarray of shape (B,) and dtype float
         Of the membrane in radians, strictly increasing, all within one turn.
     shape_weight : float
@@ -56,6 +76,8 @@ def map_compartments(
         "area": the nucleus has its own share of the disk.
     nucleus_angles : ndarray of shape (N,) and dtype float, optional
         Of the nuclear outline; by default it slides.
+    system : BlockSystem, optional
+        Of this mesh, if there is one already.
 
     Returns
     -------
@@ -66,9 +88,9 @@ def map_compartments(
     MapError
         No valid start was found.
     """
-    mesh, fitted = _with_nucleus(cell)
+    system = system or BlockSystem(mesh)
     radius = _own_radius(mesh) if nucleus_radius == "area" else float(nucleus_radius)
-    start = cylinder_start(mesh, angles, fitted.centre, cell.system, nucleus_angles)
+    start = cylinder_start(mesh, angles, fitted.centre, system, nucleus_angles)
     inner = mesh.nucleus_boundary
     circle = np.column_stack([np.cos(start.angles[inner]), np.sin(start.angles[inner])])
     vertices, uv, weights = _nucleus_start(mesh, circle)
@@ -76,7 +98,7 @@ def map_compartments(
     places = np.column_stack([start.angles, half * start.depth])
     places[vertices] = uv
     relaxed = relax_compartments(
-        mesh, places, start.lifts, radius, shape_weight, cell.system, slide=nucleus_angles is None
+        mesh, places, start.lifts, radius, shape_weight, system, slide=nucleus_angles is None
     )
     turned, lifts = _in_turns(mesh, relaxed.vertices_uv, start, half)
     nucleus = Nucleus(radius, inner, mesh.inside, turned, lifts, fitted.placed_mask, fitted.report)
@@ -85,19 +107,13 @@ def map_compartments(
     return MappedCompartments(Relaxed(uv, relaxed.steps, relaxed.converged), worse, nucleus)
 
 
-def _with_nucleus(cell: CellMesh) -> tuple[NucleusMesh, FittedNucleus]:
-    if cell.nucleus is None or not isinstance(cell.mesh, NucleusMesh):
-        raise TypeError("the cell has no nucleus")
-    return cell.mesh, cell.nucleus
-
-
 def _own_radius(mesh: NucleusMesh) -> float:
     areas = triangle_areas(mesh.vertices_yx, mesh.triangles)
     return float(np.sqrt(areas[mesh.inside].sum() / areas.sum()))
 
 
 def _nucleus_start(mesh: NucleusMesh, circle: FloatArray) -> tuple[IntArray, FloatArray, Weights]:
-    """Vertices inside the nucleus, and where the harmonic map of the nucleus alone has them in its own disk."""
+    """Vertices inside the nucleus, and where its own harmonic map has them in its own disk."""
     vertices = np.flatnonzero(mesh.vertex_inside)
     used = np.concatenate([mesh.nucleus_boundary, vertices])
     number = np.empty(len(mesh.vertices_yx), dtype=np.int64)

@@ -19,8 +19,8 @@ class NucleusParameters(Parameters):
     nucleus_radius: NucleusRadius = parameter(
         0.5,
         "Where a nucleus is given, the radius of its circle in the disk, the same for all cells, so that "
-        'windows can be compared between them. "area": in each cell the radius that gives the nucleus its own '
-        "share of the area.",
+        'windows can be compared between them. "area": in each cell the radius that gives the nucleus its '
+        "own share of the area.",
         words=f"'area' or a number from {LEAST_RADIUS} to {MOST_RADIUS}",
     )
     several: SeveralPolicy = parameter(
