@@ -7,7 +7,8 @@ from hypothesis.extra.numpy import arrays
 from scipy import ndimage
 
 from cytodisk.errors import MaskError, ParameterError
-from cytodisk.geometry.mask import clean_mask, parse_mask
+from cytodisk.geometry.mask import clean_mask
+from cytodisk.geometry.mask_values import parse_mask
 
 
 def drawn(*rows: str) -> np.ndarray:
@@ -121,7 +122,7 @@ def test_mask_errors_say_what_came_and_what_to_do(
 
 @pytest.mark.parametrize("name", ["holes", "fragments", "border"])
 def test_an_unknown_policy_is_refused(name: str) -> None:
-    with pytest.raises(ParameterError, match=f"{name} must be '.*' or 'error', got 'ignore'"):
+    with pytest.raises(ParameterError, match=f"{name} must be one of .*error, got 'ignore'"):
         clean_mask(RING, **{name: "ignore"})
 
 

@@ -14,7 +14,7 @@ from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.disk.nucleus.nucleus_mapping import FittedNucleus
 from cytodisk.errors import ParameterError
 from cytodisk.geometry.depth import depth_of
-from cytodisk.geometry.mask import MaskReport, clean_mask
+from cytodisk.geometry.mask import FilledMask, MaskReport
 from cytodisk.geometry.mesh import Mesh, mesh_inside
 from cytodisk.geometry.nucleus_mask import SeveralPolicy, fit_nucleus
 from cytodisk.geometry.nucleus_mesh import NucleusMesh, mesh_with_nucleus
@@ -40,6 +40,8 @@ class CellMesh:
         First pixel of the bounding box.
     edge_length : float
     scale : Scale
+    holes : PlacedMask or None
+        Holes in the mask that belong to no window.
     nucleus : FittedNucleus or None
         Then the mesh is a `NucleusMesh`.
     """
@@ -50,6 +52,7 @@ class CellMesh:
     corner: FloatArray
     edge_length: float
     scale: Scale
+    holes: PlacedMask | None
     nucleus: FittedNucleus | None = None
 
     @cached_property
@@ -110,23 +113,24 @@ def mesh_cell(
     corner, image_shape = (0, 0), ()
     if isinstance(mask, PlacedMask):
         mask, corner, image_shape = mask.box, mask.corner, mask.image_shape
-    cleaned, report = clean_mask(mask)
-    placed = PlacedMask.of(cleaned, corner, image_shape)
+    found = FilledMask.of(mask)
+    placed = PlacedMask.of(found.filled, corner, image_shape)
     spacing = _ISOTROPIC if parameters.method == "advection" else {}
     first, outline = np.array(placed.corner, dtype=np.float64), trace_outline(placed.box)
     if nucleus is None:
+        found = found.under(parameters.holes)
+        holes = None if found.holes is None else placed.beside(found.holes, corner)
         mesh = mesh_inside(outline, placed.box, edge_length=parameters.spacing_px, **spacing)
-        return CellMesh(placed, report, mesh, first, parameters.spacing_px, scale)
+        return CellMesh(placed, found.report, mesh, first, parameters.spacing_px, scale, holes)
     if parameters.method != "newton":
         raise ParameterError(f'a nucleus needs method "newton", got {parameters.method!r}')
-    fitted, found = fit_nucleus(cleaned, nucleus, several=several)
-    own = PlacedMask.of(fitted, corner, image_shape)
-    (top, left), (height, width) = np.subtract(placed.corner, corner), placed.box.shape
-    inner = fitted[top : top + height, left : left + width]
+    fitted, changes = fit_nucleus(found.filled, nucleus, several=several)
+    found = found.under(parameters.holes, fitted)
+    holes = None if found.holes is None else placed.beside(found.holes, corner)
+    inner = placed.beside(fitted, corner).box
     both = mesh_with_nucleus(outline, placed.box, inner, edge_length=parameters.spacing_px)
-    return CellMesh(
-        placed, report, both, first, parameters.spacing_px, scale, FittedNucleus(own, found, _deepest(inner))
-    )
+    own = FittedNucleus(PlacedMask.of(fitted, corner, image_shape), changes, _deepest(inner))
+    return CellMesh(placed, found.report, both, first, parameters.spacing_px, scale, holes, own)
 
 
 def _deepest(mask: BoolArray) -> FloatArray:

@@ -9,10 +9,15 @@ from scipy import ndimage
 from cytodisk.arrays import FloatArray
 from cytodisk.checks import whole_number
 from cytodisk.errors import SignalError
+from cytodisk.geometry.placed_mask import PlacedMask
 
 
 def image_on_disk(
-    signal: Any, image_shape: tuple[int, ...], to_cell: Callable[[FloatArray], FloatArray], size: int
+    signal: Any,
+    image_shape: tuple[int, ...],
+    to_cell: Callable[[FloatArray], FloatArray],
+    size: int,
+    left_out: PlacedMask | None = None,
 ) -> FloatArray:
     """Read a signal at the place in the cell of each pixel of the disk, linear between pixels.
 
@@ -25,6 +30,8 @@ def image_on_disk(
         From (u, v) to (row, column), both of shape (N, 2).
     size : int
         Pixels across the disk.
+    left_out : PlacedMask, optional
+        Pixels of the cell where the disk has no signal.
 
     Returns
     -------
@@ -53,4 +60,7 @@ def image_on_disk(
     inside = np.isfinite(points[:, 0])
     out = np.full(size * size, np.nan)
     out[inside] = ndimage.map_coordinates(values, points[inside].T, order=1, mode="nearest")
+    if left_out is not None:
+        nearest = np.rint(points[inside]).astype(np.int64)
+        out[np.flatnonzero(inside)[left_out.whole[tuple(nearest.T)]]] = np.nan
     return out.reshape(size, size)

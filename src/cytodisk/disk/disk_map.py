@@ -50,7 +50,7 @@ class DiskMap:
     boundary : ndarray of shape (B,) and dtype int
         The boundary loop in order, from +x towards +y.
     placed_mask : PlacedMask
-        The cleaned mask that was mapped, as its box in the image; `mask` is the whole of it.
+        The mask that was mapped, cleaned and filled, as its box in the image; `mask` is the whole of it.
     report : MaskReport
         What cleaning changed.
     method : {"newton", "newton-triangles", "harmonic", "advection"}
@@ -67,6 +67,9 @@ class DiskMap:
         Scale of the image: µm per pixel, and in a movie seconds per frame, where they are known.
     nucleus : Nucleus or None
         The cell's nucleus, where it was given: then the map is linear in other places, as `Nucleus` says.
+    holes : PlacedMask or None
+        Holes in the mask that belong to no window, in the same box; None if there are none, or if they count
+        as cell.
 
     Examples
     --------
@@ -93,6 +96,7 @@ class DiskMap:
     converged: bool
     scale: Scale = UNKNOWN
     nucleus: Nucleus | None = None
+    holes: PlacedMask | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """What is computed from the fields is not sent to other processes."""
@@ -106,8 +110,13 @@ class DiskMap:
 
     @property
     def mask(self) -> BoolArray:
-        """The cleaned mask, shape (H, W) and dtype bool; made anew each time."""
+        """The cleaned mask, its holes filled, shape (H, W) and dtype bool; made anew each time."""
         return self.placed_mask.whole
+
+    @property
+    def mask_without_holes(self) -> BoolArray:
+        """The same without excluded holes; made anew each time."""
+        return self.mask if self.holes is None else self.mask & ~self.holes.whole
 
     @property
     def outline_yx(self) -> FloatArray:
@@ -220,7 +229,7 @@ class DiskMap:
         Returns
         -------
         ndarray of shape (size, size) and dtype float
-            Row along v, column along u, both from -1 to 1; NaN outside the disk.
+            Row along v, column along u, both from -1 to 1; NaN outside the disk, and in excluded holes.
 
         Raises
         ------
@@ -229,7 +238,7 @@ class DiskMap:
         ParameterError
             `size` is below 1.
         """
-        return image_on_disk(signal, self.placed_mask.image_shape, self.to_cell, size)
+        return image_on_disk(signal, self.placed_mask.image_shape, self.to_cell, size, self.holes)
 
     def placed(self, corner: tuple[int, int], image_shape: tuple[int, int]) -> DiskMap:
         """The same map in the image that its mask was cut out of.
@@ -247,7 +256,8 @@ class DiskMap:
         moved = self.vertices_yx + np.array(corner, dtype=np.float64)
         mask = self.placed_mask.within(corner, image_shape)
         nucleus = None if self.nucleus is None else self.nucleus.placed(corner, image_shape)
-        return replace(self, placed_mask=mask, vertices_yx=moved, nucleus=nucleus)
+        holes = None if self.holes is None else self.holes.within(corner, image_shape)
+        return replace(self, placed_mask=mask, vertices_yx=moved, nucleus=nucleus, holes=holes)
 
     def save(self, path: str | os.PathLike[str], beside: Mapping[str, FloatArray] | None = None) -> None:
         """Write the map to a `.npz` file that `load_map` reads back.
@@ -270,7 +280,7 @@ class DiskMap:
         header = {"report": asdict(self.report), **asdict(self.scale), **facts}
         arrays = {name: getattr(self, name) for name in _ARRAYS if name != "vertices_uv"}
         beside = {**(beside or {}), "vertices_uv": self.vertices_uv}
-        write_map_file(path, header, self.placed_mask, arrays, beside, self.nucleus)
+        write_map_file(path, header, (self.placed_mask, self.holes), arrays, beside, self.nucleus)
 
     @cached_property
     def chart(self) -> Chart:

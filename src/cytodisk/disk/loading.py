@@ -40,7 +40,7 @@ def load_map(path: str | os.PathLike[str]) -> DiskMap:
     >>> disk.certificate.valid
     True
     """
-    header, mask, arrays, nucleus = read_map_file(path)
+    header, mask, arrays, nucleus, holes = read_map_file(path)
     return DiskMap(
         placed_mask=mask,
         report=MaskReport(**header["report"]),
@@ -48,4 +48,5 @@ def load_map(path: str | os.PathLike[str]) -> DiskMap:
         **{name: header[name] for name in FACTS},
         scale=Scale(header.get("pixel_size_um"), header.get("frame_interval_s")),
         nucleus=nucleus,
+        holes=holes,
     )

@@ -5,10 +5,11 @@ import math
 import os
 import zipfile
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 from io import BytesIO
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple, Required
+from typing import Annotated, Any, Literal, NamedTuple, NotRequired, Required
 
 import numpy as np
 from pydantic import ConfigDict, Field, TypeAdapter, with_config
@@ -26,7 +27,7 @@ from cytodisk.parameter_words import short_words
 from cytodisk.reading_files import checked, json_of
 
 _FORMAT = 4
-_OLDER = (2, 3)  # without nuclei; in 2 "newton" relaxed as "newton-triangles" does in later ones
+_OLDER = (2, 3)  # without nuclei and holes; in 2 "newton" relaxed as "newton-triangles" does in later ones
 _FASTEST = 1  # level of compression
 _WHAT = "a map that DiskMap.save wrote"
 _REMEDY = "make it again, with cytodisk map or map_to_disk"
@@ -39,7 +40,7 @@ _RIGHTS = 0o600  # of an array's file where the archive is unpacked
 def write_map_file(
     path: str | os.PathLike[str],
     header: Mapping[str, Any],
-    mask: PlacedMask,
+    masks: tuple[PlacedMask, PlacedMask | None],
     arrays: Mapping[str, FloatArray | IntArray],
     numbers: Mapping[str, Any],
     nucleus: Nucleus | None = None,
@@ -51,7 +52,8 @@ def write_map_file(
     path : path-like
     header : dict
         Can be written as JSON.
-    mask : PlacedMask
+    masks : (PlacedMask, PlacedMask or None)
+        That of the cell, and its holes that belong to no window, in the same box.
     arrays : dict of str to ndarray
         Arrays that compression makes smaller. It is the fastest one: the best takes ten times as long for
         files of nearly the same size.
@@ -68,13 +70,15 @@ def write_map_file(
     """
     if Path(path).suffix != ".npz":
         raise ParameterError(f"path must end in .npz, got {path}")
+    mask, holes = masks
+    boxes = {"mask": mask.box} if holes is None else {"mask": mask.box, "holes": holes.box}
     place = {"corner": mask.corner, "image_shape": mask.image_shape}
     if nucleus is not None:
         header = {**header, "nucleus": nucleus_header(nucleus)}
         arrays, numbers = {**arrays, **nucleus_arrays(nucleus)}, {**numbers, "nucleus_places": nucleus.places}
     text = json.dumps({"format": _FORMAT, **header, **place})
     with replacing(path) as temporary, zipfile.ZipFile(temporary, "w") as archive:
-        _write(archive, {"mask": mask.box, **arrays}, zipfile.ZIP_DEFLATED)
+        _write(archive, {**boxes, **arrays}, zipfile.ZIP_DEFLATED)
         _write(archive, {"header": np.array(text), **numbers}, zipfile.ZIP_STORED)
 
 
@@ -97,12 +101,14 @@ class MapContent(NamedTuple):
     arrays : dict of str to ndarray
         "vertices_yx", "vertices_uv", "triangles" and "boundary".
     nucleus : Nucleus or None
+    holes : PlacedMask or None
     """
 
     header: dict[str, Any]
     mask: PlacedMask
     arrays: dict[str, Any]
     nucleus: Nucleus | None
+    holes: PlacedMask | None
 
 
 _Count = Annotated[int, Field(ge=0, lt=2**53)]
@@ -120,6 +126,8 @@ class _Report(TypedDict):
     holes: _Count
     filled_px: _Count
     border_share: _Share
+    excluded_px: NotRequired[_Count]
+    nucleus_in_holes_px: NotRequired[_Count]
 
 
 @with_config(_STRICT)
@@ -167,7 +175,9 @@ def read_map_file(path: str | os.PathLike[str]) -> MapContent:
         placed = _read_mask(archive, header, arrays["vertices_yx"])
         about = header.get("nucleus")
         nucleus = None if about is None else read_nucleus(archive, about, arrays, placed)
-    return MapContent(header, placed, arrays, nucleus)
+        excluded = header["report"].get("excluded_px", 0)
+        holes = _read_holes(archive, placed, excluded) if excluded else None
+    return MapContent(header, placed, arrays, nucleus, holes)
 
 
 def _read_header(path: str | os.PathLike[str], archive: ArrayArchive) -> dict[str, Any]:
@@ -231,3 +241,11 @@ def _read_mask(archive: ArrayArchive, header: Mapping[str, Any], vertices_yx: Fl
     if not box.any() or (low < corner - slack).any() or (high > end + slack).any():
         raise archive.fault("mask", "is not that of the cell that vertices_yx describe")
     return PlacedMask(box, tuple(header["corner"]), tuple(image_shape))
+
+
+def _read_holes(archive: ArrayArchive, placed: PlacedMask, n_pixels: int) -> PlacedMask:
+    """Holes in the mask, which must be so many pixels of it, and not all."""
+    box = archive.truths("holes", placed.box.shape, most=placed.box.shape)
+    if box.sum() != n_pixels or (box & ~placed.box).any() or n_pixels == placed.box.sum():
+        raise archive.fault("holes", "are not those of the mask")
+    return replace(placed, box=box)

@@ -36,7 +36,7 @@ def map_to_disk(
     """Map one cell one to one onto the unit disk, with its nucleus on a circle of its own if it is given.
 
     The mask is first reduced to its largest piece without holes (`clean_mask`); the map's `report` says what
-    that changed. The nucleus is fitted into the cell (`fit_nucleus`), as the report of the map's `nucleus`
+    that changed. With `holes="exclude"` the map is the same, and knows the holes: `holes`. The nucleus is fitted into the cell (`fit_nucleus`), as the report of the map's `nucleus`
     says.
 
     Parameters
@@ -229,6 +229,7 @@ def disk_map(
         converged=relaxed.converged,
         scale=cell.scale,
         nucleus=nucleus,
+        holes=cell.holes,
     )
     if parameters.method != "advection" and not disk.certificate.valid:
         raise MapError(f"no valid map was found: {'; '.join(disk.certificate.faults)}")

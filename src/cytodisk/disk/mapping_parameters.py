@@ -3,6 +3,7 @@
 from typing import Literal, TypeAlias
 
 from cytodisk.disk.nucleus.nucleus_parameters import NucleusParameters
+from cytodisk.geometry.mask_parameters import HoleParameters
 from cytodisk.parameters import Parameters, parameter
 from cytodisk.scale_parameters import PixelSizeParameters
 
@@ -33,7 +34,7 @@ class MethodParameters(Parameters):
     )
 
 
-class MeshParameters(Parameters):
+class MeshParameters(HoleParameters):
     """How a cell is meshed, relaxed and turned, whatever the method."""
 
     shape_weight: float = parameter(

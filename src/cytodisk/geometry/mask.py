@@ -1,18 +1,24 @@
 """A raw mask → one cell without holes, and a report of every change that took."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from scipy import ndimage
 
 from cytodisk.arrays import BoolArray
-from cytodisk.errors import EmptyMaskError, MaskError, ParameterError
+from cytodisk.errors import MaskError
+from cytodisk.geometry.mask_parameters import CleaningParameters, Holes
+from cytodisk.geometry.mask_values import parse_mask
 from cytodisk.geometry.outline import has_one_outline, pixel_edges
 from cytodisk.geometry.placed_mask import PlacedMask
+from cytodisk.taking import takes
 
 # Shares from which on a mask gets a QC flag: area in dropped pieces, area in holes, edge on the border.
 _LARGE_DROPPED, _FLAGGED_DROPPED, _FLAGGED_FILLED, _FLAGGED_BORDER = 0.1, 0.005, 0.02, 0.5
+_FLAGGED_EXCLUDED = 0.1  # of the area within the outline
 _IF_CELLS = "if they are cells, number the pieces (--label)"
 _EIGHT = np.ones((3, 3), dtype=bool)
 _FOUR = ndimage.generate_binary_structure(2, 1)
@@ -25,18 +31,22 @@ class MaskReport:
     Attributes
     ----------
     area_px : int
-        Pixels of the cleaned mask.
+        Pixels of the cell: of the cleaned mask, without excluded holes.
     components : int
         Connected pieces (8-connected) that came.
     dropped_px : int
         Pixels of all pieces but the largest; they are not part of the cell any more.
     holes : int
-        Holes (4-connected background) that were filled.
+        Holes (4-connected background) that came.
     filled_px : int
-        Pixels of those holes; they are part of the cell now.
+        Pixels of those holes that are part of the cell now.
     border_share : float
         Share of the cell's pixel edges that lie on the image border, 0 to 1; above 0 the cell may go
         on outside the image.
+    excluded_px : int
+        Pixels of the holes that are no part of the cell, though its map goes over them.
+    nucleus_in_holes_px : int
+        Pixels of the holes that are its nucleus, which counts as cell: many masks leave it out.
 
     Examples
     --------
@@ -56,6 +66,13 @@ class MaskReport:
     holes: int
     filled_px: int
     border_share: float
+    excluded_px: int = 0
+    nucleus_in_holes_px: int = 0
+
+    @property
+    def excluded_share(self) -> float:
+        """Share of the area within the outline that excluded holes take, 0 to 1."""
+        return self.excluded_px / (self.area_px + self.excluded_px)
 
     @property
     def touches_border(self) -> bool:
@@ -72,11 +89,20 @@ class MaskReport:
                 f"{_count(self.components - 1, 'fragment')} dropped ({self.dropped_px} px, {share:.1%})"
             )
         if self.holes:
-            share = self.filled_px / self.area_px
-            notes.append(f"{_count(self.holes, 'hole')} filled ({self.filled_px} px, {share:.1%})")
+            notes.append(self._hole_note)
         if self.touches_border:
             notes.append(f"touches the image border ({self.border_share:.1%} of its edge)")
         return tuple(notes)
+
+    @property
+    def _hole_note(self) -> str:
+        holes, filled = (
+            _count(self.holes, "hole"),
+            f"{self.filled_px} px, {self.filled_px / self.area_px:.1%}",
+        )
+        excluded = f"{self.excluded_px} px, {self.excluded_share:.1%}"
+        words = f"{holes} excluded ({excluded})" if self.excluded_px else f"{holes} filled ({filled})"
+        return words + (f", {self.nucleus_in_holes_px} px nucleus" if self.nucleus_in_holes_px else "")
 
     @property
     def qc_flags(self) -> tuple[str, ...]:
@@ -87,8 +113,13 @@ class MaskReport:
         elif self.dropped_px > _FLAGGED_DROPPED * self.area_px:
             found = _count(self.components - 1, "small piece")
             qc_flags.append(f"{found} dropped ({self.dropped_px} px): {_IF_CELLS}")
-        if self.filled_px > _FLAGGED_FILLED * self.area_px:
+        if self.filled_px - self.nucleus_in_holes_px > _FLAGGED_FILLED * self.area_px:
             qc_flags.append("perhaps several touching cells: what was a hole is measured as cell")
+        if self.excluded_share > _FLAGGED_EXCLUDED:
+            qc_flags.append(
+                f"holes take {self.excluded_share:.0%} of the area within the outline: windows there hold "
+                "less, or nothing"
+            )
         if self.border_share > _FLAGGED_BORDER:
             qc_flags.append("perhaps inverted or cut off: most of its edge is the image border")
         return tuple(qc_flags)
@@ -98,84 +129,81 @@ def _count(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
-def parse_mask(mask: Any) -> BoolArray:
-    """Check that an array is the mask of one cell and make it boolean.
+@dataclass(frozen=True, eq=False)
+class FilledMask:
+    """The mask of a cell without holes, and the holes.
 
-    Parameters
+    Attributes
     ----------
-    mask : array_like of shape (H, W)
-        Boolean, or numbers with at most one value beside 0 (for floats: exactly 0 and 1). Of a DataArray the
-        dims y and x may come in any order.
-
-    Returns
-    -------
-    ndarray of shape (H, W) and dtype bool
-
-    Raises
-    ------
-    MaskError
-        Not 2D, several labels, or floats other than 0 and 1.
-    EmptyMaskError
-        No pixel belongs to the cell.
+    filled : ndarray of shape (H, W) and dtype bool
+        The largest piece, all holes filled: the mask that is mapped.
+    holes : ndarray of shape (H, W) and dtype bool, or None
+        Pixels of it that are holes; None if there are none.
+    report : MaskReport
     """
-    if getattr(mask, "dims", None) == ("x", "y"):  # a DataArray goes by its names
-        mask = mask.transpose("y", "x")
-    try:
-        array = np.asarray(mask)
-    except ValueError as error:
-        raise MaskError(f"mask must be an array of shape (H, W): {error}") from error
-    if array.ndim != 2:
-        raise MaskError(
-            f"mask must be 2D, got shape {array.shape}: pass one image, for a stack one frame at a time"
-        )
-    if array.dtype == bool:
-        parsed: BoolArray = array
-    elif np.issubdtype(array.dtype, np.integer):
-        parsed = _parse_integers(array)
-    elif np.issubdtype(array.dtype, np.floating):
-        parsed = _parse_floats(array)
-    else:
-        raise MaskError(f"mask must be boolean or numeric, got dtype {array.dtype}: pass mask > 0")
-    if not parsed.any():
-        raise EmptyMaskError(f"mask of shape {array.shape} is empty: no pixel belongs to the cell")
-    return parsed
+
+    filled: BoolArray
+    holes: BoolArray | None
+    report: MaskReport
+
+    @classmethod
+    def of(cls, mask: Any) -> FilledMask:
+        """The largest piece of a raw mask, and its holes; the report counts these as filled.
+
+        Raises
+        ------
+        MaskError
+            The mask is not one, or is empty (EmptyMaskError).
+        """
+        raw = parse_mask(mask)
+        placed = PlacedMask.of(raw)
+        piece, holes, report = _pieces(placed.box)
+        solid = piece if holes is None else piece | holes
+        if report.components > 1 or report.holes:
+            raw = replace(placed, box=solid).whole
+        report = replace(report, border_share=_border_share(raw, solid))
+        return cls(raw, None if holes is None else replace(placed, box=holes).whole, report)
+
+    def under(self, policy: Holes, nucleus: BoolArray | None = None) -> FilledMask:
+        """The same where holes are treated by a policy.
+
+        Parameters
+        ----------
+        policy : {"fill", "exclude", "error"}
+        nucleus : ndarray of shape (H, W) and dtype bool, optional
+            Pixels that are part of the cell even in a hole.
+
+        Returns
+        -------
+        FilledMask
+            Its holes are those that are excluded.
+
+        Raises
+        ------
+        MaskError
+            The policy is "error", and there are holes.
+        """
+        if self.holes is None:
+            return self
+        holes, in_nucleus, report = self.holes, 0, self.report
+        if nucleus is not None:
+            in_nucleus, holes = int((holes & nucleus).sum()), holes & ~nucleus
+            report = replace(report, nucleus_in_holes_px=in_nucleus)
+        left = report.filled_px - in_nucleus
+        if policy == "fill" or not left:
+            return FilledMask(self.filled, None, report)
+        if policy == "error":
+            found = f"{_count(report.holes, 'hole')} ({left} px)"
+            raise MaskError(
+                f"mask has {found}: fill them, or pass holes='fill', or 'exclude' to leave them out of all "
+                "windows (--holes exclude)"
+            )
+        excluded = replace(report, area_px=report.area_px - left, filled_px=in_nucleus, excluded_px=left)
+        return FilledMask(self.filled, holes, excluded)
 
 
-def _parse_integers(array: np.ndarray[Any, Any]) -> BoolArray:
-    if array.min(initial=0) < 0:
-        raise MaskError(f"mask has negative values (down to {array.min()}): set what is no cell to 0")
-    inside: BoolArray = array != 0
-    values = array[inside]
-    if values.size and values.min() != values.max():
-        labels = np.unique(values)
-        raise MaskError(
-            f"mask holds {len(labels)} labels ({labels[0]} … {labels[-1]}): pass one cell, as mask == label, "
-            "or where each label is a cell, kind='labels' (--kind labels)"
-        )
-    return inside
-
-
-def _parse_floats(array: np.ndarray[Any, Any]) -> BoolArray:
-    if np.isin(array, (0.0, 1.0)).all():
-        return np.asarray(array == 1.0)
-    if not np.isfinite(array).all():
-        raise MaskError(
-            f"mask is {array.dtype} with values that are NaN or infinite: set what is no cell to 0"
-        )
-    raise MaskError(
-        f"mask is {array.dtype} with values other than 0 and 1 "
-        f"({array.min():g} … {array.max():g}): "
-        "threshold it first, as image > threshold"
-    )
-
-
-def clean_mask(
-    mask: Any,
-    *,
-    holes: Literal["fill", "error"] = "fill",
-    fragments: Literal["largest", "error"] = "largest",
-    border: Literal["flag", "error"] = "flag",
-) -> tuple[BoolArray, MaskReport]:
+@takes(CleaningParameters)
+def clean_mask(mask: Any, **settings: Any) -> tuple[BoolArray, MaskReport]:
     """Reduce a mask to one piece without holes, and count every change.
 
     Nothing else is changed: no opening, no closing, since thin protrusions are data.
@@ -184,16 +212,13 @@ def clean_mask(
     ----------
     mask : array_like of shape (H, W)
         One cell: boolean, whole numbers with one value beside 0, or floats that are 0 and 1.
-    holes : {"fill", "error"}
-        What to do with background enclosed by the cell (4-connected).
-    fragments : {"largest", "error"}
-        What to do with several pieces (8-connected): keep the largest (the first of equals), or raise.
-    border : {"flag", "error"}
-        What to do with a cell at the image border: note it in the report, or raise.
+    **settings
+        See `CleaningParameters`.
 
     Returns
     -------
     mask : ndarray of shape (H, W) and dtype bool
+        With `holes="exclude"` it still has its holes.
     report : MaskReport
 
     Raises
@@ -220,37 +245,24 @@ def clean_mask(
     >>> report.dropped_px, int(mask.sum() - cleaned.sum())
     (1, 1)
     """
-    _check_policies(holes, fragments, border)
-    raw = parse_mask(mask)
-    placed = PlacedMask.of(raw)
-    solid, report = _cleaned(placed.box)
-    if report.components > 1 or report.holes:
-        raw = replace(placed, box=solid).whole
-    report = replace(report, border_share=_border_share(raw, solid))
-    if fragments == "error" and report.components > 1:
-        raise MaskError(f"mask has {report.components} pieces: keep one, or pass fragments='largest'")
-    if holes == "error" and report.holes:
-        found = f"{report.holes} holes ({report.filled_px} px)"
-        raise MaskError(f"mask has {found}: fill them, or pass holes='fill'")
-    if border == "error" and report.touches_border:
+    policies = CleaningParameters.of(**settings)
+    found = FilledMask.of(mask)
+    if policies.fragments == "error" and found.report.components > 1:
+        raise MaskError(f"mask has {found.report.components} pieces: keep one, or pass fragments='largest'")
+    found = found.under(policies.holes)
+    if policies.border == "error" and found.report.touches_border:
         raise MaskError("mask touches the image border: leave the cell out, or pass border='flag'")
-    return raw, report
+    return found.filled if found.holes is None else found.filled & ~found.holes, found.report
 
 
-def _cleaned(crop: BoolArray) -> tuple[BoolArray, MaskReport]:
+def _pieces(crop: BoolArray) -> tuple[BoolArray, BoolArray | None, MaskReport]:
+    """The largest piece, its holes if it has any, and what that changed but for the border."""
     if has_one_outline(crop):
-        return crop, MaskReport(int(crop.sum()), 1, 0, 0, 0, 0.0)
+        return crop, None, MaskReport(int(crop.sum()), 1, 0, 0, 0, 0.0)
     piece, components, dropped = _largest_piece(crop)
-    solid, n_holes = _filled(piece)
-    filled = int(solid.sum() - piece.sum())
-    return solid, MaskReport(int(solid.sum()), components, dropped, n_holes, filled, 0.0)
-
-
-def _check_policies(holes: str, fragments: str, border: str) -> None:
-    known = (("holes", holes, "fill"), ("fragments", fragments, "largest"), ("border", border, "flag"))
-    for name, value, other in known:
-        if value not in (other, "error"):
-            raise ParameterError(f"{name} must be {other!r} or 'error', got {value!r}")
+    holes, n_holes = _holes(piece)
+    filled = 0 if holes is None else int(holes.sum())
+    return piece, holes, MaskReport(int(piece.sum()) + filled, components, dropped, n_holes, filled, 0.0)
 
 
 def _largest_piece(raw: BoolArray) -> tuple[BoolArray, int, int]:
@@ -262,13 +274,13 @@ def _largest_piece(raw: BoolArray) -> tuple[BoolArray, int, int]:
     return piece, int(count), int(areas.sum() - areas.max())
 
 
-def _filled(piece: BoolArray) -> tuple[BoolArray, int]:
+def _holes(piece: BoolArray) -> tuple[BoolArray | None, int]:
     # Background is 4-connected where the cell is 8-connected, so that a diagonal contact closes a hole.
     labels, count = ndimage.label(np.pad(~piece, 1, constant_values=True), structure=_FOUR)
     if count == 1:
-        return piece, 0
-    solid: BoolArray = (labels != labels[0, 0])[1:-1, 1:-1]
-    return solid, int(count) - 1
+        return None, 0
+    holes: BoolArray = ((labels != 0) & (labels != labels[0, 0]))[1:-1, 1:-1]
+    return holes, int(count) - 1
 
 
 def _border_share(mask: BoolArray, crop: BoolArray) -> float:

@@ -11,7 +11,7 @@ from scipy import ndimage
 from cytodisk.arrays import BoolArray
 from cytodisk.checks import one_of
 from cytodisk.errors import MaskError, NucleusError
-from cytodisk.geometry.mask import parse_mask
+from cytodisk.geometry.mask_values import parse_mask
 from cytodisk.geometry.nucleus_pieces import NucleusPieces, joined, listed_areas, without_holes
 from cytodisk.geometry.nucleus_report import NucleusReport
 from cytodisk.geometry.outline import has_one_outline

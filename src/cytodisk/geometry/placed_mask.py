@@ -68,6 +68,19 @@ class PlacedMask:
         pixels: IntArray = np.argwhere(self.box) + np.array(self.corner)
         return pixels
 
+    def beside(self, mask: BoolArray, corner: Sequence[int] = (0, 0)) -> PlacedMask:
+        """What another mask has in the same box.
+
+        Parameters
+        ----------
+        mask : ndarray of shape (H, W) and dtype bool
+        corner : (int, int)
+            (row, column) of its first pixel in the image.
+        """
+        y, x = self.corner[0] - corner[0], self.corner[1] - corner[1]
+        height, width = self.box.shape
+        return replace(self, box=mask[y : y + height, x : x + width].copy())
+
     def within(self, corner: tuple[int, int], image_shape: tuple[int, int]) -> PlacedMask:
         """The same mask in a larger image that its own was cut out of at a corner."""
         (y, x), (row, column) = self.corner, corner

@@ -12,11 +12,13 @@ from scipy.ndimage import distance_transform_edt
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.circle import boundary_angles
 from cytodisk.disk.disk_map import DiskMap
-from cytodisk.geometry.mask import clean_mask
+from cytodisk.geometry.mask import FilledMask
+from cytodisk.geometry.mask_parameters import Holes
 from cytodisk.geometry.outline import trace_outline
+from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.taking import takes
-from cytodisk.windows.grid_parameters import EdgeGridParameters
+from cytodisk.windows.grid_parameters import EdgeGridParameters, EdgeWindowParameters
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.shares import PER_SIDE, strips
 from cytodisk.windows.subpixels import depths_and_angles, subpixel_places
@@ -104,26 +106,34 @@ class CellEdge:
     Attributes
     ----------
     mask : ndarray of shape (H, W) and dtype bool
+        Its holes are filled.
     outline_yx : ndarray of shape (B, 2) and dtype float
         (row, column) in pixels.
     angles : ndarray of shape (B,) and dtype float
         In radians, strictly increasing, all within one turn.
     scale : Scale
+    holes : PlacedMask or None
+        Holes in the mask that belong to no window.
     """
 
     mask: BoolArray
     outline_yx: FloatArray
     angles: FloatArray
     scale: Scale = UNKNOWN
+    holes: PlacedMask | None = None
 
     @classmethod
-    def of(cls, cell: Any) -> CellEdge:
-        """Edge of a mask, whose angles are those of the upright disk, or of a DiskMap, with its own."""
+    def of(cls, cell: Any, holes: Holes = "fill") -> CellEdge:
+        """Edge of a mask, whose angles are those of the upright disk, or of a DiskMap, with its own.
+
+        Of a mask it is said what becomes of holes; a map knows that.
+        """
         if isinstance(cell, DiskMap):
-            return cls(cell.mask, cell.outline_yx, cell.boundary_angles, cell.scale)
-        mask, _ = clean_mask(cell)
-        outline = trace_outline(mask)
-        return cls(mask, outline, boundary_angles(outline), Scale.of(cell))
+            return cls(cell.mask, cell.outline_yx, cell.boundary_angles, cell.scale, cell.holes)
+        found = FilledMask.of(cell).under(holes)
+        outline = trace_outline(found.filled)
+        left_out = None if found.holes is None else PlacedMask.of(found.filled).beside(found.holes)
+        return cls(found.filled, outline, boundary_angles(outline), Scale.of(cell), left_out)
 
     def subpixels_of(self, pixels_yx: IntArray) -> tuple[FloatArray, FloatArray]:
         """Depth and angle of each subpixel of some of the mask's pixels, each (P, 16): `depths_and_angles`.
@@ -200,8 +210,13 @@ class EdgeWindows(WindowsOnCell):
 
     @property
     def mask(self) -> BoolArray:
-        """The cell's mask, shape (H, W) and dtype bool."""
+        """The cell's mask, its holes filled, shape (H, W) and dtype bool."""
         return self.edge.mask
+
+    @property
+    def holes(self) -> PlacedMask | None:
+        """Holes in the mask that belong to no window."""
+        return self.edge.holes
 
     @property
     def outline_yx(self) -> FloatArray:
@@ -219,7 +234,7 @@ class EdgeWindows(WindowsOnCell):
         return self.grid.depth_px
 
 
-@takes(EdgeGridParameters)
+@takes(EdgeWindowParameters)
 def edge_windows(cell: Any, *in_order: Any, **settings: Any) -> EdgeWindows:
     """Edge-based windows of one cell: the field's, to compare with `polar_windows`.
 
@@ -233,7 +248,7 @@ def edge_windows(cell: Any, *in_order: Any, **settings: Any) -> EdgeWindows:
         A mask, which `clean_mask` cleans; its sectors start where those of the upright disk do. Or a map: its
         sectors are those of its polar windows, in a movie those of the tracked edge.
     **settings
-        See `EdgeGridParameters`.
+        See `EdgeWindowParameters`; `holes` is for masks, a map has its own.
 
     Returns
     -------
@@ -272,7 +287,7 @@ def edge_windows(cell: Any, *in_order: Any, **settings: Any) -> EdgeWindows:
     >>> windows.areas.round()[:, 0]  # by layer: rings of the same depth shrink inwards
     array([71., 48., 29.,  9.])
     """
-    grid = EdgeGridParameters.of(*in_order, **settings)
-    edge = CellEdge.of(cell)
+    grid = EdgeWindowParameters.of(*in_order, **settings)
+    edge = CellEdge.of(cell, grid.holes)
     depth = edge.greatest_depth / grid.layers if grid.depth_px is None else grid.depth_px
     return EdgeWindows(EdgeGrid(grid.layers, grid.sectors, depth), edge)

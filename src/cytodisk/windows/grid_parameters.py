@@ -7,6 +7,7 @@ from pydantic import field_validator, model_validator
 
 from cytodisk.checks import is_number
 from cytodisk.disk.sector_parameters import MOST, SectorParameters
+from cytodisk.geometry.mask_parameters import HoleParameters
 from cytodisk.parameters import Parameters, parameter
 
 Spacing: TypeAlias = Literal["area", "radius"]
@@ -115,10 +116,18 @@ class EdgeGridParameters(CountParameters):
     )
 
 
+class EdgeWindowParameters(HoleParameters, EdgeGridParameters):
+    """What `edge_windows` takes."""
+
+
 class RingGridParameters(CountParameters):
     """How a cell is divided into rings and wedges around its deepest point."""
 
     sectors: int = parameter(8, "Number of wedges around the deepest point.", least=1, most=MOST)
+
+
+class RingWindowParameters(HoleParameters, RingGridParameters):
+    """What `ring_windows` takes."""
 
 
 class SampleParameters(Parameters):

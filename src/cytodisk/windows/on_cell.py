@@ -14,8 +14,16 @@ from cytodisk.geometry.edge_distance import EdgeDistance
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import UNKNOWN, Scale
 from cytodisk.windows.depths import DEPTHS, window_depths
+from cytodisk.windows.hole_pixels import hole_pixels, without_pixels
 from cytodisk.windows.pieces import pieces_by_window
-from cytodisk.windows.shares import PER_SIDE, WindowShares, shares_by_strips, strips
+from cytodisk.windows.shares import (
+    NOWHERE,
+    PER_SIDE,
+    WindowShares,
+    gather_shares,
+    strips,
+    subpixels_by_strips,
+)
 
 
 class Grid(Protocol):
@@ -39,7 +47,12 @@ class WindowsOnCell(ABC):
     @property
     @abstractmethod
     def mask(self) -> BoolArray:
-        """The cell's mask, shape (H, W) and dtype bool."""
+        """The cell's mask, its holes filled, shape (H, W) and dtype bool."""
+
+    @property
+    def holes(self) -> PlacedMask | None:
+        """Holes in the mask that belong to no window; None if there are none, or they count as cell."""
+        return None
 
     @cached_property
     def placed_mask(self) -> PlacedMask:
@@ -79,22 +92,32 @@ class WindowsOnCell(ABC):
     @cached_property
     def shares(self) -> WindowShares:
         """Shares of pixels in windows, and moments of the windows, from subpixels."""
-        return shares_by_strips(self.placed_mask, self.layers * self.sectors, self.windows_of_subpixels)
+        placed, n_windows = self.placed_mask, self.layers * self.sectors
+        subpixels = subpixels_by_strips(placed, self.windows_of_subpixels)
+        left_out = hole_pixels(placed, self.holes)
+        if left_out is None:
+            return gather_shares(placed, n_windows, subpixels)
+        return gather_shares(placed, n_windows, *without_pixels(subpixels, left_out, n_windows))
 
     @property
     def weights(self) -> sparse.csr_array:
         """Share of each mask pixel (row-major order) in each window, (windows, pixels).
 
-        A column sums to 1, or to less where a pixel, or a part of it, lies in no window.
+        A column sums to 1, or to less where a pixel, or a part of it, lies in no window, as in excluded
+        holes.
         """
         return self.shares.weights
 
     @property
     def subpixel_windows(self) -> IntArray:
         """Number of the window of each subpixel of the mask, shape (pixels, 16); -1 for none."""
-        return np.concatenate(
+        windows = np.concatenate(
             [self.windows_of_subpixels(block) for _, block in strips(self.placed_mask.pixels_yx)]
         )
+        left_out = hole_pixels(self.placed_mask, self.holes)
+        if left_out is not None:
+            windows[left_out] = NOWHERE
+        return windows
 
     @property
     def subpixel_labels(self) -> IntArray:
@@ -109,6 +132,12 @@ class WindowsOnCell(ABC):
     def areas(self) -> FloatArray:
         """Area of each window in square pixels, shape (layers, sectors)."""
         return self._by_window(np.asarray(self.weights.sum(axis=1), dtype=np.float64).ravel())
+
+    @property
+    def filled_areas(self) -> FloatArray:
+        """`areas` as if holes counted as cell; NaN for windows between the subpixels of a hole."""
+        areas = self.areas + self._by_window(self.shares.hole_areas)
+        return areas if self.holes is None else np.where(areas > 0.0, areas, np.nan)
 
     @property
     def n_empty(self) -> int:
@@ -127,7 +156,7 @@ class WindowsOnCell(ABC):
 
     @property
     def coverage(self) -> float:
-        """Share of the cell's area that lies in a window, 0 to 1."""
+        """Share of the area within the outline that lies in a window, 0 to 1; excluded holes do not."""
         return float(self.areas.sum() / self.placed_mask.box.sum())
 
     @cached_property

@@ -9,18 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
 from cytodisk.geometry.edge_distance import EdgeDistance
-from cytodisk.geometry.placed_mask import PlacedMask
-from cytodisk.scale import Scale
 from cytodisk.taking import takes
 from cytodisk.windows.area_ratios import area_ratios
 from cytodisk.windows.depth_borders import radii_at_depths
 from cytodisk.windows.grid_parameters import PolarGridParameters
 from cytodisk.windows.nucleus.nucleus_grid import with_nucleus_of
-from cytodisk.windows.on_cell import WindowsOnCell
+from cytodisk.windows.on_map import WindowsOnMap
 from cytodisk.windows.outlines import window_polygons
 from cytodisk.windows.polar_layout import PolarLayout
 from cytodisk.windows.shares import PER_SIDE, WindowShares
@@ -106,10 +104,11 @@ class PolarGrid(PolarLayout):
 
 
 @dataclass(frozen=True, eq=False)
-class CellWindows(WindowsOnCell):
+class CellWindows(WindowsOnMap):
     """Polar windows in the cell: none is empty, and their areas sum to the mask's.
 
-    Layers by depth that are deeper than the cell are none of it: their windows have the area 0.
+    Layers by depth that are deeper than the cell are none of it: their windows have the area 0. So have
+    windows that lie wholly in excluded holes.
 
     Attributes
     ----------
@@ -150,26 +149,6 @@ class CellWindows(WindowsOnCell):
         return windows_of_subpixels(self.grid, self.disk, pixels_yx, PER_SIDE)
 
     @property
-    def mask(self) -> BoolArray:
-        """The cell's mask, shape (H, W) and dtype bool."""
-        return self.disk.mask
-
-    @property
-    def placed_mask(self) -> PlacedMask:
-        """The cell's mask as its box in the image."""
-        return self.disk.placed_mask
-
-    @property
-    def outline_yx(self) -> FloatArray:
-        """Outline of the cell, shape (B, 2), (row, column) in pixels."""
-        return self.disk.outline_yx
-
-    @property
-    def scale(self) -> Scale:
-        """Scale of the map."""
-        return self.disk.scale
-
-    @property
     def n_empty(self) -> int:
         """Number of windows that hold nothing of the cell; layers deeper than the cell do not count."""
         return int((self.areas == 0)[self.grid.present].sum())
@@ -184,16 +163,16 @@ class CellWindows(WindowsOnCell):
         """Mean |ln| of each window's share of the cell over its share of the disk; 0 is perfect.
 
         At 0.1 the areas of windows are about 10 % off. Layers deeper than the cell do not count. With a
-        nucleus, shares are those of the window's compartment.
+        nucleus, shares are those of the window's compartment. Excluded holes count as cell: the map's do.
         """
-        return float(np.abs(np.log(area_ratios(self.grid, self.areas))).mean())
+        return float(np.nanmean(np.abs(np.log(area_ratios(self.grid, self.filled_areas)))))
 
     @property
     def area_errors(self) -> dict[str, float]:
         """`area_error` by compartment."""
-        found = np.abs(np.log(area_ratios(self.grid, self.areas)))
+        found = np.abs(np.log(area_ratios(self.grid, self.filled_areas)))
         compartment = self.grid.compartments[self.grid.present]
-        return {str(name): float(found[compartment == name].mean()) for name in np.unique(compartment)}
+        return {str(name): float(np.nanmean(found[compartment == name])) for name in np.unique(compartment)}
 
     def polygons(self) -> list[FloatArray]:
         """Outline of each window in the cell, by window number.

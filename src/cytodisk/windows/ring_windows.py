@@ -11,10 +11,11 @@ from skimage.graph import MCP_Geometric
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
+from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import Scale
 from cytodisk.taking import takes
 from cytodisk.windows.edge_windows import CellEdge
-from cytodisk.windows.grid_parameters import CountParameters, RingGridParameters
+from cytodisk.windows.grid_parameters import CountParameters, RingWindowParameters
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.shares import PER_SIDE
 from cytodisk.windows.subpixels import subpixel_places
@@ -118,8 +119,13 @@ class RingWindows(WindowsOnCell):
 
     @property
     def mask(self) -> BoolArray:
-        """The cell's mask, shape (H, W) and dtype bool."""
+        """The cell's mask, its holes filled, shape (H, W) and dtype bool."""
         return self.edge.mask
+
+    @property
+    def holes(self) -> PlacedMask | None:
+        """Holes in the mask that belong to no window."""
+        return self.edge.holes
 
     @property
     def outline_yx(self) -> FloatArray:
@@ -132,7 +138,7 @@ class RingWindows(WindowsOnCell):
         return self.edge.scale
 
 
-@takes(RingGridParameters)
+@takes(RingWindowParameters)
 def ring_windows(cell: Any, *in_order: Any, **settings: Any) -> RingWindows:
     """Rings and wedges around the deepest point of one cell, to compare with `polar_windows`.
 
@@ -144,7 +150,7 @@ def ring_windows(cell: Any, *in_order: Any, **settings: Any) -> RingWindows:
     cell : array_like of shape (H, W), or DiskMap
         A mask, which `clean_mask` cleans, or a map, of which only the mask is used.
     **settings
-        See `RingGridParameters`.
+        See `RingWindowParameters`; `holes` is for masks, a map has its own.
 
     Returns
     -------
@@ -176,9 +182,9 @@ def ring_windows(cell: Any, *in_order: Any, **settings: Any) -> RingWindows:
     >>> round(windows.coverage, 6)
     1.0
     """
-    counts = RingGridParameters.of(*in_order, **settings)
-    grid = RingGrid(counts.layers, counts.sectors)
-    return RingWindows(grid, CellEdge.of(cell))
+    chosen = RingWindowParameters.of(*in_order, **settings)
+    grid = RingGrid(chosen.layers, chosen.sectors)
+    return RingWindows(grid, CellEdge.of(cell, chosen.holes))
 
 
 def _way_from(centre: Any, mask: BoolArray) -> FloatArray:

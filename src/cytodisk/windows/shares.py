@@ -35,12 +35,15 @@ class WindowShares:
         First row and column of the mask's box, so that moments do not depend on where in an image a cell is.
     subpixels : Subpixels
         What the shares were gathered from.
+    hole_areas : ndarray of shape (windows,) and dtype float
+        Area of each window that lies in excluded holes, in square pixels; it is no part of the weights.
     """
 
     weights: sparse.csr_array
     moments: FloatArray
     origin_yx: IntArray
     subpixels: Subpixels
+    hole_areas: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,25 +115,24 @@ def strips(pixels_yx: IntArray) -> Iterator[tuple[IntArray, IntArray]]:
         yield np.arange(first, first + len(block)), block
 
 
-def shares_by_strips(
-    placed: PlacedMask, n_windows: int, windows_of_subpixels: Callable[[IntArray], IntArray]
-) -> WindowShares:
-    """Shares where all pixels are divided into 4×4 subpixels.
+def subpixels_by_strips(
+    placed: PlacedMask, windows_of_subpixels: Callable[[IntArray], IntArray]
+) -> Subpixels:
+    """Windows of subpixels where all pixels are divided into 4×4 of them.
 
     Parameters
     ----------
     placed : PlacedMask
-    n_windows : int
     windows_of_subpixels : callable
         From places of pixels, (p, 2), to the windows of their subpixels, (p, 16); -1 for none.
 
     Returns
     -------
-    WindowShares
+    Subpixels
     """
     blocks = [_undivided(windows_of_subpixels(block)) for _, block in strips(placed.pixels_yx)]
     whole, window = (np.concatenate(column) for column in zip(*blocks, strict=True))
-    return gather_shares(placed, n_windows, with_starts(whole, window))
+    return with_starts(whole, window)
 
 
 def with_starts(whole: Int32Array, window: Int32Array) -> Subpixels:
@@ -145,7 +147,9 @@ def _undivided(window: IntArray) -> tuple[Int32Array, Int32Array]:
     return whole, window[~alike].astype(np.int32).ravel()
 
 
-def gather_shares(placed: PlacedMask, n_windows: int, subpixels: Subpixels) -> WindowShares:
+def gather_shares(
+    placed: PlacedMask, n_windows: int, subpixels: Subpixels, hole_areas: FloatArray | None = None
+) -> WindowShares:
     """Shares and moments from the windows of subpixels.
 
     Parameters
@@ -154,6 +158,8 @@ def gather_shares(placed: PlacedMask, n_windows: int, subpixels: Subpixels) -> W
     n_windows : int
     subpixels : Subpixels
         Of this mask.
+    hole_areas : ndarray of shape (windows,) and dtype float, optional
+        See `WindowShares`; by default there are no holes.
 
     Returns
     -------
@@ -162,7 +168,8 @@ def gather_shares(placed: PlacedMask, n_windows: int, subpixels: Subpixels) -> W
     parts = subpixels.whole, subpixels.start, subpixels.window
     moments, entries = _gather(placed.box, *parts, n_windows)
     weights = sparse.csr_array(entries, shape=(n_windows, len(subpixels.whole)))
-    return WindowShares(weights, moments, np.array(placed.corner), subpixels)
+    in_holes = np.zeros(n_windows) if hole_areas is None else hole_areas
+    return WindowShares(weights, moments, np.array(placed.corner), subpixels, in_holes)
 
 
 @njit(cache=True)

@@ -3,17 +3,19 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.arrays import FloatArray, Int32Array, IntArray
 from cytodisk.disk.disk_map import DiskMap
+from cytodisk.windows.hole_pixels import hole_pixels, pixels_beside, without_pixels
 from cytodisk.windows.polar_layout import PolarLayout
 from cytodisk.windows.raster import paint_windows
 from cytodisk.windows.shares import (
     FINE,
     PER_SIDE,
     PIXELS_AT_ONCE,
+    Subpixels,
     WindowShares,
     gather_shares,
-    shares_by_strips,
+    subpixels_by_strips,
 )
 from cytodisk.windows.subpixels import subpixel_places
 
@@ -24,7 +26,7 @@ def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:
     Every pixel is divided into 4×4 subpixels. Each goes whole to the window it maps into; one outside the
     outline goes with the nearest outline point. Pixels at windows without a subpixel are divided into 16×16.
     A window that is still empty gets one more subpixel of the pixel at its centre, which counts as a square
-    of the whole pixel's width in the moments.
+    of the whole pixel's width in the moments. Pixels of excluded holes belong to no window.
 
     Parameters
     ----------
@@ -34,34 +36,63 @@ def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:
     Returns
     -------
     WindowShares
-        Columns of the weights sum to 1, and no row is empty but those of layers deeper than the cell.
+        Columns of the weights sum to 1, those of excluded holes to 0. No row is empty but those of layers
+        deeper than the cell and of windows that lie wholly in holes.
     """
-    if disk.method == "advection":
-        shares = shares_by_strips(
-            disk.placed_mask,
-            grid.n_windows,
-            lambda pixels: windows_of_subpixels(grid, disk, pixels, PER_SIDE),
-        )
+    placed, left_out = disk.placed_mask, hole_pixels(disk.placed_mask, disk.holes)
+    painted = _painted(grid, disk)
+    if left_out is None:
+        shares = gather_shares(placed, grid.n_windows, painted)
     else:
-        shares = gather_shares(disk.placed_mask, grid.n_windows, paint_windows(grid, disk))
-    present = np.repeat(grid.present, grid.sectors)
-    empty = np.flatnonzero((np.diff(shares.weights.indptr) == 0) & present)
+        shares = gather_shares(placed, grid.n_windows, *without_pixels(painted, left_out, grid.n_windows))
+    empty = _empty(grid, shares)
     if not empty.size:
         return shares
-    subpixels = shares.subpixels
+    subpixels, in_holes = shares.subpixels, shares.hole_areas
     pixel, place = _pixels_at(disk, grid.centres_uv[empty])
     near, first = np.unique(pixel, return_index=True)
     fine = windows_of_subpixels(grid, disk, place[first], FINE).astype(np.int32)
     divided = dict(zip(near.tolist(), fine, strict=True))
-    shares = gather_shares(disk.placed_mask, grid.n_windows, subpixels.with_divided(divided))
-    empty = np.flatnonzero((np.diff(shares.weights.indptr) == 0) & present)
+    if left_out is not None:
+        divided = {number: own for number, own in divided.items() if not left_out[number]}
+        beside = pixels_beside(painted, placed, left_out, empty, near[left_out[near]])
+        divided |= _reaching_out(grid, disk, beside, empty)
+    shares = gather_shares(placed, grid.n_windows, subpixels.with_divided(divided), in_holes)
+    empty = _empty(grid, shares)
     if not empty.size:
         return shares
     pixel, _ = _pixels_at(disk, grid.centres_uv[empty])
     for number, window in zip(pixel.tolist(), empty, strict=True):
+        if left_out is not None and left_out[number]:
+            continue  # it lies wholly in a hole
         own = divided[number] if number in divided else subpixels.of_pixel(number)
         divided[number] = np.append(own, np.int32(window))
-    return gather_shares(disk.placed_mask, grid.n_windows, subpixels.with_divided(divided))
+    return gather_shares(placed, grid.n_windows, subpixels.with_divided(divided), in_holes)
+
+
+def _reaching_out(
+    grid: PolarLayout, disk: DiskMap, beside: IntArray, empty: IntArray
+) -> dict[int, Int32Array]:
+    """Subpixels of pixels beside holes that some windows reach into, by less than a 4×4 subpixel."""
+    places = disk.placed_mask.pixels_yx[beside]
+    fine = windows_of_subpixels(grid, disk, places, FINE).astype(np.int32)
+    reached = np.isin(fine, empty).any(axis=1)
+    return dict(zip(beside[reached].tolist(), fine[reached], strict=True))
+
+
+def _painted(grid: PolarLayout, disk: DiskMap) -> Subpixels:
+    """Windows of the subpixels of the filled mask."""
+    if disk.method != "advection":
+        return paint_windows(grid, disk)
+    return subpixels_by_strips(
+        disk.placed_mask, lambda pixels: windows_of_subpixels(grid, disk, pixels, PER_SIDE)
+    )
+
+
+def _empty(grid: PolarLayout, shares: WindowShares) -> IntArray:
+    """Numbers of windows without any pixel, but for those of layers deeper than the cell."""
+    present = np.repeat(grid.present, grid.sectors)
+    return np.flatnonzero((np.diff(shares.weights.indptr) == 0) & present)
 
 
 def windows_of_subpixels(grid: PolarLayout, disk: DiskMap, pixels_yx: IntArray, per_side: int) -> IntArray:

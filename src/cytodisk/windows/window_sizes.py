@@ -10,7 +10,7 @@ FEW_PX = 10.0
 
 
 def window_sizes(windows: CellWindows) -> dict[str, float | int]:
-    """Sizes of a cell's windows; layers deeper than the cell do not count.
+    """Sizes of a cell's windows; layers deeper than the cell, and windows wholly in holes, do not count.
 
     Parameters
     ----------
@@ -24,6 +24,8 @@ def window_sizes(windows: CellWindows) -> dict[str, float | int]:
         windows_between_pixels, the number of windows that hold the centre of no pixel.
     """
     areas = windows.areas[windows.grid.present]
+    if windows.holes is not None:
+        areas = areas[areas > 0.0]
     with np.errstate(divide="ignore"):  # of an empty window it is infinite
         error = windows.area_error
     return {
@@ -42,7 +44,8 @@ def between_pixels(windows: CellWindows) -> IntArray:
     window = np.repeat(np.arange(weights.shape[0]), np.diff(weights.indptr))
     known = np.zeros(weights.shape[0], dtype=bool)
     known[window[weights.data > 1.0 - 1e-9]] = True  # the whole pixel
-    open_ = np.flatnonzero(~known & np.repeat(grid.present, grid.sectors))
+    held = np.ones(len(known), dtype=bool) if windows.holes is None else np.diff(weights.indptr) > 0
+    open_ = np.flatnonzero(~known & held & np.repeat(grid.present, grid.sectors))
     if not open_.size:
         return open_
     shared = np.zeros(weights.shape[1], dtype=bool)
