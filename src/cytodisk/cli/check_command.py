@@ -7,7 +7,7 @@ import typer
 from cytodisk.cli.console import console_for
 from cytodisk.cli.map_command import say_inputs
 from cytodisk.cli.options import Given, MaskFiles, SignalFiles, with_parameters
-from cytodisk.runs.cells.cell_parameters import FileParameters
+from cytodisk.runs.cells.cell_parameters import CheckParameters
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from cytodisk.runs.cells.cell_inputs import CellInputs
 
 
-@with_parameters(FileParameters, file=False)
+@with_parameters(CheckParameters, file=False)
 def check_command(
     masks: MaskFiles,
     given: Given,
@@ -31,7 +31,7 @@ def check_command(
 
     console = console_for(False)
     say_contents(console, (masks, signal))
-    inputs = open_inputs(masks, signal, given.of(FileParameters))
+    inputs = open_inputs(masks, signal, given.of(CheckParameters))
     say_inputs(console, inputs)
     _say_evidence(console, inputs)
     found = Checked(inputs)

@@ -10,8 +10,8 @@ WIDTH = 100
 
 GROUPS = {
     "Files": "signal out parameters",
-    "What the files hold": "pixel-size frame-interval channels movie kind label fragments link tracks axes "
-    "signal-axes scene z mask-channel signal-channels",
+    "What the files hold": "pixel-size frame-interval channels movie kind label fragments holes link tracks "
+    "axes signal-axes scene z mask-channel signal-channels",
     "Windows": "layers sectors nucleus-layers depth-um depth-px spacing align nan methods",
     "Map of each cell": "method shape-weight edge-length",
     "Motion of the edge and the inside": "tracker tension smoothness-px2 registration renew-every inertia "

@@ -15,6 +15,7 @@ from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
 from cytodisk.images.signal_files import SignalPiece
 from cytodisk.windows.depths import DEPTHS
+from cytodisk.windows.hole_pixels import hole_pixels
 from cytodisk.windows.polar_windows import CellWindows
 from cytodisk.windows.sample import check_channel_names
 from cytodisk.windows.window_sizes import window_sizes
@@ -133,8 +134,10 @@ def _cell_columns(windows: CellWindows, signal: _CellSignal | None) -> dict[str,
     smooth = smooth_closed(disk.outline_yx, _PERIMETER_SMOOTHING_PX)
     missing, ends = 0, Pileup()
     if signal is not None:
-        missing = signal.pixels.size - int(np.count_nonzero(np.isfinite(signal.pixels)))
-        ends = pileup(signal.channels, signal.pixels)
+        pixels, holes = signal.pixels, hole_pixels(disk.placed_mask, disk.holes)
+        pixels = pixels if holes is None else pixels[:, ~holes]
+        missing = pixels.size - int(np.count_nonzero(np.isfinite(pixels)))
+        ends = pileup(signal.channels, pixels)
     return {
         "notes": "; ".join(_notes(windows, missing)),
         "mask_remarks": "; ".join(report.qc_flags),
@@ -147,6 +150,7 @@ def _cell_columns(windows: CellWindows, signal: _CellSignal | None) -> dict[str,
         "dropped_px": report.dropped_px,
         "holes": report.holes,
         "filled_px": report.filled_px,
+        "excluded_px": report.excluded_px,
         "touches_border": report.touches_border,
         "border_share": report.border_share,
         "outline_step_px": outline_step(disk.outline_yx),
@@ -198,6 +202,7 @@ def _window_columns(
     repeats = len(channels)
     missing = np.isnan(arrays["mean"]) if signal is not None else np.zeros((1, *windows.areas.shape), bool)
     status = np.where(missing, "NaN in signal", "no signal" if signal is None else "ok").astype(object)
+    status[:, windows.areas == 0.0] = "in a hole"
     status[:, ~windows.grid.present] = "deeper than the cell"
     layer, sector = np.divmod(np.tile(np.arange(n_windows), repeats), windows.grid.sectors)
     nothing = np.full(n_windows * repeats, np.nan)

@@ -60,6 +60,11 @@ class WindowsOnCell(ABC):
         return PlacedMask.of(self.mask)
 
     @property
+    def mask_without_holes(self) -> BoolArray:
+        """The cell's mask without excluded holes, shape (H, W) and dtype bool."""
+        return self.mask if self.holes is None else self.mask & ~self.holes.whole
+
+    @property
     @abstractmethod
     def outline_yx(self) -> FloatArray:
         """Outline of the cell, shape (B, 2) and dtype float, (row, column) in pixels."""

@@ -16,8 +16,9 @@ from cytodisk.analysis.controls.held_places import HeldPlaces
 from cytodisk.analysis.controls.lab_mean import LabMean
 from cytodisk.analysis.controls.slow_level import brightness, slow_level
 from cytodisk.analysis.signal_frames import parse_signals
-from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.checks import instance_of, whole_number
+from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError
 from cytodisk.motion.disk_movie import DiskMovie
 
@@ -108,8 +109,17 @@ def geometry_controls(
     if not used:
         raise ParameterError(f"frames: none of {len(wanted)} has a map")
     steps = _Steps(progress, 5 * len(used))
-    places = HeldPlaces.of(steps.over((frame, movie[frame].mask) for frame in used))
-    run = _Sampling(movie, grid, places, lambda frame: places.cut(known.image(frame)), len(known.channels))
+    holes: dict[int, IntArray] = {}
+    places = HeldPlaces.of(steps.over((frame, _mask(movie[frame], frame, holes)) for frame in used))
+
+    def image(frame: int) -> FloatArray:
+        cut = places.cut(known.image(frame))
+        if frame in holes:
+            row, column = (holes[frame] - places.corner).T
+            cut[:, row, column] = np.nan
+        return cut
+
+    run = _Sampling(movie, grid, places, image, len(known.channels))
     tables = run.tables(used, lag, steps)
     dims = ("time", "channel", "layer", "sector")
     coords: dict[str, Any] = {"channel": known.channels}
@@ -119,6 +129,13 @@ def geometry_controls(
     attrs = movie.scale.attrs | {"max_lag": lag}
     found = xr.Dataset(data, coords, attrs).set_xindex("frame")
     return found if known.channel_names is not None else found.isel(channel=0, drop=True)
+
+
+def _mask(disk: DiskMap, frame: int, holes: dict[int, IntArray]) -> BoolArray:
+    """Mask of a frame; the pixels of its excluded holes are noted."""
+    if disk.holes is not None:
+        holes[frame] = disk.holes.pixels_yx
+    return disk.mask
 
 
 class _Steps:

@@ -20,8 +20,10 @@ from cytodisk.analysis.shape.moments import MOMENTS
 from cytodisk.analysis.shape.size import SIZE
 from cytodisk.analysis.shape.skeleton import SKELETON
 from cytodisk.errors import CytodiskError, MaskError
-from cytodisk.geometry.mask import clean_mask
+from cytodisk.geometry.mask import FilledMask
+from cytodisk.geometry.mask_parameters import HoleParameters, Holes
 from cytodisk.scale import UNKNOWN, Scale
+from cytodisk.taking import takes
 
 GROUPS: tuple[FeatureGroup, ...] = (
     SIZE,
@@ -39,10 +41,12 @@ TOO_SMALL = "too small for curvature and roughness to be those of the shape"
 _MOST_CHANNELS = 4
 
 
-def shape_features(masks: Any, *, pixel_size_um: float | None = None) -> pd.DataFrame:
+@takes(HoleParameters)
+def shape_features(masks: Any, *, pixel_size_um: float | None = None, **settings: Any) -> pd.DataFrame:
     """Measure the shape of cells: size, form, moments, outline, curvature, depth, skeleton, harmonic map.
 
-    Each mask is first reduced to its largest piece without holes (`clean_mask`).
+    Each mask is first reduced to its largest piece without holes (`clean_mask`). Features are those of the
+    outline, whatever is in it; with `holes="exclude"` the area alone is that without the holes.
 
     Parameters
     ----------
@@ -51,6 +55,8 @@ def shape_features(masks: Any, *, pixel_size_um: float | None = None) -> pd.Data
         one cell each, or a list of such masks, which may differ in size.
     pixel_size_um : float, optional
         Micrometres a pixel; by default that of a DataArray's attrs, else lengths are in px.
+    **settings
+        See `HoleParameters`.
 
     Returns
     -------
@@ -99,19 +105,21 @@ def shape_features(masks: Any, *, pixel_size_um: float | None = None) -> pd.Data
     >>> features.attrs["units"]["area"]
     'µm²'
     """
+    holes = HoleParameters.of(**settings).holes
     scale, rows = Scale.of(masks).given(pixel_size_um), []
     for cell, (frame, label, mask) in enumerate(_cells(masks)):
-        rows.append({"cell": cell, "frame": frame, "label": label} | shape_row(mask, scale))
+        rows.append({"cell": cell, "frame": frame, "label": label} | shape_row(mask, scale, holes))
     return feature_table(rows, scale)
 
 
-def shape_row(mask: Any, scale: Scale = UNKNOWN) -> dict[str, Any]:
+def shape_row(mask: Any, scale: Scale = UNKNOWN, holes: Holes = "fill") -> dict[str, Any]:
     """Status, remarks and features of one cell.
 
     Parameters
     ----------
     mask : array_like of shape (H, W)
     scale : Scale
+    holes : {"fill", "exclude", "error"}
 
     Returns
     -------
@@ -120,16 +128,18 @@ def shape_row(mask: Any, scale: Scale = UNKNOWN) -> dict[str, Any]:
     """
     row: dict[str, Any] = {"status": "ok", "reason": "", "notes": "", "qc_flags": "", "touches_border": False}
     try:
-        solid, report = clean_mask(mask)
+        found = FilledMask.of(mask).under(holes)
+        report = found.report
         row |= {
             "notes": "; ".join(report.notes),
             "qc_flags": "; ".join(report.qc_flags),
             "touches_border": report.touches_border,
         }
-        shape = crop_shape(solid)
+        shape = crop_shape(found.filled)
         values: dict[str, float] = {}
         for group in GROUPS:
             values |= group.measure(shape)
+        values["area"] = float(report.area_px)
         row["notes"] = "; ".join([*report.notes, *shape.notes])
         row["qc_flags"] = "; ".join([*report.qc_flags, *_flags_of_size(shape)])
     except CytodiskError as error:

@@ -54,7 +54,7 @@ def measure_size(shape: CellShape) -> dict[str, float]:
 SIZE = FeatureGroup(
     "size",
     (
-        area("area", "Area of the cell, holes filled"),
+        area("area", "Area of the cell; holes count, unless they are excluded"),
         length("perimeter", "Length of the outline, smoothed over 1 px"),
         length("equivalent_diameter", "Diameter of the disk of the same area"),
         area("convex_area", "Area of the convex hull"),

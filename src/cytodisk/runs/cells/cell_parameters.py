@@ -6,6 +6,7 @@ from pydantic import field_validator
 
 from cytodisk.disk.mapping_parameters import MeshParameters
 from cytodisk.errors import CytodiskError, ParameterError
+from cytodisk.geometry.mask_parameters import HoleParameters
 from cytodisk.images.file_parameters import KindParameters, SignalFileParameters
 from cytodisk.parameters import Parameters, parameter
 from cytodisk.runs.channel_names import VELOCITIES
@@ -40,6 +41,10 @@ class ChannelParameters(Parameters):
 
 class FileParameters(PixelSizeParameters, ChannelParameters, SignalFileParameters, KindParameters):
     """How the files of a run are read."""
+
+
+class CheckParameters(HoleParameters, FileParameters):
+    """What `cytodisk check` takes, beside the input files."""
 
 
 class CellParameters(MeshParameters, SampleParameters, GridParameters, FileParameters):

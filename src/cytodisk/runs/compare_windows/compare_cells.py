@@ -16,7 +16,7 @@ from cytodisk.disk.mapping import map_to_disk
 from cytodisk.disk.mapping_parameters import MeshParameters
 from cytodisk.errors import CytodiskError
 from cytodisk.files import replacing
-from cytodisk.geometry.mask import clean_mask
+from cytodisk.geometry.mask import FilledMask
 from cytodisk.images.mask_files import SourceCell
 from cytodisk.runs.cells.cell_inputs import CellInputs
 from cytodisk.runs.cells.cell_parts import CellRun, CellTask, Rows
@@ -37,6 +37,7 @@ from cytodisk.store.study_folder import StudyFolder, part_key
 from cytodisk.store.study_kind import MAPS
 from cytodisk.taking import takes
 from cytodisk.windows.edge_windows import edge_windows
+from cytodisk.windows.grid_parameters import EdgeWindowParameters, RingWindowParameters
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.polar_windows import polar_windows
 from cytodisk.windows.ring_windows import ring_windows
@@ -128,14 +129,14 @@ def compare_cell(task: CellTask, parameters: CompareWindowsParameters, folder: P
             rows.append((row | gone, {}))
             continue
         seconds = clock.perf_counter() - started
-        _, report = clean_mask(found.mask)
+        report = FilledMask.of(found.mask).under(parameters.holes).report
         row |= windows_row(windows, disk) | {"status": "ok", "reason": "", "mapped": 1, "seconds": seconds}
         row |= {"notes": "; ".join(report.notes), "qc_flags": "; ".join(report.qc_flags)}
         measures = measures_by_layer(windows)
         rows.append((row, {"layers": layer_columns(found.cell, found.frame, method, measures)}))
         per_side = PER_SIDE if report.area_px <= _SMALL_PX else 1
         labels[method] = (windows.labels if per_side == 1 else windows.subpixel_labels).astype(np.int32)
-        labels["mask"] = windows.mask.repeat(per_side, axis=0).repeat(per_side, axis=1)
+        labels["mask"] = windows.mask_without_holes.repeat(per_side, axis=0).repeat(per_side, axis=1)
     if labels:
         with replacing(*_files(task, folder)) as temporary:
             np.savez_compressed(temporary, **labels)
@@ -157,9 +158,9 @@ def _lay(
     disk: DiskMap | None = None
     windows: WindowsOnCell
     if method == "edge":
-        windows = edge_windows(mask, parameters.layers, parameters.sectors, parameters.depth_px)
+        windows = edge_windows(mask, **dict(parameters.part(EdgeWindowParameters)))
     elif method == "rings":
-        windows = ring_windows(mask, parameters.layers, parameters.sectors)
+        windows = ring_windows(mask, **dict(parameters.part(RingWindowParameters)))
     else:
         disk = map_to_disk(mask, method=method, **dict(parameters.part(MeshParameters)))
         windows = polar_windows(parameters.layers, parameters.sectors, parameters.spacing).on(disk)

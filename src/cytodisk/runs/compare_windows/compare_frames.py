@@ -13,7 +13,8 @@ from cytodisk.analysis.activity import ActivityTables, Grid, sample_frames
 from cytodisk.analysis.consistency import centroid_displacement, consecutive_correlation
 from cytodisk.analysis.window_measures import measures_by_layer
 from cytodisk.errors import MaskError, ReadError
-from cytodisk.geometry.mask import clean_mask
+from cytodisk.geometry.mask import FilledMask
+from cytodisk.geometry.mask_parameters import Holes
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.signal_files import load_image
 from cytodisk.motion.disk_movie import DiskMovie
@@ -109,12 +110,14 @@ def window_grid(followed: FollowedCell) -> Grid:
     return EdgeGrid(layers, sectors, depth)
 
 
-def usable(masks: Iterable[Any]) -> int:
+def usable(masks: Iterable[Any], holes: Holes = "fill") -> int:
     """How many masks are those of a cell; a map of the others cannot be asked for.
 
     Parameters
     ----------
     masks : iterable of ndarray of shape (H, W), or CytodiskError
+    holes : {"fill", "exclude", "error"}
+        With "error", a mask with holes is that of no cell.
 
     Returns
     -------
@@ -124,7 +127,7 @@ def usable(masks: Iterable[Any]) -> int:
     for mask in masks:
         if not isinstance(mask, Exception):
             try:
-                clean_mask(mask)
+                FilledMask.of(mask).under(holes)
             except MaskError:
                 continue
             count += 1

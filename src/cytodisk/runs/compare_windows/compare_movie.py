@@ -159,7 +159,7 @@ def _compare(
         except CytodiskError as fault:
             seconds = (clock.perf_counter() - started) / len(masks)
             gone = {"status": "no map", "reason": str(fault), "mapped": 0, "seconds": seconds}
-            return row | {"frames": usable(masks)} | gone, {}
+            return row | {"frames": usable(masks, parameters.holes)} | gone, {}
         followed = FollowedCell(track.cell, track.first, part.method, movie, inputs.signal, parameters)
         measured = measure_frames(followed)
     seconds = (clock.perf_counter() - started) / len(masks)
@@ -173,7 +173,7 @@ def _compare(
     outcome = {"status": "partly" if faults else "ok", "reason": faults, "seconds": seconds}
     # A frame with a map had a mask: only those of the others are looked at again.
     frames = int(movie.mapped.sum()) + usable(
-        masks[frame] for frame in np.flatnonzero(~movie.mapped).tolist()
+        (masks[frame] for frame in np.flatnonzero(~movie.mapped).tolist()), parameters.holes
     )
     return row | {"frames": frames} | measured.row | outcome, measured.tables
 

@@ -54,7 +54,7 @@ _CELLS: Columns = (
     QC_FLAGS,
     Column("frames", pa.int64(), "", "number of frames; 1 for a cell that is not followed"),
     Column("mapped", pa.int64(), "", "number of those frames that have windows"),
-    Column("area_px", pa.float64(), "px²", "area of the cell, in a movie over all frames"),
+    Column("area_px", pa.float64(), "px²", "area without excluded holes, in a movie over all frames"),
     Column("certificate_valid", pa.bool_(), "", "whether the map is proven to be one to one"),
     Column("invalid_maps", pa.int64(), "", "number of maps that are not one to one"),
     Column("flipped", pa.int64(), "", "number of triangles that the map turns over"),
@@ -126,11 +126,11 @@ def windows_row(windows: WindowsOnCell, disk: DiskMap | None) -> dict[str, Any]:
     dict
         lost_px is the area of the cell in no window, and on a map that of pixels whose centre is outside.
     """
-    area = float(windows.mask.sum())
+    area = float(windows.mask_without_holes.sum())
     row: dict[str, Any] = {
         "area_px": area,
-        "coverage": windows.coverage,
-        "lost_px": area * (1.0 - windows.coverage),
+        "coverage": windows.areas.sum() / area,
+        "lost_px": area * (1.0 - windows.areas.sum() / area),
         "empty_windows": windows.n_empty,
         "depth_px": windows.depth_px if isinstance(windows, EdgeWindows) else None,
     }

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cytodisk.errors import CytodiskError
-from cytodisk.geometry.mask import MaskReport, clean_mask
+from cytodisk.geometry.mask import FilledMask, MaskReport
+from cytodisk.geometry.mask_parameters import HoleParameters
 from cytodisk.images.mask_files import SourceCell, read_source_cells
 from cytodisk.images.mask_names import without_name
 from cytodisk.runs.cells.cell_inputs import CellInputs
@@ -127,16 +128,18 @@ def check_cells(inputs: CellInputs) -> Iterator[CheckedCell]:
     Parameters
     ----------
     inputs : CellInputs
+        Its parameters say what becomes of holes (`CheckParameters`).
 
     Yields
     ------
     CheckedCell
     """
+    policy = inputs.parameters.part(HoleParameters).holes
     for found in read_source_cells(inputs.sources):
         fault = found.fault or inputs.signals[found.source].fault
         if fault is None:
             try:
-                _, report = clean_mask(found.mask)
+                report = FilledMask.of(found.mask).under(policy).report
                 yield CheckedCell(replace(found, mask=None), "ok", "", report)
                 continue
             except CytodiskError as error:

@@ -117,7 +117,7 @@ def _smallest_share(windows: CellWindows, parameters: FollowedCellParameters) ->
     """Area of the smallest window over that in a map of equal areas; NaN unless the interior stands still."""
     if parameters.part(InteriorParameters).interior != "still":
         return np.nan
-    return float(area_ratios(windows.grid, windows.areas).min())
+    return float(np.nanmin(area_ratios(windows.grid, windows.filled_areas)))
 
 
 def _interior_note(frame: MappedFrame, task: FrameTask) -> str:

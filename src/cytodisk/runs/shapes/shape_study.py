@@ -15,6 +15,7 @@ from cytodisk.analysis.shape.score_parameters import ScoreParameters
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import ReadError
 from cytodisk.geometry.mask import clean_mask
+from cytodisk.geometry.mask_parameters import Holes
 from cytodisk.images.mask_files import list_images
 from cytodisk.runs.cells.cell_inputs import CellInputs, open_inputs
 from cytodisk.runs.cells.cell_parameters import FileParameters
@@ -105,7 +106,7 @@ def shape_study(
     parameters = ShapeParameters() if parameters is None else parameters
 
     def work(folder: StudyFolder) -> tuple[list[str], list[str]]:
-        measure = partial(measure_shape, scale=inputs.scale)
+        measure = partial(measure_shape, scale=inputs.scale, holes=parameters.holes)
         keys = CellRun(inputs, measure, CELLS_AT_ONCE).fill(folder, options.workers, progress or silent)
         table = shape_table(folder.read_rows(keys), inputs.scale, parameters.part(ScoreParameters))
         write_shapes(table, folder.path)
@@ -124,13 +125,15 @@ def _describe(inputs: CellInputs, parameters: ShapeParameters) -> dict[str, Any]
     return provenance
 
 
-def measure_shape(task: CellTask, scale: Scale) -> Rows:
+def measure_shape(task: CellTask, scale: Scale, holes: Holes = "fill") -> Rows:
     """Measure the shape of a cell.
 
     Parameters
     ----------
     task : CellTask
     scale : Scale
+    holes : {"fill", "exclude", "error"}
+        See `shape_features`.
 
     Returns
     -------
@@ -140,7 +143,7 @@ def measure_shape(task: CellTask, scale: Scale) -> Rows:
     found = task.found
     place = {"cell": found.cell, "source": found.source, "frame": found.frame, "label": found.label}
     if found.fault is None:
-        return [(place | shape_row(found.mask, scale), {})]
+        return [(place | shape_row(found.mask, scale, holes), {})]
     status = "unreadable" if isinstance(found.fault, ReadError) else "refused"
     words = {"status": status, "reason": str(found.fault), "notes": "", "qc_flags": ""}
     return [(place | words | {"touches_border": False}, {})]
