@@ -88,7 +88,7 @@ class Checked:
         if report is None:
             return
         self._areas.append(report.area_px)
-        self._by_label.setdefault((found.source, found.label), []).append((found.frame, report.area_px))
+        self._by_label.setdefault((found.source, found.label), []).append((found.frame, report.outline_px))
         self._flagged += bool(report.qc_flags or report.touches_border)
         self._on_border += report.touches_border
         for flag in report.qc_flags:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.checks import whole_number
 from cytodisk.errors import SignalError
 from cytodisk.geometry.placed_mask import PlacedMask
@@ -59,8 +59,22 @@ def image_on_disk(
     points = to_cell(np.column_stack([u.ravel(), v.ravel()]))
     inside = np.isfinite(points[:, 0])
     out = np.full(size * size, np.nan)
-    out[inside] = ndimage.map_coordinates(values, points[inside].T, order=1, mode="nearest")
-    if left_out is not None:
-        nearest = np.rint(points[inside]).astype(np.int64)
-        out[np.flatnonzero(inside)[left_out.whole[tuple(nearest.T)]]] = np.nan
+    if left_out is None:
+        out[inside] = _between_pixels(values, points[inside])
+    else:
+        out[inside] = _beside(left_out.whole, values, points[inside])
     return out.reshape(size, size)
+
+
+def _between_pixels(values: FloatArray, points_yx: FloatArray) -> FloatArray:
+    return np.asarray(ndimage.map_coordinates(values, points_yx.T, order=1, mode="nearest"))
+
+
+def _beside(left_out: BoolArray, values: FloatArray, points_yx: FloatArray) -> FloatArray:
+    """Values from the pixels that count alone; NaN at the others."""
+    known = _between_pixels(np.where(left_out, 0.0, 1.0), points_yx)
+    total = _between_pixels(np.where(left_out, 0.0, values), points_yx)
+    height, width = left_out.shape
+    nearest = np.clip(np.rint(points_yx).astype(np.int64), 0, (height - 1, width - 1))
+    here = left_out[tuple(nearest.T)] | (known == 0.0)
+    return np.where(here, np.nan, total / np.where(here, 1.0, known))

@@ -70,9 +70,14 @@ class MaskReport:
     nucleus_in_holes_px: int = 0
 
     @property
+    def outline_px(self) -> int:
+        """Pixels within the outline, those of all holes among them."""
+        return self.area_px + self.excluded_px
+
+    @property
     def excluded_share(self) -> float:
-        """Share of the area within the outline that excluded holes take, 0 to 1."""
-        return self.excluded_px / (self.area_px + self.excluded_px)
+        """Share of these that are in excluded holes, 0 to 1."""
+        return self.excluded_px / self.outline_px
 
     @property
     def touches_border(self) -> bool:

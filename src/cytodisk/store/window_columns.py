@@ -53,7 +53,7 @@ WINDOW_COLUMNS: Columns = (
         "status",
         pa.string(),
         "",
-        "ok; NaN in signal; no signal, if the run had no image; in a hole, if excluded holes leave nothing of "
+        "ok; NaN in signal; no signal, if the run had no image; in a hole, if excluded holes leave none of "
         "the window; or deeper than the cell, for layers by depth",
     ),
 )

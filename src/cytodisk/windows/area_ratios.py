@@ -14,13 +14,13 @@ def area_ratios(grid: PolarLayout, areas: FloatArray) -> FloatArray:
     grid : PolarLayout
         With the radii of the cell.
     areas : ndarray of shape (layers, sectors) and dtype float
-        In the cell; NaN is not known.
+        In the cell.
 
     Returns
     -------
     ndarray of shape (present layers, sectors) and dtype float
     """
-    by_layer, compartments = np.nansum(areas, axis=1), grid.compartments
+    by_layer, compartments = areas.sum(axis=1), grid.compartments
     whole = np.array([by_layer[compartments == name].sum() for name in compartments])
     shares = areas / whole[:, None]
     return np.asarray((shares / grid.area_shares[:, None])[grid.present])

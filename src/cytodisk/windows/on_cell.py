@@ -140,9 +140,8 @@ class WindowsOnCell(ABC):
 
     @property
     def filled_areas(self) -> FloatArray:
-        """`areas` as if holes counted as cell; NaN for windows between the subpixels of a hole."""
-        areas = self.areas + self._by_window(self.shares.hole_areas)
-        return areas if self.holes is None else np.where(areas > 0.0, areas, np.nan)
+        """`areas` as if holes counted as cell, shape (layers, sectors)."""
+        return self.areas + self._by_window(self.shares.hole_areas)
 
     @property
     def n_empty(self) -> int:

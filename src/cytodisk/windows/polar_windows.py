@@ -165,14 +165,23 @@ class CellWindows(WindowsOnMap):
         At 0.1 the areas of windows are about 10 % off. Layers deeper than the cell do not count. With a
         nucleus, shares are those of the window's compartment. Excluded holes count as cell: the map's do.
         """
-        return float(np.nanmean(np.abs(np.log(area_ratios(self.grid, self.filled_areas)))))
+        return float(np.nanmean(np.abs(np.log(self.area_ratios))))
 
     @property
     def area_errors(self) -> dict[str, float]:
         """`area_error` by compartment."""
-        found = np.abs(np.log(area_ratios(self.grid, self.filled_areas)))
+        found = np.abs(np.log(self.area_ratios))
         compartment = self.grid.compartments[self.grid.present]
         return {str(name): float(np.nanmean(found[compartment == name])) for name in np.unique(compartment)}
+
+    @property
+    def area_ratios(self) -> FloatArray:
+        """Each window's share of its compartment over its share of that in the disk, without layers too deep.
+
+        Excluded holes count as cell; NaN for windows that are so small that no subpixel of a hole is theirs.
+        """
+        ratios = area_ratios(self.grid, self.filled_areas)
+        return ratios if self.holes is None else np.where(ratios > 0.0, ratios, np.nan)
 
     def polygons(self) -> list[FloatArray]:
         """Outline of each window in the cell, by window number.

@@ -24,7 +24,6 @@ from cytodisk.runs.frame_rows import FramePlace, measure_windows
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
 from cytodisk.store.activity_reading import EDGE_VARIABLES
-from cytodisk.windows.area_ratios import area_ratios
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
 
@@ -117,7 +116,7 @@ def _smallest_share(windows: CellWindows, parameters: FollowedCellParameters) ->
     """Area of the smallest window over that in a map of equal areas; NaN unless the interior stands still."""
     if parameters.part(InteriorParameters).interior != "still":
         return np.nan
-    return float(np.nanmin(area_ratios(windows.grid, windows.filled_areas)))
+    return float(np.nanmin(windows.area_ratios))
 
 
 def _interior_note(frame: MappedFrame, task: FrameTask) -> str:

@@ -77,6 +77,8 @@ def _series(study: Study) -> Iterator[tuple[IntArray, IntArray, FloatArray]]:
     groups = rows.groupby(by).indices.values()
     cell, frame = rows["cell"].to_numpy(), rows["frame"].to_numpy()
     area = rows["area"].to_numpy(dtype=np.float64)
+    if "excluded_px" in rows:  # a hole that comes or goes is no jump of the edge
+        area = area + study.scale.area(rows["excluded_px"].fillna(0).to_numpy(dtype=np.float64))
     for one in groups:
         if len(one) >= fewest and len(np.unique(frame[one])) == len(one):
             yield cell[one], frame[one], area[one]
