@@ -36,8 +36,8 @@ def map_to_disk(
     """Map one cell one to one onto the unit disk, with its nucleus on a circle of its own if it is given.
 
     The mask is first reduced to its largest piece without holes (`clean_mask`); the map's `report` says what
-    that changed. With `holes="exclude"` the map is the same, and knows the holes: `holes`. The nucleus is fitted into the cell (`fit_nucleus`), as the report of the map's `nucleus`
-    says.
+    that changed. With `holes="exclude"` the map is the same, and knows its holes. The nucleus is fitted into
+    the cell (`fit_nucleus`), as the report of the map's `nucleus` says.
 
     Parameters
     ----------
