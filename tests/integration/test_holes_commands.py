@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import tifffile
 from command_line import Run, assert_refused, write
 
 import cytodisk as cd
@@ -45,13 +46,15 @@ def test_every_command_on_masks_has_the_flag(run: Run) -> None:
 
 
 def test_a_batch_takes_it_for_all_or_for_one_input(run: Run, mask: Path, tmp_path: Path) -> None:
+    write(tmp_path / "other.tif", tifffile.imread(mask))
     (tmp_path / "study.toml").write_text(
-        'command = "map"\n[parameters]\nlayers = 3\nsectors = 8\nholes = "exclude"\n'
-        '[[inputs]]\nname = "a"\nmasks = "mask.tif"\n'
-        '[[inputs]]\nname = "b"\nmasks = "mask.tif"\nholes = "fill"\n',
+        '[parameters]\nlayers = 3\nsectors = 8\nholes = "exclude"\n'
+        '[[inputs]]\nname = "a"\nmasks = "mask.tif"\nkind = "map"\n'
+        '[[inputs]]\nname = "b"\nmasks = "other.tif"\nkind = "map"\nparameters = {holes = "fill"}\n',
         encoding="utf-8",
     )
     code, _, error = run("batch", tmp_path / "study.toml", "-o", tmp_path / "all")
     assert code == 0, error
-    cells = {name: cd.open_study(tmp_path / "all" / name).cells.iloc[0] for name in ("a", "b")}
+    studies = {name: cd.open_study(tmp_path / "all" / "inputs" / name) for name in ("a", "b")}
+    cells = {name: study.cells.iloc[0] for name, study in studies.items()}
     assert cells["a"]["excluded_px"] == cells["b"]["filled_px"] == 64

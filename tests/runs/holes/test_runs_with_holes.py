@@ -50,7 +50,7 @@ def total(windows: pd.DataFrame) -> float:
 
 def test_windows_of_a_map_hold_the_mask_without_its_hole(files: tuple[Path, Path], tmp_path: Path) -> None:
     mask, signal = ring(), tifffile.imread(files[1]).astype(np.float64)
-    study = cd.run_map(files[0], tmp_path / "out", signal=files[1], layers=8, sectors=24, holes="exclude")
+    study = cd.run_map(files[0], tmp_path / "out", signal=files[1], layers=24, sectors=24, holes="exclude")
     (row,) = study.cells.to_dict("records")
     assert (row["holes"], row["filled_px"], row["excluded_px"]) == (1, 0, 144)
     assert row["area_px"] == mask.sum()
@@ -61,7 +61,7 @@ def test_windows_of_a_map_hold_the_mask_without_its_hole(files: tuple[Path, Path
     assert study.map(0).holes.box.sum() == 144
     gone = study.windows[study.windows["status"] == "in a hole"]
     assert len(gone) == row["empty_windows"] > 0
-    assert set(gone["layer"]) == {7}
+    assert set(gone["layer"]) <= {22, 23}
     assert (gone["area"] == 0.0).all()
     assert gone[["mean", "depth", "centroid_y", "eccentricity"]].isna().all(axis=None)
     assert study.windows.loc[~study.windows.index.isin(gone.index), "status"].eq("ok").all()
