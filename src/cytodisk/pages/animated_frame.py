@@ -96,7 +96,7 @@ class AnimatedFrames:
         return picture.convert("RGB").quantize(palette=self._palette, dither=Image.Dither.NONE)
 
     def _draw_signal(self, windows: CellWindows, image: AnyArray) -> None:
-        self._limits = self._limits or signal_limits(image, windows.mask)
+        self._limits = self._limits or signal_limits(image, windows.mask_without_holes)
         self._has_bar = True
         low, high = self._limits
         self._moving.cell.imshow(image, cmap=self._colours, vmin=low, vmax=high)

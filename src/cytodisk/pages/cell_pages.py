@@ -138,7 +138,7 @@ def _draw_channel(
     second = _LEFT + _PAIR
     headings = ("signal and windows", "signal on the disk")
     cell, wheel = _row_of_axes(sheet, top, height, _PANEL, headings)
-    limits = signal_limits(image, windows.mask)
+    limits = signal_limits(image, windows.mask_without_holes)
     drawn = draw_cell(cell, image, windows.disk, scale=scale, cmap=SIGNAL_COLOURS, limits=limits)
     draw_windows(cell, windows, linewidth=0.15, alpha=0.6)
     draw_disk_image(wheel, windows.disk, image, limits=limits)
@@ -235,7 +235,7 @@ def _inset(ax: Axes, sheet: Sheet, left: float, bottom: float, height: float) ->
 
 
 def _write_heading(sheet: Sheet, name: str, windows: CellWindows, scale: Scale, more: str) -> None:
-    size = scale.area(float(windows.mask.sum()))
+    size = scale.area(float(windows.mask_without_holes.sum()))
     area = (f"{size:,.0f}" if size >= 100 else f"{size:.3g}") + f" {scale.area_unit}"
     grid = f"{windows.grid.layers} layers × {windows.grid.sectors} sectors"
     distortion = windows.disk.distortion

@@ -217,7 +217,7 @@ def _limits(movie: DrawnMovie, signal: SignalAt | None) -> tuple[float, float] |
     for frame in _spread(movie.mapped, 3):
         image = _background(signal, frame)
         if image is not None and image.shape == movie.maps.image_shape:
-            inside.append(image[movie.maps[frame].mask])
+            inside.append(image[movie.maps[frame].mask_without_holes])
     if not inside:
         return None
     return signal_limits(np.concatenate(inside))

@@ -18,6 +18,7 @@ from matplotlib.patches import Polygon
 from cytodisk.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError, SignalError
+from cytodisk.plot.cell.hole_marks import outline_holes
 from cytodisk.plot.field_of_view import field_of_view, frame_field
 from cytodisk.plot.style import LINE_COLOUR, colour_map, scale_bar, signal_limits
 from cytodisk.plot.units import scale_for
@@ -95,7 +96,7 @@ def draw_cell(
     cmap: str | Colormap = "gray",
     limits: tuple[float, float] | None = None,
 ) -> AxesImage:
-    """Draw the signal around a cell with the cell's outline.
+    """Draw the signal around a cell with the cell's outline, and those of excluded holes.
 
     Parameters
     ----------
@@ -134,9 +135,10 @@ def draw_cell(
     >>> image = cd.plot.draw_cell(ax, cd.simulate.ring_signal(mask), cd.map_to_disk(mask))
     """
     values = fitting_image(image, disk.mask, "image")
-    low, high = limits or signal_limits(values, disk.mask)
+    low, high = limits or signal_limits(values, disk.mask_without_holes)
     drawn = ax.imshow(values, cmap=colour_map(cmap), vmin=low, vmax=high)
     draw_outline(ax, disk, color="white", linewidth=0.3)
+    outline_holes(ax, disk, color="white", linewidth=0.3)
     frame_cell(ax, disk, scale=scale)
     return drawn
 

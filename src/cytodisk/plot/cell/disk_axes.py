@@ -82,7 +82,8 @@ def draw_disk_image(
     ax : Axes
     disk : DiskMap
     signal : array_like of shape (H, W)
-        One channel of one frame, of the shape of the mask; NaN is drawn light grey.
+        One channel of one frame, of the shape of the mask; NaN is drawn light grey, as
+        excluded holes are.
     size : int
         Pixels across the disk.
     cmap : str or Colormap
@@ -113,7 +114,7 @@ def draw_disk_image(
     >>> image = cd.plot.draw_disk_image(ax, cd.map_to_disk(mask), cd.simulate.ring_signal(mask), size=64)
     """
     image = disk.image(signal, size)
-    low, high = limits or signal_limits(signal, disk.mask)
+    low, high = limits or signal_limits(signal, disk.mask_without_holes)
     colours = colour_map(cmap).with_extremes(bad=(1.0, 1.0, 1.0, 0.0))
     ax.add_patch(Circle((0.0, 0.0), 1.0, facecolor=MISSING_COLOUR, linewidth=0.0, zorder=-1))
     drawn = ax.imshow(image, cmap=colours, vmin=low, vmax=high, extent=(-1.0, 1.0, 1.0, -1.0))

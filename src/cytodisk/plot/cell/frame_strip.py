@@ -87,7 +87,7 @@ def draw_strip(
         raise ParameterError(f"windows has {len(windows)} frames, but there are {counts}: pass one a frame")
     if signal is not None:
         pairs = [
-            (fitting_image(image, frame.mask, "signal"), frame.mask)
+            (fitting_image(image, frame.mask, "signal"), frame.mask_without_holes)
             for image, frame in zip(signal, windows, strict=True)
         ]
         images = [image for image, _ in pairs]

@@ -55,7 +55,7 @@ def draw_window_labels(ax: Axes, windows: WindowsOnCell) -> AxesImage:
     """
     if not isinstance(windows, WindowsOnCell):
         raise WindowError(f"windows must be those on a cell, got {type(windows).__name__}: use grid.on(disk)")
-    mask = np.asarray(windows.mask)
+    mask = windows.mask_without_holes
     drawn = draw_label_image(ax, windows.labels, mask, (windows.layers, windows.sectors))
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     frame_field(ax, (rows[0] - 1.5, rows[-1] + 1.5, columns[0] - 1.5, columns[-1] + 1.5))

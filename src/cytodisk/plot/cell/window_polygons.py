@@ -13,6 +13,7 @@ from matplotlib.colors import BoundaryNorm, Colormap
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import WindowError
 from cytodisk.plot.cell.cell_axes import draw_outline, frame_cell
+from cytodisk.plot.cell.hole_marks import cover_holes
 from cytodisk.plot.style import LAYER_COLOURS, SIGNAL_COLOURS, colour_map, signal_limits
 from cytodisk.plot.units import scale_for
 from cytodisk.scale import Scale
@@ -91,7 +92,7 @@ def draw_window_means(
     ax : Axes
     windows : CellWindows
     values : array_like of shape (layers, sectors)
-        NaN is drawn light grey.
+        NaN is drawn light grey, as excluded holes are.
     scale : Scale, optional
         By default that of the windows; without a pixel size the scale bar is in px.
     cmap : str or Colormap
@@ -127,6 +128,7 @@ def draw_window_means(
     table = window_values(values, windows.areas.shape)
     polygons = window_polygons(windows)
     drawn = add_filled_windows(ax, polygons, table, cmap, limits)
+    cover_holes(ax, windows.disk)
     draw_outline(ax, windows.disk, linewidth=0.25)
     frame_cell(ax, windows.disk, scale=scale_for(windows, scale))
     return drawn
