@@ -88,7 +88,7 @@ def try_pair(seed: int) -> Trial:
     except CytodiskError as error:
         return Trial(seed, *sizes, seconds, own_radius, f"windows: {type(error).__name__}: {error}")
     certificate = disk.certificate
-    lost, astray, round_trip = check_points(disk, nucleus, np.random.default_rng([23, seed]))
+    lost, astray, round_trip = check_points(disk, np.random.default_rng([23, seed]))
     return Trial(
         seed,
         *sizes,
@@ -107,9 +107,7 @@ def try_pair(seed: int) -> Trial:
     )
 
 
-def check_points(
-    disk: cd.DiskMap, nucleus: np.ndarray, random: np.random.Generator
-) -> tuple[int, int, float]:
+def check_points(disk: cd.DiskMap, random: np.random.Generator) -> tuple[int, int, float]:
     """Pixels that are not mapped, those mapped into the other compartment, and the round trip's error in px.
 
     The round trip is made by all pixel centres and by random points of the cell.
@@ -117,7 +115,7 @@ def check_points(
     pixels = np.argwhere(disk.mask)
     uv = disk.to_disk(pixels)
     mapped = np.isfinite(uv).all(axis=1)
-    inside = nucleus[tuple(pixels.T)]
+    inside = disk.nucleus.mask[tuple(pixels.T)]
     in_circle = np.hypot(*uv.T) <= disk.nucleus.radius
     points = random.choice(pixels, _RANDOM_POINTS) + random.uniform(-0.5, 0.5, (_RANDOM_POINTS, 2))
     points_uv = disk.to_disk(points)

@@ -1,0 +1,33 @@
+import numpy as np
+import pytest
+
+from cytodisk.disk.mapping import map_to_disk
+from cytodisk.simulate import random_pair
+
+PAIRS, CHUNK, FAST = 500, 20, 120
+FIRST = 100_000  # seeds that the benchmark does not take
+
+
+def chunks() -> list[object]:
+    """First seeds of chunks; most are slow."""
+    return [
+        pytest.param(FIRST + start, marks=[pytest.mark.slow] if start >= FAST else [])
+        for start in range(0, PAIRS, CHUNK)
+    ]
+
+
+@pytest.mark.parametrize("first", chunks())
+def test_every_random_pair_has_a_valid_map_that_keeps_its_compartments(first: int) -> None:
+    for seed in range(first, first + CHUNK):
+        mask, nucleus = random_pair(seed)
+        disk = map_to_disk(mask, nucleus=nucleus, nucleus_radius="area" if seed % 4 == 0 else 0.5)
+        certificate = disk.certificate
+        assert certificate.valid, (seed, certificate.faults)
+        assert certificate.flipped_in_cell == certificate.flipped_in_disk == ()
+        pixels = np.argwhere(disk.mask)
+        uv = disk.to_disk(pixels)
+        assert np.isfinite(uv).all(), seed
+        np.testing.assert_allclose(disk.to_cell(uv), pixels, atol=1e-6, err_msg=str(seed))
+        assert disk.nucleus is not None
+        inside = np.hypot(*uv.T) <= disk.nucleus.radius
+        np.testing.assert_array_equal(inside, nucleus[tuple(pixels.T)], err_msg=str(seed))
