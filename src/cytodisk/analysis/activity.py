@@ -16,12 +16,14 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.motion.disk_movie import DiskMovie
 from cytodisk.scale import Scale
 from cytodisk.taking import takes
-from cytodisk.windows.depths import DEPTHS
+from cytodisk.windows.depths import DEPTHS, NUCLEUS_DISTANCES
 from cytodisk.windows.grid_parameters import SampleParameters
+from cytodisk.windows.layer_coords import layer_coords
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.sample import sample, sampled_pixels
 
 GEOMETRY = ("area", "centroid_y", "centroid_x", *DEPTHS)
+DISTANCES = (*DEPTHS, *NUCLEUS_DISTANCES)
 STATISTICS = ("mean", "sd", "min", "max", "n_pixels", "n_nan")
 
 
@@ -64,7 +66,8 @@ def sample_movie(
     -------
     Dataset with dims (time, channel, layer, sector)
         mean, sd, min, max, n_pixels, n_nan as for `sample`; area and depth of the windows (depth, depth_p5,
-        depth_p95: their distance to the cell's edge) and status, reason by frame;
+        depth_p95: their distance to the cell's edge) and status, reason by frame; with layers of a nucleus
+        nucleus_distance, …_p5 and …_p95, and the coordinate compartment;
         centroid_y and centroid_x of the windows as coordinates, which go with any of the others. A frame
         without a map is NaN with its reason. The coordinate time_s is
         there when the frame interval is known; units are in the attrs of each variable.
@@ -170,7 +173,7 @@ def window_arrays(windows: WindowsOnCell, image: Any, **settings: Any) -> dict[s
     -------
     dict of str to ndarray
         Statistics of shape (C, L, S); of shape (L, S) area in square pixels, and centroid_y, centroid_x,
-        depth, depth_p5 and depth_p95 in pixels.
+        depth, depth_p5 and depth_p95 in pixels, and with a nucleus nucleus_distance, …_p5 and …_p95.
     """
     if image is None:
         return pixel_arrays(windows, None)
@@ -195,6 +198,11 @@ def pixel_arrays(
     return arrays if pixels is None else sampled_pixels(windows, pixels, nan=nan) | arrays
 
 
+def geometry_of(grid: Grid) -> tuple[str, ...]:
+    """Names of what is known of the windows of a grid without a signal."""
+    return (*GEOMETRY, *NUCLEUS_DISTANCES) if "compartment" in layer_coords(grid) else GEOMETRY
+
+
 class ActivityTables:
     """Arrays of the windows of a movie, filled frame by frame; NaN where there is nothing.
 
@@ -212,8 +220,9 @@ class ActivityTables:
     ):
         shape = n_frames, grid.layers, grid.sectors
         self.channels = channels
+        self._coords = layer_coords(grid)
         self.tables = {name: np.full((n_frames, len(channels), *shape[1:]), np.nan) for name in statistics}
-        self.tables |= {name: np.full(shape, np.nan) for name in GEOMETRY}
+        self.tables |= {name: np.full(shape, np.nan) for name in geometry_of(grid)}
 
     def put(self, frame: int, arrays: dict[str, FloatArray]) -> None:
         """Keep the arrays of a frame, as `window_arrays` returns them."""
@@ -223,7 +232,8 @@ class ActivityTables:
     def dataset(self, movie: DiskMovie, first_frame: int = 0) -> xr.Dataset:
         """All of it, with the status of the movie's frames; see `activity_dataset`."""
         reasons = [record.reason for record in movie.records]
-        return activity_dataset(self.tables, self.channels, movie.status, reasons, movie.scale, first_frame)
+        found = activity_dataset(self.tables, self.channels, movie.status, reasons, movie.scale, first_frame)
+        return found.assign_coords(self._coords)
 
 
 def activity_dataset(
@@ -258,12 +268,12 @@ def activity_dataset(
         "centroid_x": "px",
         "n_pixels": "px²",
         "n_nan": "px²",
-    } | dict.fromkeys(DEPTHS, scale.length_unit)
+    } | dict.fromkeys(DISTANCES, scale.length_unit)
     for name, values in tables.items():
         scaled = values
         if name == "area":
             scaled = scale.area(values)
-        elif name in DEPTHS:
+        elif name in DISTANCES:
             scaled = scale.length(values)
         data[name] = (dims[values.ndim], scaled, {"units": units.get(name, "a.u.")})
     data["status"] = ("time", np.array(status, dtype=str))

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cytodisk.windows.layer_coords import layer_coords
 from cytodisk.windows.on_cell import WindowsOnCell
 
 
@@ -49,7 +50,7 @@ def window_measures(windows: WindowsOnCell) -> xr.Dataset:
             "layer_pieces": ("layer", windows.layer_pieces, {"units": "1"}),
             "completeness": ("layer", windows.completeness, {"units": "1"}),
         },
-        {"layer": np.arange(windows.layers), "sector": np.arange(windows.sectors)},
+        layer_coords(windows.grid) | {"sector": np.arange(windows.sectors)},
         attrs={"coverage": windows.coverage} | windows.scale.attrs,
     )
 

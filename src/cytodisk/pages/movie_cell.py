@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -66,14 +66,14 @@ class MovieCell:
 
     @cached_property
     def disk_grid(self) -> PolarGrid:
-        """The windows on the disk as they are drawn: layers by depth with their median radii over frames."""
-        if self.grid.depth_um is None:
+        """The windows on the disk as they are drawn: radii that frames differ in are medians over these."""
+        if self.grid.has_radii:
             return self.grid
         mapped = np.flatnonzero(self.maps.mapped)
         places = np.linspace(0, len(mapped) - 1, min(_FRAMES, len(mapped)))
         maps = [self.maps[int(mapped[place])] for place in np.unique(places.round().astype(int))]
         radii = np.median([self.grid.on(disk).grid.radii for disk in maps], axis=0)
-        return replace(self.grid, borders=tuple(radii[1:-1].tolist()))
+        return self.grid.with_radii(radii)
 
     def unit(self, name: str) -> str:
         """Unit of a variable of the activity."""

@@ -36,11 +36,15 @@ def layer_borders(grid: PolarGrid) -> list[str]:
     if grid.depth_um is None:
         return [""] * grid.layers
     borders = [f"{depth:g}" for depth in (0.0, *grid.depth_um)]
-    return [*(f"{outer}–{inner} µm" for outer, inner in pairwise(borders)), f"> {borders[-1]} µm"]
+    in_cytoplasm = [*(f"{outer}–{inner} µm" for outer, inner in pairwise(borders)), f"> {borders[-1]} µm"]
+    return in_cytoplasm + [""] * grid.nucleus_layers
 
 
 def depth_words(grid: PolarGrid) -> str:
     """A grid of layers by depth in words, as "layers 0–0.5, 0.5–1 µm deep and the rest inside"."""
     borders = [f"{depth:g}" for depth in (0.0, *(grid.depth_um or ()))]
     layers = ", ".join(f"{outer}–{inner}" for outer, inner in pairwise(borders))
-    return f"layers {layers} µm deep and the rest inside, sectors {grid.sectors}"
+    if not grid.nucleus_layers:
+        return f"layers {layers} µm deep and the rest inside, sectors {grid.sectors}"
+    rest = f"the rest of the cytoplasm, nucleus_layers {grid.nucleus_layers}"
+    return f"layers {layers} µm deep and {rest}, sectors {grid.sectors}"

@@ -9,12 +9,13 @@ import numpy as np
 
 from cytodisk.analysis.activity import STATISTICS, pixel_arrays
 from cytodisk.analysis.pixel_pileup import Pileup, pileup
+from cytodisk.arrays import FloatArray
 from cytodisk.errors import CytodiskError, EmptyMaskError, ReadError, SignalError
 from cytodisk.geometry.outline_step import outline_step
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
 from cytodisk.images.signal_files import SignalPiece
-from cytodisk.windows.depths import DEPTHS
+from cytodisk.windows.depths import DEPTHS, NUCLEUS_DISTANCES
 from cytodisk.windows.hole_pixels import hole_pixels
 from cytodisk.windows.polar_windows import CellWindows
 from cytodisk.windows.sample import check_channel_names
@@ -217,4 +218,17 @@ def _window_columns(
         "centroid_x": np.tile(arrays["centroid_x"].ravel(), repeats),
         "eccentricity": np.tile(windows.eccentricities.ravel(), repeats),
         "status": status.ravel().tolist(),
+        **_nucleus_columns(windows, arrays, repeats),
     }
+
+
+def _nucleus_columns(windows: CellWindows, arrays: dict[str, FloatArray], repeats: int) -> dict[str, Any]:
+    """Columns of windows in a study with nuclei; other studies do not write them."""
+    n_windows, scale = windows.grid.n_windows, windows.scale
+    nothing = np.full(n_windows * repeats, np.nan)
+    distances = {
+        name: np.tile(scale.length(arrays[name]).ravel(), repeats) if name in arrays else nothing
+        for name in NUCLEUS_DISTANCES
+    }
+    by_window = np.repeat(windows.grid.compartments, windows.grid.sectors)
+    return {"compartment": np.tile(by_window, repeats), **distances}

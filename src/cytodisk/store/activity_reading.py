@@ -16,7 +16,7 @@ from typing_extensions import TypedDict
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
-from cytodisk.analysis.activity import GEOMETRY, STATISTICS, with_places
+from cytodisk.analysis.activity import DISTANCES, GEOMETRY, STATISTICS, with_places
 from cytodisk.errors import ReadError
 from cytodisk.memory import free_bytes
 from cytodisk.reading_files import checked, json_of, reading_file, text_of
@@ -36,13 +36,14 @@ EDGE_VARIABLES = (
 )
 _DIMS = {
     **dict.fromkeys(STATISTICS, ("time", "channel", *_WINDOW)),
-    **dict.fromkeys(GEOMETRY, ("time", *_WINDOW)),
+    **dict.fromkeys((*GEOMETRY, *DISTANCES), ("time", *_WINDOW)),
     **dict.fromkeys(EDGE_VARIABLES, ("time", "sector")),
     **dict.fromkeys(("status", "reason", "frame", "time_s"), ("time",)),
     **{name: (name,) for name in ("channel", *_WINDOW)},
+    "compartment": ("layer",),
 }
 _NEEDED = ("status", "reason", "frame", *_WINDOW, *GEOMETRY[:1], *EDGE_VARIABLES)
-_TEXTS = ("status", "reason", "channel")
+_TEXTS = ("status", "reason", "channel", "compartment")
 _Length = Annotated[int, Field(strict=True, ge=0, le=_MOST)]
 _Chunk = Annotated[int, Field(strict=True, ge=1, le=_MOST)]
 

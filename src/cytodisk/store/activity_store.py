@@ -15,11 +15,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cytodisk.analysis.activity import GEOMETRY, STATISTICS
+from cytodisk.analysis.activity import DISTANCES, STATISTICS, geometry_of
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.files import replacing, temporary_name
 from cytodisk.scale import Scale
 from cytodisk.store.activity_reading import EDGE_VARIABLES, read_activity
+from cytodisk.windows.layer_coords import layer_coords
 from cytodisk.windows.polar_windows import PolarGrid
 
 _FRAMES_PER_CHUNK = 64
@@ -127,7 +128,7 @@ class CellActivity:
         layers, sectors = self._grid.layers, self._grid.sectors
         names = self._channels
         shapes: dict[str, tuple[tuple[str, ...], tuple[int, ...]]] = {}
-        shapes |= dict.fromkeys(GEOMETRY, (("layer", "sector"), (layers, sectors)))
+        shapes |= dict.fromkeys(geometry_of(self._grid), (("layer", "sector"), (layers, sectors)))
         shapes |= dict.fromkeys(EDGE_VARIABLES, (("sector",), (sectors,)))
         if names:
             three = ("channel", "layer", "sector"), (len(names), layers, sectors)
@@ -140,7 +141,9 @@ class CellActivity:
             data[name] = (("time", *dims), np.stack(values), {"units": self._unit(name)})
         for place, name in ((2, "status"), (3, "reason")):
             data[name] = ("time", np.array([frame[place] for frame in self._frames], dtype=object))
-        coords: dict[str, Any] = {"layer": np.arange(layers), "sector": np.arange(sectors)}
+        coords: dict[str, Any] = layer_coords(self._grid) | {"sector": np.arange(sectors)}
+        if "compartment" in coords:
+            coords["compartment"] = "layer", self._grid.compartments.astype(object)
         if names:
             coords["channel"] = np.array(names, dtype=object)
         coords |= self._scale.time_coords(np.array([frame[0] for frame in self._frames]))
@@ -149,7 +152,7 @@ class CellActivity:
     def _unit(self, name: str) -> str:
         if name.startswith("velocity"):
             return self._scale.velocity_unit
-        if name == "edge_length" or name.startswith("depth"):
+        if name == "edge_length" or name in DISTANCES:
             return self._scale.length_unit
         if name.endswith("area"):
             return self._scale.area_unit

@@ -25,7 +25,7 @@ from cytodisk.store.study_folder import part_key
 from cytodisk.store.study_kind import ACTIVITY, CELLS, MAPS
 from cytodisk.store.table_file import REMEDY, opened_table, read_cells, read_checked, units_in
 from cytodisk.store.tables import CONSISTENCY_COLUMNS, EDGE_COLUMNS, Columns
-from cytodisk.store.window_columns import WINDOW_COLUMNS
+from cytodisk.store.window_columns import NUCLEUS_WINDOW_COLUMNS, WINDOW_COLUMNS
 from cytodisk.store.written_files import recorded, unchanged
 
 WINDOWS, EDGE, CONSISTENCY = "windows.parquet", "edge.parquet", "consistency.parquet"
@@ -79,7 +79,7 @@ class Study:
     @cached_property
     def windows(self) -> pd.DataFrame:
         """One row a cell, frame, channel, layer and sector; units in `attrs["units"]`."""
-        return self._table(WINDOWS, WINDOW_COLUMNS, "layer", "sector")
+        return self._table(WINDOWS, WINDOW_COLUMNS, "layer", "sector", optional=NUCLEUS_WINDOW_COLUMNS)
 
     @cached_property
     def edge(self) -> pd.DataFrame:
@@ -125,8 +125,9 @@ class Study:
             raise ReadError(f"study {self.path} is not that of a movie: it has no {name}")
         return self._table(name, columns, *block)
 
-    def _table(self, name: str, columns: Columns, *block: str) -> pd.DataFrame:
-        return read_checked(self.path / name, columns, units=units_in(self.provenance), block=block)
+    def _table(self, name: str, columns: Columns, *block: str, optional: Columns = ()) -> pd.DataFrame:
+        units = units_in(self.provenance)
+        return read_checked(self.path / name, columns, optional, units=units, block=block)
 
     def map(self, cell: int, frame: int | None = None) -> DiskMap:
         """Read the map of one cell, in one frame of a movie.

@@ -10,6 +10,7 @@ from cytodisk.store.columns_file import COLUMNS_CSV
 from cytodisk.store.csv_tables import csv_of
 from cytodisk.store.provenance_file import FORMAT
 from cytodisk.store.tables import Columns
+from cytodisk.store.window_columns import NUCLEUS_WINDOW_COLUMNS
 
 PARAMETERS = "parameters.toml"
 CELLS = "cells.parquet"
@@ -64,6 +65,12 @@ class StudyKind:
         """The same where every table is written as CSV too."""
         new = tuple(name for name in map(csv_of, self.table_files) if name not in self.files)
         return replace(self, files=(*self.files, *new), csv=True)
+
+    @property
+    def with_nuclei(self) -> StudyKind:
+        """The same where cells have nuclei, so that their windows have a compartment."""
+        windows = (*self.others["windows"], *NUCLEUS_WINDOW_COLUMNS)
+        return replace(self, others={**self.others, "windows": windows})
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -58,6 +58,24 @@ WINDOW_COLUMNS: Columns = (
     ),
 )
 
+NUCLEUS_WINDOW_COLUMNS: Columns = (
+    Column(
+        "compartment",
+        pa.string(),
+        "",
+        "cytoplasm or nucleus, whichever the window's layer is in; cell, if the cell was mapped without one",
+    ),
+    Column(
+        "nucleus_distance",
+        pa.float64(),
+        "length",
+        "median distance of the window's subpixels to the outline of the nucleus, inside of it or outside",
+    ),
+    Column("nucleus_distance_p5", pa.float64(), "length", "5th percentile of that distance"),
+    Column("nucleus_distance_p95", pa.float64(), "length", "95th percentile of that distance"),
+)
+"""What the table of windows has beyond that in a study with nuclei."""
+
 WINDOW_SIZE_COLUMNS: Columns = (
     Column(
         "window_area_error",

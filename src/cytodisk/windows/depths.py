@@ -12,6 +12,8 @@ from cytodisk.windows.shares import DIVIDED, FINE, NOWHERE, PER_SIDE, Subpixels
 
 DEPTHS = ("depth", "depth_p5", "depth_p95")
 """Names of the percentiles of a window's depth, in their order."""
+NUCLEUS_DISTANCES = ("nucleus_distance", "nucleus_distance_p5", "nucleus_distance_p95")
+"""The same of its distance to the nuclear outline, where the cell has a nucleus."""
 
 _PERCENTILES, _COLUMNS = (0.05, 0.5, 0.95), (1, 0, 2)  # ascending, and their places in `DEPTHS`
 _BINS = 256  # between the least and the greatest depth of a window
@@ -27,7 +29,9 @@ _Parts: TypeAlias = tuple[Int32Array, IntArray, Int32Array]
 _Places: TypeAlias = tuple[IntArray, FloatArray, FloatArray]
 
 
-def window_depths(distance: EdgeDistance, subpixels: Subpixels, n_windows: int) -> FloatArray:
+def window_depths(
+    distance: EdgeDistance, subpixels: Subpixels, n_windows: int, inside: BoolArray | None = None
+) -> FloatArray:
     """Median, 5th and 95th percentile of the depth of each window's subpixels.
 
     Parameters
@@ -37,6 +41,8 @@ def window_depths(distance: EdgeDistance, subpixels: Subpixels, n_windows: int) 
         Of the same mask. Where a pixel lies in one window as a whole, two or four places stand for its
         subpixels.
     n_windows : int
+    inside : ndarray of the shape of `distance.inside` and dtype bool, optional
+        The mask that the subpixels are of, if it is another one.
 
     Returns
     -------
@@ -45,7 +51,8 @@ def window_depths(distance: EdgeDistance, subpixels: Subpixels, n_windows: int) 
     """
     lattice = np.concatenate([_SPARSE, _lattice(PER_SIDE), _lattice(FINE)])
     parts = subpixels.whole, subpixels.start, subpixels.window
-    return _depths(distance.inside, parts, lattice, distance.arrays, n_windows)
+    mask = distance.inside if inside is None else inside
+    return _depths(mask, parts, lattice, distance.arrays, n_windows)
 
 
 def _lattice(per_side: int) -> FloatArray:

@@ -13,7 +13,7 @@ from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.geometry.edge_distance import EdgeDistance
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import UNKNOWN, Scale
-from cytodisk.windows.depths import DEPTHS, window_depths
+from cytodisk.windows.depths import DEPTHS, NUCLEUS_DISTANCES, window_depths
 from cytodisk.windows.hole_pixels import hole_pixels, without_pixels
 from cytodisk.windows.pieces import pieces_by_window
 from cytodisk.windows.shares import (
@@ -193,8 +193,19 @@ class WindowsOnCell(ABC):
 
     @property
     def depth_columns(self) -> dict[str, FloatArray]:
-        """`depths` by name, each of shape (layers, sectors): depth, depth_p5, depth_p95, in pixels."""
-        return dict(zip(DEPTHS, np.moveaxis(self.depths, -1, 0), strict=True))
+        """`depths` by name, each of shape (layers, sectors): depth, depth_p5, depth_p95, in pixels.
+
+        Where a nucleus is known, too, nucleus_distance, nucleus_distance_p5 and nucleus_distance_p95.
+        """
+        columns = dict(zip(DEPTHS, np.moveaxis(self.depths, -1, 0), strict=True))
+        if self.nucleus_distances is not None:
+            columns |= zip(NUCLEUS_DISTANCES, np.moveaxis(self.nucleus_distances, -1, 0), strict=True)
+        return columns
+
+    @property
+    def nucleus_distances(self) -> FloatArray | None:
+        """As `depths`, from the outline of the nucleus on either side of it; None if none is known."""
+        return None
 
     @cached_property
     def edge_distance(self) -> EdgeDistance:

@@ -18,7 +18,8 @@ def window_polygons(grid: PolarLayout, disk: DiskMap) -> list[FloatArray]:
     """Outline of every window in the cell.
 
     Rings and spokes of the grid are sampled as finely as the boundary is, and more where they are drawn out,
-    so neighbours share their points, and layer 0 follows the cell's outline exactly.
+    so neighbours share their points, and layer 0 follows the cell's outline exactly, the first layer of a
+    nucleus that of the nucleus.
 
     Parameters
     ----------
@@ -34,6 +35,9 @@ def window_polygons(grid: PolarLayout, disk: DiskMap) -> list[FloatArray]:
     spokes = [_spoke(grid, disk, angle) for angle in grid.angles[:-1]]
     polygons = []
     for layer in range(grid.layers):
+        if not grid.present[layer]:
+            polygons += [np.empty((0, 2))] * grid.sectors
+            continue
         for sector in range(grid.sectors):
             here, following = spokes[sector][layer], spokes[(sector + 1) % grid.sectors][layer]
             outer, inner = rings[layer][sector], rings[layer + 1][sector]
@@ -45,9 +49,12 @@ def window_polygons(grid: PolarLayout, disk: DiskMap) -> list[FloatArray]:
 
 def _sector_arcs(grid: PolarLayout, disk: DiskMap, radius: float) -> list[FloatArray]:
     """Arc of each sector at one radius, mapped into the cell, both ends included."""
-    turn = 2.0 * np.pi
-    within = np.unique(np.concatenate([np.mod(disk.boundary_angles, turn), grid.angles]))
-    halvings = 0 if radius == 1.0 else _HALVINGS  # the outline is straight between its points
+    corners = disk.boundary_angles
+    if disk.nucleus is not None and radius <= disk.nucleus.radius:
+        corners = disk.nucleus.boundary_angles
+    within = np.unique(np.concatenate([np.mod(corners, 2.0 * np.pi), grid.angles]))
+    on_outline = radius == 1.0 or (disk.nucleus is not None and radius == disk.nucleus.radius)
+    halvings = 0 if on_outline else _HALVINGS  # an outline is straight between its points
 
     def points_at(angles: FloatArray) -> FloatArray:
         return disk.to_cell(radius * np.column_stack([np.cos(angles), np.sin(angles)]))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
@@ -60,6 +61,24 @@ class PolarLayout:
         """Compartment of each layer, "cytoplasm" or "nucleus", or "cell" without a nucleus; (layers,)."""
         outer = "cytoplasm" if self.nucleus_layers else "cell"
         return np.array([outer] * self.cytoplasm_layers + ["nucleus"] * self.nucleus_layers)
+
+    @property
+    def of_any_cell(self) -> Self:
+        """The same grid without the radii of one cell."""
+        return replace(self, borders=None, nucleus_radius=None)
+
+    def with_radii(self, radii: FloatArray) -> Self:
+        """The same grid with radii between layers that cells have, or have on average, (layers + 1,)."""
+        last = self.cytoplasm_layers
+        borders = None if self.depth_um is None else tuple(radii[1:last].tolist())
+        nucleus_radius = float(radii[last]) if self.nucleus_layers else None
+        return replace(self, borders=borders, nucleus_radius=nucleus_radius)
+
+    @property
+    def has_radii(self) -> bool:
+        """Whether the radii are known: those of any cell, or of the one that the grid is on."""
+        by_depth = self.depth_um is not None and self.borders is None
+        return not by_depth and (not self.nucleus_layers or self.nucleus_radius is not None)
 
     @cached_property
     def radii(self) -> FloatArray:

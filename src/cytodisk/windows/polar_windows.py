@@ -17,6 +17,7 @@ from cytodisk.taking import takes
 from cytodisk.windows.area_ratios import area_ratios
 from cytodisk.windows.depth_borders import radii_at_depths
 from cytodisk.windows.grid_parameters import PolarGridParameters
+from cytodisk.windows.nucleus.nucleus_distance import nucleus_distances
 from cytodisk.windows.nucleus.nucleus_grid import with_nucleus_of
 from cytodisk.windows.on_map import WindowsOnMap
 from cytodisk.windows.outlines import window_polygons
@@ -30,8 +31,7 @@ from cytodisk.windows.window_features import window_features
 class PolarGrid(PolarLayout):
     """Layers from the edge (0) inwards, sectors from angle 0 (+u) towards +v.
 
-    Window (layer, sector) has number layer · sectors + sector. With a nucleus, layers of the cytoplasm come
-    first, those of the nucleus follow.
+    Window (layer, sector) has number layer · sectors + sector. Layers of a nucleus follow the others.
 
     Attributes
     ----------
@@ -40,15 +40,14 @@ class PolarGrid(PolarLayout):
     spacing : {"area", "radius"}
         Within the cytoplasm, and within the nucleus.
     depth_um : tuple of float or None
-        Depths of the borders between layers in µm, one less than there are layers from the edge to the
-        nucleus or the centre; then the radii differ from cell to cell.
+        Depths in µm of the borders between layers before the nucleus or the centre.
     borders : tuple of float or None
         Radii of these borders in one cell, decreasing; for layers that are deeper than the cell or its
         cytoplasm the radius of the nucleus, or 0.
     nucleus_layers : int
         How many of the layers are in the nucleus, the last ones.
     nucleus_radius : float or None
-        Of the nucleus in the disk of one cell, or of all cells of a study.
+        Of the nucleus in the disk.
 
     Examples
     --------
@@ -77,8 +76,8 @@ class PolarGrid(PolarLayout):
         Raises
         ------
         WindowError
-            `disk` is not a map; or layers are by depth, and its scale is unknown or the image shows no edge;
-            or only one of the grid and the map has a nucleus.
+            `disk` is no map; only one of it and the grid has a nucleus; or layers are by depth, and its scale
+            is unknown or the image shows no edge.
         """
         if not isinstance(disk, DiskMap):
             raise WindowError(f"disk must be a DiskMap, got {type(disk).__name__}: pass map_to_disk(mask)")
@@ -96,11 +95,6 @@ class PolarGrid(PolarLayout):
         windows = CellWindows(replace(grid, borders=tuple(radii.tolist())), disk)
         windows.__dict__["edge_distance"] = distance  # which took some time
         return windows
-
-    @property
-    def of_any_cell(self) -> PolarGrid:
-        """The same grid without the radii of one cell."""
-        return replace(self, borders=None, nucleus_radius=None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,6 +176,14 @@ class CellWindows(WindowsOnMap):
         """
         ratios = area_ratios(self.grid, self.filled_areas)
         return ratios if self.holes is None else np.where(ratios > 0.0, ratios, np.nan)
+
+    @cached_property
+    def nucleus_distances(self) -> FloatArray | None:
+        """As `depths`, from the nuclear outline on either side of it; None without a nucleus."""
+        if self.disk.nucleus is None:
+            return None
+        found = nucleus_distances(self.disk, self.shares.subpixels, self.grid.n_windows)
+        return found.reshape(*self.areas.shape, -1)
 
     def polygons(self) -> list[FloatArray]:
         """Outline of each window in the cell, by window number.
@@ -268,20 +270,19 @@ def polar_windows(*in_order: Any, **settings: Any) -> PolarGrid:
 
     >>> grid = cd.polar_windows(sectors=8, depth_um=(0.5, 1.0))
     >>> windows = grid.on(cd.map_to_disk(cd.simulate.disk(30), pixel_size_um=0.1))
-    >>> windows.layers, windows.depths[:, :, 2].mean(axis=1).round()  # in pixels: the last one is the rest
-    (3, array([ 5., 10., 25.]))
+    >>> windows.depths[:, :, 2].mean(axis=1).round()  # in pixels: the last one is the rest
+    array([ 5., 10., 25.])
 
     Layers of the cytoplasm, then of the nucleus:
 
-    >>> grid = cd.polar_windows(layers=2, sectors=60, nucleus_layers=1)
-    >>> grid.layers, grid.compartments.tolist()
-    (3, ['cytoplasm', 'cytoplasm', 'nucleus'])
+    >>> cd.polar_windows(layers=2, sectors=60, nucleus_layers=1).compartments.tolist()
+    ['cytoplasm', 'cytoplasm', 'nucleus']
     """
     return polar_grid(PolarGridParameters.of(*in_order, **settings))
 
 
 def polar_grid(parameters: PolarGridParameters) -> PolarGrid:
     """The grid that some parameters describe."""
-    nucleus, chosen = parameters.nucleus_layers or 0, parameters
-    layers = parameters.cell_layers + nucleus
-    return PolarGrid(layers, chosen.sectors, chosen.spacing, chosen.depth_um, nucleus_layers=nucleus)
+    given, nucleus = parameters, parameters.nucleus_layers or 0
+    layers = given.cell_layers + nucleus
+    return PolarGrid(layers, given.sectors, given.spacing, given.depth_um, nucleus_layers=nucleus)

@@ -32,8 +32,10 @@ _BEFORE_WALL = 1e-6  # of a subpixel: so far before a wall a stretch ends; its n
 _LOOKED_AT = 3  # subpixels, before it is computed where a stretch ends
 _AT_ONCE = 1 << 17  # subpixels that are painted before they are looked through: they stay in the cache
 
-_Grid: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
-_Mesh: TypeAlias = tuple[FloatArray, FloatArray, IntArray]
+RoundGrid: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, bool]
+"""Bands of layers (`layer_bands`), rays between sectors, angles of the boundary, and whether angles grow
+evenly along its chords; if not, angles are those of directions."""
+Mesh: TypeAlias = tuple[FloatArray, FloatArray, IntArray]
 
 
 def paint_windows(grid: PolarLayout, disk: DiskMap) -> Subpixels:
@@ -50,44 +52,77 @@ def paint_windows(grid: PolarLayout, disk: DiskMap) -> Subpixels:
     Subpixels
         4×4 of each pixel that is divided.
     """
-    inside, corner = disk.placed_mask.box, np.array(disk.placed_mask.corner)
-    height, width = inside.shape
-    at_once = min(max(_AT_ONCE // (width * PER_SIDE**2), 1), height)
-    whole, window, places = _paint(_mesh(disk, PER_SIDE), _grid(grid, disk), inside, at_once)
+    inside = disk.placed_mask.box
+    whole, window, places = _paint(
+        mesh_in_subpixels(disk), _grid(grid, disk), inside, rows_at_once(inside.shape)
+    )
     divided, number = np.divmod(np.flatnonzero(window.ravel() == NOWHERE), PER_SIDE**2)
     if divided.size:
-        middles = np.column_stack(np.divmod(number, PER_SIDE)) + 0.5
-        pixels_yx = np.column_stack(np.divmod(places[divided], width)) + corner
-        points = pixels_yx + (middles / PER_SIDE - 0.5)
+        points = subpixel_points(disk, places[divided], number)
         window[divided, number] = grid.window_of(disk.nearest_on_circle(points))
-        some = divided[np.diff(divided, prepend=-1) > 0]
-        whole, window = _without_whole(whole, window, some)
-    return with_starts(whole, window.ravel())
+    return undivided_where_alike(whole, window, divided)
 
 
-def _mesh(disk: DiskMap, per_side: int) -> _Mesh:
-    """Vertices in parts of a pixel from the corner of the mask's box, and in the disk; and triangles."""
+def rows_at_once(shape: tuple[int, ...]) -> int:
+    """Rows of pixels, of a mask's box of this shape, that are painted at a time."""
+    height, width = shape
+    return min(max(_AT_ONCE // (width * PER_SIDE**2), 1), height)
+
+
+def subpixel_points(disk: DiskMap, places: IntArray, number: IntArray) -> FloatArray:
+    """Middles of some subpixels, (row, column) in the image, shape (N, 2).
+
+    Parameters
+    ----------
+    disk : DiskMap
+    places : ndarray of shape (N,) and dtype int
+        Of their pixels in the box of the mask, in row-major order of the box.
+    number : ndarray of shape (N,) and dtype int
+        In the pixel.
+    """
+    middles = (np.column_stack(np.divmod(number, PER_SIDE)) + 0.5) / PER_SIDE - 0.5
+    pixels = np.column_stack(np.divmod(places, disk.placed_mask.box.shape[1]))
+    return np.asarray(pixels + np.array(disk.placed_mask.corner) + middles)
+
+
+def mesh_in_subpixels(disk: DiskMap) -> Mesh:
+    """Vertices in units of a subpixel from the corner of the mask's box, and in the disk; and triangles."""
     corner = np.array(disk.placed_mask.corner)
-    return (disk.vertices_yx - (corner - 0.5)) * per_side, disk.vertices_uv, disk.triangles
+    return (disk.vertices_yx - (corner - 0.5)) * PER_SIDE, disk.vertices_uv, disk.triangles
 
 
-def _grid(grid: PolarLayout, disk: DiskMap) -> _Grid:
+def _grid(grid: PolarLayout, disk: DiskMap) -> RoundGrid:
     """Bands of the layers, rays between the sectors, and angles of the boundary."""
     angles = disk.boundary_angles
     rays = np.column_stack([np.cos(grid.angles), np.sin(grid.angles)])
-    return layer_bands(grid.radii, angles), rays, angles
+    return layer_bands(grid.radii, angles), rays, angles, False
 
 
-def _without_whole(whole: Int32Array, window: Int32Array, some: IntArray) -> tuple[Int32Array, Int32Array]:
-    """The same without those of some divided pixels that turned out to be in one window as a whole."""
+def undivided_where_alike(whole: Int32Array, window: Int32Array, changed: IntArray) -> Subpixels:
+    """Subpixels, without those of divided pixels that after a change are in one window as a whole.
+
+    Parameters
+    ----------
+    whole : ndarray of shape (pixels,) and dtype int32
+    window : ndarray of shape (divided pixels, 16) and dtype int32
+    changed : ndarray of shape (N,) and dtype int
+        Divided pixels that were changed, not decreasing.
+
+    Returns
+    -------
+    Subpixels
+    """
+    some = changed[np.diff(changed, prepend=-1) > 0]
     some = some[(window[some] == window[some, :1]).all(axis=1)]
-    whole[np.flatnonzero(whole == DIVIDED)[some]] = window[some, 0]
-    return whole, np.delete(window, some, axis=0)
+    if some.size:
+        whole[np.flatnonzero(whole == DIVIDED)[some]] = window[some, 0]
+        window = np.delete(window, some, axis=0)
+    return with_starts(whole, window.ravel())
 
 
 @njit(cache=True, error_model="numpy")
 def _paint(
-    mesh: _Mesh, grid: _Grid, inside: BoolArray, at_once: int
+    mesh: Mesh, grid: RoundGrid, inside: BoolArray, at_once: int
 ) -> tuple[Int32Array, Int32Array, IntArray]:
     """Window of each pixel as a whole, and the subpixels and places of those that are divided.
 
@@ -95,7 +130,7 @@ def _paint(
     """
     vertices_yx, vertices_uv, triangles = mesh
     height, width = inside.shape
-    start, listed = _by_strip(vertices_yx, triangles, PER_SIDE * at_once, (height - 1) // at_once + 1)
+    start, listed = by_strip(vertices_yx, triangles, PER_SIDE * at_once, (height - 1) // at_once + 1)
     whole = np.empty(inside.sum(), dtype=np.int32)
     # Room for all pixels, of which memory is taken only where something is written.
     window, places = np.empty((len(whole), PER_SIDE**2), np.int32), np.empty(len(whole), np.int64)
@@ -106,15 +141,15 @@ def _paint(
         top = strip * at_once
         for entry in range(start[strip], start[strip + 1]):
             t = listed[entry]
-            yx, uv = _corners(vertices_yx, triangles, t), _corners(vertices_uv, triangles, t)
-            near = _paint_triangle(yx, uv, near, grid, PER_SIDE * top, canvas)
+            yx, uv = corners_of(vertices_yx, triangles, t), corners_of(vertices_uv, triangles, t)
+            near = paint_triangle(yx, uv, near, grid, PER_SIDE * top, canvas)
         rows = top, min(top + at_once, height)
-        counts = _collect(canvas, inside, rows, counts, whole, window, places)
+        counts = collect(canvas, inside, rows, counts, whole, window, places)
     return whole, window[: counts[1]].copy(), places[: counts[1]].copy()
 
 
 @njit(cache=True)
-def _collect(
+def collect(
     canvas: Int32Array,
     inside: BoolArray,
     rows: tuple[int, int],
@@ -149,14 +184,14 @@ def _collect(
 
 
 @njit(cache=True)
-def _by_strip(
+def by_strip(
     vertices_yx: FloatArray, triangles: IntArray, rows: int, strips: int
 ) -> tuple[IntArray, IntArray]:
     """Triangles that have a part in each strip of so many rows, in their order: starts, and triangles."""
     start = np.zeros(strips + 1, dtype=np.int64)
     first, last = np.empty(len(triangles), np.int64), np.empty(len(triangles), np.int64)
     for t in range(len(triangles)):
-        a, b, c = _corners(vertices_yx, triangles, t)
+        a, b, c = corners_of(vertices_yx, triangles, t)
         first[t] = max(int(min(a[0], b[0], c[0]) - 1.0), 0) // rows
         last[t] = min(max(int(max(a[0], b[0], c[0])), 0) // rows, strips - 1)
         for strip in range(first[t], last[t] + 1):
@@ -171,11 +206,11 @@ def _by_strip(
 
 
 @njit(cache=True, error_model="numpy")
-def _paint_triangle(
-    yx: Corners, uv: Corners, near: Window, grid: _Grid, top: int, canvas: Int32Array
+def paint_triangle(
+    yx: Corners, uv: Corners, near: Window, grid: RoundGrid, top: int, canvas: Int32Array
 ) -> Window:
     """Paint what lies of a triangle in the rows from the top one on; give back a window of it."""
-    bands, rays, boundary_angles = grid
+    bands, rays, boundary_angles, by_chords = grid
     sectors, columns = len(rays) - 1, canvas.shape[1]
     (p, q, r), (a, b, c) = yx, uv
     corners = from_top(p, q, r)
@@ -184,14 +219,14 @@ def _paint_triangle(
     if first_row > last_row:
         return near
     if not holds(a[0], a[1], walls_of(near, bands, rays)):
-        near = window_near(a[0], a[1], near, bands, rays, boundary_angles)
+        near = window_near(a[0], a[1], near, bands, rays, boundary_angles, by_chords)
     alike = holds_triangle(a, b, c, walls_of(near, bands, rays))
     begin = near  # window of the first subpixel of the row before
     sides, (by_row, by_column) = sides_of(*corners), slopes_of(p, q, r, a, b, c)
     for row in range(first_row, last_row + 1):
         column, last = columns_of(row, corners, sides, columns)
         if alike:
-            _fill(canvas, row - top, column, last, near[0] * sectors + near[1])
+            fill(canvas, row - top, column, last, near[0] * sectors + near[1])
             continue
         down, right = row + 0.5 - p[0], 0.5 - p[1]
         u_row = a[0] + by_row[0] * down + by_column[0] * right
@@ -201,25 +236,25 @@ def _paint_triangle(
         while column <= last:
             u, v = u_row + column * by_column[0], v_row + column * by_column[1]
             if not holds(u, v, walls):
-                near = window_near(u, v, near, bands, rays, boundary_angles)
+                near = window_near(u, v, near, bands, rays, boundary_angles, by_chords)
                 walls = walls_of(near, bands, rays)
             if column == first:
                 begin = near
             end = _end_of_stretch(u, v, by_column, column, last, walls)
-            _fill(canvas, row - top, column, end, near[0] * sectors + near[1])
+            fill(canvas, row - top, column, end, near[0] * sectors + near[1])
             column = end + 1
     return near
 
 
 @njit(cache=True, inline="always")
-def _fill(canvas: Int32Array, row: int, first: int, last: int, here: int) -> None:
+def fill(canvas: Int32Array, row: int, first: int, last: int, here: int) -> None:
     """Give a stretch of a row its window."""
     for column in range(first, last + 1):
         canvas[row, column] = here
 
 
 @njit(cache=True)
-def _corners(vertices: FloatArray, triangles: IntArray, t: int) -> Corners:
+def corners_of(vertices: FloatArray, triangles: IntArray, t: int) -> Corners:
     """Corners of a triangle."""
     i, j, k = triangles[t, 0], triangles[t, 1], triangles[t, 2]
     a, b = (vertices[i, 0], vertices[i, 1]), (vertices[j, 0], vertices[j, 1])

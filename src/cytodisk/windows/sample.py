@@ -14,6 +14,7 @@ from cytodisk.checks import instance_of
 from cytodisk.errors import ParameterError, SignalError
 from cytodisk.taking import takes
 from cytodisk.windows.grid_parameters import SampleParameters
+from cytodisk.windows.layer_coords import layer_coords
 from cytodisk.windows.on_cell import WindowsOnCell
 
 
@@ -46,7 +47,8 @@ def sample(
         the whole cell, but for edge windows of a given depth), n_nan (sum of pixel shares that are NaN or
         infinite), area (square pixels); depth, depth_p5 and depth_p95: median, 5th and 95th percentile of the
         distance of the window's subpixels to the cell's edge (µm, or px without a scale); on request quantile
-        with its own dim.
+        with its own dim. With a nucleus nucleus_distance, …_p5 and …_p95, the same to the nuclear outline
+        from either side of it, and the coordinate compartment along layer.
 
     Raises
     ------
@@ -85,7 +87,7 @@ def sample(
     data["area"] = (("layer", "sector"), windows.areas, {"units": "px²"})
     for name, depth in windows.depth_columns.items():
         data[name] = (("layer", "sector"), windows.scale.length(depth), {"units": windows.scale.length_unit})
-    coords: dict[str, Any] = {"layer": np.arange(shape[1]), "sector": np.arange(shape[2])}
+    coords: dict[str, Any] = layer_coords(windows.grid) | {"sector": np.arange(shape[2])}
     if quantiles:
         coords["q"] = list(quantiles)
     if channels is not None:

@@ -3,9 +3,11 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cytodisk.arrays import FloatArray, Int32Array, IntArray
+from cytodisk.arrays import BoolArray, FloatArray, Int32Array, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.windows.hole_pixels import hole_pixels, pixels_beside, without_pixels
+from cytodisk.windows.nucleus.compartment_rule import compartment_windows, is_nuclear, nuclear_box
+from cytodisk.windows.nucleus.nucleus_raster import paint_nucleus_windows
 from cytodisk.windows.polar_layout import PolarLayout
 from cytodisk.windows.raster import paint_windows
 from cytodisk.windows.shares import (
@@ -26,7 +28,8 @@ def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:
     Every pixel is divided into 4×4 subpixels. Each goes whole to the window it maps into; one outside the
     outline goes with the nearest outline point. Pixels at windows without a subpixel are divided into 16×16.
     A window that is still empty gets one more subpixel of the pixel at its centre, which counts as a square
-    of the whole pixel's width in the moments. Pixels of excluded holes belong to no window.
+    of the whole pixel's width in the moments. Pixels of excluded holes belong to no window; those of a
+    nucleus belong to its windows, whole and alone.
 
     Parameters
     ----------
@@ -49,7 +52,7 @@ def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:
     if not empty.size:
         return shares
     subpixels, in_holes = shares.subpixels, shares.hole_areas
-    pixel, place = _pixels_at(disk, grid.centres_uv[empty])
+    pixel, place = _pixels_at(grid, disk, empty)
     near, first = np.unique(pixel, return_index=True)
     fine = windows_of_subpixels(grid, disk, place[first], FINE).astype(np.int32)
     divided = dict(zip(near.tolist(), fine, strict=True))
@@ -61,7 +64,7 @@ def window_shares(grid: PolarLayout, disk: DiskMap) -> WindowShares:
     empty = _empty(grid, shares)
     if not empty.size:
         return shares
-    pixel, _ = _pixels_at(disk, grid.centres_uv[empty])
+    pixel, _ = _pixels_at(grid, disk, empty)
     for number, window in zip(pixel.tolist(), empty, strict=True):
         if left_out is not None and left_out[number]:
             continue  # it lies wholly in a hole
@@ -82,6 +85,8 @@ def _reaching_out(
 
 def _painted(grid: PolarLayout, disk: DiskMap) -> Subpixels:
     """Windows of the subpixels of the filled mask."""
+    if disk.nucleus is not None:
+        return paint_nucleus_windows(grid, disk)
     if disk.method != "advection":
         return paint_windows(grid, disk)
     return subpixels_by_strips(
@@ -115,19 +120,36 @@ def windows_of_subpixels(grid: PolarLayout, disk: DiskMap, pixels_yx: IntArray, 
     for first in range(0, len(pixels_yx), PIXELS_AT_ONCE):
         block = slice(first, first + PIXELS_AT_ONCE)
         points = subpixel_places(pixels_yx[block], per_side).reshape(-1, 2)
-        window[block] = grid.window_of(disk.to_disk(points, outside="nearest")).reshape(-1, per_side**2)
+        if disk.nucleus is None:
+            found = grid.window_of(disk.to_disk(points, outside="nearest"))
+        else:
+            nuclear = np.repeat(is_nuclear(disk, pixels_yx[block]), per_side**2)
+            found = compartment_windows(grid, disk, points, nuclear)
+        window[block] = found.reshape(-1, per_side**2)
     return window
 
 
-def _pixels_at(disk: DiskMap, points_uv: FloatArray) -> tuple[IntArray, IntArray]:
-    """Number and place of the mask pixel nearest to where each disk point is in the cell."""
-    placed = disk.placed_mask
-    height, width = placed.box.shape
-    numbers = np.flatnonzero(placed.box)
-    points_yx = disk.to_cell(points_uv) - placed.corner
+def _pixels_at(grid: PolarLayout, disk: DiskMap, windows: IntArray) -> tuple[IntArray, IntArray]:
+    """Number and place of the mask pixel nearest to the middle of each window, of its own compartment."""
+    points_yx = disk.to_cell(grid.centres_uv[windows]) - disk.placed_mask.corner
+    if disk.nucleus is None:
+        nearest = _nearest_pixels(disk.placed_mask.box, points_yx)
+    else:
+        nuclear, nearest = nuclear_box(disk), np.empty((len(windows), 2), dtype=np.int64)
+        of_nucleus = windows >= grid.cytoplasm_layers * grid.sectors
+        nearest[of_nucleus] = _nearest_pixels(nuclear, points_yx[of_nucleus])
+        nearest[~of_nucleus] = _nearest_pixels(disk.placed_mask.box & ~nuclear, points_yx[~of_nucleus])
+    numbers = np.flatnonzero(disk.placed_mask.box)
+    width = disk.placed_mask.box.shape[1]
+    return np.searchsorted(numbers, nearest @ (width, 1)), nearest + disk.placed_mask.corner
+
+
+def _nearest_pixels(box: BoolArray, points_yx: FloatArray) -> IntArray:
+    """Pixel of a mask that is nearest to each place in its box, (row, column)."""
+    height, width = box.shape
     nearest = np.clip(np.rint(points_yx).astype(np.int64), 0, (height - 1, width - 1))
-    beside = ~placed.box[tuple(nearest.T)]
+    beside = ~box[tuple(nearest.T)]
     if beside.any():
-        pixels = np.column_stack(np.divmod(numbers, width))
+        pixels = np.argwhere(box)
         nearest[beside] = pixels[cKDTree(pixels).query(points_yx[beside])[1]]
-    return np.searchsorted(numbers, nearest @ (width, 1)), nearest + placed.corner
+    return np.asarray(nearest)

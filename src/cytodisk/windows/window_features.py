@@ -10,6 +10,7 @@ import shapely
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import WindowError
+from cytodisk.windows.layer_coords import layer_coords
 from cytodisk.windows.on_cell import WindowsOnCell
 
 _FIRST_PIXEL = 0.5  # of its centre, where the image's corner is (0, 0)
@@ -54,6 +55,7 @@ def window_features(
         area = _by_unit(windows, "area", np.array(windows.placed_mask.box.sum(), dtype=np.float64))
         numbers = {name: float(value) for name, value in area.items()}
         yield _feature(windows.outline_yx, corner, "annotation", {"name": cell}, numbers)
+    compartments = layer_coords(windows.grid).get("compartment", ("layer", []))[1]
     for number, polygon in enumerate(polygons):
         layer, sector = divmod(number, windows.grid.sectors)
         if not len(polygon):
@@ -64,6 +66,8 @@ def window_features(
             "layer": layer,
             "sector": sector,
         }
+        if len(compartments):
+            named["compartment"] = str(compartments[layer])
         here = {name: float(array[layer, sector]) for name, array in measured.items()}
         yield _feature(polygon, corner, "detection", named, here)
 

@@ -115,7 +115,13 @@ def steps_inside(u: float, v: float, step: Point, most: float, walls: Walls) -> 
 
 @njit(cache=True)
 def window_near(
-    u: float, v: float, near: Window, bands: FloatArray, rays: FloatArray, boundary_angles: FloatArray
+    u: float,
+    v: float,
+    near: Window,
+    bands: FloatArray,
+    rays: FloatArray,
+    boundary_angles: FloatArray,
+    by_chords: bool,
 ) -> Window:
     """Window of a point, which most often is in the same sector as a window near by, or in the next one."""
     layer, sector = near
@@ -130,23 +136,42 @@ def window_near(
         sector = sector + 1 if sector < last else 0
     if holds(u, v, walls_of((layer, sector), bands, rays)):
         return layer, sector
-    sector = _sector(u, v, last + 1)
+    sector = _sector(u, v, last + 1, boundary_angles, by_chords)
     if holds(u, v, walls_of((layer, sector), bands, rays)):
         return layer, sector
-    return exact_window(u, v, bands, last + 1, boundary_angles)
+    return exact_window(u, v, bands, last + 1, boundary_angles, by_chords)
 
 
 @njit(cache=True)
-def exact_window(u: float, v: float, bands: FloatArray, sectors: int, boundary_angles: FloatArray) -> Window:
-    """Window of any point of the mapped polygon, as `PolarGrid.window_of` after `to_disk`."""
+def exact_window(
+    u: float, v: float, bands: FloatArray, sectors: int, boundary_angles: FloatArray, by_chords: bool
+) -> Window:
+    """Window of any point of the mapped polygon, as `PolarGrid.window_of` after `to_disk`.
+
+    With `by_chords`, angles grow evenly along each chord of the boundary, as in a nucleus.
+    """
     radius = math.hypot(u, v) / polygon_radius_at(u, v, boundary_angles)
     layer = 0
     while layer < len(bands) - 1 and bands[layer, 2] > radius:
         layer += 1
-    return layer, _sector(u, v, sectors)
+    return layer, _sector(u, v, sectors, boundary_angles, by_chords)
 
 
 @njit(cache=True)
-def _sector(u: float, v: float, sectors: int) -> int:
+def _sector(u: float, v: float, sectors: int, boundary_angles: FloatArray, by_chords: bool) -> int:
     """Sector of a point."""
-    return min(math.floor((math.atan2(v, u) / (2.0 * math.pi)) % 1.0 * sectors), sectors - 1)
+    angle = math.atan2(v, u)
+    if by_chords:
+        angle = _angle_by_chord(angle, boundary_angles)
+    return min(math.floor((angle / (2.0 * math.pi)) % 1.0 * sectors), sectors - 1)
+
+
+@njit(cache=True)
+def _angle_by_chord(angle: float, angles: FloatArray) -> float:
+    """Angle between those of a chord's ends, in proportion to where a ray meets the chord."""
+    turn, last = 2.0 * math.pi, len(angles) - 1
+    lifted = angles[0] + (angle - angles[0]) % turn
+    edge = min(max(np.searchsorted(angles, lifted, side="right") - 1, 0), last)
+    end = angles[edge + 1] if edge < last else angles[0] + turn
+    half, middle = 0.5 * (end - angles[edge]), 0.5 * (end + angles[edge])
+    return float(middle + half * math.tan(lifted - middle) / math.tan(half))

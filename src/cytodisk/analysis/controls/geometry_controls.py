@@ -21,6 +21,7 @@ from cytodisk.checks import instance_of, whole_number
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError
 from cytodisk.motion.disk_movie import DiskMovie
+from cytodisk.windows.layer_coords import layer_coords
 
 LAB, DEPTH_PROFILE = "lab", "depth_profile"
 
@@ -123,7 +124,7 @@ def geometry_controls(
     tables = run.tables(used, lag, steps)
     dims = ("time", "channel", "layer", "sector")
     coords: dict[str, Any] = {"channel": known.channels}
-    coords |= {"layer": np.arange(grid.layers), "sector": np.arange(grid.sectors)}
+    coords |= layer_coords(grid) | {"sector": np.arange(grid.sectors)}
     coords |= movie.scale.time_coords(np.arange(len(movie)))
     data = {name: (dims, table, {"units": "a.u."}) for name, table in tables.items()}
     attrs = movie.scale.attrs | {"max_lag": lag}

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.analysis.activity import GEOMETRY, STATISTICS
+from cytodisk.analysis.activity import STATISTICS, geometry_of
 from cytodisk.analysis.consistency import correlation_over_sectors, displacement_between
 from cytodisk.images.tracks import CellTrack
 from cytodisk.motion.edge import STRETCHES
@@ -83,7 +83,7 @@ def _frame_arrays(
 ) -> dict[str, Any]:
     """A frame's windows as arrays: statistics (C, L, S), geometry (L, S), and its rigid motion."""
     part = folder.part_table(key, "windows")
-    columns = {name: part.column(name).to_numpy(zero_copy_only=False) for name in GEOMETRY}
+    columns = {name: part.column(name).to_numpy(zero_copy_only=False) for name in geometry_of(grid)}
     shape = (-1, grid.layers, grid.sectors)
     arrays: dict[str, Any] = {name: values.reshape(shape)[0] for name, values in columns.items()}
     if channels:

@@ -28,7 +28,7 @@ def with_nucleus_of(grid: Layout, disk: DiskMap) -> Layout:
     WindowError
         Only one of the two has a nucleus.
     """
-    nucleus = getattr(disk, "nucleus", None)
+    nucleus = disk.nucleus
     if nucleus is None and not grid.nucleus_layers:
         return grid
     if nucleus is None:
