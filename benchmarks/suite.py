@@ -50,6 +50,7 @@ BLOCKS: dict[str, Callable[[Path], Iterator[Figure]]] = {
         suite_costs.scaling,
         suite_checks.area,
         suite_checks.random,
+        suite_checks.random_nuclei,
         suite_checks.windows,
         suite_checks.same_place,
         suite_checks.tracking,

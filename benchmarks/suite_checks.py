@@ -13,6 +13,7 @@ import numpy as np
 from figure import Figure
 
 RANDOM_MASKS = 2800
+RANDOM_PAIRS = 720
 GRIDS = ((1, 1), (5, 12), (10, 60), (20, 120), (50, 100), (100, 200))
 TRACKED_FRAMES = 12
 PLACE_SEEDS = 3
@@ -47,6 +48,21 @@ def random(_data: Path) -> Iterator[Figure]:
     )
     yield Figure(f"{what}: refused, invalid or inexact", sum(trial.failed for trial in trials), most=0)
     yield Figure(f"{what}: mask pixels outside the map", sum(trial.lost for trial in trials), "px", most=0)
+    yield Figure(f"{what}: empty windows", sum(trial.empty for trial in trials), most=0)
+    yield Figure(f"{what}: not converged", sum(not trial.converged for trial in trials))
+
+
+def random_nuclei(_data: Path) -> Iterator[Figure]:
+    """Random cells with a nucleus, fewer than `random_nuclei.py` tries."""
+    from random_nuclei import try_pair
+
+    with ProcessPoolExecutor(2) as pool:
+        trials = list(pool.map(try_pair, range(RANDOM_PAIRS), chunksize=20))
+    what = f"{RANDOM_PAIRS} random cells with a nucleus"
+    flips = sum(trial.flips for trial in trials)
+    yield Figure(f"{what}: flips", flips, most=0, note="20 000: random_nuclei.py")
+    yield Figure(f"{what}: refused, invalid or inexact", sum(trial.failed for trial in trials), most=0)
+    yield Figure(f"{what}: pixels in the other compartment", sum(trial.astray for trial in trials), most=0)
     yield Figure(f"{what}: empty windows", sum(trial.empty for trial in trials), most=0)
     yield Figure(f"{what}: not converged", sum(not trial.converged for trial in trials))
 
