@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
 
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import MaskError
+from cytodisk.geometry.fragments import holes_in, largest_piece, pixels_around
 from cytodisk.geometry.mask_parameters import CleaningParameters, Holes
 from cytodisk.geometry.mask_values import parse_mask
 from cytodisk.geometry.outline import has_one_outline, pixel_edges
@@ -20,8 +20,6 @@ from cytodisk.taking import takes
 _LARGE_DROPPED, _FLAGGED_DROPPED, _FLAGGED_FILLED, _FLAGGED_BORDER = 0.1, 0.005, 0.02, 0.5
 _FLAGGED_EXCLUDED = 0.1  # of the area within the outline
 _IF_CELLS = "if they are cells, number the pieces (--label)"
-_EIGHT = np.ones((3, 3), dtype=bool)
-_FOUR = ndimage.generate_binary_structure(2, 1)
 
 
 @dataclass(frozen=True)
@@ -46,7 +44,7 @@ class MaskReport:
     excluded_px : int
         Pixels of the holes that are no part of the cell, though its map goes over them.
     nucleus_in_holes_px : int
-        Pixels of the holes that are its nucleus, which counts as cell: many masks leave it out.
+        Pixels that count as cell of the holes that its nucleus lies in: many masks leave it out.
 
     Examples
     --------
@@ -107,7 +105,9 @@ class MaskReport:
         )
         excluded = f"{self.excluded_px} px, {self.excluded_share:.1%}"
         words = f"{holes} excluded ({excluded})" if self.excluded_px else f"{holes} filled ({filled})"
-        return words + (f", {self.nucleus_in_holes_px} px nucleus" if self.nucleus_in_holes_px else "")
+        return words + (
+            f", {self.nucleus_in_holes_px} px with the nucleus" if self.nucleus_in_holes_px else ""
+        )
 
     @property
     def qc_flags(self) -> tuple[str, ...]:
@@ -193,10 +193,10 @@ class FilledMask:
         holes, in_nucleus, report = self.holes, 0, self.report
         if nucleus is not None:
             in_nucleus, holes = int((holes & nucleus).sum()), holes & ~nucleus
-            report = replace(report, nucleus_in_holes_px=in_nucleus)
         left = report.filled_px - in_nucleus
         if policy == "fill" or not left:
-            return FilledMask(self.filled, None, report)
+            around = 0 if nucleus is None else pixels_around(self.holes, nucleus)
+            return FilledMask(self.filled, None, replace(report, nucleus_in_holes_px=around))
         if policy == "error":
             found = f"{_count(report.holes, 'hole')} ({left} px)"
             raise MaskError(
@@ -204,6 +204,7 @@ class FilledMask:
                 "windows (--holes exclude)"
             )
         excluded = replace(report, area_px=report.area_px - left, filled_px=in_nucleus, excluded_px=left)
+        excluded = replace(excluded, nucleus_in_holes_px=in_nucleus)
         return FilledMask(self.filled, holes, excluded)
 
 
@@ -264,28 +265,10 @@ def _pieces(crop: BoolArray) -> tuple[BoolArray, BoolArray | None, MaskReport]:
     """The largest piece, its holes if it has any, and what that changed but for the border."""
     if has_one_outline(crop):
         return crop, None, MaskReport(int(crop.sum()), 1, 0, 0, 0, 0.0)
-    piece, components, dropped = _largest_piece(crop)
-    holes, n_holes = _holes(piece)
+    piece, components, dropped = largest_piece(crop)
+    holes, n_holes = holes_in(piece)
     filled = 0 if holes is None else int(holes.sum())
     return piece, holes, MaskReport(int(piece.sum()) + filled, components, dropped, n_holes, filled, 0.0)
-
-
-def _largest_piece(raw: BoolArray) -> tuple[BoolArray, int, int]:
-    labels, count = ndimage.label(raw, structure=_EIGHT)
-    if count == 1:
-        return raw, 1, 0
-    areas = np.bincount(labels.ravel())[1:]
-    piece: BoolArray = labels == 1 + int(areas.argmax())
-    return piece, int(count), int(areas.sum() - areas.max())
-
-
-def _holes(piece: BoolArray) -> tuple[BoolArray | None, int]:
-    # Background is 4-connected where the cell is 8-connected, so that a diagonal contact closes a hole.
-    labels, count = ndimage.label(np.pad(~piece, 1, constant_values=True), structure=_FOUR)
-    if count == 1:
-        return None, 0
-    holes: BoolArray = ((labels != 0) & (labels != labels[0, 0]))[1:-1, 1:-1]
-    return holes, int(count) - 1
 
 
 def _border_share(mask: BoolArray, crop: BoolArray) -> float:

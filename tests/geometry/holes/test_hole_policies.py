@@ -72,7 +72,7 @@ def test_a_nucleus_in_a_hole_counts_as_cell() -> None:
         9,
         6,
     )
-    assert report.notes[-1] == "2 holes excluded (9 px, 2.2%), 6 px nucleus"
+    assert report.notes[-1] == "2 holes excluded (9 px, 2.2%), 6 px with the nucleus"
 
 
 def test_a_hole_that_is_all_nucleus_is_no_hole() -> None:
@@ -85,7 +85,7 @@ def test_a_hole_that_is_all_nucleus_is_no_hole() -> None:
         assert (found.report.area_px, found.report.excluded_px) == (144, 0)
         assert found.report.nucleus_in_holes_px == 16
         assert not found.report.qc_flags or "hole" not in " ".join(found.report.qc_flags)
-        assert found.report.notes[0] == "1 hole filled (16 px, 11.1%), 16 px nucleus"
+        assert found.report.notes[0] == "1 hole filled (16 px, 11.1%), 16 px with the nucleus"
 
 
 @given(arrays(bool, st.tuples(st.integers(1, 12), st.integers(1, 12))).filter(np.any))
@@ -97,3 +97,19 @@ def test_excluding_gives_the_largest_piece_as_it_is(mask: np.ndarray) -> None:
     np.testing.assert_array_equal(cleaned, labels == 1 + areas.argmax())
     assert report.area_px == cleaned.sum()
     assert report.excluded_px == filled.sum() - cleaned.sum()
+
+
+def test_a_gap_around_the_nucleus_is_not_taken_for_touching_cells() -> None:
+    mask = np.ones((30, 30), dtype=bool)
+    mask[8:20, 8:20] = False
+    nucleus = np.zeros_like(mask)
+    nucleus[9:19, 9:19] = True
+    filled = FilledMask.of(mask).under("fill", nucleus).report
+    assert (filled.filled_px, filled.nucleus_in_holes_px) == (144, 144)
+    assert not any("touching cells" in flag for flag in filled.qc_flags)
+    excluded = FilledMask.of(mask).under("exclude", nucleus).report
+    assert (excluded.filled_px, excluded.excluded_px, excluded.area_px) == (100, 44, 856)
+    mask[25:29, 3:27] = False  # another hole
+    assert any(
+        "touching cells" in flag for flag in FilledMask.of(mask).under("fill", nucleus).report.qc_flags
+    )
