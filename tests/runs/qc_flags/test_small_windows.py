@@ -5,7 +5,7 @@ import pytest
 import tifffile
 
 import cytodisk as cd
-from cytodisk.runs.qc_flags.finest_grid import finest_grid
+from cytodisk.runs.qc_flags.finest_grid import finest_grid, finest_grid_with_nucleus
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.window_flags import percent
 from cytodisk.windows.window_sizes import between_pixels, window_sizes
@@ -111,3 +111,28 @@ def test_the_finest_grid_of_even_windows() -> None:
     layers, sectors = finest_grid(even, 10.0, 1.0) or (0, 0)
     assert 0.8 * 1200 / 11 <= layers * sectors <= 1200 / 11
     assert finest_grid([np.full((2, 2), 1.0)], 10.0, 1.0) is None
+
+
+@pytest.mark.parametrize("radius", [8, 16])
+def test_a_coarser_grid_suits_cytoplasm_and_nucleus(radius: int) -> None:
+    mask = np.pad(cd.simulate.disk(40), 2)
+    inner = cd.simulate.disk(radius)
+    nucleus = np.pad(inner, (mask.shape[0] - inner.shape[0]) // 2)
+    disk = cd.map_to_disk(mask, nucleus=nucleus)
+    areas = cd.polar_windows(20, 60, nucleus_layers=5).on(disk).areas
+    found = finest_grid_with_nucleus([areas, areas], 5, 10.0, 1.0)
+    assert found is not None
+    layers, sectors, nucleus_layers = found
+    assert sectors < 60
+    assert 1 <= nucleus_layers <= 5
+    windows = cd.polar_windows(layers, sectors, nucleus_layers=nucleus_layers).on(disk)
+    assert np.median(windows.areas[:layers]) >= 10
+    assert np.median(windows.areas[layers:]) >= 10
+    assert windows.areas.min() >= 1
+    plain = np.where(np.arange(25)[:, None] < 20, areas, np.nan)  # a cell without a nucleus beside it
+    assert finest_grid_with_nucleus([areas, plain], 5, 10.0, 1.0) == found
+
+
+def test_a_nucleus_of_a_few_pixels_takes_no_windows() -> None:
+    areas = np.concatenate([np.full((4, 12), 50.0), np.full((2, 12), 0.3)])
+    assert finest_grid_with_nucleus([areas], 2, 10.0, 1.0) is None

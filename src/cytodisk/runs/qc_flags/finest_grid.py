@@ -34,8 +34,7 @@ def finest_grid(
     area shared out evenly, which is exact where the coarser grid's borders are borders of the given one.
     """
     layers, sectors = areas[0].shape
-    summed = np.zeros((len(areas), layers + 1, sectors + 1))
-    summed[:, 1:, 1:] = np.cumsum(np.cumsum(np.stack(areas), axis=1), axis=2)
+    summed = _summed(areas)
     found: list[tuple[int, int]] = []
     for some in range(1, layers + 1) if fewer_layers else (layers,):
         rows = _at(summed, 1, some)
@@ -48,6 +47,61 @@ def finest_grid(
     ratio = layers / sectors
     near = [grid for grid in found if grid[0] * grid[1] >= 0.8 * most]
     return min(near, key=lambda grid: abs(np.log(grid[0] / grid[1] / ratio)))
+
+
+def finest_grid_with_nucleus(
+    areas: Sequence[FloatArray],
+    nucleus_layers: int,
+    median_px: float,
+    least_px: float,
+    *,
+    fewer_layers: bool = True,
+) -> tuple[int, int, int] | None:
+    """As `finest_grid` for windows of a cytoplasm and a nucleus: layers, sectors, and layers of the nucleus.
+
+    Parameters
+    ----------
+    areas : sequence of ndarray of shape (layers, sectors) and dtype float
+        As for `finest_grid`; cells without a nucleus have no area in its layers.
+    nucleus_layers : int
+        How many of the layers, the last ones, are in the nucleus.
+    median_px, least_px : float
+        That the median and the smallest window of each compartment must have.
+    fewer_layers : bool
+        Whether the cytoplasm can have fewer layers.
+
+    Returns
+    -------
+    (int, int, int) or None
+    """
+    layers, sectors = len(areas[0]) - nucleus_layers, areas[0].shape[1]
+    with_nucleus = [area for area in areas if np.nansum(area[layers:]) > 0] or list(areas)
+    outer, inner = (
+        _summed([area[:layers] for area in areas]),
+        _summed([area[layers:] for area in with_nucleus]),
+    )
+    outer_layers = range(1, layers + 1) if fewer_layers else (layers,)
+    found: list[tuple[int, int, int]] = []
+    for count in _counts(sectors):
+        fits, fits_inside = (
+            [some for some in choices if _large(_at(_at(summed, 1, some), 2, count), median_px, least_px)]
+            for summed, choices in ((outer, outer_layers), (inner, range(1, nucleus_layers + 1)))
+        )
+        if fits and fits_inside:
+            found.append((max(fits), count, max(fits_inside)))
+    if not found:
+        return None
+    most = max((a + c) * b for a, b, c in found)
+    near = [grid for grid in found if (grid[0] + grid[2]) * grid[1] >= 0.8 * most]
+    return min(near, key=lambda grid: abs(np.log(grid[0] / grid[1] / (layers / sectors))))
+
+
+def _summed(areas: Sequence[FloatArray]) -> FloatArray:
+    """Areas cumulated over layers and sectors, from 0, shape (frames, layers + 1, sectors + 1)."""
+    layers, sectors = areas[0].shape
+    summed = np.zeros((len(areas), layers + 1, sectors + 1))
+    summed[:, 1:, 1:] = np.cumsum(np.cumsum(np.nan_to_num(np.stack(areas)), axis=1), axis=2)
+    return summed
 
 
 def _counts(sectors: int) -> list[int]:

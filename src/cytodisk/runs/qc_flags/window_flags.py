@@ -9,7 +9,7 @@ import pandas as pd
 
 from cytodisk.arrays import FloatArray
 from cytodisk.number_words import rounded
-from cytodisk.runs.qc_flags.finest_grid import finest_grid
+from cytodisk.runs.qc_flags.finest_grid import finest_grid, finest_grid_with_nucleus
 from cytodisk.runs.qc_flags.qc_flag import QCFlag, frames_of, mapped_rows, places_of
 from cytodisk.runs.qc_flags.remedy import run_again
 from cytodisk.store.study import Study
@@ -67,7 +67,8 @@ def _note(row: pd.Series[float]) -> str:
 
 def _idle_border(areas: list[FloatArray], depths: Sequence[float]) -> str:
     """The border whose layer has too few pixels for a few sectors in some frame; empty if there is none."""
-    of_layer = np.stack([area.sum(axis=1) for area in areas])  # layers deeper than the cell have none
+    n_layers = len(depths) + 1  # and those of a nucleus
+    of_layer = np.stack([area[:n_layers].sum(axis=1) for area in areas])  # deeper than the cell there is none
     smallest = np.where(of_layer > 0.0, of_layer, np.inf).min(axis=0)
     thin = int(smallest.argmin())
     if smallest[thin] >= _FEWEST_SECTORS * FEW_PX:
@@ -87,14 +88,25 @@ def _advice(study: Study, rows: pd.DataFrame) -> str:
         return (
             f"Leave out {border} of --depth-um: windows between it and the next border hold too few pixels."
         )
+    in_nucleus = study.provenance["parameters"].get("nucleus_layers") or 0
     for least in (LEAST_PX, 0.0):
-        grid = finest_grid(areas, FEW_PX, least, fewer_layers=not by_depth)
-        if grid is not None:
+        changes = _coarser(areas, in_nucleus, least, by_depth)
+        if changes:
             break
     else:
         return "The cell is too small for windows: use its mean."
-    layers, sectors = grid
     rest = "" if least else " (a few windows in its thin parts stay below 1 px: leave them out by their area)"
-    changes = {"sectors": sectors} if by_depth else {"layers": layers, "sectors": sectors}
     again = run_again(study, "x".join(str(number) for number in changes.values()), **changes)
     return f"Use fewer windows{rest}: {again}"
+
+
+def _coarser(areas: list[FloatArray], in_nucleus: int, least_px: float, by_depth: bool) -> dict[str, int]:
+    """Layers and sectors of a grid whose windows are large enough; empty if there is none."""
+    fewer_layers = not by_depth
+    grid: tuple[int, ...] | None
+    if in_nucleus:
+        grid = finest_grid_with_nucleus(areas, in_nucleus, FEW_PX, least_px, fewer_layers=fewer_layers)
+    else:
+        grid = finest_grid(areas, FEW_PX, least_px, fewer_layers=fewer_layers)
+    changes = dict(zip(("layers", "sectors", "nucleus_layers"), grid or (), strict=False))
+    return {name: count for name, count in changes.items() if fewer_layers or name != "layers"}
