@@ -138,7 +138,12 @@ def long_axes(
     return [(axis, size) for axis, size in zip(letters, sizes, strict=True) if size > 1 or axis in "YX"]
 
 
-_FLAGS = {"--signal-channels": "--signal-axes", "--mask-channel": "--axes", "channels": "axes"}
+_FLAGS = {
+    "--signal-channels": "--signal-axes",
+    "--nuclei-channel": "--nuclei-axes",
+    "--mask-channel": "--axes",
+    "channels": "axes",
+}
 
 
 def axes_named(words: str, flag: str) -> str:

@@ -12,7 +12,7 @@ Kind: TypeAlias = Literal["auto", "mask", "stack", "labels"]
 Fragments: TypeAlias = Literal["refuse", "largest"]
 
 AXES = "TCZYX"
-_AXES_WORDS = "letters T (time), C (channel), Z, Y and X, one an axis, such as TYX"
+AXES_WORDS = "letters T (time), C (channel), Z, Y and X, one an axis, such as TYX"
 
 
 def checked_axes(axes: str | None) -> str | None:
@@ -27,7 +27,7 @@ def checked_axes(axes: str | None) -> str | None:
         return None
     letters = axes.strip().upper()
     if not set(letters) <= set(AXES) or len(set(letters)) < len(letters) or not {"Y", "X"} <= set(letters):
-        raise ValueError(f"must be {_AXES_WORDS}, each once, Y and X among them")
+        raise ValueError(f"must be {AXES_WORDS}, each once, Y and X among them")
     return letters
 
 
@@ -76,7 +76,7 @@ class KindParameters(ChoiceParameters):
     axes: str | None = parameter(
         None,
         "Axes of the mask file, a letter each, such as TYX or YXT; overrules what the file says.",
-        words=_AXES_WORDS,
+        words=AXES_WORDS,
     )
     label: bool = parameter(
         False, "For several cells in one mask of 0 and 1: number its pieces; each is a cell."
@@ -109,7 +109,7 @@ class SignalFileParameters(ChoiceParameters):
     signal_axes: str | None = parameter(
         None,
         "Axes of the signal's file, a letter each, such as TCYX; overrules what the file says.",
-        words=_AXES_WORDS,
+        words=AXES_WORDS,
     )
 
     signal_channels: tuple[str, ...] | None = parameter(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from cytodisk.checks import is_path
@@ -17,16 +17,24 @@ from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.frames import open_frames
 from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 from cytodisk.images.mask_files import MaskSource, open_mask_files
+from cytodisk.images.nuclei.nuclei_files import NucleiFile
 from cytodisk.images.signal_files import common_name, pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
+from cytodisk.runs.cells.fitting_signal import check_signal
 from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
+from cytodisk.runs.cells.nuclei_inputs import (
+    NucleiInput,
+    check_nuclei_given,
+    open_nuclei_of,
+    open_paired_nuclei,
+    with_scale,
+)
 from cytodisk.runs.cells.outline_sources import sized_like, with_sizes
 from cytodisk.runs.channel_names import channels_words, check_signal_given, name_channels, with_common_name
 from cytodisk.runs.file_notes import file_notes
-from cytodisk.runs.file_scales import agreed
+from cytodisk.runs.file_scales import agreed, most_common_size
 from cytodisk.scale import Scale
 
-_MOST_UNNAMED = 10  # more planes than that are hardly channels
 _KINDS = {"mask": "one mask", "stack": "a stack of masks", "labels": "a label image, one cell a label"}
 
 
@@ -47,6 +55,8 @@ class CellInputs:
         The given pixel size, or else the files' own, in a folder that of most.
     remarks : tuple of str
         What a user should know of the files of a folder before the run.
+    nuclei : dict of str to NucleiInput
+        By name of the source; empty without nuclei.
     """
 
     masks: Path
@@ -55,6 +65,7 @@ class CellInputs:
     parameters: FileParameters
     scale: Scale
     remarks: tuple[str, ...] = ()
+    nuclei: dict[str, NucleiInput] = field(default_factory=dict)
 
     @property
     def is_folder(self) -> bool:
@@ -67,18 +78,28 @@ class CellInputs:
         return [signal.file for signal in self.signals.values() if signal.file is not None]
 
     @property
+    def nuclei_files(self) -> list[NucleiFile]:
+        """Files of nuclei that can be read, in the order of the masks."""
+        return [found.file for found in self.nuclei.values() if found.file is not None]
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """What is wrong with the files, in words."""
+        nuclei = [found.file for found in self.nuclei_files]
         return file_notes(
-            [*(source.file for source in self.sources), *self.signal_files],
+            [*(source.file for source in self.sources), *self.signal_files, *nuclei],
             Scale(self.parameters.pixel_size_um),
         )
 
     @property
     def paths(self) -> Mapping[str, Path | list[Path]]:
         """Files by their role; a list for a folder."""
-        masks, signals = [source.path for source in self.sources], [file.path for file in self.signal_files]
-        by_role = {"masks": masks, "signal": signals} if signals else {"masks": masks}
+        found = {
+            "masks": [source.path for source in self.sources],
+            "signal": [file.path for file in self.signal_files],
+            "nuclei": [found.file.path for found in self.nuclei_files],
+        }
+        by_role = {role: paths for role, paths in found.items() if paths}
         return by_role if self.is_folder else {role: paths[0] for role, paths in by_role.items()}
 
     @property
@@ -94,6 +115,8 @@ class CellInputs:
                 words["signal"] = f"{channels_words(signal)}; {signal.axes} {signal.shape} {signal.dtype}"
                 if signal.n_frames < masks.n_frames:
                     words["signal"] += f"; the one image is used for all {masks.n_frames} frames of the masks"
+        for nuclei in self.nuclei_files:
+            words["nuclei"] = nuclei.words
         return words
 
     def _understood_folder(self) -> dict[str, str]:
@@ -109,6 +132,8 @@ class CellInputs:
         signals = self.signal_files
         if signals:
             words["signal"] = f"{_count(len(signals), 'image')} with {channels_words(signals[0])}"
+        if self.nuclei_files:
+            words["nuclei"] = _count(len(self.nuclei_files), "file")
         return words
 
 
@@ -121,6 +146,7 @@ def open_inputs(
     signal: str | os.PathLike[str] | None,
     parameters: FileParameters,
     signal_name: str = "",
+    nuclei: str | os.PathLike[str] | None = None,
 ) -> CellInputs:
     """Open the files of a run and check that they fit.
 
@@ -136,6 +162,9 @@ def open_inputs(
         Those of the run, which has more.
     signal_name : str
         What to call channels without a name, in the place of the file's name.
+    nuclei : path-like, optional
+        A label image or a 0/1 mask of nuclei with the shape and the frames of the masks. For a folder of
+        masks a folder, or an ending of names; see `pair_files`.
 
     Returns
     -------
@@ -144,45 +173,61 @@ def open_inputs(
 
     Raises
     ------
-    ReadError, MaskError, SignalError, ParameterError
+    ReadError, MaskError, SignalError, NucleusError, ParameterError
         A file is missing, damaged, or does not fit.
     """
     is_path("masks", masks)
     check_signal_given(signal, parameters)
+    check_nuclei_given(nuclei, parameters)
     if is_folder_of_files(Path(masks)) or is_pattern(Path(masks)):
-        return _open_folder(Path(masks), signal, parameters, signal_name)
+        return _open_folder(Path(masks), signal, nuclei, parameters, signal_name)
     choice = sized_like(parameters.mask_choice, masks, signal, parameters.signal_choice, "C")
     sources = open_mask_files(masks, parameters.part(KindParameters), choice=choice)
     image, parameters = with_common_name(
         _open_signal(sources[0], signal, parameters), signal_name, parameters
     )
-    files = [file for file in (image, sources[0].file) if file is not None]
+    of_nuclei = {} if nuclei is None else {sources[0].name: open_nuclei_of(sources[0], nuclei, parameters)}
+    files = [file for file in (image, sources[0].file, *_files(of_nuclei)) if file is not None]
     check_choice(files, parameters.scene, parameters.z)
     pixel_size_um = parameters.pixel_size_um or agreed(files, "pixel_size_um")
-    return CellInputs(
-        Path(masks), sources, {sources[0].name: SignalFile(image)}, parameters, Scale(pixel_size_um)
-    )
+    signals = {sources[0].name: SignalFile(image)}
+    return CellInputs(Path(masks), sources, signals, parameters, Scale(pixel_size_um), nuclei=of_nuclei)
+
+
+def _files(nuclei: Mapping[str, NucleiInput]) -> list[FrameFile]:
+    return [found.file.file for found in nuclei.values() if found.file is not None]
 
 
 def _open_folder(
-    masks: Path, signal: str | os.PathLike[str] | None, parameters: FileParameters, signal_name: str
+    masks: Path,
+    signal: str | os.PathLike[str] | None,
+    nuclei: str | os.PathLike[str] | None,
+    parameters: FileParameters,
+    signal_name: str,
 ) -> CellInputs:
-    sources = open_mask_files(masks, parameters.part(KindParameters), images=_endings_beside(masks, signal))
+    beside = _endings_beside(masks, signal, nuclei)
+    sources = open_mask_files(masks, parameters.part(KindParameters), images=beside)
     sources = with_sizes(sources, signal, parameters)
     signals, remarks = _open_signals(sources, signal, parameters, signal_name)
+    of_nuclei = {} if nuclei is None else open_paired_nuclei(sources, nuclei, parameters)
     opened = [source.file for source in sources] + [found.file for found in signals.values()]
-    check_choice(opened, parameters.scene, parameters.z)
+    check_choice([*opened, *_files(of_nuclei)], parameters.scene, parameters.z)
     pixel_size_um = parameters.pixel_size_um
     if pixel_size_um is None:
         scaled = with_common_scale(sources, signals)
         sources, signals, pixel_size_um = scaled.sources, scaled.signals, scaled.pixel_size_um
-        remarks = [*remarks, *scaled.remarks]
+        pixel_size_um = pixel_size_um or most_common_size(
+            size for file in _files(of_nuclei) if (size := file.scale.pixel_size_um) is not None
+        )
+        of_nuclei, more = with_scale(of_nuclei, pixel_size_um)
+        remarks = [*remarks, *scaled.remarks, *more]
     replaced = [
         f"{source.name} is used: {', '.join(source.damaged)} cannot be"
         for source in sources
         if source.damaged
     ]
-    return CellInputs(masks, sources, signals, parameters, Scale(pixel_size_um), (*replaced, *remarks))
+    scale = Scale(pixel_size_um)
+    return CellInputs(masks, sources, signals, parameters, scale, (*replaced, *remarks), of_nuclei)
 
 
 def _endings_beside(masks: Path, *others: str | os.PathLike[str] | None) -> tuple[str, ...]:
@@ -239,29 +284,3 @@ def _open_paired(source: MaskSource, image: Path | CytodiskError, parameters: Fi
         return SignalFile(_fitting_image(source, image, parameters))
     except (ReadError, SignalError) as fault:
         return SignalFile(fault=as_data(fault))
-
-
-def check_signal(masks: FrameFile, signal: FrameFile) -> None:
-    """Raise SignalError unless an image can be sampled with masks."""
-    if signal.image_shape != masks.image_shape:
-        if signal.doubt:
-            raise SignalError(f"signal {signal.doubt}")
-        raise SignalError(
-            f"signal {signal.path} has images of {signal.image_shape}, the masks of {masks.image_shape}: "
-            "they must have the same height and width"
-        )
-    if signal.dtype.kind not in "biuf":
-        raise SignalError(
-            f"signal {signal.path} holds values of type {signal.dtype}, which cannot be measured: "
-            "save it as uint16 or float32"
-        )
-    if len(signal.channels) > _MOST_UNNAMED and signal.unnamed:
-        raise SignalError(
-            f"signal {signal.path} has {len(signal.channels)} planes without names, where one image is due: "
-            "pass one frame, or name its axes in the file, and its channels there or with --channels"
-        )
-    if signal.n_frames not in (1, masks.n_frames):
-        raise SignalError(
-            f"signal {signal.path} has {signal.n_frames} frames, the masks {masks.n_frames}: "
-            "pass as many, or a single image"
-        )

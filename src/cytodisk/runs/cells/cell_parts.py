@@ -13,8 +13,10 @@ from cytodisk.errors import CytodiskError, ReadError, as_data
 from cytodisk.files import flushed_later
 from cytodisk.images.frame_pixels import FramePixels
 from cytodisk.images.mask_files import MaskImage, SourceCell, list_images
+from cytodisk.images.nuclei.frame_matches import FrameMatches
 from cytodisk.images.signal_files import SignalFrame, SignalPiece, open_image
 from cytodisk.runs.cells.cell_inputs import CellInputs
+from cytodisk.runs.cells.cell_nuclei import CellNucleus, with_nucleus
 from cytodisk.runs.executor import Executor
 from cytodisk.runs.run_options import Progress
 from cytodisk.store.study_folder import StudyFolder, part_key
@@ -36,6 +38,8 @@ class CellTask:
     image_corner : (int, int)
         (row, column) of its first pixel in the whole image.
     drawn : bool
+    nucleus : CellNucleus or None
+        None without nuclei.
     """
 
     found: SourceCell
@@ -44,6 +48,7 @@ class CellTask:
     image: SignalPiece | None = None
     image_corner: tuple[int, int] = (0, 0)
     drawn: bool = False
+    nucleus: CellNucleus | None = None
 
 
 Rows: TypeAlias = list[tuple[dict[str, Any], dict[str, dict[str, Any]]]]
@@ -122,13 +127,24 @@ class CellRun:
                 continue
             signal = self.inputs.signals[image.source.name]
             loaded = signal.fault or open_image(signal.file, image.frame)
+            nuclei = self.inputs.nuclei.get(image.source.name)
+            matches = None if nuclei is None else nuclei.matches(image.source, image.frame)
             cells = image.cells()
             while part := list(islice(cells, self.at_once)):
                 if part_key(part[0].cell) in pending:
-                    yield [self._task(found, loaded) for found in part]
+                    yield [self._task(found, loaded, matches, image.first_cell) for found in part]
 
-    def _task(self, found: SourceCell, loaded: SignalFrame | CytodiskError | None) -> CellTask:
-        task = CellTask(found, drawn=found.cell < self.draw_at_most)
+    def _task(
+        self,
+        found: SourceCell,
+        loaded: SignalFrame | CytodiskError | None,
+        matches: FrameMatches | CytodiskError | None,
+        first_cell: int,
+    ) -> CellTask:
+        nucleus = None
+        if matches is not None:
+            found, nucleus = with_nucleus(found, matches, found.cell == first_cell)
+        task = CellTask(found, drawn=found.cell < self.draw_at_most, nucleus=nucleus)
         if isinstance(loaded, CytodiskError):
             return replace(task, fault=loaded)
         if loaded is None or found.mask is None:

@@ -20,7 +20,7 @@ from cytodisk.images.tracks import CellTrack, list_tracks
 from cytodisk.images.what_it_is import MaskLook, look_at, refuse_several
 from cytodisk.motion.still_interior import fade_in_px
 from cytodisk.motion.tracking_parameters import MovieSettings
-from cytodisk.runs.cells.cell_inputs import check_signal
+from cytodisk.runs.cells.fitting_signal import check_signal
 from cytodisk.runs.cells.outline_sources import sized_like
 from cytodisk.runs.channel_names import channels_words, check_signal_given, name_channels, with_common_name
 from cytodisk.runs.depth_layers import check_depths, depth_words
