@@ -11,7 +11,8 @@ import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError, SignalError, StudyError
 from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
-from cytodisk.runs.map.map_study import check_cells, map_study
+from cytodisk.runs.map.checked_cells import check_cells
+from cytodisk.runs.map.map_study import map_study
 
 SMALL = MapParameters(layers=3, sectors=8, edge_length=2.0)
 PER_IMAGE = (11, 3, 5)  # cells; the first image has more of them than go into one part

@@ -13,7 +13,8 @@ from cytodisk.errors import MaskError, ParameterError, ReadError, SignalError, S
 from cytodisk.files import temporary_name
 from cytodisk.runs.cells.cell_inputs import CellInputs, open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
-from cytodisk.runs.map.map_study import check_cells, map_study
+from cytodisk.runs.map.checked_cells import check_cells
+from cytodisk.runs.map.map_study import map_study
 from cytodisk.runs.parameters_file import parameters_from
 from cytodisk.runs.run_options import MapOptions
 from cytodisk.store.study_folder import StudyFolder, part_key

@@ -6,7 +6,7 @@ import typer
 
 from cytodisk.cli.console import console_for
 from cytodisk.cli.map_command import say_inputs
-from cytodisk.cli.options import Given, MaskFiles, SignalFiles, with_parameters
+from cytodisk.cli.options import Given, MaskFiles, NucleiFiles, SignalFiles, with_parameters
 from cytodisk.runs.cells.cell_parameters import CheckParameters
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ def check_command(
     masks: MaskFiles,
     given: Given,
     signal: SignalFiles = None,
+    nuclei: NucleiFiles = None,
     every: Annotated[
         bool, typer.Option("--all", help="Print a line for every cell, or frame of a stack.")
     ] = False,
@@ -27,11 +28,11 @@ def check_command(
     from cytodisk.cli.checked_words import Checked
     from cytodisk.cli.contents_lines import say_contents
     from cytodisk.runs.cells.cell_inputs import open_inputs
-    from cytodisk.runs.map.map_study import check_cells
+    from cytodisk.runs.map.checked_cells import check_cells
 
     console = console_for(False)
-    say_contents(console, (masks, signal))
-    inputs = open_inputs(masks, signal, given.of(CheckParameters))
+    say_contents(console, (masks, signal, nuclei))
+    inputs = open_inputs(masks, signal, given.of(CheckParameters), nuclei=nuclei)
     say_inputs(console, inputs)
     _say_evidence(console, inputs)
     found = Checked(inputs)
@@ -53,6 +54,7 @@ def _say_evidence(console: "Console", inputs: "CellInputs") -> None:
     words = "" if look is None else look.file.evidence if look.evidence in look.file.notes else look.words
     found = [("masks", source.name, words)]  # notes were printed as warnings
     found += [("signal", file.path.name, file.evidence) for file in signals[:1]]
+    found += [("nuclei", one.file.path.name, one.look.words) for one in inputs.nuclei_files[:1]]
     for role, name, words in found:
         if words:
             console.print(f"{role}: {words}" + (f" (as in {name})" if inputs.is_folder else ""))

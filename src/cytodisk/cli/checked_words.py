@@ -12,12 +12,13 @@ from numpy.typing import ArrayLike
 
 from cytodisk.cli.console import count
 from cytodisk.cli.map_totals import without_cell_words
+from cytodisk.cli.nuclei_words import nuclei_words, statuses_of
 from cytodisk.images.mask_names import without_name
 from cytodisk.number_words import rounded
 
 if TYPE_CHECKING:
     from cytodisk.runs.cells.cell_inputs import CellInputs
-    from cytodisk.runs.map.map_study import CheckedCell
+    from cytodisk.runs.map.checked_cells import CheckedCell
     from cytodisk.scale import Scale
 
 _MOST_PLACES = 8
@@ -50,6 +51,7 @@ class Checked:
         self._areas: list[int] = []
         self._by_label: dict[tuple[str, int], list[tuple[int, int]]] = {}  # frame and area
         self._looked_at = self._unusable = self._flagged = self._on_border = 0
+        self._nuclei: Counter[str] = Counter()
 
     @property
     def faults(self) -> int:
@@ -63,17 +65,23 @@ class Checked:
     @property
     def header(self) -> str:
         """Names of the columns of `line`."""
-        return "cell\t" + ("file\t" if self._inputs.is_folder else "") + "frame\tlabel\tusable\tremarks"
+        file, nuclei = ("file\t" * self._inputs.is_folder, "nuclei\t" * bool(self._inputs.nuclei))
+        return f"cell\t{file}frame\tlabel\t{nuclei}usable\tremarks"
 
     def line(self, checked: "CheckedCell") -> str:
         """One cell, with tabs between columns."""
         found, report = checked.found, checked.report
         remarks = [] if report is None else [*report.qc_flags, *report.notes]
         flagged = report is not None and (report.qc_flags or report.touches_border)
+        if checked.nucleus_report is not None:
+            remarks += [*checked.nucleus_report.qc_flags, *checked.nucleus_report.notes]
+            flagged = flagged or checked.nucleus_report.qc_flags
         usable = "no" if checked.reason else "QC flag" if flagged else "yes"
         place = f"{found.cell}\t{found.source}" if self._inputs.is_folder else f"{found.cell}"
         said = self._reason(checked) or "; ".join(remarks)
-        return f"{place}\t{found.frame}\t{found.label}\t{usable}\t{said}"
+        nucleus = checked.nucleus
+        labels = "" if nucleus is None else "\t" + ("" if nucleus.match is None else nucleus.match.labels)
+        return f"{place}\t{found.frame}\t{found.label}{labels}\t{usable}\t{said}"
 
     def add(self, checked: "CheckedCell") -> None:
         """Take a cell into account."""
@@ -85,15 +93,18 @@ class Checked:
             self._unusable += is_cell
         if not is_cell:
             self._without[checked.status] += 1
+        if checked.nucleus is not None:
+            self._nuclei.update(statuses_of(checked.nucleus))
         if report is None:
             return
         self._areas.append(report.area_px)
         self._by_label.setdefault((found.source, found.label), []).append((found.frame, report.outline_px))
-        self._flagged += bool(report.qc_flags or report.touches_border)
+        of_nucleus = () if checked.nucleus_report is None else checked.nucleus_report.qc_flags
+        self._flagged += bool(report.qc_flags or report.touches_border or of_nucleus)
         self._on_border += report.touches_border
-        for flag in report.qc_flags:
+        for flag in (*report.qc_flags, *of_nucleus):
             self._note(_FLAG, flag, checked)
-        for note in report.notes:
+        for note in (*report.notes, *(checked.nucleus_report.notes if checked.nucleus_report else ())):
             self._note(_BORDER if note.startswith("touches the image border") else _NOTE, note, checked)
 
     def _reason(self, checked: "CheckedCell") -> str:
@@ -134,6 +145,7 @@ class Checked:
             words = f"{count(len(self._inputs.sources), 'file')}, {words}"
         yield f"{words}, {self._on_border} on the image border"
         yield from without_cell_words(self._without, self._inputs.is_folder)
+        yield from nuclei_words(self._nuclei)
         if self._areas:
             yield size_words(self._areas, self._inputs.scale)
             diameters = 2.0 * np.sqrt(np.asarray(self._areas, dtype=np.float64) / np.pi)

@@ -9,9 +9,10 @@ WIDTH = 100
 """Letters in a line of help, at most; less in a narrow window."""
 
 GROUPS = {
-    "Files": "signal out parameters",
+    "Files": "signal nuclei out parameters",
     "What the files hold": "pixel-size frame-interval channels movie kind label fragments holes link tracks "
-    "axes signal-axes scene z mask-channel signal-channels",
+    "axes signal-axes scene z mask-channel signal-channels nuclei-kind nuclei-axes nuclei-channel",
+    "Nuclei": "several missing nucleus-radius",
     "Windows": "layers sectors nucleus-layers depth-um depth-px spacing align nan methods",
     "Map of each cell": "method shape-weight edge-length",
     "Motion of the edge and the inside": "tracker tension smoothness-px2 registration renew-every inertia "

@@ -9,6 +9,7 @@ from cytodisk.cli.options import (
     Figures,
     Given,
     MaskFiles,
+    NucleiFiles,
     OutFolder,
     Quiet,
     SignalFiles,
@@ -29,6 +30,7 @@ def map_command(
     out: OutFolder,
     given: Given,
     signal: SignalFiles = None,
+    nuclei: NucleiFiles = None,
     figures: Figures = 8,
     quiet: Quiet = False,
 ) -> None:
@@ -38,7 +40,7 @@ def map_command(
 
     console = console_for(quiet)
     options = given.options(MapOptions)
-    inputs = open_inputs(masks, signal, given.of(MapParameters))
+    inputs = open_inputs(masks, signal, given.of(MapParameters), nuclei=nuclei)
     say_inputs(console, inputs)
     with compiling(quiet, "map", options.workers), progress_bar(quiet, "cells") as progress:
         study = map_study(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from cytodisk.cli.console import count, fail
 from cytodisk.cli.flag_words import say_study_flags
+from cytodisk.cli.nuclei_words import nuclei_words
 from cytodisk.images.mask_names import without_name
 
 if TYPE_CHECKING:
@@ -38,6 +39,9 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
         console.print(f"{len(mapped)} of {count(len(cells))} mapped{_one_to_one(mapped)}")
     for line in without_cell_words(Counter(without["status"]), of_folder):
         console.print(line)
+    if "nucleus_status" in cells:
+        for line in nuclei_words(Counter(cells["nucleus_status"].dropna())):
+            console.print(line)
     if len(mapped):
         console.print(
             f"median {mapped['seconds'].median():.2f} s a cell; median area error of windows "

@@ -60,6 +60,15 @@ SignalFiles = Annotated[
         "masks: a folder of images with the same names, or how their names end, such as _img.",
     ),
 ]
+NucleiFiles = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="PATH",
+        help="Nuclei of the cells, of the same height, width and frames: label image or 0/1 mask, in any of "
+        "these formats; each goes to the cell that holds most of it. For a folder of masks: a folder with "
+        "the same names, or how their names end, such as _nuclei.",
+    ),
+]
 OutFolder = Annotated[
     Path,
     typer.Option("--out", "-o", metavar="FOLDER", help="Folder for the results.", show_default=False),
@@ -187,7 +196,8 @@ def _option(name: str, field: FieldInfo, more: str) -> inspect.Parameter:
     if bool in wanted:
         kind, flag = bool, f"{flag}/--no-{flag.removeprefix('--')}"
     words = choices(field.annotation)
-    metavar = "|".join(words) if words and tuple not in wanted else None
+    numbers = ["NUMBER"] * (float in wanted)  # as "NUMBER|area"
+    metavar = "|".join([*numbers, *words]) if words and tuple not in wanted else None
     if not wanted & {bool, str, tuple}:  # a text for the parser, so that errors are the model's
         metavar = "NUMBER"
     if tuple in wanted and not words:

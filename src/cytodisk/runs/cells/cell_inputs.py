@@ -24,9 +24,9 @@ from cytodisk.runs.cells.fitting_signal import check_signal
 from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
 from cytodisk.runs.cells.nuclei_inputs import (
     NucleiInput,
-    check_nuclei_given,
     open_nuclei_of,
     open_paired_nuclei,
+    with_nucleus_layers,
     with_scale,
 )
 from cytodisk.runs.cells.outline_sources import sized_like, with_sizes
@@ -178,7 +178,7 @@ def open_inputs(
     """
     is_path("masks", masks)
     check_signal_given(signal, parameters)
-    check_nuclei_given(nuclei, parameters)
+    parameters = with_nucleus_layers(nuclei, parameters)
     if is_folder_of_files(Path(masks)) or is_pattern(Path(masks)):
         return _open_folder(Path(masks), signal, nuclei, parameters, signal_name)
     choice = sized_like(parameters.mask_choice, masks, signal, parameters.signal_choice, "C")

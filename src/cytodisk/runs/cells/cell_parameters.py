@@ -8,6 +8,7 @@ from cytodisk.disk.mapping_parameters import MeshParameters
 from cytodisk.errors import CytodiskError, ParameterError
 from cytodisk.geometry.mask_parameters import HoleParameters
 from cytodisk.images.file_parameters import KindParameters, SignalFileParameters
+from cytodisk.images.nuclei.nuclei_parameters import NucleiFileParameters
 from cytodisk.parameters import Parameters, parameter
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.scale_parameters import PixelSizeParameters
@@ -43,7 +44,7 @@ class FileParameters(PixelSizeParameters, ChannelParameters, SignalFileParameter
     """How the files of a run are read."""
 
 
-class CheckParameters(HoleParameters, FileParameters):
+class CheckParameters(HoleParameters, NucleiFileParameters, FileParameters):
     """What `cytodisk check` takes, beside the input files."""
 
 

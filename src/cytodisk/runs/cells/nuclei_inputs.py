@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 from cytodisk.errors import CytodiskError, NucleusError, ParameterError, ReadError, as_data
 from cytodisk.images.mask_files import MaskSource
@@ -25,6 +26,12 @@ _ONLY_WITH_NUCLEI = (
 )
 
 
+NUCLEUS_LAYERS = 3
+"""Layers of the nucleus in a run with nuclei that says no number."""
+
+Given = TypeVar("Given", bound=Parameters)
+
+
 @dataclass(frozen=True)
 class NucleiInput:
     """The nuclei of a mask file, or the reason why there are none."""
@@ -42,17 +49,38 @@ class NucleiInput:
             return as_data(fault)
 
 
-def check_nuclei_given(nuclei: object, parameters: Parameters) -> None:
-    """Raise ParameterError where something is said of nuclei that are not there."""
+def with_nucleus_layers(nuclei: object, parameters: Given) -> Given:
+    """Parameters of a run with or without nuclei: with them, grids have layers of the nucleus.
+
+    Parameters
+    ----------
+    nuclei : path-like or None
+    parameters : Parameters
+
+    Returns
+    -------
+    Parameters
+
+    Raises
+    ------
+    ParameterError
+        Something is said of nuclei that are not there.
+    """
+    known = dict(parameters)
     if nuclei is not None:
-        return
+        if known.get("method", "newton") != "newton":
+            raise ParameterError(f'nuclei need method "newton", got {known["method"]!r}: take --method out')
+        without = "nucleus_layers" in known and known["nucleus_layers"] is None
+        return parameters.changed(nucleus_layers=NUCLEUS_LAYERS) if without else parameters
     for name in _ONLY_WITH_NUCLEI:
-        field = type(parameters).model_fields.get(name)
-        if field is not None and getattr(parameters, name) != field.default:
+        if name in known and known[name] != type(parameters).model_fields[name].default:
             flag = "--" + name.replace("_", "-")
             raise ParameterError(
                 f"{name} is given, but there are no nuclei: pass them as --nuclei, or take {flag} out"
             )
+    if known.get("align") == "nucleus":
+        raise ParameterError('align "nucleus" needs nuclei: pass them as --nuclei')
+    return parameters
 
 
 def open_nuclei_of(source: MaskSource, nuclei: str | os.PathLike[str], parameters: Parameters) -> NucleiInput:

@@ -4,21 +4,15 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from typing import Any
 
-from cytodisk.errors import CytodiskError
-from cytodisk.geometry.mask import FilledMask, MaskReport
-from cytodisk.geometry.mask_parameters import HoleParameters
-from cytodisk.images.mask_files import SourceCell, read_source_cells
 from cytodisk.images.mask_names import without_name
 from cytodisk.runs.cells.cell_inputs import CellInputs
 from cytodisk.runs.cells.cell_parts import CellRun
+from cytodisk.runs.cells.nucleus_rows import nuclei_warnings
 from cytodisk.runs.depth_layers import check_depths
 from cytodisk.runs.flagged_cells import fill_flags
-from cytodisk.runs.frame_rows import cell_status
-from cytodisk.runs.map.map_kind import MAP
+from cytodisk.runs.map.map_kind import MAP, MAP_WITH_NUCLEI
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_work import DrawCell, MapWork
 from cytodisk.runs.provenance import describe_run
@@ -85,9 +79,10 @@ def map_study(
         )
         rows = folder.read_rows(keys)
         warnings = [words for row in rows if (words := _warning(row, inputs.is_folder))]
-        return keys, [*inputs.remarks, *warnings]
+        return keys, [*inputs.remarks, *nuclei_warnings(folder, keys), *warnings]
 
-    run = StudyRun(MAP, provenance, inputs.parameters, options, options.writes)
+    kind = MAP_WITH_NUCLEI if inputs.nuclei else MAP
+    run = StudyRun(kind, provenance, inputs.parameters, options, options.writes)
     return run.into(out, work, open_study, fill_flags)
 
 
@@ -99,49 +94,3 @@ def _warning(row: dict[str, Any], of_many: bool) -> str:
         return f"cell {row['cell']}: {words}"
     place = f"cell {row['cell']} of {row['source']}" if row["label"] else row["source"]
     return f"{place}: {without_name(words, row['source'])}"
-
-
-@dataclass(frozen=True)
-class CheckedCell:
-    """What a look at a mask says.
-
-    Attributes
-    ----------
-    found : SourceCell
-    status : str
-        "ok", or as `cell_status` calls the fault.
-    reason : str
-        Why it cannot be used; empty if it can.
-    report : MaskReport or None
-        What cleaning would change, and what speaks against this being the mask of one cell.
-    """
-
-    found: SourceCell
-    status: str
-    reason: str
-    report: MaskReport | None
-
-
-def check_cells(inputs: CellInputs) -> Iterator[CheckedCell]:
-    """Look at every mask without mapping it.
-
-    Parameters
-    ----------
-    inputs : CellInputs
-        Its parameters say what becomes of holes (`CheckParameters`).
-
-    Yields
-    ------
-    CheckedCell
-    """
-    policy = inputs.parameters.part(HoleParameters).holes
-    for found in read_source_cells(inputs.sources):
-        fault = found.fault or inputs.signals[found.source].fault
-        if fault is None:
-            try:
-                report = FilledMask.of(found.mask).under(policy).report
-                yield CheckedCell(replace(found, mask=None), "ok", "", report)
-                continue
-            except CytodiskError as error:
-                fault = error
-        yield CheckedCell(replace(found, mask=None), cell_status(fault), str(fault), None)

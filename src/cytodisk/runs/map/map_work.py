@@ -18,11 +18,14 @@ from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_cell
 from cytodisk.disk.mapping_parameters import MappingParameters
+from cytodisk.disk.nucleus.nucleus_parameters import NucleusParameters
 from cytodisk.errors import CytodiskError
 from cytodisk.files import replacing, writing_to
 from cytodisk.images.frame_pixels import WHOLE_BYTES
 from cytodisk.images.mask_files import SourceCell
+from cytodisk.runs.cells.cell_nuclei import CellNucleus
 from cytodisk.runs.cells.cell_parts import CellTask, Rows
+from cytodisk.runs.cells.nucleus_rows import nuclei_table, nucleus_columns
 from cytodisk.runs.frame_rows import FramePlace, cell_status, measure_windows
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.scale import Scale
@@ -62,23 +65,27 @@ class MapWork:
         started = clock.perf_counter()
         found = task.found
         place = FramePlace(found.cell, found.frame, found.label, source=found.source)
+        nucleus, tables = task.nucleus, nuclei_table(found, task.nucleus)
         fault = found.fault or task.fault
+        if fault is None and nucleus is not None:
+            fault = nucleus.refusal(self.parameters.missing)
         if fault is None:
             try:
-                disk = self._map(found)
-                windows = self._grid.on(disk)
+                disk = self._map(found, nucleus)
+                windows = (self._plain_grid if disk.nucleus is None else self._grid).on(disk)
             except CytodiskError as error:
                 fault = error
         if fault is not None:
-            return [
-                (place.row | {"status": cell_status(fault), "reason": str(fault)} | _seconds(started), {})
-            ]
+            row = place.row | nucleus_columns(nucleus)
+            row |= {"status": cell_status(fault), "reason": str(fault)} | _seconds(started)
+            return [(row, tables)]
         row, columns = measure_windows(place, windows, task.signal, self.parameters.nan, found.corner)
         self._write(found, windows, columns)
+        row |= nucleus_columns(nucleus, None if disk.nucleus is None else disk.nucleus.report)
         row |= {"status": "ok", "reason": ""} | _seconds(started)
         if task.drawn and self.draw is not None:
             self._draw(self.draw, task, windows)
-        return [(row, {"windows": columns})]
+        return [(row, tables | {"windows": columns})]
 
     def files(self, task: CellTask) -> list[Path]:
         """Files that a cell may have: its map, outlines of windows, its figure."""
@@ -102,20 +109,31 @@ class MapWork:
             folder.mkdir(exist_ok=True)
         draw(folder, f"cell_{found.cell:05d}", placed, image)
 
-    def _map(self, found: SourceCell) -> DiskMap:
+    def _map(self, found: SourceCell, nucleus: CellNucleus | None) -> DiskMap:
         mapping = self._mapping
         if isinstance(mapping.align, tuple):  # a place in the image
             (y, x), (row, column) = mapping.align, found.corner
             mapping = mapping.changed(align=(y - row, x - column))
-        return map_cell(found.mask, mapping, Scale(self.scale.pixel_size_um))
+        labels = None if nucleus is None else nucleus.labels
+        scale = Scale(self.scale.pixel_size_um)
+        return map_cell(found.mask, mapping, scale, labels, self._of_nucleus)
 
     @cached_property
     def _mapping(self) -> MappingParameters:
         return self.parameters.part(MappingParameters)
 
     @cached_property
+    def _of_nucleus(self) -> NucleusParameters:
+        return self.parameters.part(NucleusParameters)
+
+    @cached_property
     def _grid(self) -> PolarGrid:
         return polar_grid(self.parameters.part(PolarGridParameters))
+
+    @cached_property
+    def _plain_grid(self) -> PolarGrid:
+        """For cells that are mapped without a nucleus."""
+        return polar_grid(self.parameters.part(PolarGridParameters).changed(nucleus_layers=None))
 
     def _write(self, found: SourceCell, windows: CellWindows, columns: dict[str, Any]) -> None:
         """Write the map and the outlines, in pixels of the whole image."""

@@ -19,6 +19,7 @@ def run_map(
     out: str | os.PathLike[str],
     *,
     signal: str | os.PathLike[str] | None = None,
+    nuclei: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
     parameters: MapParameters | None = None,
     **settings: Any,
@@ -33,6 +34,9 @@ def run_map(
         Folder for the results.
     signal : path-like, optional
         Image of the shape of the masks; for a folder of masks a folder, or an ending of names as "_img".
+    nuclei : path-like, optional
+        Label image, or 0/1 mask, of the nuclei, with the shape and the frames of the masks; each goes to the
+        cell that holds most of it. For a folder of masks a folder, or an ending of names as "_nuclei".
     progress : callable, optional
         Called with (cells done, cells in all).
     parameters : MapParameters, optional
@@ -47,7 +51,7 @@ def run_map(
 
     Raises
     ------
-    ReadError, MaskError, SignalError, ParameterError
+    ReadError, MaskError, SignalError, NucleusError, ParameterError
         A file is missing, damaged, or does not fit, or a parameter is unknown or out of its range.
     StudyError
         The folder cannot be used.
@@ -55,6 +59,7 @@ def run_map(
     See Also
     --------
     map_to_disk : Maps one mask in memory.
+    match_nuclei : The nuclei of cells, in memory.
 
     Examples
     --------
@@ -66,5 +71,5 @@ def run_map(
     (['ok'], 8)
     """
     options, values = MapOptions.split(settings, MapParameters)
-    inputs = open_inputs(masks, signal, MapParameters.chosen(parameters, values))
+    inputs = open_inputs(masks, signal, MapParameters.chosen(parameters, values), nuclei=nuclei)
     return map_study(inputs, out, progress=progress, **dict(options))

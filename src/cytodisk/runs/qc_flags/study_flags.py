@@ -12,6 +12,7 @@ from cytodisk.runs.qc_flags import (
     input_flags,
     interior_flags,
     motion_flags,
+    nucleus_flags,
     stress_flags,
     window_flags,
 )
@@ -96,6 +97,9 @@ def _heads(study: Study, cell: int, frame: int | None) -> Iterator[str]:
 _RUN_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     column_flags.without_map,
     column_flags.flagged_masks,
+    nucleus_flags.nucleus_missing,
+    nucleus_flags.several_nuclei,
+    nucleus_flags.nucleus_clipped,
     area_jumps.area_jumps,
     input_flags.implausible_scale,
     input_flags.clipped_signal,

@@ -1,0 +1,98 @@
+"""A look at every mask of a run, and at its nucleus, without mapping it: `cytodisk check`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from cytodisk.arrays import BoolArray
+from cytodisk.errors import CytodiskError
+from cytodisk.geometry.mask import FilledMask, MaskReport
+from cytodisk.geometry.mask_parameters import HoleParameters
+from cytodisk.geometry.nucleus_mask import fit_nucleus
+from cytodisk.geometry.nucleus_report import NucleusReport
+from cytodisk.images.mask_files import SourceCell, read_source_cells
+from cytodisk.runs.cells.cell_inputs import CellInputs
+from cytodisk.runs.cells.cell_nuclei import CellNucleus, with_nucleus
+from cytodisk.runs.frame_rows import cell_status
+
+
+@dataclass(frozen=True)
+class CheckedCell:
+    """What a look at a mask says.
+
+    Attributes
+    ----------
+    found : SourceCell
+    status : str
+        "ok", or as `cell_status` calls the fault.
+    reason : str
+        Why it cannot be used; empty if it can.
+    report : MaskReport or None
+        What cleaning would change, and what speaks against this being the mask of one cell.
+    nucleus : CellNucleus or None
+        Which nuclei it has; None without a file of nuclei.
+    nucleus_report : NucleusReport or None
+        What fitting the nucleus into the cell would change.
+    """
+
+    found: SourceCell
+    status: str
+    reason: str
+    report: MaskReport | None
+    nucleus: CellNucleus | None = None
+    nucleus_report: NucleusReport | None = None
+
+
+def check_cells(inputs: CellInputs) -> Iterator[CheckedCell]:
+    """Look at every mask without mapping it.
+
+    Parameters
+    ----------
+    inputs : CellInputs
+        Its parameters say what becomes of holes (`CheckParameters`).
+
+    Yields
+    ------
+    CheckedCell
+    """
+    policy = inputs.parameters.part(HoleParameters).holes
+    for found, nucleus in _with_nuclei(inputs):
+        fault = found.fault or inputs.signals[found.source].fault
+        bare = replace(found, mask=None)
+        report = of_nucleus = None
+        if fault is None:
+            try:
+                cell = FilledMask.of(found.mask)
+                report = cell.report
+                fitted, of_nucleus = _fitted(cell.filled, nucleus)
+                report = cell.under(policy, fitted).report
+            except CytodiskError as error:
+                fault = error
+        status, reason = ("ok", "") if fault is None else (cell_status(fault), str(fault))
+        yield CheckedCell(bare, status, reason, report, nucleus, of_nucleus)
+
+
+def _with_nuclei(inputs: CellInputs) -> Iterator[tuple[SourceCell, CellNucleus | None]]:
+    """The cells, each with its nucleus; the nuclei of an image are matched once."""
+    sources = {source.name: source for source in inputs.sources}
+    of_image: tuple[str, int] | None = None
+    for found in read_source_cells(inputs.sources):
+        nuclei = inputs.nuclei.get(found.source)
+        if nuclei is None:
+            yield found, None
+            continue
+        is_first = of_image != (found.source, found.frame)
+        if is_first:
+            of_image = found.source, found.frame
+            matches = nuclei.matches(sources[found.source], found.frame)
+        yield with_nucleus(found, matches, is_first)
+
+
+def _fitted(mask: BoolArray, nucleus: CellNucleus | None) -> tuple[BoolArray | None, NucleusReport | None]:
+    """The nucleus in its cell, and what fitting changes; raises NucleusError where it does not fit."""
+    if nucleus is None:
+        return None, None
+    if (fault := nucleus.refusal("refuse")) is not None:
+        raise fault
+    return (None, None) if nucleus.labels is None else fit_nucleus(mask, nucleus.labels)
