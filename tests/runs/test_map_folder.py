@@ -10,8 +10,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError, SignalError, StudyError
 from cytodisk.runs.cells.cell_inputs import open_inputs
-from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.checked_cells import check_cells
+from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_study import map_study
 
 SMALL = MapParameters(layers=3, sectors=8, edge_length=2.0)

@@ -12,8 +12,8 @@ import cytodisk as cd
 from cytodisk.errors import MaskError, ParameterError, ReadError, SignalError, StudyError
 from cytodisk.files import temporary_name
 from cytodisk.runs.cells.cell_inputs import CellInputs, open_inputs
-from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.checked_cells import check_cells
+from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_study import map_study
 from cytodisk.runs.parameters_file import parameters_from
 from cytodisk.runs.run_options import MapOptions

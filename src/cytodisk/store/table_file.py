@@ -16,6 +16,7 @@ from cytodisk.errors import ReadError
 from cytodisk.memory import free_bytes
 from cytodisk.parameter_words import short_words
 from cytodisk.reading_files import reading_file
+from cytodisk.store.nucleus_columns import NUCLEUS_COLUMNS
 from cytodisk.store.study_kind import CELLS
 from cytodisk.store.tables import CELL_COLUMNS, SOURCE, TRACK_COLUMNS, Column, Columns, unit_of
 from cytodisk.store.window_columns import WINDOW_SIZE_COLUMNS
@@ -177,7 +178,7 @@ def _check_blocks(path: Path, frame: pd.DataFrame, block: Sequence[str], remedy:
 
 def read_cells(folder: Path, provenance: dict[str, Any]) -> pd.DataFrame:
     """The table of cells of a study; a movie has each cell once in a frame."""
-    optional = (SOURCE, *TRACK_COLUMNS, *WINDOW_SIZE_COLUMNS)
+    optional = (SOURCE, *TRACK_COLUMNS, *WINDOW_SIZE_COLUMNS, *NUCLEUS_COLUMNS)
     cells = read_checked(folder / CELLS, CELL_COLUMNS, optional, units=units_in(provenance))
     if not len(cells):
         raise ReadError(f"{folder / CELLS} has no rows: {REMEDY}")

@@ -54,7 +54,8 @@ WINDOW_COLUMNS: Columns = (
         pa.string(),
         "",
         "ok; NaN in signal; no signal, if the run had no image; in a hole, if excluded holes leave none of "
-        "the window; or deeper than the cell, for layers by depth",
+        "the window; deeper than the cell, for layers by depth; or no nucleus, for "
+        "layers of the nucleus in a cell without one",
     ),
 )
 

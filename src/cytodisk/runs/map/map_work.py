@@ -26,6 +26,7 @@ from cytodisk.images.mask_files import SourceCell
 from cytodisk.runs.cells.cell_nuclei import CellNucleus
 from cytodisk.runs.cells.cell_parts import CellTask, Rows
 from cytodisk.runs.cells.nucleus_rows import nuclei_table, nucleus_columns
+from cytodisk.runs.cells.plain_rows import with_nucleus_rows
 from cytodisk.runs.frame_rows import FramePlace, cell_status, measure_windows
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.scale import Scale
@@ -85,6 +86,8 @@ class MapWork:
         row |= {"status": "ok", "reason": ""} | _seconds(started)
         if task.drawn and self.draw is not None:
             self._draw(self.draw, task, windows)
+        if nucleus is not None and disk.nucleus is None:
+            columns = with_nucleus_rows(columns, self._grid)
         return [(row, tables | {"windows": columns})]
 
     def files(self, task: CellTask) -> list[Path]:
