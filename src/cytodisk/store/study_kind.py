@@ -8,6 +8,7 @@ from typing import Any
 
 from cytodisk.store.columns_file import COLUMNS_CSV
 from cytodisk.store.csv_tables import csv_of
+from cytodisk.store.nucleus_columns import NUCLEI_COLUMNS, NUCLEUS_COLUMNS
 from cytodisk.store.provenance_file import FORMAT
 from cytodisk.store.tables import Columns
 from cytodisk.store.window_columns import NUCLEUS_WINDOW_COLUMNS
@@ -68,9 +69,10 @@ class StudyKind:
 
     @property
     def with_nuclei(self) -> StudyKind:
-        """The same where cells have nuclei, so that their windows have a compartment."""
+        """The same where cells have nuclei: with a table of these, and windows have a compartment."""
         windows = (*self.others["windows"], *NUCLEUS_WINDOW_COLUMNS)
-        return replace(self, others={**self.others, "windows": windows})
+        others = {**self.others, "windows": windows, "nuclei": NUCLEI_COLUMNS}
+        return replace(self, cells=(*self.cells, *NUCLEUS_COLUMNS), others=others)
 
     @property
     def names(self) -> tuple[str, ...]:

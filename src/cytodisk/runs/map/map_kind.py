@@ -1,8 +1,5 @@
 """What `cytodisk map` writes."""
 
-from dataclasses import replace
-
-from cytodisk.store.nucleus_columns import NUCLEI_COLUMNS, NUCLEUS_COLUMNS
 from cytodisk.store.study_folder import part_patterns
 from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import SOURCE_COLUMNS
@@ -20,8 +17,4 @@ MAP = StudyKind(
         for pattern in part_patterns(name)
     ),
 )
-"""Without nuclei."""
-
-MAP_WITH_NUCLEI = replace(
-    MAP, cells=(*MAP.cells, *NUCLEUS_COLUMNS), others={**MAP.others, "nuclei": NUCLEI_COLUMNS}
-)
+"""Without nuclei; `MAP.with_nuclei` with them."""

@@ -12,7 +12,7 @@ from cytodisk.runs.cells.cell_parts import CellRun
 from cytodisk.runs.cells.nucleus_rows import nuclei_warnings
 from cytodisk.runs.depth_layers import check_depths
 from cytodisk.runs.flagged_cells import fill_flags
-from cytodisk.runs.map.map_kind import MAP, MAP_WITH_NUCLEI
+from cytodisk.runs.map.map_kind import MAP
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_work import DrawCell, MapWork
 from cytodisk.runs.provenance import describe_run
@@ -81,7 +81,7 @@ def map_study(
         warnings = [words for row in rows if (words := _warning(row, inputs.is_folder))]
         return keys, [*inputs.remarks, *nuclei_warnings(folder, keys), *warnings]
 
-    kind = MAP_WITH_NUCLEI if inputs.nuclei else MAP
+    kind = MAP.with_nuclei if inputs.nuclei else MAP
     run = StudyRun(kind, provenance, inputs.parameters, options, options.writes)
     return run.into(out, work, open_study, fill_flags)
 
