@@ -46,6 +46,8 @@ from .windows.rings.interpolated_rings import InterpolatedRingWindows as Interpo
 from .windows.on_cell import WindowsOnCell as WindowsOnCell
 from .analysis.window_measures import window_measures as window_measures
 from .analysis.window_measures import measures_by_layer as measures_by_layer
+from .analysis.compartments.nuclear_profile import nuclear_profile as nuclear_profile
+from .analysis.compartments.nucleus_summary import nucleus_summary as nucleus_summary
 
 # Movies and the edge
 from .motion.map_movie import map_movie as map_movie
