@@ -8,7 +8,7 @@ from typing import Any
 
 from cytodisk.store.columns_file import COLUMNS_CSV
 from cytodisk.store.csv_tables import csv_of
-from cytodisk.store.nucleus_columns import NUCLEI_COLUMNS, NUCLEUS_COLUMNS
+from cytodisk.store.nuclei.nucleus_columns import NUCLEI_COLUMNS, NUCLEUS_COLUMNS
 from cytodisk.store.provenance_file import FORMAT
 from cytodisk.store.tables import Columns
 from cytodisk.store.window_columns import NUCLEUS_WINDOW_COLUMNS

@@ -16,7 +16,7 @@ from cytodisk.errors import ReadError
 from cytodisk.memory import free_bytes
 from cytodisk.parameter_words import short_words
 from cytodisk.reading_files import reading_file
-from cytodisk.store.nucleus_columns import NUCLEUS_COLUMNS
+from cytodisk.store.nuclei.nucleus_columns import NUCLEUS_COLUMNS
 from cytodisk.store.study_kind import CELLS
 from cytodisk.store.tables import CELL_COLUMNS, SOURCE, TRACK_COLUMNS, Column, Columns, unit_of
 from cytodisk.store.window_columns import WINDOW_SIZE_COLUMNS

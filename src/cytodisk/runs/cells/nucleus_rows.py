@@ -8,7 +8,7 @@ from typing import Any
 from cytodisk.geometry.nucleus_report import NucleusReport
 from cytodisk.images.mask_files import SourceCell
 from cytodisk.runs.cells.cell_nuclei import CellNucleus
-from cytodisk.store.nucleus_columns import NUCLEI_COLUMNS
+from cytodisk.store.nuclei.nucleus_columns import NUCLEI_COLUMNS
 from cytodisk.store.study_folder import StudyFolder
 
 

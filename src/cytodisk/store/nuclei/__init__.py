@@ -1,0 +1,1 @@
+"""What studies with nuclei have beyond others: columns of their tables."""
