@@ -18,9 +18,11 @@ from cytodisk.plot.cell.cell_axes import fitting_image
 from cytodisk.plot.cell.disk_axes import disk_polygons, fit_disk, frame_disk
 from cytodisk.plot.cell.sector_marks import (
     EDGE_WIDTH,
+    NUCLEUS_WIDTH,
     draw_edge,
     mark_point,
     note_sector,
+    nucleus_arcs,
     sector_arcs,
     sector_colours,
     sector_style,
@@ -159,15 +161,21 @@ def _draw_cell(ax: Axes, windows: CellWindows, *, over_signal: bool) -> None:
     grid = windows.grid
     rings, spokes = _inner_rings(windows), _spokes(windows)
     if not over_signal:
-        inner = rings[0, :-1].reshape(grid.sectors, -1, 2)
-        ends = np.concatenate([inner, np.roll(inner[:, :1], -1, axis=0)], axis=1)
-        outermost = [np.concatenate(pair) for pair in zip(sector_arcs(windows), ends[:, ::-1], strict=True)]
-        filled = [polygon[:, ::-1] for polygon in outermost]
-        ax.add_collection(PolyCollection(filled, facecolors=sector_colours(grid.sectors)), autolim=False)
+        _fill_sectors(ax, sector_arcs(windows), rings[0])
+        if grid.nucleus_layers:
+            _fill_sectors(ax, nucleus_arcs(windows), rings[grid.cytoplasm_layers])
     lines = [line[:, ::-1] for line in (*rings[: grid.layers - 1], *spokes)]
     colour = sector_style(grid, over_signal=over_signal)["edgecolors"]
     ax.add_collection(LineCollection(lines, colors=colour, linewidths=_SIDE_WIDTH), autolim=False)
     draw_edge(ax, windows, over_signal=over_signal)
+
+
+def _fill_sectors(ax: Axes, arcs_yx: list[FloatArray], ring_yx: FloatArray) -> None:
+    """Fill what lies between the arcs of an outline and the inner side of its layer."""
+    inner = ring_yx[:-1].reshape(len(arcs_yx), -1, 2)
+    ends = np.concatenate([inner, np.roll(inner[:, :1], -1, axis=0)], axis=1)
+    filled = [np.concatenate(pair)[:, ::-1] for pair in zip(arcs_yx, ends[:, ::-1], strict=True)]
+    ax.add_collection(PolyCollection(filled, facecolors=sector_colours(len(arcs_yx))), autolim=False)
 
 
 def _inner_rings(windows: CellWindows) -> FloatArray:
@@ -189,18 +197,23 @@ def _in_cell(windows: CellWindows, radius: FloatArray, angle: FloatArray) -> Flo
 def _draw_disk(ax: Axes, grid: PolarGrid, *, over_signal: bool) -> None:
     style = sector_style(grid, over_signal=over_signal)
     ax.add_collection(PolyCollection(disk_polygons(grid), **style), autolim=False)
-    frame_disk(ax)
+    frame_disk(ax, nucleus_radius=grid.nucleus_radius)
     if over_signal:
-        edge = LineCollection(
-            _arcs(grid), colors=sector_colours(grid.sectors), linewidths=EDGE_WIDTH, zorder=4
-        )
-        ax.add_collection(edge, autolim=False)
+        _draw_rim(ax, grid, 1.0, EDGE_WIDTH)
+        if grid.nucleus_radius is not None:
+            _draw_rim(ax, grid, grid.nucleus_radius, NUCLEUS_WIDTH)
     middle = 0.5 * grid.angles[1]
     mark_point(ax, float(np.sin(middle)), float(np.cos(middle)))
 
 
+def _draw_rim(ax: Axes, grid: PolarGrid, radius: float, width: float) -> None:
+    arcs = [radius * arc for arc in _arcs(grid)]
+    colours = sector_colours(grid.sectors)
+    ax.add_collection(LineCollection(arcs, colors=colours, linewidths=width, zorder=4), autolim=False)
+
+
 def _arcs(grid: PolarGrid) -> list[FloatArray]:
-    """The circle, one arc a sector."""
+    """The unit circle, one arc a sector."""
     arcs = []
     for start, stop in pairwise(grid.angles):
         angle = np.linspace(start, stop, 8 + 360 // grid.sectors)

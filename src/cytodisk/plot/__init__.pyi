@@ -3,6 +3,7 @@
 # A mask and its disk
 from .cell.cell_axes import draw_cell as draw_cell
 from .cell.cell_axes import draw_outline as draw_outline
+from .cell.cell_axes import draw_nucleus as draw_nucleus
 from .cell.cell_axes import draw_mesh as draw_mesh
 from .cell.area_distortion import draw_area_distortion as draw_area_distortion
 from .cell.area_distortion import draw_area_spread as draw_area_spread
@@ -18,6 +19,9 @@ from .cell.sector_marks import draw_sectors as draw_sectors
 from .cell.frame_strip import draw_strip as draw_strip
 from .cell.disk_axes import draw_disk_windows as draw_disk_windows
 from .cell.disk_axes import draw_disk_means as draw_disk_means
+
+# From the nucleus to the membrane
+from .nucleus.nucleus_profile import draw_nucleus_profile as draw_nucleus_profile
 
 # Movies
 from .movie.activity_maps import draw_activity_map as draw_activity_map

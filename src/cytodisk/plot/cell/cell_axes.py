@@ -55,7 +55,7 @@ def frame_cell(ax: Axes, disk: DiskMap, *, scale: Scale | None = None) -> None:
 
 
 def draw_outline(ax: Axes, disk: DiskMap, *, color: str = LINE_COLOUR, linewidth: float = 0.4) -> Polygon:
-    """Draw the cell's outline.
+    """Draw the cell's outline, and that of its nucleus where the map has one.
 
     Parameters
     ----------
@@ -68,10 +68,12 @@ def draw_outline(ax: Axes, disk: DiskMap, *, color: str = LINE_COLOUR, linewidth
     Returns
     -------
     Polygon
+        The cell's outline.
 
     See Also
     --------
     draw_cell : With the signal below.
+    draw_nucleus : The nuclear outline alone.
 
     Examples
     --------
@@ -82,9 +84,57 @@ def draw_outline(ax: Axes, disk: DiskMap, *, color: str = LINE_COLOUR, linewidth
     >>> outline.get_xy().shape[1]
     2
     """
-    outline = Polygon(disk.outline_yx[:, ::-1], fill=False, edgecolor=color, linewidth=linewidth, zorder=3)
-    ax.add_artist(outline)  # add_patch would measure all its points, for limits that the callers set
-    return outline
+    if disk.nucleus is not None:
+        draw_nucleus(ax, disk, color=color, linewidth=linewidth)
+    return draw_loop(ax, disk.outline_yx, color, linewidth)
+
+
+def draw_nucleus(ax: Axes, disk: DiskMap, *, color: str = LINE_COLOUR, linewidth: float = 0.8) -> Polygon:
+    """Draw the outline of a cell's nucleus.
+
+    Parameters
+    ----------
+    ax : Axes
+    disk : DiskMap
+        With a nucleus.
+    color : str
+    linewidth : float
+        In points.
+
+    Returns
+    -------
+    Polygon
+
+    Raises
+    ------
+    ParameterError
+        The map has no nucleus.
+
+    See Also
+    --------
+    draw_outline : Both outlines.
+    draw_nucleus_profile : What lies between them.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> import cytodisk as cd
+    >>> cell = cd.simulate.cell_with_nucleus("bean")
+    >>> disk = cd.map_to_disk(cell.mask, nucleus=cell.nucleus)
+    >>> figure, ax = plt.subplots()
+    >>> outline = cd.plot.draw_nucleus(ax, disk)
+    """
+    outline = disk.nucleus_outline_yx
+    if outline is None:
+        raise ParameterError("disk has no nucleus to draw: pass nucleus to map_to_disk")
+    return draw_loop(ax, outline, color, linewidth)
+
+
+def draw_loop(ax: Axes, points_yx: FloatArray, color: str, linewidth: float) -> Polygon:
+    """Draw a closed line through points, (row, column), shape (N, 2)."""
+    loop = Polygon(points_yx[:, ::-1], fill=False, edgecolor=color, linewidth=linewidth, zorder=3)
+    ax.add_artist(loop)  # add_patch would measure all its points, for limits that the callers set
+    return loop
 
 
 def draw_cell(
@@ -96,7 +146,7 @@ def draw_cell(
     cmap: str | Colormap = "gray",
     limits: tuple[float, float] | None = None,
 ) -> AxesImage:
-    """Draw the signal around a cell with the cell's outline, and those of excluded holes.
+    """Draw the signal around a cell with the outlines of the cell, its nucleus and excluded holes.
 
     Parameters
     ----------

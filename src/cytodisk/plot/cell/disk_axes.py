@@ -17,6 +17,7 @@ from matplotlib.patches import Circle
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.plot.cell.cell_axes import draw_mesh
+from cytodisk.plot.cell.mesh_curves import mesh_curves
 from cytodisk.plot.cell.window_polygons import add_filled_windows, add_windows, window_values
 from cytodisk.plot.style import LINE_COLOUR, MISSING_COLOUR, SIGNAL_COLOURS, colour_map, signal_limits
 from cytodisk.windows.polar_windows import PolarGrid
@@ -36,7 +37,7 @@ def fit_disk(ax: Axes) -> None:
     ax.set_axis_off()
 
 
-def frame_disk(ax: Axes, sectors: int | None = None) -> None:
+def frame_disk(ax: Axes, sectors: int | None = None, nucleus_radius: float | None = None) -> None:
     """Fit the axes to the unit disk, hide them, and draw the circle with ticks every 30°, labels every 90°.
 
     Parameters
@@ -44,9 +45,12 @@ def frame_disk(ax: Axes, sectors: int | None = None) -> None:
     ax : Axes
     sectors : int, optional
         Number of sectors of the windows: labels then give the sector that begins there, or holds the angle.
+    nucleus_radius : float, optional
+        Radius of the nucleus, whose circle is drawn as thick as the rim.
     """
     fit_disk(ax)
-    ax.add_patch(Circle((0.0, 0.0), 1.0, fill=False, edgecolor=LINE_COLOUR, linewidth=0.6, zorder=3))
+    for radius in (1.0,) if nucleus_radius is None else (1.0, nucleus_radius):
+        ax.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=LINE_COLOUR, linewidth=0.6, zorder=3))
     turn = np.radians(np.arange(0, 360, 30))
     rays = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
     ticks = [np.stack([_TICK[0] * ray, _TICK[1] * ray]) for ray in rays]
@@ -119,6 +123,9 @@ def draw_disk_image(
     ax.add_patch(Circle((0.0, 0.0), 1.0, facecolor=MISSING_COLOUR, linewidth=0.0, zorder=-1))
     drawn = ax.imshow(image, cmap=colours, vmin=low, vmax=high, extent=(-1.0, 1.0, 1.0, -1.0))
     frame_disk(ax)
+    if disk.nucleus_radius is not None:  # white and thin, as outlines over a signal are in the cell
+        circle = Circle((0.0, 0.0), disk.nucleus_radius, fill=False, edgecolor="white", linewidth=0.6)
+        ax.add_patch(circle)
     return drawn
 
 
@@ -162,8 +169,8 @@ def draw_disk_windows(
     24
     """
     style = {"edgecolors": color, "linewidths": linewidth}
-    drawn = add_windows(ax, disk_polygons(grid), grid.layers, grid.sectors, by_layer=by_layer, style=style)
-    frame_disk(ax)
+    drawn = add_windows(ax, disk_polygons(grid), grid, by_layer=by_layer, style=style)
+    frame_disk(ax, nucleus_radius=grid.nucleus_radius)
     return drawn
 
 
@@ -217,14 +224,14 @@ def draw_disk_means(
     """
     table = window_values(values, (grid.layers, grid.sectors))
     drawn = add_filled_windows(ax, disk_polygons(grid), table, cmap, limits)
-    frame_disk(ax, grid.sectors if number_sectors else None)
+    frame_disk(ax, grid.sectors if number_sectors else None, grid.nucleus_radius)
     return drawn
 
 
 def draw_disk_mesh(
     ax: Axes, disk: DiskMap, *, color: str = "0.35", linewidth: float = 0.12
 ) -> LineCollection:
-    """Draw the mesh as it lies on the disk.
+    """Draw the mesh as it lies on the disk; with a nucleus most of its edges are curves there.
 
     Parameters
     ----------
@@ -249,8 +256,12 @@ def draw_disk_mesh(
     >>> figure, ax = plt.subplots()
     >>> edges = cd.plot.draw_disk_mesh(ax, cd.map_to_disk(cd.simulate.disk(8)))
     """
-    lines = draw_mesh(ax, disk.vertices_uv[:, ::-1], disk.triangles, color=color, linewidth=linewidth)
-    frame_disk(ax)
+    if disk.nucleus is None:
+        lines = draw_mesh(ax, disk.vertices_uv[:, ::-1], disk.triangles, color=color, linewidth=linewidth)
+    else:
+        lines = LineCollection(mesh_curves(disk, disk.nucleus), colors=color, linewidths=linewidth)
+        ax.add_collection(lines, autolim=False)
+    frame_disk(ax, nucleus_radius=disk.nucleus_radius)
     return lines
 
 

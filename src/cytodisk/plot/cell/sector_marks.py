@@ -11,8 +11,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.lines import Line2D
 
 from cytodisk.arrays import FloatArray
-from cytodisk.disk.disk_map import DiskMap
-from cytodisk.plot.cell.cell_axes import draw_outline
+from cytodisk.plot.cell.cell_axes import draw_loop, draw_outline
 from cytodisk.plot.cell.window_polygons import window_polygons
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
@@ -23,6 +22,7 @@ SECTOR_COLOURS = LinearSegmentedColormap.from_list(
 
 SECTOR_NOTE = "○ sector 0"
 EDGE_WIDTH = 2.2  # points
+NUCLEUS_WIDTH = 1.1
 
 _OVER_SIGNAL: dict[str, Any] = {"edgecolors": (1.0, 1.0, 1.0, 0.4), "linewidths": 0.2}
 _ON_WHITE: dict[str, Any] = {"edgecolors": "0.6", "linewidths": 0.2}
@@ -31,6 +31,8 @@ _NOTE_BELOW = 5.0  # points, at the height of the scale bar
 
 def draw_sectors(ax: Axes, windows: CellWindows, *, over_signal: bool = False) -> PolyCollection:
     """Draw windows whose sectors can be told apart, and mark sector 0 with a ring on the cell's edge.
+
+    With a nucleus its outline, or its first layer, has the colours of the sectors too.
 
     Parameters
     ----------
@@ -69,7 +71,7 @@ def sector_style(grid: PolarGrid, *, over_signal: bool) -> dict[str, Any]:
     ----------
     grid : PolarGrid
     over_signal : bool
-        Fill none, rather than those of the outermost layer.
+        Fill none, rather than those of the outermost layer, and of the first in the nucleus.
 
     Returns
     -------
@@ -78,6 +80,9 @@ def sector_style(grid: PolarGrid, *, over_signal: bool) -> dict[str, Any]:
     faces = np.zeros((grid.n_windows, 4))
     if not over_signal:
         faces[: grid.sectors] = sector_colours(grid.sectors)
+        if grid.nucleus_layers:
+            first = grid.cytoplasm_layers * grid.sectors
+            faces[first : first + grid.sectors] = sector_colours(grid.sectors)
     return {"facecolors": faces} | (_OVER_SIGNAL if over_signal else _ON_WHITE)
 
 
@@ -92,15 +97,22 @@ def draw_edge(ax: Axes, windows: CellWindows, *, over_signal: bool) -> None:
     """
     if over_signal:
         # White on both sides sets dark colours off a dark image.
-        draw_outline(ax, windows.disk, color="white", linewidth=EDGE_WIDTH + 1.0)
-        arcs = [arc[:, ::-1] for arc in sector_arcs(windows)]
-        colours = sector_colours(windows.grid.sectors)
-        edge = LineCollection(arcs, colors=colours, linewidths=EDGE_WIDTH, zorder=4)
-        ax.add_collection(edge, autolim=False)
+        draw_loop(ax, windows.disk.outline_yx, "white", EDGE_WIDTH + 1.0)
+        _draw_arcs(ax, sector_arcs(windows), EDGE_WIDTH)
+        if windows.disk.nucleus_outline_yx is not None:
+            draw_loop(ax, windows.disk.nucleus_outline_yx, "white", NUCLEUS_WIDTH + 0.8)
+            _draw_arcs(ax, nucleus_arcs(windows), NUCLEUS_WIDTH)
     else:
         draw_outline(ax, windows.disk)
-    ((y, x),) = _on_outline(windows.disk, windows.grid.angles[:2].mean(keepdims=True))
+    middle = windows.grid.angles[:2].mean(keepdims=True)
+    ((y, x),) = _along_loop(middle, windows.disk.boundary_angles, windows.disk.outline_yx)
     mark_point(ax, y, x)
+
+
+def _draw_arcs(ax: Axes, arcs_yx: list[FloatArray], width: float) -> None:
+    """Draw one arc a sector in the sectors' colours."""
+    colours, arcs = sector_colours(len(arcs_yx)), [arc[:, ::-1] for arc in arcs_yx]
+    ax.add_collection(LineCollection(arcs, colors=colours, linewidths=width, zorder=4), autolim=False)
 
 
 def mark_point(ax: Axes, y: float, x: float) -> Line2D:
@@ -161,14 +173,36 @@ def sector_arcs(windows: CellWindows) -> list[FloatArray]:
     list of ndarray of shape (N, 2) and dtype float
         (row, column) in pixels.
     """
-    angles = windows.grid.angles
-    within = np.unique(np.concatenate([np.mod(windows.disk.boundary_angles, 2.0 * np.pi), angles]))
-    points, ends = _on_outline(windows.disk, within), np.searchsorted(within, angles)
-    return [points[ends[k] : ends[k + 1] + 1] for k in range(windows.grid.sectors)]
+    return _loop_arcs(windows.grid, windows.disk.boundary_angles, windows.disk.outline_yx)
 
 
-def _on_outline(disk: DiskMap, angles: FloatArray) -> FloatArray:
-    """Points of the outline at angles of the disk, shape (N, 2)."""
+def nucleus_arcs(windows: CellWindows) -> list[FloatArray]:
+    """The part of the nuclear outline that belongs to each sector; none without a nucleus.
+
+    Parameters
+    ----------
+    windows : CellWindows
+
+    Returns
+    -------
+    list of ndarray of shape (N, 2) and dtype float
+        (row, column) in pixels.
+    """
+    nucleus, outline = windows.disk.nucleus, windows.disk.nucleus_outline_yx
+    if nucleus is None or outline is None:
+        return []
+    return _loop_arcs(windows.grid, nucleus.boundary_angles, outline)
+
+
+def _loop_arcs(grid: PolarGrid, loop_angles: FloatArray, loop_yx: FloatArray) -> list[FloatArray]:
+    """Arc of each sector on a loop whose points have angles in the disk, both ends included."""
+    within = np.unique(np.concatenate([np.mod(loop_angles, 2.0 * np.pi), grid.angles]))
+    points, ends = _along_loop(within, loop_angles, loop_yx), np.searchsorted(within, grid.angles)
+    return [points[ends[k] : ends[k + 1] + 1] for k in range(grid.sectors)]
+
+
+def _along_loop(angles: FloatArray, loop_angles: FloatArray, loop_yx: FloatArray) -> FloatArray:
+    """Points of a loop at angles of the disk, shape (N, 2)."""
     return np.column_stack(
-        [np.interp(angles, disk.boundary_angles, along, period=2.0 * np.pi) for along in disk.outline_yx.T]
+        [np.interp(angles, loop_angles, along, period=2.0 * np.pi) for along in loop_yx.T]
     )

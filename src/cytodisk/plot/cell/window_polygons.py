@@ -8,16 +8,19 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import BoundaryNorm, Colormap
+from matplotlib.colors import BoundaryNorm, Colormap, ListedColormap
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import WindowError
-from cytodisk.plot.cell.cell_axes import draw_outline, frame_cell
+from cytodisk.plot.cell.cell_axes import draw_nucleus, draw_outline, frame_cell
 from cytodisk.plot.cell.hole_marks import cover_holes
+from cytodisk.plot.layer_looks import NUCLEUS_LINE, layer_fills
 from cytodisk.plot.style import LAYER_COLOURS, SIGNAL_COLOURS, colour_map, signal_limits
 from cytodisk.plot.units import scale_for
 from cytodisk.scale import Scale
-from cytodisk.windows.polar_windows import CellWindows
+from cytodisk.windows.polar_windows import CellWindows, PolarGrid
+
+_NUCLEUS_WIDTH = 0.8  # points, of the nuclear outline among thin lines
 
 
 def draw_windows(
@@ -26,19 +29,21 @@ def draw_windows(
     *,
     by_layer: bool = False,
     color: str = "white",
+    nucleus_color: str = NUCLEUS_LINE,
     linewidth: float = 0.25,
     alpha: float | None = None,
 ) -> PolyCollection:
-    """Draw the windows over a cell; `frame_cell` fits the axes when nothing else did.
+    """Draw the windows over a cell, and the outline of its nucleus; `frame_cell` fits the axes.
 
     Parameters
     ----------
     ax : Axes
     windows : CellWindows
     by_layer : bool
-        Fill each window with the colour of its layer.
-    color : str
-        Colour of the lines.
+        Fill each window with the colour of its layer, blue in the nucleus; see `alpha` for windows over an
+        image.
+    color, nucleus_color : str
+        Colours of the lines of windows, of those in the nucleus and of its outline.
     linewidth : float
         In points.
     alpha : float, optional
@@ -71,9 +76,14 @@ def draw_windows(
     >>> len(polygons.get_paths())
     24
     """
-    style = {"edgecolors": color, "linewidths": linewidth, "alpha": alpha}
     polygons = window_polygons(windows)
-    return add_windows(ax, polygons, *windows.areas.shape, by_layer=by_layer, style=style)
+    inside = np.repeat(windows.grid.compartments == "nucleus", windows.sectors)
+    lines = [nucleus_color if within else color for within in inside]
+    style = {"edgecolors": lines, "linewidths": linewidth, "alpha": alpha}
+    drawn = add_windows(ax, polygons, windows.grid, by_layer=by_layer, style=style)
+    if windows.disk.nucleus is not None:
+        draw_nucleus(ax, windows.disk, color=nucleus_color, linewidth=max(linewidth, _NUCLEUS_WIDTH))
+    return drawn
 
 
 def draw_window_means(
@@ -196,19 +206,35 @@ def add_filled_windows(
 def add_windows(
     ax: Axes,
     polygons_xy: list[FloatArray],
-    layers: int,
-    sectors: int,
+    grid: PolarGrid,
     *,
     by_layer: bool,
     style: dict[str, Any],
 ) -> PolyCollection:
+    """Add polygons, by window number, empty or with the colours of their layers.
+
+    Parameters
+    ----------
+    ax : Axes
+    polygons_xy : list of ndarray of shape (N, 2) and dtype float
+    grid : PolarGrid
+    by_layer : bool
+    style : dict
+        Of the lines.
+
+    Returns
+    -------
+    PolyCollection
+    """
     if not by_layer:
         drawn = PolyCollection(polygons_xy, facecolors="none", **style)
     else:
         colours = colour_map(LAYER_COLOURS)
-        norm = BoundaryNorm(np.arange(layers + 1) - 0.5, colours.N)
+        if grid.nucleus_layers:
+            colours = ListedColormap(layer_fills(grid.layers, grid.nucleus_layers))
+        norm = BoundaryNorm(np.arange(grid.layers + 1) - 0.5, colours.N)
         drawn = PolyCollection(polygons_xy, cmap=colours, norm=norm, **style)
-        drawn.set_array(np.repeat(np.arange(layers), sectors))
+        drawn.set_array(np.repeat(np.arange(grid.layers), grid.sectors))
     ax.add_collection(drawn, autolim=False)
     return drawn
 

@@ -1,0 +1,1 @@
+"""From the nucleus to the membrane."""
