@@ -10,12 +10,14 @@ from matplotlib.collections import PolyCollection
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError
+from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.cell.area_distortion import DISTORTION_LABEL, draw_area_distortion, draw_area_spread
 from cytodisk.plot.cell.cell_axes import draw_cell, draw_mesh, draw_outline, frame_cell
 from cytodisk.plot.cell.disk_axes import draw_disk_image, draw_disk_means, draw_disk_mesh, draw_disk_windows
 from cytodisk.plot.cell.window_polygons import draw_window_means, draw_windows
-from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, paper_style, signal_limits
+from cytodisk.plot.nucleus.nucleus_profile import draw_nucleus_profile
+from cytodisk.plot.style import DOUBLE_COLUMN_MM, SIGNAL_COLOURS, colour_bar, paper_style, signal_limits
 from cytodisk.plot.units import scale_for
 from cytodisk.runs.channel_names import shortened, shown_name
 from cytodisk.scale import Scale
@@ -41,7 +43,8 @@ def write_cell_figures(
 ) -> list[Path]:
     """Write the page of one cell: signal and means in cell and disk by channel, mesh and area distortion.
 
-    Without a signal the windows are drawn in the colours of their layers.
+    Without a signal the windows are drawn in the colours of their layers. With a signal and a nucleus they
+    are so too, beside the signal by layer from the nucleus' centre to the membrane.
 
     Parameters
     ----------
@@ -92,18 +95,23 @@ def write_cell_figures(
 
 def _sheet_with_signal(name: str, windows: CellWindows, signal: xr.DataArray, scale: Scale) -> Sheet:
     images = signal.transpose("channel", ...) if "channel" in signal.dims else signal.expand_dims("channel")
-    means = np.asarray(sample(windows, images)["mean"])
     names = _channel_names(images)
-    shown = min(len(means), _MOST_CHANNELS)
+    shown = min(len(names), _MOST_CHANNELS)
+    sampled = sample(windows, images)
+    means = np.asarray(sampled["mean"])
     height = _panel_height(windows.disk, _PANEL)
     row = _HEADING + height + _BELOW
-    sheet = Sheet(_TOP + (shown + 1) * row + 2.0)
+    rows = shown + (1 if windows.disk.nucleus is None else 2)
+    sheet = Sheet(_TOP + rows * row + 2.0)
     left_out = f"channels 1–{shown} of {len(means)}" if len(means) > shown else ""
     _write_heading(sheet, name, windows, scale, left_out)
     for k in range(shown):
         top = _TOP + k * row + _HEADING
         _draw_channel(sheet, top, height, windows, np.asarray(images[k]), means[k], names[k], scale)
-    _draw_map_row(sheet, _TOP + shown * row + _HEADING, height, windows.disk, scale)
+    if windows.disk.nucleus is not None:
+        profile = sampled.isel(channel=slice(shown)).assign_coords(channel=names[:shown])
+        _draw_nucleus_row(sheet, _TOP + shown * row + _HEADING, height, windows, profile)
+    _draw_map_row(sheet, _TOP + (rows - 1) * row + _HEADING, height, windows.disk, scale)
     return sheet
 
 
@@ -150,6 +158,24 @@ def _draw_channel(
     draw_disk_means(wheel, windows.grid, means)
     bar = _bar_axes(sheet, top, height, second + _PAIR - _BAR)
     colour_bar(filled, bar, f"mean {shown_name(channel, _LONGEST_CHANNEL)}", "a.u.", extend="both")
+
+
+def _draw_nucleus_row(
+    sheet: Sheet, top: float, height: float, windows: CellWindows, sampled: xr.Dataset
+) -> None:
+    """Which layers there are, in cell and disk, and the signal in them from the nucleus to the membrane."""
+    cell, wheel = _row_of_axes(sheet, top, height, _PANEL, ("windows by layer", "windows on the disk"))
+    draw_windows(cell, windows, by_layer=True, linewidth=0.15)
+    draw_outline(cell, windows.disk)
+    frame_cell(cell, windows.disk, scale=windows.scale)
+    layers = draw_disk_windows(wheel, windows.grid, by_layer=True, color="white", linewidth=0.15)
+    second = _LEFT + _PAIR
+    _draw_layer_bar(layers, _bar_axes(sheet, top, height, second - _BAR), windows)
+    profile = sheet.axes(second + 6.0, top + 2.5, DOUBLE_COLUMN_MM - second - 12.0, height - 9.0)
+    channels = [shown_name(str(name), _LONGEST_CHANNEL) for name in sampled["channel"].to_numpy()]
+    draw_nucleus_profile(profile, sampled.assign_coords(channel=channels), relative=True)
+    sheet.text(second + 6.0, top - 2.2, "mean by layer; bands: quartiles of sectors", fontsize=7.5)
+    profile.legend(frameon=False, loc="best", borderpad=0.2, handlelength=1.4)
 
 
 def _draw_map_row(sheet: Sheet, top: float, height: float, disk: DiskMap, scale: Scale) -> None:
@@ -200,7 +226,8 @@ def _draw_meshes(cell: Axes, wheel: Axes, disk: DiskMap, scale: Scale) -> None:
 
 
 def _draw_layer_bar(layers: PolyCollection, into: Axes, windows: CellWindows) -> None:
-    bar = colour_bar(layers, into, "layer, 0 at the cell's edge")
+    words = "layer; blue: nucleus" if windows.grid.nucleus_layers else "layer, 0 at the cell's edge"
+    bar = colour_bar(layers, into, words)
     count = windows.grid.layers
     bar.set_ticks(list(range(0, count, max(1, -(-count // 10)))))
     bar.ax.minorticks_off()
@@ -237,8 +264,12 @@ def _inset(ax: Axes, sheet: Sheet, left: float, bottom: float, height: float) ->
 def _write_heading(sheet: Sheet, name: str, windows: CellWindows, scale: Scale, more: str) -> None:
     size = scale.area(float(windows.mask_without_holes.sum()))
     area = (f"{size:,.0f}" if size >= 100 else f"{size:.3g}") + f" {scale.area_unit}"
-    grid = f"{windows.grid.layers} layers × {windows.grid.sectors} sectors"
     distortion = windows.disk.distortion
-    facts = [area, grid, f"area distortion {distortion.area:.3f}", f"angle distortion {distortion.angle:.3g}"]
+    facts = [
+        area,
+        grid_words(windows.grid),
+        f"area distortion {distortion.area:.3f}",
+        f"angle distortion {distortion.angle:.3g}",
+    ]
     sheet.text(_LEFT, 5.0, shortened(name, _LONGEST_NAME), fontsize=8, weight="bold")
     sheet.text(_LEFT, 8.6, " · ".join([*facts, more] if more else facts), color="0.3")

@@ -13,6 +13,7 @@ from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.layer_looks import layer_colours, layer_names, shown_layers
 from cytodisk.plot.movie.layer_lines import draw_by_layer
 from cytodisk.plot.style import DOUBLE_COLUMN_MM
+from cytodisk.windows.layer_coords import layer_coords
 
 _MOST_CORRELATIONS = 2
 _HIGH_CORRELATION = 0.9
@@ -59,7 +60,7 @@ def consistency_sheet(movie: DrawnMovie) -> Sheet | None:
     top = HEADING_MM + 10.0
     sheet = Sheet(top + -(-len(measures) // columns) * _ROW - 3.0)
     movie.write_heading(sheet, "consistency of windows from a frame to the next")
-    layers = shown_layers(movie.grid.layers)
+    layers = shown_layers(movie.grid.layers, movie.cytoplasm_layers)
     for number, measure in enumerate(measures):
         row, column = divmod(number, columns)
         left = LEFT_MM + _AXIS - 2.0 + column * (width + _AXIS)
@@ -108,12 +109,13 @@ def _by_frame(movie: DrawnMovie, rows: pd.DataFrame, name: str) -> xr.DataArray:
     wide = rows.pivot_table(index="frame", columns="layer", values=name, dropna=False, aggfunc="first")
     frames, layers = range(movie.first, movie.first + movie.frames), range(movie.grid.layers)
     values = wide.reindex(index=frames, columns=layers).to_numpy(dtype=np.float64)
-    return xr.DataArray(values, {"frame": ("time", list(frames))}, ("time", "layer"))
+    coords = layer_coords(movie.grid) | {"frame": ("time", list(frames))}
+    return xr.DataArray(values, coords, ("time", "layer"))
 
 
 def _write_key(sheet: Sheet, layers: Sequence[int], movie: DrawnMovie) -> None:
     names = layer_names(layers, movie.grid.layers, movie.depths)
-    colours = layer_colours(layers)
+    colours = layer_colours(layers, movie.cytoplasm_layers)
     handles = [
         Line2D([], [], color=colour, linewidth=1.5, label=name)
         for colour, name in zip(colours, names, strict=True)

@@ -48,7 +48,7 @@ def curves_page(one: DrawnCorrelation) -> Sheet | None:
         return None
     heading = one.heading(SINGLE_COLUMN_MM, f"{one.signal_name} with {one.with_words}")
     head = heading.height_mm
-    count = len(shown_layers(int(curves["layer"].nunique())))
+    count = len(shown_layers(int(curves["layer"].nunique()), one.movie.cytoplasm_layers))
     chance = "threshold" in curves and bool(curves["threshold"].notna().any())
     lost, jittered = bool(one.lost.any()), bool(one.jittered[one.lost.index].any())
     key = curve_key(chance=chance, partial=one.partial_words, lost=lost, jittered=jittered)

@@ -12,6 +12,7 @@ import xarray as xr
 
 from cytodisk.arrays import BoolArray
 from cytodisk.pages.drawn_movie import LEFT_MM, DrawnMovie
+from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.settings_words import settings_words, used_windows
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.correlation.correlation_peaks import PeakMap
@@ -153,7 +154,7 @@ class DrawnCorrelation:
             More to say below it.
         """
         grid = self.movie.grid
-        facts = [f"cell {self.cell}", f"{grid.layers} layers × {grid.sectors} sectors"]
+        facts = [f"cell {self.cell}", grid_words(grid)]
         facts.append(f"{self.movie.frames} frames")
         facts += [*settings_words(self.correlation.settings), *notes]
         title = broken_lines(what.split(" "), " ", width_mm - 2 * LEFT_MM, _BOLD_MM)

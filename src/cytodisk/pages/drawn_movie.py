@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from cytodisk.arrays import FloatArray
+from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.movie_cell import MovieCell
 from cytodisk.pages.sheet import Sheet
 from cytodisk.runs.channel_names import shown_name
@@ -76,7 +77,7 @@ class DrawnMovie(MovieCell):
         lost = self.frames - len(self.mapped)
         which = f"frames {self.first}–{last}" if last > self.first else f"frame {last}"
         facts = [which + (f", {lost} without a map" if lost else "")]
-        facts.append(f"{self.grid.layers} layers × {self.grid.sectors} sectors")
+        facts.append(grid_words(self.grid))
         pixel, interval = self.scale.pixel_size_um, self.scale.frame_interval_s
         facts.append("pixel size unknown" if pixel is None else f"{pixel:.4g} µm/px")
         facts.append("frame interval unknown" if interval is None else f"{interval:.4g} s/frame")

@@ -75,6 +75,11 @@ class MovieCell:
         radii = np.median([self.grid.on(disk).grid.radii for disk in maps], axis=0)
         return self.grid.with_radii(radii)
 
+    @property
+    def cytoplasm_layers(self) -> int | None:
+        """How many layers are not in the nucleus, of cells with one; None of others."""
+        return self.grid.cytoplasm_layers if self.grid.nucleus_layers else None
+
     def unit(self, name: str) -> str:
         """Unit of a variable of the activity."""
         return str(self.activity[name].attrs.get("units", ""))

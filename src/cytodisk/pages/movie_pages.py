@@ -137,7 +137,7 @@ def _velocity_sheet(movie: DrawnMovie) -> Sheet:
 
 
 def _activity_sheet(movie: DrawnMovie, channel: int) -> Sheet:
-    layers = len(shown_layers(movie.grid.layers))
+    layers = len(shown_layers(movie.grid.layers, movie.cytoplasm_layers))
     first = HEADING_MM + 5.0
     below = first + _VELOCITY + _MAP_GAP
     sheet = Sheet(below + layers * (_MAP + _MAP_GAP) + 5.0)

@@ -2,11 +2,13 @@
 
 Units and times come from what is drawn: arrays, maps and movies carry them. For plain numbers pass a `Scale`.
 
-A mask and its disk: draw_cell, draw_outline, draw_mesh; draw_area_distortion and draw_area_spread;
-draw_disk_image, draw_disk_mesh.
+A mask and its disk: draw_cell, draw_outline, draw_nucleus, draw_mesh; draw_area_distortion and
+draw_area_spread; draw_disk_image, draw_disk_mesh.
 
 Windows: draw_windows, draw_window_means, draw_window_labels, draw_sectors, draw_strip on the cell;
 draw_disk_windows, draw_disk_means on the disk; frame_cell fits axes to a cell.
+
+From the nucleus to the membrane: draw_nucleus_profile, a signal by layer with both borders.
 
 Movies: draw_activity_map, draw_velocity_map, draw_layers by frame and sector; draw_line_kymograph and
 draw_boundary_kymograph; draw_velocity_arrows, draw_tracks, draw_area_change and draw_mean_velocity of the

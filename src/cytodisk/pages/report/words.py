@@ -11,6 +11,7 @@ from typing import Any
 import pandas as pd
 
 from cytodisk.files import file_name, real_path
+from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.report.pictures import Box
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_names import without_folders
@@ -90,7 +91,7 @@ def _facts(cell: ShownCell) -> Iterator[tuple[str, str]]:
     yield "mapped", f"{ok} of {len(study.cells)}"
     yield "pixel", f"{pixel:.4g} µm" if pixel else "size unknown"
     yield "interval", f"{interval:.4g} s" if interval else "unknown"
-    yield "windows", f"{grid.layers} layers × {grid.sectors} sectors"
+    yield "windows", grid_words(grid)
     yield "tracker", str(study.provenance["parameters"].get("tracker", "unknown"))
     yield "cytodisk", _version(study)
 

@@ -203,6 +203,4 @@ def _loop_arcs(grid: PolarGrid, loop_angles: FloatArray, loop_yx: FloatArray) ->
 
 def _along_loop(angles: FloatArray, loop_angles: FloatArray, loop_yx: FloatArray) -> FloatArray:
     """Points of a loop at angles of the disk, shape (N, 2)."""
-    return np.column_stack(
-        [np.interp(angles, loop_angles, along, period=2.0 * np.pi) for along in loop_yx.T]
-    )
+    return np.column_stack([np.interp(angles, loop_angles, along, period=2.0 * np.pi) for along in loop_yx.T])

@@ -17,7 +17,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
 from cytodisk.plot.correlation.curve_key import ALPHA, BAND_OPACITY, JITTER_LOOK, LOST_LOOK, PARTIAL_LOOK
 from cytodisk.plot.correlation.lag_axis import LagUnit, rows_of_cell, sides, signed
-from cytodisk.plot.layer_looks import layer_colours, layer_names, shown_layers
+from cytodisk.plot.layer_looks import cytoplasm_layers_of, layer_colours, layer_names, shown_layers
 from cytodisk.plot.movie.activity_maps import draw_activity_map, draw_velocity_map
 from cytodisk.plot.style import CHANCE_COLOUR, CHANCE_LINE, LINE_COLOUR
 from cytodisk.plot.time_axis import TICK_STEPS, stands_alone
@@ -97,12 +97,14 @@ def draw_correlation_curves(
     curves = rows_of_cell(by_layer, cell, _CURVES, "by_layer")
     marks = None if peaks is None else rows_of_cell(peaks, cell, _PEAKS, "peaks")
     numbers = np.unique(curves["layer"])
-    layers = [int(numbers[place]) for place in shown_layers(len(numbers))]
+    outer = cytoplasm_layers_of(depths)
+    layers = [int(numbers[place]) for place in shown_layers(len(numbers), outer)]
     if len(axes) != len(layers):
         raise ParameterError(f"axes must be {len(layers)}, got {len(axes)}: pass one for each layer shown")
     unit, names = LagUnit.of(curves), layer_names(layers, len(numbers), depths)
     lines = []
-    for ax, layer, name, colour in zip(axes, layers, names, layer_colours(layers), strict=True):
+    colours = layer_colours(layers, outer)
+    for ax, layer, name, colour in zip(axes, layers, names, colours, strict=True):
         one = curves[curves["layer"] == layer].sort_values("lag")
         lines.append(_draw_curve(ax, one, unit, colour))
         _draw_partial(ax, one, unit, colour)

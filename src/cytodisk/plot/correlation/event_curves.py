@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import ParameterError
-from cytodisk.plot.layer_looks import layer_colours, layer_names, shown_layers
+from cytodisk.plot.layer_looks import cytoplasm_layers_of, layer_colours, layer_word, shown_layers
 from cytodisk.plot.movie.activity_maps import draw_velocity_map
 from cytodisk.plot.number_tables import named_table
 from cytodisk.plot.style import LINE_COLOUR
@@ -129,16 +129,16 @@ def draw_event_average(ax: Axes, average: xr.Dataset, *, label: str = "mean") ->
     """
     table = _parse_average(average)
     delays, unit = _delays(average)
-    layers = shown_layers(table.sizes["layer"])
-    lines = []
-    for place, (layer, colour) in enumerate(zip(layers, layer_colours(layers), strict=True)):
+    outer = cytoplasm_layers_of(table)
+    layers, lines = shown_layers(table.sizes["layer"], outer), []
+    for place, (layer, colour) in enumerate(zip(layers, layer_colours(layers, outer), strict=True)):
         one = table.isel(layer=layer)
         if layer in (layers[0], layers[-1]):
             low, high = one["lower"], one["upper"]
             ax.fill_between(delays, low, high, color=colour, alpha=_BAND_OPACITY, linewidth=0)
         # The last is solid as the first is: their colours differ most.
         dashes = "-" if layer == layers[-1] else _DASHES[place % len(_DASHES)]
-        (name,) = layer_names([layer], table.sizes["layer"])
+        name = layer_word(layer, table.sizes["layer"], outer)
         lines += ax.plot(delays, one["mean"], color=colour, linewidth=0.9, linestyle=dashes, label=name)
     ax.axvline(0.0, color="0.6", linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
     ax.set_xlim(delays[0], delays[-1])
@@ -189,12 +189,13 @@ def band_key(average: xr.Dataset) -> list[Any]:
     >>> legend = ax.legend(handles=[*lines, *cd.plot.band_key(average)])
     """
     table = _parse_average(average)
-    layers = shown_layers(table.sizes["layer"])
+    outer = cytoplasm_layers_of(table)
+    layers = shown_layers(table.sizes["layer"], outer)
     if not np.isfinite(table["lower"]).any():
         return []
     words = f"{average.attrs.get('confidence', 0.95):.0%}".replace("%", " %") + ", bootstrap of patches"
     words += f" (layers {layers[0]}, {layers[-1]})" if len(layers) > 2 else ""
-    colour = (*layer_colours(layers)[0][:3], _BAND_OPACITY)
+    colour = (*layer_colours(layers, outer)[0][:3], _BAND_OPACITY)
     return [Patch(facecolor=colour, linewidth=0, label=words)]
 
 

@@ -15,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
-from cytodisk.plot.layer_looks import layer_names, shown_layers
+from cytodisk.plot.layer_looks import cytoplasm_layers_of, layer_names, shown_layers
 from cytodisk.plot.number_tables import number_table
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS, colour_bar, signal_limits
 from cytodisk.plot.time_axis import TICK_STEPS, FrameTimes
@@ -151,6 +151,7 @@ def draw_layers(
     axes : sequence of Axes
         From top to bottom: one for the velocity if it is given, then one for each of `shown_layers`.
     values : array_like or DataArray of shape (T, L, S)
+        The coordinate compartment of a DataArray tells which layers are in the nucleus.
     velocity : array_like or DataArray of shape (T, S), optional
         Positive outwards.
     label : str
@@ -188,7 +189,8 @@ def draw_layers(
     2
     """
     table = number_table(values, "values", ("time", "layer", "sector"))
-    layers = shown_layers(table.shape[1])
+    outer = cytoplasm_layers_of(values)
+    layers = shown_layers(table.shape[1], outer)
     _check_layers(axes, table, velocity, len(layers))
     maps, drawn = list(axes), []
     if velocity is not None:
@@ -196,7 +198,8 @@ def draw_layers(
         drawn.append(draw_velocity_map(top, velocity, scale=scale))
         _name(top, "edge velocity: protrusion red, retraction blue")
     common, times = limits or signal_limits(table), FrameTimes.of(values, "values", scale)
-    for ax, layer, name in zip(maps, layers, layer_names(layers, table.shape[1], depths), strict=True):
+    names = layer_names(layers, table.shape[1], depths, outer)
+    for ax, layer, name in zip(maps, layers, names, strict=True):
         drawn.append(_draw_map(ax, table[:, layer], times, SIGNAL_COLOURS, common))
         _name(ax, name)
     ends = cut_off(table[:, layers], common)

@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from cytodisk.errors import ParameterError
-from cytodisk.plot.layer_looks import layer_colours
+from cytodisk.plot.layer_looks import cytoplasm_layers_of, layer_colours
 from cytodisk.plot.number_tables import number_table
 from cytodisk.plot.time_axis import TICK_STEPS, FrameTimes, stands_alone
 from cytodisk.plot.units import unit_of, with_unit
@@ -24,7 +24,8 @@ def draw_by_layer(
     ----------
     ax : Axes
     values : array_like or DataArray of shape (T, L)
-        One number a frame and layer; NaN is a gap. A DataArray brings its unit and its times.
+        One number a frame and layer; NaN is a gap. A DataArray brings its unit and its times, and with the
+        coordinate compartment which layers are in the nucleus: blue.
     layers : sequence of int
         Those to draw.
     label : str
@@ -61,7 +62,8 @@ def draw_by_layer(
         raise ParameterError(f"values has shape {table.shape}: pass (frames, layers) for layers {layers}")
     time = FrameTimes.of(values, "values", scale).set_axis(ax)
     lines = []
-    for layer, colour in zip(layers, layer_colours(layers), strict=True):
+    colours = layer_colours(layers, cytoplasm_layers_of(values))
+    for layer, colour in zip(layers, colours, strict=True):
         one = table[:, layer]
         dots: Any = {"marker": ".", "markersize": 3.0, "markevery": stands_alone(one)}
         lines += ax.plot(time, one, color=colour, linewidth=0.9, clip_on=False, **dots)

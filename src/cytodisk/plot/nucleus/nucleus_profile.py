@@ -112,14 +112,15 @@ def _places(profile: LayerProfile, along: Along) -> tuple[FloatArray, tuple[floa
     outer = profile.cytoplasm_layers
     if along == "layer":
         top = float(profile.layers)
-        return top - 0.5 - np.arange(profile.layers), (0.0, top - outer, top)
+        return np.asarray(top - 0.5 - np.arange(profile.layers)), (0.0, top - outer, top)
     if along == "share":
         share = 100.0 * profile.area / profile.area.sum()
         inner = 100.0 - np.cumsum(share)
         return inner + 0.5 * share, (0.0, float(share[outer:].sum()), 100.0)
     places = np.where(np.arange(profile.layers) < outer, profile.distance, -profile.distance)
     margin = 0.04 * (profile.thickness - places.min())
-    return places, (float(places.min() - margin), 0.0, max(profile.thickness, float(np.nanmax(places))))
+    membrane = max(profile.thickness, float(np.nanmax(places)))
+    return np.asarray(places), (float(places.min() - margin), 0.0, membrane)
 
 
 def _shade(ax: Axes, borders: tuple[float, float, float]) -> None:
@@ -132,7 +133,9 @@ def _shade(ax: Axes, borders: tuple[float, float, float]) -> None:
     above: Any = {"xycoords": ax.get_xaxis_transform(), "textcoords": "offset points", "va": "bottom"}
     for x, words in ((0.5 * (centre + outline), "nucleus"), (0.5 * (outline + membrane), "cytoplasm")):
         ax.annotate(words, (x, 1.0), xytext=(0, 2), ha="center", annotation_clip=False, **above)
-    ax.annotate("membrane", (membrane, 0.5), xytext=(2, 0), rotation=90, ha="left", **above | {"va": "center"})
+    ax.annotate(
+        "membrane", (membrane, 0.5), xytext=(2, 0), rotation=90, ha="left", **above | {"va": "center"}
+    )
 
 
 def _label(ax: Axes, profile: LayerProfile, along: Along, places: FloatArray) -> None:
@@ -141,13 +144,13 @@ def _label(ax: Axes, profile: LayerProfile, along: Along, places: FloatArray) ->
         ax.set_xlabel("share of the cell's area from the nucleus' centre (%)")
         return
     if along == "distance":
-        ax.set_xlabel(f"distance to the nuclear outline ({unit}), membrane at its median")
+        ax.set_xlabel(f"distance to the nuclear outline ({unit})")
         return
     every = -(-profile.layers // _MOST_TICKS)
     shown = range(0, profile.layers, every)
     ax.set_xticks(places[shown], [f"{layer}\n{_short(profile.depth[layer])}" for layer in shown])
     ax.tick_params(axis="x", length=0)
-    ax.set_xlabel(f"layer, 0 at the membrane; below, its depth ({unit} from the membrane)")
+    ax.set_xlabel(f"layer, and below it its depth ({unit})")
 
 
 def _short(depth: float) -> str:
