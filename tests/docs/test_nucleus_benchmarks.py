@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 import tifffile
 
@@ -95,3 +96,17 @@ def test_drawn_nuclei_lie_where_the_cell_is_deepest(load: Any, tmp_path: Path) -
     assert [case.name for case in cases] == ["0", "1"]
     assert cases[0].nucleus.sum() == pytest.approx(np.pi * 9.75**2, rel=0.05)
     assert benchmark.Check("osteosarcoma", "0", 1, 1, refused="no").failed
+
+
+def test_places_of_a_mirrored_cell_are_the_same_in_both_compartments(load: Any) -> None:
+    benchmark = load("nucleus_places")
+    outlines = load("cell_outlines")
+    shape = outlines.Shape("egg", "round", outlines.polar(lambda t: 22.0 + 4.0 * np.cos(t)))
+    rows = pd.DataFrame(benchmark.measure(shape, "aside", 0))
+    assert rows["valid"].all()
+    assert set(rows["part"]) == {"cytoplasm", "nucleus"}
+    mirrored = rows[rows["change"] == "mirrored"]
+    assert mirrored["same_with"].min() > 0.95
+    table = list(benchmark.lines(rows.assign(same_with=rows["same_plain"] - 0.1), ["shape", "place"]))
+    assert len(table) == 2
+    assert all(line.startswith("egg aside") and "WORSE: mirrored, noise" in line for line in table)
