@@ -84,11 +84,13 @@ def _list_inputs(batch: "Batch") -> None:
         )
 
     understood = [field.name for field in fields(Understood)]
-    write("name", "kind", "masks", "signal", *batch.columns, *understood)
+    nuclei = any(item.nuclei for item in batch.inputs)
+    write("name", "kind", "masks", "signal", *["nuclei"] * nuclei, *batch.columns, *understood)
     faults = 0
     for item in batch.inputs:
         found = understand(item)
-        write(item.name, item.kind, item.masks, item.signal, *item.columns, *astuple(found))
+        of_nuclei = [item.nuclei] * nuclei
+        write(item.name, item.kind, item.masks, item.signal, *of_nuclei, *item.columns, *astuple(found))
         faults += bool(found.fault)
     if faults:
         fail(f"{faults} of {count(len(batch.inputs), 'input')} cannot be used: the column fault says why")

@@ -16,8 +16,9 @@ from cytodisk.errors import ParameterError
 from cytodisk.geometry.depth import depth_of
 from cytodisk.geometry.mask import FilledMask, MaskReport
 from cytodisk.geometry.mesh import Mesh, mesh_inside
-from cytodisk.geometry.nucleus_mask import SeveralPolicy, fit_nucleus
+from cytodisk.geometry.nucleus_mask import fit_nucleus
 from cytodisk.geometry.nucleus_mesh import NucleusMesh, mesh_with_nucleus
+from cytodisk.geometry.nucleus_report import SeveralPolicy
 from cytodisk.geometry.outline import trace_outline
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import UNKNOWN, Scale

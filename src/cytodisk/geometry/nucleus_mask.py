@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any, get_args
 
 import numpy as np
 from scipy import ndimage
@@ -13,7 +13,7 @@ from cytodisk.checks import one_of
 from cytodisk.errors import MaskError, NucleusError
 from cytodisk.geometry.mask_values import parse_mask
 from cytodisk.geometry.nucleus_pieces import NucleusPieces, joined, listed_areas, without_holes
-from cytodisk.geometry.nucleus_report import NucleusReport
+from cytodisk.geometry.nucleus_report import NucleusReport, SeveralPolicy
 from cytodisk.geometry.outline import has_one_outline
 from cytodisk.geometry.placed_mask import PlacedMask
 
@@ -25,9 +25,6 @@ MOST_AT_EDGE = 0.2
 
 THE_CELL = 0.95
 """Share of a cell from which on a nucleus that covers it is the cell itself."""
-
-SEVERAL = ("refuse", "largest", "join")
-SeveralPolicy = Literal["refuse", "largest", "join"]
 
 _EIGHT = np.ones((3, 3), dtype=bool)
 
@@ -80,7 +77,7 @@ def fit_nucleus(
     >>> int(nucleus.sum()), report.area_px, report.notes
     (197, 197, ())
     """
-    one_of("several", several, SEVERAL)
+    one_of("several", several, get_args(SeveralPolicy))
     cell = parse_mask(mask)
     labels = parse_nucleus(nucleus, cell.shape)
     placed = PlacedMask.of(cell | (labels != 0))

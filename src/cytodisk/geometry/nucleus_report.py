@@ -1,6 +1,10 @@
 """`NucleusReport`: what fitting a nucleus into its cell changed."""
 
 from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+SeveralPolicy: TypeAlias = Literal["refuse", "largest", "join"]
+"""What becomes of several nuclei in one cell."""
 
 
 @dataclass(frozen=True)

@@ -57,6 +57,11 @@ def test_one_nucleus_with_a_number_keeps_it() -> None:
     assert matched(drawn((7, 20, 30, 20, 30)))[4] == ("7", 1, "ok")
 
 
+def test_several_nuclei_with_one_number_are_numbered() -> None:
+    nuclei = drawn((255, 20, 30, 20, 30), (255, 70, 80, 40, 60))  # 0 and 255 as 16 bit
+    assert matched(nuclei) == {4: ("1", 1, "ok"), 9: ("", 0, "none"), 2: ("2", 1, "ok")}
+
+
 def test_cells_without_and_with_several() -> None:
     nuclei = drawn((1, 20, 30, 20, 30), (2, 35, 40, 20, 45), (3, 70, 71, 40, 41), (8, 70, 80, 60, 70))
     assert matched(nuclei) == {4: ("2,1", 2, "several"), 9: ("", 0, "none"), 2: ("8", 1, "ok")}

@@ -5,7 +5,7 @@ from typing import Any, Literal, TypeAlias
 from pydantic import field_validator
 
 from cytodisk.checks import is_number
-from cytodisk.geometry.nucleus_mask import SeveralPolicy
+from cytodisk.geometry.nucleus_report import SeveralPolicy
 from cytodisk.parameters import Parameters, parameter
 
 NucleusRadius: TypeAlias = float | Literal["area"]

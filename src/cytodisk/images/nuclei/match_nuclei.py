@@ -15,7 +15,7 @@ from cytodisk.images.frame_pixels import FramePixels, whole_pixels
 from cytodisk.images.label_boxes import label_boxes
 from cytodisk.images.nuclei.frame_matches import match_frame
 from cytodisk.images.nuclei.nucleus_match import NucleusMatch
-from cytodisk.images.nuclei.numbered_pieces import numbered_pieces
+from cytodisk.images.nuclei.numbered_pieces import mask_labels
 
 
 def match_nuclei(cells: Any, nuclei: Any) -> pd.DataFrame:
@@ -168,9 +168,7 @@ def _cell_frames(stack: np.ndarray[Any, Any]) -> Iterator[FramePixels]:
 def _nucleus_frames(stack: np.ndarray[Any, Any]) -> Iterable[FramePixels]:
     """Frames of labels; the pieces of 0/1 masks are numbered."""
     frames = (whole_pixels(frame[None]) for frame in stack)
-    labels = _labels(stack)
-    is_mask = len(labels) == 1 and single_label(stack.dtype, max(labels), True) == 1
-    return map(numbered_pieces, frames) if is_mask else frames
+    return map(mask_labels, frames) if len(_labels(stack)) == 1 else frames
 
 
 def _labels(stack: np.ndarray[Any, Any]) -> set[int]:

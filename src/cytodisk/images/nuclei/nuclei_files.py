@@ -20,7 +20,7 @@ from cytodisk.images.label_boxes import cell_box
 from cytodisk.images.mask_files import MaskSource
 from cytodisk.images.nuclei.frame_matches import FrameMatches, match_frame
 from cytodisk.images.nuclei.nuclei_parameters import NucleiFileParameters
-from cytodisk.images.nuclei.numbered_pieces import numbered_pieces
+from cytodisk.images.nuclei.numbered_pieces import mask_labels
 from cytodisk.images.what_it_is import MaskLook, look_at
 
 _FLAG = "--nuclei-channel"
@@ -49,7 +49,7 @@ class NucleiFile:
         return f"{what}, {self.file.axes} {self.file.shape} {self.file.dtype}"
 
     def frame(self, number: int) -> FramePixels:
-        """The labels of a frame; the pieces of a 0/1 mask are numbered from 1 in each.
+        """The labels of a frame; the pieces of a 0/1 mask are numbered from 1 in each frame.
 
         Raises
         ------
@@ -57,7 +57,7 @@ class NucleiFile:
             The frame is damaged.
         """
         pixels = frame_pixels(self.file, number)
-        return pixels if self.look.kind == "labels" else numbered_pieces(pixels)
+        return pixels if self.look.kind == "labels" else mask_labels(pixels)
 
 
 def open_nuclei(path: str | os.PathLike[str], how: NucleiFileParameters) -> NucleiFile:

@@ -11,8 +11,9 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from cytodisk.arrays import IntArray
+from cytodisk.images.evidence.frame_labels import single_label
 from cytodisk.images.frame_pixels import FramePixels
-from cytodisk.images.label_boxes import value_runs
+from cytodisk.images.label_boxes import cell_box, value_runs
 
 
 def numbered_pieces(frame: FramePixels) -> FramePixels:
@@ -38,6 +39,30 @@ def numbered_pieces(frame: FramePixels) -> FramePixels:
     starts = np.searchsorted(rows, np.arange(frame.image_shape[0] + 1))
     pieces = _RunPieces(first, after, starts, _numbers(runs, starts))
     return FramePixels((1, *frame.image_shape), np.dtype(np.int32), pieces.cut)
+
+
+def mask_labels(frame: FramePixels) -> FramePixels:
+    """Labels of a frame with one value beside 0: the numbers of its pieces; a single one keeps its value.
+
+    Parameters
+    ----------
+    frame : FramePixels
+
+    Returns
+    -------
+    FramePixels
+
+    Raises
+    ------
+    ReadError
+        The frame is damaged.
+    """
+    numbered = numbered_pieces(frame)
+    box, greatest = cell_box(frame.strips())
+    own = single_label(frame.dtype, greatest, box is not None)
+    if own < 2 or box is None or numbered.cut(*box).max() > 1:
+        return numbered
+    return frame
 
 
 @dataclass(frozen=True, eq=False)

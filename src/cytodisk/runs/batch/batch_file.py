@@ -22,17 +22,19 @@ from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.batch.input_columns import OWN_COLUMNS
 from cytodisk.runs.channel_names import common_signal_name
 from cytodisk.store.csv_tables import text_as_meant
+from cytodisk.store.nucleus_columns import NUCLEI_COLUMNS, NUCLEUS_COLUMNS
 from cytodisk.store.tables import (
     CONSISTENCY_COLUMNS,
     EDGE_COLUMNS,
     SOURCE_COLUMNS,
     TRACK_COLUMNS,
 )
-from cytodisk.store.window_columns import WINDOW_COLUMNS, WINDOW_SIZE_COLUMNS
+from cytodisk.store.window_columns import NUCLEUS_WINDOW_COLUMNS, WINDOW_COLUMNS, WINDOW_SIZE_COLUMNS
 
 _SIZES = ("pixel_size_um", "frame_interval_s")
 _CELLS = (*SOURCE_COLUMNS, *TRACK_COLUMNS, *WINDOW_SIZE_COLUMNS)
-_TABLES = (_CELLS, WINDOW_COLUMNS, EDGE_COLUMNS, CONSISTENCY_COLUMNS)
+_OF_NUCLEI = (*NUCLEUS_COLUMNS, *NUCLEI_COLUMNS, *NUCLEUS_WINDOW_COLUMNS)
+_TABLES = (_CELLS, WINDOW_COLUMNS, EDGE_COLUMNS, CONSISTENCY_COLUMNS, _OF_NUCLEI)
 _WHOLE = r"[+-]?(0|[1-9][0-9]*)"
 _NUMBER = _WHOLE + r"(\.[0-9]*)?([eE][+-]?[0-9]+)?"
 _LONGEST_NUMBER = 100  # characters; what is longer stays a text

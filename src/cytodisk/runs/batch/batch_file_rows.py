@@ -17,6 +17,7 @@ from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 from cytodisk.images.mask_names import base_name, image_stem, natural_order
 from cytodisk.runs.batch.batch_faults import Faults
 from cytodisk.runs.batch.batch_input import BatchInput, InputKind, Value
+from cytodisk.runs.cells.nuclei_given import ONLY_WITH_NUCLEI
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.parameters_file import parameters_from
@@ -24,7 +25,7 @@ from cytodisk.runs.parameters_file import parameters_from
 SCALE = ("pixel_size_um", "frame_interval_s", "channels")  # parameters with a column of their own
 ALONE = (*SCALE, "tracks")  # parameters with a key of their own
 COLUMNS = ("condition", "replicate")
-KEYS = ("masks", "signal", "name", "kind", "parameters", *COLUMNS, *ALONE)
+KEYS = ("masks", "signal", "nuclei", "name", "kind", "parameters", *COLUMNS, *ALONE)
 PARAMETERS_OF: dict[str, type[MapParameters]] = {"movie": MovieParameters, "map": MapParameters}
 FIELDS = ("folder", "parent", "name", "stem", "image")  # of templates
 _LONGEST_NAME = 120  # bytes in UTF-8; folders and files may have 255, of which some go for temporary names
@@ -95,7 +96,7 @@ class RowReader:
                 yield item
 
     def _parameters(self, row: FileRow, kind: str) -> MapParameters | None:
-        """The file's parameters, but for those that only the other kind has, overruled by the row's own."""
+        """The file's parameters, but for those that mean nothing here, overruled by the row's own."""
         of = PARAMETERS_OF[kind]
         own = row.values.get("parameters", {})
         if not isinstance(own, dict):
@@ -109,7 +110,12 @@ class RowReader:
             if kind == "map" and name in own:
                 self.faults.add(row.place, f"{name} is for movies only: take it out")
                 return None
+        if kind == "movie" and "nuclei" in row.values:
+            self.faults.add(row.place, "nuclei are for kind map only: take them out")
+            return None
         shared = {name: value for name, value in self.parameters.items() if name in of.model_fields}
+        if "nuclei" not in row.values:
+            shared = {name: value for name, value in shared.items() if name not in ONLY_WITH_NUCLEI}
         for one, other in of.exclusive:
             for given, left_out in ((one, other), (other, one)):
                 if given in own:
@@ -141,7 +147,7 @@ class RowReader:
         fields = path_fields(masks, self.folder)
         place = f"{row.place}, {masks.name}"
         filled = {key: _fill(value, fields) for key, value in row.values.items() if key != "masks"}
-        signal = self._signal(place, masks, filled.get("signal"))
+        signal, nuclei = (self._beside(place, masks, role, filled.get(role)) for role in ("signal", "nuclei"))
         safe = {name: re.sub(r"[^\w.-]+", "-", text).strip("-.") for name, text in fields.items()}
         name = str(_fill(row.values.get("name", "{folder}-{stem}"), safe)).strip("-")
         if re.fullmatch(r"\w[\w.-]*(?<!\.)", name) is None or len(name.encode()) > _LONGEST_NAME:
@@ -159,7 +165,7 @@ class RowReader:
             if not _exists(tracks):
                 self.faults.add(place, f"tracks {tracks} do not exist")
             parameters = parameters.changed(tracks=str(tracks))
-        return BatchInput(name, kind, masks, signal, parameters, columns)
+        return BatchInput(name, kind, masks, signal, parameters, columns, nuclei=nuclei)
 
     def _check_templates(self, row: FileRow) -> bool:
         right = True
@@ -177,21 +183,21 @@ class RowReader:
             right = right and set(wanted) <= set(FIELDS)
         return right
 
-    def _signal(self, place: str, masks: Path, signal: Any) -> Path | None:
-        if signal is None:
+    def _beside(self, place: str, masks: Path, role: str, value: Any) -> Path | None:
+        """The path of a signal, or of nuclei, that go with masks."""
+        if value is None:
             return None
-        if not isinstance(signal, str):
-            self.faults.add(place, f"signal must be a path, got {signal!r}")
+        if not isinstance(value, str):
+            self.faults.add(place, f"{role} must be a path, got {value!r}")
             return None
-        path = self.folder / signal
-        if is_folder_of_files(masks) and signal.startswith(_BESIDE) and not _exists(path):
-            return Path(signal)  # how the names of images go on beside the masks
+        path = self.folder / value
+        if is_folder_of_files(masks) and value.startswith(_BESIDE) and not _exists(path):
+            return Path(value)  # how the names of files go on beside the masks
         if not _exists(path) and not (is_pattern(path) and glob.glob(str(path), recursive=True)):  # noqa: PTH207
-            self.faults.add(place, f"signal {path} does not exist")
+            self.faults.add(place, f"{role} {path} does not exist")
         elif not is_folder_of_files(masks) and real_path(path) == real_path(masks):
-            self.faults.add(
-                place, f"signal {path} is the mask file itself: name its image, or take signal out"
-            )
+            advice = "name its image" if role == "signal" else "name the masks of its nuclei"
+            self.faults.add(place, f"{role} {path} is the mask file itself: {advice}, or take {role} out")
         return path
 
     def _value(self, place: str, column: str, value: Any) -> Value:

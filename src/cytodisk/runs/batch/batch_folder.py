@@ -30,7 +30,7 @@ from cytodisk.store.study_room import check_room
 from cytodisk.store.targets import Store
 from cytodisk.store.written_files import FILES, recorded, some_of
 
-_TABLES = tuple(f"{name}.parquet" for name in ("inputs", "cells", "windows", "edge", "consistency"))
+_TABLES = tuple(f"{name}.parquet" for name in ("inputs", "cells", "windows", "nuclei", "edge", "consistency"))
 _CSV = tuple(map(csv_of, _TABLES))
 _FILES = (*_TABLES, _CSV[0], COLUMNS_CSV, RUN)
 
@@ -84,7 +84,7 @@ def make_room(
         return known
     studies = [study_key(Path(name).stem) for name in known if name.startswith(f"{ROWS}/")]
     names = [*known, *(name for study in studies for name in store.files_of_study(study))]
-    files = [file for item in batch.inputs for file in (item.masks, item.signal) if file is not None]
+    files = [file for item in batch.inputs for file in item.files.values()]
     store.refuse_removal(names, [*files, *input_files(provenance)])
     note(store, there | {"status": "being replaced", "fingerprint": {}})
     store.remove(names)

@@ -33,6 +33,7 @@ class BatchInput:
         Condition, replicate and further columns; their names stand in the batch.
     signal_name : str
         What to call the channel of a signal whose file has no name for it: the same in all inputs.
+    nuclei : Path or None
     """
 
     name: str
@@ -42,6 +43,13 @@ class BatchInput:
     parameters: MapParameters
     columns: tuple[Value, ...] = ()
     signal_name: str = ""
+    nuclei: Path | None = None
+
+    @property
+    def files(self) -> dict[str, Path]:
+        """What is read, by its role: "masks", and "signal" and "nuclei" where they are given."""
+        found = {"masks": self.masks, "signal": self.signal, "nuclei": self.nuclei}
+        return {role: path for role, path in found.items() if path is not None}
 
     @property
     def settings(self) -> str:

@@ -232,7 +232,7 @@ def _whole_row(store: Store, name: str) -> InputRow | None:
     if row is None or not row.complete:
         return row
     kind = MOVIE if row.kind == MOVIE.run else MAP
-    marks = {file: mark for file, mark in recorded(there).items() if kind.may_write(file)}
+    marks = {file: mark for file, mark in recorded(there).items() if kind.with_nuclei.may_write(file)}
     whole = there.get("status") == "complete" and not any(store.names(f"{study_key(name)}/{PARTS}"))
     whole = whole and not store.lost_files(study_key(name), marks)
     return row if whole else None

@@ -26,15 +26,19 @@ def as_seen_by_all(task: BatchTask, target: str, run: str) -> BatchTask:
     -------
     BatchTask
     """
-    inputs = (replace(item, masks=item.masks.absolute(), signal=_signal(item)) for item in task.inputs)
-    return replace(task, inputs=tuple(inputs), target=target, run=run)
+    return replace(task, inputs=tuple(map(_with_full_paths, task.inputs)), target=target, run=run)
 
 
-def _signal(item: BatchInput) -> Path | None:
-    """The signal's full path; how names of images go on beside a folder's masks, as "_img", is no path."""
-    if item.signal is None or (is_folder_of_files(item.masks) and not item.signal.exists()):
-        return item.signal
-    return item.signal.absolute()
+def _with_full_paths(item: BatchInput) -> BatchInput:
+    signal, nuclei = (None if path is None else _full_path(item, path) for path in (item.signal, item.nuclei))
+    return replace(item, masks=item.masks.absolute(), signal=signal, nuclei=nuclei)
+
+
+def _full_path(item: BatchInput, path: Path) -> Path:
+    """The full path of a file; how names go on beside a folder's masks, as "_img", is no path."""
+    if is_folder_of_files(item.masks) and not path.exists():
+        return path
+    return path.absolute()
 
 
 def single_inputs(task: BatchTask) -> list[BatchTask]:

@@ -90,7 +90,7 @@ def _with_files(given: Understood, item: BatchInput) -> Understood:
         if signal is not None:
             signal = with_names(signal, item.signal_name)
     else:
-        inputs = open_inputs(item.masks, item.signal, item.parameters, item.signal_name)
+        inputs = open_inputs(item.masks, item.signal, item.parameters, item.signal_name, item.nuclei)
         signal, pixel_size_um = next(iter(inputs.signal_files), None), inputs.scale.pixel_size_um
     check_depths(_grid(item.parameters), Scale(pixel_size_um))
     channels = signal.channels if signal is not None else ()

@@ -11,6 +11,7 @@ INPUT_COLUMNS: Columns = (
     Column("kind", pa.string(), "", "movie or map"),
     Column("masks", pa.string(), "", "file of the masks"),
     Column("signal", pa.string(), "", "file of the signal; empty if there is none"),
+    Column("nuclei", pa.string(), "", "file of the nuclei; empty if there is none"),
     Column(
         "status",
         pa.string(),

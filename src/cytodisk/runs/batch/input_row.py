@@ -116,8 +116,8 @@ def read_row(store: Store, name: str) -> InputRow | None:
 def files_mark(item: BatchInput) -> str:
     """A hash of sizes and times of an input's files; it changes when one of them does."""
     tracks = getattr(item.parameters, "tracks", None)  # which movies alone have
-    paths = (item.masks, item.signal, None if tracks is None else Path(tracks))
-    marks = [_marks(path) for path in paths if path is not None]
+    paths = [*item.files.values(), *([] if tracks is None else [Path(tracks)])]
+    marks = [_marks(path) for path in paths]
     return hashlib.sha256(json.dumps(marks).encode()).hexdigest()[:16]
 
 

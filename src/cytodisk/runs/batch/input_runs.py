@@ -31,5 +31,5 @@ def run_of(item: BatchInput, folder: Path) -> Callable[..., Study]:
         return partial(
             movie_study, open_movie(item.masks, item.signal, item.parameters, item.signal_name), folder
         )
-    inputs = open_inputs(item.masks, item.signal, item.parameters, item.signal_name)
+    inputs = open_inputs(item.masks, item.signal, item.parameters, item.signal_name, item.nuclei)
     return partial(map_study, inputs, folder)

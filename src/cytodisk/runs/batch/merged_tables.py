@@ -23,7 +23,6 @@ from cytodisk.store.merging import merge_tables, write_rows
 from cytodisk.store.tables import Column, Columns, schema
 from cytodisk.store.targets import Store
 
-_OF_MAPS = tuple(MAP.tables)
 _MOST = 2**63  # longer numbers are such as those on a label
 _TIMES = ("seconds",)  # columns with running times, which differ from run to run
 INPUTS = "inputs"
@@ -74,7 +73,7 @@ def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None], csv
         names = [csv_of(file.name), file.name]
         told = [*_told(INPUTS, columns, columns_schema)]
         for name, measured in _tables(batch).items():
-            having = [one for one in done if one.item.kind == "movie" or name in _OF_MAPS]
+            having = [one for one in done if _has_table(one.item, name)]
             columns = (*own, *_unit_columns(measured), *measured)
             columns_schema = _schema(columns, having)
             file = folder / f"{name}.parquet"
@@ -88,6 +87,11 @@ def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None], csv
         for name in (*names, COLUMNS_CSV):
             store.put_file(folder / name, name)
     return list(_remarks(done))
+
+
+def _has_table(item: BatchInput, name: str) -> bool:
+    kind = MOVIE if item.kind == MOVIE.run else MAP
+    return name in (kind.tables if item.nuclei is None else kind.with_nuclei.tables)
 
 
 def _remarks(done: Sequence[_Done]) -> Iterator[str]:
@@ -155,14 +159,13 @@ def _input_rows(
 
 def _columns_of(row: InputRow) -> dict[str, Any]:
     names = (column.name for column in INPUT_COLUMNS)
-    return {name: getattr(row, name) for name in names if name not in ("masks", "signal")}
+    return {name: getattr(row, name) for name in names if name not in ("masks", "signal", "nuclei")}
 
 
 def _paths(batch: Batch, item: BatchInput) -> dict[str, str | None]:
     folder = batch.path.absolute().parent
-    return {
-        "masks": _shown(item.masks, folder),
-        "signal": None if item.signal is None else _shown(item.signal, folder),
+    return dict.fromkeys(("masks", "signal", "nuclei")) | {
+        role: _shown(path, folder) for role, path in item.files.items()
     }
 
 
@@ -190,7 +193,12 @@ def _schema(columns: Columns, done: Sequence[_Done]) -> Any:
 def _tables(batch: Batch) -> dict[str, Columns]:
     """Columns of the merged tables: all that any kind of input has."""
     kinds = {item.kind for item in batch.inputs}
-    kept = [study.tables for study in (MAP, MOVIE) if study.run in kinds]
+    with_nuclei = {item.kind for item in batch.inputs if item.nuclei is not None}
+    kept = [
+        (study.with_nuclei if study.run in with_nuclei else study).tables
+        for study in (MAP, MOVIE)
+        if study.run in kinds
+    ]
     merged: dict[str, dict[str, Any]] = {}
     for tables in kept:
         for name, columns in tables.items():

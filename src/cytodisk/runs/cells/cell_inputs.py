@@ -22,11 +22,11 @@ from cytodisk.images.signal_files import common_name, pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.cells.fitting_signal import check_signal
 from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
+from cytodisk.runs.cells.nuclei_given import with_nucleus_layers
 from cytodisk.runs.cells.nuclei_inputs import (
     NucleiInput,
     open_nuclei_of,
     open_paired_nuclei,
-    with_nucleus_layers,
     with_scale,
 )
 from cytodisk.runs.cells.outline_sources import sized_like, with_sizes

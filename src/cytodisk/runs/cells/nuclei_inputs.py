@@ -6,9 +6,8 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
 
-from cytodisk.errors import CytodiskError, NucleusError, ParameterError, ReadError, as_data
+from cytodisk.errors import CytodiskError, NucleusError, ReadError, as_data
 from cytodisk.images.mask_files import MaskSource
 from cytodisk.images.nuclei.frame_matches import FrameMatches
 from cytodisk.images.nuclei.nuclei_files import NucleiFile, check_nuclei_file, match_source, open_nuclei
@@ -16,20 +15,6 @@ from cytodisk.images.nuclei.nuclei_parameters import NucleiFileParameters
 from cytodisk.images.paired_files import NUCLEI, pair_files
 from cytodisk.parameters import Parameters
 from cytodisk.scale import alike
-
-_ONLY_WITH_NUCLEI = (
-    *(name for name in NucleiFileParameters.model_fields if name.startswith("nuclei_")),
-    "nucleus_radius",
-    "nucleus_layers",
-    "several",
-    "missing",
-)
-
-
-NUCLEUS_LAYERS = 3
-"""Layers of the nucleus in a run with nuclei that says no number."""
-
-Given = TypeVar("Given", bound=Parameters)
 
 
 @dataclass(frozen=True)
@@ -47,40 +32,6 @@ class NucleiInput:
             return match_source(source, self.file, frame)
         except (ReadError, NucleusError) as fault:
             return as_data(fault)
-
-
-def with_nucleus_layers(nuclei: object, parameters: Given) -> Given:
-    """Parameters of a run with or without nuclei: with them, grids have layers of the nucleus.
-
-    Parameters
-    ----------
-    nuclei : path-like or None
-    parameters : Parameters
-
-    Returns
-    -------
-    Parameters
-
-    Raises
-    ------
-    ParameterError
-        Something is said of nuclei that are not there.
-    """
-    known = dict(parameters)
-    if nuclei is not None:
-        if known.get("method", "newton") != "newton":
-            raise ParameterError(f'nuclei need method "newton", got {known["method"]!r}: take --method out')
-        without = "nucleus_layers" in known and known["nucleus_layers"] is None
-        return parameters.changed(nucleus_layers=NUCLEUS_LAYERS) if without else parameters
-    for name in _ONLY_WITH_NUCLEI:
-        if name in known and known[name] != type(parameters).model_fields[name].default:
-            flag = "--" + name.replace("_", "-")
-            raise ParameterError(
-                f"{name} is given, but there are no nuclei: pass them as --nuclei, or take {flag} out"
-            )
-    if known.get("align") == "nucleus":
-        raise ParameterError('align "nucleus" needs nuclei: pass them as --nuclei')
-    return parameters
 
 
 def open_nuclei_of(source: MaskSource, nuclei: str | os.PathLike[str], parameters: Parameters) -> NucleiInput:
