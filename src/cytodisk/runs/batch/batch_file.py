@@ -22,7 +22,7 @@ from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.batch.input_columns import OWN_COLUMNS
 from cytodisk.runs.channel_names import common_signal_name
 from cytodisk.store.csv_tables import text_as_meant
-from cytodisk.store.nucleus_columns import NUCLEI_COLUMNS, NUCLEUS_COLUMNS
+from cytodisk.store.nuclei.nucleus_columns import NUCLEI_COLUMNS, NUCLEUS_COLUMNS
 from cytodisk.store.tables import (
     CONSISTENCY_COLUMNS,
     EDGE_COLUMNS,
