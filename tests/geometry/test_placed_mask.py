@@ -64,3 +64,21 @@ def test_a_map_in_a_large_image_takes_the_memory_of_its_cell(tmp_path):
     assert peak < 10_000**2 / 20  # bytes
     assert again.placed_mask.image_shape == (10_000, 10_000)
     assert_array_equal(again.placed_mask.box, placed.placed_mask.box)
+
+
+def test_points_are_held_by_the_pixel_that_they_lie_in() -> None:
+    placed = PlacedMask(np.array([[True, False], [True, True]]), (2, 3), (6, 8))
+    points = np.array(
+        [[2.0, 3.0], [2.4, 3.4], [2.0, 4.0], [3.49, 4.49], [3.51, 4.0], [0.0, 0.0], [np.nan, 3.0], [9.0, 9.0]]
+    )
+    assert placed.holds(points).tolist() == [True, True, False, True, False, False, False, False]
+
+
+def test_another_mask_in_the_same_box() -> None:
+    placed = PlacedMask(np.ones((2, 3), dtype=bool), (4, 5), (10, 12))
+    other = np.zeros((10, 12), dtype=bool)
+    other[5, 6] = other[0, 0] = True
+    assert placed.beside(other).box.tolist() == [[False] * 3, [False, True, False]]
+    cut = placed.beside(other[3:, 4:], (3, 4))
+    assert cut.box.tolist() == placed.beside(other).box.tolist()
+    assert (cut.corner, cut.image_shape) == ((4, 5), (10, 12))

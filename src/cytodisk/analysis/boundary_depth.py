@@ -29,8 +29,9 @@ def places_at_depth(disk: DiskMap, angles: FloatArray, depth_px: float) -> Float
     Returns
     -------
     ndarray of shape (N, 2) and dtype float
-        (row, column) in pixels; NaN where the ray comes nowhere that deep, and where it starts on the
-        image's border. The ray is drawn as 199 straight pieces; the depth is exact to 0.001 px.
+        (row, column) in pixels; NaN where the ray comes nowhere that deep, where it starts on the image's
+        border, and where the place lies in an excluded hole. The ray is drawn as 199 straight pieces; the
+        depth is exact to 0.001 px.
 
     Notes
     -----
@@ -58,6 +59,8 @@ def places_at_depth(disk: DiskMap, angles: FloatArray, depth_px: float) -> Float
         going = going[~over]
         places[going] = _at(rays[going], arc[going], walked[going])
     places[on_border(rays[:, 0], disk.placed_mask.image_shape)] = np.nan
+    if disk.holes is not None:
+        places[disk.holes.holds(places)] = np.nan
     return places
 
 

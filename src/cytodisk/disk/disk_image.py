@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
-from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.arrays import FloatArray
 from cytodisk.checks import whole_number
 from cytodisk.errors import SignalError
 from cytodisk.geometry.placed_mask import PlacedMask
@@ -62,7 +62,7 @@ def image_on_disk(
     if left_out is None:
         out[inside] = _between_pixels(values, points[inside])
     else:
-        out[inside] = _beside(left_out.whole, values, points[inside])
+        out[inside] = _beside(left_out, values, points[inside])
     return out.reshape(size, size)
 
 
@@ -70,11 +70,9 @@ def _between_pixels(values: FloatArray, points_yx: FloatArray) -> FloatArray:
     return np.asarray(ndimage.map_coordinates(values, points_yx.T, order=1, mode="nearest"))
 
 
-def _beside(left_out: BoolArray, values: FloatArray, points_yx: FloatArray) -> FloatArray:
+def _beside(left_out: PlacedMask, values: FloatArray, points_yx: FloatArray) -> FloatArray:
     """Values from the pixels that count alone; NaN at the others."""
-    known = _between_pixels(np.where(left_out, 0.0, 1.0), points_yx)
-    total = _between_pixels(np.where(left_out, 0.0, values), points_yx)
-    height, width = left_out.shape
-    nearest = np.clip(np.rint(points_yx).astype(np.int64), 0, (height - 1, width - 1))
-    here = left_out[tuple(nearest.T)] | (known == 0.0)
+    gone, here = left_out.whole, left_out.holds(points_yx)
+    known = _between_pixels(np.where(gone, 0.0, 1.0), points_yx)
+    total = _between_pixels(np.where(gone, 0.0, values), points_yx)
     return np.where(here, np.nan, total / np.where(here, 1.0, known))

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.arrays import BoolArray, IntArray
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +89,21 @@ class PlacedMask:
     def cut_out_of(self, image: Any) -> Any:
         """The part of an image (…, H, W) that the box covers."""
         return image[(..., *self.slices)]
+
+    def holds(self, points_yx: FloatArray) -> BoolArray:
+        """Whether the pixel that each point of the image lies in is one of the mask, shape (N,).
+
+        Parameters
+        ----------
+        points_yx : ndarray of shape (N, 2) and dtype float
+            (row, column) in pixels; NaN lies in none.
+        """
+        found = np.zeros(len(points_yx), dtype=bool)
+        known = np.isfinite(points_yx).all(axis=1)
+        place = np.rint(points_yx[known]).astype(np.int64) - np.array(self.corner)
+        within = ((place >= 0) & (place < self.box.shape)).all(axis=1)
+        found[np.flatnonzero(known)[within]] = self.box[tuple(place[within].T)]
+        return found
 
     def outside(self, other: PlacedMask) -> IntArray:
         """Pixels of this cell that are none of another one in the same image, shape (P, 2)."""

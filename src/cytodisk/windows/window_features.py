@@ -52,7 +52,7 @@ def window_features(
         if array.shape != windows.areas.shape:
             raise WindowError(f"values[{name!r}] has shape {array.shape}, the windows {windows.areas.shape}")
     if cell:
-        area = _by_unit(windows, "area", np.array(windows.placed_mask.box.sum(), dtype=np.float64))
+        area = _by_unit(windows, "area", np.array(_pixels(windows), dtype=np.float64))
         numbers = {name: float(value) for name, value in area.items()}
         yield _feature(windows.outline_yx, corner, "annotation", {"name": cell}, numbers)
     compartments = layer_coords(windows.grid).get("compartment", ("layer", []))[1]
@@ -70,6 +70,12 @@ def window_features(
             named["compartment"] = str(compartments[layer])
         here = {name: float(array[layer, sector]) for name, array in measured.items()}
         yield _feature(polygon, corner, "detection", named, here)
+
+
+def _pixels(windows: WindowsOnCell) -> int:
+    """Pixels of the cell without excluded holes."""
+    in_holes = 0 if windows.holes is None else windows.holes.box.sum()
+    return int(windows.placed_mask.box.sum() - in_holes)
 
 
 def _measures(windows: WindowsOnCell) -> dict[str, FloatArray]:

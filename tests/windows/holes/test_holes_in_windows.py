@@ -182,3 +182,19 @@ def test_holes_go_with_a_map_to_files_images_and_processes(
         assert_array_equal(same.holes.whole, disk.holes.whole)
         assert same.report == disk.report
         assert_array_equal(cd.polar_windows(4, 9).on(same).areas, cd.polar_windows(4, 9).on(disk).areas)
+
+
+def test_a_place_at_a_depth_that_lies_in_a_hole_has_no_signal() -> None:
+    """A disk with a hole of radius 12: 20 px below the edge lies 10 px from the centre."""
+    masks = np.stack([ringed()] * 2)
+    signal = np.where(masks, 5.0, 1e6)
+    movie = cd.map_movie(masks, holes="exclude")
+    assert cd.boundary_kymograph(movie, 20.0, signal, points=36).isnull().all()
+    assert_allclose(cd.boundary_kymograph(movie, 10.0, signal, points=36), 5.0)
+
+
+def test_cells_in_geojson_have_the_area_of_their_windows(mask: np.ndarray, disk: cd.DiskMap) -> None:
+    cell, *windows = cd.polar_windows(3, 8).on(disk).geojson(cell="a")["features"]
+    measured = [window["properties"]["measurements"]["area px^2"] for window in windows]
+    assert_allclose(cell["properties"]["measurements"]["area px^2"], sum(measured))
+    assert_allclose(sum(measured), mask.sum())
