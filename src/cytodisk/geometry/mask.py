@@ -91,23 +91,25 @@ class MaskReport:
             notes.append(
                 f"{_count(self.components - 1, 'fragment')} dropped ({self.dropped_px} px, {share:.1%})"
             )
-        if self.holes:
-            notes.append(self._hole_note)
+        notes += self._hole_notes
         if self.touches_border:
             notes.append(f"touches the image border ({self.border_share:.1%} of its edge)")
         return tuple(notes)
 
     @property
-    def _hole_note(self) -> str:
-        holes, filled = (
-            _count(self.holes, "hole"),
-            f"{self.filled_px} px, {self.filled_px / self.area_px:.1%}",
-        )
-        excluded = f"{self.excluded_px} px, {self.excluded_share:.1%}"
-        words = f"{holes} excluded ({excluded})" if self.excluded_px else f"{holes} filled ({filled})"
-        return words + (
-            f", {self.nucleus_in_holes_px} px with the nucleus" if self.nucleus_in_holes_px else ""
-        )
+    def _hole_notes(self) -> list[str]:
+        filled = self.filled_px - self.nucleus_in_holes_px
+        left = [
+            (filled, "filled", filled / self.area_px),
+            (self.excluded_px, "excluded", self.excluded_share),
+        ]
+        if not self.nucleus_in_holes_px:
+            holes = _count(self.holes, "hole")
+            return [f"{holes} {what} ({number} px, {share:.1%})" for number, what, share in left if number]
+        notes = [f"the nucleus lies in a hole of the mask ({self.nucleus_in_holes_px} px)"]
+        return notes + [
+            f"{number} px of holes {what} ({share:.1%})" for number, what, share in left if number
+        ]
 
     @property
     def qc_flags(self) -> tuple[str, ...]:
@@ -199,6 +201,8 @@ class FilledMask:
             return FilledMask(self.filled, None, replace(report, nucleus_in_holes_px=around))
         if policy == "error":
             found = f"{_count(report.holes, 'hole')} ({left} px)"
+            if in_nucleus:
+                found = f"holes beside the nucleus ({left} px)"
             raise MaskError(
                 f"mask has {found}: fill them, or pass holes='fill', or 'exclude' to leave them out of all "
                 "windows (--holes exclude)"

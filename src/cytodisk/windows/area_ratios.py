@@ -22,5 +22,5 @@ def area_ratios(grid: PolarLayout, areas: FloatArray) -> FloatArray:
     """
     by_layer, compartments = areas.sum(axis=1), grid.compartments
     whole = np.array([by_layer[compartments == name].sum() for name in compartments])
-    shares = areas / whole[:, None]
-    return np.asarray((shares / grid.area_shares[:, None])[grid.present])
+    shares, present = areas / whole[:, None], grid.present
+    return np.asarray(shares[present] / grid.area_shares[present, None])
