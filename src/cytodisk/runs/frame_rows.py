@@ -15,6 +15,7 @@ from cytodisk.geometry.outline_step import outline_step
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.geometry.polygon import centroid, edge_lengths, smooth_closed
 from cytodisk.images.signal_files import SignalPiece
+from cytodisk.runs.compartment_row import place_row, signal_row
 from cytodisk.windows.depths import DEPTHS, NUCLEUS_DISTANCES
 from cytodisk.windows.hole_pixels import hole_pixels
 from cytodisk.windows.polar_windows import CellWindows
@@ -79,9 +80,10 @@ def cell_status(fault: CytodiskError) -> str:
 
 @dataclass(frozen=True, eq=False)
 class _CellSignal:
-    """Values of a cell's pixels, shape (C, P), and the names of the channels."""
+    """Values in the box of a cell, shape (C, h, w), and of its pixels, (C, P); the channels' names."""
 
     channels: list[str]
+    box: np.ndarray[Any, Any]
     pixels: np.ndarray[Any, Any]
 
     @classmethod
@@ -89,7 +91,7 @@ class _CellSignal:
         values, channels = signal.values, list(signal.channels)
         box = values if values.shape[1:] == placed.box.shape else placed.cut_out_of(values)
         check_channel_names("signal", channels)
-        return cls(channels, np.stack([channel[placed.box] for channel in box]))
+        return cls(channels, box, np.stack([channel[placed.box] for channel in box]))
 
 
 def measure_windows(
@@ -119,8 +121,10 @@ def measure_windows(
         Of the table of windows: for each channel every window, layers first.
     """
     inside = None if signal is None else _CellSignal.of(signal, windows.disk.placed_mask)
-    row = place.row | _cell_columns(windows, inside)
+    row = place.row | _cell_columns(windows, inside) | place_row(windows)
     columns = _window_columns(place, windows, inside, nan)
+    if inside is not None:
+        row |= signal_row(windows, columns, inside.channels, inside.box)
     for values in (row, columns):
         for name, first in zip(("centroid_y", "centroid_x"), corner, strict=True):
             values[name] = values[name] + float(first)

@@ -20,10 +20,11 @@ from cytodisk.motion.frame_file import load_boundary
 from cytodisk.scale import Scale
 from cytodisk.store.activity_store import open_activity
 from cytodisk.store.correlation_store import Correlation, list_correlations, read_correlation
+from cytodisk.store.nuclei.profile_table import profile_table
 from cytodisk.store.provenance_file import PROVENANCE, other_maps, read_complete
 from cytodisk.store.study_folder import part_key
 from cytodisk.store.study_kind import ACTIVITY, CELLS, MAPS
-from cytodisk.store.table_file import REMEDY, opened_table, read_cells, read_checked, units_in
+from cytodisk.store.table_file import REMEDY, check_heads, read_cells, read_checked, rows_of_cell, units_in
 from cytodisk.store.tables import CONSISTENCY_COLUMNS, EDGE_COLUMNS, Columns
 from cytodisk.store.window_columns import NUCLEUS_WINDOW_COLUMNS, WINDOW_COLUMNS
 from cytodisk.store.written_files import recorded, unchanged
@@ -80,6 +81,11 @@ class Study:
     def windows(self) -> pd.DataFrame:
         """One row a cell, frame, channel, layer and sector; units in `attrs["units"]`."""
         return self._table(WINDOWS, WINDOW_COLUMNS, "layer", "sector", optional=NUCLEUS_WINDOW_COLUMNS)
+
+    @cached_property
+    def nuclear_profile(self) -> pd.DataFrame:
+        """For cells with nuclei, one row a cell, frame, channel and layer: see `nuclear_profile`."""
+        return profile_table(self.path, self.windows)
 
     @cached_property
     def edge(self) -> pd.DataFrame:
@@ -239,12 +245,7 @@ class Study:
         return self.path / MAPS / f"cell_{key}.npz"
 
     def _rows_of(self, cell: int) -> pd.DataFrame:
-        rows = self.cells[self.cells["cell"] == cell]
-        if rows.empty:
-            first, last = self.cells["cell"].min(), self.cells["cell"].max()
-            there = f"only cell {first}" if first == last else f"the cells {first} to {last}"
-            raise ReadError(f"study {self.path} has no cell {cell}: it has {there}")
-        return rows
+        return rows_of_cell(self.cells, cell, self.path)
 
 
 def open_study(path: str | os.PathLike[str]) -> Study:
@@ -292,9 +293,7 @@ def open_study(path: str | os.PathLike[str]) -> Study:
     names = (CELLS, WINDOWS, EDGE, CONSISTENCY) if provenance["run"] == "movie" else (CELLS, WINDOWS)
     if provenance["run"] == "movie" and "image_shape" not in provenance:
         raise ReadError(f"{folder / PROVENANCE}: image_shape is missing: {REMEDY}")
-    for name in names:
-        with opened_table(folder / name):  # its head alone
-            pass
+    check_heads(folder / name for name in names)
     study = Study(folder, read_cells(folder, provenance), provenance)
     if words := other_maps(provenance):
         warnings.warn(f"study {folder}: {words}", EarlierVersionWarning, stacklevel=2)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 from cytodisk.store.columns_file import COLUMNS_CSV
 from cytodisk.store.csv_tables import csv_of
 from cytodisk.store.nuclei.nucleus_columns import NUCLEI_COLUMNS, NUCLEUS_COLUMNS
+from cytodisk.store.nuclei.summary_columns import PLACE_COLUMNS, channel_columns
 from cytodisk.store.provenance_file import FORMAT
 from cytodisk.store.tables import Columns
 from cytodisk.store.window_columns import NUCLEUS_WINDOW_COLUMNS
@@ -72,7 +74,11 @@ class StudyKind:
         """The same where cells have nuclei: with a table of these, and windows have a compartment."""
         windows = (*self.others["windows"], *NUCLEUS_WINDOW_COLUMNS)
         others = {**self.others, "windows": windows, "nuclei": NUCLEI_COLUMNS}
-        return replace(self, cells=(*self.cells, *NUCLEUS_COLUMNS), others=others)
+        return replace(self, cells=(*self.cells, *NUCLEUS_COLUMNS, *PLACE_COLUMNS), others=others)
+
+    def with_channels(self, channels: Sequence[str]) -> StudyKind:
+        """The same where cells have nuclei and a signal: numbers of each channel in nucleus and cytoplasm."""
+        return replace(self, cells=(*self.cells, *channel_columns(channels)))
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from cytodisk.memory import free_bytes
 from cytodisk.parameter_words import short_words
 from cytodisk.reading_files import reading_file
 from cytodisk.store.nuclei.nucleus_columns import NUCLEUS_COLUMNS
+from cytodisk.store.nuclei.summary_columns import PLACE_COLUMNS, channel_columns, channels_among
 from cytodisk.store.study_kind import CELLS
 from cytodisk.store.tables import CELL_COLUMNS, SOURCE, TRACK_COLUMNS, Column, Columns, unit_of
 from cytodisk.store.window_columns import WINDOW_SIZE_COLUMNS
@@ -178,7 +179,9 @@ def _check_blocks(path: Path, frame: pd.DataFrame, block: Sequence[str], remedy:
 
 def read_cells(folder: Path, provenance: dict[str, Any]) -> pd.DataFrame:
     """The table of cells of a study; a movie has each cell once in a frame."""
-    optional = (SOURCE, *TRACK_COLUMNS, *WINDOW_SIZE_COLUMNS, *NUCLEUS_COLUMNS)
+    optional = (SOURCE, *TRACK_COLUMNS, *WINDOW_SIZE_COLUMNS, *NUCLEUS_COLUMNS, *PLACE_COLUMNS)
+    with opened_table(folder / CELLS) as file:
+        optional = (*optional, *channel_columns(channels_among(file.schema_arrow.names)))
     cells = read_checked(folder / CELLS, CELL_COLUMNS, optional, units=units_in(provenance))
     if not len(cells):
         raise ReadError(f"{folder / CELLS} has no rows: {REMEDY}")
@@ -189,6 +192,23 @@ def read_cells(folder: Path, provenance: dict[str, Any]) -> pd.DataFrame:
             f"{folder / CELLS}: cell {row['cell']} stands twice in frame {row['frame']}: {REMEDY}"
         )
     return cells
+
+
+def rows_of_cell(cells: pd.DataFrame, cell: int, folder: Path) -> pd.DataFrame:
+    """The rows of one cell in the table of cells of a study; raises ReadError if there are none."""
+    rows = cells[cells["cell"] == cell]
+    if rows.empty:
+        first, last = cells["cell"].min(), cells["cell"].max()
+        there = f"only cell {first}" if first == last else f"the cells {first} to {last}"
+        raise ReadError(f"study {folder} has no cell {cell}: it has {there}")
+    return rows
+
+
+def check_heads(paths: Iterable[Path]) -> None:
+    """Raise ReadError where a table is missing or damaged, as far as its head tells."""
+    for path in paths:
+        with opened_table(path):
+            pass
 
 
 def units_in(provenance: dict[str, Any]) -> tuple[str, str]:

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import BoolArray, FloatArray
 
 
 class GroupMeans(NamedTuple):
@@ -55,6 +55,23 @@ def area_mean(values: FloatArray, areas: FloatArray) -> FloatArray:
     known = np.isfinite(values)
     weight = np.where(known, areas, 0.0)
     return _over((weight * np.where(known, values, 0.0)).sum(axis=-1), weight.sum(axis=-1))
+
+
+def layer_shares(areas: FloatArray, nuclear: BoolArray) -> FloatArray:
+    """Share of its compartment's area outside the middle of each layer; NaN for a layer without area.
+
+    Parameters
+    ----------
+    areas, nuclear : ndarray of shape (..., layers)
+        Layers from the membrane in, and whether each is in the nucleus.
+    """
+    found = np.full(areas.shape, np.nan)
+    for of_nucleus in (False, True):
+        own = np.where((nuclear == of_nucleus) & (areas > 0.0), areas, 0.0)
+        inward = np.cumsum(own, axis=-1)
+        share = _over(inward - 0.5 * own, np.broadcast_to(inward[..., -1:], own.shape))
+        found = np.where(own > 0.0, share, found)
+    return found
 
 
 def _over(part: FloatArray, whole: FloatArray) -> FloatArray:

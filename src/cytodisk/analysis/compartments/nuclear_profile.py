@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cytodisk.analysis.compartments.layer_sums import area_mean, group_means
+from cytodisk.analysis.compartments.layer_sums import area_mean, group_means, layer_shares
 from cytodisk.arrays import FloatArray
 from cytodisk.checks import instance_of
 from cytodisk.errors import WindowError
@@ -74,7 +74,7 @@ def nuclear_profile(data: xr.Dataset) -> xr.Dataset:
     found = group_means(*np.broadcast_arrays(mean, n_pixels))
     by_layer = area.sum(axis=-1)
     arrays: dict[str, FloatArray] = {"mean": found.mean, "sd": found.sd, "n_windows": found.number}
-    arrays |= {"area": by_layer, "share": _shares(by_layer, nuclear_layers(data))}
+    arrays |= {"area": by_layer, "share": layer_shares(by_layer, nuclear_layers(data))}
     arrays |= {name: area_mean(values[name], area) for name in _WHERE}
     units = {name: data[name].attrs.get("units", "") for name in ("area", *_WHERE)}
     units |= {"mean": "a.u.", "sd": "a.u.", "n_windows": "1", "share": "1"}
@@ -119,15 +119,3 @@ def _as_array(data: xr.Dataset, name: str) -> FloatArray:
 
 def _dims(variable: xr.DataArray) -> tuple[Any, ...]:
     return (*(dim for dim in variable.dims if dim not in ("layer", "sector")), "layer")
-
-
-def _shares(areas: FloatArray, nuclear: Any) -> FloatArray:
-    """Share of its compartment's area outside the middle of each layer."""
-    found = np.full(areas.shape, np.nan)
-    for of_compartment in (~nuclear, nuclear):
-        own = areas[..., of_compartment]
-        inward = np.cumsum(own, axis=-1)
-        with np.errstate(invalid="ignore"):  # of a frame without a map
-            share = (inward - 0.5 * own) / inward[..., -1:]
-        found[..., of_compartment] = np.where(own > 0.0, share, np.nan)
-    return found

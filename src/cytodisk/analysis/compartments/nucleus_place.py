@@ -77,3 +77,10 @@ def turn_of_disk(disk: DiskMap) -> float:
     away = disk.outline_yx - centroid(disk.outline_yx)
     turned = np.sum((after - before) * (away[:, 1] + 1j * away[:, 0]) * np.exp(-1j * angles))
     return float(np.degrees(np.angle(turned)))
+
+
+def direction_in_disk(disk: DiskMap) -> float:
+    """Angle in the disk, in degrees, of the direction from the nucleus' centroid to the cell's, or NaN."""
+    if disk.nucleus is None:
+        return float("nan")
+    return nucleus_place(disk).direction - turn_of_disk(disk)

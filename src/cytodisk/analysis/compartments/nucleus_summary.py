@@ -10,7 +10,7 @@ import xarray as xr
 
 from cytodisk.analysis.compartments.channel_summary import NUMBERS, UNITS, channel_summary, without_summary
 from cytodisk.analysis.compartments.nuclear_profile import check_nuclear, nuclear_layers
-from cytodisk.analysis.compartments.nucleus_place import NOWHERE, nucleus_place, turn_of_disk
+from cytodisk.analysis.compartments.nucleus_place import NOWHERE, direction_in_disk, nucleus_place
 from cytodisk.checks import instance_of
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import WindowError
@@ -145,7 +145,10 @@ def _signals(
         data[name].broadcast_like(data["mean"]).transpose(*dims, "layer", "sector").to_numpy()
         for name in _OF_WINDOWS
     )
-    nuclear, towards = nuclear_layers(data), [_towards(disk) for disk in maps]
+    nuclear, towards = (
+        nuclear_layers(data),
+        [np.nan if disk is None else direction_in_disk(disk) for disk in maps],
+    )
     shape = mean.shape[:-2]
     found: dict[str, Any] = {name: np.full(shape, np.nan) for name in NUMBERS}
     found["reason"] = np.full(shape, "", dtype=object)
@@ -163,10 +166,3 @@ def _signals(
     variables["reason"] = (dims, found["reason"].astype(str))
     coords = {name: coord for name, coord in data.coords.items() if set(coord.dims) <= set(dims)}
     return xr.Dataset(variables, coords)
-
-
-def _towards(disk: DiskMap | None) -> float:
-    """Angle in the disk of the direction from the nucleus to the cell's middle; NaN if there is none."""
-    if disk is None or disk.nucleus is None:
-        return float("nan")
-    return nucleus_place(disk).direction - turn_of_disk(disk)

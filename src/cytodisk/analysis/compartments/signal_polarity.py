@@ -56,7 +56,5 @@ def signal_polarity(mean: FloatArray, sd: FloatArray, n_pixels: FloatArray) -> S
     by_chance = np.sqrt(spread.sum()) / total
     size = float(abs(harmonic))
     if size <= max(_ABOVE_NOISE * by_chance, 1e-9):
-        return SignalPolarity(
-            size, np.nan, "the polarity is within what the spread of pixels gives: no direction"
-        )
+        return SignalPolarity(size, np.nan, "polarity within the noise of pixels: no direction")
     return SignalPolarity(size, float(np.degrees(np.angle(harmonic))), "")

@@ -78,6 +78,11 @@ class CellInputs:
         return [signal.file for signal in self.signals.values() if signal.file is not None]
 
     @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the channels, the same in all images; empty without a signal."""
+        return self.signal_files[0].channels if self.signal_files else ()
+
+    @property
     def nuclei_files(self) -> list[NucleiFile]:
         """Files of nuclei that can be read, in the order of the masks."""
         return [found.file for found in self.nuclei.values() if found.file is not None]

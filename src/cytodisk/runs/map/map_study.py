@@ -81,7 +81,7 @@ def map_study(
         warnings = [words for row in rows if (words := _warning(row, inputs.is_folder))]
         return keys, [*inputs.remarks, *nuclei_warnings(folder, keys), *warnings]
 
-    kind = MAP.with_nuclei if inputs.nuclei else MAP
+    kind = MAP.with_nuclei.with_channels(inputs.channels) if inputs.nuclei else MAP
     run = StudyRun(kind, provenance, inputs.parameters, options, options.writes)
     return run.into(out, work, open_study, fill_flags)
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from cytodisk.runs.qc_flags import (
     area_jumps,
     column_flags,
+    compartment_flags,
     correlation_flags,
     geometry_flags,
     input_flags,
@@ -100,6 +101,8 @@ _RUN_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     nucleus_flags.nucleus_missing,
     nucleus_flags.several_nuclei,
     nucleus_flags.nucleus_clipped,
+    compartment_flags.nucleus_in_the_middle,
+    compartment_flags.no_ratio,
     area_jumps.area_jumps,
     input_flags.implausible_scale,
     input_flags.clipped_signal,
@@ -117,6 +120,7 @@ _RUN_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     window_flags.small_windows,
     interior_flags.distortion,
     column_flags.nan_pixels,
+    compartment_flags.background,
 )
 
 _CORRELATION_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (

@@ -1,0 +1,36 @@
+"""What commands say of the signals in nucleus and cytoplasm."""
+
+from typing import TYPE_CHECKING
+
+from cytodisk.cli.console import count
+from cytodisk.number_words import rounded
+from cytodisk.store.nuclei.summary_columns import RATIO, channels_among, column_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def nucleus_ratio_words(cells: "pd.DataFrame", of: str = "cell") -> str:
+    """The mean ratio of nucleus to cytoplasm by channel, in a line; empty without one.
+
+    Parameters
+    ----------
+    cells : DataFrame
+        Of a study.
+    of : str
+        What a row of it is.
+    """
+    ratios = {
+        channel: cells[column_of(RATIO, channel)].dropna() for channel in channels_among(map(str, cells))
+    }
+    known = {channel: values for channel, values in ratios.items() if len(values)}
+    if not known:
+        return ""
+    numbers = sorted({len(values) for values in known.values()})
+    if len(numbers) == 1:
+        words = ", ".join(f"{channel} {rounded(values.mean())}" for channel, values in known.items())
+        return f"nucleus to cytoplasm: {words} (mean of {count(numbers[0], of)}, background as in the image)"
+    words = ", ".join(
+        f"{channel} {rounded(values.mean())} ({count(len(values), of)})" for channel, values in known.items()
+    )
+    return f"nucleus to cytoplasm: {words} (means, background as in the image)"
