@@ -98,3 +98,20 @@ def test_sums_by_compartment_are_exact_whatever_the_holes(balls: list[tuple[floa
     assert_allclose(by_layer[inside].sum(), fitted.sum(), rtol=1e-9)
     assert_allclose(by_layer[~inside].sum(), (mask & ~fitted).sum(), rtol=1e-9)
     assert disk.certificate.valid
+
+
+@pytest.mark.parametrize("lay", [cd.nucleus_ring_windows, cd.interpolated_ring_windows])
+@pytest.mark.parametrize("mask", CYTOPLASM.values(), ids=CYTOPLASM.keys())
+def test_rings_around_the_nucleus_leave_the_same_pixels_out(lay, mask: np.ndarray) -> None:
+    counted = (mask & ~VACUOLE) | NUCLEUS
+    disk = cd.map_to_disk(mask & ~VACUOLE, NUCLEUS, holes="exclude")
+    whole = lay(CELL, NUCLEUS, layers=4, sectors=12)
+    for windows in (
+        lay(mask & ~VACUOLE, NUCLEUS, layers=4, sectors=12, holes="exclude"),
+        lay(disk, NUCLEUS, layers=4, sectors=12),
+        lay(cd.map_to_disk(mask & ~VACUOLE, holes="exclude"), NUCLEUS, layers=4, sectors=12),
+    ):
+        assert_array_equal(windows.mask_without_holes, counted)
+        assert_array_equal(windows.labels, np.where(counted, whole.labels, -1))
+    with pytest.raises(MaskError, match="hole"):
+        lay(mask & ~VACUOLE, NUCLEUS, holes="error")

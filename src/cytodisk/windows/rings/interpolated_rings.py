@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import Scale
 from cytodisk.taking import takes
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.rings.nucleus_edges import NucleusEdges
 from cytodisk.windows.rings.nucleus_ring_grid import InterpolatedRingGrid
-from cytodisk.windows.rings.nucleus_ring_parameters import InterpolatedRingParameters
+from cytodisk.windows.rings.nucleus_ring_parameters import InterpolatedRingWindowParameters
 from cytodisk.windows.rings.paint_triangles import paint_triangles
 from cytodisk.windows.rings.ring_points import (
     RingCounts,
@@ -122,6 +123,11 @@ class InterpolatedRingWindows(WindowsOnCell):
         return self.edges.cell.mask
 
     @property
+    def holes(self) -> PlacedMask | None:
+        """Holes in the mask that belong to no window."""
+        return self.edges.cell.holes
+
+    @property
     def nucleus_mask(self) -> BoolArray:
         """The nucleus' mask, shape (H, W) and dtype bool."""
         return self.edges.nucleus.mask
@@ -137,7 +143,7 @@ class InterpolatedRingWindows(WindowsOnCell):
         return self.edges.cell.scale
 
 
-@takes(InterpolatedRingParameters)
+@takes(InterpolatedRingWindowParameters)
 def interpolated_ring_windows(
     cell: Any, nucleus: Any, *in_order: Any, **settings: Any
 ) -> InterpolatedRingWindows:
@@ -155,7 +161,7 @@ def interpolated_ring_windows(
     nucleus : array_like of shape (H, W)
         Mask of the nucleus in the same image, which `fit_nucleus` fits into the cell.
     **settings
-        See `InterpolatedRingParameters`.
+        `holes` is for masks, a map has its own. See `InterpolatedRingWindowParameters`.
 
     Returns
     -------
@@ -194,9 +200,9 @@ def interpolated_ring_windows(
     >>> windows.n_turned_over, windows.outside
     (0, 0.0)
     """
-    chosen = InterpolatedRingParameters.of(*in_order, **settings)
+    chosen = InterpolatedRingWindowParameters.of(*in_order, **settings)
     layers = chosen.layers + chosen.nucleus_layers
     grid = InterpolatedRingGrid(
         layers, chosen.sectors, chosen.nucleus_layers, chosen.points, chosen.harmonics
     )
-    return InterpolatedRingWindows(grid, NucleusEdges.of(cell, nucleus))
+    return InterpolatedRingWindows(grid, NucleusEdges.of(cell, nucleus, chosen.holes))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -10,7 +10,10 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt
 from skimage.graph import MCP_Geometric
 
-from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.disk.disk_map import DiskMap
+from cytodisk.geometry.mask import FilledMask
+from cytodisk.geometry.mask_parameters import Holes
 from cytodisk.geometry.nucleus_mask import fit_nucleus
 from cytodisk.windows.edge_windows import CellEdge
 from cytodisk.windows.shares import PER_SIDE
@@ -31,11 +34,16 @@ class NucleusEdges:
     nucleus: CellEdge
 
     @classmethod
-    def of(cls, cell: Any, nucleus: Any) -> NucleusEdges:
-        """Edges of a cell, or of that of a map, and of a nucleus, which is fitted into the cell."""
-        edge = CellEdge.of(cell)
+    def of(cls, cell: Any, nucleus: Any, holes: Holes = "fill") -> NucleusEdges:
+        """Edges of a cell, or of that of a map, and of a nucleus, which is fitted into the cell.
+
+        Of a mask it is said what becomes of holes; a map knows that. The nucleus is part of the cell.
+        """
+        edge = CellEdge.of(cell, "fill" if holes == "error" else holes)
         fitted, _ = fit_nucleus(edge.mask, nucleus)
-        return cls(edge, CellEdge.of(fitted))
+        if holes == "error" and not isinstance(cell, DiskMap):
+            FilledMask.of(cell).under(holes, fitted)
+        return cls(_with_part(edge, fitted), CellEdge.of(fitted))
 
     @cached_property
     def centre_yx(self) -> FloatArray:
@@ -77,3 +85,11 @@ class NucleusEdges:
         ways, _ = walker.find_costs(np.argwhere(self.nucleus.mask))
         straight = distance_transform_edt(~self.nucleus.mask)
         return np.asarray(np.where(self.cell.mask, np.maximum(ways - straight, 0.0), 0.0))
+
+
+def _with_part(edge: CellEdge, part: BoolArray) -> CellEdge:
+    """The edge of a cell in which no pixel of a part is a hole."""
+    if edge.holes is None:
+        return edge
+    left = replace(edge.holes, box=edge.holes.box & ~edge.holes.cut_out_of(part))
+    return replace(edge, holes=left if left.box.any() else None)

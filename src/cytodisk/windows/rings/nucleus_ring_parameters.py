@@ -1,6 +1,7 @@
 """Parameters of rings between a nucleus and a cell's edge."""
 
 from cytodisk.disk.sector_parameters import MOST
+from cytodisk.geometry.mask_parameters import HoleParameters
 from cytodisk.parameters import parameter
 from cytodisk.windows.grid_parameters import RingGridParameters
 
@@ -15,6 +16,10 @@ class NucleusRingParameters(RingGridParameters):
     nucleus_layers: int = parameter(
         3, "Number of layers of the nucleus, which follow those of the cytoplasm.", least=1, most=MOST
     )
+
+
+class NucleusRingWindowParameters(HoleParameters, NucleusRingParameters):
+    """What `nucleus_ring_windows` takes."""
 
 
 class InterpolatedRingParameters(NucleusRingParameters):
@@ -32,3 +37,7 @@ class InterpolatedRingParameters(NucleusRingParameters):
         least=1,
         most=MOST,
     )
+
+
+class InterpolatedRingWindowParameters(HoleParameters, InterpolatedRingParameters):
+    """What `interpolated_ring_windows` takes."""

@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.scale import Scale
 from cytodisk.taking import takes
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.ring_windows import RingGrid, RingWindows
 from cytodisk.windows.rings.nucleus_edges import NucleusEdges
 from cytodisk.windows.rings.nucleus_ring_grid import NucleusRingGrid
-from cytodisk.windows.rings.nucleus_ring_parameters import NucleusRingParameters
+from cytodisk.windows.rings.nucleus_ring_parameters import NucleusRingWindowParameters
 from cytodisk.windows.shares import PER_SIDE
 from cytodisk.windows.subpixels import subpixel_places
 
@@ -82,6 +83,11 @@ class NucleusRingWindows(WindowsOnCell):
         return self.edges.cell.mask
 
     @property
+    def holes(self) -> PlacedMask | None:
+        """Holes in the mask that belong to no window."""
+        return self.edges.cell.holes
+
+    @property
     def nucleus_mask(self) -> BoolArray:
         """The nucleus' mask, shape (H, W) and dtype bool."""
         return self.edges.nucleus.mask
@@ -97,7 +103,7 @@ class NucleusRingWindows(WindowsOnCell):
         return self.edges.cell.scale
 
 
-@takes(NucleusRingParameters)
+@takes(NucleusRingWindowParameters)
 def nucleus_ring_windows(cell: Any, nucleus: Any, *in_order: Any, **settings: Any) -> NucleusRingWindows:
     """Rings and wedges around the nucleus of one cell, to compare with `polar_windows`.
 
@@ -113,7 +119,7 @@ def nucleus_ring_windows(cell: Any, nucleus: Any, *in_order: Any, **settings: An
     nucleus : array_like of shape (H, W)
         Mask of the nucleus in the same image, which `fit_nucleus` fits into the cell.
     **settings
-        See `NucleusRingParameters`.
+        `holes` is for masks, a map has its own. See `NucleusRingWindowParameters`.
 
     Returns
     -------
@@ -152,6 +158,6 @@ def nucleus_ring_windows(cell: Any, nucleus: Any, *in_order: Any, **settings: An
     >>> shares.round(2)
     array([0.29, 0.23, 0.18, 0.14, 0.16])
     """
-    counts = NucleusRingParameters.of(*in_order, **settings)
+    counts = NucleusRingWindowParameters.of(*in_order, **settings)
     grid = NucleusRingGrid(counts.layers + counts.nucleus_layers, counts.sectors, counts.nucleus_layers)
-    return NucleusRingWindows(grid, NucleusEdges.of(cell, nucleus))
+    return NucleusRingWindows(grid, NucleusEdges.of(cell, nucleus, counts.holes))
