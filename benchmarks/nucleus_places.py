@@ -5,11 +5,12 @@
 Cells are those of `reproducibility.py`. Each gets a round nucleus at its deepest place with half its depth as
 radius, and another one that is moved from there until a quarter of the depth is left beside it. Each pair is
 mapped, and mapped again mirrored, with 1 px of noise on both outlines, turned by 17°, and drawn twice as
-large. A row a cell and place of the nucleus, means over seeds, for the same points of the cytoplasm and of
-the nucleus: the share in the same window of the plain map (10 × 60) and of the map with the nucleus (as many
-windows, of which the nucleus has as many layers as fit its share of the area), and how far noise moves the
-places of the disk, in pixels (median). Then the same by class of cells; "WORSE" stands where the map with the
-nucleus keeps less by more than 0.02.
+large. Points more than 1 px away from both outlines are followed. A row a cell and place of the nucleus, means
+over seeds: the share of points of the cytoplasm in the same of 10 × 60 windows of the plain map, and of the
+map with the nucleus (as many windows; the nucleus has as many layers as fit its share of the area); the share
+of points of the nucleus in the same window of the plain map of the nucleus alone, and of the map of both, in
+windows of the same number; and how far noise moves the places of the disk, in pixels (median). Then the same
+by class of cells; "WORSE" stands where the map with the nucleus keeps less by more than 0.02.
 """
 
 import argparse
@@ -17,6 +18,7 @@ import os
 import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -58,25 +60,44 @@ def measure(shape: Shape, place: str, seed: int) -> list[dict[str, Any]]:
     random = np.random.default_rng([seed, 31])
     drawing = shape.drawn(random.random(2))
     outline = drawing.places(nucleus_of(shape, place))
-    mask, nucleus = drawing.mask, drawn(outline, drawing.mask)
-    plain, disk = cd.map_to_disk(mask), cd.map_to_disk(mask, nucleus=nucleus)
-    points = inner_points(mask, random)
-    in_nucleus = nucleus[tuple(points.astype(int).T)]
+    nucleus = drawn(outline, drawing.mask)
+    layers = max(round(LAYERS * nucleus.sum() / drawing.mask.sum()), 1)
+    maps = Maps.of(drawing.mask, nucleus)
+    points = {
+        "cytoplasm": inner_points(drawing.mask & ~nucleus, random),
+        "nucleus": inner_points(nucleus, random),
+    }
     rows = []
-    for change in changes(shape, drawing.places, mask, random):
-        other_nucleus = changed(change, outline, nucleus, random)
-        others_maps = cd.map_to_disk(change.mask), cd.map_to_disk(change.mask, nucleus=other_nucleus)
-        found = [compared(*pair, points, change) for pair in zip((plain, disk), others_maps, strict=True)]
-        for part, chosen in zip(_PARTS, (~in_nucleus, in_nucleus), strict=True):
+    for change in changes(shape, drawing.places, drawing.mask, random):
+        others = Maps.of(change.mask, changed(change, outline, nucleus, random))
+        for part in _PARTS:
             row = {"shape": shape.name, "family": shape.family, "place": place, "seed": seed}
             row |= {"change": change.name, "part": part}
-            row |= {"valid": disk.certificate.valid and others_maps[1].certificate.valid}
-            row |= {"converged": disk.converged and others_maps[1].converged}
-            for name, (same, shift) in zip(("plain", "with"), found, strict=True):
-                row[f"same_{name}"] = float(same[chosen].mean())
-                row[f"shift_{name}"] = float(np.median(shift[chosen]))
+            row |= {"valid": maps.both.certificate.valid and others.both.certificate.valid}
+            row |= {"converged": maps.both.converged and others.both.converged}
+            plain = (maps.cell, others.cell) if part == "cytoplasm" else (maps.nucleus, others.nucleus)
+            for name, pair in (("plain", plain), ("with", (maps.both, others.both))):
+                plain_layers = LAYERS if part == "cytoplasm" else layers
+                row[f"same_{name}"], row[f"shift_{name}"] = compared(
+                    *pair, points[part], change, (plain_layers, layers)
+                )
             rows.append(row)
     return rows
+
+
+@dataclass(frozen=True, eq=False)
+class Maps:
+    """Plain maps of a cell and of its nucleus alone, and the map of both."""
+
+    cell: DiskMap
+    nucleus: DiskMap
+    both: DiskMap
+
+    @classmethod
+    def of(cls, mask: BoolArray, nucleus: BoolArray) -> "Maps":
+        """The maps of a pair of masks."""
+        both = cd.map_to_disk(mask, nucleus=nucleus)
+        return cls(cd.map_to_disk(mask), cd.map_to_disk(both.nucleus.mask), both)
 
 
 def drawn(outline_yx: FloatArray, mask: BoolArray) -> BoolArray:
@@ -96,22 +117,23 @@ def changed(
 
 
 def compared(
-    disk: DiskMap, other: DiskMap, points: FloatArray, change: Change
-) -> tuple[BoolArray, FloatArray]:
-    """Whether each point is in the same window, and how far its place of the disk is moved, in pixels."""
-    share = 0.0 if disk.nucleus is None else disk.nucleus.mask.sum() / disk.mask.sum()
-    nucleus_layers = max(round(LAYERS * share), int(disk.nucleus is not None))
+    disk: DiskMap, other: DiskMap, points: FloatArray, change: Change, layers: tuple[int, int]
+) -> tuple[float, float]:
+    """Share of points in the same window, and how far places of the disk are moved in pixels (median).
+
+    `layers` are those of a plain map, and those of the nucleus in a map with one.
+    """
     moved = change.place(points)
     here, there = disk.to_disk(points), other.to_disk(moved, outside="nearest") @ change.turn
-    windows = [window_numbers(one, uv, nucleus_layers) for one, uv in ((disk, here), (other, there))]
+    same = [window_numbers(one, uv, *layers) for one, uv in ((disk, here), (other, there))]
     shift = np.hypot(*(other.to_cell(here @ change.turn.T) - moved).T) / change.size
-    return windows[0] == windows[1], shift
+    return float((same[0] == same[1]).mean()), float(np.median(shift))
 
 
-def window_numbers(disk: DiskMap, uv: FloatArray, nucleus_layers: int) -> IntArray:
-    """Number of the window of each point, in a grid with so many layers for the nucleus."""
-    if not nucleus_layers:
-        return cd.polar_windows(LAYERS, SECTORS).window_of(uv)
+def window_numbers(disk: DiskMap, uv: FloatArray, layers: int, nucleus_layers: int) -> IntArray:
+    """Number of the window of each point, in a grid for this kind of map."""
+    if disk.nucleus is None:
+        return cd.polar_windows(layers, SECTORS).window_of(uv)
     grid = cd.polar_windows(LAYERS - nucleus_layers, SECTORS, nucleus_layers=nucleus_layers)
     return with_nucleus_of(grid, disk).window_of(uv)
 
