@@ -5,7 +5,7 @@
 Cells are those of `reproducibility.py`. Each gets a round nucleus at its deepest place with half its depth as
 radius, and another one that is moved from there until a quarter of the depth is left beside it. Each pair is
 mapped, and mapped again mirrored, with 1 px of noise on both outlines, turned by 17°, and drawn twice as
-large. Points more than 1 px away from both outlines are followed. A row a cell and place of the nucleus, means
+large. Points more than 1 px away from both outlines are followed. A row a cell and place of nucleus, means
 over seeds: the share of points of the cytoplasm in the same of 10 × 60 windows of the plain map, and of the
 map with the nucleus (as many windows; the nucleus has as many layers as fit its share of the area); the share
 of points of the nucleus in the same window of the plain map of the nucleus alone, and of the map of both, in
