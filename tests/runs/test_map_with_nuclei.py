@@ -1,5 +1,6 @@
 """Runs over cells with nuclei: what the tables say of every case."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -297,3 +298,41 @@ def test_check_says_what_the_run_would() -> None:
     assert checked[3].nucleus_report is not None
     assert checked[3].nucleus_report.area_px == 375
     assert [len(found.nucleus.strays) for found in checked if found.nucleus] == [1, 0, 0, 0]
+
+
+def test_swapped_folders_are_refused() -> None:
+    for name, cell in (("a", 1), ("b", 2)):
+        write(f"masks/{name}.tif", (cell == CELLS).astype(np.uint8))
+        write(f"nuclei/{name}.tif", (cell + 10 == ONE_EACH).astype(np.uint8))
+    with pytest.raises(NucleusError, match="1 of 1 cells lie inside a nucleus: are the two swapped"):
+        cd.run_map("nuclei", "out", nuclei="masks", **GRID)
+
+
+def test_outlines_of_nuclei_have_the_size_of_the_masks() -> None:
+    corners = [[[25, 25], [40, 25], [40, 45], [25, 45], [25, 25]]]
+    nucleus = {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": corners}}
+    Path("nuclei.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [nucleus]}))
+    masks = write("cells.tif", (CELLS == 1).astype(np.uint8))
+    study = cd.run_map(masks, "out", nuclei="nuclei.geojson", **GRID)
+    assert study.cells[["status", "nucleus_area_px"]].to_numpy().tolist() == [["ok", 300]]
+
+
+def test_a_simulated_field_comes_back_as_it_was_made() -> None:
+    field = cd.simulate.label_image_with_nuclei(cells=8, seed=3)
+    study = mapped(field.cells, field.nuclei)
+    truth = field.truth[field.truth["cell"] > 0].set_index("cell")
+    cells = study.cells.set_index("label")
+    words = {"one": "ok", "two": "several", "partly outside": "ok"}  # by less than a tenth, which is clipped
+    assert cells["nucleus_status"].to_dict() == truth["case"].replace(words).to_dict()
+    usual = truth["case"] != "shared"
+    assert cells["nuclei"][usual].map(labels_of).to_dict() == truth["nuclei"][usual].map(labels_of).to_dict()
+    clipped = cells["qc_flags"] == "nucleus clipped"
+    assert clipped[clipped].index.tolist() == truth.index[truth["case"] == "partly outside"].tolist()
+    found = table(study).dropna(subset="cell").set_index("label")["overlap"]
+    np.testing.assert_allclose(found[usual], truth["overlap"][usual])
+    strays = table(study)["cell"].isna().sum()
+    assert strays == (field.truth["case"] == "no cell").sum() > 0
+
+
+def labels_of(text: str) -> set[str]:
+    return set(text.split(","))

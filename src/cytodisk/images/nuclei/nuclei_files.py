@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -60,13 +60,17 @@ class NucleiFile:
         return pixels if self.look.kind == "labels" else mask_labels(pixels)
 
 
-def open_nuclei(path: str | os.PathLike[str], how: NucleiFileParameters) -> NucleiFile:
+def open_nuclei(
+    path: str | os.PathLike[str], how: NucleiFileParameters, like: tuple[int, int, int] | None = None
+) -> NucleiFile:
     """Open a file of nuclei and look at its values.
 
     Parameters
     ----------
     path : path-like
     how : NucleiFileParameters
+    like : (int, int, int), optional
+        (frames, H, W) of the masks, for a file of outlines, which does not say it.
 
     Returns
     -------
@@ -80,7 +84,8 @@ def open_nuclei(path: str | os.PathLike[str], how: NucleiFileParameters) -> Nucl
         It is no mask and no label image: a picture, inverted, or with several channels.
     """
     try:
-        file = open_frames(path, unnamed="T", choice=how.nuclei_choice, flag=_FLAG)
+        choice = replace(how.nuclei_choice, like=like)
+        file = open_frames(path, unnamed="T", choice=choice, flag=_FLAG)
         return NucleiFile(look_at(file, how.kind_of(file.n_frames)))
     except MaskError as error:
         raise NucleusError(f"nuclei {_of_nuclei(str(error))}") from error

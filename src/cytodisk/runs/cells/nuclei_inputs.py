@@ -14,7 +14,10 @@ from cytodisk.images.nuclei.nuclei_files import NucleiFile, check_nuclei_file, m
 from cytodisk.images.nuclei.nuclei_parameters import NucleiFileParameters
 from cytodisk.images.paired_files import NUCLEI, pair_files
 from cytodisk.parameters import Parameters
+from cytodisk.runs.cells.outline_sources import is_of_outlines
 from cytodisk.scale import alike
+
+_LOOKED_AT = 3  # files of a folder, for what would be wrong in all
 
 
 @dataclass(frozen=True)
@@ -55,11 +58,16 @@ def open_nuclei_of(source: MaskSource, nuclei: str | os.PathLike[str], parameter
     """
     file = _fitting(source, nuclei, parameters.part(NucleiFileParameters))
     found = NucleiInput(file)
-    if source.file is not None and file is not None:
-        matches = found.matches(source, 0)
-        if isinstance(matches, NucleusError):
-            raise NucleusError(f"nuclei {nuclei}: {matches}")
+    _refuse_cells([(source, found)], nuclei)
     return found
+
+
+def _refuse_cells(some: Sequence[tuple[MaskSource, NucleiInput]], nuclei: str | os.PathLike[str]) -> None:
+    """Raise NucleusError where all of some files of nuclei hold the cells, or the two are swapped."""
+    usable = [(source, found) for source, found in some if source.file is not None and found.file is not None]
+    faults = [found.matches(source, 0) for source, found in usable[:_LOOKED_AT]]
+    if faults and all(isinstance(fault, NucleusError) for fault in faults):
+        raise NucleusError(f"nuclei {nuclei}: {faults[0]}")
 
 
 def open_paired_nuclei(
@@ -90,6 +98,7 @@ def open_paired_nuclei(
     if all(one.file is None for one in found.values()):
         faults = [one.fault for one in found.values() if one.fault is not None]
         raise NucleusError(f"nuclei {nuclei}: no file can be used: {faults[0] if faults else 'no mask can'}")
+    _refuse_cells([(source, found[source.name]) for source in sources], nuclei)
     return found
 
 
@@ -107,7 +116,8 @@ def _fitting(
 ) -> NucleiFile | None:
     if source.file is None:
         return None
-    found = open_nuclei(path, how)
+    like = (source.file.n_frames, *source.file.image_shape) if is_of_outlines(path) else None
+    found = open_nuclei(path, how, like)
     check_nuclei_file(source.file, found.file)
     return found
 
