@@ -148,7 +148,7 @@ def weighted_means(
     out[: mesh.n_boundary] = boundary_uv
     weights = edge_weights.reshape(3, -1)
     right = np.zeros((len(system.vertex), 2))
-    _fill_laplacian(mesh.triangles, weights, out, system.unknown, system.place, system.blocks, right)
+    fill_laplacian(mesh.triangles, weights, out, system.unknown, system.place, system.blocks, right)
     if pull_to_zero is not None:
         for axis in (0, 1):
             system.blocks[system.diagonal, axis, axis] += pull_to_zero[system.vertex]
@@ -158,7 +158,7 @@ def weighted_means(
 
 
 @njit(cache=True)
-def _fill_laplacian(
+def fill_laplacian(
     triangles: IntArray,
     weights: FloatArray,
     boundary_uv: FloatArray,
@@ -167,6 +167,7 @@ def _fill_laplacian(
     blocks: FloatArray,
     right: FloatArray,
 ) -> None:
+    """Laplacian on the unknown vertices, and on the right what the given ones add."""
     blocks[:] = 0.0
     for t in range(triangles.shape[0]):
         for k in range(3):

@@ -1,6 +1,6 @@
 """`map_to_disk`: from a mask to a map with its certificate."""
 
-from typing import Any, Literal
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,8 +14,9 @@ from cytodisk.disk.mapping_parameters import NEWTON_METHODS, Align, MappingParam
 from cytodisk.disk.newton import relax
 from cytodisk.disk.newton_triangles import relax_triangles
 from cytodisk.disk.nucleus.nucleus import Nucleus
+from cytodisk.disk.nucleus.nucleus_guide import NucleusGuide
 from cytodisk.disk.nucleus.nucleus_mapping import map_compartments
-from cytodisk.disk.nucleus.nucleus_parameters import NucleusParameters
+from cytodisk.disk.nucleus.nucleus_parameters import NucleusParameters, NucleusRadius
 from cytodisk.disk.relaxed import Relaxed
 from cytodisk.disk.untangle import untangled
 from cytodisk.errors import MapError, ParameterError
@@ -133,8 +134,7 @@ def map_mesh(
     *,
     anchor_uv: FloatArray | None = None,
     inertia: float = 0.0,
-    nucleus_radius: float | Literal["area"] = _PLAIN.nucleus_radius,
-    nucleus_angles: FloatArray | None = None,
+    nucleus_radius: NucleusRadius = _PLAIN.nucleus_radius,
 ) -> DiskMap:
     """Map a meshed cell onto the disk, with its boundary at given angles.
 
@@ -152,9 +152,6 @@ def map_mesh(
         How much the inside is to stay at the anchor, against equal areas; see `relax`.
     nucleus_radius : float or "area"
         Of the circle of a nucleus.
-    nucleus_angles : ndarray of shape (N,) and dtype float, optional
-        Angles of the nuclear outline, strictly increasing within one turn; by default it slides to where
-        cytoplasm and nucleus are mapped best.
 
     Returns
     -------
@@ -166,10 +163,8 @@ def map_mesh(
     MapError
         No valid map was found.
     """
-    if cell.nucleus is not None and isinstance(cell.mesh, NucleusMesh):
-        parts = cell.mesh, cell.nucleus, angles, parameters.shape_weight
-        found = map_compartments(*parts, nucleus_radius, nucleus_angles, cell.system)
-        return disk_map(cell, found.relaxed, found.start, parameters, nucleus=found.nucleus)
+    if cell.nucleus is not None:
+        return map_with_nucleus(cell, angles, parameters, nucleus_radius).disk
     method, shape_weight = parameters.method, parameters.shape_weight
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
     uv, start = _start(cell, circle, None if method == "advection" else anchor_uv)
@@ -182,6 +177,62 @@ def map_mesh(
         made = Relaxed(advected.vertices_uv, advected.steps, True)
         return disk_map(cell, made, start, parameters, advected.triangles)
     return disk_map(cell, Relaxed(uv, 0, True), start, parameters)
+
+
+class MapWithNucleus(NamedTuple):
+    """A map with a nucleus, as a movie goes on from it.
+
+    Attributes
+    ----------
+    disk : DiskMap
+    twist : float
+        How far the nucleus has turned against the membrane, in radians; see `CylinderMap`.
+    unwound : bool
+        Whether a whole turn was taken back since the frame before.
+    """
+
+    disk: DiskMap
+    twist: float
+    unwound: bool
+
+
+def map_with_nucleus(
+    cell: CellMesh,
+    angles: FloatArray,
+    parameters: MappingParameters,
+    nucleus_radius: NucleusRadius,
+    guide: NucleusGuide | None = None,
+) -> MapWithNucleus:
+    """Map a meshed cell and its nucleus onto the disk, with the membrane at given angles.
+
+    Parameters
+    ----------
+    cell : CellMesh
+        With a nucleus.
+    angles : ndarray of shape (B,) and dtype float
+        As for `map_mesh`.
+    parameters : MappingParameters
+    nucleus_radius : float or "area"
+    guide : NucleusGuide, optional
+        Of the frame before in a movie; without it the nuclear outline slides to where cytoplasm and nucleus
+        are mapped best.
+
+    Returns
+    -------
+    MapWithNucleus
+        With a valid certificate.
+
+    Raises
+    ------
+    MapError
+        No valid map was found.
+    """
+    assert cell.nucleus is not None
+    assert isinstance(cell.mesh, NucleusMesh)
+    parts = cell.mesh, cell.nucleus, angles, parameters.shape_weight
+    found = map_compartments(*parts, nucleus_radius, guide, cell.system)
+    disk = disk_map(cell, found.relaxed, found.start, parameters, nucleus=found.nucleus)
+    return MapWithNucleus(disk, found.twist, found.unwound)
 
 
 def disk_map(

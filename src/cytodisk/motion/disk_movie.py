@@ -17,6 +17,8 @@ from cytodisk.motion.registration import RigidTransform
 from cytodisk.motion.tracking import TrackedBoundary, point_angles
 from cytodisk.scale import Scale
 
+_NUCLEUS_POINTS = 256
+
 
 @dataclass(frozen=True, eq=False)
 class FrameRecord:
@@ -30,11 +32,14 @@ class FrameRecord:
         Why there is no map; empty if there is one.
     load_boundary : callable or None
         Gives the tracked boundary; None if there is none.
+    nucleus_held : str
+        Why the nucleus is that of the frame before, moved with the cell; empty if it is the frame's own.
     """
 
     status: str
     reason: str
     load_boundary: Callable[[], TrackedBoundary] | None
+    nucleus_held: str = ""
 
     @property
     def has_map(self) -> bool:
@@ -145,6 +150,26 @@ class DiskMovie(Sequence[DiskMap]):
     def residual_px(self) -> FloatArray:
         """Tracking residual of each frame in pixels, shape (T,); see `TrackedBoundary`."""
         return self._by_frame((), lambda found: np.array(found.residual_px))
+
+    @property
+    def nucleus_held(self) -> list[str]:
+        """By frame, why the nucleus is that of the frame before, moved with the cell; empty if it is not."""
+        return [record.nucleus_held for record in self.records]
+
+    @cached_property
+    def nucleus_points_yx(self) -> FloatArray:
+        """Points of the nuclear outline in the image, at even angles, the same in every frame.
+
+        Shape (T, 256, 2), (row, column) in pixels; NaN in frames without a map or without a nucleus.
+        """
+        angles = point_angles(_NUCLEUS_POINTS)
+        circle = np.column_stack([np.cos(angles), np.sin(angles)])
+        out = np.full((len(self), *circle.shape), np.nan)
+        for frame in np.flatnonzero(self.mapped):
+            disk = self[int(frame)]
+            if disk.nucleus is not None:
+                out[frame] = disk.to_cell(disk.nucleus.radius * circle)
+        return out
 
     @property
     def transforms(self) -> list[RigidTransform | None]:

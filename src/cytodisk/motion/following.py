@@ -12,6 +12,8 @@ from typing import Any, TypeAlias
 from cytodisk.errors import CytodiskError, MapError, MaskError, ReadError
 from cytodisk.motion.disk_movie import FrameRecord
 from cytodisk.motion.mapped_frame import MappedFrame, map_frame
+from cytodisk.motion.nucleus.cell_and_nucleus import CellAndNucleus
+from cytodisk.motion.nucleus.frame_with_nucleus import map_frame_with_nucleus
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.scale import UNKNOWN, Scale
 
@@ -38,8 +40,8 @@ class FrameResult:
     def record(self) -> FrameRecord:
         """The frame without its map."""
         if self.mapped is not None:
-            boundary = self.mapped.boundary
-            return FrameRecord("ok", "", lambda: boundary)
+            boundary, nucleus = self.mapped.boundary, self.mapped.nucleus
+            return FrameRecord("ok", "", lambda: boundary, "" if nucleus is None else nucleus.held)
         return FrameRecord(frame_status(self.fault), str(self.fault), None)
 
 
@@ -58,7 +60,8 @@ def map_frames(
     Parameters
     ----------
     masks : sequence of array_like of shape (H, W)
-        Masks of one cell. An entry may be an error of this package instead: the frame then has that fault.
+        Masks of one cell, or `CellAndNucleus`. An entry may be an error of this package instead: the frame
+        then has that fault.
     settings : MovieSettings
     scale : Scale
 
@@ -104,8 +107,9 @@ def map_cells(
     Parameters
     ----------
     frames : iterable of (int, iterable of (int, mask))
-        Number of a frame, and its cells with the mask of each, or the error that stands for it. Masks may be
-        cut out when they are asked for, and the next frame is asked for when this one is mapped.
+        Number of a frame, and its cells with the mask of each, or `CellAndNucleus`, or the error that stands
+        for it. Masks may be cut out when they are asked for, and the next frame is asked for when this one is
+        mapped.
     settings : MovieSettings
     scale : Scale
     last : dict of int to MappedFrame, optional
@@ -153,9 +157,19 @@ def _map_one(
     """Map one frame, and take the time; a fault of its mask becomes part of the result."""
     started = clock.perf_counter()
     mapped, fault = None, mask
-    if not isinstance(mask, CytodiskError):
+    if isinstance(mask, CellAndNucleus):
+        fault = mask.mask
+    if not isinstance(fault, CytodiskError):
         try:
-            mapped, fault = map_frame(frame, mask, last, settings, scale), None
-        except (MaskError, MapError) as error:
+            mapped, fault = _mapped(frame, mask, last, settings, scale), None
+        except (MaskError, MapError, ReadError) as error:
             fault = error
     return FrameResult(frame, mapped, fault), clock.perf_counter() - started
+
+
+def _mapped(
+    frame: int, mask: Any, last: MappedFrame | None, settings: MovieSettings, scale: Scale
+) -> MappedFrame:
+    if isinstance(mask, CellAndNucleus):
+        return map_frame_with_nucleus(frame, mask, last, settings, scale)
+    return map_frame(frame, mask, last, settings, scale)

@@ -16,13 +16,19 @@ from cytodisk.disk.loading import load_map
 from cytodisk.errors import EarlierVersionWarning, ReadError
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.mapped_frame import MappedFrame
+from cytodisk.motion.nucleus.tracked_nucleus_file import (
+    FURTHEST_PX,
+    MOST_FRAMES,
+    REMEDY,
+    load_nucleus,
+    load_nucleus_boundary,
+    nucleus_arrays,
+    tracked_places,
+)
 from cytodisk.motion.registration import RigidTransform
 from cytodisk.motion.tracking import TrackedBoundary
 
 _NO_MATCH = np.empty((2, 0))  # of a first frame, and of the paper's tracker
-_REMEDY = "run cytodisk movie again"
-_FURTHEST_PX = 1e8  # along an outline, or from a frame to the movie's first
-_MOST_FRAMES = 10**6
 
 
 def save_frame(path: str | os.PathLike[str], frame: MappedFrame) -> None:
@@ -39,9 +45,11 @@ def save_frame(path: str | os.PathLike[str], frame: MappedFrame) -> None:
         The file cannot be written.
     """
     boundary = frame.boundary
+    of_nucleus = {} if frame.nucleus is None else nucleus_arrays(frame.nucleus)
     frame.disk.save(
         path,
-        {
+        of_nucleus
+        | {
             "track_matched_s": _NO_MATCH if boundary.matched_s is None else boundary.matched_s,
             "track_s": boundary.s,
             "track_transforms": np.array([astuple(boundary.transform), astuple(boundary.alignment)]),
@@ -99,42 +107,49 @@ def load_frame(path: str | os.PathLike[str], path_at: dict[int, Path]) -> Mapped
     """
     disk = load_map(path)
     boundary, reference_frame = _read(path, disk)
+    nucleus = None
+    if disk.nucleus is not None:
+        nucleus = load_nucleus(
+            path, disk, boundary, lambda frame: _nucleus_at(_path_of(path, frame, path_at))
+        )
     if reference_frame == boundary.frame:
-        return MappedFrame(disk, boundary, boundary)
-    if reference_frame not in path_at:
-        raise ReadError(f"{path} refers to frame {reference_frame}, which has no file")
-    return MappedFrame(disk, boundary, load_boundary(path_at[reference_frame]))
+        return MappedFrame(disk, boundary, boundary, nucleus=nucleus)
+    reference = load_boundary(_path_of(path, reference_frame, path_at))
+    return MappedFrame(disk, boundary, reference, nucleus=nucleus)
+
+
+def _path_of(path: str | os.PathLike[str], frame: int, path_at: dict[int, Path]) -> Path:
+    if frame not in path_at:
+        raise ReadError(f"{path} refers to frame {frame}, which has no file")
+    return path_at[frame]
+
+
+def _nucleus_at(path: Path) -> TrackedBoundary:
+    disk = load_map(path)
+    return load_nucleus_boundary(path, disk, _read(path, disk)[0])
 
 
 def _read(path: str | os.PathLike[str], disk: DiskMap | None) -> tuple[TrackedBoundary, int]:
     contour = Contour.of_outline((disk or load_map(path)).outline_yx)
-    with reading_arrays(path, "the map of a movie's frame", _REMEDY) as archive:
+    with reading_arrays(path, "the map of a movie's frame", REMEDY) as archive:
         if "track_s" not in archive.names:
-            raise ReadError(f"{path} holds no tracked boundary: it is no frame of a movie, or {_REMEDY}")
-        times = archive.integers("track_times", (3,), least=0, most=_MOST_FRAMES)
+            raise ReadError(f"{path} holds no tracked boundary: it is no frame of a movie, or {REMEDY}")
+        times = archive.integers("track_times", (3,), least=0, most=MOST_FRAMES)
         number, reference_frame, violations = times.tolist()
-        rows = archive.floats("track_transforms", (2, 3), low=-_FURTHEST_PX, high=_FURTHEST_PX)
+        rows = archive.floats("track_transforms", (2, 3), low=-FURTHEST_PX, high=FURTHEST_PX)
         transform, alignment = (RigidTransform(*row) for row in rows.tolist())
         boundary = TrackedBoundary(
             number,
             contour,
-            _places(archive, contour),
+            tracked_places(archive, "track_s", contour),
             transform,
             alignment,
-            float(archive.floats("track_residual_px", (), low=0.0, high=_FURTHEST_PX)),
+            float(archive.floats("track_residual_px", (), low=0.0, high=FURTHEST_PX)),
             violations,
             archive.texts("track_restarted")[0],
             _match(path, archive) if number != reference_frame else None,
         )
     return boundary, reference_frame
-
-
-def _places(archive: ArrayArchive, contour: Contour) -> FloatArray:
-    """Tracked points along the contour, in order through one turn."""
-    s = archive.floats("track_s", (None,), low=-_FURTHEST_PX, high=_FURTHEST_PX)
-    if len(s) < 3 or not (np.diff(s) > 0).all() or s[-1] - s[0] >= contour.length:
-        raise archive.fault("track_s", "does not go once around the outline")
-    return s
 
 
 def _match(path: str | os.PathLike[str], archive: ArrayArchive) -> FloatArray | None:
@@ -147,5 +162,5 @@ def _match(path: str | os.PathLike[str], archive: ArrayArchive) -> FloatArray | 
             stacklevel=4,
         )
         return None
-    matched = archive.floats("track_matched_s", (2, None), low=-_FURTHEST_PX, high=_FURTHEST_PX)
+    matched = archive.floats("track_matched_s", (2, None), low=-FURTHEST_PX, high=FURTHEST_PX)
     return matched if matched.size else None

@@ -17,6 +17,7 @@ from cytodisk.errors import CytodiskError, MaskError, StudyError
 from cytodisk.files import make_folder
 from cytodisk.motion.disk_movie import DiskMovie, FrameRecord
 from cytodisk.motion.following import map_frames
+from cytodisk.motion.nucleus.movie_nuclei import CellsWithNuclei, check_settings, parse_nuclei
 from cytodisk.motion.still_interior import fade_in_px
 from cytodisk.motion.tracking_parameters import MovieMapParameters
 from cytodisk.scale import Scale
@@ -29,6 +30,7 @@ _KEPT = 4  # maps that a movie on disk keeps in memory
 def map_movie(
     masks: Any,
     *,
+    nuclei: Any = None,
     folder: str | os.PathLike[str] | None = None,
     progress: Callable[[int, int], None] | None = None,
     **settings: Any,
@@ -45,13 +47,18 @@ def map_movie(
     ----------
     masks : array_like of shape (T, H, W), DataArray with dims (time, y, x), or sequence of (H, W) arrays
         Masks of one cell. A sequence may read its frames when asked for them.
+    nuclei : array_like of shape (T, H, W), DataArray or sequence of (H, W) arrays, optional
+        The nucleus of the cell in each frame, as many as masks. Its outline is followed as the edge is, so
+        that each place of it keeps its angle, too; one that turns in the cell turns its own part of
+        the disk alone. A frame without one is a gap, or has that of the frame before (`missing`).
     folder : path-like, optional
         Write the maps there and read them when asked for, so that memory stays bounded; by default they
         stay in memory.
     progress : callable, optional
         Called with (frames done, frames in all).
     **settings
-        See `MovieMapParameters`; `align` holds for the first frame.
+        See `MovieMapParameters`; `align` holds for the first frame; `nucleus_radius`, `several` and `missing`
+        count with nuclei alone.
 
     Returns
     -------
@@ -61,6 +68,8 @@ def map_movie(
     ------
     MaskError
         `masks` is not a movie, or no frame of it can be mapped.
+    NucleusError
+        `nuclei` do not go with the masks.
     ParameterError
         A parameter is out of its range.
     StudyError
@@ -83,11 +92,21 @@ def map_movie(
     >>> movie = cd.map_movie(truth.masks, pixel_size_um=0.16, frame_interval_s=5.0)
     >>> len(movie), all(disk.certificate.valid for disk in movie)
     (4, True)
+
+    With the nuclei, of which one is missing:
+
+    >>> truth = cd.simulate.movie_with_nuclei("bulging", frames=4, radius_px=15.0, nucleus_missing=0.25)
+    >>> movie = cd.map_movie(truth.masks, nuclei=truth.nuclei, missing="hold")
+    >>> movie.status, [bool(words) for words in movie.nucleus_held]
+    (['ok', 'ok', 'ok', 'ok'], [False, True, False, False])
     """
     given = MovieMapParameters.of(**settings)
     scale = Scale.of(masks).given(given.pixel_size_um, given.frame_interval_s)
     fade_in_px(given, scale)
+    check_settings(nuclei is not None, given)
     frames = parse_masks(masks)
+    if nuclei is not None:
+        frames = CellsWithNuclei(frames, parse_nuclei(nuclei, frames))
     store: _Memory | _Folder = _Memory() if folder is None else _Folder(Path(folder))
     records: list[FrameRecord] = []
     shape: tuple[int, ...] = ()

@@ -11,6 +11,7 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_mesh
 from cytodisk.disk.mapping_parameters import NEWTON_METHODS
 from cytodisk.motion.contour import Contour
+from cytodisk.motion.nucleus.tracked_nucleus import TrackedNucleus
 from cytodisk.motion.still_interior import fade_in_px, still_map
 from cytodisk.motion.temporal import carried_inside, tracked_angles
 from cytodisk.motion.tracking import (
@@ -35,12 +36,15 @@ class MappedFrame:
         What this frame was registered to; itself in a first frame and where tracking started anew.
     interior_restarted : str
         With interior "still", why the inside could not go on from the last map; empty if it did.
+    nucleus : TrackedNucleus or None
+        Where nuclei are given.
     """
 
     disk: DiskMap
     boundary: TrackedBoundary
     reference: TrackedBoundary
     interior_restarted: str = ""
+    nucleus: TrackedNucleus | None = None
 
     @property
     def frame(self) -> int:
@@ -82,8 +86,7 @@ def map_frame(
         disk = _map(cell, angles, settings)
         boundary = first_boundary(frame, contour, angles)
         return MappedFrame(disk, boundary, boundary)
-    renewed = frame // settings.renew_every > last.frame // settings.renew_every
-    reference = last.boundary if renewed else last.reference
+    reference = reference_of(frame, last, settings)
     still = settings.interior == "still"
     boundary = follow(frame, contour, last.boundary, reference, settings, in_lab=still)
     angles = tracked_angles(contour, boundary.s, point_angles(len(boundary.s)))
@@ -96,6 +99,12 @@ def map_frame(
         anchor = carried_inside(cell, contour, boundary.s, last.disk, last.boundary.contour, last.boundary.s)
     disk = _map(cell, angles, settings, anchor)
     return MappedFrame(disk, boundary, reference, boundary.restarted if still else "")
+
+
+def reference_of(frame: int, last: MappedFrame, settings: MovieSettings) -> TrackedBoundary:
+    """Boundary that a frame is registered to: the last one's reference, or every few frames the last one."""
+    renewed = frame // settings.renew_every > last.frame // settings.renew_every
+    return last.boundary if renewed else last.reference
 
 
 def _map(cell: CellMesh, angles: Any, settings: MovieSettings, anchor_uv: Any = None) -> DiskMap:

@@ -29,6 +29,7 @@ _PINNED = 1e12  # weight that holds a rotation at nothing
 _NOISE_REACH_PX = 20.0
 _USUAL_TURN = math.radians(1.0)
 _FORESEEN = (0.25, 0.4)  # share of a turn's gain that the slope at no turn foresees: not believed, believed
+_ROUND_GAIN_PX2 = 0.02  # squared displacement that a turn takes away if a round mask is drawn anew
 _PIXEL_NOISE_PX2 = 0.04  # squared displacement that the pixels of a mask make of nothing
 
 
@@ -131,7 +132,7 @@ class RigidFit(NamedTuple):
 
 
 def rigid_motion(
-    here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoothness: float
+    here: Contour, there: Contour, s: FloatArray, guess: FloatArray, smoothness: float, stiff: bool = False
 ) -> RigidFit:
     """Rigid motion that leaves the least of the matching energy.
 
@@ -148,6 +149,9 @@ def rigid_motion(
         Points along `here`, strictly increasing through one turn, and a guess along `there`.
     smoothness : float
         In square pixels.
+    stiff : bool
+        Of a body that hardly changes its shape, such as a nucleus: a turn is believed that explains more than
+        pixels make of nothing.
 
     Returns
     -------
@@ -165,6 +169,11 @@ def rigid_motion(
 
     slid, shifted, by_shift = fit(places, np.array([0.0, *pivot]), _PINNED)
     turned, free, by_both = fit(slid, shifted, 0.0)
+    if stiff:
+        way = _credible(by_shift - by_both, by_both)
+        return RigidFit(
+            float(way * free[0]), pivot, (shifted + way * (free - shifted))[1:], grid, slid, turned
+        )
     explained = max(0.0, by_shift - by_both) / max(by_shift, _PIXEL_NOISE_PX2)
     before, slope = energy_and_slope(grown, target, slid, spacing, smoothness, shifted)
     after, _ = energy_and_slope(grown, target, turned, spacing, smoothness, free)
@@ -186,6 +195,19 @@ def _downhill(gain: float, foreseen: float) -> float:
     far, near = _FORESEEN
     share = foreseen / (2.0 * gain) if gain > 0.0 else 1.0
     return min(max((share - far) / (near - far), 0.0), 1.0)
+
+
+def _credible(gain: float, left: float) -> float:
+    """How far the turn of a stiff body is believed, from 0 to 1.
+
+    By the share of the displacement that it explains, less what the pixels of a round one make of nothing.
+
+    Parameters
+    ----------
+    gain, left : float
+        Mean squared displacement that the turn takes away and leaves, in square pixels.
+    """
+    return max(0.0, gain - _ROUND_GAIN_PX2) / (gain + left) if gain > 0.0 else 0.0
 
 
 def _target(there: Contour) -> Target:

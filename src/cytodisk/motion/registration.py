@@ -156,6 +156,7 @@ def register(
     reference_s: FloatArray,
     moving_s: FloatArray,
     smoothness: float,
+    stiff: bool = False,
 ) -> Registration:
     """Rigid motion that lays one outline onto another.
 
@@ -173,6 +174,8 @@ def register(
         Points on the reference and a guess of the same points on `moving`, distances along each in pixels.
     smoothness : float
         Smoothness of the matching energy, in square pixels.
+    stiff : bool
+        Of a body that hardly changes its shape; see `rigid_motion`.
 
     Returns
     -------
@@ -182,7 +185,7 @@ def register(
     ----------
     u-Unwrap, appendix A.1, algorithm 1.
     """
-    fit = rigid_motion(reference, start.of(moving), reference_s, moving_s, smoothness)
+    fit = rigid_motion(reference, start.of(moving), reference_s, moving_s, smoothness, stiff)
     shift = RigidTransform(-fit.angle)(start.shift - fit.place) + fit.pivot
     transform = RigidTransform(start.angle - fit.angle, float(shift[0]), float(shift[1]))
     return Registration(transform, fit.s, fit.slid, fit.turned)

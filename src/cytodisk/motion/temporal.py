@@ -72,7 +72,27 @@ def carried_inside(
     ndarray of shape (V, 2) and dtype float
         (u, v); not certified.
     """
-    was = carry(contour.arc[:-1], s, previous_s, contour.length, previous_contour.length)
-    moved = previous_contour.outline_at(was) - contour.outline_yx
+    moved = displacement_back(contour, s, previous_contour, previous_s)
     origin = cell.mesh.vertices_yx + cell.corner + harmonic_extension(cell.mesh, moved, cell.system)
     return previous.to_disk(origin, outside="nearest")
+
+
+def displacement_back(
+    contour: Contour, s: FloatArray, previous_contour: Contour, previous_s: FloatArray
+) -> FloatArray:
+    """From each point of an outline to where it was in the last frame, shape (B, 2).
+
+    Parameters
+    ----------
+    contour, previous_contour : Contour
+        This frame's and the last one's, both in the image's frame.
+    s, previous_s : ndarray of shape (N,) and dtype float
+        The tracked points on them.
+
+    Returns
+    -------
+    ndarray of shape (B, 2) and dtype float
+        (row, column) in pixels.
+    """
+    was = carry(contour.arc[:-1], s, previous_s, contour.length, previous_contour.length)
+    return np.asarray(previous_contour.outline_at(was) - contour.outline_yx)

@@ -123,6 +123,7 @@ def follow(
     settings: TrackingSettings,
     *,
     in_lab: bool = False,
+    stiff: bool = False,
 ) -> TrackedBoundary:
     """Carry tracked points to the next frame.
 
@@ -139,6 +140,8 @@ def follow(
     settings : TrackingSettings
     in_lab : bool
         Match the outlines as they lie in the image, not as registered: points move as little as they can.
+    stiff : bool
+        The outline of a body that hardly changes its shape, such as a nucleus: it may turn by more.
 
     Returns
     -------
@@ -155,7 +158,9 @@ def follow(
     transform = alignment = rough
     if settings.registration:
         fixed = reference.transform.of(reference.contour)
-        registration = register(contour, fixed, rough, reference.s, guess, smoothness)
+        registration = register(contour, fixed, rough, reference.s, guess, smoothness, stiff)
+        transform = alignment = registration.transform
+    if settings.registration and not stiff:
         transform = _seen_from_last(
             registration.transform, contour, last, reference, rough, guess, smoothness
         )

@@ -4,6 +4,7 @@ from typing import Literal, TypeAlias
 
 from cytodisk.disk.mapping_parameters import MappingParameters, MeshParameters
 from cytodisk.motion.demons_parameters import DemonsParameters
+from cytodisk.motion.nucleus.movie_nucleus_parameters import MovieNucleusParameters
 from cytodisk.parameters import Parameters, parameter
 from cytodisk.scale_parameters import ScaleParameters
 
@@ -83,7 +84,9 @@ class InteriorParameters(Parameters):
     )
 
 
-class MovieMappingParameters(FollowingParameters, InteriorParameters, MappingParameters):
+class MovieMappingParameters(
+    FollowingParameters, InteriorParameters, MovieNucleusParameters, MappingParameters
+):
     """How the frames of a movie are mapped."""
 
 

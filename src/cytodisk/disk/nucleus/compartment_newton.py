@@ -19,7 +19,7 @@ from cytodisk.disk.nucleus.compartment_energy import (
     largest_compartment_step,
     shared_out,
 )
-from cytodisk.disk.nucleus.cylinder_start import TURN
+from cytodisk.disk.nucleus.cone import TURN
 from cytodisk.disk.pressure_blocks import PressureSystem
 from cytodisk.disk.relaxed import Relaxed
 from cytodisk.geometry.mesh import hat_gradients, triangle_areas

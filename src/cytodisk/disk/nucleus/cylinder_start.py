@@ -22,17 +22,18 @@ from numba import njit
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.harmonic import Weights, cotangents
+from cytodisk.disk.nucleus.cone import TURN
+from cytodisk.disk.nucleus.outline_angles import (
+    LARGEST_GAP,
+    mean_along,
+    widest_gap,
+    without_wide_gaps,
+    wound_like,
+)
 from cytodisk.errors import MapError
 from cytodisk.geometry.mesh import triangle_areas
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
 
-TURN = 2.0 * np.pi
-LARGEST_GAP = 0.4 * TURN
-"""Largest angle between neighbours on the nuclear outline: from half a turn on, its polygon in the disk would
-leave out the centre.
-"""
-
-_BLENDS = np.linspace(0.0, 1.0, 33)  # of the free angles on the nuclear outline with those by arc length
 _SHARES = 0.5 ** np.arange(0, 12)  # of the way from g to the share of area with less g
 _LEAST_AREA = 0.0
 
@@ -50,12 +51,16 @@ class CylinderMap(NamedTuple):
         Whole turns to add to the angles of each triangle's corners, so that they fit together; 0 in the
         nucleus.
     weights : {"cotangent", "uniform"}
+    twist : float
+        How far given angles of the nuclear outline are from free ones in radians, whole turns included; 0
+        where they are free.
     """
 
     angles: FloatArray
     depth: FloatArray
     lifts: IntArray
     weights: Weights
+    twist: float
 
 
 def lifted_angles(angles: FloatArray, lifts: IntArray, triangles: IntArray) -> FloatArray:
@@ -74,6 +79,7 @@ def cylinder_start(
     centre_yx: FloatArray,
     system: BlockSystem,
     nucleus_angles: FloatArray | None = None,
+    twist: float = 0.0,
 ) -> CylinderMap:
     """Map the cytoplasm one to one onto the cylinder, with the membrane at given angles.
 
@@ -87,8 +93,12 @@ def cylinder_start(
     system : BlockSystem
         Of this mesh.
     nucleus_angles : ndarray of shape (N,) and dtype float, optional
-        Angles of the nuclear outline, strictly increasing within one turn, counted so that they are near
-        those of the membrane they lie under; by default θ is free there.
+        Angles of the nuclear outline, strictly increasing within one turn, up to whole turns; by default θ is
+        free there.
+    twist : float
+        That of the frame before, where angles are given: whole turns are counted so that they go on from it.
+        From three quarters of a turn on one is taken back, so that the cytoplasm between an outline that
+        turns and one that does not is not wound up without end.
 
     Returns
     -------
@@ -104,10 +114,10 @@ def cylinder_start(
     choices: tuple[Weights, ...] = ("cotangent", "uniform")
     for weights in choices:
         edge_weights = cotangents(mesh) if weights == "cotangent" else np.full(3 * len(mesh.triangles), 0.5)
-        found = _solved(mesh, form, edge_weights, membrane_angles, system, nucleus_angles)
+        found = _solved(mesh, form, edge_weights, membrane_angles, system, nucleus_angles, twist)
         if found is not None:
-            angles, g, lifts = found
-            return CylinderMap(angles, _even_depth(mesh, angles, g, lifts), lifts, weights)
+            angles, g, lifts, wound = found
+            return CylinderMap(angles, _even_depth(mesh, angles, g, lifts), lifts, weights, wound)
     raise MapError(
         f"no map of the cytoplasm was found ({len(mesh.vertices_yx)} vertices): in double precision "
         "triangles turn over; the cell is too branched for its size; try a larger edge_length"
@@ -153,41 +163,25 @@ def _solved(
     membrane_angles: FloatArray,
     system: BlockSystem,
     nucleus_angles: FloatArray | None,
-) -> tuple[FloatArray, FloatArray, IntArray] | None:
-    """θ, g and lifts; None if a triangle is not positive."""
+    twist: float,
+) -> tuple[FloatArray, FloatArray, IntArray, float] | None:
+    """θ, g, lifts and twist; None if a triangle is not positive."""
     given = np.full(len(mesh.vertices_yx), np.nan)
     given[mesh.boundary] = membrane_angles - form.around_loop(mesh.boundary)
     inner = mesh.nucleus_boundary
     around = form.around_loop(inner)
+    angles, g = _harmonic(mesh, form, edge_weights, given, system)
+    at_nucleus, wound = angles[inner] - form.angles[inner] + around, 0.0
     if nucleus_angles is not None:
-        given[inner] = nucleus_angles - around
-    free = _harmonic(mesh, form, edge_weights, given, system)
-    for blend in _BLENDS:  # until no gap on the nuclear outline is too wide
-        angles, g = free
-        at_nucleus = angles[inner] - form.angles[inner] + around
-        if _widest_gap(at_nucleus) > LARGEST_GAP and nucleus_angles is None:
-            at_nucleus = (1.0 - blend) * at_nucleus + blend * _by_length(mesh, at_nucleus)
-            if _widest_gap(at_nucleus) > LARGEST_GAP and blend < 1.0:
-                continue
-            given[inner] = at_nucleus - around
-            angles, g = _harmonic(mesh, form, edge_weights, given, system)
-        break
+        away = mean_along(mesh, nucleus_angles - at_nucleus)
+        wound = wound_like(away, twist)
+        at_nucleus = nucleus_angles + wound - away
+    if nucleus_angles is not None or widest_gap(at_nucleus) > LARGEST_GAP:
+        given[inner] = without_wide_gaps(mesh, at_nucleus) - around
+        angles, g = _harmonic(mesh, form, edge_weights, given, system)
     lifts = _lifts(mesh, form, angles)
     areas = cylinder_areas(angles, g, lifts, mesh.triangles)[~mesh.inside]
-    return (angles, g, lifts) if (areas > 0.0).all() else None
-
-
-def _widest_gap(angles: FloatArray) -> float:
-    return float(np.diff(angles, append=angles[0] + TURN).max())
-
-
-def _by_length(mesh: NucleusMesh, angles: FloatArray) -> FloatArray:
-    """Angles on the nuclear outline by its arc length, turned to be near given ones."""
-    outline = mesh.vertices_yx[mesh.nucleus_boundary]
-    lengths = np.hypot(*(np.roll(outline, -1, axis=0) - outline).T)
-    even = TURN * np.append(0.0, np.cumsum(lengths[:-1])) / lengths.sum()
-    weight = lengths + np.roll(lengths, 1)
-    return np.asarray(even + ((angles - even) * weight).sum() / weight.sum())
+    return (angles, g, lifts, wound) if (areas > 0.0).all() else None
 
 
 def _lifts(mesh: NucleusMesh, form: _Form, angles: FloatArray) -> IntArray:

@@ -13,6 +13,7 @@ from cytodisk.disk.nucleus.compartment_newton import relax_compartments
 from cytodisk.disk.nucleus.cone import TURN
 from cytodisk.disk.nucleus.cylinder_start import CylinderMap, cylinder_start
 from cytodisk.disk.nucleus.nucleus import Nucleus
+from cytodisk.disk.nucleus.nucleus_guide import NucleusGuide, anchor_places
 from cytodisk.disk.relaxed import Relaxed
 from cytodisk.geometry.mesh import Mesh, triangle_areas
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
@@ -45,13 +46,19 @@ class MappedCompartments(NamedTuple):
     Attributes
     ----------
     relaxed : Relaxed
-    start : {"cotangent", "uniform"}
+    start : {"cotangent", "uniform", "previous"}
     nucleus : Nucleus
+    twist : float
+        How far the nucleus has turned against the membrane, in radians; see `CylinderMap`.
+    unwound : bool
+        Whether a whole turn was taken back since the frame before.
     """
 
     relaxed: Relaxed
-    start: Weights
+    start: Literal["cotangent", "uniform", "previous"]
     nucleus: Nucleus
+    twist: float = 0.0
+    unwound: bool = False
 
 
 def map_compartments(
@@ -60,7 +67,7 @@ def map_compartments(
     angles: FloatArray,
     shape_weight: float,
     nucleus_radius: float | Literal["area"],
-    nucleus_angles: FloatArray | None = None,
+    guide: NucleusGuide | None = None,
     system: BlockSystem | None = None,
 ) -> MappedCompartments:
     """Map a cell and its nucleus onto the disk, with the membrane at given angles.
@@ -74,8 +81,8 @@ def map_compartments(
     shape_weight : float
     nucleus_radius : float or "area"
         "area": the nucleus has its own share of the disk.
-    nucleus_angles : ndarray of shape (N,) and dtype float, optional
-        Of the nuclear outline; by default it slides.
+    guide : NucleusGuide, optional
+        Of the frame before in a movie; without it the nuclear outline slides to where it is mapped best.
     system : BlockSystem, optional
         Of this mesh, if there is one already.
 
@@ -90,21 +97,33 @@ def map_compartments(
     """
     system = system or BlockSystem(mesh)
     radius = _own_radius(mesh) if nucleus_radius == "area" else float(nucleus_radius)
-    start = cylinder_start(mesh, angles, fitted.centre, system, nucleus_angles)
+    given = () if guide is None else (guide.angles, guide.twist)
+    start = cylinder_start(mesh, angles, fitted.centre, system, *given)
     inner = mesh.nucleus_boundary
     circle = np.column_stack([np.cos(start.angles[inner]), np.sin(start.angles[inner])])
     vertices, uv, weights = _nucleus_start(mesh, circle)
     half = 0.5 * (1.0 - radius**2)
     places = np.column_stack([start.angles, half * start.depth])
     places[vertices] = uv
+    unwound = guide is not None and abs(start.twist - guide.twist) > 0.5 * TURN
+    anchor = None if guide is None or unwound else anchor_places(mesh, guide, places, half)
     relaxed = relax_compartments(
-        mesh, places, start.lifts, radius, shape_weight, system, slide=nucleus_angles is None
+        mesh,
+        places,
+        start.lifts,
+        radius,
+        shape_weight,
+        system,
+        anchor=anchor,
+        inertia=0.0 if guide is None else guide.inertia,
+        slide=guide is None,
     )
     turned, lifts = _in_turns(mesh, relaxed.vertices_uv, start, half)
     nucleus = Nucleus(radius, inner, mesh.inside, turned, lifts, fitted.placed_mask, fitted.report)
     uv = nucleus.in_disk(mesh.vertex_inside)
     worse: Weights = "uniform" if "uniform" in (weights, start.weights) else "cotangent"
-    return MappedCompartments(Relaxed(uv, relaxed.steps, relaxed.converged), worse, nucleus)
+    made = Relaxed(uv, relaxed.steps, relaxed.converged)
+    return MappedCompartments(made, worse, nucleus, start.twist, unwound)
 
 
 def _own_radius(mesh: NucleusMesh) -> float:

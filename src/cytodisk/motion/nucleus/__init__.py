@@ -1,0 +1,1 @@
+"""Nuclei of moving cells."""
