@@ -11,6 +11,7 @@ in CYTODISK_DATA). Prints a row a method:
 * empty: empty windows, cells that have any, and their share of all windows;
 * cytoplasm, nucleus: mean |ln| of areas of windows over their mean in it, median over cells;
 * outer fifth: share of the cytoplasm in the outermost of five layers, mean (0.2 if layers are equal);
+* nearness: rank correlation of layers with nearness to the nucleus, over the cytoplasm, mean;
 * one piece: share of filled windows that are in one piece; eccentricity: mean of a window.
 
 Ends with status 1 if a map has a turned triangle or an empty window.
@@ -29,14 +30,14 @@ from typing import Any
 import numpy as np
 
 import cytodisk as cd
-from cytodisk.analysis.compartment_measures import compartment_measures, outermost_share
+from cytodisk.analysis.compartment_measures import compartment_measures, nearness, outer_fifth
 from cytodisk.arrays import BoolArray
 from cytodisk.windows.on_cell import WindowsOnCell
+from cytodisk.windows.rings.nucleus_edges import NucleusEdges
 from drawn_nuclei import cells_with_drawn_nuclei
 
 DATA = Path(os.environ.get("CYTODISK_DATA", Path(__file__).parents[2] / "shared" / "data"))
 QUICK = 16
-FIVE = 5
 
 
 @dataclass(frozen=True)
@@ -66,6 +67,7 @@ class Found:
     cytoplasm: float
     nucleus: float
     outer_fifth: float
+    nearness: float
     one_piece: float
     eccentricity: float
 
@@ -104,7 +106,6 @@ def measure(cell: tuple[int, BoolArray, BoolArray], counts: Counts) -> list[Foun
 
 def _measured(number: int, name: str, lay: Lay, mask: BoolArray, nucleus: BoolArray, counts: Counts) -> Found:
     windows = lay(mask, nucleus, counts)
-    five = lay(mask, nucleus, Counts(FIVE, 1, 1))
     compartments = windows.grid.compartments  # type: ignore[attr-defined]
     found = compartment_measures(windows, compartments)
     held = windows.areas > 0
@@ -118,7 +119,8 @@ def _measured(number: int, name: str, lay: Lay, mask: BoolArray, nucleus: BoolAr
         windows.areas.size,
         found["area_error_cytoplasm"],
         found["area_error_nucleus"],
-        outermost_share(five, five.grid.compartments),  # type: ignore[attr-defined]
+        outer_fifth(windows),
+        nearness(windows, compartments, NucleusEdges.of(mask, nucleus)),
         float((windows.pieces[held] == 1).mean()),
         float(np.nanmean(windows.eccentricities)),
     )
@@ -135,7 +137,7 @@ def print_table(found: Sequence[Found]) -> None:
     cells = len({one.cell for one in found})
     print(f"{cells} cells with a drawn nucleus")
     heads = ("folded", "outside", "points", "overlap", "empty", "cells", "of windows")
-    more = ("cytoplasm", "nucleus", "outer fifth", "one piece", "eccentricity")
+    more = ("cytoplasm", "nucleus", "outer fifth", "nearness", "one piece", "eccentricity")
     print(
         f"{'':<16}"
         + "".join(f"{head:>{len(head) + 3}}" for head in (*heads[:6], heads[6]))
@@ -154,6 +156,7 @@ def print_table(found: Sequence[Found]) -> None:
             f"{np.median([one.cytoplasm for one in rows]):.3f}",
             f"{np.median([one.nucleus for one in rows]):.3f}",
             f"{np.mean([one.outer_fifth for one in rows]):.3f}",
+            f"{np.mean([one.nearness for one in rows]):.3f}",
             f"{np.mean([one.one_piece for one in rows]):.3f}",
             f"{np.mean([one.eccentricity for one in rows]):.3f}",
         )

@@ -9,7 +9,11 @@ from public_names import heading, write
 
 from cytodisk.parameter_words import flag_of, range_words, unit_of, value_words
 from cytodisk.parameters import Parameters
-from cytodisk.runs.compare_windows.compare_parameters import CompareMovieParameters, CompareWindowsParameters
+from cytodisk.runs.compare_windows.compare_parameters import (
+    CompareMovieParameters,
+    CompareNucleiParameters,
+    CompareWindowsParameters,
+)
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_parameters import MovieParameters
@@ -26,6 +30,7 @@ MODELS: dict[str, type[Parameters]] = {
     "cytodisk shapes": ShapeParameters,
     "cytodisk compare-windows": CompareWindowsParameters,
     "cytodisk compare-windows --movie": CompareMovieParameters,
+    "cytodisk compare-windows --nuclei": CompareNucleiParameters,
     "cytodisk batch": BatchOptions,
 }
 WORDS = """A parameter has one name: the keyword in Python, the key in ``parameters.toml`` and, with dashes,

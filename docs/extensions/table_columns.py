@@ -8,7 +8,7 @@ from sphinx.application import Sphinx
 
 from cytodisk.analysis.shape.features import GROUPS
 from cytodisk.runs.batch.input_columns import INPUT, INPUT_COLUMNS
-from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS, COMPARED_MOVIE
+from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS, COMPARED_MOVIE, COMPARED_NUCLEI
 from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.map.map_kind import MAP
 from cytodisk.runs.movie.movie_kind import MOVIE
@@ -39,7 +39,7 @@ def write_page(app: Sphinx, _config: Any) -> None:
     )
     lines += run("Shapes", "``cytodisk shapes`` writes this table.", {"shapes": SHAPE_STUDY.cells})
     lines += ["The features follow; ``features.csv`` lists them, too.", "", *features()]
-    compared = tables_of(COMPARED_CELLS, COMPARED_MOVIE)
+    compared = tables_of(COMPARED_CELLS, COMPARED_MOVIE, COMPARED_NUCLEI)
     lines += run("Comparisons of windows", "``cytodisk compare-windows`` writes these tables.", compared)
     lines += ["``comparison_columns.csv`` explains the columns of the summaries, which are CSV files.", ""]
     inputs = {"inputs": (INPUT, *INPUT_COLUMNS)}

@@ -95,6 +95,7 @@ from .runs.shapes.shape_parameters import ShapeParameters as ShapeParameters
 from .runs.correlate.correlate_parameters import CorrelateParameters as CorrelateParameters
 from .runs.compare_windows.compare_parameters import CompareWindowsParameters as CompareWindowsParameters
 from .runs.compare_windows.compare_parameters import CompareMovieParameters as CompareMovieParameters
+from .runs.compare_windows.compare_parameters import CompareNucleiParameters as CompareNucleiParameters
 from .runs.run_options import MapOptions as MapOptions
 from .runs.run_options import RunOptions as RunOptions
 from .runs.run_options import BatchOptions as BatchOptions

@@ -2,7 +2,12 @@ import numpy as np
 import pytest
 
 import cytodisk as cd
-from cytodisk.analysis.compartment_measures import compartment_measures, outermost_share
+from cytodisk.analysis.compartment_measures import (
+    compartment_measures,
+    nearness,
+    outer_fifth,
+    outermost_share,
+)
 from cytodisk.arrays import FloatArray
 
 COMPARTMENTS = ["cytoplasm", "cytoplasm", "nucleus"]
@@ -30,6 +35,28 @@ def test_empty_windows_count_in_the_mean_alone() -> None:
     assert found["area_error_cytoplasm"] == pytest.approx(np.log(2))
     assert np.isnan(found["area_error_nucleus"])
     assert np.isnan(outermost_share(WithAreas(np.zeros((3, 2))), COMPARTMENTS))  # type: ignore[arg-type]
+
+
+def test_layers_by_distance_in_concentric_disks_are_as_near_as_ranks_can_be() -> None:
+    """The nearer a layer, the nearer its pixels: only ranks within a layer are tied, and ways are rough."""
+    cell, nucleus = cd.simulate.disk(30), cd.simulate.disk(10, margin=28)
+    windows = cd.nucleus_ring_windows(cell, nucleus, 10, 1, 1)
+    compartments = windows.grid.compartments
+    assert nearness(windows, compartments, windows.edges) > 0.97
+    sides = cd.nucleus_ring_windows(cell, nucleus, 1, 4, 1)
+    assert np.isnan(nearness(sides, sides.grid.compartments, sides.edges))  # there is one layer
+
+
+def test_five_layers_of_the_same_kind_are_laid() -> None:
+    cell, nucleus = cd.simulate.disk(30), cd.simulate.disk(10, margin=28)
+    settings = {"layers": 8, "sectors": 12, "nucleus_layers": 2}
+    for windows in (
+        cd.nucleus_ring_windows(cell, nucleus, **settings),
+        cd.interpolated_ring_windows(cell, nucleus, **settings),
+    ):
+        assert outer_fifth(windows) == pytest.approx((30**2 - 26**2) / (30**2 - 10**2), abs=0.03)
+    grid = cd.polar_windows(**settings)
+    assert outer_fifth(grid.on(cd.map_to_disk(cell, nucleus=nucleus))) == pytest.approx(0.2, abs=0.005)
 
 
 def test_rings_by_distance_hold_more_at_the_edge_than_a_fifth_of_a_disk() -> None:

@@ -27,7 +27,12 @@ COMMANDS: dict[str, tuple[Callable[..., Any], tuple[type[Parameters], ...]]] = {
     "correlate": (cd.run_correlate, (cd.CorrelateParameters,)),
     "compare-windows": (
         cd.run_compare_windows,
-        (cd.CompareWindowsParameters, cd.CompareMovieParameters, cd.RunOptions),
+        (
+            cd.CompareWindowsParameters,
+            cd.CompareMovieParameters,
+            cd.CompareNucleiParameters,
+            cd.RunOptions,
+        ),
     ),
     "batch": (cd.run_batch, (cd.BatchOptions,)),
 }

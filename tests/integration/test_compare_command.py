@@ -129,8 +129,9 @@ def test_the_help_says_what_needs_a_movie() -> None:
     both = cd.CompareWindowsParameters.model_fields.keys() | cd.RunOptions.model_fields.keys()
     assert of_movies == {"signal", *(cd.CompareMovieParameters.model_fields.keys() - both)}
     assert {"channels", "nan", "tracker", "frame_interval_s"} <= of_movies
-    ours = "(default newton,harmonic,advection,edge; with --movie newton,harmonic,edge)"
-    assert helps["methods"].endswith(ours)
+    ours = "(default newton,harmonic,advection,edge; with --movie newton,harmonic,edge; with --nuclei "
+    assert helps["methods"].endswith(ours + "newton,nucleus-rings,interpolated-rings)")
+    assert "only with --nuclei" in helps["nucleus_layers"]
     assert not any("depth_px" in words for words in helps.values())
 
 

@@ -1,5 +1,5 @@
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pandas as pd
@@ -13,7 +13,7 @@ from cytodisk.pages.compared_cells import chosen_cells
 from cytodisk.pages.compared_layers import METHOD_STYLES, draw_measure_by_layer, spread_over
 from cytodisk.pages.compared_movie import consistency_by_layer, draw_displacement
 from cytodisk.plot.cell.window_labels import draw_label_image
-from cytodisk.runs.compare_windows.compare_parameters import TITLES
+from cytodisk.runs.compare_windows.compare_parameters import TITLES, NucleusMethod, WindowMethod
 
 METHODS = ("newton", "edge")
 
@@ -35,8 +35,9 @@ def comparison(tmp_path_factory: pytest.TempPathFactory) -> cd.Comparison:
 
 def test_every_method_has_a_name_a_colour_and_a_mark_of_its_own() -> None:
     assert set(TITLES) == set(METHOD_STYLES)
-    for key in ("color", "marker"):
-        assert len({style[key] for style in METHOD_STYLES.values()}) == len(METHOD_STYLES)
+    for together in (get_args(WindowMethod), get_args(NucleusMethod)):
+        for key in ("color", "marker"):
+            assert len({METHOD_STYLES[method][key] for method in together}) == len(together)
 
 
 def test_lines_are_the_measure_by_layer_and_bands_its_quartiles(comparison: cd.Comparison) -> None:

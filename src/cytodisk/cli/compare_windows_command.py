@@ -13,13 +13,18 @@ from cytodisk.cli.movie_command import say_movie
 from cytodisk.cli.options import (
     Given,
     MaskFiles,
+    NucleiFiles,
     OutFolder,
     Quiet,
     with_parameters,
 )
 from cytodisk.errors import ParameterError
 from cytodisk.runs.channel_names import shown_name
-from cytodisk.runs.compare_windows.compare_parameters import CompareMovieParameters, CompareWindowsParameters
+from cytodisk.runs.compare_windows.compare_parameters import (
+    CompareMovieParameters,
+    CompareNucleiParameters,
+    CompareWindowsParameters,
+)
 from cytodisk.runs.run_options import RunOptions
 
 if TYPE_CHECKING:
@@ -28,7 +33,11 @@ if TYPE_CHECKING:
     from cytodisk.runs.compare_windows.comparison import Comparison
 
 
-@with_parameters(CompareWindowsParameters, RunOptions, of_movies=CompareMovieParameters)
+@with_parameters(
+    CompareWindowsParameters,
+    RunOptions,
+    modes={"--movie": CompareMovieParameters, "--nuclei": CompareNucleiParameters},
+)
 def compare_windows_command(
     masks: MaskFiles,
     out: OutFolder,
@@ -41,6 +50,7 @@ def compare_windows_command(
             help="Image to measure, of the same height and width, in any format (only with --movie).",
         ),
     ] = None,
+    nuclei: NucleiFiles = None,
     cells: Annotated[
         str | None,
         typer.Option(
@@ -52,16 +62,13 @@ def compare_windows_command(
     drawn = _parse_cells(cells, movie)
     console = console_for(quiet)
     options = dict(given.options(RunOptions))
+    _check_mode(given, movie, signal, nuclei)
     if movie:
         found = _run_movie(console, masks, signal, out, given.of(CompareMovieParameters), options)
+    elif nuclei is not None:
+        found = _run_nuclei(console, masks, nuclei, out, given.of(CompareNucleiParameters), options)
     else:
-        of_movies = given.beyond(CompareWindowsParameters, RunOptions) + (
-            ["--signal"] if signal is not None else []
-        )
-        if of_movies:
-            raise ParameterError(f"{', '.join(of_movies)}: only with --movie; pass that too, or leave it out")
-        settings = given.of(CompareWindowsParameters)
-        found = _run_cells(console, masks, out, settings, options)
+        found = _run_cells(console, masks, out, given.of(CompareWindowsParameters), options)
     if not found.cells["mapped"].sum():
         fail(f"no cell could be used: {'; '.join(found.cells['reason'].head(1)) or 'there is none'}")
     say_comparison(console, found)
@@ -71,6 +78,48 @@ def compare_windows_command(
     unreadable = found.cells[found.cells["status"] == "unreadable"]["cell"].nunique()
     if unreadable:
         fail(f"damaged files or frames of the input: {unreadable}; all others are in {found.path}")
+
+
+def _check_mode(given: Given, movie: bool, signal: Path | None, nuclei: Path | None) -> None:
+    """Raise ParameterError where flags do not go together."""
+    if movie and nuclei is not None:
+        raise ParameterError("--nuclei compares cells that are not followed: leave --movie or --nuclei out")
+    of_signal = ["--signal"] if signal is not None and not movie else []
+    if nuclei is not None:
+        if beyond := given.beyond(CompareNucleiParameters, RunOptions) + of_signal:
+            raise ParameterError(f"{', '.join(beyond)}: not with --nuclei; leave it out")
+        return
+    model = CompareMovieParameters if movie else CompareWindowsParameters
+    beyond = given.beyond(model, RunOptions)
+    of_nuclei = [flag for flag in beyond if flag not in given.beyond(CompareNucleiParameters, RunOptions)]
+    if of_nuclei and movie:
+        raise ParameterError(f"{', '.join(of_nuclei)}: not with --movie; leave it out")
+    if of_nuclei:
+        raise ParameterError(f"{', '.join(of_nuclei)}: only with --nuclei; pass that too, or leave it out")
+    if beyond or of_signal:
+        flags = ", ".join(beyond + of_signal)
+        raise ParameterError(f"{flags}: only with --movie; pass that too, or leave it out")
+
+
+def _run_nuclei(
+    console: "Console",
+    masks: Path,
+    nuclei: Path,
+    out: Path,
+    settings: CompareNucleiParameters,
+    options: dict[str, Any],
+) -> "Comparison":
+    from cytodisk.runs.cells.cell_inputs import open_inputs
+    from cytodisk.runs.cells.cell_parameters import CheckParameters
+    from cytodisk.runs.compare_windows.compare_nuclei import compare_opened_nuclei
+
+    inputs = open_inputs(masks, None, settings.part(CheckParameters), nuclei=nuclei)
+    say_inputs(console, inputs)
+    with (
+        compiling(console.quiet, "map", options["workers"]),
+        progress_bar(console.quiet, "cells") as progress,
+    ):
+        return compare_opened_nuclei(inputs, out, settings, progress=progress, **options)
 
 
 def _run_cells(
@@ -136,6 +185,10 @@ def draw_figures(found: "Comparison", cells: list[int] | None = None) -> list[tu
     if not len(mapped):
         return []
     by_layer = "filled windows, spread of their area and eccentricity, mean eccentricity, by layer"
+    if found.has_nuclei:
+        by_layer = (
+            "filled windows, their area, its spread, mean eccentricity, by layer of cytoplasm and nucleus"
+        )
     drawn = [(write_comparison(found), by_layer)]
     if not found.is_movie:
         path = write_compared_cells(found, cells)

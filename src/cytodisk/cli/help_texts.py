@@ -107,11 +107,16 @@ relaxation), advection (the paper's relaxation), edge (by distance from the edge
 the deepest point, as CellProfiler's). A movie is compared by newton, harmonic and edge, if --methods does not
 say otherwise.
 
+With --nuclei the methods are newton (cytodisk's map of cell and nucleus), nucleus-rings (by the share of the
+way from the edge to the nucleus, as CellProfiler's) and interpolated-rings (between both outlines).
+
 Examples:
 
   cytodisk compare-windows masks.tif -o out/ --layers 12 --sectors 60 --workers 2
 
   cytodisk compare-windows masks.tif --movie --signal movie.ome.tif -o out/ --depth-px 10
+
+  cytodisk compare-windows cells.tif --nuclei nuclei.tif -o out/ --layers 8 --nucleus-layers 3
 
 Exit code: 0 when done (cells without a map have a row with the reason), 2 if no cell could be used, or a file
 is damaged.

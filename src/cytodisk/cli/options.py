@@ -2,7 +2,7 @@
 
 import inspect
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -125,7 +125,7 @@ class Given:
 
 
 def with_parameters(
-    *models: type[Parameters], of_movies: type[Parameters] | None = None, file: bool = True
+    *models: type[Parameters], modes: Mapping[str, type[Parameters]] | None = None, file: bool = True
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Give a command an option for every field of its models, in the place of its parameter `given`.
 
@@ -133,8 +133,9 @@ def with_parameters(
     ----------
     *models : type of Parameters
         Of a field that several have, the first counts.
-    of_movies : type of Parameters, optional
-        The model of the command with `--movie`, which has more fields or other defaults; the help says which.
+    modes : mapping of str to type of Parameters, optional
+        By a flag, such as `--movie`, the model of the command with it, which has more fields or other
+        defaults; the help says which.
     file : bool
         Whether there is `--parameters`, too.
 
@@ -143,8 +144,9 @@ def with_parameters(
     callable
         A decorator. The command gets what was given as `given`, a `Given`.
     """
-    fields = fields_of(models if of_movies is None else (*models, of_movies))
-    more = {} if of_movies is None else _with_movie(fields_of(models), of_movies)
+    modes = {} if modes is None else modes
+    fields = fields_of((*models, *modes.values()))
+    more = _with_modes(fields_of(models), modes)
     flags = {name: flag_of(name, field) for name, field in fields.items()}
 
     def show(command: Callable[..., None]) -> Callable[..., None]:
@@ -178,15 +180,18 @@ def with_parameters(
     return show
 
 
-def _with_movie(fields: dict[str, FieldInfo], of_movies: type[Parameters]) -> dict[str, str]:
-    """What `--movie` changes, by field: that there is one, or its default."""
-    words = {}
-    for name, field in of_movies.model_fields.items():
-        if name not in fields:
-            words[name] = "only with --movie"
-        elif field.default != fields[name].default:
-            words[name] = f"with --movie {default_words(field)}"
-    return words
+def _with_modes(fields: dict[str, FieldInfo], modes: Mapping[str, type[Parameters]]) -> dict[str, str]:
+    """What flags such as `--movie` change, by field: that there is one, or its default."""
+    only: dict[str, list[str]] = {}
+    other: dict[str, list[str]] = {}
+    for flag, model in modes.items():
+        for name, field in model.model_fields.items():
+            if name not in fields:
+                only.setdefault(name, []).append(flag)
+            elif field.default != fields[name].default:
+                other.setdefault(name, []).append(f"with {flag} {default_words(field)}")
+    needed = {name: f"only with {' or '.join(flags)}" for name, flags in only.items()}
+    return needed | {name: "; ".join(words) for name, words in other.items()}
 
 
 def _option(name: str, field: FieldInfo, more: str) -> inspect.Parameter:

@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 
 from cytodisk.errors import ParameterError
 from cytodisk.pages.compared_layers import spread_over
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.cell.window_labels import draw_label_image
 from cytodisk.plot.field_of_view import frame_field
+from cytodisk.plot.outline_sides import outline_sides
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, paper_style
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
@@ -24,10 +26,17 @@ _MOST_CELLS = 5
 _LEFT, _TOP, _GAP, _WORDS = 6.0, 13.0, 2.0, 4.0  # mm
 _BELOW = 8.0
 _DPI = 300
+_COVERED_BY_CHORDS = 0.98  # interpolated rings are polygons, which cut a little off
 _KEY = (
     "Dark: layer at the edge, yellow: at the centre; every other sector is paler; white: in no window.",
     "Percent: filled windows, that is with a part of the cell (completeness). Turned over: triangles of a "
     "map that is not one to one.",
+)
+
+_NUCLEUS_KEY = (
+    "Dark brown: layer at the edge, yellow: at the nucleus, blue: in the nucleus, whose outline is black; "
+    "every other sector is paler.",
+    "Percent: filled windows (completeness). Turned over: triangles between rings that cross each other.",
 )
 
 
@@ -87,13 +96,15 @@ def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = N
             for row, method in enumerate(comparison.methods):
                 top = _TOP + row * (size + _WORDS + _GAP)
                 ax = sheet.axes(left, top, size, size)
-                _draw_labels(ax, labels.get(method), labels["mask"], _grid(comparison))
+                _draw_labels(ax, labels.get(method), labels["mask"], comparison)
+                if "nucleus" in labels:
+                    _draw_nucleus(ax, labels["nucleus"])
                 sheet.text(left, top + size + _WORDS - 1.2, _outcome(comparison, cell, method), color="0.35")
         for row, method in enumerate(comparison.methods):
             middle = _TOP + row * (size + _WORDS + _GAP) + size / 2
             sheet.text(2.0, middle, TITLES[method], rotation=90, va="center", ha="left")
         sheet.text(_LEFT, 4.0, _title(comparison, chosen, cells is None), size=7.5)
-        for line, words in enumerate(_KEY):
+        for line, words in enumerate(_NUCLEUS_KEY if comparison.has_nuclei else _KEY):
             sheet.text(_LEFT, sheet.height_mm - 5.0 + 3.5 * line, words, color="0.35")
         return sheet.save(folder / name, _DPI)
 
@@ -158,17 +169,24 @@ def _title(comparison: Comparison, chosen: Sequence[int], by_order: bool) -> str
     return f"{len(chosen)} of {number} cells, from the smallest to the largest {measure}"
 
 
-def _draw_labels(ax: Axes, labels: Any, mask: Any, grid: tuple[int, int]) -> None:
+def _draw_labels(ax: Axes, labels: Any, mask: Any, comparison: Comparison) -> None:
     """Windows of a cell in the middle of square axes; white where it has none."""
-    draw_label_image(ax, labels, mask, grid)
+    nucleus_layers = comparison.provenance["parameters"].get("nucleus_layers", 0)
+    draw_label_image(ax, labels, mask, _grid(comparison), nucleus_layers)
     middle, side = 0.5 * np.array(mask.shape) - 0.5, 0.5 * max(mask.shape) + 1
     (top, left), (bottom, right) = (middle - side).tolist(), (middle + side).tolist()
     frame_field(ax, (top, bottom, left, right))
 
 
+def _draw_nucleus(ax: Axes, nucleus: Any) -> None:
+    """The outline of a nucleus along the sides of its pixels."""
+    sides: Any = list(outline_sides(nucleus) - 0.5)
+    ax.add_collection(LineCollection(sides, colors="black", linewidths=0.4))
+
+
 def _grid(comparison: Comparison) -> tuple[int, int]:
     settings = comparison.provenance["parameters"]
-    return settings["layers"], settings["sectors"]
+    return settings["layers"] + settings.get("nucleus_layers", 0), settings["sectors"]
 
 
 def _cell_name(cells: pd.DataFrame, cell: int) -> str:
@@ -183,8 +201,8 @@ def _outcome(comparison: Comparison, cell: int, method: str) -> str:
         return "no map"
     layers, sectors = _grid(comparison)
     words = f"{1 - row['empty_windows'] / (layers * sectors):.0%}"
-    if row["coverage"] < 0.995:
+    if row["coverage"] < (_COVERED_BY_CHORDS if comparison.has_nuclei else 0.995):
         words += f" ({row['coverage']:.0%} of the area)"
-    if row["certificate_valid"] is False:
+    if row["certificate_valid"] is False or row["flipped"] > 0:
         words += f", {row['flipped']:.0f} turned over"
     return words

@@ -32,6 +32,9 @@ METHOD_STYLES: dict[str, dict[str, Any]] = {
     "edge": {"color": "#D55E00", "marker": "D", "linewidth": 1.0, "markersize": 2.5, "zorder": 2.4},
     "rings": {"color": "#CC79A7", "marker": "v", "linestyle": (0, (4, 1, 1, 1)), "zorder": 2.5}
     | {"linewidth": 1.0, "markersize": 2.5},
+    "nucleus-rings": {"color": "#D55E00", "marker": "D", "linewidth": 1.2, "markersize": 3.2, "zorder": 2.2},
+    "interpolated-rings": {"color": "#CC79A7", "marker": "v", "linestyle": (0, (4, 1, 1, 1)), "zorder": 2.3}
+    | {"linewidth": 1.2, "markersize": 3.2},
 }
 
 FILE = "comparison.png"
@@ -42,11 +45,21 @@ PANELS = (
     ("eccentricity_cv", "CV of eccentricity"),
     ("eccentricity", "mean eccentricity"),
 )
+NUCLEUS_PANELS = (
+    PANELS[0],
+    ("relative_area", "area over the mean"),
+    PANELS[1],
+    PANELS[3],
+)
+"""With nuclei: the second is the mean area of a layer's windows over that of its compartment."""
 _PANEL, _HEIGHT, _TOP, _LEFT, _GAP = 31.5, 34.0, 14.0, 11.0, 13.5  # mm
 
 
 def write_comparison(comparison: Comparison) -> Path:
     """Write `figures/comparison.png`: completeness, spread of area and eccentricity, and length, by layer.
+
+    With nuclei mean areas of layers are in the place of the spread of eccentricity, and a line stands between
+    the layers of the cytoplasm and those of the nucleus.
 
     Parameters
     ----------
@@ -77,10 +90,12 @@ def write_comparison(comparison: Comparison) -> Path:
     """
     with drawing(comparison.path, FILE) as folder, paper_style():
         sheet = Sheet(_TOP + _HEIGHT + 15.0)
-        for number, (name, title) in enumerate(PANELS):
+        for number, (name, title) in enumerate(NUCLEUS_PANELS if comparison.has_nuclei else PANELS):
             ax = sheet.axes(_LEFT + number * (_PANEL + _GAP), _TOP, _PANEL, _HEIGHT)
             draw_measure_by_layer(ax, comparison.by_layer, name, name, comparison.methods)
             ax.set_title(title, loc="left")
+            if comparison.has_nuclei:
+                _draw_nucleus_border(ax, comparison.by_layer, name_it=not number)
         write_method_key(sheet, comparison.methods, _LEFT)
         tried = int(comparison.by_method["tried"].max())
         what = "frames" if comparison.is_movie else "cells"
@@ -130,6 +145,16 @@ def draw_measure_by_layer(
     ax.xaxis.set_major_locator(MaxNLocator(6, integer=True))
     ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
     return lines
+
+
+def _draw_nucleus_border(ax: Axes, by_layer: pd.DataFrame, name_it: bool) -> None:
+    """A line between the layers of the cytoplasm and those of the nucleus."""
+    first = by_layer.loc[by_layer["compartment"] == "nucleus", "layer"].min()
+    ax.axvline(first - 0.5, color="0.5", linewidth=0.6, zorder=1.0)
+    if name_it:
+        look: dict[str, Any] = {"color": "0.35", "va": "bottom", "transform": ax.get_xaxis_transform()}
+        ax.text(first - 0.8, 0.03, "cytoplasm", ha="right", **look)
+        ax.text(first - 0.2, 0.03, "nucleus", ha="left", **look)
 
 
 def write_method_key(sheet: Sheet, methods: Sequence[str], left: float, top: float = 1.5) -> None:

@@ -17,7 +17,8 @@ _COLUMNS: tuple[tuple[str, Iterable[str], str, str], ...] = (
         "method",
         _ALL,
         "",
-        "newton (cytodisk's default), newton-triangles, harmonic, advection (u-Unwrap's), edge, or rings",
+        "newton (cytodisk's default), newton-triangles, harmonic, advection (u-Unwrap's), edge, or rings; "
+        "with nuclei newton, nucleus-rings (by distance), or interpolated-rings",
     ),
     ("layer", (BY_LAYER,), "", "0 at the edge"),
     ("channel", (THROUGH_TIME,), "", "channel of the signal; empty without a signal"),
@@ -25,8 +26,9 @@ _COLUMNS: tuple[tuple[str, Iterable[str], str, str], ...] = (
     ("tried", _MEASURED, "", "cells (in a movie: frames) whose mask is that of a cell"),
     ("mapped", _MEASURED, "", "those that got windows"),
     ("frames", (THROUGH_TIME,), "", "frames whose windows are in the next frame too"),
-    ("invalid_maps", (BY_METHOD,), "", "maps that are not one to one; empty where windows need no map"),
-    ("flipped", (BY_METHOD,), "", "triangles that maps turned over, in all"),
+    ("invalid_maps", (BY_METHOD,), "", "maps or interpolated rings that are not one to one; empty where "
+     "windows need neither"),
+    ("flipped", (BY_METHOD,), "", "triangles that maps or interpolated rings turned over, in all"),
     ("area_error", (BY_METHOD,), "1", "mean |log area ratio| of a map; in a movie median over "
      "a cell's frames; median over cells"),
     ("coverage", (BY_METHOD,), "1", "share of the cells' area that lies in windows"),
@@ -44,6 +46,18 @@ _COLUMNS: tuple[tuple[str, Iterable[str], str, str], ...] = (
     ("layer_pieces", (BY_LAYER,), "1", "pieces that a layer as a whole is in, median"),
     ("pieces", (BY_LAYER,), "1", "pieces that a filled window is in, mean"),
     ("one_piece", (BY_LAYER,), "1", "share of filled windows that are in one piece, mean"),
+    ("outside", (BY_METHOD,), "1", "share of the points of interpolated rings outside the cell, mean"),
+    ("overlap", (BY_METHOD,), "1", "share of a cell's area in several interpolated windows, mean"),
+    ("area_error_cytoplasm", (BY_METHOD,), "1", "mean |ln| of the areas of windows of the cytoplasm over "
+     "their mean, median; empty windows count in the mean alone"),
+    ("area_error_nucleus", (BY_METHOD,), "1", "the same of the nucleus"),
+    ("outer_fifth", (BY_METHOD,), "1", "share of the cytoplasm in the outermost of five layers, mean; a "
+     "fifth where all layers are equal"),
+    ("nearness", (BY_METHOD,), "1", "rank correlation of layers of the cytoplasm with the nearness of their "
+     "pixels to the nucleus, mean"),
+    ("compartment", (BY_LAYER,), "", "cytoplasm or nucleus"),
+    ("relative_area", (BY_LAYER,), "1", "mean area of a layer's windows over that of all windows of the "
+     "compartment, median"),
     ("seconds", (BY_METHOD,), "s", "time for one cell (in a movie: a frame, tracking included), median"),
     ("correlation", (THROUGH_TIME,), "1", "Pearson correlation of the means of a layer's windows with "
      "those in the next frame, median over frames"),

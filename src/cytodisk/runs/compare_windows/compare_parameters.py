@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal, Self, TypeAlias
+from typing import ClassVar, Literal, Self, TypeAlias, TypeVar, get_args
 
 from pydantic import field_validator
 
 from cytodisk.disk.mapping_parameters import MeshParameters
+from cytodisk.disk.nucleus.nucleus_parameters import NucleusParameters
 from cytodisk.errors import CytodiskError, ParameterError
 from cytodisk.images.file_parameters import KindParameters
+from cytodisk.images.nuclei.nuclei_parameters import NucleiFileParameters
 from cytodisk.parameters import parameter
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
 from cytodisk.scale_parameters import PixelSizeParameters
 from cytodisk.windows.grid_parameters import EdgeGridParameters, GridParameters
+from cytodisk.windows.rings.nucleus_ring_parameters import InterpolatedRingParameters
 
 WindowMethod: TypeAlias = Literal["newton", "newton-triangles", "harmonic", "advection", "edge", "rings"]
+NucleusMethod: TypeAlias = Literal["newton", "nucleus-rings", "interpolated-rings"]
+
+Method = TypeVar("Method", bound=str)
 
 OURS = "newton"
 ON_A_MAP = ("newton", "newton-triangles", "harmonic", "advection")
@@ -26,6 +32,8 @@ TITLES = {
     "advection": "u-Unwrap's relaxation",
     "edge": "edge-based",
     "rings": "rings and wedges",
+    "nucleus-rings": "rings by distance",
+    "interpolated-rings": "interpolated rings",
 }
 """Names of the methods in figures and on the console."""
 
@@ -34,7 +42,19 @@ _METHODS = (
     "(newton-triangles), on the map before relaxation (harmonic), on the paper's map (advection), by "
     "distance from the edge (edge), around the deepest point (rings)."
 )
-_WORDS = f"several of {', '.join(TITLES)}"
+_WORDS = f"several of {', '.join(get_args(WindowMethod))}"
+_NUCLEUS_METHODS = (
+    "Kinds of windows that are compared: on cytodisk's map of cell and nucleus (newton), rings by the share "
+    "of the way from the edge to the nucleus (nucleus-rings), rings interpolated between both outlines "
+    "(interpolated-rings)."
+)
+
+
+def once_each(methods: tuple[Method, ...]) -> tuple[Method, ...]:
+    """The methods, if there is one, and none is named twice; or else ValueError."""
+    if not methods or len(set(methods)) < len(methods):
+        raise ValueError("name at least one method, and each once")
+    return methods
 
 
 class ComparedParameters(EdgeGridParameters):
@@ -55,9 +75,7 @@ class ComparedParameters(EdgeGridParameters):
     @field_validator("methods", check_fields=False)
     @classmethod
     def _once_each(cls, methods: tuple[WindowMethod, ...]) -> tuple[WindowMethod, ...]:
-        if not methods or len(set(methods)) < len(methods):
-            raise ValueError("name at least one method, and each once")
-        return methods
+        return once_each(methods)
 
     def in_pixels(self, scale: Scale) -> Self:
         """The same with `depth_px` for a `depth_um`.
@@ -88,3 +106,25 @@ class CompareMovieParameters(ComparedParameters, FollowedCellParameters):
     """What decides the result of `cytodisk compare-windows --movie`, beside the input files."""
 
     methods: tuple[WindowMethod, ...] = parameter(("newton", "harmonic", "edge"), _METHODS, words=_WORDS)
+
+
+class CompareNucleiParameters(
+    InterpolatedRingParameters,
+    NucleusParameters,
+    MeshParameters,
+    PixelSizeParameters,
+    NucleiFileParameters,
+    KindParameters,
+):
+    """What decides the result of `cytodisk compare-windows --nuclei`, beside the input files."""
+
+    fault: ClassVar[type[CytodiskError]] = ParameterError
+
+    methods: tuple[NucleusMethod, ...] = parameter(
+        get_args(NucleusMethod), _NUCLEUS_METHODS, words=f"several of {', '.join(get_args(NucleusMethod))}"
+    )
+
+    @field_validator("methods")
+    @classmethod
+    def _once_each(cls, methods: tuple[NucleusMethod, ...]) -> tuple[NucleusMethod, ...]:
+        return once_each(methods)

@@ -10,6 +10,14 @@ import pandas as pd
 _TRIED = ("ok", "no map", "partly")  # what the others are is no cell
 _SPREAD = ("area_cv", "eccentricity_cv")
 _THROUGH_TIME = ("correlation", "centroid_displacement")
+_WITH_NUCLEI = (
+    "outside",
+    "overlap",
+    "area_error_cytoplasm",
+    "area_error_nucleus",
+    "outer_fifth",
+    "nearness",
+)
 
 
 def layer_summary(cells: pd.DataFrame, layers: pd.DataFrame, methods: tuple[str, ...]) -> pd.DataFrame:
@@ -27,7 +35,8 @@ def layer_summary(cells: pd.DataFrame, layers: pd.DataFrame, methods: tuple[str,
         completeness is the share of filled windows of all cells that were tried, so that a cell that could
         not be mapped counts as empty; completeness_mapped that of the mapped ones alone, with its quartiles
         over cells. Of area_cv, eccentricity_cv and eccentricity the median and quartiles over cells; of
-        layer_pieces the median; of pieces and one_piece the mean. In a movie "cells" are frames.
+        layer_pieces the median; of pieces and one_piece the mean. In a movie "cells" are frames. With nuclei
+        compartment, and of relative_area the median and quartiles.
     """
     rows = []
     for method in methods:
@@ -38,7 +47,10 @@ def layer_summary(cells: pd.DataFrame, layers: pd.DataFrame, methods: tuple[str,
             row["completeness"] = group["completeness"].sum() / tried
             row["completeness_mapped"] = group["completeness"].mean()
             row |= _quartiles(group["completeness"], "completeness")
-            for name in (*_SPREAD, "eccentricity"):
+            more: tuple[str, ...] = ()
+            if "compartment" in group:
+                row["compartment"], more = group["compartment"].iloc[0], ("relative_area",)
+            for name in (*_SPREAD, "eccentricity", *more):
                 row[name] = group[name].median()
                 row |= _quartiles(group[name], name)
             row["layer_pieces"] = group["layer_pieces"].median()
@@ -63,7 +75,8 @@ def method_summary(cells: pd.DataFrame, layers: pd.DataFrame, methods: tuple[str
         of a movie's cell its median over frames; median over cells with quartiles, which are null for one
         cell), coverage (of all mapped cells' area), lost_px, empty_windows,
         completeness over all windows of all cells tried and of those mapped, medians of area_cv and
-        eccentricity_cv over cells and layers, median seconds.
+        eccentricity_cv over cells and layers, median seconds. With nuclei means over cells of outside,
+        overlap, outer_fifth and nearness, medians of area_error_cytoplasm and area_error_nucleus; quartiles.
     """
     rows = []
     for method in methods:
@@ -81,6 +94,10 @@ def method_summary(cells: pd.DataFrame, layers: pd.DataFrame, methods: tuple[str
         row["completeness"] = own["completeness"].sum() / (tried * n_layers) if n_layers else 0.0
         row["completeness_mapped"] = own["completeness"].mean()
         row |= {name: own[name].median() for name in _SPREAD}
+        for name in _WITH_NUCLEI if "outer_fifth" in done else ():
+            error = name.startswith("area_error")
+            row[name] = done[name].median() if error else done[name].mean()
+            row |= _quartiles(done[name] if len(done) > 1 else done[name].iloc[:0], name)
         row["seconds"] = done["seconds"].median()
         rows.append(row)
     return pd.DataFrame(rows)

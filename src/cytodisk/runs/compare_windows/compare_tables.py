@@ -39,7 +39,7 @@ _METHOD = Column(
     pa.string(),
     "",
     "how windows are made: newton (the default map), newton-triangles, harmonic, advection (of the paper), "
-    "edge or rings",
+    "edge or rings; with nuclei newton, nucleus-rings or interpolated-rings",
 )
 # One row for each cell and method; counts are sums over the frames of a movie.
 _CELLS: Columns = (
@@ -56,8 +56,13 @@ _CELLS: Columns = (
     Column("mapped", pa.int64(), "", "number of those frames that have windows"),
     Column("area_px", pa.float64(), "px²", "area without excluded holes, in a movie over all frames"),
     Column("certificate_valid", pa.bool_(), "", "whether the map is proven to be one to one"),
-    Column("invalid_maps", pa.int64(), "", "number of maps that are not one to one"),
-    Column("flipped", pa.int64(), "", "number of triangles that the map turns over"),
+    Column(
+        "invalid_maps",
+        pa.int64(),
+        "",
+        "number of maps, or cells with interpolated rings, that are not one to one",
+    ),
+    Column("flipped", pa.int64(), "", "number of triangles that the map, or interpolated rings, turn over"),
     Column("area_distortion", pa.float64(), "1", "mean of |ln λ| over the cell, as in the cells of a map"),
     Column("angle_distortion", pa.float64(), "1", "median of the largest over the smallest stretch"),
     Column("coverage", pa.float64(), "1", "share of the cell's area that lies in windows"),
@@ -66,6 +71,20 @@ _CELLS: Columns = (
     Column("depth_px", pa.float64(), "px", "depth of an edge-based layer; empty for other methods"),
     SECONDS,
 )
+
+# Beside these in a comparison with nuclei.
+_NUCLEUS: Columns = (
+    Column("nucleus_area", pa.float64(), "px²", "area of the nucleus"),
+    Column("outside", pa.float64(), "1", "share of points of interpolated rings that lie outside the cell"),
+    Column("overlap", pa.float64(), "1", "share of the cell's area in several interpolated windows"),
+    Column("area_error_cytoplasm", pa.float64(), "1", "mean |ln| of the areas of windows of the cytoplasm "
+           "over their mean; empty windows count in the mean alone"),
+    Column("area_error_nucleus", pa.float64(), "1", "the same of the nucleus"),
+    Column("outer_fifth", pa.float64(), "1", "share of the cytoplasm in the outermost of five layers; a "
+           "fifth where all layers are equal"),
+    Column("nearness", pa.float64(), "1", "rank correlation of layers of the cytoplasm with the nearness of "
+           "their pixels to the nucleus, by the way through the cell"),
+)  # fmt: skip
 
 _BY_LAYER: Columns = (
     Column("completeness", pa.float64(), "1", "share of the layer's windows that hold a part of the cell"),
@@ -80,6 +99,12 @@ _BY_LAYER: Columns = (
 BY_LAYER = tuple(column.name for column in _BY_LAYER)
 
 _LAYERS: Columns = (CELL, FRAME, _METHOD, LAYER, *_BY_LAYER)
+_NUCLEUS_LAYERS: Columns = (
+    *_LAYERS,
+    Column("compartment", pa.string(), "", "cytoplasm or nucleus"),
+    Column("relative_area", pa.float64(), "1", "mean area of the layer's windows over that of all windows of "
+           "the compartment; 1 where all are equal"),
+)  # fmt: skip
 _CONSISTENCY: Columns = (CELL, _METHOD, *CONSISTENCY_COLUMNS[1:])
 
 _READER = "look at comparison.csv and the figures, or read it with open_comparison"
@@ -93,6 +118,14 @@ COMPARED_CELLS = StudyKind(
     _READER,
     _CELLS,
     {"layers": _LAYERS},
+    (*_SUMMARIES, *part_patterns("maps/windows_{}.npz")),
+)
+COMPARED_NUCLEI = StudyKind(
+    "comparison with nuclei",
+    "cytodisk compare-windows --nuclei",
+    _READER,
+    (*_CELLS, *_NUCLEUS),
+    {"layers": _NUCLEUS_LAYERS},
     (*_SUMMARIES, *part_patterns("maps/windows_{}.npz")),
 )
 COMPARED_MOVIE = StudyKind(

@@ -26,7 +26,11 @@ from cytodisk.runs.compare_windows.compare_columns import (
 )
 from cytodisk.runs.compare_windows.compare_parameters import TITLES
 from cytodisk.runs.compare_windows.compare_summaries import layer_summary, method_summary, movie_summary
-from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS, COMPARED_MOVIE
+from cytodisk.runs.compare_windows.compare_tables import (
+    COMPARED_CELLS,
+    COMPARED_MOVIE,
+    COMPARED_NUCLEI,
+)
 from cytodisk.scale import Scale
 from cytodisk.store.csv_tables import write_csv
 from cytodisk.store.provenance_file import PROVENANCE, other_maps, read_complete
@@ -87,6 +91,11 @@ class Comparison:
         return self.provenance.get("run") == "movie comparison"
 
     @property
+    def has_nuclei(self) -> bool:
+        """Whether cells were compared with their nuclei."""
+        return self.provenance.get("run") == COMPARED_NUCLEI.run
+
+    @property
     def scale(self) -> Scale:
         """µm per pixel and seconds per frame, as far as the run knew them."""
         return Scale(self.provenance.get("pixel_size_um"), self.provenance.get("frame_interval_s"))
@@ -130,16 +139,20 @@ class Comparison:
     def labels(self, cell: int) -> dict[str, Any]:
         """Which pixel of a cell is in which window: "mask", and by method an int array, -1 for none.
 
-        In cells of up to 4000 pixels each pixel is divided into 4×4.
+        With nuclei there is the mask "nucleus", too. In cells of up to 4000 pixels each pixel is divided
+        into 4×4.
         """
         path = self.path / MAPS / f"windows_{part_key(cell)}.npz"
         if not path.exists():
             raise ReadError(f"cell {cell} has no windows in comparison {self.path}")
         with reading_arrays(path, "the windows of a comparison", REMEDY) as file:
             mask = file.truths("mask", (None, None), most=(_MOST_SIDE, _MOST_SIDE))
-            others = (name for name in file.names if name != "mask")
+            masks = {"mask": mask}
+            if self.has_nuclei:
+                masks["nucleus"] = file.truths("nucleus", mask.shape, most=mask.shape)
+            others = (name for name in file.names if name not in masks)
             labels = {name: file.integers(name, mask.shape, least=-1, most=_MOST_WINDOWS) for name in others}
-        return {"mask": mask} | labels
+        return masks | labels
 
     def activity(self, cell: int, method: str) -> xr.DataArray:
         """For a movie, the signal in the windows of a method, dims (time, channel, layer, sector)."""
@@ -201,7 +214,8 @@ def open_comparison(path: str | os.PathLike[str]) -> Comparison:
     [1.0, 1.0, 1.0, 1.0]
     """
     folder = Path(path)
-    provenance = read_complete(folder, "comparison", "movie comparison")
+    kinds = {kind.run: kind for kind in (COMPARED_CELLS, COMPARED_MOVIE, COMPARED_NUCLEI)}
+    provenance = read_complete(folder, *kinds)
     if words := other_maps(provenance):
         warnings.warn(f"comparison {folder}: {words}", EarlierVersionWarning, stacklevel=2)
     methods = provenance.get("parameters", {}).get("methods")
@@ -209,7 +223,7 @@ def open_comparison(path: str | os.PathLike[str]) -> Comparison:
         raise ReadError(
             f"{folder / PROVENANCE}: parameters.methods names none, got {short_words(methods)}: {REMEDY}"
         )
-    kind, units = COMPARED_CELLS, units_in(provenance)
+    kind, units = kinds[provenance["run"]], units_in(provenance)
     cells = read_checked(folder / CELLS, kind.cells, units=units)
     layers = read_checked(folder / "layers.parquet", kind.others["layers"], units=units)
     return Comparison(folder, cells, layers, provenance)

@@ -13,10 +13,10 @@ from cytodisk.runs.compare_windows.compare_parameters import OURS, TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
 
 # Measures whose larger values are better; of all others smaller ones are.
-_MORE_IS_BETTER = ("completeness", "correlation", "coverage")
+_MORE_IS_BETTER = ("completeness", "correlation", "coverage", "nearness")
 _BY_LAYER = ("completeness", "area_cv", "eccentricity_cv", "eccentricity")
 _THROUGH_TIME = ("correlation", "centroid_displacement")
-_BY_METHOD = ("area_error", "coverage", "seconds")
+_BY_METHOD = ("area_error", "coverage", "area_error_cytoplasm", "area_error_nucleus", "nearness", "seconds")
 _LEAST = 0.05  # relative difference that is worth a line
 _MOST_RUNS = 5  # of layers that are named one by one
 
@@ -51,7 +51,7 @@ def _worse_than(comparison: Comparison, method: str) -> Iterator[str]:
     if comparison.is_movie:
         yield from _worse_through_time(comparison.through_time, method)
     rows = comparison.by_method.set_index("method")
-    for name in _BY_METHOD:
+    for name in (name for name in _BY_METHOD if name in rows):
         ours, theirs = rows[name].loc[[OURS]], rows[name].loc[[method]].set_axis([OURS])
         if _is_worse(ours, theirs, name).any():
             unit = "" if name != "seconds" else " s a frame" if comparison.is_movie else " s a cell"
@@ -107,3 +107,35 @@ def _layer_words(layers: Sequence[int], of: int) -> str:
         return f"{len(layers)} of {of} layers"
     spans = [f"{run[0]}–{run[-1]}" if len(run) > 1 else str(run[0]) for run in runs]
     return f"layer{'s' if len(layers) > 1 else ''} {', '.join(spans)}"
+
+
+def ring_faults(comparison: Comparison) -> list[str]:
+    """What is wrong with rings between nucleus and edge, a line a method.
+
+    Parameters
+    ----------
+    comparison : Comparison
+
+    Returns
+    -------
+    list of str
+        Empty for comparisons without nuclei, and for methods without fault.
+    """
+    if not comparison.has_nuclei:
+        return []
+    rows = comparison.by_method.set_index("method")
+    mapped = [method for method in comparison.methods if rows["mapped"][method]]
+    found = {TITLES[method]: list(_ring_faults(rows.loc[method])) for method in mapped if method != OURS}
+    return [f"{title}: {'; '.join(words)}" for title, words in found.items() if words]
+
+
+def _ring_faults(row: Any) -> Iterator[str]:
+    cells = int(row["mapped"])
+    if row["invalid_maps"] > 0:
+        yield f"rings cross each other in {row['invalid_maps']:.0f} of {cells} cells"
+    if row["outside"] > 0:
+        yield f"{row['outside']:.1%} of their points lie outside the cell"
+    if row["empty_windows"] > 0:
+        yield f"{row['empty_windows']:.0f} windows are empty"
+    if abs(row["outer_fifth"] - 0.2) > _LEAST * 0.2:
+        yield f"the outermost of five rings holds {row['outer_fifth']:.0%} of the cytoplasm"
