@@ -88,7 +88,7 @@ def map_to_disk(
 
     With a nucleus, which lies within half of the disk's radius:
 
-    >>> nucleus = cd.simulate.disk(5, margin=20)
+    >>> nucleus = cd.simulate.disk(5, margin=23)
     >>> disk = cd.map_to_disk(cd.simulate.disk(20), nucleus=nucleus)
     >>> disk.certificate.valid, disk.nucleus_radius
     (True, 0.5)
