@@ -96,9 +96,38 @@ def test_a_movie_is_compared_through_time(run: Run, tmp_path: Path) -> None:
     assert found.provenance["frame_interval_s"] == 5.0
 
 
+def test_cells_with_nuclei_are_compared_with_rings(run: Run, tmp_path: Path) -> None:
+    found = cd.simulate.cell_with_nucleus("off centre", seed=2, shape="spiky", radius_px=20)
+    cells = write(tmp_path / "cells.tif", found.mask.astype(np.uint8))
+    nuclei = write(tmp_path / "nuclei.tif", found.nucleus.astype(np.uint8))
+    out = tmp_path / "out"
+    code, said, _ = run(
+        "compare-windows", cells, "--nuclei", nuclei, "-o", out, "--nucleus-layers", "2", *GRID
+    )
+    assert code == 0
+    table = {line.split()[0]: line.split()[1:] for line in said.splitlines() if line.strip()}
+    assert table["method"][:3] == ["newton", "nucleus-rings", "interpolated-rings"]
+    assert table["flipped"][0] == "0" != table["flipped"][1]
+    assert float(table["outer_fifth"][0].rstrip("%")) == pytest.approx(20.0, abs=2.5)
+    assert "interpolated rings: rings cross each other in 1 of 1 cells" in said
+    assert "by layer of cytoplasm and nucleus" in said
+    for name in ("comparison.png", "cells.png"):
+        assert (out / "figures" / name).exists()
+    assert cd.open_comparison(out).has_nuclei
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
+        (("--nuclei", "nuclei.tif", "--movie"), "leave --movie or --nuclei out"),
+        (("--nuclei", "nuclei.tif", "--depth-px", "3"), "--depth-px: not with --nuclei; leave it out"),
+        (("--nuclei", "nuclei.tif", "--signal", "s.tif"), "--signal: not with --nuclei; leave it out"),
+        (
+            ("--nuclei", "nuclei.tif", "--methods", "edge"),
+            "--methods must be several of newton, nucleus-rings",
+        ),
+        (("--nucleus-layers", "2"), "--nucleus-layers: only with --nuclei; pass that too, or leave it out"),
+        (("--harmonics", "9", "--movie"), "--harmonics: not with --movie; leave it out"),
         (("--signal", "signal.tif"), "--signal: only with --movie"),
         (("--frame-interval", "5"), "--frame-interval: only with --movie"),
         (("--channels", "VASP", "--nan", "omit"), "--channels, --nan: only with --movie"),
