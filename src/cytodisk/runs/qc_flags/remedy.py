@@ -62,9 +62,9 @@ def run_again(study: Study, suffix: str, **changes: Any) -> str:
         As "cytodisk movie masks.tif --parameters out/parameters.toml --sectors 48 -o out_48".
     """
     inputs = study.provenance.get("inputs", {})
-    masks, signal = (inputs.get(role, {}).get("path") for role in ("masks", "signal"))
-    words = ["cytodisk", "movie" if study.is_movie else "map", shown_path(masks or "masks.tif")]
-    words += ["--signal", shown_path(signal)] if signal else []
+    paths = {role: inputs.get(role, {}).get("path") for role in ("masks", "signal", "nuclei")}
+    words = ["cytodisk", "movie" if study.is_movie else "map", shown_path(paths.pop("masks") or "masks.tif")]
+    words += [word for role, path in paths.items() if path for word in (f"--{role}", shown_path(path))]
     words += ["--parameters", shown_path(str(study.path / PARAMETERS))]
     return shlex.join([*words, *_flags(changes), "-o", f"{shown_path(str(study.path))}_{suffix}"])
 
