@@ -88,7 +88,9 @@ def schwann_cases(data: Path) -> Iterator[Case]:
         nuclei, _ = ndimage.label(remove_small_objects(nuclei, max_size=_SPECK_PX))
         away = ndimage.distance_transform_edt(nuclei == 0)
         cut = watershed(away, np.where(cells, nuclei, 0), mask=cells)
-        for label in np.unique(cut[cut > 0]):
+        labels = np.unique(cut[cut > 0])
+        print(f"{path.stem[:2]}: {len(labels)} nuclei lie in cells, {nuclei.max() - len(labels)} in none")
+        for label in labels:
             yield cropped("schwann", f"{path.stem[:2]} {label}", cut == label, nuclei == label)
 
 
