@@ -115,3 +115,21 @@ def test_rings_around_the_nucleus_leave_the_same_pixels_out(lay, mask: np.ndarra
         assert_array_equal(windows.labels, np.where(counted, whole.labels, -1))
     with pytest.raises(MaskError, match="hole"):
         lay(mask & ~VACUOLE, NUCLEUS, holes="error")
+
+
+def test_a_movie_of_cytoplasm_masks_holds_nuclei_and_leaves_vacuoles_out() -> None:
+    """The vacuole closes in the third of four frames."""
+
+    def moved(mask: np.ndarray) -> np.ndarray:
+        return np.stack([np.roll(mask, frame, axis=1) for frame in range(4)])
+
+    cells, nuclei = moved(CELL & ~NUCLEUS & ~VACUOLE), moved(NUCLEUS)
+    cells[2] = moved(CELL & ~NUCLEUS)[2]
+    counted = cells | nuclei
+    movie = cd.map_movie(cells, nuclei=nuclei, holes="exclude")
+    assert [disk.holes is None for disk in movie] == [False, False, True, False]
+    activity = cd.sample_movie(movie, cd.polar_windows(4, 12, nucleus_layers=2), np.where(counted, 5.0, 1e6))
+    areas = activity["area"].sum("sector").to_numpy()
+    assert_allclose(areas.sum(axis=1), counted.sum(axis=(1, 2)), rtol=1e-9)
+    assert_allclose(areas[:, 4:].sum(axis=1), NUCLEUS.sum(), rtol=1e-9)
+    assert_allclose(activity["max"].max(), 5.0)
