@@ -34,11 +34,7 @@ def numbered_pieces(frame: FramePixels) -> FramePixels:
     ReadError
         The frame is damaged.
     """
-    runs = np.concatenate([np.empty((0, 3), dtype=np.int64), *_runs(frame)])
-    rows, first, after = runs.T
-    starts = np.searchsorted(rows, np.arange(frame.image_shape[0] + 1))
-    pieces = _RunPieces(first, after, starts, _numbers(runs, starts))
-    return FramePixels((1, *frame.image_shape), np.dtype(np.int32), pieces.cut)
+    return _RunPieces.of(frame).labels(frame)
 
 
 def mask_labels(frame: FramePixels) -> FramePixels:
@@ -57,12 +53,10 @@ def mask_labels(frame: FramePixels) -> FramePixels:
     ReadError
         The frame is damaged.
     """
-    numbered = numbered_pieces(frame)
+    pieces = _RunPieces.of(frame)
     box, greatest = cell_box(frame.strips())
     own = single_label(frame.dtype, greatest, box is not None)
-    if own < 2 or box is None or numbered.cut(*box).max() > 1:
-        return numbered
-    return frame
+    return frame if own > 1 and pieces.piece.max(initial=0) == 1 else pieces.labels(frame)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,15 +68,33 @@ class _RunPieces:
     starts: IntArray  # number of the first run of each row, and the number of all
     piece: IntArray
 
+    @classmethod
+    def of(cls, frame: FramePixels) -> _RunPieces:
+        """The pieces of what is not 0 in a frame, numbered by their first pixel."""
+        runs = np.concatenate([np.empty((0, 3), dtype=np.int64), *_runs(frame)])
+        rows, first, after = runs.T
+        starts = np.searchsorted(rows, np.arange(frame.image_shape[0] + 1))
+        return cls(first, after, starts, _numbers(runs))
+
+    def labels(self, frame: FramePixels) -> FramePixels:
+        """The numbers as a frame of the same size."""
+        return FramePixels((1, *frame.image_shape), np.dtype(np.int32), self.cut)
+
     def cut(self, rows: slice, columns: slice) -> np.ndarray[Any, Any]:
         """Labels of some rows and columns, shape (1, h, w)."""
-        left, width = columns.start, columns.stop - columns.start
-        labels = np.zeros((1, rows.stop - rows.start, width), dtype=np.int32)
-        for row in range(rows.start, rows.stop):
-            line = labels[0, row - rows.start]
-            for run in range(self.starts[row], self.starts[row + 1]):
-                line[max(self.first[run] - left, 0) : max(self.after[run] - left, 0)] = self.piece[run]
-        return labels
+        height, width = rows.stop - rows.start, columns.stop - columns.start
+        some = slice(self.starts[rows.start], self.starts[rows.stop])
+        in_row = np.diff(self.starts[rows.start : rows.stop + 1])
+        row_start = np.repeat(np.arange(height) * width, in_row)
+        first = row_start + np.clip(self.first[some] - columns.start, 0, width)
+        length = np.minimum(self.after[some], columns.stop) - np.maximum(self.first[some], columns.start)
+        inside = length > 0
+        first, length = first[inside], length[inside]
+        ends = np.cumsum(length)
+        pixels = np.repeat(first - ends + length, length) + np.arange(length.sum())
+        labels = np.zeros(height * width, dtype=np.int32)
+        labels[pixels] = np.repeat(self.piece[some][inside], length)
+        return labels.reshape(1, height, width)
 
 
 def _runs(frame: FramePixels) -> Iterator[IntArray]:
@@ -97,7 +109,7 @@ def _runs(frame: FramePixels) -> Iterator[IntArray]:
         yield np.column_stack([row + top, first, first + length])
 
 
-def _numbers(runs: IntArray, starts: IntArray) -> IntArray:
+def _numbers(runs: IntArray) -> IntArray:
     """Number of the piece of each run: those that touch in neighbouring rows, also at a corner, are one."""
     rows, first, after = runs.T
     # Runs of the next row that touch are those from the first that ends at this one's start or later.
