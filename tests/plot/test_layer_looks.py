@@ -29,8 +29,8 @@ def test_names_tell_the_compartment() -> None:
     assert layer_names([0, 1, 2, 3], 4, depths) == [
         "layer 0 (edge), 0.5 µm deep",
         "layer 1 (at the nucleus), 2 µm deep",
-        "nucleus 1 (layer 2), 4 µm deep",
-        "nucleus 2 (layer 3), 5 µm deep",
+        "layer 2 (nucleus 1), 4 µm deep",
+        "layer 3 (nucleus 2), 5 µm deep",
     ]
     assert layer_word(2, 4) == "layer 2"
     assert cytoplasm_layers_of(depths.drop_vars("compartment")) is None

@@ -84,7 +84,7 @@ def layer_names(
     -------
     list of str
         As "layer 0 (edge), 0.4 µm deep" or "layer 0 (edge), 0–0.5 µm"; in cells with a nucleus "layer 7 (at
-        the nucleus), 3.1 µm deep" and "nucleus 1 (layer 8), 4 µm deep".
+        the nucleus), 3.1 µm deep" and "layer 8 (nucleus 1), 4 µm deep".
     """
     outer = cytoplasm_layers_of(depths) if cytoplasm_layers is None else cytoplasm_layers
     deep = dict.fromkeys(layers, "")
@@ -100,14 +100,17 @@ def layer_names(
 
 
 def layer_word(layer: int, count: int, cytoplasm_layers: int | None = None) -> str:
-    """Name of a layer with what it is, as "layer 0 (edge)", "layer 3", "nucleus 1 (layer 8)"."""
+    """Name of a layer with what it is, as "layer 0 (edge)", "layer 3", "layer 8 (nucleus 1)"."""
+    return f"layer {layer}{layer_place(layer, count, cytoplasm_layers)}"
+
+
+def layer_place(layer: int, count: int, cytoplasm_layers: int | None = None) -> str:
+    """What a layer is, as " (edge)", " (at the nucleus)", " (nucleus 1)", " (centre)"; empty for others."""
     if cytoplasm_layers is None:
-        place = {count - 1: " (centre)", 0: " (edge)"}
-    else:
-        place = {cytoplasm_layers - 1: " (at the nucleus)", 0: " (edge)"}
-        if layer >= cytoplasm_layers:
-            return f"nucleus {layer - cytoplasm_layers + 1} (layer {layer})"
-    return f"layer {layer}{place.get(layer, '')}"
+        return {count - 1: " (centre)", 0: " (edge)"}.get(layer, "")
+    if layer >= cytoplasm_layers:
+        return f" (nucleus {layer - cytoplasm_layers + 1})"
+    return {cytoplasm_layers - 1: " (at the nucleus)", 0: " (edge)"}.get(layer, "")
 
 
 def depth_words(depth: float, depths: xr.DataArray) -> str:

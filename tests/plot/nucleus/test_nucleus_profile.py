@@ -3,7 +3,7 @@ import pytest
 import xarray as xr
 from matplotlib.axes import Axes
 
-from cytodisk.errors import ParameterError
+from cytodisk.errors import ParameterError, WindowError
 from cytodisk.plot.nucleus.layer_profile import LayerProfile
 from cytodisk.plot.nucleus.nucleus_profile import draw_nucleus_profile
 from cytodisk.windows.polar_windows import CellWindows
@@ -49,9 +49,9 @@ def test_frames_are_averaged(sampled: xr.Dataset) -> None:
 
 
 def test_other_data_are_refused(ax: Axes, sampled: xr.Dataset, nucleus_windows: CellWindows) -> None:
-    with pytest.raises(ParameterError, match="data lacks compartment: pass what sample"):
+    with pytest.raises(WindowError, match="data has no layers of a nucleus: pass nucleus to"):
         draw_nucleus_profile(ax, sampled.drop_vars("compartment"))
-    with pytest.raises(ParameterError, match="must be a Dataset, got CellWindows"):
+    with pytest.raises(ParameterError, match="data must be a Dataset"):
         draw_nucleus_profile(ax, nucleus_windows)  # type: ignore[arg-type]
     with pytest.raises(ParameterError, match="2 channels for 1 colours"):
         draw_nucleus_profile(ax, sampled, colors=["red"])

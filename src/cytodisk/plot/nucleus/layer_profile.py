@@ -7,11 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from cytodisk.analysis.compartments.nuclear_profile import nuclear_profile
 from cytodisk.arrays import FloatArray
-from cytodisk.errors import ParameterError
-from cytodisk.plot.layer_looks import cytoplasm_layers_of
 
-_NEEDED = ("mean", "n_pixels", "area", "depth", "nucleus_distance")
 _QUARTILES = (0.25, 0.75)
 
 
@@ -23,14 +21,13 @@ class LayerProfile:
     ----------
     channels : list of str
     values : ndarray of shape (C, L)
-        Mean of each layer over its pixels and all frames.
+        Mean of each layer over its pixels, in a movie the mean over frames.
     low, high : ndarray of shape (C, L)
         Quartiles of the layer's sectors, each the mean of its frames.
     whole : ndarray of shape (C,)
         Mean of the cell.
     area, depth, distance : ndarray of shape (L,)
-        Area of each layer; medians over its windows of their distance to the membrane, and to the nuclear
-        outline.
+        Of each layer, as `nuclear_profile` gives them; distance is that to the nuclear outline.
     thickness : float
         Median over sectors of how far the membrane is from the nuclear outline.
     cytoplasm_layers : int
@@ -56,35 +53,34 @@ class LayerProfile:
 
         Raises
         ------
+        WindowError
+            There are no layers of a nucleus in it.
         ParameterError
-            It is no such dataset.
+            It is not a Dataset.
         """
-        data = _checked(data)
-        flat = data if "channel" in data.dims else data.expand_dims("channel")
-        names = [str(name) for name in flat["channel"].to_numpy()] if "channel" in flat.coords else ["signal"]
-        times = [name for name in ("time",) if name in flat.dims]
-        pixels = flat["n_pixels"].where(flat["mean"].notnull())
-        by_layer = (flat["mean"] * pixels).sum([*times, "sector"]) / pixels.sum([*times, "sector"])
-        cell = (flat["mean"] * pixels).sum([*times, "layer", "sector"]) / pixels.sum(
-            [*times, "layer", "sector"]
-        )
-        sectors = flat["mean"].mean(times)
-        low, high = (sectors.quantile(share, "sector") for share in _QUARTILES)
-        cytoplasm = cytoplasm_layers_of(data) or 0
-        over = [*times, "sector"]
-        reach = (data["depth"] + data["nucleus_distance"]).isel(layer=slice(0, cytoplasm))
+        profile = nuclear_profile(data)
+        sectors = data["mean"]
+        if "time" in data.dims:
+            profile, sectors = profile.mean("time", keep_attrs=True), sectors.mean("time")
+        mean = _by_channel(profile["mean"])
+        low, high = (_by_channel(sectors.quantile(share, "sector")) for share in _QUARTILES)
+        outermost = data[["depth", "nucleus_distance"]].isel(layer=0)
+        area = profile["area"].to_numpy()
+        known = np.isfinite(mean) * area
         return cls(
-            channels=names,
-            values=_table(by_layer),
-            low=_table(low),
-            high=_table(high),
-            whole=np.atleast_1d(cell.to_numpy()),
-            area=np.asarray(data["area"].sum("sector").mean(times)),
-            depth=np.asarray(data["depth"].median(over)),
-            distance=np.asarray(data["nucleus_distance"].median(over)),
-            thickness=float(reach.isel(layer=0).median()),
-            cytoplasm_layers=cytoplasm,
-            units={name: str(data[name].attrs.get("units", "")) for name in ("mean", "depth")},
+            channels=[str(name) for name in np.atleast_1d(data["channel"])]
+            if "channel" in data
+            else ["signal"],
+            values=mean,
+            low=low,
+            high=high,
+            whole=np.nansum(mean * area, axis=-1) / known.sum(axis=-1),
+            area=area,
+            depth=profile["depth"].to_numpy(),
+            distance=profile["nucleus_distance"].to_numpy(),
+            thickness=float((outermost["depth"] + outermost["nucleus_distance"]).median()),
+            cytoplasm_layers=int((data["compartment"] != "nucleus").sum()),
+            units={name: str(profile[name].attrs.get("units", "")) for name in ("mean", "depth")},
         )
 
     @property
@@ -101,15 +97,7 @@ class LayerProfile:
         return LayerProfile(**fields | {"units": self.units | {"mean": "1"}})
 
 
-def _checked(data: xr.Dataset) -> xr.Dataset:
-    remedy = "pass what sample or sample_movie returned for maps with a nucleus"
-    if not isinstance(data, xr.Dataset):
-        raise ParameterError(f"data must be a Dataset, got {type(data).__name__}: {remedy}")
-    missing = [name for name in (*_NEEDED, "compartment") if name not in data.variables]
-    if missing:
-        raise ParameterError(f"data lacks {', '.join(missing)}: {remedy}")
-    return data
-
-
-def _table(values: xr.DataArray) -> FloatArray:
-    return np.asarray(values.transpose("channel", "layer"), dtype=np.float64)
+def _by_channel(values: xr.DataArray) -> FloatArray:
+    """Values as (channel, layer), of one channel too."""
+    table = values if "channel" in values.dims else values.expand_dims("channel")
+    return np.asarray(table.transpose("channel", "layer"), dtype=np.float64)

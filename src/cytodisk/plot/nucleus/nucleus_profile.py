@@ -63,13 +63,15 @@ def draw_nucleus_profile(
 
     Raises
     ------
+    WindowError
+        The data have no layers of a nucleus.
     ParameterError
-        The data are not of cells with a nucleus, or have more channels than there are colours.
+        They are no Dataset, or have more channels than there are colours.
 
     See Also
     --------
     draw_nucleus : The nuclear outline in the cell.
-    sample : Gives the data.
+    nuclear_profile : The same as numbers.
 
     Examples
     --------
