@@ -17,6 +17,7 @@ from cytodisk.pages.report.bokeh_parts import (
     source_of,
 )
 from cytodisk.pages.report.pictures import Box
+from cytodisk.pages.report.profile_figure import profile_figure
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.time_figures import (
     LINE_COLOUR,
@@ -26,6 +27,7 @@ from cytodisk.pages.report.time_figures import (
     velocity_map,
     wedges_of,
 )
+from cytodisk.plot.layer_looks import NUCLEUS_LINE
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS, nice_length
 from cytodisk.scale import Scale
 
@@ -64,6 +66,8 @@ def figures_of(cell: ShownCell, box: Box, *, correlated: bool) -> dict[str, Any]
         "activity": time_map(cell, palette(SIGNAL_COLOURS), "white", shared),
         "velocity": velocity_map(cell, shared),
     }
+    if cell.grid.nucleus_layers:
+        plots["profile"] = profile_figure(cell)
     if correlated:
         plots["peaks"] = _disk(cell, palette(DIVERGING_COLOURS), shared, hatched=True)
         plots["curve"] = _curve(cell)
@@ -147,6 +151,9 @@ def _disk(cell: ShownCell, colours: Sequence[str], shared: dict[str, Any], *, ha
         style = {"fill_color": None, "line_color": colour, "line_width": width, "line_join": "miter"}
         plot.annular_wedge(*_WEDGE, source=shared["wedges"], view=_where(shared["chosen"]), **style)
     plot.circle(0, 0, radius=1.0, fill_color=None, line_color="#777777")
+    if cell.grid.nucleus_layers:
+        radius = float(cell.disk_grid.radii[cell.grid.cytoplasm_layers])
+        plot.circle(0, 0, radius=radius, fill_color=None, line_color=NUCLEUS_LINE, line_width=1.5)
     _number_sectors(plot, cell.grid.sectors)
     add_colour_bar(plot, mapper)
     return plot

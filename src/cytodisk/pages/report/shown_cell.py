@@ -15,7 +15,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.pages.movie_cell import MovieCell
 from cytodisk.pages.report.encode import pack_floats
 from cytodisk.pages.report.shown_names import without_folders
-from cytodisk.plot.layer_looks import depth_words
+from cytodisk.plot.layer_looks import depth_words, layer_place
 from cytodisk.plot.style import signal_limits
 from cytodisk.plot.time_axis import FrameTimes
 from cytodisk.runs.channel_names import shown_name
@@ -99,15 +99,31 @@ class ShownCell(MovieCell):
             "area": pack_floats(self.shown["area"]),
             "depth": pack_floats(self.depths.isel(time=slice(None, None, self.every))),
             "layer_depths": self.layer_depths,
+            "layer_places": self.layer_places,
+            "cytoplasm_layers": self.cytoplasm_layers,
         }
+
+    @property
+    def layer_places(self) -> list[str]:
+        """What layers are, as " (edge)" and " (nucleus 1)"; empty for most."""
+        count, outer = self.grid.layers, self.cytoplasm_layers
+        if outer is None:
+            return [" (edge)"] + [""] * (count - 1)
+        return [layer_place(layer, count, outer) for layer in range(count)]
+
+    @property
+    def median_depths(self) -> list[float]:
+        """Median depth of each layer over frames and sectors; NaN where it is not known."""
+        return [float(depth) for depth in self.depths.median(("time", "sector"))]
 
     @property
     def layer_depths(self) -> list[str]:
         """How deep each layer lies, in words as ", 0–0.5 µm", or in the median as ", 0.4 µm deep"."""
-        depths = self.depths
-        if borders := [border for border in layer_borders(self.grid) if border]:
-            return [f", {border}" for border in borders]
-        return [depth_words(float(depth), depths) for depth in depths.median(("time", "sector"))]
+        borders, units = layer_borders(self.grid), self.depths
+        return [
+            f", {border}" if border else depth_words(depth, units)
+            for border, depth in zip(borders, self.median_depths, strict=True)
+        ]
 
     @cached_property
     def reasons(self) -> list[str]:

@@ -95,7 +95,7 @@ def draw_nucleus_profile(
             "or pass more colors"
         )
     places, borders = _places(profile, along)
-    _shade(ax, borders)
+    shade_compartments(ax, borders)
     order, lines = np.argsort(places, kind="stable"), []
     for k, (name, colour) in enumerate(zip(profile.channels, colors, strict=False)):
         low, high = profile.low[k, order], profile.high[k, order]
@@ -125,7 +125,7 @@ def _places(profile: LayerProfile, along: Along) -> tuple[FloatArray, tuple[floa
     return np.asarray(places), (float(places.min() - margin), 0.0, membrane)
 
 
-def _shade(ax: Axes, borders: tuple[float, float, float]) -> None:
+def shade_compartments(ax: Axes, borders: tuple[float, float, float]) -> None:
     """Both compartments in their hues and with their names, and the two borders."""
     centre, outline, membrane = borders
     ax.axvspan(centre, outline, color=_NUCLEUS_SHADE, alpha=_SHADE, linewidth=0, zorder=-2)

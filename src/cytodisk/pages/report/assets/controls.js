@@ -156,7 +156,7 @@
     ];
     const spread = (value, around, of) => `${page.digits(value)} ± ${page.withUnit(around, of)}`;
     const words = {
-      window: `layer ${layer}, sector ${sector}`,
+      window: `${page.layerWords(layer)}, sector ${sector}`,
       mean: mean ? spread(page.row(mean, index)[number], page.row(sd, index)[number], unit) : "–",
       area: page.withUnit(area, data.units.area),
       depth: Number.isFinite(depth) ? `, ${page.withUnit(depth, data.units.depth)} deep` : "",

@@ -6,6 +6,7 @@
   const WHITE = 0xffffffff;
   const BLACK = 0xff000000;
   const FAINT = 0x4dffffff;
+  const SKY = 0xffe9b456; // of the nuclear outline, #56b4e9
 
   // A plain loop, as it runs over every pixel in every frame.
   const lookUp = (numbers, table) => {
@@ -39,6 +40,7 @@
     const pixels = new Uint32Array(height * width);
     if (!grey) pixels.fill(WHITE);
     if (!labels) return pixels;
+    const inner = (page.data.cytoplasm_layers ?? Infinity) * page.data.sectors; // windows of the nucleus
     for (let k = 0; k < labels.length; k++) {
       const here = labels[k];
       const right = labels[k + 1];
@@ -47,7 +49,8 @@
       if (here === right && here === below) continue;
       if (below === undefined) continue;
       const edge = here === OUTSIDE || right === OUTSIDE || below === OUTSIDE;
-      pixels[k] = edge ? (grey ? WHITE : BLACK) : FAINT;
+      const nuclear = here >= inner !== right >= inner || here >= inner !== below >= inner;
+      pixels[k] = edge ? (grey ? WHITE : BLACK) : nuclear ? SKY : FAINT;
     }
     for (let k = 0; chosen !== null && k < labels.length; k++) {
       if (labels[k] !== chosen) continue;

@@ -48,6 +48,12 @@
     page.set({ pinned: pin, ...(pin && { layer: pin.layer }) });
   };
 
+  // A layer's number, and in cells with a nucleus what it is.
+  page.layerWords = (layer) => {
+    const { cytoplasm_layers: inside, layer_places: places } = page.data;
+    return `layer ${layer}${inside === null ? "" : places[layer]}`;
+  };
+
   page.windowOf = (layer, sector) => layer * page.data.sectors + sector;
 
   // A row of an array, as a view into it; rows of arrays by frame hold all windows.

@@ -90,6 +90,46 @@
     text("disk-title", channelWords());
   };
 
+  // Mean of each layer in this frame, windows counted by their area, and the quartiles of its sectors.
+  const quartile = (sorted, share) => {
+    const at = share * (sorted.length - 1);
+    const low = Math.floor(at);
+    return sorted[low] + (at - low) * ((sorted[low + 1] ?? sorted[low]) - sorted[low]);
+  };
+
+  const layerSummary = (values, areas, layer) => {
+    const numbers = [...Array(page.data.sectors).keys()].map((sector) => page.windowOf(layer, sector));
+    const known = numbers.filter((number) => Number.isFinite(values[number]));
+    if (!known.length) return { mean: NaN, low: NaN, high: NaN };
+    const whole = known.reduce((sum, number) => sum + areas[number], 0);
+    const mean = known.reduce((sum, number) => sum + values[number] * areas[number], 0) / whole;
+    const sorted = known.map((number) => values[number]).sort((a, b) => a - b);
+    return { mean, low: quartile(sorted, 0.25), high: quartile(sorted, 0.75) };
+  };
+
+  const drawProfile = () => {
+    const { index } = page.state;
+    const { layers, area } = page.data;
+    const { limits, unit } = page.channel();
+    const values = page.row(page.channelValues(), index);
+    const areas = page.row(area, index);
+    const order = [...Array(layers).keys()].reverse(); // from the nucleus' centre on the left
+    const found = order.map((layer) => layerSummary(values, areas, layer));
+    const x = order.map((layer) => layers - 0.5 - layer);
+    part("profile", "band").data = { x, low: found.map(({ low }) => low), high: found.map(({ high }) => high) };
+    part("profile", "line").data = { x, y: found.map(({ mean }) => mean) };
+    figures.profile.y_range.setv({ start: limits[0], end: limits[1] });
+    text("profile-title", `${channelWords()} (${unit}) in this frame; band: quartiles of sectors`);
+  };
+
+  const drawProfileFocus = () => {
+    const layer = page.focus()?.layer ?? page.state.layer;
+    const line = part("profile", "line").data;
+    const at = page.data.layers - 1 - layer;
+    const [x, y] = line instanceof Map ? [line.get("x"), line.get("y")] : [line.x, line.y];
+    part("profile", "chosen").data = { x: [x[at]], y: [y[at]] };
+  };
+
   const drawActivity = () => {
     const { layer, colours } = page.state;
     const { layers, sectors, frames } = page.data;
@@ -99,7 +139,7 @@
     const { limits, layer_limits: byLayer, unit } = page.channel();
     setImage("activity", "pixels", map, [sectors, frames.length]);
     setColours("activity", colours === "all" ? limits : byLayer[layer], unit);
-    text("activity-title", `${channelWords()}, layer ${layer}${layer === 0 ? " (edge)" : ""}${page.data.layer_depths[layer]}`);
+    text("activity-title", `${channelWords()}, layer ${layer}${page.data.layer_places[layer]}${page.data.layer_depths[layer]}`);
   };
 
   const drawIntensity = () => {
@@ -184,14 +224,14 @@
     const ends = lag.length > 1 ? [lag[0], lag.at(-1)] : [-1, 1];
     figures.curve.x_range.setv({ start: ends[0], end: ends[1] });
     const correlated = at && Number.isFinite(windows.correlation.values[number]);
-    const name = at && `layer ${at.layer}, sector ${at.sector}`;
+    const name = at && `${page.layerWords(at.layer)}, sector ${at.sector}`;
     const band = known ? ", band: 95 % at each lag by itself" : "";
     text("curve-window", !at ? "point at a window" : correlated ? `${name}${band}` : `${name}: not correlated`);
     const [r, peak, q] = ["correlation", "lag", "q"].map((key) => layers[key].values[layer]);
     const [left, qLeft] = ["correlation_partial", "q_partial"].map((key) => layers[key].values[layer]);
     const rest = Number.isFinite(left) ? `; dotted: ${without}, r ${page.fixed(left)}, q ${page.chance(qLeft)}` : "";
     const found = `r ${page.fixed(r)} at ${page.lagSeconds(peak) || page.frameWords(peak)}, q ${page.chance(q)}${rest}`;
-    text("curve-layer", `mean of layer ${layer}: ${Number.isFinite(r) ? found : "not correlated"}`);
+    text("curve-layer", `mean of ${page.layerWords(layer)}: ${Number.isFinite(r) ? found : "not correlated"}`);
     const chance = Number.isFinite(bar) ? ", 95 % over all lags" : ": not known";
     text("curve-null", `chance for the ${at ? "window" : "mean"}${chance}`);
   };
@@ -206,6 +246,10 @@
     when("intensity", [channel], drawIntensity);
     when("time", [index, hover?.index], drawTime);
     when("focus", [window, at?.index], drawFocus);
+    if (figures.profile) {
+      when("profile", [index, channel], drawProfile);
+      when("profile-focus", [index, channel, layer, at?.layer], drawProfileFocus);
+    }
     if (figures.peaks) {
       when("peaks", [pair, peak], drawPeaks);
       when("curve", [pair, window, layer], drawCurve);
