@@ -18,6 +18,7 @@ from cytodisk.windows.layer_coords import layer_coords
 _MOST_CORRELATIONS = 2
 _HIGH_CORRELATION = 0.9
 _PANEL, _ROW, _AXIS = 34.0, 49.0, 14.0  # mm: height of a panel, of a row, room for the labels of an axis
+_KEY_COLUMNS, _KEY_LINE = 4, 3.5  # names of layers side by side; mm, height of a second line
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +58,10 @@ def consistency_sheet(movie: DrawnMovie) -> Sheet | None:
         return None
     columns = {1: 1, 3: 3}.get(len(measures), 2)
     width = (DOUBLE_COLUMN_MM - 2 * LEFT_MM - _AXIS * columns) / columns
-    top = HEADING_MM + 10.0
+    layers = shown_layers(movie.grid.layers, movie.cytoplasm_layers)
+    top = HEADING_MM + 10.0 + (_KEY_LINE if len(layers) > _KEY_COLUMNS else 0.0)
     sheet = Sheet(top + -(-len(measures) // columns) * _ROW - 3.0)
     movie.write_heading(sheet, "consistency of windows from a frame to the next")
-    layers = shown_layers(movie.grid.layers, movie.cytoplasm_layers)
     for number, measure in enumerate(measures):
         row, column = divmod(number, columns)
         left = LEFT_MM + _AXIS - 2.0 + column * (width + _AXIS)
@@ -120,4 +121,5 @@ def _write_key(sheet: Sheet, layers: Sequence[int], movie: DrawnMovie) -> None:
         Line2D([], [], color=colour, linewidth=1.5, label=name)
         for colour, name in zip(colours, names, strict=True)
     ]
-    sheet.key(LEFT_MM, HEADING_MM - 1.5, handles, columns=4)
+    columns = _KEY_COLUMNS if len(handles) <= _KEY_COLUMNS else 3
+    sheet.key(LEFT_MM, HEADING_MM - 1.5, handles, columns=columns)

@@ -13,6 +13,7 @@ from cytodisk.pages.animation import write_animation
 from cytodisk.pages.consistency_page import consistency_sheet
 from cytodisk.pages.drawn_movie import HEADING_MM, LEFT_MM, DrawnMovie
 from cytodisk.pages.edge_page import edge_sheet
+from cytodisk.pages.profile_page import profile_sheet
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.cell.frame_strip import draw_strip
 from cytodisk.plot.field_of_view import field_of_view
@@ -44,8 +45,9 @@ def write_movie_figures(
 ) -> list[Path]:
     """Write the pictures of one cell of a movie into the study's folder of figures.
 
-    They are activity maps of each channel (without a signal the map of edge velocity alone), the motion of
-    the edge, windows on the cell in a few frames, consistency, and last an animation of cell and disk.
+    They are activity maps of each channel (without a signal the map of edge velocity alone), with a nucleus
+    the signal from the nucleus to the membrane, the motion of the edge, windows on the cell in a few frames,
+    consistency, and last an animation of cell and disk.
     Frames without a map are gaps in the maps, and left out elsewhere; what a cell has too few frames for is
     not drawn.
 
@@ -121,6 +123,8 @@ def _pages(movie: DrawnMovie, signal: SignalAt | None) -> list[tuple[str, Callab
         pages.append(("velocity", partial(_velocity_sheet, movie)))
     for number, name in enumerate(file_names(movie.channels)):
         pages.append((f"activity_{name}", partial(_activity_sheet, movie, number)))
+    if movie.channels and movie.cytoplasm_layers is not None:
+        pages.append(("profile", partial(profile_sheet, movie)))
     pages.append(("edge", partial(edge_sheet, movie)))
     pages.append(("strip", partial(_strip_sheet, movie, signal)))
     pages.append(("consistency", partial(consistency_sheet, movie)))

@@ -28,8 +28,6 @@ class LayerProfile:
         Mean of the cell.
     area, depth, distance : ndarray of shape (L,)
         Of each layer, as `nuclear_profile` gives them; distance is that to the nuclear outline.
-    thickness : float
-        Median over sectors of how far the membrane is from the nuclear outline.
     cytoplasm_layers : int
     units : dict of str to str
         Of "mean" and "depth".
@@ -43,7 +41,6 @@ class LayerProfile:
     area: FloatArray
     depth: FloatArray
     distance: FloatArray
-    thickness: float
     cytoplasm_layers: int
     units: dict[str, str]
 
@@ -64,7 +61,6 @@ class LayerProfile:
             profile, sectors = profile.mean("time", keep_attrs=True), sectors.mean("time")
         mean = _by_channel(profile["mean"])
         low, high = (_by_channel(sectors.quantile(share, "sector")) for share in _QUARTILES)
-        outermost = data[["depth", "nucleus_distance"]].isel(layer=0)
         area = profile["area"].to_numpy()
         known = np.isfinite(mean) * area
         return cls(
@@ -78,7 +74,6 @@ class LayerProfile:
             area=area,
             depth=profile["depth"].to_numpy(),
             distance=profile["nucleus_distance"].to_numpy(),
-            thickness=float((outermost["depth"] + outermost["nucleus_distance"]).median()),
             cytoplasm_layers=int((data["compartment"] != "nucleus").sum()),
             units={name: str(profile[name].attrs.get("units", "")) for name in ("mean", "depth")},
         )
@@ -87,6 +82,11 @@ class LayerProfile:
     def layers(self) -> int:
         """Number of layers."""
         return len(self.area)
+
+    @property
+    def thickness(self) -> float:
+        """How far the membrane is from the nuclear outline, on average."""
+        return float(self.distance[0] + self.depth[0])
 
     @property
     def relative(self) -> LayerProfile:
