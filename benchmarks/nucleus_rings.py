@@ -1,9 +1,9 @@
 """Rings between nucleus and edge, as others draw them, beside windows of the map: what is wrong with them?
 
-    benchmarks/nucleus_rings.py [MASKS] [--quick] [--layers 8] [--sectors 60] [--nucleus-layers 3]
+    benchmarks/nucleus_rings.py [--only SOURCE …] [--quick] [--layers 8] [--sectors 60] [--nucleus-layers 3]
 
-Draws a round nucleus of half the cell's depth at the deepest place of every osteosarcoma mask (of the folder
-in CYTODISK_DATA). Prints a row a method:
+Reads the folder in CYTODISK_DATA. "osteosarcoma": single cells, in each a drawn nucleus of half its depth at
+its deepest place. "schwann": cells of crowded fields with their own nuclei. Prints a row a method for each:
 
 * folded: cells in which triangles between rings, or of the map, are turned over;
 * outside: cells in which rings leave the cell; points: share of ring points that do, mean over all cells;
@@ -18,12 +18,12 @@ Ends with status 1 if a map has a turned triangle or an empty window.
 """
 
 import argparse
-import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -32,12 +32,14 @@ import numpy as np
 import cytodisk as cd
 from cytodisk.analysis.compartment_measures import compartment_measures, nearness, outer_fifth
 from cytodisk.arrays import BoolArray
+from cytodisk.errors import CytodiskError
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.rings.nucleus_edges import NucleusEdges
-from drawn_nuclei import cells_with_drawn_nuclei
+from real_masks import DATA
+from schwann_nuclei import Case, osteosarcoma_cases, schwann_cases
 
-DATA = Path(os.environ.get("CYTODISK_DATA", Path(__file__).parents[2] / "shared" / "data"))
-QUICK = 16
+SOURCES = {"osteosarcoma": osteosarcoma_cases, "schwann": schwann_cases}
+_QUICK = {"osteosarcoma": 16, "schwann": 4}  # one in so many
 
 
 @dataclass(frozen=True)
@@ -57,8 +59,9 @@ class Counts:
 class Found:
     """What one method made of one cell."""
 
+    source: str
+    cell: str
     method: str
-    cell: int
     flipped: int
     outside: float
     overlap: float
@@ -98,20 +101,24 @@ METHODS: dict[str, Lay] = {
 }
 
 
-def measure(cell: tuple[int, BoolArray, BoolArray], counts: Counts) -> list[Found]:
-    """What each method makes of a cell: its number, mask and nucleus."""
-    number, mask, nucleus = cell
-    return [_measured(number, name, lay, mask, nucleus, counts) for name, lay in METHODS.items()]
+def measure(case: Case, counts: Counts) -> list[Found]:
+    """What each method makes of a cell; nothing where the nucleus is refused."""
+    try:
+        mask, _ = cd.clean_mask(case.mask)
+        nucleus, _ = cd.fit_nucleus(mask, case.nucleus)
+    except CytodiskError:
+        return []
+    return [_measured(case, name, lay(mask, nucleus, counts)) for name, lay in METHODS.items()]
 
 
-def _measured(number: int, name: str, lay: Lay, mask: BoolArray, nucleus: BoolArray, counts: Counts) -> Found:
-    windows = lay(mask, nucleus, counts)
+def _measured(case: Case, name: str, windows: WindowsOnCell) -> Found:
     compartments = windows.grid.compartments  # type: ignore[attr-defined]
     found = compartment_measures(windows, compartments)
     held = windows.areas > 0
     return Found(
+        case.source,
+        case.name,
         name,
-        number,
         _flipped(windows),
         getattr(windows, "outside", 0.0),
         getattr(windows, "overlap", 0.0),
@@ -120,7 +127,7 @@ def _measured(number: int, name: str, lay: Lay, mask: BoolArray, nucleus: BoolAr
         found["area_error_cytoplasm"],
         found["area_error_nucleus"],
         outer_fifth(windows),
-        nearness(windows, compartments, NucleusEdges.of(mask, nucleus)),
+        nearness(windows, compartments, NucleusEdges.of(case.mask, case.nucleus)),
         float((windows.pieces[held] == 1).mean()),
         float(np.nanmean(windows.eccentricities)),
     )
@@ -133,9 +140,9 @@ def _flipped(windows: Any) -> int:
 
 
 def print_table(found: Sequence[Found]) -> None:
-    """Print a row a method."""
+    """Print a row a method for cells of one source."""
     cells = len({one.cell for one in found})
-    print(f"{cells} cells with a drawn nucleus")
+    print(f"{cells} cells of {found[0].source}")
     heads = ("folded", "outside", "points", "overlap", "empty", "cells", "of windows")
     more = ("cytoplasm", "nucleus", "outer fifth", "nearness", "one piece", "eccentricity")
     print(
@@ -170,11 +177,12 @@ def print_table(found: Sequence[Found]) -> None:
 
 def run(chosen: argparse.Namespace) -> Iterator[Found]:
     """What every method made of every cell."""
-    cells = list(cells_with_drawn_nuclei(chosen.masks, QUICK if chosen.quick else 1))
     counts = Counts(chosen.layers, chosen.sectors, chosen.nucleus_layers)
     with ProcessPoolExecutor(chosen.workers) as pool:
-        for rows in pool.map(partial(measure, counts=counts), cells):
-            yield from rows
+        for source in chosen.only:
+            cases = islice(SOURCES[source](chosen.data), 0, None, _QUICK[source] if chosen.quick else 1)
+            for rows in pool.map(partial(measure, counts=counts), list(cases)):
+                yield from rows
 
 
 def main() -> int:
@@ -182,14 +190,16 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("masks", nargs="?", type=Path, default=DATA / "osteosarcoma" / "masks.tif")
-    parser.add_argument("--quick", action="store_true", help=f"one cell in {QUICK}")
+    parser.add_argument("--only", nargs="+", choices=SOURCES, default=list(SOURCES), help="sources")
+    parser.add_argument("--data", type=Path, default=DATA, help="folder of the data")
+    parser.add_argument("--quick", action="store_true", help="a few cells of each source")
     parser.add_argument("--layers", type=int, default=8, help="layers of the cytoplasm (default 8)")
     parser.add_argument("--sectors", type=int, default=60, help="sectors (default 60)")
     parser.add_argument("--nucleus-layers", type=int, default=3, help="layers of the nucleus (default 3)")
     parser.add_argument("--workers", type=int, default=2, help="processes (default 2)")
     found = list(run(parser.parse_args()))
-    print_table(found)
+    for source in dict.fromkeys(one.source for one in found):
+        print_table([one for one in found if one.source == source])
     ours = [one for one in found if one.method == "cytodisk"]
     return int(any(one.flipped or one.empty for one in ours))
 
