@@ -42,12 +42,13 @@ _AROUND_PX = 30  # kept of the background, for what stands out of a cell
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A cell and its nucleus, cut out of their image."""
+    """A cell and its nucleus, cut out of their image, and (row, column) of the piece's first pixel in it."""
 
     source: str
     name: str
     mask: BoolArray
     nucleus: BoolArray
+    corner: tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,8 @@ def cropped(source: str, name: str, mask: BoolArray, nucleus: BoolArray) -> Case
         slice(max(int(found[0]) - _AROUND_PX, 0), int(found[-1]) + _AROUND_PX + 1)
         for found in (rows, columns)
     )
-    return Case(source, name, mask[box].copy(), nucleus[box].copy())
+    corner = box[0].start, box[1].start
+    return Case(source, name, mask[box].copy(), nucleus[box].copy(), corner)
 
 
 def check(case: Case) -> Check:
