@@ -20,6 +20,7 @@ WORDS = """Tables are Parquet files. ``cytodisk.open_study`` reads them. Each ta
 columns in ``attrs["units"]``; the file has them in its metadata. Lengths, areas and velocities are
 in µm and seconds if the scale is known, else in pixels and frames. A column without a unit is a
 count, a name or a choice."""
+CHANNEL = "CHANNEL"
 UNITS = {"length": "µm", "length²": "µm²", "velocity": "µm/s", "1": "1 (a ratio)"}
 
 
@@ -32,6 +33,13 @@ def write_page(app: Sphinx, _config: Any) -> None:
     lines = [*heading("Columns of every table", "="), WORDS, ""]
     mapped = tables_of(MAP, MOVIE)
     lines += run("Maps and movies", "``cytodisk map`` and ``cytodisk movie`` write these tables.", mapped)
+    with_nuclei = tables_of(MAP.with_nuclei.with_channels([CHANNEL]), MOVIE.with_nuclei)
+    lines += run(
+        "Maps and movies with nuclei",
+        f"With ``--nuclei`` the tables also have these columns. Those that end in ``{CHANNEL}`` are there "
+        "once for each channel, with its name.",
+        {name: only_new(columns, mapped.get(name, ())) for name, columns in with_nuclei.items()},
+    )
     lines += run(
         "Correlations",
         "``cytodisk correlate`` writes these tables into ``correlation/SIGNAL~WITH/``.",
@@ -51,6 +59,12 @@ def write_page(app: Sphinx, _config: Any) -> None:
     write(Path(app.srcdir) / "reference" / "tables.rst", lines)
 
 
+def only_new(columns: Columns, known: Columns) -> Columns:
+    """The columns of a table that are not known yet."""
+    names = {column.name for column in known}
+    return tuple(column for column in columns if column.name not in names)
+
+
 def tables_of(*kinds: StudyKind) -> dict[str, Columns]:
     """Columns of the tables that runs of these kinds write, all that any of them has."""
     found: dict[str, Columns] = {}
@@ -65,6 +79,8 @@ def run(title: str, words: str, tables: dict[str, Columns]) -> list[str]:
     """Section of a command: each of its tables."""
     lines = [*heading(title, "-"), words, ""]
     for name, columns in tables.items():
+        if not columns:
+            continue
         rows = [(column.name, column.unit, column.meaning) for column in columns]
         lines += [*heading(f"{name}.parquet", "~"), *list_table(rows)]
     return lines

@@ -110,3 +110,29 @@ def test_places_of_a_mirrored_cell_are_the_same_in_both_compartments(load: Any) 
     table = list(benchmark.lines(rows.assign(same_with=rows["same_plain"] - 0.1), ["shape", "place"]))
     assert len(table) == 2
     assert all(line.startswith("egg aside") and "WORSE: mirrored, noise" in line for line in table)
+
+
+def test_profiles_of_cells_cut_out_of_their_field(
+    load: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two cells in a field, DAPI in the nucleus, GFP even, over a background of 50."""
+    benchmark = load("nucleus_profiles")
+    folder = tmp_path / "schwann_nuclei"
+    folder.mkdir()
+    one, inner = cd.simulate.disk(25, margin=60), cd.simulate.disk(9, margin=76)
+    cells, nuclei = np.hstack([one, one]), np.hstack([inner, inner])
+    image = np.stack([np.where(nuclei, 80.0, np.where(cells, 10.0, 0.0)), 20.0 * cells, 5.0 * cells]) + 50.0
+    tifffile.imwrite(folder / "A1_cells.tif", cells.astype(np.uint8))
+    tifffile.imwrite(folder / "A1_nuclei.tif", nuclei.astype(np.uint8))
+    tifffile.imwrite(folder / "A1_signal.tif", image.astype(np.uint16), photometric="minisblack")
+    found = benchmark.measure(next(benchmark.schwann_cells(tmp_path)), benchmark.Layers(3, 6, 1))
+    np.testing.assert_allclose(found.profiles["map"], [[1, 1, 1, 8], [1] * 4, [1] * 4])
+    np.testing.assert_allclose(found.shares["map"], [1 / 3, 1 / 3, 1 / 3, 1], atol=0.02)
+    assert found.shares["by distance"][0] > 0.36
+    assert float(found.raw["nucleus_to_cytoplasm"][0]) == pytest.approx(130 / 60)
+    arguments = ["--data", str(tmp_path), "--layers", "3", "--sectors", "6", "--workers", "1"]
+    monkeypatch.setattr(sys, "argv", ["nucleus_profiles.py", *arguments])
+    assert benchmark.main() == 0
+    out = capsys.readouterr().out
+    assert "2 cells in 1 fields, 0 refused" in out
+    assert "DAPI               2.17        8.00" in out

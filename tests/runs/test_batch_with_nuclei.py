@@ -136,3 +136,22 @@ def test_paths_are_full_for_workers_elsewhere(study: Path, monkeypatch: pytest.M
     folder = replace(item, masks=Path(), nuclei=Path("_nuclei"))
     task = as_seen_by_all(BatchTask(version("cytodisk"), (near, folder), "out"), "out", "")
     assert [one.nuclei for one in task.inputs] == [study.parent / "a_nuclei.tif", Path("_nuclei")]
+
+
+def test_cells_have_the_numbers_of_the_channels_of_all_inputs(study: Path) -> None:
+    for name, signal in (("a", "DAPI"), ("b", "GFP")):
+        nuclei = tifffile.imread(study.parent / f"{name}_nuclei.tif") > 0
+        tifffile.imwrite(study.parent / f"{name}_{signal}.tif", np.where(nuclei, 6.0, 2.0).astype(np.float32))
+    inputs = STUDY[STUDY.index("[[inputs]]") : STUDY.rindex("[[inputs]]")].replace("?_masks", "a_masks")
+    first = inputs.replace("name =", 'signal = "a_DAPI.tif"\nname =').replace(
+        "= 1}", '= 1, channels = ["DAPI"]}'
+    )
+    second = first.replace("a_masks", "b_masks").replace("a_DAPI", "b_GFP").replace("DAPI", "GFP")
+    study.write_text(STUDY[: STUDY.index("[[inputs]]")] + first + second)
+    out = study.parent / "out"
+    cd.run_batch(study, out)
+    cells = pd.read_parquet(out / "cells.parquet")
+    assert cells["nucleus_to_cytoplasm_DAPI"].round(6).fillna(0).tolist() == [3, 3, 0, 0]
+    assert cells["nucleus_to_cytoplasm_GFP"].round(6).fillna(0).tolist() == [0, 0, 3, 0]
+    assert cells["nucleus_offset"].notna().tolist() == [True, True, True, False]
+    assert "nucleus_to_cytoplasm_GFP" in pd.read_csv(out / "columns.csv")["column"].tolist()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from cytodisk.runs.movie.movie_kind import MOVIE
 from cytodisk.store.columns_file import COLUMNS_CSV, write_columns_file
 from cytodisk.store.csv_tables import csv_of, parquet_to_csv
 from cytodisk.store.merging import merge_tables, write_rows
+from cytodisk.store.nuclei.summary_columns import channel_columns, channels_among
 from cytodisk.store.tables import Column, Columns, schema
 from cytodisk.store.targets import Store
 
@@ -72,7 +74,9 @@ def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None], csv
         parquet_to_csv(file, folder / csv_of(file.name))
         names = [csv_of(file.name), file.name]
         told = [*_told(INPUTS, columns, columns_schema)]
-        for name, measured in _tables(batch).items():
+        merged = _tables(batch)
+        merged["cells"] = (*merged["cells"], *_channel_columns(store, done))
+        for name, measured in merged.items():
             having = [one for one in done if _has_table(one.item, name)]
             columns = (*own, *_unit_columns(measured), *measured)
             columns_schema = _schema(columns, having)
@@ -213,17 +217,32 @@ def _parts(store: Store, done: Sequence[_Done], name: str, batch: Batch, columns
         length_unit, velocity_unit = one.units
         given = _values(batch, one.item, columns)
         given |= {"length_unit": length_unit, "velocity_unit": velocity_unit}
-        key = f"{study_key(one.item.name)}/{name}.parquet"
-        try:
-            with store.open(key) as opened, pq.ParquetFile(opened) as file:
-                for group in range(file.num_row_groups):
-                    yield _widened(file.read_row_group(group, use_threads=False), given, columns)
-        except (pa.ArrowException, StudyError) as error:
-            name = one.item.name
-            raise StudyError(
-                f"the study of input {name} is damaged: {error}: remove {study_key(name)} and "
-                f"{row_key(name)}, and run the same command with --resume: then it is done anew"
-            ) from error
+        with _opened(store, one.item.name, name) as file:
+            for group in range(file.num_row_groups):
+                yield _widened(file.read_row_group(group, use_threads=False), given, columns)
+
+
+def _channel_columns(store: Store, done: Sequence[_Done]) -> Columns:
+    """Columns of cells on the channels that any study with nuclei has."""
+    channels: dict[str, None] = {}
+    for one in done:
+        if one.item.nuclei is not None:
+            with _opened(store, one.item.name, "cells") as file:
+                channels |= dict.fromkeys(channels_among(file.schema_arrow.names))
+    return channel_columns(list(channels))
+
+
+@contextmanager
+def _opened(store: Store, name: str, table: str) -> Iterator[Any]:
+    """A table of an input's study as a Parquet file; raises StudyError where it is damaged."""
+    try:
+        with store.open(f"{study_key(name)}/{table}.parquet") as opened, pq.ParquetFile(opened) as file:
+            yield file
+    except (pa.ArrowException, StudyError) as error:
+        raise StudyError(
+            f"the study of input {name} is damaged: {error}: remove {study_key(name)} and "
+            f"{row_key(name)}, and run the same command with --resume: then it is done anew"
+        ) from error
 
 
 def _widened(table: Any, given: dict[str, Any], columns: Any) -> Any:
