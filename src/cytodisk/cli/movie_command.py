@@ -11,6 +11,7 @@ from cytodisk.cli.options import (
     Figures,
     Given,
     MovieFile,
+    MovieNuclei,
     OutFolder,
     Quiet,
     Signal,
@@ -32,6 +33,7 @@ def movie_command(
     out: OutFolder,
     given: Given,
     signal: Signal = None,
+    nuclei: MovieNuclei = None,
     figures: Figures = 4,
     quiet: Quiet = False,
 ) -> None:
@@ -40,7 +42,7 @@ def movie_command(
 
     console = console_for(quiet)
     options = given.options(RunOptions)
-    inputs = open_movie(masks, signal, given.of(MovieParameters))
+    inputs = open_movie(masks, signal, given.of(MovieParameters), nuclei=nuclei)
     say_movie(console, inputs)
     with compiling(quiet, "movie", options.workers), progress_bar(quiet, "frames") as progress:
         study = movie_study(inputs, out, progress=progress, **dict(options))

@@ -69,6 +69,14 @@ NucleiFiles = Annotated[
         "the same names, or how their names end, such as _nuclei.",
     ),
 ]
+MovieNuclei = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="PATH",
+        help="Nuclei of the cells, of the same height, width and frames: label images or 0/1 masks, in any "
+        "of these formats; in each frame a nucleus goes to the cell that holds most of it.",
+    ),
+]
 OutFolder = Annotated[
     Path,
     typer.Option("--out", "-o", metavar="FOLDER", help="Folder for the results.", show_default=False),

@@ -232,7 +232,8 @@ class Study:
         if row["status"] != "ok":
             return FrameRecord(row["status"], row["reason"], None)
         path = self._map_path(part_key(cell, frame))
-        return FrameRecord("ok", "", lambda: unchanged(load_boundary(path), path, self._marks))
+        held = str(row.get("nucleus_held") or "")
+        return FrameRecord("ok", "", lambda: unchanged(load_boundary(path), path, self._marks), held)
 
     def _load(self, path: Path) -> DiskMap:
         return unchanged(replace(load_map(path), scale=self.scale), path, self._marks)

@@ -40,6 +40,8 @@ class StudyKind:
     files : tuple of str
         Names, or patterns of names, of all else that it writes. With patterns it is told what may be the
         run's; the provenance names each file.
+    cells_with_nuclei : tuple of Column
+        More of the first table where cells have nuclei.
     csv : bool
         All tables are written as CSV too.
     """
@@ -50,6 +52,7 @@ class StudyKind:
     cells: Columns
     others: dict[str, Columns]
     files: tuple[str, ...] = ()
+    cells_with_nuclei: Columns = ()
     csv: bool = False
 
     @property
@@ -74,7 +77,8 @@ class StudyKind:
         """The same where cells have nuclei: with a table of these, and windows have a compartment."""
         windows = (*self.others["windows"], *NUCLEUS_WINDOW_COLUMNS)
         others = {**self.others, "windows": windows, "nuclei": NUCLEI_COLUMNS}
-        return replace(self, cells=(*self.cells, *NUCLEUS_COLUMNS, *PLACE_COLUMNS), others=others)
+        cells = (*self.cells, *NUCLEUS_COLUMNS, *self.cells_with_nuclei, *PLACE_COLUMNS)
+        return replace(self, cells=cells, others=others)
 
     def with_channels(self, channels: Sequence[str]) -> StudyKind:
         """The same where cells have nuclei and a signal: numbers of each channel in nucleus and cytoplasm."""

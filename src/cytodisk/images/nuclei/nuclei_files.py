@@ -138,10 +138,10 @@ def match_source(source: MaskSource, nuclei: NucleiFile, frame: int) -> FrameMat
         The nuclei are the cells' own masks, or the two are swapped.
     """
     cells = source.read(frame)
-    return match_frame(cells if source.kind == "labels" else _one_cell(cells), nuclei.frame(frame))
+    return match_frame(cells if source.kind == "labels" else one_cell(cells), nuclei.frame(frame))
 
 
-def _one_cell(cells: FramePixels) -> FramePixels:
+def one_cell(cells: FramePixels) -> FramePixels:
     """A frame with the mask of one cell as labels."""
     box, greatest = cell_box(cells.strips())
     label = single_label(cells.dtype, greatest, box is not None)

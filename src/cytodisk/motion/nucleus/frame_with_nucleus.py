@@ -28,6 +28,8 @@ from cytodisk.motion.tracking import TrackedBoundary, first_boundary, follow, po
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.scale import UNKNOWN, Scale
 
+_REMEDY = "--missing hold (missing='hold') takes the nucleus of the frame before"
+
 
 def map_frame_with_nucleus(
     frame: int,
@@ -104,6 +106,8 @@ def _mesh(
         return mesh_cell(found.mask, settings, scale, _usable(found.nucleus), settings.several), ""
     except (NucleusError, ReadError) as fault:
         if settings.missing != "hold":
+            if isinstance(fault, NucleusError):
+                raise NucleusError(f"{fault}; {_REMEDY}") from fault
             raise
         why = fault
     if last is None:
@@ -119,10 +123,7 @@ def _usable(nucleus: Any) -> Any:
     if isinstance(nucleus, CytodiskError):
         raise nucleus
     if nucleus is None or not np.any(nucleus):
-        raise NucleusError(
-            "the cell has no nucleus in this frame: hold that of the frame before with missing='hold' "
-            "(--missing hold)"
-        )
+        raise NucleusError("the cell has no nucleus in this frame")
     return nucleus
 
 

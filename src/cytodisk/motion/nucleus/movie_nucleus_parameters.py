@@ -3,13 +3,13 @@
 from typing import Literal, TypeAlias
 
 from cytodisk.disk.nucleus.nucleus_parameters import NucleusParameters
-from cytodisk.parameters import parameter
+from cytodisk.parameters import Parameters, parameter
 
 MissingNucleus: TypeAlias = Literal["refuse", "hold"]
 
 
-class MovieNucleusParameters(NucleusParameters):
-    """How the nucleus of a moving cell is mapped with it."""
+class HeldNucleusParameters(Parameters):
+    """What is done in frames without a nucleus."""
 
     missing: MissingNucleus = parameter(
         "refuse",
@@ -17,3 +17,7 @@ class MovieNucleusParameters(NucleusParameters):
         'that they are gaps with a reason; or "hold" the nucleus of the frame before, moved as the cell '
         "moved; the frame says so.",
     )
+
+
+class MovieNucleusParameters(NucleusParameters, HeldNucleusParameters):
+    """How the nucleus of a moving cell is mapped with it."""

@@ -18,7 +18,7 @@ from cytodisk.images.mask_names import base_name, image_stem, natural_order
 from cytodisk.runs.batch.batch_faults import Faults
 from cytodisk.runs.batch.batch_input import BatchInput, InputKind, Value
 from cytodisk.runs.cells.nuclei_given import ONLY_WITH_NUCLEI
-from cytodisk.runs.map.map_parameters import MapParameters
+from cytodisk.runs.map.map_parameters import MapParameters, WindowsOfMapsParameters
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.parameters_file import parameters_from
 
@@ -26,7 +26,7 @@ SCALE = ("pixel_size_um", "frame_interval_s", "channels")  # parameters with a c
 ALONE = (*SCALE, "tracks")  # parameters with a key of their own
 COLUMNS = ("condition", "replicate")
 KEYS = ("masks", "signal", "nuclei", "name", "kind", "parameters", *COLUMNS, *ALONE)
-PARAMETERS_OF: dict[str, type[MapParameters]] = {"movie": MovieParameters, "map": MapParameters}
+PARAMETERS_OF: dict[str, type[WindowsOfMapsParameters]] = {"movie": MovieParameters, "map": MapParameters}
 FIELDS = ("folder", "parent", "name", "stem", "image")  # of templates
 _LONGEST_NAME = 120  # bytes in UTF-8; folders and files may have 255, of which some go for temporary names
 _BESIDE = ("_", "-", ".")  # how the ending of an image's name begins, for a folder of masks
@@ -95,7 +95,7 @@ class RowReader:
             if item is not None:
                 yield item
 
-    def _parameters(self, row: FileRow, kind: str) -> MapParameters | None:
+    def _parameters(self, row: FileRow, kind: str) -> WindowsOfMapsParameters | None:
         """The file's parameters, but for those that mean nothing here, overruled by the row's own."""
         of = PARAMETERS_OF[kind]
         own = row.values.get("parameters", {})
@@ -110,9 +110,6 @@ class RowReader:
             if kind == "map" and name in own:
                 self.faults.add(row.place, f"{name} is for movies only: take it out")
                 return None
-        if kind == "movie" and "nuclei" in row.values:
-            self.faults.add(row.place, "nuclei are for kind map only: take them out")
-            return None
         shared = {name: value for name, value in self.parameters.items() if name in of.model_fields}
         if "nuclei" not in row.values:
             shared = {name: value for name, value in shared.items() if name not in ONLY_WITH_NUCLEI}
@@ -139,7 +136,7 @@ class RowReader:
         return found if kind == "map" else files or found  # folders of movies are those of one file a frame
 
     def _input(
-        self, row: FileRow, kind: InputKind, masks: Path, parameters: MapParameters | None
+        self, row: FileRow, kind: InputKind, masks: Path, parameters: WindowsOfMapsParameters | None
     ) -> BatchInput | None:
         if not _is_text(masks):
             self.faults.add(row.place, f"the name of {str(masks)!a} is not in UTF-8: rename the file")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, TypeAlias
 
-from cytodisk.runs.map.map_parameters import MapParameters
+from cytodisk.runs.map.map_parameters import WindowsOfMapsParameters
 
 InputKind: TypeAlias = Literal["movie", "map"]
 Value: TypeAlias = str | int | float | bool | None
@@ -27,7 +27,7 @@ class BatchInput:
     masks : Path
         A file, or for "map" also a folder of files.
     signal : Path or None
-    parameters : MapParameters
+    parameters : WindowsOfMapsParameters
         For a movie `MovieParameters`; with the scale and the names of channels that were given.
     columns : tuple of value
         Condition, replicate and further columns; their names stand in the batch.
@@ -40,7 +40,7 @@ class BatchInput:
     kind: InputKind
     masks: Path
     signal: Path | None
-    parameters: MapParameters
+    parameters: WindowsOfMapsParameters
     columns: tuple[Value, ...] = ()
     signal_name: str = ""
     nuclei: Path | None = None

@@ -12,7 +12,7 @@ from cytodisk.runs.batch.batch_file_rows import SCALE
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.depth_layers import check_depths
-from cytodisk.runs.map.map_parameters import MapParameters
+from cytodisk.runs.map.map_parameters import WindowsOfMapsParameters
 from cytodisk.runs.movie.movie_inputs import open_movie_files
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.parameters_file import toml_lines
@@ -84,7 +84,7 @@ def understand(item: BatchInput) -> Understood:
 
 def _with_files(given: Understood, item: BatchInput) -> Understood:
     if isinstance(item.parameters, MovieParameters):
-        files = open_movie_files(item.masks, item.signal, item.parameters)
+        files = open_movie_files(item.masks, item.signal, item.parameters, item.nuclei)
         given = replace(given, frames=files.masks.n_frames, frame_interval_s=files.scale.frame_interval_s)
         signal, pixel_size_um = files.signal, files.scale.pixel_size_um
         if signal is not None:
@@ -97,7 +97,7 @@ def _with_files(given: Understood, item: BatchInput) -> Understood:
     return replace(given, pixel_size_um=pixel_size_um, channels=_together(channels))
 
 
-def _grid(parameters: MapParameters) -> PolarGrid:
+def _grid(parameters: WindowsOfMapsParameters) -> PolarGrid:
     return polar_grid(parameters.part(PolarGridParameters))
 
 
@@ -105,6 +105,6 @@ def _together(words: Sequence[str]) -> str:
     return "; ".join(words)
 
 
-def _not_default(parameters: MapParameters) -> dict[str, Any]:
+def _not_default(parameters: WindowsOfMapsParameters) -> dict[str, Any]:
     given = parameters.model_dump(exclude_defaults=True)
     return {name: value for name, value in given.items() if name not in _APART}

@@ -28,8 +28,7 @@ def run_of(item: BatchInput, folder: Path) -> Callable[..., Study]:
     callable
     """
     if isinstance(item.parameters, MovieParameters):
-        return partial(
-            movie_study, open_movie(item.masks, item.signal, item.parameters, item.signal_name), folder
-        )
+        movie = open_movie(item.masks, item.signal, item.parameters, item.signal_name, item.nuclei)
+        return partial(movie_study, movie, folder)
     inputs = open_inputs(item.masks, item.signal, item.parameters, item.signal_name, item.nuclei)
     return partial(map_study, inputs, folder)

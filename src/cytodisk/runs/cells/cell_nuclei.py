@@ -13,6 +13,7 @@ from cytodisk.images.label_boxes import Box
 from cytodisk.images.mask_files import SourceCell
 from cytodisk.images.nuclei.frame_matches import FrameMatches
 from cytodisk.images.nuclei.nucleus_match import NucleusMatch
+from cytodisk.runs.frame_rows import FramePlace
 
 
 @dataclass(frozen=True)
@@ -54,12 +55,12 @@ class CellNucleus:
             )
         return None
 
-    def rows(self, found: SourceCell) -> Iterator[dict[str, Any]]:
+    def rows(self, found: SourceCell | FramePlace) -> Iterator[dict[str, Any]]:
         """Rows of the table of nuclei: that of the cell, and those of nuclei without a cell.
 
         Parameters
         ----------
-        found : SourceCell
+        found : SourceCell or FramePlace
             The cell.
         """
         place = {"source": found.source, "frame": found.frame}

@@ -8,6 +8,7 @@ from typing import Any
 from cytodisk.geometry.nucleus_report import NucleusReport
 from cytodisk.images.mask_files import SourceCell
 from cytodisk.runs.cells.cell_nuclei import CellNucleus
+from cytodisk.runs.frame_rows import FramePlace
 from cytodisk.store.nuclei.nucleus_columns import NUCLEI_COLUMNS
 from cytodisk.store.study_folder import StudyFolder
 
@@ -48,12 +49,12 @@ def nucleus_columns(nucleus: CellNucleus | None, report: NucleusReport | None = 
     }
 
 
-def nuclei_table(found: SourceCell, nucleus: CellNucleus | None) -> dict[str, dict[str, Any]]:
+def nuclei_table(found: SourceCell | FramePlace, nucleus: CellNucleus | None) -> dict[str, dict[str, Any]]:
     """What goes into the table of nuclei with a cell, as columns by the table's name; nothing without nuclei.
 
     Parameters
     ----------
-    found : SourceCell
+    found : SourceCell or FramePlace
     nucleus : CellNucleus or None
     """
     rows = [] if nucleus is None else list(nucleus.rows(found))

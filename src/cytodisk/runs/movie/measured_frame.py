@@ -20,7 +20,10 @@ from cytodisk.motion.following import frame_status
 from cytodisk.motion.frame_file import save_frame
 from cytodisk.motion.mapped_frame import MappedFrame
 from cytodisk.motion.tracking_parameters import InteriorParameters
+from cytodisk.runs.cells.cell_nuclei import CellNucleus
+from cytodisk.runs.cells.nucleus_rows import nuclei_table, nucleus_columns
 from cytodisk.runs.frame_rows import FramePlace, measure_windows
+from cytodisk.runs.movie.followed_nucleus import followed_nucleus_columns
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.scale import Scale
 from cytodisk.store.activity_reading import EDGE_VARIABLES
@@ -45,6 +48,8 @@ class FrameTask:
         Where the map is to stand.
     seconds : float
         That mapping took.
+    nucleus : CellNucleus or None
+        What the file of nuclei says of the cell, if there is one.
     """
 
     place: FramePlace
@@ -55,6 +60,7 @@ class FrameTask:
     parameters: FollowedCellParameters
     map_path: Path
     seconds: float
+    nucleus: CellNucleus | None = None
 
 
 @dataclass(frozen=True)
@@ -98,9 +104,11 @@ def measure_frame(task: FrameTask) -> FrameRows:
     try:
         windows = task.grid.on(frame.disk)
     except WindowError as fault:  # layers by depth, and no edge of the cell in the image
-        return unmapped_rows(task.place, fault, task.seconds + clock.perf_counter() - started)
+        seconds = task.seconds + clock.perf_counter() - started
+        return unmapped_rows(task.place, fault, seconds, task.nucleus)
     row, columns = measure_windows(task.place, windows, task.signal, task.parameters.nan)
-    row |= _track_columns(frame) | {"smallest_window_share": _smallest_share(windows, task.parameters)}
+    row |= _track_columns(frame) | followed_nucleus_columns(task.nucleus, frame)
+    row |= {"smallest_window_share": _smallest_share(windows, task.parameters)}
     row["notes"] = "; ".join(filter(None, [row["notes"], _interior_note(frame, task)]))
     row["mask_remarks"] = "; ".join(filter(None, [row["mask_remarks"], _jump(task)]))
     with flushed_later():
@@ -109,7 +117,8 @@ def measure_frame(task: FrameTask) -> FrameRows:
     row["swept_area"] = np.nan if motion is None else frame.disk.scale.area(motion.swept_px2)
     edge = None if task.before is None else _edge_before(task, task.before, motion)
     row |= {"status": "ok", "reason": "", "seconds": task.seconds + clock.perf_counter() - started}
-    return FrameRows(row, {"windows": columns}, edge, None if motion is None else motion.stretches_px)
+    tables = nuclei_table(task.place, task.nucleus) | {"windows": columns}
+    return FrameRows(row, tables, edge, None if motion is None else motion.stretches_px)
 
 
 def _smallest_share(windows: CellWindows, parameters: FollowedCellParameters) -> float:
@@ -134,7 +143,9 @@ def _jump(task: FrameTask) -> str:
     return f"the cell does not touch its place in frame {task.before.frame}: it moved far, or is another one"
 
 
-def unmapped_rows(place: FramePlace, fault: CytodiskError, seconds: float) -> FrameRows:
+def unmapped_rows(
+    place: FramePlace, fault: CytodiskError, seconds: float, nucleus: CellNucleus | None = None
+) -> FrameRows:
     """Row of a frame without a map.
 
     Parameters
@@ -143,13 +154,17 @@ def unmapped_rows(place: FramePlace, fault: CytodiskError, seconds: float) -> Fr
     fault : CytodiskError
     seconds : float
         Spent on it.
+    nucleus : CellNucleus, optional
+        What the file of nuclei says of the cell.
 
     Returns
     -------
     FrameRows
     """
     status = "missing" if isinstance(fault, MissingLabel | MissingFrameError) else frame_status(fault)
-    return FrameRows(place.row | {"status": status, "reason": str(fault), "seconds": seconds}, {}, None)
+    row = place.row | nucleus_columns(nucleus)
+    row |= {"status": status, "reason": str(fault), "seconds": seconds}
+    return FrameRows(row, nuclei_table(place, nucleus), None)
 
 
 def edge_columns(

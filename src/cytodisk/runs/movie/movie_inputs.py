@@ -12,21 +12,25 @@ from cytodisk.images.choice_use import check_choice
 from cytodisk.images.evidence.steady_labels import changing_label_words
 from cytodisk.images.file_parameters import Kind, KindParameters
 from cytodisk.images.frame_file import FrameFile
+from cytodisk.images.nuclei.nuclei_files import NucleiFile
 from cytodisk.images.sequences.movie_files import open_movie_masks
 from cytodisk.images.sequences.movie_signals import open_movie_signal
 from cytodisk.images.spots.label_spots import LabelTracks, label_tracks
 from cytodisk.images.spots.track_files import read_tracks
 from cytodisk.images.tracks import CellTrack, list_tracks
 from cytodisk.images.what_it_is import MaskLook, look_at, refuse_several
+from cytodisk.motion.nucleus.movie_nuclei import check_settings
 from cytodisk.motion.still_interior import fade_in_px
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.cells.fitting_signal import check_signal
+from cytodisk.runs.cells.nuclei_given import with_nucleus_layers
 from cytodisk.runs.cells.outline_sources import sized_like
 from cytodisk.runs.channel_names import channels_words, check_signal_given, name_channels, with_common_name
 from cytodisk.runs.depth_layers import check_depths, depth_words
 from cytodisk.runs.file_notes import file_notes
 from cytodisk.runs.file_scales import agreed
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
+from cytodisk.runs.movie.nuclei_of_movie import open_nuclei_of_movie, refuse_cells
 from cytodisk.scale import Scale
 from cytodisk.store.study_folder import part_key
 from cytodisk.windows.grid_parameters import PolarGridParameters
@@ -44,11 +48,13 @@ class MovieFiles:
         With the names that were given to its channels.
     scale : Scale
         The given one, or else the files' own.
+    nuclei : NucleiFile or None
     """
 
     masks: FrameFile
     signal: FrameFile | None
     scale: Scale
+    nuclei: NucleiFile | None = None
 
 
 @dataclass(frozen=True)
@@ -68,6 +74,7 @@ class MovieInputs:
         The given one, or else the files' own.
     mothers : dict of int to int
         Labels of tracks that begin with a division, and of the track that divided.
+    nuclei : NucleiFile or None
     """
 
     masks: FrameFile
@@ -78,6 +85,7 @@ class MovieInputs:
     grid: PolarGrid
     scale: Scale
     mothers: dict[int, int] = field(default_factory=dict)
+    nuclei: NucleiFile | None = None
 
     @property
     def understood(self) -> dict[str, str]:
@@ -95,6 +103,8 @@ class MovieInputs:
                 f"{channels_words(self.signal)}; {self.signal.n_frames} frames "
                 f"({self.signal.axes}, {self.signal.dtype})"
             )
+        if self.nuclei is not None:
+            words["nuclei"] = self.nuclei.words
         if self.parameters.tracks is not None:
             born = f", {len(self.mothers)} of them daughters of others" if self.mothers else ""
             words["tracks"] = f"tracks of {len(self.tracks)} cells{born}"
@@ -113,7 +123,9 @@ class MovieInputs:
 
     @property
     def _files(self) -> dict[str, FrameFile]:
-        return {"masks": self.masks} | ({"signal": self.signal} if self.signal else {})
+        found = {"masks": self.masks, "signal": self.signal}
+        found["nuclei"] = None if self.nuclei is None else self.nuclei.file
+        return {role: file for role, file in found.items() if file is not None}
 
     @property
     def paths(self) -> dict[str, Path | list[Path]]:
@@ -138,6 +150,7 @@ def open_movie(
     signal: str | os.PathLike[str] | None,
     parameters: FollowedCellParameters,
     signal_name: str = "",
+    nuclei: str | os.PathLike[str] | None = None,
 ) -> MovieInputs:
     """Open the files of a run and check that they fit.
 
@@ -150,6 +163,8 @@ def open_movie(
     parameters : MovieParameters
     signal_name : str
         What to call channels without a name, in the place of the file's name.
+    nuclei : path-like, optional
+        Label images or 0/1 masks of nuclei of the shape of the masks, as many frames as they.
 
     Returns
     -------
@@ -157,10 +172,11 @@ def open_movie(
 
     Raises
     ------
-    ReadError, MaskError, SignalError, ParameterError, MissingPartError
+    ReadError, MaskError, SignalError, NucleusError, ParameterError, MissingPartError
         A file is missing, damaged, or does not fit.
     """
-    files = open_movie_files(masks, signal, parameters)
+    parameters = with_nucleus_layers(nuclei, parameters)
+    files = open_movie_files(masks, signal, parameters, nuclei)
     signal_file, parameters = with_common_name(files.signal, signal_name, parameters)
     mask_file, scale = files.masks, files.scale
     look = look_at(mask_file, parameters.part(KindParameters))
@@ -176,7 +192,10 @@ def open_movie(
     grid = polar_grid(parameters.part(PolarGridParameters))
     check_depths(grid, scale)
     mothers = {} if given is None else given.mothers
-    return MovieInputs(mask_file, look.kind, tracks, signal_file, parameters, grid, scale, mothers)
+    if files.nuclei is not None:
+        refuse_cells(files.nuclei, mask_file, look.kind)
+    opened = mask_file, look.kind, tracks, signal_file, parameters, grid, scale, mothers
+    return MovieInputs(*opened, files.nuclei)
 
 
 def _given_tracks(
@@ -195,13 +214,16 @@ def _given_tracks(
 
 
 def open_movie_files(
-    masks: str | os.PathLike[str], signal: str | os.PathLike[str] | None, parameters: FollowedCellParameters
+    masks: str | os.PathLike[str],
+    signal: str | os.PathLike[str] | None,
+    parameters: FollowedCellParameters,
+    nuclei: str | os.PathLike[str] | None = None,
 ) -> MovieFiles:
     """Open the files of a run and check what their heads say, without looking at a frame.
 
     Parameters
     ----------
-    masks, signal, parameters
+    masks, signal, parameters, nuclei
         As for `open_movie`.
 
     Returns
@@ -210,7 +232,7 @@ def open_movie_files(
 
     Raises
     ------
-    ReadError, MaskError, SignalError, ParameterError
+    ReadError, MaskError, SignalError, NucleusError, ParameterError
         A file is missing, damaged, or does not fit.
     """
     is_path("masks", masks)
@@ -227,14 +249,17 @@ def open_movie_files(
     signal_file = name_channels(signal_file, parameters.channels)
     if signal_file is not None:
         check_signal(mask_file, signal_file)
-    opened = [file for file in (signal_file, mask_file) if file is not None]
+    of_nuclei = None if nuclei is None else open_nuclei_of_movie(nuclei, mask_file, parameters)
+    files = signal_file, mask_file, None if of_nuclei is None else of_nuclei.file
+    opened = [file for file in files if file is not None]
     check_choice(opened, parameters.scene, parameters.z)
     scale = Scale(
         parameters.pixel_size_um or agreed(opened, "pixel_size_um"),
         parameters.frame_interval_s or agreed(opened, "frame_interval_s"),
     )
     fade_in_px(parameters.part(MovieSettings), scale)
-    return MovieFiles(mask_file, signal_file, scale)
+    check_settings(nuclei is not None, parameters.part(MovieSettings))
+    return MovieFiles(mask_file, signal_file, scale, of_nuclei)
 
 
 def _check_masks(masks: FrameFile) -> None:

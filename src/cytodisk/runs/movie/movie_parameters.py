@@ -3,9 +3,10 @@
 from typing import ClassVar
 
 from cytodisk.images.file_parameters import MovieKindParameters
+from cytodisk.motion.nucleus.movie_nucleus_parameters import HeldNucleusParameters
 from cytodisk.motion.tracking_parameters import FollowingParameters, InteriorParameters
 from cytodisk.runs.cells.cell_parameters import CellParameters
-from cytodisk.runs.map.map_parameters import MapParameters
+from cytodisk.runs.map.map_parameters import WindowsOfMapsParameters
 from cytodisk.scale_parameters import ScaleParameters
 
 
@@ -13,7 +14,9 @@ class FollowedCellParameters(MovieKindParameters, FollowingParameters, ScalePara
     """What all runs over movies have, whatever the method of the map."""
 
 
-class MovieParameters(FollowedCellParameters, InteriorParameters, MapParameters):
+class MovieParameters(
+    FollowedCellParameters, InteriorParameters, HeldNucleusParameters, WindowsOfMapsParameters
+):
     """What decides the result of `cytodisk movie`, beside the input files."""
 
-    exclusive: ClassVar[tuple[tuple[str, str], ...]] = MapParameters.exclusive
+    exclusive: ClassVar[tuple[tuple[str, str], ...]] = WindowsOfMapsParameters.exclusive

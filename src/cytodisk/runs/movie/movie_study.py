@@ -15,6 +15,8 @@ from cytodisk.motion.following import FollowedFrame, map_cells
 from cytodisk.motion.frame_file import load_frame
 from cytodisk.motion.mapped_frame import MappedFrame
 from cytodisk.motion.tracking_parameters import MovieSettings
+from cytodisk.runs.cells.cell_nuclei import CellNucleus
+from cytodisk.runs.cells.nucleus_rows import nuclei_warnings
 from cytodisk.runs.executor import Executor, finished
 from cytodisk.runs.flagged_cells import fill_flags
 from cytodisk.runs.frame_rows import FramePlace
@@ -22,6 +24,7 @@ from cytodisk.runs.movie.measured_frame import FrameRows, FrameTask, measure_fra
 from cytodisk.runs.movie.movie_inputs import MovieInputs
 from cytodisk.runs.movie.movie_kind import MOVIE
 from cytodisk.runs.movie.movie_tables import MOTION_PART, STRETCHES_PART, finish_tables
+from cytodisk.runs.movie.nuclei_of_movie import MovieNuclei, with_nucleus_of
 from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.run_options import Progress, RunOptions, silent
 from cytodisk.runs.study_run import StudyRun
@@ -74,9 +77,13 @@ def movie_study(
             _Run(inputs, folder, executor, progress or silent).all_frames()
         channels = inputs.signal.channels if inputs.signal else ()
         finish_tables(folder, inputs.tracks, inputs.grid, inputs.scale, channels)
-        return inputs.keys, [words for row in folder.rows() if (words := _warning(row))]
+        warnings = [words for row in folder.rows() if (words := _warning(row))]
+        return inputs.keys, [*nuclei_warnings(folder, inputs.keys), *warnings]
 
-    return StudyRun(MOVIE, provenance, inputs.parameters, options).into(out, work, open_study, fill_flags)
+    kind = MOVIE
+    if inputs.nuclei is not None:
+        kind = MOVIE.with_nuclei.with_channels(inputs.signal.channels if inputs.signal else ())
+    return StudyRun(kind, provenance, inputs.parameters, options).into(out, work, open_study, fill_flags)
 
 
 class _Run:
@@ -92,6 +99,7 @@ class _Run:
         self._tracks = {track.cell: track for track in inputs.tracks}
         self._last: dict[int, MappedFrame] = {}
         self._signal: SignalFrame | ReadError | None = None  # of the frame that is being mapped
+        self._nuclei: dict[int, CellNucleus] = {}  # of its cells
         self._report = report
         self._first_pending: dict[int, int] = {}
 
@@ -145,18 +153,29 @@ class _Run:
         """Cells with their masks; without the frame's signal there is none."""
         cells = open_cells(self._inputs.masks, frame, self._inputs.kind)
         signal = self._signal = open_image(self._inputs.signal, frame)
+        nuclei = self._inputs.nuclei
+        matches = None if nuclei is None else MovieNuclei(nuclei, self._inputs.kind).matches(cells, frame)
+        self._nuclei = {}
         for track in tracks:
             if track.cell not in self._last:
                 self._resume_from(track, frame)
             mask = signal if isinstance(signal, ReadError) else track.cut_from(cells, frame)
-            yield track.cell, _without_damage(mask, signal)
+            mask = _without_damage(mask, signal)
+            if matches is None or not isinstance(mask, PlacedMask):
+                yield track.cell, mask
+                continue
+            label = None if track.labels is None else track.labels[frame]
+            both, self._nuclei[track.cell] = with_nucleus_of(matches, label, mask, not self._nuclei)
+            yield track.cell, both
 
     def _measured(self, found: FollowedFrame) -> Future[FrameRows]:
         result, last = found.result, found.last
         track, frame = self._tracks[found.cell], result.frame
         place = FramePlace(track.cell, frame, track.label, self._inputs.scale.seconds(frame))
+        nucleus = self._nuclei.get(track.cell)
         if result.mapped is None:
-            return finished(unmapped_rows(place, result.fault or MaskError("no map"), found.seconds))
+            fault = result.fault or MaskError("no map")
+            return finished(unmapped_rows(place, fault, found.seconds, nucleus))
         signal = None
         if isinstance(self._signal, SignalFrame):
             signal = self._signal.cut(*result.mapped.disk.placed_mask.slices)
@@ -171,6 +190,7 @@ class _Run:
             self._inputs.parameters,
             path,
             found.seconds,
+            nucleus,
         )
         return self._executor.submit(measure_frame, task)
 
@@ -195,5 +215,7 @@ def _without_damage(mask: Any, signal: SignalFrame | ReadError | None) -> Any:
 
 def _warning(row: dict[str, Any]) -> str:
     remarks = [row.get(name) for name in ("reason", "mask_remarks", "restarted")]
+    if row.get("nucleus_held"):
+        remarks.append(f"nucleus held from the frame before: {row['nucleus_held']}")
     words = "; ".join(str(remark) for remark in remarks if remark)
     return f"cell {row['cell']}, frame {row['frame']}: {words}" if words else ""

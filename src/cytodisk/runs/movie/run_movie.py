@@ -19,6 +19,7 @@ def run_movie(
     out: str | os.PathLike[str],
     *,
     signal: str | os.PathLike[str] | None = None,
+    nuclei: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
     parameters: MovieParameters | None = None,
     **settings: Any,
@@ -33,6 +34,9 @@ def run_movie(
         Folder for the results.
     signal : path-like, optional
         As many images, of the shape of the masks.
+    nuclei : path-like, optional
+        As many label images, or 0/1 masks, of the nuclei; in each frame a nucleus goes to the cell that holds
+        most of it. It is followed as the cell's edge is.
     progress : callable, optional
         Called with (frames done, frames in all), counted over all cells.
     parameters : MovieParameters, optional
@@ -47,7 +51,7 @@ def run_movie(
 
     Raises
     ------
-    ReadError, MaskError, SignalError, ParameterError
+    ReadError, MaskError, SignalError, NucleusError, ParameterError
         A file is missing, damaged, or does not fit, or a parameter is unknown or out of its range.
     StudyError
         The folder cannot be used.
@@ -67,5 +71,5 @@ def run_movie(
     (['ok', 'ok', 'ok'], 12)
     """
     options, values = RunOptions.split(settings, MovieParameters)
-    inputs = open_movie(masks, signal, MovieParameters.chosen(parameters, values))
+    inputs = open_movie(masks, signal, MovieParameters.chosen(parameters, values), nuclei=nuclei)
     return movie_study(inputs, out, progress=progress, **dict(options))
