@@ -21,7 +21,7 @@ from cytodisk.runs.batch.dry_run import understand
 from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.correlate.correlate_study import correlate_study
-from cytodisk.runs.map.map_study import check_cells
+from cytodisk.runs.map.checked_cells import check_cells
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.parameters_file import parameters_from
