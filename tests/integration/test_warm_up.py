@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 import tifffile
 
+import cytodisk as cd
+
 RUN = "import cytodisk as cd; cd.run_movie('masks.tif', 'out', layers=3, sectors=12)"
 AHEAD = "from cytodisk.runs.warm_up import warm_up; warm_up(True)"
 # Kernels that take a whole number of several kinds: a literal, of 64 bits, or a pixel's of 32 bits.
@@ -29,6 +31,22 @@ def compiled(code: str, folder: Path, name: str) -> set[tuple[str, str]]:
         kernel = index.name.rpartition("-")[0].removesuffix("-")
         found |= {(kernel, str(key[0])) for key in overloads}
     return found
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_kernels_of_nuclei_are_compiled_ahead(tmp_path: Path) -> None:
+    mask, nucleus = cd.simulate.random_pair(3)
+    for name, image in (("mask", mask), ("nucleus", nucleus)):
+        tifffile.imwrite(tmp_path / f"{name}.tif", image.astype(np.uint8))
+    run = compiled(
+        "import cytodisk as cd; cd.run_map('mask.tif', 'out', nuclei='nucleus.tif', layers=3, sectors=12)",
+        tmp_path,
+        "run",
+    )
+    ahead = compiled("from cytodisk.runs.warm_up import warm_up; warm_up(False, True)", tmp_path, "ahead")
+    assert {"nucleus_raster._paint", "ring_triangles.paint_ring_triangle"} <= {kernel for kernel, _ in ahead}
+    assert not ahead - run
 
 
 @pytest.mark.slow

@@ -10,6 +10,7 @@ from importlib import import_module
 _LATE = {
     "shapes": "cytodisk.disk.blocks",
     "map": "cytodisk.windows.raster",
+    "map with nuclei": "cytodisk.windows.nucleus.nucleus_raster",
     "movie": "cytodisk.motion.swept_edge",
 }
 _WORDS = (
@@ -25,7 +26,7 @@ def say_compiling(quiet: bool, work: str = "map") -> bool:
     ----------
     quiet : bool
         Say nothing.
-    work : {"map", "movie", "shapes"}
+    work : {"map", "map with nuclei", "movie", "shapes"}
         What the command does.
 
     Returns
@@ -49,7 +50,7 @@ def compiling(quiet: bool, work: str, workers: int) -> Iterator[None]:
     ----------
     quiet : bool
         Say nothing.
-    work : {"map", "movie"}
+    work : {"map", "map with nuclei", "movie"}
         What the command does.
     workers : int
         Processes of the command; several keep all cores busy by themselves.
@@ -61,5 +62,5 @@ def compiling(quiet: bool, work: str, workers: int) -> Iterator[None]:
     from cytodisk.runs.warm_up import warm_up
 
     with Executor(1, apart=True) as beside:
-        beside.submit(warm_up, work == "movie")
+        beside.submit(warm_up, work == "movie", work.endswith("with nuclei"))
         yield

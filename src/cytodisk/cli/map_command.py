@@ -42,7 +42,8 @@ def map_command(
     options = given.options(MapOptions)
     inputs = open_inputs(masks, signal, given.of(MapParameters), nuclei=nuclei)
     say_inputs(console, inputs)
-    with compiling(quiet, "map", options.workers), progress_bar(quiet, "cells") as progress:
+    work = "map with nuclei" if nuclei else "map"
+    with compiling(quiet, work, options.workers), progress_bar(quiet, "cells") as progress:
         study = map_study(
             inputs,
             out,
