@@ -223,3 +223,32 @@ def test_maps_without_a_nucleus_and_other_data_are_refused() -> None:
     frames = cd.sample(GRID.on(disk), np.ones(mask.shape)).expand_dims(time=3)
     with pytest.raises(cd.errors.WindowError, match="data is of 3 frames, disk of one"):
         cd.nucleus_summary(disk, frames)
+
+
+def test_a_movie_has_the_numbers_of_its_frames() -> None:
+    cells, nuclei, frames = [], [], (0, 5, 10, 15)
+    for shift in frames:
+        mask, nucleus = pair(radius=25, nucleus=9, shift=(0, shift // 2))
+        cells.append(mask)
+        nuclei.append(nucleus)
+    nuclei[2] = np.zeros_like(nuclei[2])  # no nucleus in this frame
+    signal = np.array([np.where(nucleus, 4.0 + k, 2.0) for k, nucleus in enumerate(nuclei)])
+    movie = cd.map_movie(np.array(cells), nuclei=np.array(nuclei), pixel_size_um=0.5)
+    data = cd.sample_movie(movie, cd.polar_windows(4, 12, nucleus_layers=2), signal)
+    found = cd.nucleus_summary(movie, data)
+    assert found["nucleus_offset"].dims == ("time",)
+    assert_allclose(found["nucleus_offset"], [0.0, 1.0, np.nan, 3.5], atol=1e-6)
+    assert_allclose(found["nucleus_to_cytoplasm"].squeeze(), [2.0, 2.5, np.nan, 3.5])
+    reasons = np.ravel(found["reason"]).tolist()
+    assert movie.records[2].reason
+    assert reasons[2] == movie.records[2].reason
+    profile = cd.nuclear_profile(data)
+    assert profile["mean"].dims == ("time", "channel", "layer")
+    assert profile["depth"].dims == ("time", "layer")
+    assert_allclose(profile["mean"].isel(time=3, channel=0), [2, 2, 2, 2, 7, 7])
+    assert np.isnan(profile["mean"].isel(time=2)).all()
+    assert profile["depth"].attrs["units"] == "µm"
+    with pytest.raises(cd.errors.WindowError, match="data is of 4 frames, disk of one"):
+        cd.nucleus_summary(movie[0], data)
+    with pytest.raises(cd.errors.WindowError, match="data is of one frame, disk of 4"):
+        cd.nucleus_summary(movie, data.isel(time=0))
