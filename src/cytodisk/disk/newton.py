@@ -163,7 +163,12 @@ class GaussNewton(ABC):
     def largest_step(self, uv: FloatArray, direction: FloatArray) -> float:
         """Largest step that keeps every triangle positive, to first order at least."""
 
+    def moved(self, uv: FloatArray, step: FloatArray) -> FloatArray:
+        """Where a step leads."""
+        return uv + step
+
     def energy(self, uv: FloatArray) -> float:
+        """Energy with the pull; infinite where a triangle is not positive."""
         value = self.own_energy(uv)
         if self._pull is not None:
             value += float((self._pull * np.square(uv[self._vertex] - self._anchor)).sum())
@@ -207,7 +212,7 @@ class GaussNewton(ABC):
         """
         size = min(1.0, _SAFE_SHARE * self.largest_step(uv, direction))
         for _ in range(_TRIALS):
-            moved = uv + size * direction
+            moved = self.moved(uv, size * direction)
             new_value = self.energy(moved)
             if new_value <= value - _SUFFICIENT * size * decrement:
                 return moved, new_value

@@ -83,56 +83,61 @@ def shared_out(
     return corner, parts, target, edge
 
 
-@njit(cache=True, inline="always")
-def _corner(
-    places: FloatArray, vertex: int, inside: bool, turned: float, sliding: BoolArray
-) -> tuple[float, float]:
+@njit(cache=True)
+def _corner(x: float, y: float, turned: float, inside: bool, sliding: bool) -> tuple[float, float]:
     """Where a corner lies in its triangle's frame."""
     if not inside:
-        return places[vertex, 0] + turned, places[vertex, 1]
-    if sliding[vertex]:
-        return math.cos(places[vertex, 0]), math.sin(places[vertex, 0])
-    return places[vertex, 0], places[vertex, 1]
+        return x + turned, y
+    if sliding:
+        return math.cos(x), math.sin(x)
+    return x, y
 
 
 @njit(cache=True, error_model="numpy")
 def _jacobian(
-    places: FloatArray, t: int, cell: CompartmentElements
+    places: FloatArray,
+    triangle: IntArray,
+    hats: FloatArray,
+    turned: FloatArray,
+    inside: bool,
+    sliding: BoolArray,
 ) -> tuple[float, float, float, float, float]:
     """J of one triangle, and the radius at its middle in the cytoplasm, 1 in the nucleus."""
     a = b = c = d = deep = 0.0
     for k in range(3):
-        x, y = _corner(places, cell.triangles[t, k], cell.inside[t], cell.turned[t, k], cell.sliding)
-        a += x * cell.hats[t, k, 0]
-        b += x * cell.hats[t, k, 1]
-        c += y * cell.hats[t, k, 0]
-        d += y * cell.hats[t, k, 1]
+        v = triangle[k]
+        x, y = _corner(places[v, 0], places[v, 1], turned[k], inside, sliding[v])
+        a += x * hats[k, 0]
+        b += x * hats[k, 1]
+        c += y * hats[k, 0]
+        d += y * hats[k, 1]
         deep += y
-    radius = 1.0 if cell.inside[t] else math.sqrt(1.0 - 2.0 * deep / 3.0)
+    radius = 1.0 if inside else math.sqrt(1.0 - 2.0 * deep / 3.0)
     return a, b, c, d, radius
 
 
 @njit(cache=True)
 def compartment_energy(places: FloatArray, cell: CompartmentElements, weight: float) -> float:
     """E of a map; infinite if any triangle is not positive."""
-    area = np.zeros(len(cell.target))
+    triangles, hats, share, corner, parts, target, edge, inside, turned, sliding = cell
+    area = np.zeros(len(target))
     shape = at_edge = 0.0
-    for t in range(cell.triangles.shape[0]):
-        a, b, c, d, radius = _jacobian(places, t, cell)
+    for t in range(triangles.shape[0]):
+        a, b, c, d, radius = _jacobian(places, triangles[t], hats[t], turned[t], inside[t], sliding)
         det = a * d - b * c
         if not det > 0.0:
             return np.inf
         r1, r2 = radius * a - d / radius, radius * b + c / radius
-        shape += cell.share[t] * (r1 * r1 + r2 * r2) / det
-        if cell.edge[t] > 0.0:
-            at_edge += cell.edge[t] * math.log(det) ** 2
+        shape += share[t] * (r1 * r1 + r2 * r2) / det
+        if edge[t] > 0.0:
+            at_edge += edge[t] * math.log(det) ** 2
         for k in range(3):
-            if cell.corner[t, k] >= 0:
-                area[cell.corner[t, k]] += cell.parts[t, k] * det
+            if corner[t, k] >= 0:
+                area[corner[t, k]] += parts[t, k] * det
     total = weight * shape + at_edge
     for n in range(len(area)):
-        if cell.target[n] > 0.0:
-            total += cell.target[n] * math.log(area[n] / cell.target[n]) ** 2
+        if target[n] > 0.0:
+            total += target[n] * math.log(area[n] / target[n]) ** 2
     return total
 
 
@@ -153,32 +158,33 @@ def fill_compartments(
     `free` (V, 2) says which of the two numbers of a vertex may change: rows of others are those of the
     identity.
     """
+    triangles, hats, share, corner, parts, _, edge, inside, _, sliding = cell
     right[:] = 0.0
     blocks[:] = 0.0
     slope, jacobians = _fill_areas(places, cell, diagonal, blocks, right)
     numbers = blocks.reshape(-1)  # the nine of each block, one row after the other
     corners = np.empty((3, 7))  # gradients of det J and of two residuals of shape, and m, at each corner
-    for t in range(cell.triangles.shape[0]):
+    for t in range(triangles.shape[0]):
         a, b, c, d = jacobians[t, 0], jacobians[t, 1], jacobians[t, 2], jacobians[t, 3]
         radius = jacobians[t, 4]
         over = 1.0 / radius
         det = a * d - b * c
         inverse = 1.0 / det
-        root = math.sqrt(2.0 * weight * cell.share[t] * inverse)
+        root = math.sqrt(2.0 * weight * share[t] * inverse)
         r1, r2 = root * (radius * a - over * d), root * (radius * b + over * c)
         s1, s2 = 0.5 * r1 * inverse, 0.5 * r2 * inverse
-        by_depth = 0.0 if cell.inside[t] else -over / 3.0  # of the radius at the middle, by p of a corner
+        by_depth = 0.0 if inside[t] else -over / 3.0  # of the radius at the middle, by p of a corner
         m1, m2 = root * (a + d * over * over) * by_depth, root * (b - c * over * over) * by_depth
         stiff = slant = 0.0
-        if cell.edge[t] > 0.0:
-            stiff, slant = 2.0 * cell.edge[t] * inverse**2, 2.0 * cell.edge[t] * math.log(det) * inverse
+        if edge[t] > 0.0:
+            stiff, slant = 2.0 * edge[t] * inverse**2, 2.0 * edge[t] * math.log(det) * inverse
         for k in range(3):
-            x, y = cell.hats[t, k, 0], cell.hats[t, k, 1]
-            vertex = cell.triangles[t, k]
+            x, y = hats[t, k, 0], hats[t, k, 1]
+            vertex = triangles[t, k]
             g0, g1 = d * x - c * y, a * y - b * x
             e0, e1 = root * radius * x - s1 * g0, -root * over * y - s1 * g1 + m1
             f0, f1 = root * radius * y - s2 * g0, root * over * x - s2 * g1 + m2
-            if cell.inside[t] and cell.sliding[vertex]:
+            if inside[t] and sliding[vertex]:
                 along_u, along_v = -math.sin(places[vertex, 0]), math.cos(places[vertex, 0])
                 g0, g1 = along_u * g0 + along_v * g1, 0.0
                 e0, e1 = along_u * e0 + along_v * e1, 0.0
@@ -189,8 +195,8 @@ def fill_compartments(
                 g1 = e1 = f1 = 0.0
             corners[k, 0], corners[k, 1] = g0, g1
             corners[k, 2], corners[k, 3], corners[k, 4], corners[k, 5] = e0, e1, f0, f1
-            own = cell.corner[t, k]
-            corners[k, 6] = cell.parts[t, k] * slope[own] if own >= 0 else 0.0
+            own = corner[t, k]
+            corners[k, 6] = parts[t, k] * slope[own] if own >= 0 else 0.0
             n = unknown[vertex]
             if n >= 0:
                 right[n, 0] -= r1 * e0 + r2 * f0 + slant * g0
@@ -236,36 +242,38 @@ def _fill_areas(
     places: FloatArray, cell: CompartmentElements, diagonal: IntArray, blocks: FloatArray, right: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Fill in what belongs to the pressures alone; √a_v / A_v of each vertex, and the Jacobians."""
-    area = np.zeros(len(cell.target))
-    jacobians = np.empty((cell.triangles.shape[0], 5))
-    for t in range(cell.triangles.shape[0]):
-        a, b, c, d, radius = _jacobian(places, t, cell)
+    triangles, hats, _, corner, parts, target, _, inside, turned, sliding = cell
+    area = np.zeros(len(target))
+    jacobians = np.empty((triangles.shape[0], 5))
+    for t in range(triangles.shape[0]):
+        a, b, c, d, radius = _jacobian(places, triangles[t], hats[t], turned[t], inside[t], sliding)
         jacobians[t, 0], jacobians[t, 1], jacobians[t, 2], jacobians[t, 3] = a, b, c, d
         jacobians[t, 4] = radius
         for k in range(3):
-            if cell.corner[t, k] >= 0:
-                area[cell.corner[t, k]] += cell.parts[t, k] * (a * d - b * c)
-    slope = np.zeros(len(cell.target))
-    for n in range(len(cell.target)):
+            if corner[t, k] >= 0:
+                area[corner[t, k]] += parts[t, k] * (a * d - b * c)
+    slope = np.zeros(len(target))
+    for n in range(len(target)):
         blocks[diagonal[n], 2, 2] = -0.5
-        if cell.target[n] > 0.0:
-            root = math.sqrt(cell.target[n])
+        if target[n] > 0.0:
+            root = math.sqrt(target[n])
             slope[n] = root / area[n]
-            right[n, 2] = -root * math.log(area[n] / cell.target[n])
+            right[n, 2] = -root * math.log(area[n] / target[n])
     return slope, jacobians
 
 
 @njit(cache=True, error_model="numpy")
 def largest_compartment_step(places: FloatArray, direction: FloatArray, cell: CompartmentElements) -> float:
     """First positive root of any det J(s) along places + s · direction, to first order if vertices slide."""
+    triangles, hats, _, _, _, _, _, inside, turned, sliding = cell
     first = np.inf
-    for t in range(cell.triangles.shape[0]):
-        a, b, c, d, _ = _jacobian(places, t, cell)
+    for t in range(triangles.shape[0]):
+        a, b, c, d, _ = _jacobian(places, triangles[t], hats[t], turned[t], inside[t], sliding)
         p = q = r = s = 0.0
         for k in range(3):
-            vertex, x, y = cell.triangles[t, k], cell.hats[t, k, 0], cell.hats[t, k, 1]
+            vertex, x, y = triangles[t, k], hats[t, k, 0], hats[t, k, 1]
             du, dv = direction[vertex, 0], direction[vertex, 1]
-            if cell.inside[t] and cell.sliding[vertex]:
+            if inside[t] and sliding[vertex]:
                 du, dv = -math.sin(places[vertex, 0]) * du, math.cos(places[vertex, 0]) * du
             p += du * x
             q += du * y

@@ -7,6 +7,8 @@ compartments agree where it is best.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
@@ -25,6 +27,7 @@ from cytodisk.disk.relaxed import Relaxed
 from cytodisk.geometry.mesh import hat_gradients, triangle_areas
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
 
+_CORE = 0.3  # radius in the nucleus' own disk within which a step turns vertices less
 _WIDEST_GAP = 0.45 * TURN  # between neighbours on the nuclear outline: below half a turn
 
 
@@ -77,6 +80,10 @@ def relax_compartments(
     if anchor is not None and inertia:
         problem.pull_to(anchor, inertia * problem.metric(anchor))
     return descended(problem, start)
+
+
+def _complex(uv: FloatArray) -> Any:
+    return uv[:, 0] + 1j * uv[:, 1]
 
 
 class _Compartments(GaussNewton):
@@ -135,6 +142,15 @@ class _Compartments(GaussNewton):
         if np.mod(np.roll(at_nucleus, -1) - at_nucleus, TURN).max() > _WIDEST_GAP:
             return np.inf  # or two of them have changed places
         return float(compartment_energy(uv, self._cell, self.shape_weight))
+
+    def moved(self, uv: FloatArray, step: FloatArray) -> FloatArray:
+        """Where a step leads: vertices inside the nucleus turn about its centre, as those on its outline do."""
+        found = uv + step
+        z, d = _complex(uv[self._inside]), _complex(step[self._inside])
+        turn = (d * z.conj()).imag / np.maximum(np.abs(z) ** 2, _CORE**2)
+        turned = z * np.exp(1j * turn) + d - 1j * turn * z
+        found[self._inside] = np.column_stack([turned.real, turned.imag])
+        return found
 
     def fill(self, uv: FloatArray, system: PressureSystem, right: FloatArray) -> None:
         pattern = system.pattern

@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from scipy.interpolate import PchipInterpolator
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.blocks import BlockSystem
@@ -34,8 +35,8 @@ from cytodisk.errors import MapError
 from cytodisk.geometry.mesh import triangle_areas
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
 
-_SHARES = 0.5 ** np.arange(0, 12)  # of the way from g to the share of area with less g
-_LEAST_AREA = 0.0
+_KNOTS = 16  # of the depth as a function of g
+_LEAST_POWER = 0.1  # of g, of which it is a power below the first of them: in arms g falls exponentially
 
 
 class CylinderMap(NamedTuple):
@@ -116,8 +117,8 @@ def cylinder_start(
         edge_weights = cotangents(mesh) if weights == "cotangent" else np.full(3 * len(mesh.triangles), 0.5)
         found = _solved(mesh, form, edge_weights, membrane_angles, system, nucleus_angles, twist)
         if found is not None:
-            angles, g, lifts, wound = found
-            return CylinderMap(angles, _even_depth(mesh, angles, g, lifts), lifts, weights, wound)
+            angles, depth, lifts, wound = found
+            return CylinderMap(angles, depth, lifts, weights, wound)
     raise MapError(
         f"no map of the cytoplasm was found ({len(mesh.vertices_yx)} vertices): in double precision "
         "triangles turn over; the cell is too branched for its size; try a larger edge_length"
@@ -170,7 +171,9 @@ def _solved(
     given[mesh.boundary] = membrane_angles - form.around_loop(mesh.boundary)
     inner = mesh.nucleus_boundary
     around = form.around_loop(inner)
-    angles, g = _harmonic(mesh, form, edge_weights, given, system)
+    _, g = _harmonic(mesh, form, edge_weights, given, system)
+    edge_weights = _reweighted(mesh, edge_weights, g, _share_below(mesh, g))
+    angles, depth = _harmonic(mesh, form, edge_weights, given, system)
     at_nucleus, wound = angles[inner] - form.angles[inner] + around, 0.0
     if nucleus_angles is not None:
         away = mean_along(mesh, nucleus_angles - at_nucleus)
@@ -178,10 +181,10 @@ def _solved(
         at_nucleus = nucleus_angles + wound - away
     if nucleus_angles is not None or widest_gap(at_nucleus) > LARGEST_GAP:
         given[inner] = without_wide_gaps(mesh, at_nucleus) - around
-        angles, g = _harmonic(mesh, form, edge_weights, given, system)
+        angles, depth = _harmonic(mesh, form, edge_weights, given, system)
     lifts = _lifts(mesh, form, angles)
-    areas = cylinder_areas(angles, g, lifts, mesh.triangles)[~mesh.inside]
-    return (angles, g, lifts, wound) if (areas > 0.0).all() else None
+    areas = cylinder_areas(angles, depth, lifts, mesh.triangles)[~mesh.inside]
+    return (angles, depth, lifts, wound) if (areas > 0.0).all() else None
 
 
 def _lifts(mesh: NucleusMesh, form: _Form, angles: FloatArray) -> IntArray:
@@ -262,28 +265,35 @@ def _fill(
                         blocks[place[t, own, other], axis, axis] -= weight
 
 
-def _even_depth(mesh: NucleusMesh, angles: FloatArray, g: FloatArray, lifts: IntArray) -> FloatArray:
-    """Depth between g and the share of the cytoplasm's area with less g, as near to the latter as goes.
-
-    Every increasing function of g is one to one with θ, but not when it is taken vertex by vertex.
-    """
+def _share_below(mesh: NucleusMesh, g: FloatArray) -> FloatArray:
+    """Nearly the share of the cytoplasm's area that has less g than each vertex: a smooth function of g."""
     ring = mesh.triangles[~mesh.inside]
     areas = triangle_areas(mesh.vertices_yx, ring)
-    n_vertices = len(g)
-    held = np.bincount(ring.ravel(), np.repeat(areas / 3.0, 3), minlength=n_vertices)
-    order = np.argsort(g, kind="stable")
-    order = order[held[order] > 0.0]
-    below = np.cumsum(held[order])
-    level, first, which = np.unique(g[order], return_index=True, return_inverse=True)
-    total = np.bincount(which, held[order])
-    middle = below[first] - held[order][first] + 0.5 * total
-    middle[0], middle[-1] = 0.0, below[-1]
-    share = np.interp(g, level, middle / below[-1])
-    for way in _SHARES:
-        depth = (1.0 - way) * g + way * share
-        if (cylinder_areas(angles, depth, lifts, mesh.triangles)[~mesh.inside] > _LEAST_AREA).all():
-            return np.asarray(depth)
-    return g
+    held = np.bincount(ring.ravel(), np.repeat(areas / 3.0, 3), minlength=len(g))
+    order = np.argsort(g)
+    share = np.cumsum(held[order]) / held.sum()
+    wanted = np.arange(1, _KNOTS) / _KNOTS
+    knots = g[order][np.searchsorted(share, wanted)]
+    keep = (knots > 0.0) & (knots < 1.0) & (np.diff(knots, prepend=0.0) > 0.0)
+    x, y = np.append(np.log(knots[keep]), 0.0), np.append(wanted[keep], 1.0)
+    if len(x) < 2:
+        return g
+    below = g < np.exp(x[0])
+    power = min(max(np.log(y[1] / y[0]) / (x[1] - x[0]), _LEAST_POWER), 1.0)
+    depth = y[0] * (g / np.exp(x[0])) ** power
+    depth[~below] = PchipInterpolator(x, y)(np.log(g[~below]))
+    return np.asarray(depth)
+
+
+def _reweighted(mesh: NucleusMesh, edge_weights: FloatArray, g: FloatArray, depth: FloatArray) -> FloatArray:
+    """Weights, positive where those given are, with which an increasing function of g is harmonic, too."""
+    start, end = mesh.triangles.T.ravel(), np.roll(mesh.triangles, -1, axis=1).T.ravel()
+    rise, climb = np.abs(g[end] - g[start]), np.abs(depth[end] - depth[start])
+    levels, first = np.unique(g, return_index=True)
+    slope = np.gradient(levels, depth[first]) if len(levels) > 1 else np.ones(1)
+    level = (climb == 0.0) | (rise == 0.0)
+    along = slope[np.searchsorted(levels, g[start])]
+    return np.asarray(edge_weights * np.where(level, along, rise / np.where(level, 1.0, climb)))
 
 
 @njit(cache=True)

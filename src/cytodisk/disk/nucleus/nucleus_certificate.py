@@ -134,29 +134,26 @@ def _cylinder_faults(triangles: IntArray, boundary: IntArray, nucleus: Nucleus) 
     """Whether the cytoplasm's map is continuous, and takes its borders once around theirs."""
     faults = []
     ring, lifts = triangles[~nucleus.inside], nucleus.lifts[~nucleus.inside]
-    ends, end_lifts = np.roll(ring, -1, axis=1), np.roll(lifts, -1, axis=1)
-    start, end, step = ring.ravel(), ends.ravel(), (end_lifts - lifts).ravel()
-    forward = start < end
-    low, high = np.where(forward, start, end), np.where(forward, end, start)
-    rise = np.where(forward, step, -step)
-    key = low * (int(triangles.max()) + 1) + high
-    order = np.argsort(key, kind="stable")
-    same = np.diff(key[order]) == 0
-    if (np.diff(rise[order])[same] != 0).any():
+    start, end = ring.ravel(), np.roll(ring, -1, axis=1).ravel()
+    rise = (np.roll(lifts, -1, axis=1) - lifts).ravel()
+    many = int(triangles.max()) + 1
+    order = np.argsort(start * many + end, kind="stable")
+    key, rise = (start * many + end)[order], rise[order]
+    back = np.searchsorted(key, (end * many + start)[order])
+    shared = key[np.minimum(back, len(key) - 1)] == (end * many + start)[order]
+    if (rise[back[shared]] != -rise[shared]).any():
         faults.append("turns of the cytoplasm's triangles do not agree along an edge")
     share, turn = nucleus.places.T
-    lift_of = dict(zip(zip(start.tolist(), end.tolist(), strict=True), step.tolist(), strict=True))
     for name, loop, level, way in (
         ("membrane", boundary, 0.0, 1),
         ("nuclear outline", nucleus.boundary, 1.0, -1),
     ):
         following = np.roll(loop, -1)
-        pairs = zip(*((loop, following) if way > 0 else (following, loop)), strict=True)
-        lifted = np.array([way * lift_of.get((int(a), int(b)), 0) for a, b in pairs])
-        steps = turn[following] - turn[loop] + lifted
+        edge = loop * many + following if way > 0 else following * many + loop
+        lifted = way * rise[np.minimum(np.searchsorted(key, edge), len(key) - 1)]
         if (share[loop] != level).any():
             faults.append(f"the {name} is not at share {level:g}")
-        if not (steps > 0.0).all() or lifted.sum() != 1:
+        if not (turn[following] - turn[loop] + lifted > 0.0).all() or lifted.sum() != 1:
             faults.append(f"turns of the {name} do not increase strictly through one turn")
     in_ring = np.unique(ring)
     if (share[in_ring] < 0.0).any() or (share[in_ring] > 1.0).any():
