@@ -7,18 +7,22 @@ compartments agree where it is best.
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.blocks import BlockSystem
+from cytodisk.disk.circle import arc_lengths
 from cytodisk.disk.newton import GaussNewton, descended
 from cytodisk.disk.nucleus.compartment_energy import (
     CompartmentElements,
+    add_loop,
     compartment_energy,
     fill_compartments,
     largest_compartment_step,
+    loop_energy,
     shared_out,
 )
 from cytodisk.disk.nucleus.cone import TURN
@@ -27,8 +31,10 @@ from cytodisk.disk.relaxed import Relaxed
 from cytodisk.geometry.mesh import hat_gradients, triangle_areas
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
 
+_HOLDS = 2  # times a step is computed anew
+_SOON = 0.3  # of a step, at which a triangle would turn over
+_HOLD = 1e3  # times its diagonal that a vertex which is held has more
 _CORE = 0.3  # radius in the nucleus' own disk within which a step turns vertices less
-_WIDEST_GAP = 0.45 * TURN  # between neighbours on the nuclear outline: below half a turn
 
 
 def relax_compartments(
@@ -82,6 +88,21 @@ def relax_compartments(
     return descended(problem, start)
 
 
+def _pairs(mesh: NucleusMesh, system: BlockSystem) -> IntArray:
+    """Block of each step between neighbours on the nuclear outline, (N,)."""
+    pairs = np.empty(mesh.n_nucleus, dtype=np.int64)
+    first, stop = mesh.n_boundary, mesh.n_boundary + mesh.n_nucleus
+    for k in range(3):
+        start, end = mesh.triangles[:, k], mesh.triangles[:, (k + 1) % 3]
+        step = (
+            (start >= first) & (start < stop) & ((end - start == 1) | ((start == stop - 1) & (end == first)))
+        )
+        step &= (end >= first) & (end < stop)
+        l = (k + 1) % 3
+        pairs[start[step] - first] = np.maximum(system.place[step, k, l], system.place[step, l, k])
+    return pairs
+
+
 def _complex(uv: FloatArray) -> Any:
     return uv[:, 0] + 1j * uv[:, 1]
 
@@ -125,6 +146,14 @@ class _Compartments(GaussNewton):
         self._free: BoolArray = np.ones((len(sliding), 2), dtype=bool)
         self._free[sliding, 1] = False
         self._free[sliding, 0] = slide
+        self._free[: mesh.n_boundary] = False
+        self._slide = slide
+        self._held, self._roots = np.zeros(len(mesh.vertices_yx)), np.empty(len(areas))
+        outline = mesh.vertices_yx[self._loop]
+        lengths = arc_lengths(outline)
+        self._loop_share = lengths / lengths.sum()
+        self._loop_weight = float(os.environ.get("CC", "3")) * shape_weight
+        self._pair = _pairs(mesh, system)
         self._radius, self._inside = radius, mesh.vertex_inside
 
     def metric(self, places: FloatArray) -> FloatArray:
@@ -138,10 +167,24 @@ class _Compartments(GaussNewton):
         return np.asarray(shares[:, None] * lengths)
 
     def own_energy(self, uv: FloatArray) -> float:
-        at_nucleus = uv[self._loop, 0]
-        if np.mod(np.roll(at_nucleus, -1) - at_nucleus, TURN).max() > _WIDEST_GAP:
-            return np.inf  # or two of them have changed places
-        return float(compartment_energy(uv, self._cell, self.shape_weight))
+        at_outline = loop_energy(uv[self._loop, 0], self._loop_share, self._loop_weight)
+        if not np.isfinite(at_outline):
+            return np.inf
+        return float(at_outline + compartment_energy(uv, self._cell, self.shape_weight))
+
+    def descent(self, uv: FloatArray) -> tuple[FloatArray, float]:
+        """Step of every vertex, and the energy it promises to save to first order.
+
+        A triangle that the step would soon turn over would make it short for all: its corners are held, and
+        the others' step is computed anew.
+        """
+        self._held[:] = 0.0
+        for _ in range(_HOLDS):
+            direction, decrement = super().descent(uv)
+            if self.largest_step(uv, direction) >= _SOON:
+                return direction, decrement
+            self._held[self._cell.triangles[self._roots < _SOON]] += _HOLD
+        return super().descent(uv)
 
     def moved(self, uv: FloatArray, step: FloatArray) -> FloatArray:
         """Where a step leads: vertices inside the nucleus turn about its centre, as those on its outline do."""
@@ -156,6 +199,13 @@ class _Compartments(GaussNewton):
         pattern = system.pattern
         arrays = pattern.unknown, pattern.place, pattern.diagonal, system.blocks, right
         fill_compartments(uv, self._cell, self.shape_weight, self._free, *arrays)
+        if self._held.any():
+            for axis in (0, 1):
+                system.blocks[pattern.diagonal, axis, axis] *= 1.0 + self._held[self._vertex]
+        if self._slide:
+            steps = uv[self._loop, 0], self._loop_share, self._loop_weight
+            ends = pattern.unknown[self._loop], self._pair, pattern.diagonal
+            add_loop(*steps, *ends, system.blocks, right)
 
     def largest_step(self, uv: FloatArray, direction: FloatArray) -> float:
-        return float(largest_compartment_step(uv, direction, self._cell))
+        return float(largest_compartment_step(uv, direction, self._cell, self._roots))

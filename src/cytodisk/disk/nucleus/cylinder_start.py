@@ -290,9 +290,11 @@ def _reweighted(mesh: NucleusMesh, edge_weights: FloatArray, g: FloatArray, dept
     start, end = mesh.triangles.T.ravel(), np.roll(mesh.triangles, -1, axis=1).T.ravel()
     rise, climb = np.abs(g[end] - g[start]), np.abs(depth[end] - depth[start])
     levels, first = np.unique(g, return_index=True)
+    rising = np.diff(depth[first], prepend=-1.0) > 0.0  # neighbouring levels may have one depth in rounding
+    levels, first = levels[rising], first[rising]
     slope = np.gradient(levels, depth[first]) if len(levels) > 1 else np.ones(1)
     level = (climb == 0.0) | (rise == 0.0)
-    along = slope[np.searchsorted(levels, g[start])]
+    along = slope[np.searchsorted(levels, g[start], side="right") - 1]
     return np.asarray(edge_weights * np.where(level, along, rise / np.where(level, 1.0, climb)))
 
 
