@@ -18,14 +18,13 @@ from cytodisk.disk.circle import arc_lengths
 from cytodisk.disk.newton import GaussNewton, descended
 from cytodisk.disk.nucleus.compartment_energy import (
     CompartmentElements,
-    add_loop,
     compartment_energy,
     fill_compartments,
     largest_compartment_step,
-    loop_energy,
     shared_out,
 )
 from cytodisk.disk.nucleus.cone import TURN
+from cytodisk.disk.nucleus.outline_steps import add_loop, loop_energy
 from cytodisk.disk.pressure_blocks import PressureSystem
 from cytodisk.disk.relaxed import Relaxed
 from cytodisk.geometry.mesh import hat_gradients, triangle_areas
@@ -187,7 +186,7 @@ class _Compartments(GaussNewton):
         return super().descent(uv)
 
     def moved(self, uv: FloatArray, step: FloatArray) -> FloatArray:
-        """Where a step leads: vertices inside the nucleus turn about its centre, as those on its outline do."""
+        """Where a step leads: vertices inside the nucleus turn about its centre with those of its outline."""
         found = uv + step
         z, d = _complex(uv[self._inside]), _complex(step[self._inside])
         turn = (d * z.conj()).imag / np.maximum(np.abs(z) ** 2, _CORE**2)

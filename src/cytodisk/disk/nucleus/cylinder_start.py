@@ -6,6 +6,8 @@ membrane. With positive weights, the same for both, (θ, g) is one to one, with 
 there: Tutte's theorem on the cylinder. Where θ is free, mirror the mesh across the nuclear outline: by
 symmetry the map of both halves, with θ given on either membrane, has the outline on a straight circle.
 
+In arms g falls exponentially: `even_depth` takes another function of it.
+
 References
 ----------
 Gortler, Gotsman & Thurston, "Discrete one-forms on meshes and applications to 3D mesh parameterization",
@@ -18,12 +20,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from scipy.interpolate import PchipInterpolator
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.harmonic import Weights, cotangents
 from cytodisk.disk.nucleus.cone import TURN
+from cytodisk.disk.nucleus.even_depth import reweighted, share_below
 from cytodisk.disk.nucleus.outline_angles import (
     LARGEST_GAP,
     mean_along,
@@ -32,11 +34,7 @@ from cytodisk.disk.nucleus.outline_angles import (
     wound_like,
 )
 from cytodisk.errors import MapError
-from cytodisk.geometry.mesh import triangle_areas
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
-
-_KNOTS = 16  # of the depth as a function of g
-_LEAST_POWER = 0.1  # of g, of which it is a power below the first of them: in arms g falls exponentially
 
 
 class CylinderMap(NamedTuple):
@@ -104,7 +102,7 @@ def cylinder_start(
     Returns
     -------
     CylinderMap
-        With `depth` the share of the cytoplasm's area that has less g, as far as triangles allow.
+        With `depth` nearly the share of the cytoplasm's area that has less g.
 
     Raises
     ------
@@ -172,7 +170,7 @@ def _solved(
     inner = mesh.nucleus_boundary
     around = form.around_loop(inner)
     _, g = _harmonic(mesh, form, edge_weights, given, system)
-    edge_weights = _reweighted(mesh, edge_weights, g, _share_below(mesh, g))
+    edge_weights = reweighted(mesh, edge_weights, g, share_below(mesh, g))
     angles, depth = _harmonic(mesh, form, edge_weights, given, system)
     at_nucleus, wound = angles[inner] - form.angles[inner] + around, 0.0
     if nucleus_angles is not None:
@@ -263,39 +261,6 @@ def _fill(
                         right[n, axis] += weight * values[j, axis]
                     elif place[t, own, other] >= 0:
                         blocks[place[t, own, other], axis, axis] -= weight
-
-
-def _share_below(mesh: NucleusMesh, g: FloatArray) -> FloatArray:
-    """Nearly the share of the cytoplasm's area that has less g than each vertex: a smooth function of g."""
-    ring = mesh.triangles[~mesh.inside]
-    areas = triangle_areas(mesh.vertices_yx, ring)
-    held = np.bincount(ring.ravel(), np.repeat(areas / 3.0, 3), minlength=len(g))
-    order = np.argsort(g)
-    share = np.cumsum(held[order]) / held.sum()
-    wanted = np.arange(1, _KNOTS) / _KNOTS
-    knots = g[order][np.searchsorted(share, wanted)]
-    keep = (knots > 0.0) & (knots < 1.0) & (np.diff(knots, prepend=0.0) > 0.0)
-    x, y = np.append(np.log(knots[keep]), 0.0), np.append(wanted[keep], 1.0)
-    if len(x) < 2:
-        return g
-    below = g < np.exp(x[0])
-    power = min(max(np.log(y[1] / y[0]) / (x[1] - x[0]), _LEAST_POWER), 1.0)
-    depth = y[0] * (g / np.exp(x[0])) ** power
-    depth[~below] = PchipInterpolator(x, y)(np.log(g[~below]))
-    return np.asarray(depth)
-
-
-def _reweighted(mesh: NucleusMesh, edge_weights: FloatArray, g: FloatArray, depth: FloatArray) -> FloatArray:
-    """Weights, positive where those given are, with which an increasing function of g is harmonic, too."""
-    start, end = mesh.triangles.T.ravel(), np.roll(mesh.triangles, -1, axis=1).T.ravel()
-    rise, climb = np.abs(g[end] - g[start]), np.abs(depth[end] - depth[start])
-    levels, first = np.unique(g, return_index=True)
-    rising = np.diff(depth[first], prepend=-1.0) > 0.0  # neighbouring levels may have one depth in rounding
-    levels, first = levels[rising], first[rising]
-    slope = np.gradient(levels, depth[first]) if len(levels) > 1 else np.ones(1)
-    level = (climb == 0.0) | (rise == 0.0)
-    along = slope[np.searchsorted(levels, g[start], side="right") - 1]
-    return np.asarray(edge_weights * np.where(level, along, rise / np.where(level, 1.0, climb)))
 
 
 @njit(cache=True)
