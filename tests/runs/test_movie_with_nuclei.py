@@ -120,6 +120,12 @@ def test_a_nucleus_is_held_on_request(held: cd.Study) -> None:
     assert any("nucleus held" in words for words in warnings)
 
 
+def test_a_held_nucleus_raises_a_flag(held: cd.Study, study: cd.Study) -> None:
+    assert "nucleus held" in held.cells.set_index("frame")["qc_flags"][GAP]
+    for found in (held, study):
+        assert not found.cells["qc_flags"].str.contains("nucleus missing").any()
+
+
 def test_the_file_of_nuclei_is_in_the_provenance(study: cd.Study, files: tuple[Path, Path, Path]) -> None:
     text = (study.path / "provenance.json").read_text()
     assert str(files[2]) in text

@@ -1,6 +1,10 @@
 """QC flags of nuclei: cut at the cell's edge, several in one cell, or none."""
 
-from cytodisk.runs.qc_flags.column_flags import ColumnRule
+from collections.abc import Iterator
+
+from cytodisk.runs.qc_flags.column_flags import ColumnRule, said
+from cytodisk.runs.qc_flags.qc_flag import QCFlag
+from cytodisk.store.study import Study
 
 nucleus_clipped = ColumnRule(
     "nucleus clipped",
@@ -22,7 +26,7 @@ several_nuclei = ColumnRule(
     lambda column, scale: column > 1,
     lambda value, row, scale: f"{value:.0f} nuclei",
 )
-nucleus_missing = ColumnRule(
+_MAPPED_WITHOUT = ColumnRule(
     "nucleus missing",
     "there is no nucleus in {frames}, mapped without",
     "Layers of such a map go from the cell's edge to its middle, and are no layers of cytoplasm or nucleus: "
@@ -32,6 +36,32 @@ nucleus_missing = ColumnRule(
     lambda column, scale: column == "none",
     lambda value, row, scale: "",
 )
+nucleus_held = ColumnRule(
+    "nucleus held",
+    "the nucleus of the frame before stands in {frames}",
+    "There was none that could be used; the last one was moved as the cell moved. What the nucleus itself "
+    "did there is not known.",
+    "Complete the nuclei; if these frames matter, leave them out (nucleus_held says why).",
+    "nucleus_held",
+    said,
+    lambda value, row, scale: str(value),
+)
+nucleus_restarted = ColumnRule(
+    "nucleus followed anew",
+    "following the nucleus starts anew in {frames}",
+    "Its outline is too far from the one before to be followed; places at and in the nucleus do not go with "
+    "those before.",
+    "Look at the nucleus before and after; compare it within each stretch alone.",
+    "nucleus_restarted",
+    said,
+    lambda value, row, scale: str(value),
+)
+
+
+def nucleus_missing(study: Study) -> Iterator[QCFlag]:
+    """Cells mapped without a nucleus in a study of cells with nuclei; in movies there are none."""
+    if not study.is_movie:
+        yield from _MAPPED_WITHOUT(study)
 
 
 def _lost(row: dict[str, float]) -> float:

@@ -99,6 +99,8 @@ _RUN_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     column_flags.without_map,
     column_flags.flagged_masks,
     nucleus_flags.nucleus_missing,
+    nucleus_flags.nucleus_held,
+    nucleus_flags.nucleus_restarted,
     nucleus_flags.several_nuclei,
     nucleus_flags.nucleus_clipped,
     compartment_flags.nucleus_in_the_middle,
