@@ -195,3 +195,24 @@ def test_damaged_numbers_of_a_channel_are_not_believed() -> None:
     pq.write_table(table, study.path / "cells.parquet")
     with pytest.raises(ReadError, match="nucleus_to_cytoplasm_GFP"):
         cd.open_study(study.path)
+
+
+def test_frames_of_a_movie_have_the_numbers_too() -> None:
+    truth = cd.simulate.movie_with_nuclei("growing", frames=4, radius_px=18.0)
+    brightness = np.array([30.0, 25.0, 20.0, 15.0])[:, None, None]
+    signal = np.where(truth.nuclei, brightness, np.where(truth.masks, 10.0, 0.0)).astype(np.float32)
+    for name, image in (
+        ("m", truth.masks.astype(np.uint8)),
+        ("n", truth.nuclei.astype(np.uint8)),
+        ("s", signal),
+    ):
+        tifffile.imwrite(f"{name}.tif", image, metadata={"axes": "TYX"}, photometric="minisblack")
+    given = {"nuclei": "n.tif", "signal": "s.tif", "channels": ("KTR",)}
+    study = cd.run_movie("m.tif", "movie", **given, **GRID)  # type: ignore[arg-type]
+    assert_allclose(study.cells["nucleus_to_cytoplasm_KTR"], [3.0, 2.5, 2.0, 1.5])
+    assert_allclose(study.cells["nucleus_area"], 0.25 * truth.nuclei.sum(axis=(1, 2)))
+    profile = study.nuclear_profile
+    assert len(profile) == 4 * 8
+    assert_allclose(profile.loc[profile["compartment"] == "cytoplasm", "mean"], 10.0)
+    words = nucleus_ratio_words(study.cells, "frame")
+    assert words == "nucleus to cytoplasm: KTR 2.25 (mean of 4 frames, background as in the image)"
