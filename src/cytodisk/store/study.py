@@ -216,8 +216,7 @@ class Study:
         if not self.is_movie:
             raise ReadError(f"study {self.path} is not that of a movie: use map({cell})")
         at = {int(row["frame"]): row for _, row in rows.iterrows()}
-        last = max(at)
-        records = [self._record(cell, frame, at.get(frame)) for frame in range(last + 1)]
+        records = [self._record(cell, frame, at.get(frame)) for frame in range(max(at) + 1)]
         height, width = self.provenance["image_shape"]
         return DiskMovie(
             tuple(records),
