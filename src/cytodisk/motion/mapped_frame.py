@@ -11,9 +11,9 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_mesh
 from cytodisk.disk.mapping_parameters import NEWTON_METHODS
 from cytodisk.motion.contour import Contour
-from cytodisk.motion.nucleus.tracked_nucleus import TrackedNucleus
 from cytodisk.motion.still_interior import fade_in_px, still_map
 from cytodisk.motion.temporal import carried_inside, tracked_angles
+from cytodisk.motion.tracked_nucleus import TrackedNucleus
 from cytodisk.motion.tracking import (
     TrackedBoundary,
     first_boundary,

@@ -3,13 +3,14 @@
 from typing import Literal, TypeAlias
 
 from cytodisk.disk.mapping_parameters import MappingParameters, MeshParameters
+from cytodisk.disk.nucleus.nucleus_parameters import NucleusParameters
 from cytodisk.motion.demons_parameters import DemonsParameters
-from cytodisk.motion.nucleus.movie_nucleus_parameters import MovieNucleusParameters
 from cytodisk.parameters import Parameters, parameter
 from cytodisk.scale_parameters import ScaleParameters
 
 Tracker: TypeAlias = Literal["matching", "demons"]
 Interior: TypeAlias = Literal["area", "still"]
+MissingNucleus: TypeAlias = Literal["refuse", "hold"]
 
 SMOOTHNESS_PX2 = 64.0
 
@@ -82,6 +83,21 @@ class InteriorParameters(Parameters):
         most=1_000_000,
         unit="µm",
     )
+
+
+class HeldNucleusParameters(Parameters):
+    """What is done in frames without a nucleus."""
+
+    missing: MissingNucleus = parameter(
+        "refuse",
+        'Frames in which the cell has no nucleus that can be used, where nuclei are given: "refuse" them, so '
+        'that they are gaps with a reason; or "hold" the nucleus of the frame before, moved as the cell '
+        "moved; the frame says so.",
+    )
+
+
+class MovieNucleusParameters(NucleusParameters, HeldNucleusParameters):
+    """How the nucleus of a moving cell is mapped with it."""
 
 
 class MovieMappingParameters(

@@ -17,13 +17,13 @@ from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.motion.contour import Contour
 from cytodisk.motion.mapped_frame import MappedFrame, reference_of
 from cytodisk.motion.nucleus.cell_and_nucleus import CellAndNucleus, drawn
-from cytodisk.motion.nucleus.tracked_nucleus import (
+from cytodisk.motion.temporal import tracked_angles
+from cytodisk.motion.tracked_nucleus import (
     TrackedNucleus,
     first_nucleus,
     follow_nucleus,
     guide_from,
 )
-from cytodisk.motion.temporal import tracked_angles
 from cytodisk.motion.tracking import TrackedBoundary, first_boundary, follow, point_angles
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.scale import UNKNOWN, Scale

@@ -14,8 +14,8 @@ from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ReadError
 from cytodisk.motion.contour import Contour
-from cytodisk.motion.nucleus.tracked_nucleus import TrackedNucleus, nucleus_contour
 from cytodisk.motion.registration import RigidTransform
+from cytodisk.motion.tracked_nucleus import TrackedNucleus, nucleus_contour
 from cytodisk.motion.tracking import TrackedBoundary
 
 REMEDY = "run cytodisk movie again"

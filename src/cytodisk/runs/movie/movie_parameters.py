@@ -3,8 +3,7 @@
 from typing import ClassVar
 
 from cytodisk.images.file_parameters import MovieKindParameters
-from cytodisk.motion.nucleus.movie_nucleus_parameters import HeldNucleusParameters
-from cytodisk.motion.tracking_parameters import FollowingParameters, InteriorParameters
+from cytodisk.motion.tracking_parameters import FollowingParameters, HeldNucleusParameters, InteriorParameters
 from cytodisk.runs.cells.cell_parameters import CellParameters
 from cytodisk.runs.map.map_parameters import WindowsOfMapsParameters
 from cytodisk.scale_parameters import ScaleParameters
