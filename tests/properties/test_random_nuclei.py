@@ -4,19 +4,11 @@ import pytest
 from cytodisk.disk.mapping import map_to_disk
 from cytodisk.simulate import random_pair
 
-PAIRS, CHUNK, FAST = 500, 20, 120
+PAIRS, CHUNK = 500, 20
 FIRST = 100_000  # seeds that the benchmark does not take
 
 
-def chunks() -> list[object]:
-    """First seeds of chunks; most are slow."""
-    return [
-        pytest.param(FIRST + start, marks=[pytest.mark.slow] if start >= FAST else [])
-        for start in range(0, PAIRS, CHUNK)
-    ]
-
-
-@pytest.mark.parametrize("first", chunks())
+@pytest.mark.parametrize("first", range(FIRST, FIRST + PAIRS, CHUNK))
 def test_every_random_pair_has_a_valid_map_that_keeps_its_compartments(first: int) -> None:
     for seed in range(first, first + CHUNK):
         mask, nucleus = random_pair(seed)
