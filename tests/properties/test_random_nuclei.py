@@ -23,3 +23,11 @@ def test_every_random_pair_has_a_valid_map_that_keeps_its_compartments(first: in
         assert disk.nucleus is not None
         inside = np.hypot(*uv.T) <= disk.nucleus.radius
         np.testing.assert_array_equal(inside, nucleus[tuple(pixels.T)], err_msg=str(seed))
+
+
+@pytest.mark.parametrize("seed", [173, 716, 863, 2674])
+def test_pairs_that_were_refused_or_did_not_converge_once(seed: int) -> None:
+    mask, nucleus = random_pair(seed)
+    disk = map_to_disk(mask, nucleus=nucleus)
+    assert disk.certificate.valid
+    assert disk.converged

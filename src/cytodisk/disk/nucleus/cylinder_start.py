@@ -27,10 +27,9 @@ from cytodisk.disk.harmonic import Weights, cotangents
 from cytodisk.disk.nucleus.cone import TURN
 from cytodisk.disk.nucleus.even_depth import reweighted, share_below
 from cytodisk.disk.nucleus.outline_angles import (
-    LARGEST_GAP,
+    is_well_spaced,
     mean_along,
-    widest_gap,
-    without_wide_gaps,
+    well_spaced,
     wound_like,
 )
 from cytodisk.errors import MapError
@@ -177,8 +176,8 @@ def _solved(
         away = mean_along(mesh, nucleus_angles - at_nucleus)
         wound = wound_like(away, twist)
         at_nucleus = nucleus_angles + wound - away
-    if nucleus_angles is not None or widest_gap(at_nucleus) > LARGEST_GAP:
-        given[inner] = without_wide_gaps(mesh, at_nucleus) - around
+    if nucleus_angles is not None or not is_well_spaced(at_nucleus):
+        given[inner] = well_spaced(mesh, at_nucleus) - around
         angles, depth = _harmonic(mesh, form, edge_weights, given, system)
     lifts = _lifts(mesh, form, angles)
     areas = cylinder_areas(angles, depth, lifts, mesh.triangles)[~mesh.inside]

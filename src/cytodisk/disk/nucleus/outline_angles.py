@@ -14,6 +14,9 @@ leave out the centre.
 """
 
 _MOST_TWIST = 0.75 * TURN
+SMALLEST_GAP = 1e-9
+"""Smallest angle between them: in a narrow bay of the nucleus, free angles are one in double precision."""
+
 _BLENDS = np.linspace(0.0, 1.0, 33)  # with angles by arc length
 
 
@@ -23,16 +26,17 @@ def wound_like(angle: float, before: float) -> float:
     return near - np.copysign(TURN, near) if abs(near) >= _MOST_TWIST else near
 
 
-def without_wide_gaps(mesh: NucleusMesh, angles: FloatArray) -> FloatArray:
-    """Angles on the nuclear outline, towards those by arc length until no gap is too wide."""
+def well_spaced(mesh: NucleusMesh, angles: FloatArray) -> FloatArray:
+    """Angles on the nuclear outline, towards those by arc length until no gap is too wide or too narrow."""
     even = _by_length(mesh, angles)
     blends = ((1.0 - blend) * angles + blend * even for blend in _BLENDS)
-    return next((blend for blend in blends if widest_gap(blend) <= LARGEST_GAP), even)
+    return next((blend for blend in blends if is_well_spaced(blend)), even)
 
 
-def widest_gap(angles: FloatArray) -> float:
-    """Largest angle between neighbours on a loop."""
-    return float(np.diff(angles, append=angles[0] + TURN).max())
+def is_well_spaced(angles: FloatArray) -> bool:
+    """Whether neighbours on a loop are neither half a turn apart nor, in rounding, at one angle."""
+    gaps = np.diff(angles, append=angles[0] + TURN)
+    return bool(gaps.max() <= LARGEST_GAP and gaps.min() >= SMALLEST_GAP)
 
 
 def _by_length(mesh: NucleusMesh, angles: FloatArray) -> FloatArray:
