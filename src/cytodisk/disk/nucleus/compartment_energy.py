@@ -147,17 +147,16 @@ def fill_compartments(
     cell: CompartmentElements,
     weight: float,
     free: BoolArray,
-    unknown: IntArray,
-    place: IntArray,
-    diagonal: IntArray,
+    pattern: tuple[IntArray, IntArray, IntArray],
     blocks: FloatArray,
     right: FloatArray,
 ) -> None:
     """Fill the system of a Gauss-Newton step, as `vertex_energy.fill_step` does.
 
     `free` (V, 2) says which of the two numbers of a vertex may change: rows of others are those of the
-    identity.
+    identity. `pattern` holds `unknown`, `place` and `diagonal` of `block_pattern.BlockPattern`.
     """
+    unknown, place, diagonal = pattern
     triangles, hats, share, corner, parts, _, edge, inside, _, sliding = cell
     right[:] = 0.0
     blocks[:] = 0.0

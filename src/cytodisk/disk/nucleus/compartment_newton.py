@@ -7,7 +7,6 @@ compartments agree where it is best.
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 import numpy as np
@@ -32,7 +31,9 @@ from cytodisk.geometry.nucleus_mesh import NucleusMesh
 
 _HOLDS = 2  # times a step is computed anew
 _SOON = 0.3  # of a step, at which a triangle would turn over
+_WORTH = 0.1  # of what the step saves, that is left without them at least
 _HOLD = 1e3  # times its diagonal that a vertex which is held has more
+_OUTLINE = 1.0  # weight of the steps of the nuclear outline, over that of shape
 _CORE = 0.3  # radius in the nucleus' own disk within which a step turns vertices less
 
 
@@ -44,8 +45,7 @@ def relax_compartments(
     shape_weight: float,
     system: BlockSystem,
     *,
-    anchor: FloatArray | None = None,
-    inertia: float = 0.0,
+    anchored: tuple[FloatArray, float] | None = None,
     slide: bool = True,
 ) -> Relaxed:
     """Move vertices of a valid map until each has its share of the area of its compartment.
@@ -64,10 +64,9 @@ def relax_compartments(
         Weight of shape against area in the energy; > 0.
     system : BlockSystem
         Of this mesh.
-    anchor : ndarray of shape (V, 2) and dtype float, optional
-        Where the vertices would rather be, in the same frames as the start.
-    inertia : float
-        Weight of the mean squared distance from there.
+    anchored : (ndarray of shape (V, 2) and dtype float, float), optional
+        Where the vertices would rather be, in the same frames as the start, and the weight of the mean squared
+        distance from there.
     slide : bool
         Whether vertices of the nuclear outline may change their angles.
 
@@ -82,7 +81,8 @@ def relax_compartments(
         The start is not valid.
     """
     problem = _Compartments(mesh, system, lifts, radius, shape_weight, slide)
-    if anchor is not None and inertia:
+    if anchored is not None:
+        anchor, inertia = anchored
         problem.pull_to(anchor, inertia * problem.metric(anchor))
     return descended(problem, start)
 
@@ -151,7 +151,7 @@ class _Compartments(GaussNewton):
         outline = mesh.vertices_yx[self._loop]
         lengths = arc_lengths(outline)
         self._loop_share = lengths / lengths.sum()
-        self._loop_weight = float(os.environ.get("CC", "3")) * shape_weight
+        self._loop_weight = _OUTLINE * shape_weight
         self._pair = _pairs(mesh, system)
         self._radius, self._inside = radius, mesh.vertex_inside
 
@@ -178,12 +178,13 @@ class _Compartments(GaussNewton):
         the others' step is computed anew.
         """
         self._held[:] = 0.0
+        free = held = super().descent(uv)
         for _ in range(_HOLDS):
-            direction, decrement = super().descent(uv)
-            if self.largest_step(uv, direction) >= _SOON:
-                return direction, decrement
+            if self.largest_step(uv, held[0]) >= _SOON:
+                break
             self._held[self._cell.triangles[self._roots < _SOON]] += _HOLD
-        return super().descent(uv)
+            held = super().descent(uv)
+        return held if held[1] > _WORTH * free[1] else free
 
     def moved(self, uv: FloatArray, step: FloatArray) -> FloatArray:
         """Where a step leads: vertices inside the nucleus turn about its centre with those of its outline."""
@@ -196,8 +197,8 @@ class _Compartments(GaussNewton):
 
     def fill(self, uv: FloatArray, system: PressureSystem, right: FloatArray) -> None:
         pattern = system.pattern
-        arrays = pattern.unknown, pattern.place, pattern.diagonal, system.blocks, right
-        fill_compartments(uv, self._cell, self.shape_weight, self._free, *arrays)
+        places = pattern.unknown, pattern.place, pattern.diagonal
+        fill_compartments(uv, self._cell, self.shape_weight, self._free, places, system.blocks, right)
         if self._held.any():
             for axis in (0, 1):
                 system.blocks[pattern.diagonal, axis, axis] *= 1.0 + self._held[self._vertex]

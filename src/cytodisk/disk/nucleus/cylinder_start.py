@@ -25,9 +25,8 @@ from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.harmonic import Weights, cotangents
 from cytodisk.disk.nucleus.cone import TURN
-from cytodisk.disk.nucleus.even_depth import reweighted, share_below
+from cytodisk.disk.nucleus.even_depth import POWERS, reweighted
 from cytodisk.disk.nucleus.outline_angles import (
-    is_well_spaced,
     mean_along,
     well_spaced,
     wound_like,
@@ -101,21 +100,22 @@ def cylinder_start(
     Returns
     -------
     CylinderMap
-        With `depth` nearly the share of the cytoplasm's area that has less g.
+        With `depth` a power of g.
 
     Raises
     ------
     MapError
         Rounding turns triangles over with all weights.
     """
-    form = _Form.around(mesh, centre_yx)
+    problem = _Problem(mesh, _Form.around(mesh, centre_yx), system, membrane_angles, nucleus_angles, twist)
     choices: tuple[Weights, ...] = ("cotangent", "uniform")
     for weights in choices:
         edge_weights = cotangents(mesh) if weights == "cotangent" else np.full(3 * len(mesh.triangles), 0.5)
-        found = _solved(mesh, form, edge_weights, membrane_angles, system, nucleus_angles, twist)
-        if found is not None:
-            angles, depth, lifts, wound = found
-            return CylinderMap(angles, depth, lifts, weights, wound)
+        for power in POWERS:
+            found = _solved(problem, edge_weights, power)
+            if found is not None:
+                angles, depth, lifts, wound = found
+                return CylinderMap(angles, depth, lifts, weights, wound)
     raise MapError(
         f"no map of the cytoplasm was found ({len(mesh.vertices_yx)} vertices): in double precision "
         "triangles turn over; the cell is too branched for its size; try a larger edge_length"
@@ -154,31 +154,35 @@ def _wrapped(angles: FloatArray) -> FloatArray:
     return np.asarray(angles - TURN * np.round(angles / TURN))
 
 
+class _Problem(NamedTuple):
+    """What a map of the cytoplasm is asked for."""
+
+    mesh: NucleusMesh
+    form: _Form
+    system: BlockSystem
+    membrane_angles: FloatArray
+    nucleus_angles: FloatArray | None
+    twist: float
+
+
 def _solved(
-    mesh: NucleusMesh,
-    form: _Form,
-    edge_weights: FloatArray,
-    membrane_angles: FloatArray,
-    system: BlockSystem,
-    nucleus_angles: FloatArray | None,
-    twist: float,
+    problem: _Problem, edge_weights: FloatArray, power: float
 ) -> tuple[FloatArray, FloatArray, IntArray, float] | None:
-    """θ, g, lifts and twist; None if a triangle is not positive."""
+    """θ, a power of g, lifts and twist; None if a triangle is not positive."""
+    mesh, form, system, membrane_angles, nucleus_angles, twist = problem
     given = np.full(len(mesh.vertices_yx), np.nan)
     given[mesh.boundary] = membrane_angles - form.around_loop(mesh.boundary)
     inner = mesh.nucleus_boundary
     around = form.around_loop(inner)
-    _, g = _harmonic(mesh, form, edge_weights, given, system)
-    edge_weights = reweighted(mesh, edge_weights, g, share_below(mesh, g))
-    angles, depth = _harmonic(mesh, form, edge_weights, given, system)
+    angles, g = _harmonic(mesh, form, edge_weights, given, system)
     at_nucleus, wound = angles[inner] - form.angles[inner] + around, 0.0
     if nucleus_angles is not None:
         away = mean_along(mesh, nucleus_angles - at_nucleus)
         wound = wound_like(away, twist)
         at_nucleus = nucleus_angles + wound - away
-    if nucleus_angles is not None or not is_well_spaced(at_nucleus):
-        given[inner] = well_spaced(mesh, at_nucleus) - around
-        angles, depth = _harmonic(mesh, form, edge_weights, given, system)
+    given[inner] = well_spaced(mesh, at_nucleus) - around
+    weights = reweighted(mesh, edge_weights, g, np.maximum(g, 0.0) ** power)
+    angles, depth = _harmonic(mesh, form, weights, given, system)
     lifts = _lifts(mesh, form, angles)
     areas = cylinder_areas(angles, depth, lifts, mesh.triangles)[~mesh.inside]
     return (angles, depth, lifts, wound) if (areas > 0.0).all() else None
@@ -212,7 +216,7 @@ def _harmonic(
     right = np.zeros((len(system.vertex), 2))
     weights = edge_weights.reshape(3, -1)
     arrays = mesh.triangles, mesh.inside, weights, form.steps, values, pinned
-    _fill(*arrays, system.unknown, system.place, system.blocks, right)
+    _fill(*arrays, (system.unknown, system.place), (system.blocks, right))
     pins = pinned[system.vertex]
     for axis in (0, 1):
         system.blocks[system.diagonal[pins[:, axis]], axis, axis] = 1.0
@@ -232,12 +236,11 @@ def _fill(
     steps: FloatArray,
     values: FloatArray,
     pinned: BoolArray,
-    unknown: IntArray,
-    place: IntArray,
-    blocks: FloatArray,
-    right: FloatArray,
+    pattern: tuple[IntArray, IntArray],
+    filled: tuple[FloatArray, FloatArray],
 ) -> None:
     """Laplacians of θ less the form's angle (axis 0), and of g (axis 1), on the cytoplasm's triangles."""
+    (unknown, place), (blocks, right) = pattern, filled
     blocks[:] = 0.0
     for t in range(triangles.shape[0]):
         if inside[t]:

@@ -1,46 +1,43 @@
-"""A depth that goes evenly with area, with the weights that keep the map to the cylinder one to one.
+"""A depth that grows inwards more evenly, with the weights that keep the map to the cylinder one to one.
 
 In arms of a cell the harmonic function g falls exponentially, and a map whose depth is g would have next to
 no area there. Any increasing function F of g is harmonic, too, if the weight of each edge is divided by the
 slope of F along it: then Σ w (gᵢ - gⱼ) stays what it is, 0. These weights are positive as well, so that with
 θ solved anew for them (θ, F(g)) is one to one again, for every F.
+
+The more even the depth, the fewer steps a relaxation takes; but θ in arms is drawn towards the body by the new
+weights, and with an F that makes all depths even (the share of area with less g) maps of one cell that is
+meshed anew would differ more.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from cytodisk.arrays import FloatArray
-from cytodisk.geometry.mesh import triangle_areas
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
 
-_KNOTS = 16  # of the depth as a function of g
-_LEAST_POWER = 0.1  # of g, of which it is a power below the first of them: in arms g falls exponentially
-
-
-def share_below(mesh: NucleusMesh, g: FloatArray) -> FloatArray:
-    """Nearly the share of the cytoplasm's area that has less g than each vertex: a smooth function of g."""
-    ring = mesh.triangles[~mesh.inside]
-    areas = triangle_areas(mesh.vertices_yx, ring)
-    held = np.bincount(ring.ravel(), np.repeat(areas / 3.0, 3), minlength=len(g))
-    order = np.argsort(g)
-    share = np.cumsum(held[order]) / held.sum()
-    wanted = np.arange(1, _KNOTS) / _KNOTS
-    knots = g[order][np.searchsorted(share, wanted)]
-    keep = (knots > 0.0) & (knots < 1.0) & (np.diff(knots, prepend=0.0) > 0.0)
-    x, y = np.append(np.log(knots[keep]), 0.0), np.append(wanted[keep], 1.0)
-    if len(x) < 2:
-        return g
-    below = g < np.exp(x[0])
-    power = min(max(np.log(y[1] / y[0]) / (x[1] - x[0]), _LEAST_POWER), 1.0)
-    depth = y[0] * (g / np.exp(x[0])) ** power
-    depth[~below] = PchipInterpolator(x, y)(np.log(g[~below]))
-    return np.asarray(depth)
+POWERS = (0.7, 0.4, 0.15)
+"""Of g, the first with which rounding turns no triangle over: `benchmarks/nucleus_places.py` shows what others
+give.
+"""
 
 
 def reweighted(mesh: NucleusMesh, edge_weights: FloatArray, g: FloatArray, depth: FloatArray) -> FloatArray:
-    """Weights, positive where those given are, with which an increasing function of g is harmonic, too."""
+    """Weights, positive where those given are, with which an increasing function of g is harmonic, too.
+
+    Parameters
+    ----------
+    mesh : NucleusMesh
+    edge_weights : ndarray of shape (3 F,) and dtype float
+        Of edge k → k + 1 of triangle t in entry k F + t: g is harmonic with them.
+    g, depth : ndarray of shape (V,) and dtype float
+        The function, and an increasing function of it.
+
+    Returns
+    -------
+    ndarray of shape (3 F,) and dtype float
+    """
     start, end = mesh.triangles.T.ravel(), np.roll(mesh.triangles, -1, axis=1).T.ravel()
     rise, climb = np.abs(g[end] - g[start]), np.abs(depth[end] - depth[start])
     levels, first = np.unique(g, return_index=True)

@@ -106,17 +106,11 @@ def map_compartments(
     places = np.column_stack([start.angles, half * start.depth])
     places[vertices] = uv
     unwound = guide is not None and abs(start.twist - guide.twist) > 0.5 * TURN
-    anchor = None if guide is None or unwound else anchor_places(mesh, guide, places, half)
+    anchored = None
+    if guide is not None and guide.inertia and not unwound:
+        anchored = anchor_places(mesh, guide, places, half), guide.inertia
     relaxed = relax_compartments(
-        mesh,
-        places,
-        start.lifts,
-        radius,
-        shape_weight,
-        system,
-        anchor=anchor,
-        inertia=0.0 if guide is None else guide.inertia,
-        slide=guide is None,
+        mesh, places, start.lifts, radius, shape_weight, system, anchored=anchored, slide=guide is None
     )
     turned, lifts = _in_turns(mesh, relaxed.vertices_uv, start, half)
     nucleus = Nucleus(radius, inner, mesh.inside, turned, lifts, fitted.placed_mask, fitted.report)
