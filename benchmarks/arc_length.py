@@ -31,13 +31,13 @@ import cytodisk as cd
 from cell_outlines import Drawing, Shape, branched, ellipse, others, polar
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.disk.cell_mesh import CellMesh, mesh_cell
-from cytodisk.disk.circle import angles_of_lengths, arc_lengths
+from cytodisk.disk.circle import angles_of_lengths
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_mesh
 from cytodisk.disk.mapping_parameters import MapToDiskParameters
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.outline import trace_outline
-from cytodisk.geometry.polygon import edge_lengths, smooth_along, smooth_closed
+from cytodisk.geometry.polygon import arc_lengths, edge_lengths, smooth_along, smooth_closed
 
 DATA = Path(os.environ.get("CYTODISK_DATA", Path(__file__).parents[2] / "shared" / "data"))
 PHASE = (0.3, 0.6)  # of a shape between the pixels

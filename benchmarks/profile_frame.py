@@ -35,10 +35,17 @@ from stages import Stage, StageClock
 
 _SYSTEMS = ("blocks:BlockSystem", "pressure_blocks:PressureSystem")
 MAP_STAGES = (
-    Stage("outline", "clean mask", ("cytodisk.geometry.mask:clean_mask",)),
+    Stage(
+        "outline",
+        "clean mask",
+        (
+            "cytodisk.geometry.mask:FilledMask.of",
+            "cytodisk.geometry.mask:FilledMask.under",
+        ),
+    ),
     Stage("outline", "trace", ("cytodisk.geometry.outline:trace_outline",)),
     Stage("mesh", "lattice", ("cytodisk.geometry.lattice:graded_lattice",)),
-    Stage("mesh", "triangulation", ("cytodisk.geometry.mesh:_constrained_delaunay",)),
+    Stage("mesh", "triangulation", ("cytodisk.geometry.triangulation:triangulated",)),
     Stage("mesh", "chords and checks", ("cytodisk.geometry.mesh:mesh_inside",)),
     Stage("map", "boundary angles", ("cytodisk.disk.circle:boundary_angles",)),
     Stage("map", "harmonic start", ("cytodisk.disk.harmonic:harmonic_map",)),
@@ -52,11 +59,11 @@ MAP_STAGES = (
     Stage(
         "map",
         "assembly",
-        ("cytodisk.disk.newton:_Problem.__init__", "cytodisk.disk.newton:_Problem.gauss_newton_direction"),
+        ("cytodisk.disk.newton:_Problem.__init__", "cytodisk.disk.newton:GaussNewton.gauss_newton_direction"),
     ),
     Stage("map", "factors", tuple(f"cytodisk.disk.{where}.factorise" for where in _SYSTEMS)),
     Stage("map", "solves", tuple(f"cytodisk.disk.{where}.solve" for where in _SYSTEMS)),
-    Stage("map", "line search", ("cytodisk.disk.newton:_Problem.search",)),
+    Stage("map", "line search", ("cytodisk.disk.newton:GaussNewton.search",)),
     Stage("map", "certificate", ("cytodisk.disk.certificate:certify",)),
     Stage("map", "the rest of it", ("cytodisk.disk.mapping:map_mesh",)),
 )

@@ -6,10 +6,10 @@ from hypothesis import strategies as st
 from scipy import ndimage
 
 from cytodisk import simulate
-from cytodisk.disk.circle import arc_lengths, boundary_angles
+from cytodisk.disk.circle import boundary_angles
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.outline import trace_outline
-from cytodisk.geometry.polygon import edge_lengths
+from cytodisk.geometry.polygon import arc_lengths, edge_lengths
 from cytodisk.simulate.drawing import half_covered
 
 ALIKE = 1e-4  # rad; outlines of fewer than 100 vertices differ by up to 3.4e-5 in 1 694 random masks

@@ -20,6 +20,7 @@ from cytodisk.disk.newton import relax
 from cytodisk.disk.newton_triangles import relax_triangles
 from cytodisk.errors import MapError
 from cytodisk.geometry import mesh as mesh_module
+from cytodisk.geometry import triangulation
 from cytodisk.geometry.mesh import Mesh
 from cytodisk.geometry.polygon import edge_lengths, smooth_closed
 
@@ -74,9 +75,9 @@ def test_areas_by_triangle_give_the_maps_of_before(
     kind: str, seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # That version left the mesh as the triangulation gave it.
-    monkeypatch.setattr(mesh_module, "join_circles", lambda points, triangles, *_: triangles)
+    monkeypatch.setattr(triangulation, "join_circles", lambda points, triangles, *_: triangles)
     monkeypatch.setattr(mesh_module, "even_out", lambda points, triangles, n_boundary: points)
-    monkeypatch.setattr(mesh_module, "distances", lambda points, n_boundary: np.zeros(len(points)))
+    monkeypatch.setattr(triangulation, "distances", lambda points, n_boundary: np.zeros(len(points)))
     monkeypatch.setitem(mesh_module.mesh_inside.__kwdefaults__, "growth", 0.5)
     parameters = MapToDiskParameters.of(method="newton-triangles", shape_weight=0.005, edge_length=0.9)
     cell = mesh_cell(simulate.random_mask(kind, seed), parameters)

@@ -11,7 +11,7 @@ import pytest
 import tifffile
 
 import cytodisk as cd
-from cytodisk.disk import mapping
+from cytodisk.disk import cell_mesh
 from cytodisk.geometry import outline
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
@@ -52,7 +52,7 @@ def test_every_stage_that_is_timed_is_in_the_package_and_runs(clock: Any) -> Non
 
 def test_stages_and_the_rest_add_up_and_functions_are_put_back(clock: Any) -> None:
     assert not hasattr(outline.trace_outline, "__wrapped__")
-    assert not hasattr(mapping.trace_outline, "__wrapped__")
+    assert not hasattr(cell_mesh.trace_outline, "__wrapped__")
     for lap in clock.laps:
         assert 0.0 <= lap.rest <= lap.seconds
         assert all(seconds >= 0.0 for seconds in lap.by_stage.values())

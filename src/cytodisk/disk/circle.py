@@ -9,15 +9,9 @@ from numba import njit
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.mapping_parameters import Align
 from cytodisk.errors import ParameterError
-from cytodisk.geometry.polygon import centroid, edge_lengths, edges, smooth_along, smooth_closed
+from cytodisk.geometry.polygon import arc_lengths, centroid
 from cytodisk.parameter_words import short_words
 
-# benchmarks/arc_length.py prints what other values give.
-_DIRECTION_PX = 5.0  # over which the outline's direction is smoothed
-_SPREAD_PX = 3.0  # over which the counted length is evened out
-_WHOLE_PX = 80.0  # a shorter outline is smoothed less, in proportion
-_LEAST_SHARE = 0.2  # of an edge's own length: a shorter arc would squeeze its triangle
-_TINY = 1e-12  # px, of a step that has no direction
 _FURTHEST = 1_000_000  # px or degrees
 
 
@@ -75,45 +69,6 @@ def angles_of_lengths(outline_yx: FloatArray, lengths: FloatArray, align: Align 
     turn = 2.0 * np.pi * np.cumsum(lengths) / lengths.sum()
     angles = np.concatenate([[0.0], turn[:-1]])
     return angles + _rotation(outline_yx, angles, lengths, align)
-
-
-def arc_lengths(
-    outline_yx: FloatArray,
-    direction_px: float = _DIRECTION_PX,
-    spread_px: float = _SPREAD_PX,
-    least_share: float = _LEAST_SHARE,
-) -> FloatArray:
-    """Length of each edge of an outline as far as it goes the outline's way.
-
-    An edge counts by its component along the smoothed outline. So the stair steps of pixels, which make an
-    outline up to 8 % too long, and the sides of a spike of one pixel, which lead away from the outline and
-    back, count little, while a thin protrusion, whose sides have a direction of their own, keeps its length:
-    only directions come from the smoothed outline, which itself would be shorter at each tip. What an edge
-    lacks is shared with its neighbours, so that no points crowd on the circle.
-
-    Parameters
-    ----------
-    outline_yx : ndarray of shape (B, 2) and dtype float
-        Closed polygon, (row, column) in pixels.
-    direction_px : float
-        Standard deviation of the kernel that smooths the outline's direction, in pixels.
-    spread_px : float
-        Standard deviation of the kernel that evens out the counted length, in pixels.
-    least_share : float
-        Least counted length of an edge over its own length.
-
-    Returns
-    -------
-    ndarray of shape (B,) and dtype float
-        In pixels, all positive.
-    """
-    raw = edge_lengths(outline_yx)
-    small = min(1.0, raw.sum() / _WHOLE_PX)
-    way = edges(smooth_closed(outline_yx, small * direction_px))
-    steps = edges(outline_yx)
-    along = (steps * way).sum(axis=1) / np.maximum(np.hypot(way[:, 0], way[:, 1]), _TINY)
-    counted, whole = smooth_along(np.column_stack([along, raw]), outline_yx, small * spread_px).T
-    return np.asarray(raw * np.maximum(counted / whole, least_share))
 
 
 def parse_align(align: Any) -> Align:

@@ -86,8 +86,6 @@ def map_to_disk(
     >>> disk.to_cell([[0.0, 0.0]]).round(1)  # the cell's point at the disk's centre, (row, column)
     array([[37. , 27.6]])
 
-    With a nucleus, which lies within half of the disk's radius:
-
     >>> nucleus = cd.simulate.disk(5, margin=23)
     >>> disk = cd.map_to_disk(cd.simulate.disk(20), nucleus=nucleus)
     >>> disk.certificate.valid, disk.nucleus_radius

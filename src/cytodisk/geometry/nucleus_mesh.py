@@ -14,8 +14,9 @@ from cytodisk.geometry.even_mesh import even_out
 from cytodisk.geometry.flips import triangle_neighbours
 from cytodisk.geometry.half_edges import half_edges
 from cytodisk.geometry.lattice import graded_lattice
-from cytodisk.geometry.mesh import Mesh, check_mesh, triangulated
+from cytodisk.geometry.mesh import Mesh, check_mesh
 from cytodisk.geometry.outline import trace_outline
+from cytodisk.geometry.triangulation import triangulated
 
 
 @dataclass(frozen=True)

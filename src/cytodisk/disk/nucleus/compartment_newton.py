@@ -13,7 +13,6 @@ import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.blocks import BlockSystem
-from cytodisk.disk.circle import arc_lengths
 from cytodisk.disk.newton import GaussNewton, descended
 from cytodisk.disk.nucleus.compartment_energy import (
     CompartmentElements,
@@ -28,6 +27,7 @@ from cytodisk.disk.pressure_blocks import PressureSystem
 from cytodisk.disk.relaxed import Relaxed
 from cytodisk.geometry.mesh import hat_gradients, triangle_areas
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
+from cytodisk.geometry.polygon import arc_lengths
 
 _HOLDS = 2  # times a step is computed anew
 _SOON = 0.3  # of a step, at which a triangle would turn over
@@ -65,7 +65,7 @@ def relax_compartments(
     system : BlockSystem
         Of this mesh.
     anchored : (ndarray of shape (V, 2) and dtype float, float), optional
-        Where the vertices would rather be, in the same frames as the start, and the weight of the mean squared
+        Where the vertices would rather be, in the frames of the start, and the weight of the mean squared
         distance from there.
     slide : bool
         Whether vertices of the nuclear outline may change their angles.

@@ -5,8 +5,8 @@ no area there. Any increasing function F of g is harmonic, too, if the weight of
 slope of F along it: then Σ w (gᵢ - gⱼ) stays what it is, 0. These weights are positive as well, so that with
 θ solved anew for them (θ, F(g)) is one to one again, for every F.
 
-The more even the depth, the fewer steps a relaxation takes; but θ in arms is drawn towards the body by the new
-weights, and with an F that makes all depths even (the share of area with less g) maps of one cell that is
+The more even the depth, the fewer steps a relaxation takes; but θ in arms is drawn towards the body by the
+new weights, and with an F that makes all depths even (the share of area with less g) maps of one cell that is
 meshed anew would differ more.
 """
 
@@ -18,8 +18,8 @@ from cytodisk.arrays import FloatArray
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
 
 POWERS = (0.7, 0.4, 0.15)
-"""Of g, the first with which rounding turns no triangle over: `benchmarks/nucleus_places.py` shows what others
-give.
+"""Of g, tried in this order until rounding turns no triangle over. `benchmarks/nucleus_places.py` shows what
+others give.
 """
 
 
