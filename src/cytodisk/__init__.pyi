@@ -21,6 +21,7 @@ from .geometry.nucleus_report import NucleusReport as NucleusReport
 from .images.nuclei.match_nuclei import match_nuclei as match_nuclei
 from .disk.mapping import map_to_disk as map_to_disk
 from .disk.disk_map import DiskMap as DiskMap
+from .disk.nucleus.nucleus import Nucleus as Nucleus
 from .disk.loading import load_map as load_map
 from .disk.certificate import certify as certify
 from .disk.certificate import Certificate as Certificate
