@@ -109,9 +109,11 @@ class StageClock:
         except (ImportError, AttributeError, KeyError):
             self.missing.append(target)
             return []
-        if not isinstance(original, FunctionType):
+        of_class = isinstance(original, (classmethod, staticmethod))
+        function = original.__func__ if of_class else original
+        if not isinstance(function, FunctionType):
             raise TypeError(f"{target} is compiled or no function: time the function that calls it")
-        watched = self.timed(key, original)
+        watched = type(original)(self.timed(key, function)) if of_class else self.timed(key, function)
         holders = [(holder, name)] if outer else list(_references(original))
         for place, alias in holders:
             setattr(place, alias, watched)

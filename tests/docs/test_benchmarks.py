@@ -13,6 +13,7 @@ import tifffile
 import cytodisk as cd
 from cytodisk.disk import cell_mesh
 from cytodisk.geometry import outline
+from cytodisk.geometry.mask import FilledMask
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_study import movie_study
@@ -69,6 +70,17 @@ def test_a_stage_leaves_out_those_inside_it(load: Any, monkeypatch: pytest.Monke
     # The clock is read at 0 (start), 1 (outer), 2 and 3 (inner), 4 (outer), 5 (lap).
     assert clock.laps[0].by_stage == {"a: outer": 2.0, "a: inner": 1.0}
     assert clock.laps[0].rest == 2.0
+
+
+def test_methods_of_a_class_are_timed_and_put_back(load: Any) -> None:
+    stages = load("stages")
+    clock = stages.StageClock([stages.Stage("a", "of", ("cytodisk.geometry.mask:FilledMask.of",))])
+    before = vars(FilledMask)["of"]
+    with clock.watching():
+        FilledMask.of(cd.simulate.disk(5))
+        clock.lap()
+    assert clock.laps[0].calls == {"a: of": 1}
+    assert vars(FilledMask)["of"] is before
 
 
 def test_exponents_of_exact_powers(load: Any) -> None:
