@@ -31,7 +31,7 @@ from cytodisk.geometry.polygon import arc_lengths
 
 _HOLDS = 2  # times a step is computed anew
 _SOON = 0.3  # of a step, at which a triangle would turn over
-_WORTH = 0.1  # of what the step saves, that is left without them at least
+_WORTH = 0.03  # of what the step saves, that is left without them at least
 _HOLD = 1e3  # times its diagonal that a vertex which is held has more
 _OUTLINE = 1.0  # weight of the steps of the nuclear outline, over that of shape
 _CORE = 0.3  # radius in the nucleus' own disk within which a step turns vertices less
