@@ -6,7 +6,7 @@ membrane. With positive weights, the same for both, (θ, g) is one to one, with 
 there: Tutte's theorem on the cylinder. Where θ is free, mirror the mesh across the nuclear outline: by
 symmetry the map of both halves, with θ given on either membrane, has the outline on a straight circle.
 
-In arms g falls exponentially: `even_depth` takes another function of it.
+In arms g falls exponentially, and 1 - g in narrow bays of the nucleus: `even_depth` takes another function.
 
 References
 ----------
@@ -25,7 +25,7 @@ from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.harmonic import Weights, cotangents
 from cytodisk.disk.nucleus.cone import TURN
-from cytodisk.disk.nucleus.even_depth import POWERS, reweighted
+from cytodisk.disk.nucleus.even_depth import POWERS, reweighted, reweighted_at_both_ends
 from cytodisk.disk.nucleus.outline_angles import (
     mean_along,
     well_spaced,
@@ -110,16 +110,23 @@ def cylinder_start(
     problem = _Problem(mesh, _Form.around(mesh, centre_yx), system, membrane_angles, nucleus_angles, twist)
     choices: tuple[Weights, ...] = ("cotangent", "uniform")
     for weights in choices:
-        edge_weights = cotangents(mesh) if weights == "cotangent" else np.full(3 * len(mesh.triangles), 0.5)
+        edge_weights = cotangents(mesh) if weights == "cotangent" else _uniform(mesh)
         for power in POWERS:
             found = _solved(problem, edge_weights, power)
             if found is not None:
-                angles, depth, lifts, wound = found
-                return CylinderMap(angles, depth, lifts, weights, wound)
+                return CylinderMap(*found[:3], weights, found[3])
+    for power in POWERS:
+        found = _solved(problem, _uniform(mesh), power, both_ends=True)
+        if found is not None:
+            return CylinderMap(*found[:3], "uniform", found[3])
     raise MapError(
         f"no map of the cytoplasm was found ({len(mesh.vertices_yx)} vertices): in double precision "
         "triangles turn over; the cell is too branched for its size; try a larger edge_length"
     )
+
+
+def _uniform(mesh: NucleusMesh) -> FloatArray:
+    return np.full(3 * len(mesh.triangles), 0.5)
 
 
 class _Form(NamedTuple):
@@ -166,7 +173,7 @@ class _Problem(NamedTuple):
 
 
 def _solved(
-    problem: _Problem, edge_weights: FloatArray, power: float
+    problem: _Problem, edge_weights: FloatArray, power: float, both_ends: bool = False
 ) -> tuple[FloatArray, FloatArray, IntArray, float] | None:
     """θ, a power of g, lifts and twist; None if a triangle is not positive."""
     mesh, form, system, membrane_angles, nucleus_angles, twist = problem
@@ -181,7 +188,11 @@ def _solved(
         wound = wound_like(away, twist)
         at_nucleus = nucleus_angles + wound - away
     given[inner] = well_spaced(mesh, at_nucleus) - around
-    weights = reweighted(mesh, edge_weights, g, np.maximum(g, 0.0) ** power)
+    if both_ends:
+        _, rest = _harmonic(mesh, form, edge_weights, given, system, ends=(1.0, 0.0))
+        weights = reweighted_at_both_ends(mesh, edge_weights, g, rest, power)
+    else:
+        weights = reweighted(mesh, edge_weights, g, np.maximum(g, 0.0) ** power)
     angles, depth = _harmonic(mesh, form, weights, given, system)
     lifts = _lifts(mesh, form, angles)
     areas = cylinder_areas(angles, depth, lifts, mesh.triangles)[~mesh.inside]
@@ -202,13 +213,18 @@ def _lifts(mesh: NucleusMesh, form: _Form, angles: FloatArray) -> IntArray:
 
 
 def _harmonic(
-    mesh: NucleusMesh, form: _Form, edge_weights: FloatArray, given: FloatArray, system: BlockSystem
+    mesh: NucleusMesh,
+    form: _Form,
+    edge_weights: FloatArray,
+    given: FloatArray,
+    system: BlockSystem,
+    ends: tuple[float, float] = (0.0, 1.0),
 ) -> tuple[FloatArray, FloatArray]:
-    """θ and g of all vertices; `given` holds θ less the form's angle where θ is given."""
+    """θ and g of all vertices; `given` holds θ less the form's angle, `ends` g at membrane and nucleus."""
     n_vertices = len(mesh.vertices_yx)
     values = np.zeros((n_vertices, 2))
     values[:, 0] = np.where(np.isnan(given), 0.0, given)
-    values[mesh.nucleus_boundary, 1] = 1.0
+    values[mesh.boundary, 1], values[mesh.nucleus_boundary, 1] = ends
     pinned = np.zeros((n_vertices, 2), dtype=bool)
     pinned[mesh.vertex_inside] = True
     pinned[:, 0] |= ~np.isnan(given)
@@ -224,7 +240,7 @@ def _harmonic(
     system.factorise()
     values[system.vertex] = system.solve(right)
     angles, g = values[:, 0] + form.angles, values[:, 1]
-    angles[mesh.vertex_inside], g[mesh.vertex_inside] = 0.0, 1.0
+    angles[mesh.vertex_inside], g[mesh.vertex_inside] = 0.0, ends[1]
     return angles, g
 
 

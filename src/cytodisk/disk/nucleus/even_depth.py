@@ -5,6 +5,9 @@ no area there. Any increasing function F of g is harmonic, too, if the weight of
 slope of F along it: then Σ w (gᵢ - gⱼ) stays what it is, 0. These weights are positive as well, so that with
 θ solved anew for them (θ, F(g)) is one to one again, for every F.
 
+In narrow bays of the nucleus 1 - g falls likewise, and doubles near 1 cannot tell its values: there g and
+1 - g are solved for each, and F is a power of either at its end.
+
 The more even the depth, the fewer steps a relaxation takes; but θ in arms is drawn towards the body by the
 new weights, and with an F that makes all depths even (the share of area with less g) maps of one cell that is
 meshed anew would differ more.
@@ -49,3 +52,37 @@ def reweighted(mesh: NucleusMesh, edge_weights: FloatArray, g: FloatArray, depth
     level = (climb == 0.0) | (rise == 0.0)
     along = slope[np.searchsorted(levels, g[start], side="right") - 1]
     return np.asarray(edge_weights * np.where(level, along, rise / np.where(level, 1.0, climb)))
+
+
+def reweighted_at_both_ends(
+    mesh: NucleusMesh, edge_weights: FloatArray, g: FloatArray, rest: FloatArray, power: float
+) -> FloatArray:
+    """Weights, positive where those given are, with which F(g) = gᵖ / (gᵖ + (1 - g)ᵖ) is harmonic, too.
+
+    Parameters
+    ----------
+    mesh : NucleusMesh
+    edge_weights : ndarray of shape (3 F,) and dtype float
+        As for `reweighted`; positive.
+    g, rest : ndarray of shape (V,) and dtype float
+        The function, and 1 - g to its own last digit.
+    power : float
+        p.
+
+    Returns
+    -------
+    ndarray of shape (3 F,) and dtype float
+    """
+    start, end = mesh.triangles.T.ravel(), np.roll(mesh.triangles, -1, axis=1).T.ravel()
+    low, high = np.maximum(g, 0.0), np.maximum(rest, 0.0)
+    of_low, of_high = low**power, high**power
+    depth, left = of_low / (of_low + of_high), of_high / (of_low + of_high)
+    outer = low[start] < 0.5
+    rise = np.abs(np.where(outer, low[end] - low[start], high[end] - high[start]))
+    climb = np.abs(np.where(outer, depth[end] - depth[start], left[end] - left[start]))
+    # Along an edge of one level, the slope of F⁻¹ there: g (1 - g) / (p F (1 - F)).
+    spread = np.where(depth * left > 0.0, power * depth * left, 1.0)
+    level = (climb == 0.0) | (rise == 0.0)
+    return np.asarray(
+        edge_weights * np.where(level, (low * high / spread)[start], rise / np.where(level, 1.0, climb))
+    )
