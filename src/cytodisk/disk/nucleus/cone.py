@@ -14,6 +14,9 @@ from numba import njit
 from cytodisk.arrays import FloatArray
 
 TURN = 2.0 * math.pi
+STEPS_A_TURN = 2.0**50
+"""Turns are whole numbers of such steps, so that adding up to `MOST_LIFT` whole turns is exact."""
+MOST_LIFT = 7
 
 
 @njit(cache=True)

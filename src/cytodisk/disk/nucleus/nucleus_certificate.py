@@ -20,6 +20,7 @@ from cytodisk.disk.certificate import (
     mesh_faults,
     runs_round_once,
 )
+from cytodisk.disk.nucleus.cone import MOST_LIFT, STEPS_A_TURN
 from cytodisk.disk.nucleus.nucleus import Nucleus
 from cytodisk.geometry.exact import orientations
 from cytodisk.geometry.half_edges import HalfEdges, half_edges
@@ -158,6 +159,10 @@ def _cylinder_faults(triangles: IntArray, boundary: IntArray, nucleus: Nucleus) 
     in_ring = np.unique(ring)
     if (share[in_ring] < 0.0).any() or (share[in_ring] > 1.0).any():
         faults.append("a share of the cytoplasm is below 0 or above 1")
+    steps = turn[in_ring] * STEPS_A_TURN
+    whole = (steps == np.rint(steps)) & (turn[in_ring] >= 0.0) & (turn[in_ring] < 1.0)
+    if not whole.all() or np.abs(lifts).max() > MOST_LIFT:
+        faults.append("whole turns cannot be added exactly to the turns of the cytoplasm")
     return faults
 
 

@@ -10,7 +10,7 @@ from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.blocks import BlockSystem
 from cytodisk.disk.harmonic import Weights, harmonic_map
 from cytodisk.disk.nucleus.compartment_newton import relax_compartments
-from cytodisk.disk.nucleus.cone import TURN
+from cytodisk.disk.nucleus.cone import STEPS_A_TURN, TURN
 from cytodisk.disk.nucleus.cylinder_start import CylinderMap, cylinder_start
 from cytodisk.disk.nucleus.nucleus import Nucleus
 from cytodisk.disk.nucleus.nucleus_guide import NucleusGuide, anchor_places
@@ -19,9 +19,6 @@ from cytodisk.geometry.mesh import Mesh, triangle_areas
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
 from cytodisk.geometry.nucleus_report import NucleusReport
 from cytodisk.geometry.placed_mask import PlacedMask
-
-_STEPS_A_TURN = 2.0**50
-"""Turns are whole numbers of such steps, so that adding whole turns is exact."""
 
 
 class FittedNucleus(NamedTuple):
@@ -141,12 +138,13 @@ def _in_turns(
 ) -> tuple[FloatArray, IntArray]:
     """Places as (share, turn) in the cytoplasm, and the lifts of turns from 0 to 1."""
     outer = ~mesh.vertex_inside
-    steps = np.round(places[:, 0] / TURN * _STEPS_A_TURN)
-    whole = np.floor(steps / _STEPS_A_TURN)
+    steps = np.round(places[:, 0] / TURN * STEPS_A_TURN)
+    whole = np.floor(steps / STEPS_A_TURN)
     turned = places.copy()
     turned[outer, 0] = np.clip(places[outer, 1] / half, 0.0, 1.0)
-    turned[outer, 1] = steps[outer] / _STEPS_A_TURN - whole[outer]
+    turned[outer, 1] = steps[outer] / STEPS_A_TURN - whole[outer]
     turned[: mesh.n_boundary, 0], turned[mesh.nucleus_boundary, 0] = 0.0, 1.0
     lifts = start.lifts + whole[mesh.triangles].astype(np.int64)
+    lifts -= lifts.min(axis=1, keepdims=True)  # in an arm that winds around the nucleus they may be many
     lifts[mesh.inside] = 0
     return turned, lifts
