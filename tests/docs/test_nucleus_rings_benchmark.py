@@ -27,9 +27,9 @@ def test_a_row_a_method_says_what_folds(load: Any, capsys: pytest.CaptureFixture
     benchmark, case = load("nucleus_rings"), load("schwann_nuclei").Case
     spiky = cd.simulate.cell_with_nucleus(shape="spiky", seed=1, radius_px=25)
     cases = [
-        case("simulated", "disk", cd.simulate.disk(20), cd.simulate.disk(9, margin=19)),
-        case("simulated", "spiky", spiky.mask, spiky.nucleus),
-        case("simulated", "without nucleus", spiky.mask, np.zeros_like(spiky.mask)),
+        case("simulated", "disk", cd.simulate.disk(20), cd.simulate.disk(9, margin=19), (0, 0)),
+        case("simulated", "spiky", spiky.mask, spiky.nucleus, (0, 0)),
+        case("simulated", "without nucleus", spiky.mask, np.zeros_like(spiky.mask), (0, 0)),
     ]
     found = [one for cell in cases for one in benchmark.measure(cell, benchmark.Counts(4, 12, 2))]
     folded = {one.method for one in found if one.cell == "spiky" and one.flipped}
