@@ -59,6 +59,14 @@ def test_a_map_says_them_and_gives_them_to_the_row_of_a_batch(run: Run, tmp_path
     assert compute_input._facts(cd.open_study(tmp_path / "map"))["flags"] == "coarse outline"
 
 
+def test_a_long_note_that_comes_again_is_said_once() -> None:
+    note = "the nucleus covers 100 % of the cell, or another long reason"
+    places = [Place(0, 0, note), Place(1, 0, "odd"), Place(4, 0, note), Place(5, 0, "odd")]
+    assert places_words(places, {}) == (
+        f"cell 0, frame 0 and cell 4, frame 0: {note}; cell 1, frame 0: odd; cell 5, frame 0: odd"
+    )
+
+
 def test_many_flags_are_cut_short() -> None:
     places = tuple(Place(0, frame, "odd") for frame in range(10))
     names = [f"flag {number}" for number in range(MOST_FLAGS + 3)]

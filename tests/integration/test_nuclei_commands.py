@@ -36,7 +36,7 @@ def test_check_says_what_the_match_says(run: Run, files: tuple[Path, Path]) -> N
     assert code == 1
     assert "nuclei: a label image, YX (110, 260) uint16\n" in said
     assert "nuclei: frame 0 holds 5 values beside 0\n" in said
-    assert "not usable: cell 2: the cell has 2 nuclei, of 100 and 100 px: take the largest" in said
+    assert "not usable: cell 2: the cell has 2 nuclei, of 100 and 100 px: split it if" in said
     assert "not usable: cell 3: no nucleus lies in the cell: correct the masks, or map such cells" in said
     assert "QC flag: cell 0: nucleus clipped: 9.8% of its outline lay" in said
     assert "note: cell 0: 6 px of the nucleus at the cell's edge clipped" in said

@@ -11,7 +11,7 @@ import tifffile
 from numpy.testing import assert_allclose
 
 import cytodisk as cd
-from cytodisk.cli.nucleus_words import nucleus_ratio_words
+from cytodisk.cli.nucleus_words import nucleus_ratio_words, nucleus_share_words
 from cytodisk.errors import ReadError
 
 CENTRES, SHIFTS = ((40, 40), (40, 130), (40, 220)), ((0, 0), (0, 12), (-9, 12))  # (row, column) of cells
@@ -177,6 +177,15 @@ def test_the_ratios_in_a_line() -> None:
     assert nucleus_ratio_words(some) == (
         "nucleus to cytoplasm: A 1 (1 cell), B 2.5 (2 cells) (means, background as in the image)"
     )
+
+
+def test_the_shares_in_a_line() -> None:
+    table = pd.DataFrame({"perinuclear_share_A": [0.5, 0.7, np.nan], "peripheral_share_A": [0.2, 0.1, 0.3]})
+    assert nucleus_share_words(table.assign(nucleus_to_cytoplasm_A=1.0)) == (
+        "cytoplasm's signal in its third at the nucleus and at the membrane: A 0.60 and 0.15 "
+        "(an even one: 0.33)"
+    )
+    assert nucleus_share_words(study_of(None, "unmeasured").cells) == ""
 
 
 def test_columns_are_explained_and_a_run_goes_on_with_them() -> None:

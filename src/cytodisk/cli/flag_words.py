@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 MOST_FLAGS = 8
 _MOST_PLACES = 8
-_LONGEST_NOTE = 160
+_LONGEST_NOTE, _SHORT_NOTE = 160, 40
 
 
 def say_study_flags(console: "Console", study: "Study", found: "Correlation | None" = None) -> None:
@@ -66,15 +66,19 @@ def flag_lines(flags: Sequence["QCFlag"], where_all: str, files: Mapping[int, st
 
 def places_words(places: Sequence["Place"], files: Mapping[int, str]) -> str:
     """The first places of a flag, as "cell 0, frame 12: +9%; cell 0, frame 40: +12%; … 7 more"."""
-    words = [_place(place, files) for place in places[:_MOST_PLACES]]
+    alike: dict[object, tuple[str, list[str]]] = {}  # a long note that comes again is said once
+    for place in places[:_MOST_PLACES]:
+        key = place.note if len(place.note) > _SHORT_NOTE else place
+        alike.setdefault(key, (place.note, []))[1].append(_where(place, files))
+    words = [" and ".join(where) + (f": {_short(note)}" if note else "") for note, where in alike.values()]
     more = len(places) - _MOST_PLACES
     return "; ".join([*words, f"… {more} more"] if more > 0 else words)
 
 
-def _place(place: "Place", files: Mapping[int, str]) -> str:
+def _where(place: "Place", files: Mapping[int, str]) -> str:
     where = f"cell {place.cell}" + (f" of {files[place.cell]}" if place.cell in files else "")
-    where += f", {words}" if (words := place.frames_words) else ""
-    note = place.note
-    if len(note) > _LONGEST_NOTE:
-        note = note[:_LONGEST_NOTE].rpartition(" ")[0] + " …"
-    return f"{where}: {note}" if note else where
+    return f"{where}, {words}" if (words := place.frames_words) else where
+
+
+def _short(note: str) -> str:
+    return note if len(note) <= _LONGEST_NOTE else note[:_LONGEST_NOTE].rpartition(" ")[0] + " …"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from cytodisk.cli.console import count, fail
 from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.cli.nuclei_words import nuclei_words
-from cytodisk.cli.nucleus_words import nucleus_ratio_words
+from cytodisk.cli.nucleus_words import nucleus_ratio_words, nucleus_share_words
 from cytodisk.images.mask_names import without_name
 
 if TYPE_CHECKING:
@@ -48,8 +48,9 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
             f"median {mapped['seconds'].median():.2f} s a cell; median area error of windows "
             f"{mapped['window_area_error'].median():.3f}; empty windows {int(mapped['empty_windows'].sum())}"
         )
-    if words := nucleus_ratio_words(mapped):
-        console.print(words)
+    for words in (nucleus_ratio_words(mapped), nucleus_share_words(mapped)):
+        if words:
+            console.print(words)
     _say_remarks(console, mapped)
     if of_folder:
         numbers = [cell if label else None for cell, label in zip(lost["cell"], lost["label"], strict=True)]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from cytodisk.cli.console import RESUME, console_for, count, fail, progress_bar, say_notes
 from cytodisk.cli.first_start import compiling
 from cytodisk.cli.flag_words import say_study_flags
-from cytodisk.cli.nucleus_words import nucleus_ratio_words
+from cytodisk.cli.nucleus_words import nucleus_ratio_words, nucleus_share_words
 from cytodisk.cli.options import (
     Figures,
     Given,
@@ -85,8 +85,9 @@ def finish_movie(console: "Console", study: "Study", flags: bool = True) -> None
     console.print(f"{len(mapped)} of {len(frames)} frames of {count(cells)} mapped, each one to one")
     if len(mapped):
         _say_measures(console, study, mapped)
-    if words := nucleus_ratio_words(mapped, "frame"):
-        console.print(words)
+    for words in (nucleus_ratio_words(mapped, "frame"), nucleus_share_words(mapped)):
+        if words:
+            console.print(words)
     for status in ("refused", "missing", "unreadable"):
         lost = frames[frames["status"] == status]
         for _, row in lost.head(10).iterrows():

@@ -121,7 +121,10 @@ class MaskReport:
             found = _count(self.components - 1, "small piece")
             qc_flags.append(f"{found} dropped ({self.dropped_px} px): {_IF_CELLS}")
         if self.filled_px - self.nucleus_in_holes_px > _FLAGGED_FILLED * self.area_px:
-            qc_flags.append("perhaps several touching cells: what was a hole is measured as cell")
+            qc_flags.append(
+                "perhaps several touching cells: what was a hole is measured as cell; a vacuole is left out "
+                "by holes='exclude' (--holes exclude)"
+            )
         if self.excluded_share > _FLAGGED_EXCLUDED:
             qc_flags.append(
                 f"holes take {self.excluded_share:.0%} of the area within the outline: windows there hold "

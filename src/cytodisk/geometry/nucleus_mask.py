@@ -186,8 +186,8 @@ def _check_other(cell: BoolArray, nucleus: BoolArray) -> None:
             "nucleus=…"
         )
     raise NucleusError(
-        f"the nucleus covers {100 * covered:.0f} % of the cell: the same mask twice? Pass the mask of the "
-        "nucleus alone"
+        f"the nucleus covers {100 * covered:.0f} % of the cell: the same mask twice, or a cell's mask "
+        "without cytoplasm? Pass the mask of the nucleus alone, and that of the whole cell"
     )
 
 
@@ -216,8 +216,9 @@ def _several_words(pieces: NucleusPieces, within: BoolArray) -> str:
             "alone, as nuclei == label; match_nuclei tells which it is"
         )
     return (
-        f"the cell has {nuclei.sum()} nuclei, of {listed_areas(pieces.areas[nuclei])}: take the largest with "
-        "several='largest' (--several largest), or join them with several='join'"
+        f"the cell has {nuclei.sum()} nuclei, of {listed_areas(pieces.areas[nuclei])}: split it if it is "
+        "several cells (guide 'Cells with their nuclei'), or take several='largest' (--several largest) or "
+        "several='join'"
     )
 
 

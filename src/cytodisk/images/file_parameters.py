@@ -79,7 +79,9 @@ class KindParameters(ChoiceParameters):
         words=AXES_WORDS,
     )
     label: bool = parameter(
-        False, "For several cells in one mask of 0 and 1: number its pieces; each is a cell."
+        False,
+        "For several cells in one mask of 0 and 1: number its pieces; each is a cell. Cells that touch are "
+        "one piece: split them first.",
     )
     fragments: Fragments = parameter(
         "refuse",

@@ -59,7 +59,8 @@ class PolarGridParameters(GridParameters):
     )
     nucleus_layers: int | None = parameter(
         None,
-        "Number of layers in the nucleus, which follow those of the cytoplasm. Needs a nucleus in each cell.",
+        "Number of layers in the nucleus, which follow those of the cytoplasm. Needs a nucleus in each cell. "
+        "Where files of nuclei are given, 3 without it.",
         least=1,
         most=MOST,
     )

@@ -48,7 +48,10 @@ class CellNucleus:
         if self.fault is not None or self.match is None:
             return self.fault
         if self.match.status == "shared":
-            return NucleusError(f"the cell shares a nucleus ({self.match.reason}): correct the masks")
+            return NucleusError(
+                f"the cell shares a nucleus ({self.match.reason}): the border of the cells cuts it, or two "
+                "nuclei touch and count as one: correct the masks"
+            )
         if self.match.status == "none" and missing == "refuse":
             return NucleusError(
                 f"{self.match.reason}: correct the masks, or map such cells without (--missing plain)"

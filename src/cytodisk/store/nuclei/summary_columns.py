@@ -36,6 +36,7 @@ SIGNAL_REMARKS = Column(
     "nucleus_signal_remarks", pa.string(), "", "why numbers of nucleus and cytoplasm are empty, by channel"
 )
 DARKEST_AROUND, CYTOPLASM_MEAN, RATIO = "darkest_around", "cytoplasm_mean", "nucleus_to_cytoplasm"
+PERINUCLEAR_SHARE, PERIPHERAL_SHARE = "perinuclear_share", "peripheral_share"
 
 _OF_A_CHANNEL: Columns = (
     Column("nucleus_mean", pa.float64(), "a.u.", "mean of {channel} in the nucleus"),
@@ -50,13 +51,13 @@ _OF_A_CHANNEL: Columns = (
         "ratio_of_totals", pa.float64(), "1", "total of {channel} in the nucleus over that in the cytoplasm"
     ),
     Column(
-        "perinuclear_share",
+        PERINUCLEAR_SHARE,
         pa.float64(),
         "1",
         "share of the cytoplasm's {channel} in the third of its area at the nucleus; 1/3 if it is even",
     ),
     Column(
-        "peripheral_share",
+        PERIPHERAL_SHARE,
         pa.float64(),
         "1",
         "share of the cytoplasm's {channel} in the third of its area at the membrane; 1/3 if it is even",
