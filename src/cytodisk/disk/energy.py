@@ -189,15 +189,18 @@ def largest_step(uv: FloatArray, direction: FloatArray, triangles: IntArray, hat
     for t in range(triangles.shape[0]):
         a, b, c, d = jacobian(uv, triangles[t], hats[t])
         p, q, r, s = jacobian(direction, triangles[t], hats[t])
-        constant = a * d - b * c
-        linear = a * s + d * p - b * r - c * q
-        square = p * s - q * r
-        # constant > 0: the smallest positive root of square s² + linear s + constant.
-        discriminant = linear * linear - 4.0 * square * constant
-        if discriminant < 0.0:
-            continue
+        first = min(first, first_root(a * d - b * c, a * s + d * p - b * r - c * q, p * s - q * r))
+    return first
+
+
+@njit(cache=True, inline="always", error_model="numpy")
+def first_root(constant: float, linear: float, square: float) -> float:
+    """First positive root of square s² + linear s + constant, constant > 0; infinite if there is none."""
+    discriminant = linear * linear - 4.0 * square * constant
+    first = np.inf
+    if discriminant >= 0.0:
         half = -0.5 * (linear + math.copysign(math.sqrt(discriminant), linear))
-        for root in (half / square if square != 0.0 else np.inf, constant / half if half != 0.0 else np.inf):
-            if 0.0 < root < first:
-                first = root
+        one = half / square if square != 0.0 else np.inf
+        other = constant / half if half != 0.0 else np.inf
+        first = min(one if one > 0.0 else np.inf, other if other > 0.0 else np.inf)
     return first

@@ -78,14 +78,15 @@ def averaged_elements(
     -------
     AveragedElements
     """
-    corner, parts, target, edge = _shared_out(triangles, share, unknown, int(unknown.max(initial=-1)) + 1)
-    return AveragedElements(triangles, hats, share, corner, parts, target, edge)
+    n_unknown = int(unknown.max(initial=-1)) + 1
+    return AveragedElements(triangles, hats, share, *shared_out(triangles, share, unknown, n_unknown))
 
 
 @njit(cache=True)
-def _shared_out(
+def shared_out(
     triangles: IntArray, share: FloatArray, unknown: IntArray, n_unknown: int
 ) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+    """`corner`, `parts`, `target` and `edge` of elements; vertices without an unknown (-1) get no area."""
     corner, parts = np.empty(triangles.shape, dtype=np.int64), np.zeros(triangles.shape)
     target, edge = np.zeros(n_unknown), np.zeros(len(share))
     for t in range(len(share)):
@@ -173,28 +174,38 @@ def fill_step(
             if n >= 0:
                 right[n, 0] -= r1 * e0 + r2 * f0 + slant * g0
                 right[n, 1] -= r1 * e1 + r2 * f1 + slant * g1
-        for k in range(3):
-            g0, g1, m = corners[k, 0], corners[k, 1], corners[k, 6]
-            e0, e1 = SHAPE_CURVATURE * corners[k, 2], SHAPE_CURVATURE * corners[k, 3]
-            f0, f1 = SHAPE_CURVATURE * corners[k, 4], SHAPE_CURVATURE * corners[k, 5]
-            s0, s1 = stiff * g0, stiff * g1
-            for l in range(k + 1):
-                block = max(place[t, k, l], place[t, l, k])
-                if block < 0:
-                    continue
-                at = 9 * block
-                turned = 1 if place[t, k, l] < 0 else 0  # the block of (l, k) is stored: this one's transpose
-                h0, h1, i0, i1 = corners[l, 0], corners[l, 1], corners[l, 2], corners[l, 3]
-                j0, j1, o = corners[l, 4], corners[l, 5], corners[l, 6]
-                numbers[at] += e0 * i0 + f0 * j0 + s0 * h0
-                numbers[at + 1 + 2 * turned] += e0 * i1 + f0 * j1 + s0 * h1
-                numbers[at + 2 + 4 * turned] += g0 * o
-                numbers[at + 4] += e1 * i1 + f1 * j1 + s1 * h1
-                numbers[at + 5 + 2 * turned] += g1 * o
-                if l < k:
-                    numbers[at + 3 - 2 * turned] += e1 * i0 + f1 * j0 + s1 * h0
-                    numbers[at + 6 - 4 * turned] += m * h0
-                    numbers[at + 7 - 2 * turned] += m * h1
+        add_triangle(t, corners, stiff, place, numbers)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def add_triangle(t: int, corners: FloatArray, stiff: float, place: IntArray, numbers: FloatArray) -> None:
+    """Add what a triangle gives to the blocks of its corners.
+
+    `corners` holds a row each: the gradient of det J, those of both residuals of shape, and that of the area
+    by itself; `stiff` is the curvature of the area at the edge, `numbers` the nine of each block in a row.
+    """
+    for k in range(3):
+        g0, g1, m = corners[k, 0], corners[k, 1], corners[k, 6]
+        e0, e1 = SHAPE_CURVATURE * corners[k, 2], SHAPE_CURVATURE * corners[k, 3]
+        f0, f1 = SHAPE_CURVATURE * corners[k, 4], SHAPE_CURVATURE * corners[k, 5]
+        s0, s1 = stiff * g0, stiff * g1
+        for l in range(k + 1):
+            block = max(place[t, k, l], place[t, l, k])
+            if block < 0:
+                continue
+            at = 9 * block
+            turned = 1 if place[t, k, l] < 0 else 0  # the block of (l, k) is stored: this one's transpose
+            h0, h1, i0, i1 = corners[l, 0], corners[l, 1], corners[l, 2], corners[l, 3]
+            j0, j1, o = corners[l, 4], corners[l, 5], corners[l, 6]
+            numbers[at] += e0 * i0 + f0 * j0 + s0 * h0
+            numbers[at + 1 + 2 * turned] += e0 * i1 + f0 * j1 + s0 * h1
+            numbers[at + 2 + 4 * turned] += g0 * o
+            numbers[at + 4] += e1 * i1 + f1 * j1 + s1 * h1
+            numbers[at + 5 + 2 * turned] += g1 * o
+            if l < k:
+                numbers[at + 3 - 2 * turned] += e1 * i0 + f1 * j0 + s1 * h0
+                numbers[at + 6 - 4 * turned] += m * h0
+                numbers[at + 7 - 2 * turned] += m * h1
 
 
 @njit(cache=True, error_model="numpy")

@@ -17,10 +17,8 @@ import numpy as np
 from numba import njit
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
-from cytodisk.disk.vertex_energy import SHAPE_CURVATURE
-
-EDGE_WEIGHT = 0.2
-"""Weight of each area at an outline, as in `vertex_energy`."""
+from cytodisk.disk.energy import first_root
+from cytodisk.disk.vertex_energy import add_triangle
 
 
 class CompartmentElements(NamedTuple):
@@ -59,28 +57,6 @@ class CompartmentElements(NamedTuple):
     inside: BoolArray
     turned: FloatArray
     sliding: BoolArray
-
-
-@njit(cache=True)
-def shared_out(
-    triangles: IntArray, share: FloatArray, unknown: IntArray, n_outline: int
-) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
-    """`corner`, `parts`, `target` and `edge` of elements; the first `n_outline` vertices are on outlines."""
-    corner, parts = np.empty(triangles.shape, dtype=np.int64), np.zeros(triangles.shape)
-    target, edge = np.zeros(unknown.max() + 1), np.zeros(len(share))
-    for t in range(len(share)):
-        interior = 0
-        for k in range(3):
-            free = triangles[t, k] >= n_outline
-            corner[t, k] = unknown[triangles[t, k]] if free else -1
-            interior += free
-        if interior < 3:
-            edge[t] = EDGE_WEIGHT * share[t]
-        for k in range(3):
-            if corner[t, k] >= 0:
-                parts[t, k] = share[t] / interior
-                target[corner[t, k]] += parts[t, k]
-    return corner, parts, target, edge
 
 
 @njit(cache=True)
@@ -200,40 +176,13 @@ def fill_compartments(
             if n >= 0:
                 right[n, 0] -= r1 * e0 + r2 * f0 + slant * g0
                 right[n, 1] -= r1 * e1 + r2 * f1 + slant * g1
-        _add_triangle(t, corners, stiff, place, numbers)
+        add_triangle(t, corners, stiff, place, numbers)
     for vertex in range(len(unknown)):
         n = unknown[vertex]
         if n >= 0:
             for axis in range(2):
                 if not free[vertex, axis]:
                     blocks[diagonal[n], axis, axis] = 1.0
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _add_triangle(t: int, corners: FloatArray, stiff: float, place: IntArray, numbers: FloatArray) -> None:
-    """Add what a triangle gives to the blocks of its corners."""
-    for k in range(3):
-        g0, g1, m = corners[k, 0], corners[k, 1], corners[k, 6]
-        e0, e1 = SHAPE_CURVATURE * corners[k, 2], SHAPE_CURVATURE * corners[k, 3]
-        f0, f1 = SHAPE_CURVATURE * corners[k, 4], SHAPE_CURVATURE * corners[k, 5]
-        s0, s1 = stiff * g0, stiff * g1
-        for l in range(k + 1):
-            block = max(place[t, k, l], place[t, l, k])
-            if block < 0:
-                continue
-            at = 9 * block
-            turned = 1 if place[t, k, l] < 0 else 0  # the block of (l, k) is stored: this one's transpose
-            h0, h1, i0, i1 = corners[l, 0], corners[l, 1], corners[l, 2], corners[l, 3]
-            j0, j1, o = corners[l, 4], corners[l, 5], corners[l, 6]
-            numbers[at] += e0 * i0 + f0 * j0 + s0 * h0
-            numbers[at + 1 + 2 * turned] += e0 * i1 + f0 * j1 + s0 * h1
-            numbers[at + 2 + 4 * turned] += g0 * o
-            numbers[at + 4] += e1 * i1 + f1 * j1 + s1 * h1
-            numbers[at + 5 + 2 * turned] += g1 * o
-            if l < k:
-                numbers[at + 3 - 2 * turned] += e1 * i0 + f1 * j0 + s1 * h0
-                numbers[at + 6 - 4 * turned] += m * h0
-                numbers[at + 7 - 2 * turned] += m * h1
 
 
 @njit(cache=True, error_model="numpy")
@@ -265,7 +214,10 @@ def _fill_areas(
 def largest_compartment_step(
     places: FloatArray, direction: FloatArray, cell: CompartmentElements, roots: FloatArray
 ) -> float:
-    """First positive root of any det J(s) along places + s · direction, to first order if vertices slide."""
+    """First positive root of any det J(s) along places + s · direction, to first order if vertices slide.
+
+    `roots` (F,) is filled with that of each triangle.
+    """
     triangles, hats, _, _, _, _, _, inside, turned, sliding = cell
     first = np.inf
     for t in range(triangles.shape[0]):
@@ -280,15 +232,6 @@ def largest_compartment_step(
             q += du * y
             r += dv * x
             s += dv * y
-        roots[t] = np.inf
-        constant, linear, square = a * d - b * c, a * s + d * p - b * r - c * q, p * s - q * r
-        discriminant = linear * linear - 4.0 * square * constant
-        if discriminant < 0.0:
-            continue
-        half = -0.5 * (linear + math.copysign(math.sqrt(discriminant), linear))
-        for root in (half / square if square != 0.0 else np.inf, constant / half if half != 0.0 else np.inf):
-            if 0.0 < root < first:
-                first = root
-            if 0.0 < root < roots[t]:
-                roots[t] = root
+        roots[t] = first_root(a * d - b * c, a * s + d * p - b * r - c * q, p * s - q * r)
+        first = min(first, roots[t])
     return first

@@ -13,18 +13,18 @@ import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.disk.blocks import BlockSystem
-from cytodisk.disk.newton import GaussNewton, descended
+from cytodisk.disk.newton import DECREMENT, GaussNewton, descended
 from cytodisk.disk.nucleus.compartment_energy import (
     CompartmentElements,
     compartment_energy,
     fill_compartments,
     largest_compartment_step,
-    shared_out,
 )
 from cytodisk.disk.nucleus.cone import TURN
 from cytodisk.disk.nucleus.outline_steps import add_loop, loop_energy
 from cytodisk.disk.pressure_blocks import PressureSystem
 from cytodisk.disk.relaxed import Relaxed
+from cytodisk.disk.vertex_energy import shared_out
 from cytodisk.geometry.mesh import hat_gradients, triangle_areas
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
 from cytodisk.geometry.polygon import arc_lengths
@@ -80,7 +80,7 @@ def relax_compartments(
     MapError
         The start is not valid.
     """
-    problem = _Compartments(mesh, system, lifts, radius, shape_weight, slide)
+    problem = Compartments(mesh, system, lifts, radius, shape_weight, slide)
     if anchored is not None:
         anchor, inertia = anchored
         problem.pull_to(anchor, inertia * problem.metric(anchor))
@@ -106,8 +106,13 @@ def _complex(uv: FloatArray) -> Any:
     return uv[:, 0] + 1j * uv[:, 1]
 
 
-class _Compartments(GaussNewton):
-    """The energy of one mesh with a nucleus."""
+class Compartments(GaussNewton):
+    """The energy of one mesh with a nucleus; places, lifts and the others as for `relax_compartments`.
+
+    Attributes
+    ----------
+    cell : CompartmentElements
+    """
 
     def __init__(
         self,
@@ -129,15 +134,16 @@ class _Compartments(GaussNewton):
             total = areas[part].sum()
             share[part] = of_disk * areas[part] / total
             hats[part] /= np.sqrt(own_area / total)
-        n_outline = mesh.n_boundary + mesh.n_nucleus
         self._loop = mesh.nucleus_boundary
+        interior = system.unknown.copy()
+        interior[self._loop] = -1
         sliding = np.zeros(len(mesh.vertices_yx), dtype=bool)
         sliding[self._loop] = True
-        self._cell = CompartmentElements(
+        self.cell = CompartmentElements(
             mesh.triangles,
             hats,
             share,
-            *shared_out(mesh.triangles, share, system.unknown, n_outline),
+            *shared_out(mesh.triangles, share, interior, len(system.vertex)),
             mesh.inside,
             np.asarray(TURN * lifts, dtype=np.float64),
             sliding,
@@ -157,8 +163,8 @@ class _Compartments(GaussNewton):
 
     def metric(self, places: FloatArray) -> FloatArray:
         """Share of the disk around each vertex, times the squared length of its two steps there, (V, 2)."""
-        corner_share = np.repeat(self._cell.share / 3.0, 3)
-        shares = np.bincount(self._cell.triangles.ravel(), corner_share)
+        corner_share = np.repeat(self.cell.share / 3.0, 3)
+        shares = np.bincount(self.cell.triangles.ravel(), corner_share)
         square = 1.0 - 2.0 * places[:, 1]
         lengths = np.column_stack([square, 1.0 / square])
         lengths[self._inside] = self._radius**2
@@ -169,22 +175,23 @@ class _Compartments(GaussNewton):
         at_outline = loop_energy(uv[self._loop, 0], self._loop_share, self._loop_weight)
         if not np.isfinite(at_outline):
             return np.inf
-        return float(at_outline + compartment_energy(uv, self._cell, self.shape_weight))
+        return float(at_outline + compartment_energy(uv, self.cell, self.shape_weight))
 
     def descent(self, uv: FloatArray) -> tuple[FloatArray, float]:
         """Step of every vertex, and the energy it promises to save to first order.
 
         A triangle that the step would soon turn over would make it short for all: its corners are held, and
-        the others' step is computed anew.
+        the others' step is computed anew. Where that saves next to nothing, it is no sign of the end: the
+        step of all is taken.
         """
         self._held[:] = 0.0
         free = held = super().descent(uv)
         for _ in range(_HOLDS):
             if self.largest_step(uv, held[0]) >= _SOON:
                 break
-            self._held[self._cell.triangles[self._roots < _SOON]] += _HOLD
+            self._held[self.cell.triangles[self._roots < _SOON]] += _HOLD
             held = super().descent(uv)
-        return held if held[1] > _WORTH * free[1] else free
+        return held if held[1] > max(_WORTH * free[1], DECREMENT) else free
 
     def moved(self, uv: FloatArray, step: FloatArray) -> FloatArray:
         """Where a step leads: vertices inside the nucleus turn about its centre with those of its outline."""
@@ -198,7 +205,7 @@ class _Compartments(GaussNewton):
     def fill(self, uv: FloatArray, system: PressureSystem, right: FloatArray) -> None:
         pattern = system.pattern
         places = pattern.unknown, pattern.place, pattern.diagonal
-        fill_compartments(uv, self._cell, self.shape_weight, self._free, places, system.blocks, right)
+        fill_compartments(uv, self.cell, self.shape_weight, self._free, places, system.blocks, right)
         if self._held.any():
             for axis in (0, 1):
                 system.blocks[pattern.diagonal, axis, axis] *= 1.0 + self._held[self._vertex]
@@ -208,4 +215,4 @@ class _Compartments(GaussNewton):
             add_loop(*steps, *ends, system.blocks, right)
 
     def largest_step(self, uv: FloatArray, direction: FloatArray) -> float:
-        return float(largest_compartment_step(uv, direction, self._cell, self._roots))
+        return float(largest_compartment_step(uv, direction, self.cell, self._roots))

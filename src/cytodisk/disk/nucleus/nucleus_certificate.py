@@ -82,9 +82,13 @@ def _malformed_nucleus(n_vertices: int, triangles: IntArray, nucleus: Nucleus) -
     places, boundary = nucleus.places, nucleus.boundary
     if places.shape != (n_vertices, 2) or not np.isfinite(places).all():
         faults.append("places of vertices are missing or not finite")
-    if nucleus.inside.shape != (len(triangles),) or nucleus.lifts.shape != triangles.shape:
-        faults.append("triangles of the nucleus are not told for all triangles")
-    if len(boundary) < 3 or boundary.min() < 0 or boundary.max() >= n_vertices:
+    if nucleus.inside.shape != (len(triangles),) or nucleus.inside.dtype != bool:
+        faults.append("it is not told of all triangles whether they lie in the nucleus")
+    if nucleus.lifts.shape != triangles.shape or nucleus.lifts.dtype.kind != "i":
+        faults.append("whole turns of the triangles' corners are missing or not whole")
+    if boundary.dtype.kind != "i":
+        faults.append("vertices of the nuclear outline are not whole numbers")
+    elif len(boundary) < 3 or boundary.min() < 0 or boundary.max() >= n_vertices:
         faults.append("the nuclear outline names a vertex that does not exist, or has less than three")
     if not faults and (nucleus.inside.all() or not nucleus.inside.any()):
         faults.append("a compartment has no triangle")
@@ -156,6 +160,8 @@ def _cylinder_faults(triangles: IntArray, boundary: IntArray, nucleus: Nucleus) 
             faults.append(f"the {name} is not at share {level:g}")
         if not (turn[following] - turn[loop] + lifted > 0.0).all() or lifted.sum() != 1:
             faults.append(f"turns of the {name} do not increase strictly through one turn")
+    if (nucleus.corners(triangles)[..., 1] - lifts != turn[ring]).any():
+        faults.append("whole turns cannot be added to the turns of the cytoplasm without rounding")
     in_ring = np.unique(ring)
     if (share[in_ring] < 0.0).any() or (share[in_ring] > 1.0).any():
         faults.append("a share of the cytoplasm is below 0 or above 1")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from cytodisk.arrays import FloatArray, IntArray
@@ -27,11 +29,22 @@ class NucleusChart:
     ):
         self._nucleus, self._triangles, self._vertices_yx = nucleus, triangles, vertices_yx
         self._boundary_angles = boundary_angles
-        self._in_cell = TriangleLocator(vertices_yx, triangles)
-        self._ring, self._in_ring = _unrolled(nucleus.corners(triangles), np.flatnonzero(~nucleus.inside))
-        self._on_cylinder = TriangleLocator(*_separate(self._ring))
         self._inner = triangles[nucleus.inside]
-        self._in_nucleus = TriangleLocator(*_used(nucleus.own_uv, self._inner))
+
+    @cached_property
+    def _in_cell(self) -> TriangleLocator:
+        return TriangleLocator(self._vertices_yx, self._triangles)
+
+    @cached_property
+    def _on_cylinder(self) -> tuple[TriangleLocator, IntArray]:
+        """Triangles of the cytoplasm, some of them twice, and their numbers in the mesh."""
+        outer = np.flatnonzero(~self._nucleus.inside)
+        corners, numbers = _unrolled(self._nucleus.corners(self._triangles), outer)
+        return TriangleLocator(*_separate(corners)), numbers
+
+    @cached_property
+    def _in_nucleus(self) -> TriangleLocator:
+        return TriangleLocator(*_used(self._nucleus.own_uv, self._inner))
 
     def to_disk(self, points_yx: FloatArray) -> FloatArray:
         """Points of the cell, (row, column), in the whole disk, (u, v); NaN outside, shape (N, 2)."""
@@ -55,8 +68,9 @@ class NucleusChart:
         radius, angle = np.hypot(*points_uv.T), np.arctan2(points_uv[:, 1], points_uv[:, 0])
         outer = (radius >= self._nucleus.radius) & (radius <= 1.0 + 1e-9)
         share, turn = self._nucleus.share_at(radius[outer]), np.mod(angle[outer] / TURN, 1.0)
-        triangle, weights = self._on_cylinder(np.column_stack([share, turn]))
-        corners = self._vertices_yx[self._triangles[self._in_ring[triangle]]]
+        locator, numbers = self._on_cylinder
+        triangle, weights = locator(np.column_stack([share, turn]))
+        corners = self._vertices_yx[self._triangles[numbers[triangle]]]
         found = (weights[:, :, None] * corners).sum(axis=1)
         found[triangle < 0] = np.nan
         yx[outer] = found

@@ -18,7 +18,7 @@ from cytodisk.geometry.placed_mask import PlacedMask
 
 _Count = Annotated[int, Field(ge=0, lt=2**53)]
 _STRICT = ConfigDict(strict=True, allow_inf_nan=False)
-_MOST_LIFT = 1000
+_MOST_LIFT = 10  # whole turns; no map winds its cytoplasm up so far
 
 
 @with_config(_STRICT)
