@@ -93,11 +93,7 @@ def certify(
     in_cell, exact_cell = orientations(vertices_yx, triangles)
     in_disk, exact_disk = orientations(vertices_uv[:, ::-1], triangles)
     edges = half_edges(triangles, len(vertices_yx))
-    faults = [
-        f"{(sign <= 0).sum()} triangles are not positive in the {frame}"
-        for sign, frame in ((in_cell, "cell"), (in_disk, "disk"))
-        if (sign <= 0).any()
-    ]
+    faults = orientation_faults(in_cell, in_disk)
     faults += mesh_faults(edges)
     faults += boundary_faults(vertices_yx, vertices_uv, edges, boundary)
     return Certificate(
@@ -108,6 +104,17 @@ def certify(
         n_exact=exact_cell + exact_disk,
         euler_characteristic=edges.euler_characteristic,
     )
+
+
+def orientation_faults(in_cell: IntArray, in_disk: IntArray) -> list[str]:
+    """What speaks against all triangles being positive, from their signs in cell and disk."""
+    faults = []
+    for sign, frame in ((in_cell, "cell"), (in_disk, "disk")):
+        count = int((sign <= 0).sum())
+        if count:
+            are = "triangle is" if count == 1 else "triangles are"
+            faults.append(f"{count} {are} not positive in the {frame}")
+    return faults
 
 
 def mesh_faults(edges: HalfEdges) -> list[str]:

@@ -11,7 +11,7 @@ from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.geometry.mesh import triangle_areas
 
 PERCENTILES = (1, 5, 25, 50, 75, 95, 99)
-_LEAST_AREA, _LARGEST_STRETCH = 1e-200, 1e12  # so that a triangle without area has finite distortion
+LEAST_AREA, _LARGEST_STRETCH = 1e-200, 1e12  # so that a triangle without area has finite distortion
 
 
 @dataclass(frozen=True)
@@ -79,14 +79,14 @@ def distortion_of(vertices_yx: FloatArray, vertices_uv: FloatArray, triangles: I
     -------
     Distortion
     """
-    cell = triangle_areas(vertices_yx, triangles)
+    cell = np.abs(triangle_areas(vertices_yx, triangles))  # turned ones, of a damaged file, count as well
     disk = triangle_areas(vertices_uv[:, ::-1], triangles)
     share = cell / cell.sum()
-    sizes = np.maximum(np.abs(disk), _LEAST_AREA)
+    sizes = np.maximum(np.abs(disk), LEAST_AREA)
     wide = _largest_stretches(
         np.ascontiguousarray(vertices_yx), np.ascontiguousarray(vertices_uv), np.ascontiguousarray(triangles)
     )
-    wide = np.maximum(wide, _LEAST_AREA)
+    wide = np.maximum(wide, LEAST_AREA)
     narrow = np.maximum(np.abs(disk) / cell / wide, wide / _LARGEST_STRETCH)
     return Distortion(sizes / disk.sum() / share, np.maximum(wide / narrow, 1.0), share)
 

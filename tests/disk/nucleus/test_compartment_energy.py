@@ -67,7 +67,10 @@ def jacobians(case: Case, places: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def outline_steps(case: Case, places: FloatArray) -> FloatArray:
     """Residuals of the steps of the nuclear outline, 0 where each has the outline's share of the turn."""
-    angles, lengths = places[case.mesh.nucleus_boundary, 0], arc_lengths(case.mesh.vertices_yx[case.mesh.nucleus_boundary])
+    angles, lengths = (
+        places[case.mesh.nucleus_boundary, 0],
+        arc_lengths(case.mesh.vertices_yx[case.mesh.nucleus_boundary]),
+    )
     share = lengths / lengths.sum()
     steps = np.mod(np.roll(angles, -1) - angles, TURN)
     x = np.tan(0.5 * steps) / np.tan(0.5 * TURN * share)

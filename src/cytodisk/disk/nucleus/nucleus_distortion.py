@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cytodisk.arrays import FloatArray, IntArray
-from cytodisk.disk.distortion import Distortion, distortion_of
+from cytodisk.disk.distortion import LEAST_AREA, Distortion, distortion_of
 from cytodisk.disk.nucleus.nucleus import Nucleus
 
 
@@ -32,8 +32,8 @@ def distortion_by_compartment(
         (~nucleus.inside, _areas(corners)),
         (nucleus.inside, _areas(nucleus.own_uv[triangles[nucleus.inside]][..., ::-1])),
     ):
-        share = whole.area_share[part]
-        ratio[part] = np.maximum(np.abs(in_disk), 1e-200) / in_disk.sum() / (share / share.sum())
+        share, sizes = whole.area_share[part], np.maximum(np.abs(in_disk), LEAST_AREA)
+        ratio[part] = sizes / sizes.sum() / (share / share.sum())
     return Distortion(ratio, whole.triangle_stretch, whole.area_share)
 
 

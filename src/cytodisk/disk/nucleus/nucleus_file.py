@@ -12,13 +12,13 @@ from typing_extensions import TypedDict
 
 from cytodisk.array_archive import ArrayArchive
 from cytodisk.arrays import FloatArray, IntArray
+from cytodisk.disk.nucleus.cone import MOST_LIFT
 from cytodisk.disk.nucleus.nucleus import Nucleus
 from cytodisk.geometry.nucleus_report import NucleusReport
 from cytodisk.geometry.placed_mask import PlacedMask
 
 _Count = Annotated[int, Field(ge=0, lt=2**53)]
 _STRICT = ConfigDict(strict=True, allow_inf_nan=False)
-_MOST_LIFT = 10  # whole turns; no map winds its cytoplasm up so far
 
 
 @with_config(_STRICT)
@@ -84,7 +84,7 @@ def read_nucleus(
     n_vertices, triangles = len(arrays["vertices_yx"]), arrays["triangles"]
     places = archive.floats("nucleus_places", (n_vertices, 2), low=-2.0, high=2.0)
     boundary = archive.integers("nucleus_boundary", (None,), least=0, most=n_vertices - 1)
-    lifts = archive.integers("nucleus_lifts", triangles.shape, least=-_MOST_LIFT, most=_MOST_LIFT)
+    lifts = archive.integers("nucleus_lifts", triangles.shape, least=-MOST_LIFT, most=MOST_LIFT)
     inside = archive.truths("nucleus_inside", (len(triangles),), most=(len(triangles),))
     if len(boundary) < 3 or not inside.any() or inside.all():
         raise archive.fault("nucleus_boundary", "does not divide the cell into cytoplasm and nucleus")
