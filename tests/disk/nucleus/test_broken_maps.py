@@ -67,13 +67,6 @@ def test_whole_turns_of_all_corners_of_a_triangle_are_the_same_map(disk: DiskMap
     assert certified(
         disk, nucleus=replace(nucleus, lifts=changed(nucleus.lifts, one, nucleus.lifts[one] - 1))
     ).valid
-    vertex = of_cytoplasm(disk)
-    wound = replace(
-        nucleus,
-        places=changed(nucleus.places, (vertex, 1), nucleus.places[vertex, 1] + 1.0),
-        lifts=nucleus.lifts - (disk.triangles == vertex),
-    )
-    assert certified(disk, nucleus=wound).valid
 
 
 def test_a_triangle_that_is_turned_over(disk: DiskMap) -> None:
