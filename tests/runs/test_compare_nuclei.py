@@ -88,6 +88,7 @@ def test_a_cell_without_a_nucleus_has_rows_with_the_reason(comparison: cd.Compar
         row = row_of(comparison, 2, method)
         assert row["status"] == "refused"
         assert "nucleus" in row["reason"]
+        assert "--missing" not in row["reason"], "there is no such flag here"
 
 
 def test_layers_say_their_compartment_and_how_large_they_are(comparison: cd.Comparison) -> None:

@@ -168,6 +168,9 @@ def test_the_first_frame_has_nothing_to_hold() -> None:
     movie = map_movie(truth.masks, nuclei=with_gap(truth, 0), missing="hold")
     assert movie.status[:2] == ["refused", "ok"]
     assert "no frame before" in movie.records[0].reason
+    refused = map_movie(truth.masks, nuclei=with_gap(truth, 0))
+    assert refused.status[:2] == ["refused", "ok"]
+    assert "hold" not in refused.records[0].reason, "there is no nucleus that could be held"
 
 
 def test_a_held_nucleus_that_does_not_fit_any_more_is_refused() -> None:
@@ -194,6 +197,7 @@ def test_errors_and_nothing_may_stand_for_nuclei() -> None:
     [
         (lambda nuclei: nuclei[:-1], NucleusError, "frames"),
         (lambda nuclei: nuclei[:, 1:], NucleusError, "shape"),
+        (lambda nuclei: nuclei[0], NucleusError, "one frame, the masks 8 frames"),
         (lambda nuclei: 5, NucleusError, "sequence"),
     ],
 )

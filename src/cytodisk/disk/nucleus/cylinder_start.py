@@ -121,7 +121,8 @@ def cylinder_start(
             return CylinderMap(*found[:3], "uniform", found[3])
     raise MapError(
         f"no map of the cytoplasm was found ({len(mesh.vertices_yx)} vertices): in double precision "
-        "triangles turn over; the cell is too branched for its size; try a larger edge_length"
+        "triangles turn over; the nucleus or the cell is too branched for its size; correct the masks, or "
+        "try a larger edge_length"
     )
 
 

@@ -112,7 +112,8 @@ def check_nuclei_file(masks: FrameFile, nuclei: FrameFile) -> None:
         )
     if nuclei.n_frames != masks.n_frames:
         raise NucleusError(
-            f"nuclei {nuclei.path} have {nuclei.n_frames} frames, the masks {masks.n_frames}: pass as many"
+            f"nuclei {nuclei.path} have {nuclei.n_frames} frame{'s' * (nuclei.n_frames > 1)}, the masks "
+            f"{masks.n_frames}: pass as many"
         )
 
 

@@ -106,7 +106,7 @@ def _mesh(
         return mesh_cell(found.mask, settings, scale, _usable(found.nucleus), settings.several), ""
     except (NucleusError, ReadError) as fault:
         if settings.missing != "hold":
-            if isinstance(fault, NucleusError):
+            if isinstance(fault, NucleusError) and last is not None:
                 raise NucleusError(f"{fault}; {_REMEDY}") from fault
             raise
         why = fault

@@ -62,6 +62,11 @@ def parse_nuclei(nuclei: Any, masks: Any) -> Any:
         raise NucleusError(
             f"nuclei must be an array (T, H, W) or a sequence of frames, got {type(nuclei).__name__}"
         )
+    if getattr(nuclei, "ndim", 3) == 2:
+        raise NucleusError(
+            f"nuclei have the shape {tuple(nuclei.shape)}, one frame, the masks {len(masks)} frames: pass "
+            "nuclei of each frame, (T, H, W)"
+        )
     if len(nuclei) != len(masks):
         raise NucleusError(
             f"nuclei have {len(nuclei)} frames, the masks {len(masks)}: pass one of each frame; in a frame "

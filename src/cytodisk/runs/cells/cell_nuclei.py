@@ -37,13 +37,13 @@ class CellNucleus:
     fault: CytodiskError | None = None
     strays: tuple[NucleusMatch, ...] = ()
 
-    def refusal(self, missing: Literal["refuse", "plain"]) -> CytodiskError | None:
+    def refusal(self, missing: Literal["refuse", "plain", "no choice"]) -> CytodiskError | None:
         """Why the cell is not mapped, as far as the match tells.
 
         Parameters
         ----------
-        missing : {"refuse", "plain"}
-            What to do with a cell without a nucleus.
+        missing : {"refuse", "plain", "no choice"}
+            What to do with a cell without a nucleus; "no choice" refuses it where no run could do else.
         """
         if self.fault is not None or self.match is None:
             return self.fault
@@ -52,10 +52,9 @@ class CellNucleus:
                 f"the cell shares a nucleus ({self.match.reason}): the border of the cells cuts it, or two "
                 "nuclei touch and count as one: correct the masks"
             )
-        if self.match.status == "none" and missing == "refuse":
-            return NucleusError(
-                f"{self.match.reason}: correct the masks, or map such cells without (--missing plain)"
-            )
+        if self.match.status == "none" and missing != "plain":
+            without = ", or map such cells without (--missing plain)" if missing == "refuse" else ""
+            return NucleusError(f"{self.match.reason}: correct the masks{without}")
         return None
 
     def rows(self, found: SourceCell | FramePlace) -> Iterator[dict[str, Any]]:

@@ -185,5 +185,5 @@ def compare_nucleus(task: CellTask, parameters: CompareNucleiParameters, folder:
     (path,) = windows_files(task, folder)
     nucleus = task.nucleus
     assert nucleus is not None  # these inputs were opened with nuclei
-    methods = NucleusMethods(task.found, nucleus.labels, nucleus.refusal("refuse"), parameters)
+    methods = NucleusMethods(task.found, nucleus.labels, nucleus.refusal("no choice"), parameters)
     return measured_rows(task.found, parameters.methods, methods, path)
