@@ -99,7 +99,7 @@ def test_every_case_has_its_row() -> None:
     assert cells["n_nuclei"].tolist() == [1, 0, 2, 1, 0]
     reasons = cells["reason"].tolist()
     assert reasons[0] == (
-        "the cell shares a nucleus (nucleus 1: 67 % lie in cell 1 and 33 % in cell 2): the border of the "
+        "the cell shares a nucleus (of nucleus 1, 67 % lie in cell 1 and 33 % in cell 2): the border of the "
         "cells cuts it, or two nuclei touch and count as one: correct the masks"
     )
     assert reasons[1] == reasons[0]
@@ -299,6 +299,14 @@ def test_check_says_what_the_run_would() -> None:
     assert checked[3].nucleus_report is not None
     assert checked[3].nucleus_report.area_px == 375
     assert [len(found.nucleus.strays) for found in checked if found.nucleus] == [1, 0, 0, 0]
+    policies = CheckParameters(several="largest", missing="plain")
+    with_policies = list(check_cells(open_inputs(paths[0], None, policies, nuclei=paths[1])))
+    assert [found.status for found in with_policies] == ["refused", "refused", "ok", "ok"]
+
+
+def test_cells_without_a_nucleus_have_no_direction_of_it() -> None:
+    with pytest.raises(cd.ParameterError, match="take --missing plain out, or choose another --align"):
+        mapped(CELLS, ONE_EACH, missing="plain", align="nucleus")
 
 
 def test_swapped_folders_are_refused() -> None:

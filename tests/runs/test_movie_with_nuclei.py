@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from cytodisk.errors import NucleusError, ParameterError, StudyError
 from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_study import movie_study
+from cytodisk.runs.qc_flags.nucleus_flags import several_nuclei
 from cytodisk.simulate import MovieWithNuclei
 
 FRAMES, GAP = 7, 4
@@ -118,6 +120,12 @@ def test_a_nucleus_is_held_on_request(held: cd.Study) -> None:
     assert [bool(words) for words in held.movie(0).nucleus_held] == [frame == GAP for frame in range(FRAMES)]
     warnings = json.loads((held.path / "provenance.json").read_text())["warnings"]
     assert any("nucleus held" in words for words in warnings)
+
+
+def test_a_held_nucleus_is_not_said_to_be_the_largest_of_several(held: cd.Study) -> None:
+    cells = held.cells.assign(n_nuclei=held.cells["n_nuclei"] + (held.cells["frame"] == GAP) * 2)
+    assert not list(several_nuclei(replace(held, cells=cells)))
+    assert list(several_nuclei(replace(held, cells=cells.assign(nucleus_held=""))))
 
 
 def test_a_held_nucleus_raises_a_flag(held: cd.Study, study: cd.Study) -> None:

@@ -21,7 +21,10 @@ MOST_OUTSIDE = 0.1
 """Share of a nucleus that may lie outside its cell, and is clipped; above, it is refused."""
 
 MOST_AT_EDGE = 0.2
-"""Share of a nucleus' outline that may lie at the cell's edge, and is clipped; above, it is refused."""
+"""Share of a nucleus' outline at the cell's edge or beyond that is clipped; above, it is refused.
+
+Of a round nucleus this much lies there as soon as 2 or 3 % of its area are outside.
+"""
 
 THE_CELL = 0.95
 """Share of a cell from which on a nucleus that covers it is the cell itself."""
@@ -57,7 +60,8 @@ def fit_nucleus(
     ------
     NucleusError
         It is no mask, of another shape, empty, the cell's own mask, several nuclei, more than 10 % of it
-        lies outside the cell, or more than 20 % of its outline at the cell's edge.
+        lies outside the cell, or more than 20 % of its outline at the cell's edge or beyond: a round nucleus
+        with 2 or 3 % of its area outside.
     MaskError
         The cell's mask is in pieces, or has holes.
     ParameterError
@@ -147,9 +151,9 @@ def _fitted(cell: BoolArray, labels: Any, several: SeveralPolicy) -> tuple[BoolA
     at_edge = _share_outside(solid, room)
     if at_edge > MOST_AT_EDGE:
         raise NucleusError(
-            f"{100 * at_edge:.0f} % of the nuclear outline lies at the cell's edge or outside (at most "
-            f"{100 * MOST_AT_EDGE:.0f} % is clipped), so no cytoplasm is between them there: correct the "
-            "masks, or leave the cell out"
+            f"{100 * at_edge:.1f} % of the nuclear outline lies at the cell's edge or outside (at most "
+            f"{100 * MOST_AT_EDGE:.0f} % is clipped){_area_words(solid, cell)}, so no cytoplasm is between "
+            "them there: correct the masks, or leave the cell out"
         )
     one = _one_piece(solid & room, room, several)
     fitted = without_holes(one)
@@ -224,6 +228,11 @@ def _several_words(pieces: NucleusPieces, within: BoolArray) -> str:
 
 def _check_inside(nucleus: BoolArray, cell: BoolArray) -> None:
     outside = _count(nucleus & ~cell) / _count(nucleus)
+    if outside == 1 and (ndimage.binary_dilation(nucleus, _EIGHT, iterations=2) & cell).any():
+        raise NucleusError(
+            "the nucleus lies outside the cell, right beside it: if the mask is that of the cytoplasm, open "
+            "where the nucleus is, pass cells | nuclei as the cell's mask; else correct the masks"
+        )
     if outside == 1:
         raise NucleusError(
             "the nucleus lies outside the cell, no pixel in common: pass masks of one image and frame, and "
@@ -234,6 +243,11 @@ def _check_inside(nucleus: BoolArray, cell: BoolArray) -> None:
             f"{100 * outside:.0f} % of the nucleus lies outside the cell (at most {100 * MOST_OUTSIDE:.0f} % "
             "is clipped): correct the masks, or pass the cell's own nucleus; match_nuclei tells which it is"
         )
+
+
+def _area_words(nucleus: BoolArray, cell: BoolArray) -> str:
+    outside = _count(nucleus & ~cell) / _count(nucleus)
+    return f", with {100 * outside:.1f} % of its area outside" if outside else ""
 
 
 def _share_outside(nucleus: BoolArray, room: BoolArray) -> float:

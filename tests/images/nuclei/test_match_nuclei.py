@@ -78,7 +78,7 @@ def test_a_nucleus_belongs_to_the_cell_that_holds_most_of_it() -> None:
 def test_a_nucleus_that_two_cells_share_is_told_in_both() -> None:
     nuclei = drawn((1, 20, 30, 39, 59))  # 11 of 20 columns in cell 4, 9 in cell 9
     assert matched(nuclei) == {4: ("1", 1, "shared"), 9: ("", 0, "shared"), 2: ("", 0, "none")}
-    assert reason(nuclei, 4) == reason(nuclei, 9) == "nucleus 1: 55 % lie in cell 4 and 45 % in cell 9"
+    assert reason(nuclei, 4) == reason(nuclei, 9) == "of nucleus 1, 55 % lie in cell 4 and 45 % in cell 9"
     own = nuclei + drawn((2, 35, 45, 70, 80))
     assert matched(own)[9] == ("2", 1, "ok")
 
@@ -103,6 +103,33 @@ def test_a_nucleus_without_a_cell_has_a_row() -> None:
     assert last["reason"].tolist() == ["it lies in no cell", "29 % lie in cell 4"]
     assert last["overlap"].tolist() == [0.0, pytest.approx(4 / 14)]
     assert table["cell"].tolist()[:3] == [2, 4, 9]
+
+
+def test_a_nucleus_in_holes_of_two_cells_is_the_inner_ones() -> None:
+    y, x = np.mgrid[:80, :80] - 40
+    distance, outer_nucleus = np.hypot(y, x), np.hypot(y, x + 28) < 5
+    cells = np.where((distance < 36) & (distance >= 18), 1, 0) + np.where(
+        (distance < 15) & (distance >= 6), 2, 0
+    )
+    cells[outer_nucleus] = 0
+    found = cd.match_nuclei(cells, np.where(outer_nucleus, 5, np.where(distance < 6, 7, 0)))
+    assert found["status"].tolist() == ["ok", "ok"]
+    assert found["nuclei"].tolist() == ["5", "7"]
+
+
+def test_a_mask_of_the_cytoplasm_that_is_open_at_the_nucleus_is_told_what_to_do() -> None:
+    y, x = np.mgrid[:80, :80] - 40
+    nucleus = np.hypot(y, x - 20) < 10
+    cell = (np.hypot(y, x) < 30) & ~(np.hypot(y, x - 20) < 11)  # there is a gap of a pixel
+    found = cd.match_nuclei(cell, nucleus)
+    assert found["status"].tolist() == ["none", "no cell"]
+    assert found["reason"][0] == (
+        "no nucleus lies in the cell, but nucleus 1 beside it: a mask of the cytoplasm that is open there "
+        "needs the nucleus added (cells | nuclei)"
+    )
+    with pytest.raises(NucleusError, match=r"right beside it: .* pass cells \| nuclei"):
+        cd.fit_nucleus(cell, nucleus)
+    assert cd.match_nuclei(cell | nucleus, nucleus)["status"].tolist() == ["ok"]
 
 
 def test_a_nucleus_in_a_hole_of_its_cell_is_inside() -> None:

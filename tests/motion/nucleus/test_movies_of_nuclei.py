@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -130,6 +131,21 @@ def test_a_frame_without_a_nucleus_is_a_gap_with_a_reason_and_the_movie_goes_on(
     assert np.isnan(movie.nucleus_points_yx[3]).all()
     away = turned_since_start(truth, movie, FRAMES - 1)
     assert np.abs(away).max() < 8.0
+
+
+def test_the_first_frame_has_no_nucleus_to_hold_and_held_ones_say_why_alone() -> None:
+    truth = truth_of("bulging")
+    masks, nuclei = truth.masks[:4], with_gap(truth, 0)[:4]
+    middle = int(np.argwhere(nuclei[2])[:, 0].mean())
+    nuclei[2, middle - 1 : middle + 2] = False
+    assert "hold" not in map_movie(masks, nuclei=nuclei).records[0].reason
+    movie = map_movie(masks, nuclei=nuclei, missing="hold")
+    assert movie.status == ["refused", "ok", "ok", "ok"]
+    assert movie.records[0].reason == (
+        "the cell has no nucleus in this frame, and no frame before has a nucleus that could be held: "
+        "complete the nuclei, or leave the frame out"
+    )
+    assert re.fullmatch(r"the cell has 2 nuclei, of \d+ and \d+ px", movie.nucleus_held[2])
 
 
 def test_a_missing_nucleus_is_held_and_lies_where_it_is() -> None:

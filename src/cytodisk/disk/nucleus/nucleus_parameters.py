@@ -13,7 +13,17 @@ NucleusRadius: TypeAlias = float | Literal["area"]
 LEAST_RADIUS, MOST_RADIUS = 0.05, 0.95
 
 
-class NucleusParameters(Parameters):
+class SeveralParameters(Parameters):
+    """What is done with cells with several nuclei."""
+
+    several: SeveralPolicy = parameter(
+        "refuse",
+        'Cells with several nuclei: "refuse" them, map them with the "largest", or "join" their nuclei along '
+        "the shortest way inside the cell. A piece of less than a tenth of the largest is no nucleus.",
+    )
+
+
+class NucleusParameters(SeveralParameters):
     """How a nucleus is mapped with its cell."""
 
     nucleus_radius: NucleusRadius = parameter(
@@ -22,11 +32,6 @@ class NucleusParameters(Parameters):
         'windows can be compared between them. "area": in each cell the radius that gives the nucleus its '
         "own share of the area.",
         words=f"'area' or a number from {LEAST_RADIUS} to {MOST_RADIUS}",
-    )
-    several: SeveralPolicy = parameter(
-        "refuse",
-        'Cells with several nuclei: "refuse" them, map them with the "largest", or "join" their nuclei along '
-        "the shortest way inside the cell. A piece of less than a tenth of the largest is no nucleus.",
     )
 
     @field_validator("nucleus_radius", mode="before")

@@ -135,7 +135,7 @@ class _Sharing:
     def _judged(self, nuclei: IntArray, overlap: float) -> tuple[MatchStatus, str]:
         for nucleus in nuclei:
             if self._is_shared(nucleus):
-                return "shared", f"nucleus {self._all.nuclei[nucleus]}: {self._where(nucleus)}"
+                return "shared", f"of nucleus {self._all.nuclei[nucleus]}, {self._where(nucleus)}"
         if len(nuclei) > 1:
             return "several", f"{len(nuclei)} nuclei lie in the cell"
         if 1 - overlap > MOST_OUTSIDE:
@@ -145,7 +145,7 @@ class _Sharing:
     def _without_nucleus(self, label: int, pairs: IntArray) -> NucleusMatch:
         for nucleus in self._nuclei[pairs]:
             if self._is_shared(nucleus):
-                words = f"nucleus {self._all.nuclei[nucleus]}: {self._where(nucleus)}"
+                words = f"of nucleus {self._all.nuclei[nucleus]}, {self._where(nucleus)}"
                 return NucleusMatch(label, (), (), np.nan, "shared", words)
         words = "no nucleus lies in the cell"
         if len(pairs):  # the one that lies in it with most of itself

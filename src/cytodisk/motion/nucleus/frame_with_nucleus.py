@@ -28,7 +28,7 @@ from cytodisk.motion.tracking import TrackedBoundary, first_boundary, follow, po
 from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.scale import UNKNOWN, Scale
 
-_REMEDY = "--missing hold (missing='hold') takes the nucleus of the frame before"
+_HOLD = "--missing hold (missing='hold') takes the nucleus of the frame before"
 
 
 def map_frame_with_nucleus(
@@ -107,16 +107,30 @@ def _mesh(
     except (NucleusError, ReadError) as fault:
         if settings.missing != "hold":
             if isinstance(fault, NucleusError) and last is not None:
-                raise NucleusError(f"{fault}; {_REMEDY}") from fault
+                raise NucleusError(f"{fault}; {_HOLD}") from fault
             raise
-        why = fault
+        why = without_remedy(fault)
     if last is None:
-        raise NucleusError(f"{why}; no frame before has a nucleus that could be held")
+        raise NucleusError(
+            f"{why}, and no frame before has a nucleus that could be held: complete the nuclei, or leave the "
+            "frame out"
+        )
     try:
         held = found.with_nucleus(_held(frame, found.mask, last, settings))
-        return mesh_cell(held.mask, settings, scale, held.nucleus, settings.several), str(why)
+        return mesh_cell(held.mask, settings, scale, held.nucleus, settings.several), why
     except NucleusError as fault:
         raise NucleusError(f"{why}; that of frame {last.frame} cannot be held: {fault}") from fault
+
+
+def without_remedy(fault: CytodiskError) -> str:
+    """What is wrong with a nucleus, without what to do about it; of files all that is said.
+
+    Examples
+    --------
+    >>> without_remedy(NucleusError("the cell has 2 nuclei: take the largest with several='largest'"))
+    'the cell has 2 nuclei'
+    """
+    return str(fault).partition(": ")[0] if isinstance(fault, NucleusError) else str(fault)
 
 
 def _usable(nucleus: Any) -> Any:

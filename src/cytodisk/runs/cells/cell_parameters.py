@@ -1,10 +1,11 @@
 """Parameters that all runs over cells share."""
 
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from pydantic import field_validator
 
 from cytodisk.disk.mapping_parameters import MeshParameters
+from cytodisk.disk.nucleus.nucleus_parameters import SeveralParameters
 from cytodisk.errors import CytodiskError, ParameterError
 from cytodisk.geometry.mask_parameters import HoleParameters
 from cytodisk.images.file_parameters import KindParameters, SignalFileParameters
@@ -44,7 +45,19 @@ class FileParameters(PixelSizeParameters, ChannelParameters, SignalFileParameter
     """How the files of a run are read."""
 
 
-class CheckParameters(HoleParameters, NucleiFileParameters, FileParameters):
+class PlainCellParameters(Parameters):
+    """What is done with cells without a nucleus."""
+
+    missing: Literal["refuse", "plain"] = parameter(
+        "refuse",
+        'Cells without a nucleus, where nuclei are given: "refuse" them, or map them without, as "plain" '
+        "cells, whose layers do not go with those of the others.",
+    )
+
+
+class CheckParameters(
+    SeveralParameters, PlainCellParameters, HoleParameters, NucleiFileParameters, FileParameters
+):
     """What `cytodisk check` takes, beside the input files."""
 
 

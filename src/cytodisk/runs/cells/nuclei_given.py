@@ -42,6 +42,11 @@ def with_nucleus_layers(nuclei: object, parameters: Given) -> Given:
     if nuclei is not None:
         if known.get("method", "newton") != "newton":
             raise ParameterError(f'nuclei need method "newton", got {known["method"]!r}: take --method out')
+        if known.get("align") == "nucleus" and known.get("missing") == "plain":
+            raise ParameterError(
+                'missing "plain" maps cells without a nucleus, which have no direction for align "nucleus": '
+                "take --missing plain out, or choose another --align"
+            )
         without = "nucleus_layers" in known and known["nucleus_layers"] is None
         return parameters.changed(nucleus_layers=NUCLEUS_LAYERS) if without else parameters
     for name in ONLY_WITH_NUCLEI:

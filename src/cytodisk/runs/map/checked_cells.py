@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from cytodisk.arrays import BoolArray
 from cytodisk.errors import CytodiskError
 from cytodisk.geometry.mask import FilledMask, MaskReport
-from cytodisk.geometry.mask_parameters import HoleParameters
 from cytodisk.geometry.nucleus_mask import fit_nucleus
 from cytodisk.geometry.nucleus_report import NucleusReport
 from cytodisk.images.mask_files import SourceCell, read_source_cells
 from cytodisk.runs.cells.cell_inputs import CellInputs
 from cytodisk.runs.cells.cell_nuclei import CellNucleus, with_nucleus
+from cytodisk.runs.cells.cell_parameters import CheckParameters
 from cytodisk.runs.frame_rows import cell_status
 
 
@@ -50,13 +50,13 @@ def check_cells(inputs: CellInputs) -> Iterator[CheckedCell]:
     Parameters
     ----------
     inputs : CellInputs
-        Its parameters say what becomes of holes (`CheckParameters`).
+        Its parameters say what becomes of holes, of several nuclei, and of none (`CheckParameters`).
 
     Yields
     ------
     CheckedCell
     """
-    policy = inputs.parameters.part(HoleParameters).holes
+    how = inputs.parameters.part(CheckParameters)
     for found, nucleus in _with_nuclei(inputs):
         fault = found.fault or inputs.signals[found.source].fault
         bare = replace(found, mask=None)
@@ -65,8 +65,8 @@ def check_cells(inputs: CellInputs) -> Iterator[CheckedCell]:
             try:
                 cell = FilledMask.of(found.mask)
                 report = cell.report
-                fitted, of_nucleus = _fitted(cell.filled, nucleus)
-                report = cell.under(policy, fitted).report
+                fitted, of_nucleus = _fitted(cell.filled, nucleus, how)
+                report = cell.under(how.holes, fitted).report
             except CytodiskError as error:
                 fault = error
         status, reason = ("ok", "") if fault is None else (cell_status(fault), str(fault))
@@ -89,10 +89,14 @@ def _with_nuclei(inputs: CellInputs) -> Iterator[tuple[SourceCell, CellNucleus |
         yield with_nucleus(found, matches, is_first)
 
 
-def _fitted(mask: BoolArray, nucleus: CellNucleus | None) -> tuple[BoolArray | None, NucleusReport | None]:
+def _fitted(
+    mask: BoolArray, nucleus: CellNucleus | None, how: CheckParameters
+) -> tuple[BoolArray | None, NucleusReport | None]:
     """The nucleus in its cell, and what fitting changes; raises NucleusError where it does not fit."""
     if nucleus is None:
         return None, None
-    if (fault := nucleus.refusal("refuse")) is not None:
+    if (fault := nucleus.refusal(how.missing)) is not None:
         raise fault
-    return (None, None) if nucleus.labels is None else fit_nucleus(mask, nucleus.labels)
+    if nucleus.labels is None:
+        return None, None
+    return fit_nucleus(mask, nucleus.labels, several=how.several)

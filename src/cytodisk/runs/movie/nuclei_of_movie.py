@@ -140,9 +140,10 @@ def with_nucleus_of(
     told = CellNucleus(match, strays=strays)
     if match is None or not match.nuclei:
         why = "the frame has no cell to match nuclei with" if match is None else match.reason
-        return CellAndNucleus(mask, NucleusError(why)), told
+        return CellAndNucleus(mask, NucleusError(f"{why}: correct the masks")), told
     if match.status == "shared":
-        return CellAndNucleus(mask, NucleusError(f"the cell shares a nucleus ({match.reason})")), told
+        why = f"the cell shares a nucleus ({match.reason}): correct the masks"
+        return CellAndNucleus(mask, NucleusError(why)), told
     labels = (*match.nuclei, *match.specks)
     for nucleus in labels:
         mask = with_room(mask, matches.boxes[nucleus])

@@ -55,6 +55,8 @@ class ColumnRule:
         Only frames with a map count.
     again : (str, str) or None
         Parameter and value that the advice ends with, as the command of a run with it.
+    unless : str
+        Column whose words leave a row out; empty for none.
     """
 
     name: str
@@ -66,12 +68,15 @@ class ColumnRule:
     note: Callable[[Any, Any, Scale], str]
     mapped: bool = True
     again: tuple[str, str] | None = None
+    unless: str = ""
 
     def __call__(self, study: Study) -> Iterator[QCFlag]:
         rows = mapped_rows(study) if self.mapped else study.cells
         if self.column not in rows:
             return
         scale = study.scale
+        if self.unless in rows:
+            rows = rows[~said(rows[self.unless], scale)]
         rows = rows[self.raised(rows[self.column], scale)]
         if len(rows):
             most = f"{scale.length(LARGEST_RESIDUAL_PX):.3g} {scale.length_unit}"

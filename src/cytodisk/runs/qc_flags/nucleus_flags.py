@@ -25,6 +25,7 @@ several_nuclei = ColumnRule(
     "n_nuclei",
     lambda column, scale: column > 1,
     lambda value, row, scale: f"{value:.0f} nuclei",
+    unless="nucleus_held",
 )
 _MAPPED_WITHOUT = ColumnRule(
     "nucleus missing",
