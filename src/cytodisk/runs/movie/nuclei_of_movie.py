@@ -141,9 +141,8 @@ def with_nucleus_of(
     if match is None or not match.nuclei:
         why = "the frame has no cell to match nuclei with" if match is None else match.reason
         return CellAndNucleus(mask, NucleusError(f"{why}: correct the masks")), told
-    if match.status == "shared":
-        why = f"the cell shares a nucleus ({match.reason}): correct the masks"
-        return CellAndNucleus(mask, NucleusError(why)), told
+    if (refusal := told.refusal("plain")) is not None:  # it shares a nucleus
+        return CellAndNucleus(mask, refusal), told
     labels = (*match.nuclei, *match.specks)
     for nucleus in labels:
         mask = with_room(mask, matches.boxes[nucleus])
