@@ -305,7 +305,7 @@ def test_check_says_what_the_run_would() -> None:
 
 
 def test_cells_without_a_nucleus_have_no_direction_of_it() -> None:
-    with pytest.raises(cd.ParameterError, match="take --missing plain out, or choose another --align"):
+    with pytest.raises(ParameterError, match="take --missing plain out, or choose another --align"):
         mapped(CELLS, ONE_EACH, missing="plain", align="nucleus")
 
 

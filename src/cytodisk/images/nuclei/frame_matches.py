@@ -148,11 +148,11 @@ def _told_of_neighbours(
             slice(max(side.start - _NEAR_PX, 0), min(side.stop + _NEAR_PX, length))
             for side, length in zip((rows, columns), cells.image_shape, strict=True)
         )
-        own = nuclei.cut(*around)[0] == nucleus
-        near = ndimage.binary_dilation(own, _EIGHT, iterations=_NEAR_PX) & ~own
-        found, counts = np.unique(cells.cut(*around)[0][near], return_counts=True)
-        for cell, count in zip(found.tolist(), counts.tolist(), strict=True):
-            if cell and 2 * count > near.sum() and told[cell].status == "none":
+        own, cut = nuclei.cut(*around)[0] == nucleus, cells.cut(*around)[0]
+        edge = own & ~ndimage.binary_erosion(own, _EIGHT)
+        for cell in np.unique(cut[cut != 0]).tolist():
+            near = ndimage.binary_dilation(cut == cell, _EIGHT, iterations=_NEAR_PX)
+            if 2 * (edge & near).sum() > edge.sum() and told[cell].status == "none":
                 reason = (
                     f"no nucleus lies in the cell, but nucleus {nucleus} beside it: a mask of the cytoplasm "
                     "that is open there needs the nucleus added (cells | nuclei)"
