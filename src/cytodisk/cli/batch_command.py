@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cytodisk.cli.console import console_for, count, fail, progress_bar
-from cytodisk.cli.first_start import say_compiling
+from cytodisk.cli.first_start import say_compiling, with_nuclei_or_not
 from cytodisk.cli.flag_words import MOST_FLAGS
 from cytodisk.cli.options import Given, Quiet, with_parameters
 from cytodisk.runs.run_options import BatchOptions
@@ -49,7 +49,8 @@ def batch_command(
         return
     from cytodisk.runs.batch.batch_study import batch_study
 
-    say_compiling(quiet, "movie" if any(one.kind == "movie" for one in batch.inputs) else "map")
+    kind = "movie" if any(one.kind == "movie" for one in batch.inputs) else "map"
+    say_compiling(quiet, with_nuclei_or_not(kind, any(one.nuclei for one in batch.inputs)))
     with progress_bar(quiet, "inputs") as progress:
         summary = batch_study(
             batch,

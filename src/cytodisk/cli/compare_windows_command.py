@@ -116,7 +116,7 @@ def _run_nuclei(
     inputs = open_inputs(masks, None, settings.part(CheckParameters), nuclei=nuclei)
     say_inputs(console, inputs)
     with (
-        compiling(console.quiet, "map", options["workers"]),
+        compiling(console.quiet, "map with nuclei", options["workers"]),
         progress_bar(console.quiet, "cells") as progress,
     ):
         return compare_opened_nuclei(inputs, out, settings, progress=progress, **options)

@@ -6,12 +6,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
 
-# For each kind of work a module whose kernels are compiled late in it.
+_OF_NUCLEI, _OF_EDGES = "cytodisk.windows.nucleus.nucleus_raster", "cytodisk.motion.swept_edge"
+# For each kind of work modules whose kernels are compiled late in it.
 _LATE = {
-    "shapes": "cytodisk.disk.blocks",
-    "map": "cytodisk.windows.raster",
-    "map with nuclei": "cytodisk.windows.nucleus.nucleus_raster",
-    "movie": "cytodisk.motion.swept_edge",
+    "shapes": ("cytodisk.disk.blocks",),
+    "map": ("cytodisk.windows.raster",),
+    "map with nuclei": (_OF_NUCLEI,),
+    "movie": (_OF_EDGES,),
+    "movie with nuclei": (_OF_NUCLEI, _OF_EDGES),
 }
 _WORDS = (
     "First start: compiling numerical code, once. It takes about 20 s on an idle computer, "
@@ -26,7 +28,7 @@ def say_compiling(quiet: bool, work: str = "map") -> bool:
     ----------
     quiet : bool
         Say nothing.
-    work : {"map", "map with nuclei", "movie", "shapes"}
+    work : {"map", "map with nuclei", "movie", "movie with nuclei", "shapes"}
         What the command does.
 
     Returns
@@ -36,10 +38,15 @@ def say_compiling(quiet: bool, work: str = "map") -> bool:
     """
     from cytodisk.kernel_cache import has_kernels, keeps_kernels
 
-    missing = not has_kernels(import_module(_LATE[work]))
+    missing = not all(has_kernels(import_module(module)) for module in _LATE[work])
     if missing and not quiet and keeps_kernels():  # else the warning of `keep_kernels` has told
         print(_WORDS, file=sys.stderr, flush=True)
     return missing
+
+
+def with_nuclei_or_not(work: str, nuclei: object) -> str:
+    """The word for a kind of work, with nuclei where there are some: "map" or "map with nuclei"."""
+    return f"{work} with nuclei" if nuclei else work
 
 
 @contextmanager
@@ -50,7 +57,7 @@ def compiling(quiet: bool, work: str, workers: int) -> Iterator[None]:
     ----------
     quiet : bool
         Say nothing.
-    work : {"map", "map with nuclei", "movie"}
+    work : {"map", "map with nuclei", "movie", "movie with nuclei"}
         What the command does.
     workers : int
         Processes of the command; several keep all cores busy by themselves.
@@ -62,5 +69,5 @@ def compiling(quiet: bool, work: str, workers: int) -> Iterator[None]:
     from cytodisk.runs.warm_up import warm_up
 
     with Executor(1, apart=True) as beside:
-        beside.submit(warm_up, work == "movie", work.endswith("with nuclei"))
+        beside.submit(warm_up, work.startswith("movie"), work.endswith("with nuclei"))
         yield

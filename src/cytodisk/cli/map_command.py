@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from cytodisk.cli.console import console_for, progress_bar, say_notes
-from cytodisk.cli.first_start import compiling
+from cytodisk.cli.first_start import compiling, with_nuclei_or_not
 from cytodisk.cli.map_totals import finish_map
 from cytodisk.cli.options import (
     Figures,
@@ -42,7 +42,7 @@ def map_command(
     options = given.options(MapOptions)
     inputs = open_inputs(masks, signal, given.of(MapParameters), nuclei=nuclei)
     say_inputs(console, inputs)
-    work = "map with nuclei" if nuclei else "map"
+    work = with_nuclei_or_not("map", nuclei)
     with compiling(quiet, work, options.workers), progress_bar(quiet, "cells") as progress:
         study = map_study(
             inputs,

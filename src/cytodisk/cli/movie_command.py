@@ -5,7 +5,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from cytodisk.cli.console import RESUME, console_for, count, fail, progress_bar, say_notes
-from cytodisk.cli.first_start import compiling
+from cytodisk.cli.first_start import compiling, with_nuclei_or_not
 from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.cli.nucleus_words import nucleus_ratio_words, nucleus_share_words
 from cytodisk.cli.options import (
@@ -45,7 +45,8 @@ def movie_command(
     options = given.options(RunOptions)
     inputs = open_movie(masks, signal, given.of(MovieParameters), nuclei=nuclei)
     say_movie(console, inputs)
-    with compiling(quiet, "movie", options.workers), progress_bar(quiet, "frames") as progress:
+    work = with_nuclei_or_not("movie", nuclei)
+    with compiling(quiet, work, options.workers), progress_bar(quiet, "frames") as progress:
         study = movie_study(inputs, out, progress=progress, **dict(options))
     draw_movie(quiet, study, inputs, figures)
     finish_movie(console, study)
