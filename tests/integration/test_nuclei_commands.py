@@ -80,6 +80,15 @@ def test_map_says_how_many_have_which(run: Run, files: tuple[Path, Path]) -> Non
     assert (settings["several"], settings["missing"], settings["nucleus_layers"]) == ("largest", "plain", 3)
 
 
+def test_map_draws_nucleus_and_cytoplasm_of_all_cells(run: Run, files: tuple[Path, Path]) -> None:
+    options = ("--nuclei", files[1], *GRID, "--several", "largest", "--figures", 0)
+    assert run("map", files[0], "-o", "unmeasured", *options)[0] == 0
+    assert not Path("unmeasured/figures/nuclei.png").exists()
+    said = run("map", files[0], "--signal", files[0], "--channels", "GFP", "-o", "out", *options)[1]
+    assert Path("out/figures/nuclei.png").exists()
+    assert "at the nucleus and at the membrane: GFP 0.33 and 0.33 (an even one: 0.33)" in said
+
+
 def test_the_parameters_of_a_run_can_be_fed_back(run: Run, files: tuple[Path, Path]) -> None:
     options = ("--several", "largest", "--nucleus-radius", "area", "--nucleus-layers", 2)
     assert run("map", files[0], "--nuclei", files[1], "-o", "out", *GRID, *options)[0] == 0

@@ -11,6 +11,7 @@ from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.cli.nuclei_words import nuclei_words
 from cytodisk.cli.nucleus_words import nucleus_ratio_words, nucleus_share_words
 from cytodisk.images.mask_names import without_name
+from cytodisk.store.nuclei.summary_columns import channels_among
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,6 +33,7 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
     if len(rows) > 1:
         with drawing(study.path, "overview.png") as folder:
             write_overview(folder / "overview.png", rows)
+        _draw_nuclei(study)
     cells, without = rows[rows["label"] != 0], rows[rows["label"] == 0]
     mapped, lost = rows[rows["status"] == "ok"], rows[rows["status"] != "ok"]
     if of_folder:
@@ -67,6 +69,18 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
     if unreadable:
         what = "files or frames" if of_folder else "frames"
         fail(f"damaged {what} of the input: {unreadable}; all others are in {study.path}")
+
+
+def _draw_nuclei(study: "Study") -> None:
+    """The picture of nucleus and cytoplasm; lines by layer only of as many cells as can be told apart."""
+    from cytodisk.pages.nuclei_page import MOST_CELLS, write_nuclei_figure
+    from cytodisk.store.figures_folder import drawing
+
+    if not channels_among(map(str, study.cells)):
+        return
+    few = (study.cells["status"] == "ok").sum() <= MOST_CELLS
+    with drawing(study.path, "nuclei.png") as folder:
+        write_nuclei_figure(folder / "nuclei.png", study.cells, study.nuclear_profile if few else None)
 
 
 def without_cell_words(statuses: Counter[str], of_folder: bool) -> Iterator[str]:
