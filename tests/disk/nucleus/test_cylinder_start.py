@@ -16,7 +16,7 @@ from cytodisk.disk.mapping_parameters import MappingParameters
 from cytodisk.disk.nucleus import cylinder_start as module
 from cytodisk.disk.nucleus.cone import TURN
 from cytodisk.disk.nucleus.cylinder_start import cylinder_areas, cylinder_start
-from cytodisk.disk.nucleus.even_depth import reweighted
+from cytodisk.disk.nucleus.even_depth import reweighted, reweighted_at_both_ends
 from cytodisk.disk.nucleus.outline_angles import LARGEST_GAP, SMALLEST_GAP, is_well_spaced, wound_like
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
 from cytodisk.simulate import random_pair
@@ -115,3 +115,24 @@ def test_nearly_singular_cytoplasm_has_a_valid_start(seed: int) -> None:
     cytoplasm = ring(seed)
     found = cylinder_start(cytoplasm.mesh, cytoplasm.membrane, cytoplasm.centre, cytoplasm.system)
     assert (cytoplasm.areas(found.angles, found.depth, found.lifts) > 0.0).all()
+
+
+@given(seed=st.integers(0, 10_000), power=st.floats(0.05, 1.0))
+def test_a_function_that_is_a_power_at_both_ends_is_harmonic_too(
+    seed: int, power: float, cytoplasm: Ring
+) -> None:
+    mesh, random = cytoplasm.mesh, np.random.default_rng(seed)
+    g = random.random(len(mesh.vertices_yx))
+    rest = 1.0 - g
+    few = random.random(len(g)) < 0.3
+    rest[few], g[few] = 1e-30 * random.random(few.sum()), 1.0  # told apart by what is left to 1 alone
+    weights = random.uniform(0.1, 2.0, 3 * len(mesh.triangles))
+    found = reweighted_at_both_ends(mesh, weights, g, rest, power)
+    assert (found > 0.0).all()
+    start, end = mesh.triangles.T.ravel(), np.roll(mesh.triangles, -1, axis=1).T.ravel()
+    left = rest**power / (g**power + rest**power)
+    for part, rise, climb, rounding in (
+        (few[start] & few[end], rest[end] - rest[start], left[end] - left[start], 1e-36),
+        (~few[start] & ~few[end], g[end] - g[start], left[start] - left[end], 1e-12),
+    ):
+        assert_allclose((found * climb)[part], (weights * rise)[part], rtol=1e-6, atol=rounding)
