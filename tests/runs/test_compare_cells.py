@@ -11,6 +11,7 @@ import tifffile
 import cytodisk as cd
 from cytodisk.errors import DamagedPartWarning, MapError, ParameterError, ReadError, StudyError
 from cytodisk.runs.compare_windows import compare_cells as module
+from cytodisk.runs.compare_windows import compared_cells
 from cytodisk.runs.compare_windows.compare_summaries import layer_summary, method_summary
 from cytodisk.runs.compare_windows.comparison_words import where_worse
 from cytodisk.runs.parameters_file import parameters_from
@@ -137,7 +138,7 @@ def test_a_stopped_run_goes_on(
         pd.testing.assert_frame_equal(
             here.drop(columns="seconds", errors="ignore"), there.drop(columns="seconds", errors="ignore")
         )
-    monkeypatch.setattr(module.CellRun, "fill", None)  # a complete comparison is not run again
+    monkeypatch.setattr(compared_cells.CellRun, "fill", None)  # a complete comparison is not run again
     (tmp_path / "out" / "comparison.csv").unlink()
     with pytest.warns(DamagedPartWarning, match=r"comparison\.csv gone or damaged: these are made anew"):
         assert (

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,24 +13,19 @@ from cytodisk.disk.mapping_parameters import MeshParameters
 from cytodisk.geometry.mask import FilledMask, MaskReport
 from cytodisk.images.mask_files import SourceCell
 from cytodisk.runs.cells.cell_inputs import CellInputs
-from cytodisk.runs.cells.cell_parts import CellRun, CellTask, Rows
+from cytodisk.runs.cells.cell_parts import CellTask, Rows
 from cytodisk.runs.compare_windows.compare_parameters import CompareWindowsParameters
 from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS
-from cytodisk.runs.compare_windows.comparison import Comparison, open_comparison, write_summaries
+from cytodisk.runs.compare_windows.compared_cells import compare_every_cell
+from cytodisk.runs.compare_windows.comparison import Comparison
 from cytodisk.runs.compare_windows.measured_methods import CellMethods, measured_rows, windows_files
-from cytodisk.runs.provenance import describe_run
-from cytodisk.runs.run_options import Progress, RunOptions, silent
-from cytodisk.runs.study_run import StudyRun
-from cytodisk.scale import UNKNOWN
-from cytodisk.store.study_folder import StudyFolder
+from cytodisk.runs.run_options import Progress, RunOptions
 from cytodisk.taking import takes
 from cytodisk.windows.edge_windows import edge_windows
 from cytodisk.windows.grid_parameters import EdgeWindowParameters, RingWindowParameters
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.polar_windows import polar_windows
 from cytodisk.windows.ring_windows import ring_windows
-
-_CELLS_AT_ONCE = 1
 
 
 @takes(RunOptions)
@@ -68,22 +62,7 @@ def compare_opened_cells(
     """
     options = RunOptions.of(**settings)
     parameters = parameters.in_pixels(inputs.scale)
-
-    def work(folder: StudyFolder) -> tuple[list[str], list[str]]:
-        compare = partial(compare_cell, parameters=parameters, folder=folder.path)
-        files = partial(windows_files, folder=folder.path)
-        run = CellRun(inputs, compare, _CELLS_AT_ONCE, files=files)
-        keys = run.fill(folder, options.workers, progress or silent)
-        warnings = [
-            f"cell {row['cell']}, {row['method']}: {words}"
-            for row in folder.read_rows(keys)
-            if (words := row["reason"] or row.get("qc_flags"))
-        ]
-        return keys, warnings
-
-    provenance = describe_run(inputs.paths, parameters, inputs.understood, UNKNOWN, inputs.notes)
-    run = StudyRun(COMPARED_CELLS, provenance, parameters, options)
-    return run.into(out, work, open_comparison, write_summaries)
+    return compare_every_cell(inputs, out, COMPARED_CELLS, compare_cell, parameters, options, progress)
 
 
 def compare_cell(task: CellTask, parameters: CompareWindowsParameters, folder: Path) -> Rows:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -23,16 +23,13 @@ from cytodisk.geometry.nucleus_mask import fit_nucleus
 from cytodisk.geometry.nucleus_report import NucleusReport
 from cytodisk.images.mask_files import SourceCell
 from cytodisk.runs.cells.cell_inputs import CellInputs
-from cytodisk.runs.cells.cell_parts import CellRun, CellTask, Rows
+from cytodisk.runs.cells.cell_parts import CellTask, Rows
 from cytodisk.runs.compare_windows.compare_parameters import CompareNucleiParameters
 from cytodisk.runs.compare_windows.compare_tables import COMPARED_NUCLEI, windows_row
-from cytodisk.runs.compare_windows.comparison import Comparison, open_comparison, write_summaries
+from cytodisk.runs.compare_windows.compared_cells import compare_every_cell
+from cytodisk.runs.compare_windows.comparison import Comparison
 from cytodisk.runs.compare_windows.measured_methods import CellMethods, measured_rows, windows_files
-from cytodisk.runs.provenance import describe_run
-from cytodisk.runs.run_options import Progress, RunOptions, silent
-from cytodisk.runs.study_run import StudyRun
-from cytodisk.scale import UNKNOWN
-from cytodisk.store.study_folder import StudyFolder
+from cytodisk.runs.run_options import Progress, RunOptions
 from cytodisk.taking import takes
 from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.polar_windows import CellWindows, polar_windows
@@ -41,7 +38,6 @@ from cytodisk.windows.rings.nucleus_edges import NucleusEdges
 from cytodisk.windows.rings.nucleus_ring_parameters import NucleusRingWindowParameters
 from cytodisk.windows.rings.nucleus_rings import NucleusRingWindows, nucleus_ring_windows
 
-_CELLS_AT_ONCE = 1
 NucleusWindows = CellWindows | NucleusRingWindows | InterpolatedRingWindows
 
 
@@ -149,21 +145,7 @@ def compare_opened_nuclei(
         Complete; a cell without a nucleus, or that a method cannot map, has a row with the reason.
     """
     options = RunOptions.of(**settings)
-
-    def work(folder: StudyFolder) -> tuple[list[str], list[str]]:
-        compare = partial(compare_nucleus, parameters=parameters, folder=folder.path)
-        run = CellRun(inputs, compare, _CELLS_AT_ONCE, files=partial(windows_files, folder=folder.path))
-        keys = run.fill(folder, options.workers, progress or silent)
-        warnings = [
-            f"cell {row['cell']}, {row['method']}: {words}"
-            for row in folder.read_rows(keys)
-            if (words := row["reason"] or row.get("qc_flags"))
-        ]
-        return keys, warnings
-
-    provenance = describe_run(inputs.paths, parameters, inputs.understood, UNKNOWN, inputs.notes)
-    run = StudyRun(COMPARED_NUCLEI, provenance, parameters, options)
-    return run.into(out, work, open_comparison, write_summaries)
+    return compare_every_cell(inputs, out, COMPARED_NUCLEI, compare_nucleus, parameters, options, progress)
 
 
 def compare_nucleus(task: CellTask, parameters: CompareNucleiParameters, folder: Path) -> Rows:

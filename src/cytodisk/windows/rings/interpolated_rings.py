@@ -9,10 +9,8 @@ from typing import Any
 import numpy as np
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
-from cytodisk.geometry.placed_mask import PlacedMask
-from cytodisk.scale import Scale
 from cytodisk.taking import takes
-from cytodisk.windows.on_cell import WindowsOnCell
+from cytodisk.windows.rings.around_nucleus import WindowsAroundNucleus
 from cytodisk.windows.rings.nucleus_edges import NucleusEdges
 from cytodisk.windows.rings.nucleus_ring_grid import InterpolatedRingGrid
 from cytodisk.windows.rings.nucleus_ring_parameters import InterpolatedRingWindowParameters
@@ -28,7 +26,7 @@ from cytodisk.windows.shares import PER_SIDE
 
 
 @dataclass(frozen=True, eq=False)
-class InterpolatedRingWindows(WindowsOnCell):
+class InterpolatedRingWindows(WindowsAroundNucleus):
     """Quadrilaterals between interpolated rings; they may fold, overlap, leave the cell, or be empty.
 
     What several windows hold belongs to the outermost of those that are not turned over.
@@ -116,31 +114,6 @@ class InterpolatedRingWindows(WindowsOnCell):
         row, column = (pixels_yx - np.array(self.placed_mask.corner)).T
         blocks = window.reshape(window.shape[0] // PER_SIDE, PER_SIDE, -1, PER_SIDE)
         return np.asarray(blocks[row, :, column, :].reshape(len(pixels_yx), PER_SIDE**2))
-
-    @property
-    def mask(self) -> BoolArray:
-        """The cell's mask, shape (H, W) and dtype bool."""
-        return self.edges.cell.mask
-
-    @property
-    def holes(self) -> PlacedMask | None:
-        """Holes in the mask that belong to no window."""
-        return self.edges.cell.holes
-
-    @property
-    def nucleus_mask(self) -> BoolArray:
-        """The nucleus' mask, shape (H, W) and dtype bool."""
-        return self.edges.nucleus.mask
-
-    @property
-    def outline_yx(self) -> FloatArray:
-        """Outline of the cell, shape (B, 2), (row, column) in pixels."""
-        return self.edges.cell.outline_yx
-
-    @property
-    def scale(self) -> Scale:
-        """Scale of the cell's image."""
-        return self.edges.cell.scale
 
 
 @takes(InterpolatedRingWindowParameters)

@@ -8,12 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.arrays import BoolArray, FloatArray, IntArray
-from cytodisk.geometry.placed_mask import PlacedMask
-from cytodisk.scale import Scale
+from cytodisk.arrays import IntArray
 from cytodisk.taking import takes
-from cytodisk.windows.on_cell import WindowsOnCell
 from cytodisk.windows.ring_windows import RingGrid, RingWindows
+from cytodisk.windows.rings.around_nucleus import WindowsAroundNucleus
 from cytodisk.windows.rings.nucleus_edges import NucleusEdges
 from cytodisk.windows.rings.nucleus_ring_grid import NucleusRingGrid
 from cytodisk.windows.rings.nucleus_ring_parameters import NucleusRingWindowParameters
@@ -22,7 +20,7 @@ from cytodisk.windows.subpixels import subpixel_places
 
 
 @dataclass(frozen=True, eq=False)
-class NucleusRingWindows(WindowsOnCell):
+class NucleusRingWindows(WindowsAroundNucleus):
     """Rings and wedges around the nucleus of a cell; they cover it, but areas differ and windows are empty.
 
     Attributes
@@ -76,31 +74,6 @@ class NucleusRingWindows(WindowsOnCell):
     def _within_nucleus(self) -> RingWindows:
         """Rings of the nucleus around its deepest point; without wedges, so windows are layers."""
         return RingWindows(RingGrid(self.grid.nucleus_layers, 1), self.edges.nucleus)
-
-    @property
-    def mask(self) -> BoolArray:
-        """The cell's mask, shape (H, W) and dtype bool."""
-        return self.edges.cell.mask
-
-    @property
-    def holes(self) -> PlacedMask | None:
-        """Holes in the mask that belong to no window."""
-        return self.edges.cell.holes
-
-    @property
-    def nucleus_mask(self) -> BoolArray:
-        """The nucleus' mask, shape (H, W) and dtype bool."""
-        return self.edges.nucleus.mask
-
-    @property
-    def outline_yx(self) -> FloatArray:
-        """Outline of the cell, shape (B, 2), (row, column) in pixels."""
-        return self.edges.cell.outline_yx
-
-    @property
-    def scale(self) -> Scale:
-        """Scale of the cell's image."""
-        return self.edges.cell.scale
 
 
 @takes(NucleusRingWindowParameters)
