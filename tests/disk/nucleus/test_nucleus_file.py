@@ -29,7 +29,7 @@ def nucleus_of(disk: DiskMap) -> Nucleus:
     return disk.nucleus
 
 
-def same(one: DiskMap, other: DiskMap) -> None:
+def assert_same(one: DiskMap, other: DiskMap) -> None:
     """Both are one map, bit for bit."""
     for name in ("vertices_yx", "vertices_uv", "triangles", "boundary", "mask"):
         assert_array_equal(getattr(one, name), getattr(other, name))
@@ -44,12 +44,12 @@ def same(one: DiskMap, other: DiskMap) -> None:
 
 def test_a_map_comes_back_from_its_file(disk: DiskMap, tmp_path: Path) -> None:
     disk.save(tmp_path / "cell.npz")
-    same(load_map(tmp_path / "cell.npz"), disk)
+    assert_same(load_map(tmp_path / "cell.npz"), disk)
 
 
 def test_a_map_comes_back_from_another_process(disk: DiskMap) -> None:
     before = len(pickle.dumps(disk))
-    same(pickle.loads(pickle.dumps(disk)), disk)
+    assert_same(pickle.loads(pickle.dumps(disk)), disk)
     assert len(pickle.dumps(disk)) == before  # what was computed meanwhile is not sent
 
 
@@ -66,7 +66,7 @@ def test_a_map_in_the_image_its_mask_was_cut_out_of(disk: DiskMap, tmp_path: Pat
     assert disk.nucleus_outline_yx is not None
     np.testing.assert_allclose(placed.nucleus_outline_yx, disk.nucleus_outline_yx + corner)
     placed.save(tmp_path / "cell.npz")
-    same(load_map(tmp_path / "cell.npz"), placed)
+    assert_same(load_map(tmp_path / "cell.npz"), placed)
 
 
 def test_maps_of_earlier_formats_have_no_nucleus(tmp_path: Path) -> None:
