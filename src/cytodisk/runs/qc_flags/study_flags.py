@@ -14,6 +14,7 @@ from cytodisk.runs.qc_flags import (
     interior_flags,
     motion_flags,
     nucleus_flags,
+    nucleus_jumps,
     stress_flags,
     window_flags,
 )
@@ -101,6 +102,7 @@ _RUN_RULES: tuple[Callable[[Study], Iterator[QCFlag]], ...] = (
     nucleus_flags.nucleus_missing,
     nucleus_flags.nucleus_held,
     nucleus_flags.nucleus_restarted,
+    nucleus_jumps.nucleus_jumps,
     nucleus_flags.several_nuclei,
     nucleus_flags.nucleus_clipped,
     compartment_flags.nucleus_in_the_middle,
