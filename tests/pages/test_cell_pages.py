@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.figure import Figure
+from scipy import ndimage
 
 import cytodisk as cd
 from cytodisk.arrays import FloatArray
@@ -81,3 +82,20 @@ def test_page_refuses(tmp_path: Path, windows: CellWindows) -> None:
     with pytest.raises(StudyError, match="cannot write"):
         write_cell_figures(tmp_path / "missing", "a", windows, None, None)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("measured", "covers"), [(True, 2), (False, 1)])  # means and layers; layers
+def test_windows_leave_excluded_holes_out(
+    tmp_path: Path, saved: list[Figure], measured: bool, covers: int
+) -> None:
+    cell = cd.simulate.cell_with_nucleus("off centre", seed=5, shape="spread")
+    depth = ndimage.distance_transform_edt(cell.mask & ~cell.nucleus)
+    mask = cell.mask & (depth < depth.max())
+    disk = cd.map_to_disk(mask, nucleus=cell.nucleus, holes="exclude")
+    assert disk.holes is not None
+    windows = cd.polar_windows(layers=3, sectors=8, nucleus_layers=1).on(disk)
+    signal = xr.DataArray(mask.astype(float), dims=("y", "x")) if measured else None
+    write_cell_figures(tmp_path, "cell", windows, signal)
+    arrays = [np.asarray(image.get_array()) for ax in saved[0].axes for image in ax.images]
+    opaque = [array[..., 3].sum() for array in arrays if array.shape[2:] == (4,)]
+    assert opaque.count(disk.holes.box.sum()) == covers

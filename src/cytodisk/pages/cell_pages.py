@@ -15,6 +15,7 @@ from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.cell.area_distortion import DISTORTION_LABEL, draw_area_distortion, draw_area_spread
 from cytodisk.plot.cell.cell_axes import draw_cell, draw_mesh, draw_outline, frame_cell
 from cytodisk.plot.cell.disk_axes import draw_disk_image, draw_disk_means, draw_disk_mesh, draw_disk_windows
+from cytodisk.plot.cell.hole_marks import cover_holes
 from cytodisk.plot.cell.window_polygons import draw_window_means, draw_windows
 from cytodisk.plot.nucleus.nucleus_profile import draw_nucleus_profile
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, SIGNAL_COLOURS, colour_bar, paper_style, signal_limits
@@ -166,6 +167,7 @@ def _draw_nucleus_row(
     """Which layers there are, in cell and disk, and the signal in them from the nucleus to the membrane."""
     cell, wheel = _row_of_axes(sheet, top, height, _PANEL, ("windows by layer", "windows on the disk"))
     draw_windows(cell, windows, by_layer=True, linewidth=0.15)
+    cover_holes(cell, windows.disk)
     draw_outline(cell, windows.disk)
     frame_cell(cell, windows.disk, scale=windows.scale)
     layers = draw_disk_windows(wheel, windows.grid, by_layer=True, color="white", linewidth=0.15)
@@ -205,6 +207,7 @@ def _sheet_without_signal(name: str, windows: CellWindows, scale: Scale) -> Shee
     (area,) = _row_of_axes(sheet, first, height, _WIDE_PANEL, ("area distortion",), left=third)
     (spread,) = _row_of_axes(sheet, second, height, _WIDE_PANEL, ("",), left=third)
     draw_windows(cell, windows, by_layer=True, linewidth=0.15)
+    cover_holes(cell, disk)
     draw_outline(cell, disk)
     frame_cell(cell, disk, scale=scale)
     layers = draw_disk_windows(wheel, windows.grid, by_layer=True, color="white", linewidth=0.15)
