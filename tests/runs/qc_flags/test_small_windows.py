@@ -7,7 +7,7 @@ import tifffile
 import cytodisk as cd
 from cytodisk.runs.qc_flags.finest_grid import finest_grid, finest_grid_with_nucleus
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
-from cytodisk.runs.qc_flags.window_flags import percent
+from cytodisk.runs.qc_flags.window_flags import nucleus_words, percent
 from cytodisk.windows.window_sizes import between_pixels, window_sizes
 
 
@@ -136,3 +136,17 @@ def test_a_coarser_grid_suits_cytoplasm_and_nucleus(radius: int) -> None:
 def test_a_nucleus_of_a_few_pixels_takes_no_windows() -> None:
     areas = np.concatenate([np.full((4, 12), 50.0), np.full((2, 12), 0.3)])
     assert finest_grid_with_nucleus([areas], 2, 10.0, 1.0) is None
+
+
+def test_where_the_nucleus_alone_is_small_the_cytoplasm_keeps_its_sectors() -> None:
+    areas = np.concatenate([np.full((8, 60), 15.0), np.full((3, 60), 0.3)])
+    layers, sectors, nucleus_layers = finest_grid_with_nucleus([areas], 3, 10.0, 1.0) or (0, 0, 0)
+    assert (layers, nucleus_layers) == (8, 1)
+    assert 0 < sectors < 10
+    assert nucleus_words([areas], 3, sectors, by_depth=False) == (
+        "The nucleus is what is small: for the cytoplasm --sectors 60 will do, if you leave windows of the "
+        "nucleus out."
+    )
+    assert "--layers 7 --sectors 56" in nucleus_words([areas * 0.6], 3, 4, by_depth=False)
+    assert nucleus_words([areas], 3, 40, by_depth=False) == ""
+    assert nucleus_words([areas[:8]], 0, 4, by_depth=False) == ""

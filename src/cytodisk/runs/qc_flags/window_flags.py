@@ -20,6 +20,7 @@ LEAST_PX = 1.0
 """A window that is smaller is flagged, however large the others are."""
 
 _FEWEST_SECTORS = 4  # that a layer by depth must have pixels for
+_FAR_MORE = 2  # times as many sectors that the cytoplasm alone could have
 _LOOKED_AT = 8  # rows with the smallest windows, by which a coarser grid is chosen
 
 
@@ -94,10 +95,40 @@ def _advice(study: Study, rows: pd.DataFrame) -> str:
         if changes:
             break
     else:
-        return "The cell is too small for windows: use its mean."
+        return nucleus_words(areas, in_nucleus, 0, by_depth) or (
+            "The cell is too small for windows: use its mean."
+        )
     rest = "" if least else " (a few windows in its thin parts stay below 1 px: leave them out by their area)"
     again = run_again(study, "x".join(str(number) for number in changes.values()), **changes)
-    return f"Use fewer windows{rest}: {again}"
+    alone = nucleus_words(areas, in_nucleus, changes["sectors"], by_depth)
+    return f"{alone}{' Or use' if alone else 'Use'} fewer windows{rest}: {again}"
+
+
+def nucleus_words(areas: list[FloatArray], in_nucleus: int, sectors: int, by_depth: bool) -> str:
+    """What to do where the nucleus alone is small, so that both would get few sectors; else empty.
+
+    Parameters
+    ----------
+    areas : list of ndarray of shape (layers, sectors) and dtype float
+        Of windows in square pixels, by frame.
+    in_nucleus : int
+        How many of the layers, the last ones, are in the nucleus.
+    sectors : int
+        Those of the grid that suits cytoplasm and nucleus; 0 if none does.
+    by_depth : bool
+        Whether layers are by depth.
+    """
+    outer = _coarser([area[:-in_nucleus] for area in areas], 0, LEAST_PX, by_depth) if in_nucleus else {}
+    if not outer or outer["sectors"] < _FAR_MORE * max(sectors, 1):
+        return ""
+    layers, of_cytoplasm = len(areas[0]) - in_nucleus, outer.get("layers")
+    grid = f"--sectors {outer['sectors']}"
+    if of_cytoplasm is not None and of_cytoplasm < layers:
+        grid = f"--layers {of_cytoplasm} {grid}"
+    return (
+        f"The nucleus is what is small: for the cytoplasm {grid} will do, if you leave windows of the "
+        "nucleus out."
+    )
 
 
 def _coarser(areas: list[FloatArray], in_nucleus: int, least_px: float, by_depth: bool) -> dict[str, int]:
