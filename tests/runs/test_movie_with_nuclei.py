@@ -13,6 +13,7 @@ from movie_files import LAYERS, SECTORS, Stopped, assert_same_movie, stop_after,
 from numpy.testing import assert_allclose
 
 import cytodisk as cd
+from cytodisk.cli.layer_peak_words import compartment_words
 from cytodisk.errors import NucleusError, ParameterError, StudyError
 from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
@@ -95,6 +96,8 @@ def test_activity_tells_the_compartment_of_its_layers(study: cd.Study) -> None:
         "sector": SECTORS,
     }
     assert activity["compartment"].to_numpy().tolist() == ["cytoplasm"] * LAYERS + ["nucleus"] * 2
+    words = f" (0–{LAYERS - 1} cytoplasm, {LAYERS}–{LAYERS + 1} nucleus)"
+    assert compartment_words(study) == words, "which the lines of a correlation say"
     means = activity["mean"].to_numpy()
     assert np.isnan(means[GAP]).all()
     assert np.isfinite(np.delete(means, GAP, axis=0)).all()
@@ -105,6 +108,7 @@ def test_the_edge_moves_as_it_does_without_nuclei(
 ) -> None:
     given = GRID.changed(nucleus_layers=None)
     plain = movie_study(open_movie(files[0], files[1], given), tmp_path / "out")
+    assert compartment_words(plain) == ""
     for name in ("velocity", "edge_length"):
         assert_allclose(held.edge[name], plain.edge[name], rtol=1e-6, atol=1e-9)
     for name in ("protruded_area", "retracted_area"):  # a pixel's sector is told by the inside of the map

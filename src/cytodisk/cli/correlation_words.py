@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from cytodisk.cli.console import count
-from cytodisk.cli.layer_peak_words import layer_lines, signed
+from cytodisk.cli.layer_peak_words import compartment_words, layer_lines, signed
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -29,7 +29,7 @@ def say_correlation(console: "Console", found: "Correlation", study: "Study") ->
     layers, windows = found.layers, found.windows
     for cell in layers["cell"].unique().tolist():
         without = without_words(found, cell)
-        console.print(f"cell {cell}, mean over sectors by layer:")
+        console.print(f"cell {cell}, mean over sectors by layer{compartment_words(study)}:")
         for words in layer_lines(found, study, cell, without):
             console.print(words)
         for words in _cluster_words(found, cell, without):

@@ -14,6 +14,21 @@ if TYPE_CHECKING:
 JITTER = "jitter makes this lag: do not believe it yet"
 
 
+def compartment_words(study: "Study") -> str:
+    """Which layers are in the nucleus, as " (0–3 cytoplasm, 4–6 nucleus)"; empty for cells without."""
+    from cytodisk.windows.study_grid import polar_grid_of
+
+    names = polar_grid_of(study.provenance).compartments.tolist()
+    if "nucleus" not in names:
+        return ""
+    first, last = names.index("nucleus"), len(names) - 1
+    return f" ({_range(0, first - 1)} cytoplasm, {_range(first, last)} nucleus)"
+
+
+def _range(first: int, last: int) -> str:
+    return str(first) if first == last else f"{first}–{last}"
+
+
 def layer_lines(found: "Correlation", study: "Study", cell: int, without: str) -> Iterator[str]:
     """A line for each layer; neighbours in which nothing was found share one.
 
