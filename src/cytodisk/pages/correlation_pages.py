@@ -48,10 +48,17 @@ def curves_page(one: DrawnCorrelation) -> Sheet | None:
         return None
     heading = one.heading(SINGLE_COLUMN_MM, f"{one.signal_name} with {one.with_words}")
     head = heading.height_mm
-    count = len(shown_layers(int(curves["layer"].nunique()), one.movie.cytoplasm_layers))
+    outer = one.movie.cytoplasm_layers
+    count = len(shown_layers(int(curves["layer"].nunique()), outer))
     chance = "threshold" in curves and bool(curves["threshold"].notna().any())
     lost, jittered = bool(one.lost.any()), bool(one.jittered[one.lost.index].any())
-    key = curve_key(chance=chance, partial=one.partial_words, lost=lost, jittered=jittered)
+    key = curve_key(
+        chance=chance,
+        partial=one.partial_words,
+        lost=lost,
+        jittered=jittered,
+        cytoplasm_layers=outer,
+    )
     columns = _columns(key)
     first = head + 3.4 + _LINE * -(-len(key) // columns)
     sheet = Sheet(first + count * (_CURVE + _CURVE_GAP) + 7.5, SINGLE_COLUMN_MM)

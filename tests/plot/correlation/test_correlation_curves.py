@@ -24,6 +24,7 @@ from cytodisk.plot.correlation.correlation_curves import (
 )
 from cytodisk.plot.correlation.curve_key import curve_key
 from cytodisk.plot.correlation.lag_axis import sides
+from cytodisk.plot.layer_looks import layer_colours
 from cytodisk.scale import Scale
 
 LAGS = np.arange(-3, 4)
@@ -222,3 +223,9 @@ def test_a_peak_at_a_lag_of_jitter_is_an_open_diamond() -> None:
 def test_a_channel_that_is_called_as_a_part_of_the_cell_is_named_as_a_channel() -> None:
     assert sides("edge", "velocity") == "← velocity first  ·  channel edge first →"
     assert sides("Rac1", "Edge", upright=True) == "↓ channel Edge first  ·  ↑ Rac1 first"
+
+
+def test_the_key_has_the_colour_of_curves_of_the_cytoplasm() -> None:
+    plain, of_cytoplasm = (curve_key(cytoplasm_layers=layers)[0].get_color() for layers in (None, 8))
+    assert of_cytoplasm == tuple(layer_colours([0, 8], 8)[0])
+    assert of_cytoplasm != plain

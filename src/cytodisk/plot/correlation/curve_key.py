@@ -25,6 +25,7 @@ def curve_key(
     partial: str = "",
     lost: bool = False,
     jittered: bool = False,
+    cytoplasm_layers: int | None = None,
 ) -> list[Any]:
     """Handles of a legend for `draw_correlation_curves`.
 
@@ -38,6 +39,8 @@ def curve_key(
         Whether a peak does not survive.
     jittered : bool
         Whether jitter makes the lag of a peak.
+    cytoplasm_layers : int, optional
+        How many layers are not in the nucleus, where cells have one: the curves have other colours.
 
     Returns
     -------
@@ -54,7 +57,7 @@ def curve_key(
     >>> figure, ax = plt.subplots()
     >>> legend = figure.legend(handles=cd.plot.curve_key())
     """
-    dark = tuple(layer_colours([0])[0])
+    dark = tuple(layer_colours([0], cytoplasm_layers)[0])
     band = (*dark[:3], BAND_OPACITY)
     handles: list[Any] = [
         Line2D([], [], color=dark, linewidth=1.0, label="mean of sectors"),
