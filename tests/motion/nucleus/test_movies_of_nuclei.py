@@ -41,10 +41,11 @@ def turned_since_start(truth: MovieWithNuclei, movie: DiskMovie, frame: int) -> 
     angles = []
     for time in (0, frame):
         disk = movie[time]
+        assert disk.nucleus is not None
         assert disk.nucleus_outline_yx is not None
         edge, share = nearest_on_outline(truth.nucleus_yx[time], disk.nucleus_outline_yx)
-        uv = disk.chart.on_nucleus(edge, share)  # type: ignore[union-attr]
-        angles.append(np.arctan2(uv[:, 1], uv[:, 0]))
+        ends = np.append(disk.nucleus.boundary_angles, disk.nucleus.boundary_angles[0] + 2.0 * np.pi)
+        angles.append(ends[edge] + share * np.diff(ends)[edge])
     return np.degrees(np.angle(np.exp(1j * (angles[1] - angles[0]))))
 
 

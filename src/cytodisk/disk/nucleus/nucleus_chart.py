@@ -84,18 +84,10 @@ class NucleusChart:
 
     def on_circle(self, edge: IntArray, fraction: FloatArray) -> FloatArray:
         """(u, v) of points at fractions of edges of the membrane, shape (N, 2)."""
-        return circle_points(self._boundary_angles, edge, fraction)
-
-    def on_nucleus(self, edge: IntArray, fraction: FloatArray) -> FloatArray:
-        """(u, v) of points at fractions of edges of the nuclear outline, shape (N, 2)."""
-        return self._nucleus.radius * circle_points(self._nucleus.boundary_angles, edge, fraction)
-
-
-def circle_points(angles: FloatArray, edge: IntArray, fraction: FloatArray) -> FloatArray:
-    """Points of the unit circle at fractions of the steps between angles that go around once, (N, 2)."""
-    steps = np.diff(angles, append=angles[0] + TURN)
-    angle = angles[edge] + fraction * steps[edge]
-    return np.column_stack([np.cos(angle), np.sin(angle)])
+        angles = self._boundary_angles
+        steps = np.diff(angles, append=angles[0] + TURN)
+        angle = angles[edge] + fraction * steps[edge]
+        return np.column_stack([np.cos(angle), np.sin(angle)])
 
 
 def _unrolled(corners: FloatArray, numbers: IntArray) -> tuple[FloatArray, IntArray]:
