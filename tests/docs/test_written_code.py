@@ -7,6 +7,7 @@ import textwrap
 from pathlib import Path
 
 import matplotlib as mpl
+import numpy as np
 import pytest
 import tifffile
 
@@ -41,10 +42,18 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     tifffile.imwrite(here / "mask.tif", tifffile.imread(masks)[0])
     tifffile.imwrite(here / "image.tif", tifffile.imread(signal)[0, 0])
     (here / "movie.tif").symlink_to(signal)
+    cell = cd.simulate.cell_with_nucleus("off centre", seed=5, shape="spread")
+    gfp = cd.simulate.profile_signal(cell.mask, cell.nucleus, lambda place: 40 + 160 * place**3)
+    tifffile.imwrite(here / "cells.tif", cell.mask.astype("uint8"))
+    tifffile.imwrite(here / "nuclei.tif", cell.nucleus.astype("uint8"))
+    tifffile.imwrite(
+        here / "cells_image.tif", np.stack([100.0 * cell.nucleus, gfp]), metadata={"axes": "CYX"}
+    )
     for command in (
         f"movie {masks} --signal {signal} -o out --figures 0",
         "correlate out --signal edge --with velocity --surrogates 99 --figures 0",
         f"shapes {masks} -o shapes",
+        "map cells.tif --nuclei nuclei.tif --signal cells_image.tif --channels DAPI,GFP -o nuclei_out --figures 0",
         "compare-windows mask.tif -o compared --methods newton,edge",
     ):
         arguments = [sys.executable, "-m", "cytodisk", *command.split(), "--quiet"]
