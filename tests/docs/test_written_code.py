@@ -46,14 +46,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     gfp = cd.simulate.profile_signal(cell.mask, cell.nucleus, lambda place: 40 + 160 * place**3)
     tifffile.imwrite(here / "cells.tif", cell.mask.astype("uint8"))
     tifffile.imwrite(here / "nuclei.tif", cell.nucleus.astype("uint8"))
-    tifffile.imwrite(
-        here / "cells_image.tif", np.stack([100.0 * cell.nucleus, gfp]), metadata={"axes": "CYX"}
-    )
+    channels = np.stack([20.0 + 100.0 * cell.nucleus, gfp])
+    tifffile.imwrite(here / "cells_image.tif", channels, metadata={"axes": "CYX"})
     for command in (
         f"movie {masks} --signal {signal} -o out --figures 0",
         "correlate out --signal edge --with velocity --surrogates 99 --figures 0",
         f"shapes {masks} -o shapes",
-        "map cells.tif --nuclei nuclei.tif --signal cells_image.tif --channels DAPI,GFP -o nuclei_out --figures 0",
+        "map cells.tif --nuclei nuclei.tif --signal cells_image.tif --channels DAPI,GFP -o nuclei_out "
+        "--figures 0",
         "compare-windows mask.tif -o compared --methods newton,edge",
     ):
         arguments = [sys.executable, "-m", "cytodisk", *command.split(), "--quiet"]
