@@ -73,6 +73,7 @@ def test_tables_are_merged_with_those_of_cells_without_nuclei(study: Path) -> No
     assert "nuclei.parquet" in pd.read_csv(out / "columns.csv")["table"].tolist()
 
 
+@pytest.mark.slow
 def test_other_nuclei_are_done_again_and_nothing_else(study: Path) -> None:
     out = study.parent / "out"
     cd.run_batch(study, out)
@@ -93,6 +94,7 @@ def test_nuclei_count_for_the_mark_of_the_files(study: Path) -> None:
     assert files_mark(item) != files_mark(replace(item, nuclei=None))
 
 
+@pytest.mark.slow
 def test_nuclei_among_the_results_are_never_removed(study: Path) -> None:
     out = study.parent / "out"
     cd.run_batch(study, out)

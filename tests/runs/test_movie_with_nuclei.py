@@ -154,6 +154,7 @@ def test_a_stopped_run_goes_on_to_the_same_results(
     assert_same_movie(held, movie_study(inputs, tmp_path / "out", resume=True))
 
 
+@pytest.mark.slow
 def test_two_workers_give_the_same(files: tuple[Path, Path, Path], study: cd.Study, tmp_path: Path) -> None:
     assert_same_movie(study, movie_study(opened(files), tmp_path / "out", workers=2))
 
