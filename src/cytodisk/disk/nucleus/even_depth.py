@@ -21,8 +21,8 @@ from cytodisk.arrays import FloatArray
 from cytodisk.geometry.nucleus_mesh import NucleusMesh
 
 POWERS = (0.7, 0.4, 0.15)
-"""Of g, tried in this order until rounding turns no triangle over. `benchmarks/nucleus_places.py` shows what
-others give.
+"""Of g, tried in this order until rounding turns no triangle over. With other powers
+`benchmarks/nucleus_places.py` prints how well maps come out the same.
 """
 
 
