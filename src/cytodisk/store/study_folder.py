@@ -195,16 +195,20 @@ class StudyFolder(StudyParts):
         StudyError
             A part is missing.
         """
+        if self.kind.in_parts:
+            self._merge(keys)
+        self._derive(then)
+        self.provenance[FILES] = self._written(keys)
+        self.note("status", "complete")
+        remove_parts(self.path)  # the tables stand; parts are only in the way
+
+    def _merge(self, keys: list[str]) -> None:
         with replacing(self.path / CELLS) as temporary:
             write_rows(self.read_rows(keys), self._schema(self.kind.cells), temporary)
         for name, columns in self.kind.others.items():
             parts = (self.part_table(key, name) for key in keys if self.has_table(key, name))
             with replacing(self.path / f"{name}.parquet") as temporary:
                 merge_tables(parts, self._schema(columns), temporary)
-        self._derive(then)
-        self.provenance[FILES] = self._written(keys)
-        self.note("status", "complete")
-        remove_parts(self.path)  # the tables stand; parts are only in the way
 
     def _written(self, keys: Iterable[str]) -> dict[str, str]:
         """Marks of all files of the study, which outlast a loss of power from here on."""

@@ -44,6 +44,8 @@ class StudyKind:
         More of the first table where cells have nuclei.
     csv : bool
         All tables are written as CSV too.
+    in_parts : bool
+        The tables are put together of the rows of parts; otherwise the run writes them whole.
     """
 
     run: str
@@ -54,6 +56,7 @@ class StudyKind:
     files: tuple[str, ...] = ()
     cells_with_nuclei: Columns = ()
     csv: bool = False
+    in_parts: bool = True
 
     @property
     def tables(self) -> dict[str, Columns]:

@@ -147,7 +147,7 @@ def _check_values(path: Path, column: Column, frame: pd.DataFrame, remedy: str, 
     if column.name in _FILLED and values.isna().any():
         raise ReadError(f"{path}: column {column.name} is empty in row {values.isna().argmax()}: {remedy}")
     wrong: Any = None
-    if column.name in _KEYS and len(values):
+    if column.name in _KEYS and pa.types.is_integer(column.kind) and len(values):
         wrong = values[(values < 0) | (values >= _MOST)]
     elif finite and pa.types.is_floating(column.kind):
         wrong = values[np.isinf(values.to_numpy())]
