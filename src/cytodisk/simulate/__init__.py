@@ -21,6 +21,7 @@ from cytodisk.simulate.nuclei.profile_signals import between_nucleus_and_membran
 from cytodisk.simulate.nuclei.random_pairs import PAIR_CELLS, PAIR_NUCLEI, random_pair, random_pair_kinds
 from cytodisk.simulate.null_series import SERIES_KINDS, coupled_series, independent_series
 from cytodisk.simulate.passive_signals import PASSIVE_KINDS, passive_signal
+from cytodisk.simulate.populations.simulated_populations import SimulatedPopulation, population
 from cytodisk.simulate.random_cells import branching, migrating, random_smooth, random_spiky
 from cytodisk.simulate.random_masks import KINDS, random_mask
 from cytodisk.simulate.signals import (
@@ -49,6 +50,7 @@ __all__ = [
     "MovieWithNuclei",
     "SimulatedCell",
     "SimulatedMovie",
+    "SimulatedPopulation",
     "between_nucleus_and_membrane",
     "branching",
     "cell_with_cortex",
@@ -67,6 +69,7 @@ __all__ = [
     "movie",
     "movie_with_nuclei",
     "passive_signal",
+    "population",
     "profile_signal",
     "random_mask",
     "random_pair",

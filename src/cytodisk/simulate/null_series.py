@@ -166,13 +166,13 @@ def _check_sizes(seed: int, frames: int, layers: int, sectors: int) -> None:
 
 
 def _velocity(kind: SeriesKind, seed: int, frames: int, sectors: int, length: float) -> FloatArray:
-    along = _around(sectors, length)
+    along = ring_weights(sectors, length)
     noise = np.random.default_rng([seed, 0]).normal(size=(frames + _MEMORY - 1, sectors))
     return _through_time(kind, noise @ along.T)
 
 
 def _activity(kind: SeriesKind, seed: int, frames: int, shape: tuple[int, int], length: float) -> FloatArray:
-    inwards, along = _inwards(shape[0], length), _around(shape[1], length)
+    inwards, along = depth_weights(shape[0], length), ring_weights(shape[1], length)
     size = (frames + _MEMORY - 1, inwards.shape[1], shape[1])
     noise = np.random.default_rng([seed, 1]).normal(size=size)
     return _through_time(kind, inwards @ noise @ along.T)
@@ -202,7 +202,7 @@ def _impulse_response(kind: SeriesKind) -> FloatArray:
     return np.asarray(response / np.linalg.norm(response))
 
 
-def _around(count: int, length: float) -> FloatArray:
+def ring_weights(count: int, length: float) -> FloatArray:
     """Matrix (count, count) that correlates independent noise around a ring and keeps its variance."""
     apart = np.arange(float(count))[:, None] - np.arange(count)
     turns = np.arange(-1, 2 + int(_REACH * length / count)) * count
@@ -210,7 +210,7 @@ def _around(count: int, length: float) -> FloatArray:
     return _unit_rows(_bell(apart[..., None] + turns, length).sum(axis=-1))
 
 
-def _inwards(count: int, length: float) -> FloatArray:
+def depth_weights(count: int, length: float) -> FloatArray:
     """Matrix (count, M) that correlates independent noise along a line that goes on beyond both ends."""
     beyond = int(np.ceil(_REACH * length))
     apart = np.arange(float(count))[:, None] - np.arange(-beyond, count + beyond)
