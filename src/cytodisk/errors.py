@@ -60,6 +60,14 @@ class OtherRunError(StudyError):
     """A study folder holds the results of another run."""
 
 
+class PopulationError(CytodiskError):
+    """Cells cannot be put together, or cannot be compared as asked."""
+
+
+class NoValuesError(PopulationError):
+    """A cell gives nothing to a population; the message is the reason, for its row."""
+
+
 class MissingPartError(ImportError, CytodiskError):
     """An optional part is not installed; the message names the `pip install` to type."""
 

@@ -1,0 +1,1 @@
+"""Populations as a run: cells of studies, compared between conditions."""

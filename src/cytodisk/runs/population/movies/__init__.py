@@ -1,0 +1,1 @@
+"""What cells of movies contribute to a population."""
