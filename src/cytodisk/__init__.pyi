@@ -83,6 +83,9 @@ from .analysis.event_average import average_around as average_around
 from .analysis.shape.features import shape_features as shape_features
 from .analysis.shape.complexity import complexity_score as complexity_score
 
+# Populations: many cells by condition and experiment
+from .population.population import Population as Population
+
 # Runs: what the commands do
 from .runs.map.run_map import run_map as run_map
 from .runs.movie.run_movie import run_movie as run_movie

@@ -36,6 +36,10 @@ class ParameterError(CytodiskError):
     """A parameter is out of its range or unknown."""
 
 
+class PopulationError(CytodiskError):
+    """Cells, conditions or experiments cannot be put together or compared."""
+
+
 class MapError(CytodiskError, RuntimeError):
     """The cell could not be mapped onto the disk with a valid certificate."""
 
