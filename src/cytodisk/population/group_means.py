@@ -71,9 +71,9 @@ def group_sums(
             values = (values - centre.reshape(groups, width)[code[chosen]]) ** 2
         finite = np.isfinite(values)
         if finite.all():
-            total += member @ values
+            total += np.asarray(member @ values)
             count += np.bincount(code[chosen], minlength=groups)[:, None]
         else:
-            total += member @ np.where(finite, values, 0.0)
-            count += member @ finite.astype(np.float64)
+            total += np.asarray(member @ np.where(finite, values, 0.0))
+            count += np.asarray(member @ finite.astype(np.float64))
     return GroupSums(total.reshape(groups, *shape), count.reshape(groups, *shape))

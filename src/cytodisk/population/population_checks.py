@@ -41,8 +41,8 @@ def checked_values(values: xr.DataArray | None, cells: int) -> xr.DataArray:
     wanted = ("cell", "layer", *last)
     if len(last) != 1 or {*values.dims} - {"channel"} != {*wanted}:
         raise PopulationError(
-            f"values has the dims {', '.join(map(str, values.dims))}: it needs cell, layer and sector (or lag), "
-            "and may have channel"
+            f"values has the dims {', '.join(map(str, values.dims))}: it needs cell, layer and sector (or "
+            "lag), and may have channel"
         )
     if values.sizes["cell"] != cells:
         raise PopulationError(
@@ -73,8 +73,8 @@ def _refuse_infinite(values: xr.DataArray) -> None:
         if infinite.any():
             row = start + int(np.flatnonzero(infinite.any(axis=1))[0])
             raise PopulationError(
-                f"values of cell {row} are infinite in {int(infinite[row - start].sum())} windows: write NaN where "
-                "a window has no value"
+                f"values of cell {row} are infinite in {int(infinite[row - start].sum())} windows: write NaN "
+                "where a window has no value"
             )
 
 
