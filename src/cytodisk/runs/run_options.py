@@ -35,12 +35,11 @@ class TableOptions(Parameters):
         return cls(**own), {name: value for name, value in settings.items() if name not in own}
 
 
-class RunOptions(TableOptions):
-    """How a run is done."""
+class FolderOptions(TableOptions):
+    """How a run treats the folder that it writes."""
 
     exclusive: ClassVar[tuple[tuple[str, str], ...]] = (("resume", "overwrite"),)
 
-    workers: int = parameter(1, "Number of processes. The results do not depend on it.", least=1, most=1024)
     resume: bool = parameter(False, "Go on with the same run in this folder.")
     overwrite: bool = parameter(False, "Replace the results in this folder.")
 
@@ -48,6 +47,12 @@ class RunOptions(TableOptions):
     def again(self) -> dict[str, bool]:
         """What to do with results that are there; see `StudyFolder.start`."""
         return {"resume": self.resume, "overwrite": self.overwrite}
+
+
+class RunOptions(FolderOptions):
+    """How a run is done."""
+
+    workers: int = parameter(1, "Number of processes. The results do not depend on it.", least=1, most=1024)
 
 
 class MapOptions(RunOptions):

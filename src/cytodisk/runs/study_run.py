@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from cytodisk.checks import is_path
 from cytodisk.parameters import Parameters
 from cytodisk.runs.parameters_file import write_parameters
-from cytodisk.runs.run_options import RunOptions
+from cytodisk.runs.run_options import FolderOptions
 from cytodisk.store.csv_tables import check_csv_room, has_csv_tables
 from cytodisk.store.study_folder import StudyFolder
 from cytodisk.store.study_kind import PARAMETERS, StudyKind
@@ -31,7 +31,7 @@ class StudyRun:
     provenance : dict
         As `describe_run` returns it.
     parameters : Parameters
-    options : RunOptions
+    options : FolderOptions
     writes : dict of str to str
         What it writes for each cell because its options say so, and how to do without.
     """
@@ -39,7 +39,7 @@ class StudyRun:
     kind: StudyKind
     provenance: dict[str, Any]
     parameters: Parameters
-    options: RunOptions
+    options: FolderOptions
     writes: Mapping[str, str] = field(default_factory=dict)
 
     def into(

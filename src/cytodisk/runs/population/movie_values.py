@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal, TypeAlias, get_args
 
 import xarray as xr
 
@@ -11,12 +10,9 @@ from cytodisk.errors import PopulationError
 from cytodisk.runs.correlate.correlate_study import channels_of
 from cytodisk.runs.population.movies.correlation_summaries import at_peak, correlated_channels
 from cytodisk.runs.population.movies.event_summaries import around_onsets
+from cytodisk.runs.population.movies.summary_names import MOVIE_SUMMARIES
 from cytodisk.runs.population.movies.time_summaries import mean_velocity, over_time
 from cytodisk.store.study import Study
-
-MovieSummary: TypeAlias = Literal["mean", "sd", "velocity", "peak_correlation", "lag", "around_events"]
-MOVIE_SUMMARIES: tuple[str, ...] = get_args(MovieSummary)
-"""What a movie can contribute."""
 
 REACH = 10
 """Frames before and after an onset, for "around_events"."""
