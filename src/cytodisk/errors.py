@@ -64,10 +64,6 @@ class OtherRunError(StudyError):
     """A study folder holds the results of another run."""
 
 
-class PopulationError(CytodiskError):
-    """Cells cannot be put together, or cannot be compared as asked."""
-
-
 class NoValuesError(PopulationError):
     """A cell gives nothing to a population; the message is the reason, for its row."""
 
