@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from cytodisk.arrays import IntArray
 from cytodisk.errors import PopulationError
+from cytodisk.population.anndata_table import population_anndata
 from cytodisk.population.cell_directions import SIGNAL, chosen_direction, no_alignment
 from cytodisk.population.cell_levels import cell_levels
 from cytodisk.population.cell_scalars import scalars_of
 from cytodisk.population.cell_values import CellValues
 from cytodisk.population.group_columns import CONDITION
 from cytodisk.population.population_atlas import atlas_of
+
+if TYPE_CHECKING:
+    from cytodisk.population.anndata_table import AnnData
 
 
 class Population(CellValues):
@@ -200,9 +206,42 @@ class Population(CellValues):
         >>> import cytodisk as cd
         >>> cells = cd.simulate.population(seed=0)
         >>> dict(cd.Population(cells.values, cells.cells).atlas()["mean"].sizes)
-        {'condition': 2, 'channel': 1, 'layer': 4, 'sector': 12}
+        {'condition': 2, 'channel': 1, 'layer': 6, 'sector': 24}
         """
         return atlas_of(by, self.cells, self.raw, self.blocks)
+
+    def to_anndata(self) -> AnnData:
+        """Cells × windows as `anndata.AnnData`, to go on in scanpy: PCA, neighbours, UMAP, clusters.
+
+        Returns
+        -------
+        AnnData
+            `X` (cells, windows): values as they are normalised and turned, NaN where a window has none; of
+            cells without windows, their scalars. `obs`: the table of cells, with names that are unique.
+            `var`: channel, layer, sector, compartment, and in how many cells the window has a value.
+            `obsm`: "scalars" (`scalar_table`), "direction_NAME" (u and v in the turned disk, as long as it is
+            strong) and "window_areas". `uns["cytodisk"]`: units, grid, normalisation, alignment, version. It
+            shares no memory with the population.
+
+        Raises
+        ------
+        MissingPartError
+            anndata is not installed.
+
+        Notes
+        -----
+        Text is kept as objects and categories, which `write_h5ad` of every version of AnnData writes. PCA
+        takes no NaN: ``table[:, table.var["cells"] == table.n_obs]`` has the windows of all cells.
+
+        Examples
+        --------
+        >>> import cytodisk as cd
+        >>> cells = cd.simulate.population(seed=0)
+        >>> table = cd.Population(cells.values, cells.cells).to_anndata()  # doctest: +SKIP
+        >>> table.shape, table.obs["condition"].cat.categories.tolist()  # doctest: +SKIP
+        ((144, 144), ['control', 'drug'])
+        """
+        return population_anndata(self)
 
     def scalar_table(self) -> pd.DataFrame:
         """One number a cell: signal by layer, edge to centre, nucleus to cytoplasm, polarity, and columns.

@@ -29,6 +29,7 @@ PARTS = {
     "czi": ("czifile",),
     "lif": ("liffile",),
     "roi": ("roifile",),
+    "anndata": ("anndata",),
     "cluster": ("distributed", "fsspec"),
 }
 
