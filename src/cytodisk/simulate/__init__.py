@@ -21,6 +21,7 @@ from cytodisk.simulate.nuclei.profile_signals import between_nucleus_and_membran
 from cytodisk.simulate.nuclei.random_pairs import PAIR_CELLS, PAIR_NUCLEI, random_pair, random_pair_kinds
 from cytodisk.simulate.null_series import SERIES_KINDS, coupled_series, independent_series
 from cytodisk.simulate.passive_signals import PASSIVE_KINDS, passive_signal
+from cytodisk.simulate.populations.population_images import PopulationImages, population_images
 from cytodisk.simulate.populations.simulated_populations import SimulatedPopulation, population
 from cytodisk.simulate.random_cells import branching, migrating, random_smooth, random_spiky
 from cytodisk.simulate.random_masks import KINDS, random_mask
@@ -48,6 +49,7 @@ __all__ = [
     "CellWithNucleus",
     "CellsWithNuclei",
     "MovieWithNuclei",
+    "PopulationImages",
     "SimulatedCell",
     "SimulatedMovie",
     "SimulatedPopulation",
@@ -70,6 +72,7 @@ __all__ = [
     "movie_with_nuclei",
     "passive_signal",
     "population",
+    "population_images",
     "profile_signal",
     "random_mask",
     "random_pair",
