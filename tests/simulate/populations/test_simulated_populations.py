@@ -67,15 +67,15 @@ def test_a_profile_and_a_front_are_in_all_conditions() -> None:
     truth = population(6, experiments=100, cells=10, effect=0.0, peripheral=2.0, polarity=1.0)
     assert_allclose(truth.values.mean("cell"), truth.expected[0], atol=0.2)
     profile = truth.expected[0].mean("sector").to_numpy()
-    assert_allclose(profile - 10.0, 2.0 * np.exp(-np.arange(6) / 2.0))
-    assert int(truth.expected[0, 0].to_numpy().argmax()) in (0, 23)
+    assert_allclose(profile - 10.0, 2.0 * np.exp(-np.arange(4) * 3.0 / 4.0))
+    assert int(truth.expected[0, 0].to_numpy().argmax()) in (0, 11)
 
 
 @pytest.mark.parametrize("turned", ["nucleus", "front"])
 def test_cells_aligned_by_their_direction_lie_as_those_that_are_not_turned(turned: str) -> None:
     truth = population(7, turned=turned, channels=("Rac1", "RhoA"), polarity=3.0)
     direction = truth.cells[f"disk_direction_{turned}"].to_numpy()
-    back = np.rint(direction / 15.0).astype(int) % 24
+    back = np.rint(direction / 30.0).astype(int) % 12
     assert_array_equal(back, truth.shifts)
     values = truth.values.to_numpy()
     aligned = np.stack([np.roll(one, -by, axis=-1) for one, by in zip(values, back, strict=True)])
@@ -117,7 +117,7 @@ def test_designs() -> None:
 def test_type_compartments_and_seed() -> None:
     one = population(9, precision="float32", nucleus_layers=2)
     assert one.values.dtype == np.float32
-    assert one.values["compartment"].to_numpy().tolist() == ["cytoplasm"] * 4 + ["nucleus"] * 2
+    assert one.values["compartment"].to_numpy().tolist() == ["cytoplasm"] * 2 + ["nucleus"] * 2
     again = population(9, precision="float32", nucleus_layers=2)
     assert_array_equal(one.values, again.values)
     assert one.cells.equals(again.cells)
@@ -136,7 +136,7 @@ def test_type_compartments_and_seed() -> None:
         ({"between_experiments": 0.7, "between_dishes": 0.7}, "at most 1"),
         ({"nucleus_layers": 6}, "less than layers"),
         ({"channels": ("a", "a")}, "different names"),
-        ({"region": np.ones((2, 2), dtype=bool)}, r"shape \(6, 24\)"),
+        ({"region": np.ones((2, 2), dtype=bool)}, r"shape \(4, 12\)"),
         ({"seed": -1}, "seed"),
     ],
 )

@@ -80,8 +80,8 @@ class DesignParameters(Parameters):
 class WindowValueParameters(NeighbourParameters):
     """What the values of windows are, and how they vary."""
 
-    layers: int = parameter(6, "Number of layers.", least=1, most=1000)
-    sectors: int = parameter(24, "Number of sectors.", least=1, most=10_000)
+    layers: int = parameter(4, "Number of layers.", least=1, most=1000)
+    sectors: int = parameter(12, "Number of sectors.", least=1, most=10_000)
     nucleus_layers: int = parameter(
         0, "How many of the layers, the last ones, lie in the nucleus; coordinate `compartment`.", least=0
     )

@@ -217,5 +217,5 @@ def _labelled(values: _Floats, first: str, names: Any, how: SimulatedPopulationP
     coordinates = {first: names} | _layer_coordinates(how)
     if how.channels:
         coordinates |= {"channel": list(how.channels)}
-        return xr.DataArray(values, coordinates, (first, "channel", "layer", "sector"))
-    return xr.DataArray(values[:, 0], coordinates, (first, "layer", "sector"))
+        return xr.DataArray(values, coordinates, (first, "channel", "layer", "sector"), name="signal")
+    return xr.DataArray(values[:, 0], coordinates, (first, "layer", "sector"), name="signal")
