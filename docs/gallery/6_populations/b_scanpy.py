@@ -28,6 +28,8 @@ truth = cd.simulate.population(
     cells=40,
     between_experiments=0.3,
     effect=3.0,
+    layers=6,
+    sectors=24,
     turned="nucleus",
     seed=1,
 )
@@ -38,8 +40,8 @@ print(pop)
 # The table
 # ---------
 # ``X`` has a row for each cell and a column for each window. ``obs`` is the table of
-# cells, ``var`` says where each window lies. ``obsm`` has one number a cell, such as the
-# ratio of edge to centre. ``uns`` says what was done to the values.
+# cells, ``var`` says where each window lies. ``obsm`` has numbers of whole cells, such as
+# the ratio of edge to centre. ``uns`` says what was done to the values.
 if sc is not None:
     table = pop.to_anndata()
     print(table)
@@ -58,9 +60,9 @@ if sc is not None:
     sc.tl.umap(table, random_state=0)
 
 # %%
-# The conditions lie apart, and so do dishes of one condition: each dish is a cloud of its
-# own. That is why cells of a dish do not count one by one. A UMAP is a picture, no test:
-# ask `cytodisk.compare_conditions`.
+# The conditions lie apart, and so do dishes of one condition: each dish is a cloud of
+# its own. That is why cells of a dish do not count one by one. A UMAP is a picture, no
+# test: ask `cytodisk.compare_conditions`.
 if sc is not None:
     figure, axes = plt.subplots(1, 2, figsize=(6.6, 2.9), layout="constrained")
     for ax, name in zip(axes, ("condition", "experiment"), strict=True):
