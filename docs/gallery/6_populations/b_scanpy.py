@@ -40,7 +40,7 @@ print(pop)
 # The table
 # ---------
 # ``X`` has a row for each cell and a column for each window. ``obs`` is the table of
-# cells, ``var`` says where each window lies. ``obsm`` has numbers of whole cells, such as
+# cells, ``var`` says where each window lies. ``obsm`` has numbers of whole cells, as
 # the ratio of edge to centre. ``uns`` says what was done to the values.
 if sc is not None:
     table = pop.to_anndata()

@@ -206,7 +206,7 @@ class Population(CellValues):
         >>> import cytodisk as cd
         >>> cells = cd.simulate.population(seed=0)
         >>> dict(cd.Population(cells.values, cells.cells).atlas()["mean"].sizes)
-        {'condition': 2, 'channel': 1, 'layer': 6, 'sector': 24}
+        {'condition': 2, 'channel': 1, 'layer': 4, 'sector': 12}
         """
         return atlas_of(by, self.cells, self.raw, self.blocks)
 
@@ -239,7 +239,7 @@ class Population(CellValues):
         >>> cells = cd.simulate.population(seed=0)
         >>> table = cd.Population(cells.values, cells.cells).to_anndata()  # doctest: +SKIP
         >>> table.shape, table.obs["condition"].cat.categories.tolist()  # doctest: +SKIP
-        ((144, 144), ['control', 'drug'])
+        ((144, 48), ['control', 'drug'])
         """
         return population_anndata(self)
 
