@@ -85,6 +85,10 @@ from .analysis.shape.complexity import complexity_score as complexity_score
 
 # Populations: many cells by condition and experiment
 from .population.population import Population as Population
+from .population.comparison import compare_conditions as compare_conditions
+from .population.comparison import ConditionComparison as ConditionComparison
+from .population.comparison_parameters import ComparisonParameters as ComparisonParameters
+from .population.named_warning import NamedWarning as NamedWarning
 
 # Runs: what the commands do
 from .runs.map.run_map import run_map as run_map

@@ -75,6 +75,13 @@ class CellValues:
         return str(self.raw.dims[-1])
 
     @property
+    def units(self) -> str:
+        """Unit of the values, after normalising."""
+        ratios = {"cell mean": "× cell mean", "cell total": "share of cell", "z-score": "sd"}
+        own = str(self.raw.attrs.get("units", "a.u."))
+        return next((ratios[name] for name in reversed(self.normalisation) if name in ratios), own)
+
+    @property
     def compartments(self) -> tuple[str, ...]:
         """Compartment of each layer: cell, or cytoplasm and nucleus."""
         if "compartment" in self.raw.coords:

@@ -7,8 +7,10 @@ import numpy as np
 from cytodisk.arrays import BoolArray, FloatArray
 
 
-def ratio(above: FloatArray | float, below: FloatArray, where: BoolArray) -> FloatArray:
-    """above / below where that has a meaning, NaN elsewhere.
+def ratio(
+    above: FloatArray | float, below: FloatArray, where: BoolArray, otherwise: float = np.nan
+) -> FloatArray:
+    """above / below where that has a meaning, `otherwise` elsewhere.
 
     Parameters
     ----------
@@ -16,11 +18,12 @@ def ratio(above: FloatArray | float, below: FloatArray, where: BoolArray) -> Flo
     below : ndarray
     where : ndarray of bool
         Of the shape of below.
+    otherwise : float
 
     Returns
     -------
     ndarray of float64
     """
-    nothing = np.full(np.shape(below), np.nan)
+    nothing = np.full(np.shape(below), otherwise)
     found: FloatArray = np.divide(above, below, out=nothing, where=where)
     return found

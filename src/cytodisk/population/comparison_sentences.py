@@ -1,0 +1,105 @@
+"""What a comparison reached and found, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from cytodisk.population.comparison_warnings import LEVEL, sizes_words
+from cytodisk.population.exchanges import Exchanges
+from cytodisk.population.experiment_units import Units
+from cytodisk.population.window_words import p_words
+
+
+def reach_words(exchanges: Exchanges, units: Units) -> str:
+    """What this number of experiments can give at best.
+
+    Parameters
+    ----------
+    exchanges : Exchanges
+    units : Units
+
+    Returns
+    -------
+    str
+    """
+    ways = f"all {exchanges.count}" if exchanges.all_ways else f"{exchanges.count - 1} random"
+    words = (
+        f"{sizes_words(units)} can give p = {exchanges.smallest_p:.2g} at best ({ways} exchanges of labels)"
+    )
+    if exchanges.smallest_p > LEVEL:
+        return f"{words}: no difference can reach {LEVEL:g}."
+    return f"{words}."
+
+
+def found_words(
+    names: tuple[str, str], windows: xr.Dataset, clusters: pd.DataFrame, scalars: pd.DataFrame
+) -> Iterator[str]:
+    """What differs, in windows, clusters and scalars.
+
+    Parameters
+    ----------
+    names : (str, str)
+        Of the control and of the other condition.
+    windows : Dataset with dims (channel, layer, last)
+    clusters : DataFrame
+    scalars : DataFrame
+
+    Yields
+    ------
+    str
+    """
+    against = f"{names[1]} against {names[0]}"
+    for channel in windows["channel"].values:
+        yield _of_windows(against, str(channel), windows.sel(channel=channel), clusters)
+    if windows.sizes["channel"] > 1:
+        yield f"The {windows.sizes['channel']} channels were tested and corrected together."
+    tested = scalars[scalars["status"] == "ok"]
+    found = tested[tested["p_fwer"] <= LEVEL].sort_values("p_fwer", kind="stable")
+    if len(tested):
+        rows = "; ".join(_scalar_words(row) for _, row in found.head(4).iterrows())
+        more = f"; and {len(found) - 4} more" if len(found) > 4 else ""
+        words = f"Of {len(tested)} scalars tested together {len(found)} differ"
+        yield f"{words}: {rows}{more}." if rows else f"{words}."
+
+
+def _of_windows(against: str, channel: str, windows: xr.Dataset, clusters: pd.DataFrame) -> str:
+    p = windows["p_fwer"].values
+    total = int(np.isfinite(p).sum())
+    if not total:
+        return f"{channel}, {against}: no window could be tested."
+    different = p <= LEVEL
+    words = f"{channel}, {against}: {int(different.sum())} of {total} windows differ (max-T, p ≤ {LEVEL:g})"
+    own = clusters[clusters["channel"] == channel]
+    found = own[own["p"] <= LEVEL]
+    if len(found):
+        parts = [
+            f"layers {row['layers']}, {windows['p_fwer'].dims[-1]}s {row['sectors']} "
+            f"({row['difference']:+.3g}{_unit(windows)}, {p_words(row['p'])})"
+            for _, row in found.head(3).iterrows()
+        ]
+        more = f" and {len(found) - 3} more" if len(found) > 3 else ""
+        return f"{words}; clusters: {'; '.join(parts)}{more}."
+    if not different.any():
+        best = np.unravel_index(int(np.nanargmin(p)), p.shape)
+        low, high = (float(windows[name].values[best]) for name in ("low", "high"))
+        size = float(windows["effect_size"].values[best])
+        words += (
+            f", none in a cluster; the strongest window has {p_words(float(p[best]))}, Hedges' g {size:.2g} "
+            f"({low:.2g} to {high:.2g})"
+        )
+    return f"{words}."
+
+
+def _scalar_words(row: pd.Series) -> str:
+    return (
+        f"{row['scalar']} {row['control']:.3g} → {row['treated']:.3g} (g = {row['effect_size']:.2g}, "
+        f"{row['low']:.2g} to {row['high']:.2g}; {p_words(row['p_fwer'])})"
+    )
+
+
+def _unit(windows: xr.Dataset) -> str:
+    return f" {windows['difference'].attrs.get('units', '')}".rstrip()

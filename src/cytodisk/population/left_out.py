@@ -1,0 +1,71 @@
+"""Results without one experiment at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+from cytodisk.arrays import FloatArray
+from cytodisk.population.exchange_test import exchange_test
+from cytodisk.population.exchanges import LabelExchanges, SignExchanges
+from cytodisk.population.experiment_units import Units
+from cytodisk.population.studentised import GroupDifference, PairDifference
+
+_MOST = 999  # permutations: these p-values compare experiments and correct nothing
+COLUMNS = ("result", "experiment", "difference_of_all", "difference", "p")
+
+
+def left_out_table(results: Mapping[str, FloatArray], units: Units, seed: int) -> pd.DataFrame:
+    """Difference and p of each result without each experiment.
+
+    Parameters
+    ----------
+    results : dict of str to ndarray of shape (units,)
+        The number that a result is about, such as the mean of a cluster's windows, for each unit.
+    units : Units
+    seed : int
+
+    Returns
+    -------
+    DataFrame
+        Columns result, experiment, difference_of_all, difference, p (of this number alone, not corrected).
+    """
+    names = list(dict.fromkeys(units.names))
+    values = np.stack(list(results.values()), axis=1) if results else np.empty((units.count, 0))
+    whole = _difference(values, units.treated, units.paired)
+    rows = []
+    for name in names:
+        kept = np.array([other != name for other in units.names])
+        if not (units.treated[kept].any() and (~units.treated[kept]).any()):
+            continue
+        difference = _difference(values[kept], units.treated[kept], units.paired)
+        p = _p(values[kept], units.treated[kept], units.paired, seed)
+        rows += [(result, name, whole[k], difference[k], p[k]) for k, result in enumerate(results)]
+    order = {result: k for k, result in enumerate(results)}
+    table = pd.DataFrame(rows, columns=list(COLUMNS))
+    return table.sort_values("result", key=lambda column: column.map(order), kind="stable", ignore_index=True)
+
+
+def _difference(values: FloatArray, treated: np.ndarray, paired: bool) -> FloatArray:
+    first, second = values[~treated], values[treated]
+    if paired:
+        return _mean(second - first)
+    return _mean(second) - _mean(first)
+
+
+def _mean(values: FloatArray) -> FloatArray:
+    finite = np.isfinite(values)
+    count = finite.sum(axis=0)
+    total = np.where(finite, values, 0.0).sum(axis=0)
+    return np.asarray(np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0))
+
+
+def _p(values: FloatArray, treated: np.ndarray, paired: bool, seed: int) -> FloatArray:
+    if not values.shape[1]:
+        return np.empty(0)
+    if paired:
+        differences = values[treated] - values[~treated]
+        return exchange_test(PairDifference(differences), SignExchanges(len(differences), _MOST, seed)).p
+    return exchange_test(GroupDifference(values, treated), LabelExchanges(treated, _MOST, seed)).p

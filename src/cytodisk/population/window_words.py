@@ -1,0 +1,33 @@
+"""Windows in words: "layers 0–2, sectors 10–14"."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def runs_of(numbers: NDArray[np.integer], closed_at: int | None = None) -> str:
+    """Whole numbers as runs: "0–2, 5".
+
+    Parameters
+    ----------
+    numbers : ndarray of int
+    closed_at : int, optional
+        Count of numbers around a circle, so that 58, 59, 0, 1 are "58–1".
+
+    Returns
+    -------
+    str
+    """
+    some = np.unique(numbers)
+    if not len(some):
+        return ""
+    parts = np.split(some, np.flatnonzero(np.diff(some) > 1) + 1)
+    if closed_at is not None and len(parts) > 1 and some[0] == 0 and some[-1] == closed_at - 1:
+        parts = [np.concatenate([parts[-1], parts[0]]), *parts[1:-1]]
+    return ", ".join(f"{part[0]}" if len(part) == 1 else f"{part[0]}–{part[-1]}" for part in parts)
+
+
+def p_words(p: float) -> str:
+    """A p-value as it is said: "p = 0.029", "p < 0.001"."""
+    return "p < 0.001" if p < 0.001 else f"p = {p:.2g}"
