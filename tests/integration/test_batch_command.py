@@ -35,7 +35,7 @@ def test_a_dry_run_lists_the_inputs(run: Run, study: Path) -> None:
     masks = [study.parent / name for name in ("a.tif", "b.tif")]
     assert code == 0
     assert said.splitlines() == [
-        "name,kind,masks,signal,condition,replicate,dose,"
+        "name,kind,masks,signal,condition,experiment,dose,"
         "frames,pixel_size_um,frame_interval_s,channels,layers,sectors,parameters,fault",
         f'a,movie,{masks[0]},,"one, two",,2,3,,,,10,60,,',
         f'b,movie,{masks[1]},,"one, two",,2,3,,,,10,60,,',

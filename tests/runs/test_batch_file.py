@@ -60,7 +60,7 @@ def test_a_pattern_gives_an_input_for_each_file_in_natural_order(folder: Path) -
         f"{condition}-cell{number}_masks" for condition in ("control", "drug") for number in (1, 2, 10)
     ]
     first, last = batch.inputs[0], batch.inputs[-1]
-    assert batch.columns == ("condition", "replicate", "dose")
+    assert batch.columns == ("condition", "experiment", "dose")
     assert first.columns == ("control", None, 0.5)
     assert last.columns == ("drug", None, 0.5)
     assert last.masks == folder / "drug" / "cell10_masks.tif"
@@ -100,7 +100,7 @@ def test_images_and_movies_in_one_file_take_the_parameters_that_they_know(folder
 
 def test_a_table_gives_the_rows_of_a_spreadsheet(folder: Path) -> None:
     lines = [
-        "masks;signal;name;condition;replicate;plate;dose;channels;frame_interval_s",
+        "masks;signal;name;condition;experiment;plate;dose;channels;frame_interval_s",
         "control/cell1_masks.tif;control/cell1.ome.tif;a;1_2;1;007;1;Rac1, RhoA;5",
         ";;;;;;;;",
         "drug/cell2_masks.tif;;b;3;2;12;2.5e-1;;",
@@ -108,8 +108,8 @@ def test_a_table_gives_the_rows_of_a_spreadsheet(folder: Path) -> None:
     (folder / "inputs.csv").write_text("\ufeff" + "\n".join(lines), encoding="utf-8")
     batch = batch_of(folder, '[study]\ntable = "inputs.csv"\ncolumns = ["plate", "dose"]')
     first, second = batch.inputs
-    assert first.columns == ("1_2", 1, "007", 1.0)
-    assert second.columns == ("3", 2, "12", 0.25)
+    assert first.columns == ("1_2", "1", "007", 1.0)
+    assert second.columns == ("3", "2", "12", 0.25)
     assert first.parameters == MovieParameters(channels=("Rac1", "RhoA"), frame_interval_s=5.0)
     assert second.signal is None
 
@@ -179,6 +179,8 @@ def test_one_name_or_one_mask_file_stands_for_one_input(folder: Path) -> None:
         ("[study]\nkinds = 'map'", "[study]: unknown name 'kinds': did you mean 'kind'?"),
         ("[[inputs]]\nmasks='*/cell1_*'\nsignal='labels/../{folder}/{name}'", "is the mask file itself"),
         ("[study]\ncolumns = ['mean']", "[study]: column 'mean' is one that the tables have anyway"),
+        (f"{LABELS}replicate = 1", "column 'replicate' is called experiment: rename it"),
+        ("[study]\ncolumns = ['replicate']", "[study]: column 'replicate' is called experiment: rename it"),
         ("[study]\ncolumns = ['a', 'a']", "[study]: column 'a' stands twice"),
         ("[study]\ncolumns = 'a'", "[study]: columns must be a list of names, got 'a'"),
         ("[parameters]\nlayer = 3", "[parameters]: unknown parameter 'layer': did you mean 'layers'?"),

@@ -43,14 +43,14 @@ sectors = 6
 [[inputs]]
 masks = "movie_*.tif"
 condition = "moving"
-replicate = 1
+experiment = 1
 dose = 0.5
 
 [[inputs]]
 masks = "labels.tif"
 kind = "map"
 pixel_size_um = 0.5
-replicate = "third"
+experiment = "third"
 
 [[inputs]]
 masks = "empty.tif"
@@ -114,7 +114,7 @@ def test_inputs_are_merged_with_their_columns_in_front(quiet: Path) -> None:
     assert read_table(quiet / "edge.parquet").attrs["units"]["velocity"] == "px/frame"
     assert read_table(quiet / "cells.parquet").attrs["units"]["area"] == "px² or µm²"
     assert read_table(quiet / "edge.parquet").attrs["units"]["protruded_area"] == "px²"
-    assert cells.columns[:5].tolist() == ["input", "condition", "replicate", "dose", "length_unit"]
+    assert cells.columns[:5].tolist() == ["input", "condition", "experiment", "dose", "length_unit"]
     assert edge.columns[4:6].tolist() == ["length_unit", "velocity_unit"]
     assert edge["velocity_unit"].unique().tolist() == ["px/frame"]
     assert (
@@ -125,7 +125,7 @@ def test_inputs_are_merged_with_their_columns_in_front(quiet: Path) -> None:
         .all()
     )
     assert cells["input"].tolist() == np.repeat(names, [4, 4, 4, 2, 3]).tolist()
-    assert cells["replicate"].fillna("").unique().tolist() == ["1", "third", ""]
+    assert cells["experiment"].fillna("").unique().tolist() == ["1", "third", ""]
     assert "seconds" not in cells
     whole = cd.open_study(quiet / "inputs" / "movie_1")
     rows = edge[edge["input"] == "movie_1"].reset_index(drop=True)

@@ -2,43 +2,34 @@
 
 from __future__ import annotations
 
-import csv
 import re
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from cytodisk.errors import ParameterError, words_of
+from cytodisk.errors import ParameterError
 from cytodisk.files import real_path
-from cytodisk.number_words import comma_advice, comma_in_toml, without_comma
-from cytodisk.reading_files import text_of
-from cytodisk.runs.batch.batch_faults import Faults
+from cytodisk.number_words import comma_in_toml
 from cytodisk.runs.batch.batch_file_rows import COLUMNS, KEYS, PARAMETERS_OF, FileRow, RowReader
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.batch.input_columns import OWN_COLUMNS
 from cytodisk.runs.channel_names import common_signal_name
-from cytodisk.store.csv_tables import text_as_meant
-from cytodisk.store.nuclei.nucleus_columns import NUCLEI_COLUMNS, NUCLEUS_COLUMNS
-from cytodisk.store.tables import (
-    CONSISTENCY_COLUMNS,
-    EDGE_COLUMNS,
-    SOURCE_COLUMNS,
-    TRACK_COLUMNS,
+from cytodisk.runs.given_tables.given_table import (
+    NUMBER,
+    given_text,
+    number_type,
+    read_given_table,
+    refuse_commas,
+    unreadable_words,
 )
-from cytodisk.store.window_columns import NUCLEUS_WINDOW_COLUMNS, WINDOW_COLUMNS, WINDOW_SIZE_COLUMNS
+from cytodisk.runs.given_tables.table_faults import Faults
+from cytodisk.runs.given_tables.taken_names import RENAMED, TABLE_NAMES, renamed_words
 
 _SIZES = ("pixel_size_um", "frame_interval_s")
-_CELLS = (*SOURCE_COLUMNS, *TRACK_COLUMNS, *WINDOW_SIZE_COLUMNS)
-_OF_NUCLEI = (*NUCLEUS_COLUMNS, *NUCLEI_COLUMNS, *NUCLEUS_WINDOW_COLUMNS)
-_TABLES = (_CELLS, WINDOW_COLUMNS, EDGE_COLUMNS, CONSISTENCY_COLUMNS, _OF_NUCLEI)
-_WHOLE = r"[+-]?(0|[1-9][0-9]*)"
-_NUMBER = _WHOLE + r"(\.[0-9]*)?([eE][+-]?[0-9]+)?"
-_LONGEST_NUMBER = 100  # characters; what is longer stays a text
-_TAKEN = {*KEYS, *OWN_COLUMNS, *(column.name for columns in _TABLES for column in columns)}
+_TAKEN = {*KEYS, *OWN_COLUMNS, *TABLE_NAMES}
 
 
 @dataclass(frozen=True)
@@ -53,7 +44,7 @@ class Batch:
     inputs : tuple of BatchInput
         In the order of the file; no two have one name.
     columns : tuple of str
-        Names of the columns that inputs carry: "condition", "replicate" and those of the user.
+        Names of the columns that inputs carry: "condition", "experiment" and those of the user.
     """
 
     path: Path
@@ -111,9 +102,9 @@ def read_batch(path: Path) -> Batch:
 
 def _read(path: Path, what: str) -> str:
     try:
-        return text_of(path)
+        return given_text(path)
     except (OSError, ValueError) as error:
-        raise ParameterError(f"{what} {path} cannot be read: {words_of(error)}") from error
+        raise ParameterError(f"{what} {path} {unreadable_words(error)}") from error
 
 
 def _section(content: dict[str, Any], name: str, faults: Faults) -> dict[str, Any]:
@@ -129,7 +120,9 @@ def _columns(given: Any, faults: Faults) -> tuple[str, ...]:
         faults.add("[study]", f"columns must be a list of names, got {given!r}")
         return COLUMNS
     for name in given:
-        if name in _TAKEN:
+        if name in RENAMED:
+            faults.add("[study]", f"{renamed_words(name)}, and take it out here: it is always there")
+        elif name in _TAKEN:
             faults.add("[study]", f"column {name!r} is one that the tables have anyway: choose another name")
     for name in (name for name, number in Counter(given).items() if number > 1):
         faults.add("[study]", f"column {name!r} stands twice")
@@ -150,57 +143,21 @@ def _inputs_of(given: Any, text: str, faults: Faults) -> Iterator[FileRow]:
 
 def _rows_of_table(table: Path, columns: tuple[str, ...], faults: Faults) -> list[FileRow]:
     """Rows of a CSV file; an empty field is one that is not given."""
-    text = _read(table, "table of inputs")
-    separator = max(",;\t", key=text.lstrip().partition("\n")[0].count)
-    reader = csv.reader(StringIO(text), delimiter=separator, strict=True)
-    stripped = ([field.strip() for field in fields] for fields in reader)
-    filled = (list(map(text_as_meant, fields)) for fields in stripped if any(fields))
+    given = read_given_table(table, _read(table, "table of inputs"), faults)
+    own = [name for name in columns if name in given.fields and name not in COLUMNS]
+    kinds = {name: kind for name in own if (kind := number_type(given.fields[name])) is not None}
+    kinds |= {name: float for name in _SIZES}
     rows = []
-    try:
-        names = next(filled, [])
-        for name in (name for name, number in Counter(filter(None, names)).items() if number > 1):
-            faults.add(f"{table.name} line {reader.line_num}", f"column {name!r} stands twice")
-        for fields in filled:
-            place = f"{table.name} line {reader.line_num}"
-            if any(fields[len(names) :]):
-                advice = "put quotes around a field with a comma, and write numbers with a point (0.2)"
-                faults.add(place, f"has more fields than the {len(names)} of the first line: {advice}")
-            given: dict[str, Any] = {name: field for name, field in zip(names, fields, strict=False) if field}
-            if "" in given:
-                faults.add(place, f"{given.pop('')!r} stands in a column without a name: name or remove it")
-            if "channels" in given:
-                given |= {"channels": [part.strip() for part in re.split("[,;|]", given["channels"])]}
-            for name in (name for name in _SIZES if re.fullmatch(_NUMBER, str(given.get(name)))):
-                given[name] = float(given[name])
-            rows.append(FileRow(place, given))
-    except csv.Error as error:
-        faults.add(f"{table.name} line {reader.line_num}", f"is no CSV: {error}")
-    _refuse_commas(rows, columns, faults)
-    return _with_numbers(rows, columns)
-
-
-def _refuse_commas(rows: list[FileRow], columns: Iterable[str], faults: Faults) -> None:
-    """A fault for columns of numbers of which some have a comma: they would be texts."""
-    for column in columns:
-        given = [row for row in rows if column in row.values]
-        commas = [row for row in given if without_comma(row.values[column])]
-        if commas and all(re.fullmatch(_NUMBER, row.values[column]) for row in given if row not in commas):
-            advice = comma_advice(commas[0].values[column])
-            others = f" (and {len(commas) - 1} more lines)" if len(commas) > 1 else ""
-            faults.add(commas[0].place, f"{column} {commas[0].values[column]!r}{others}: {advice}")
-
-
-def _with_numbers(rows: list[FileRow], columns: Iterable[str]) -> list[FileRow]:
-    """Columns in which all fields are numbers become numbers: "1", but not "001" or "1_2"."""
-    for column in columns:
-        given = [row.values for row in rows if column in row.values]
-        if any(len(values[column]) > _LONGEST_NUMBER for values in given):
-            continue
-        for kind, pattern in ((int, _WHOLE), (float, _NUMBER)):
-            if all(re.fullmatch(pattern, values[column]) for values in given):
-                for values in given:
-                    values[column] = kind(values[column])
-                break
+    for number, fields in enumerate(given.fields.to_dict("records")):
+        values: dict[str, Any] = {str(name): field for name, field in fields.items() if field}
+        if "channels" in values:
+            values |= {"channels": [part.strip() for part in re.split("[,;|]", values["channels"])]}
+        for name, kind in kinds.items():
+            if name in values and re.fullmatch(NUMBER, values[name]):
+                values[name] = kind(values[name])
+        rows.append(FileRow(given.place(number), values))
+    for name in own:
+        refuse_commas(given, name, faults)
     return rows
 
 

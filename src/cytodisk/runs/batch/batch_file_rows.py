@@ -15,16 +15,17 @@ from cytodisk.errors import ParameterError
 from cytodisk.files import real_path
 from cytodisk.images.image_paths import is_folder_of_files, is_pattern
 from cytodisk.images.mask_names import base_name, image_stem, natural_order
-from cytodisk.runs.batch.batch_faults import Faults
 from cytodisk.runs.batch.batch_input import BatchInput, InputKind, Value
 from cytodisk.runs.cells.nuclei_given import ONLY_WITH_NUCLEI
+from cytodisk.runs.given_tables.table_faults import Faults
+from cytodisk.runs.given_tables.taken_names import RENAMED, renamed_words
 from cytodisk.runs.map.map_parameters import MapParameters, WindowsOfMapsParameters
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.parameters_file import parameters_from
 
 SCALE = ("pixel_size_um", "frame_interval_s", "channels")  # parameters with a column of their own
 ALONE = (*SCALE, "tracks")  # parameters with a key of their own
-COLUMNS = ("condition", "replicate")
+COLUMNS = ("condition", "experiment")  # texts, also where they look like numbers
 KEYS = ("masks", "signal", "nuclei", "name", "kind", "parameters", *COLUMNS, *ALONE)
 PARAMETERS_OF: dict[str, type[WindowsOfMapsParameters]] = {"movie": MovieParameters, "map": MapParameters}
 FIELDS = ("folder", "parent", "name", "stem", "image")  # of templates
@@ -73,7 +74,10 @@ class RowReader:
 
     def inputs(self, row: FileRow) -> Iterator[BatchInput]:
         """The inputs of a row, in natural order of their names; faults are noted."""
-        self.faults.add_unknown(row.place, "column", row.values, [*KEYS, *self.columns])
+        for name in (name for name in row.values if name in RENAMED):
+            self.faults.add(row.place, renamed_words(name))
+        names = [name for name in row.values if name not in RENAMED]
+        self.faults.add_unknown(row.place, "column", names, [*KEYS, *self.columns])
         kind = row.values.get("kind", self.kind)
         if kind not in tuple(PARAMETERS_OF):
             self.faults.add(row.place, f"kind must be movie or map, got {kind!r}")
@@ -199,7 +203,7 @@ class RowReader:
 
     def _value(self, place: str, column: str, value: Any) -> Value:
         if value is None or isinstance(value, str | int | float):
-            return value
+            return value if value is None or column not in COLUMNS else str(value)
         self.faults.add(place, f"{column} must be a text or a number, got {value!r}")
         return None
 

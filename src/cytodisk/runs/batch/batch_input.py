@@ -30,7 +30,7 @@ class BatchInput:
     parameters : WindowsOfMapsParameters
         For a movie `MovieParameters`; with the scale and the names of channels that were given.
     columns : tuple of value
-        Condition, replicate and further columns; their names stand in the batch.
+        Condition, experiment and further columns; their names stand in the batch.
     signal_name : str
         What to call the channel of a signal whose file has no name for it: the same in all inputs.
     nuclei : Path or None

@@ -1,4 +1,4 @@
-"""All that is wrong with a batch file, said at once."""
+"""All that is wrong with a file that a user wrote, said at once."""
 
 from __future__ import annotations
 
@@ -16,10 +16,23 @@ class Faults:
 
     def __init__(self) -> None:
         self._words: list[str] = []
+        self._more = 0
+
+    def __len__(self) -> int:
+        return len(self._words) + self._more
 
     def add(self, place: str, words: str) -> None:
         """Note a fault."""
         self._words.append(f"{place}: {words}")
+
+    def add_more(self, number: int) -> None:
+        """Count faults that are not worded."""
+        self._more += number
+
+    @property
+    def room(self) -> int:
+        """How many more faults are shown: others need no words."""
+        return max(0, _MOST_SHOWN - len(self._words))
 
     def add_unknown(self, place: str, what: str, found: Iterable[str], known: Iterable[str]) -> None:
         """Note names that are not known, each with the nearest one that is."""
@@ -30,11 +43,12 @@ class Faults:
                 hint = f"did you mean {near[0]!r}?" if near else f"it can be {', '.join(names)}"
                 self.add(place, f"unknown {what} {name!r}: {hint}")
 
-    def raise_if_any(self, path: Path) -> None:
+    def raise_if_any(self, path: Path, what: str = "batch file") -> None:
         """Raise ParameterError with all faults, or the first twenty of many."""
         if not self._words:
             return
         lines = self._words[:_MOST_SHOWN]
-        if len(self._words) > _MOST_SHOWN:
-            lines = [*lines, f"… and {len(self._words) - _MOST_SHOWN} more"]
-        raise ParameterError("\n  ".join([f"batch file {path} cannot be used:", *lines]))
+        more = len(self) - len(lines)
+        if more:
+            lines = [*lines, f"… and {more} more"]
+        raise ParameterError("\n  ".join([f"{what} {path} cannot be used:", *lines]))
