@@ -146,7 +146,7 @@ def _rows_of_table(table: Path, columns: tuple[str, ...], faults: Faults) -> lis
     given = read_given_table(table, _read(table, "table of inputs"), faults)
     own = [name for name in columns if name in given.fields and name not in COLUMNS]
     kinds = {name: kind for name in own if (kind := number_type(given.fields[name])) is not None}
-    kinds |= {name: float for name in _SIZES}
+    kinds |= dict.fromkeys(_SIZES, float)
     rows = []
     for number, fields in enumerate(given.fields.to_dict("records")):
         values: dict[str, Any] = {str(name): field for name, field in fields.items() if field}

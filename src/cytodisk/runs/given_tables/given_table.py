@@ -144,11 +144,11 @@ def _refuse_strays(table: GivenTable, names: list[str], faults: Faults) -> None:
     last = max((place for place, name in enumerate(names) if name), default=-1)
     advice = "put quotes around a field with a comma, and write numbers with a point (0.2)"
     beyond = (table.fields.iloc[:, last + 1 :] != "").any(axis=1).to_numpy()
-    for row in np.flatnonzero(beyond):
+    for row in np.flatnonzero(beyond).tolist():
         faults.add(table.place(row), f"has more fields than the {last + 1} of the first line: {advice}")
     for place in (place for place, name in enumerate(names[:last]) if not name):
         values = table.fields.iloc[:, place]
-        for row in np.flatnonzero((values != "").to_numpy()):
+        for row in np.flatnonzero((values != "").to_numpy()).tolist():
             faults.add(
                 table.place(row),
                 f"{values.iloc[row]!r} stands in a column without a name: name or remove it",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -25,14 +25,19 @@ class Faults:
         """Note a fault."""
         self._words.append(f"{place}: {words}")
 
-    def add_more(self, number: int) -> None:
-        """Count faults that are not worded."""
-        self._more += number
+    def add_rows(self, rows: Sequence[int], words_of: Callable[[int], tuple[str, str]]) -> None:
+        """Note a fault for each of some rows, of which there may be a million.
 
-    @property
-    def room(self) -> int:
-        """How many more faults are shown: others need no words."""
-        return max(0, _MOST_SHOWN - len(self._words))
+        Parameters
+        ----------
+        rows : sequence of int
+        words_of : callable
+            Gives (place, words) of a row; it is called for those that are shown.
+        """
+        shown = rows[: max(0, _MOST_SHOWN - len(self._words))]
+        for row in shown:
+            self.add(*words_of(row))
+        self._more += len(rows) - len(shown)
 
     def add_unknown(self, place: str, what: str, found: Iterable[str], known: Iterable[str]) -> None:
         """Note names that are not known, each with the nearest one that is."""
