@@ -52,6 +52,22 @@ from .correlation.event_curves import band_key as band_key
 from .shape.shape_plane import draw_shape_landscape as draw_shape_landscape
 from .shape.shape_rows import draw_shape_examples as draw_shape_examples
 
+# Populations
+from .population.population_maps import draw_atlas as draw_atlas
+from .population.population_maps import draw_difference as draw_difference
+from .population.difference_map import DifferenceMap as DifferenceMap
+from .population.population_maps import difference_key as difference_key
+from .population.condition_profiles import draw_condition_profiles as draw_condition_profiles
+from .population.condition_profiles import condition_key as condition_key
+from .population.super_plot import draw_super_plot as draw_super_plot
+from .population.super_plot import experiment_key as experiment_key
+from .population.effect_sizes import draw_effect_sizes as draw_effect_sizes
+from .population.cell_gallery import draw_gallery as draw_gallery
+from .population.cell_gallery import draw_window_gallery as draw_window_gallery
+from .population.directions import draw_directions as draw_directions
+from .population.pooled_curves import draw_pooled_curves as draw_pooled_curves
+from .population.power_curves import draw_power as draw_power
+
 # Looks
 from .style import paper_style as paper_style
 from .style import colour_bar as colour_bar

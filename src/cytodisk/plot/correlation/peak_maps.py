@@ -13,14 +13,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.patches import Patch, PathPatch
-from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
-from shapely import Polygon, get_parts, unary_union
 
 from cytodisk.arrays import FloatArray
 from cytodisk.plot.cell.disk_axes import disk_polygons, draw_disk_means
-from cytodisk.plot.cell.sector_marks import sector_arcs
+from cytodisk.plot.cell.sector_numbers import NUMBER_SIZE, number_sectors
 from cytodisk.plot.cell.window_polygons import draw_window_means, window_polygons
+from cytodisk.plot.cell.window_regions import pieces_of, region
 from cytodisk.plot.correlation.correlation_peaks import PeakMap, Shown
 from cytodisk.plot.style import LINE_COLOUR, MISSING_COLOUR
 from cytodisk.scale import Scale
@@ -31,10 +30,8 @@ CLUSTER_NAME = "cluster"
 
 _PALE = 0.4  # how far windows that are not significant let the page's white through
 _HATCH, _HATCH_COLOUR = "/////", "0.5"
-_NUMBER_AWAY, _NUMBER_SIZE = 7.0, 6.0  # points: of a sector's number from the edge, and its height
 _BOLD, _THIN = 1.2, 0.7  # points
 _BROKEN = (0, (3.0, 2.0))
-_ROUNDING = 1e-10  # of the disk or of pixels: the last sector ends where the first begins
 _MOST_VECTOR = 3000  # windows; more become pixels inside vector files
 
 
@@ -155,7 +152,7 @@ def draw_peaks_on_cell(
     drawn = draw_window_means(ax, windows, values, cmap=colours, limits=limits, scale=scale)
     _fade(ax, window_polygons(windows), peaks, drawn)
     _outline_clusters(ax, window_polygons(windows), peaks)
-    _number_sectors(ax, windows)
+    number_sectors(ax, windows, SECTOR_NAME)
     return drawn
 
 
@@ -215,12 +212,12 @@ def _fade(ax: Axes, polygons_xy: Sequence[FloatArray], peaks: PeakMap, drawn: Po
     drawn.set_linewidth(np.where(pale, 0.0, 0.2).tolist())  # translucent lines would be darker than areas
     covered = [polygons_xy[number] for number in np.flatnonzero(pale).tolist()]
     style: Any = {"facecolor": "none", "edgecolor": _HATCH_COLOUR, "linewidth": 0.0}
-    hatched = PathPatch(_region(covered), hatch=_HATCH, gid=PALE_NAME, **style)
+    hatched = PathPatch(region(covered), hatch=_HATCH, gid=PALE_NAME, **style)
     ax.add_artist(hatched)
     others = [polygons_xy[number] for number in np.flatnonzero(peaks.significant.ravel()).tolist()]
     if others:
         framed: Any = {"fill": False, "edgecolor": LINE_COLOUR, "linewidth": 0.6, "zorder": 2.5}
-        ax.add_artist(PathPatch(_region(others), gid=OUTLINE_NAME, **framed))
+        ax.add_artist(PathPatch(region(others), gid=OUTLINE_NAME, **framed))
 
 
 def _outline_clusters(ax: Axes, polygons_xy: Sequence[FloatArray], peaks: PeakMap) -> None:
@@ -232,53 +229,13 @@ def _outline_clusters(ax: Axes, polygons_xy: Sequence[FloatArray], peaks: PeakMa
         members = np.flatnonzero(peaks.cluster.ravel() == number).tolist()
         covered = [polygons_xy[member] for member in members]
         style = {"fill": False, "edgecolor": "black", "zorder": 2.7} | _cluster_line(number in peaks.lost)
-        ax.add_artist(PathPatch(_region(covered), path_effects=[rim], gid=CLUSTER_NAME, **style))
-        largest = max(_pieces(covered), key=lambda piece: piece.area)
+        ax.add_artist(PathPatch(region(covered), path_effects=[rim], gid=CLUSTER_NAME, **style))
+        largest = max(pieces_of(covered), key=lambda piece: piece.area)
         place = largest.representative_point()
         weight = "normal" if number in peaks.lost else "bold"
-        words: Any = {"fontsize": _NUMBER_SIZE + 1.0, "fontweight": weight, "ha": "center", "va": "center"}
+        words: Any = {"fontsize": NUMBER_SIZE + 1.0, "fontweight": weight, "ha": "center", "va": "center"}
         ax.text(place.x, place.y, str(number), zorder=2.8, gid=CLUSTER_NAME, path_effects=[rim], **words)
 
 
 def _cluster_line(lost: bool) -> dict[str, Any]:
     return {"linewidth": _THIN, "linestyle": _BROKEN} if lost else {"linewidth": _BOLD}
-
-
-def _number_sectors(ax: Axes, windows: CellWindows) -> None:
-    """Numbers of the four sectors that have theirs on the disk, outside the cell at their beginning."""
-    arcs = sector_arcs(windows)
-    for quarter in range(4):
-        number = len(arcs) * quarter // 4
-        y, x = arcs[number][0]
-        down, right = arcs[number][-1] - arcs[number - 1][0]
-        # Sectors follow one another clockwise on the page: where they go down, outwards is to the right.
-        away = _NUMBER_AWAY * np.array([down, right]) / max(np.hypot(down, right), 1e-9)
-        ax.annotate(
-            str(number),
-            (x, y),
-            xytext=tuple(away.tolist()),
-            textcoords="offset points",
-            ha="center",
-            va="center_baseline",
-            fontsize=_NUMBER_SIZE,
-            annotation_clip=False,
-            gid=SECTOR_NAME,
-            arrowprops={"arrowstyle": "-", "linewidth": 0.5, "shrinkA": 3.0, "shrinkB": 0.0},
-        )
-
-
-def _region(polygons_xy: Sequence[FloatArray]) -> Path:
-    """What windows cover together, with a line around neighbours and none between them."""
-    rings = [
-        ring
-        for part in _pieces(polygons_xy)
-        for ring in (part.exterior, *part.interiors)
-        if not ring.is_empty
-    ]
-    return Path.make_compound_path(*(Path(np.asarray(ring.coords), closed=True) for ring in rings))
-
-
-def _pieces(polygons_xy: Sequence[FloatArray]) -> list[Polygon]:
-    """The pieces of what windows cover together."""
-    region = unary_union([Polygon(polygon).buffer(0) for polygon in polygons_xy], grid_size=_ROUNDING)
-    return [part for part in get_parts(region) if isinstance(part, Polygon)]

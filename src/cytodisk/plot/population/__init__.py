@@ -1,0 +1,1 @@
+"""Many cells by condition and experiment."""
