@@ -28,9 +28,9 @@ class DifferenceMap:
     tested : ndarray of shape (layers, sectors) and dtype bool
         Whether the window was tested.
     significant : ndarray of shape (layers, sectors) and dtype bool
-        Where the p corrected for all windows (max-T) is at most `alpha`.
+        Where the p corrected for all windows (max-T) is below `alpha`.
     cluster : ndarray of shape (layers, sectors) and dtype int
-        Number of the window's cluster, 0 for none. Only clusters with p of at most `alpha` have one.
+        Number of the window's cluster, 0 for none. Only clusters with p below `alpha` have one.
     alpha : float
 
     Examples
@@ -76,7 +76,7 @@ class DifferenceMap:
         clusters : DataFrame, optional
             cluster and p; without it all labels are drawn.
         alpha : float
-            Largest p that counts as significant.
+            p below it counts as significant.
 
         Raises
         ------
@@ -102,9 +102,9 @@ class DifferenceMap:
                 "same comparison"
             )
         if clusters is not None:
-            kept = clusters.loc[clusters["p"] <= alpha, "cluster"].to_numpy()
+            kept = clusters.loc[clusters["p"] < alpha, "cluster"].to_numpy()
             labels = np.where(np.isin(labels, kept), labels, 0)
-        return cls(difference, np.isfinite(p), p <= alpha, labels, alpha)
+        return cls(difference, np.isfinite(p), p < alpha, labels, alpha)
 
     @property
     def limit(self) -> float:

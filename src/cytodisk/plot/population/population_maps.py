@@ -115,13 +115,15 @@ def draw_atlas(
 
 
 def count_words(of_condition: xr.Dataset) -> str:
-    """How many cells and experiments a condition has, as "72 cells, 6 experiments"; empty if unknown."""
+    """How many cells and experiments a condition has, in two lines; empty if unknown."""
     words = []
     for name, noun in (("n_cells", "cell"), ("n_experiments", "experiment")):
         if name in of_condition:
             count = int(np.nan_to_num(of_condition[name].to_numpy()).max(initial=0))
             words.append(f"{count} {noun}{'' if count == 1 else 's'}")
-    return ", ".join(words)
+            if name == "n_experiments" and not count:
+                words[-1] = "experiments unknown"
+    return "\n".join(words)
 
 
 def draw_difference(
@@ -228,10 +230,10 @@ def difference_key(found: DifferenceMap) -> list[Any]:
     known, tested = int(np.isfinite(found.difference).sum()), int(found.tested.sum())
     handles: list[Any] = []
     if found.significant.any():
-        words = f"window p ≤ {found.alpha:g} (max-T): {int(found.significant.sum())} of {tested} windows"
+        words = f"window, p < {found.alpha:g} (max-T): {int(found.significant.sum())} of {tested}"
         handles.append(Patch(facecolor="none", label=words, **_FRAME))
     if found.cluster.any():
-        words = f"cluster p ≤ {found.alpha:g}: {int((found.cluster > 0).sum())} windows"
+        words = f"cluster, p < {found.alpha:g}: {int((found.cluster > 0).sum())} windows"
         handles.append(Patch(facecolor="none", label=words, **_AROUND))
     if tested < known:
         words = f"not tested: {known - tested} of {known} windows"
