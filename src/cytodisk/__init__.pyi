@@ -89,6 +89,8 @@ from .population.comparison import compare_conditions as compare_conditions
 from .population.comparison import ConditionComparison as ConditionComparison
 from .population.comparison_parameters import ComparisonParameters as ComparisonParameters
 from .population.named_warning import NamedWarning as NamedWarning
+from .runs.population.opening.open_population import open_population as open_population
+from .runs.population.opening.population_tables import population_from_tables as population_from_tables
 
 # Runs: what the commands do
 from .runs.map.run_map import run_map as run_map

@@ -108,6 +108,10 @@ class StationarityWarning(UserWarning):
     """The level of many series drifts: what correlates may do so for no other reason."""
 
 
+class PopulationWarning(UserWarning):
+    """Cells were put together that differ in something that a reader should know."""
+
+
 class DamagedPartWarning(UserWarning):
     """Part of the results of an earlier run is gone or damaged, and is made anew."""
 

@@ -112,7 +112,8 @@ def read_checked(
         known = [column for column in (*needed, *optional) if column.name in found.names]
         for column in known:
             place = found.get_field_index(column.name)
-            table = table.set_column(place, found.field(place), table.column(place).cast(column.kind))
+            field = found.field(place).with_type(column.kind)
+            table = table.set_column(place, field, table.column(place).cast(column.kind))
         frame: pd.DataFrame = table.to_pandas()
         frame.attrs["units"] = {one.name: (one.metadata or {}).get(b"unit", b"").decode() for one in found}
     for column in known:

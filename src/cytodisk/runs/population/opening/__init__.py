@@ -1,0 +1,1 @@
+"""Populations out of studies: their cells, values and directions."""

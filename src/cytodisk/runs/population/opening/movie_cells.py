@@ -1,0 +1,180 @@
+"""Cells of movies: what each contributes, and one row for each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from cytodisk.errors import NoValuesError, PopulationError
+from cytodisk.runs.population.movie_values import movie_values
+from cytodisk.runs.population.opening.cell_table import FRAMES, PLACES
+from cytodisk.runs.population.opening.disk_directions import movie_directions
+from cytodisk.runs.population.opening.found_studies import FoundStudy
+from cytodisk.runs.population.opening.left_out import LeftOut
+from cytodisk.runs.population.opening.map_values import window_table
+from cytodisk.runs.population.opening.row_moments import RowMoments
+from cytodisk.runs.population.opening.streamed_windows import GEOMETRY
+from cytodisk.store.study import Study
+
+_KEYS = ["input", "number"]
+
+
+def rows_by_cell(frames: pd.DataFrame) -> pd.DataFrame:
+    """One row a cell out of one row a frame.
+
+    Parameters
+    ----------
+    frames : DataFrame
+        As `joined_rows` returns it.
+
+    Returns
+    -------
+    DataFrame
+        Numbers are means over frames with a map, how many they are is in frames; texts are those of the first
+        frame. A cell without any map has the status and reason of its first frame. QC flags are those of all
+        frames.
+    """
+    ok = frames["status"] == "ok"
+    grouped = frames.groupby(_KEYS, sort=False)
+    found = frames.sort_values("status", key=lambda status: status != "ok", kind="stable")
+    found = found.groupby(_KEYS, sort=False).first().reset_index()
+    index = pd.MultiIndex.from_frame(found[_KEYS])
+    numbers = [name for name in frames if name not in PLACES and frames[name].dtype.kind == "f"]
+    means = frames[ok].groupby(_KEYS, sort=False)[numbers].mean().reindex(index)
+    for name in numbers:
+        found[name] = means[name].to_numpy()
+    found[FRAMES] = ok.groupby([frames[name] for name in _KEYS], sort=False).sum().reindex(index).to_numpy()
+    found["frame"] = grouped["frame"].min().reindex(index).to_numpy()
+    found["qc_flags"] = grouped["qc_flags"].agg(_joined).reindex(index).to_numpy()
+    found.attrs = dict(frames.attrs)
+    order = frames[_KEYS].drop_duplicates()
+    places = pd.MultiIndex.from_frame(order)
+    return found.set_index(index).loc[places].reset_index(drop=True)[[*found.columns]]
+
+
+def _joined(flags: pd.Series[str]) -> str:
+    return "; ".join(dict.fromkeys(flag for text in flags.fillna("") for flag in text.split("; ") if flag))
+
+
+def read_movie_values(
+    studies: Sequence[FoundStudy],
+    cells: pd.DataFrame,
+    frames: pd.DataFrame,
+    channels: Sequence[str] | None,
+    summary: str,
+    left_out: LeftOut,
+) -> tuple[xr.DataArray, xr.DataArray | None, pd.DataFrame]:
+    """Values of cells of movies.
+
+    Parameters
+    ----------
+    studies : sequence of FoundStudy
+    cells, frames : DataFrame
+        One row a cell; one row a frame of a cell.
+    channels : sequence of str, optional
+    summary : str
+        See `movie_values`.
+    left_out : LeftOut
+        Gets the cells without values.
+
+    Returns
+    -------
+    values : DataArray with dims (cell, channel, layer, sector or lag)
+    areas : DataArray with dims (cell, layer, sector), or None
+    cells : DataFrame
+        Those that have values, with directions in the disk.
+
+    Raises
+    ------
+    PopulationError
+        No cell has values, or cells have values of different shapes.
+    """
+    parts: list[xr.DataArray] = []
+    kept: list[int] = []
+    directions: list[dict[str, float]] = []
+    of_study = cells.groupby("input", sort=False).indices
+    for found in studies:
+        rows = of_study.get(found.name, ())
+        study = Study(
+            found.folder,
+            frames[frames["input"] == found.name].rename(columns={"number": "cell"}),
+            found.provenance,
+        )
+        some = []
+        for row in rows:
+            try:
+                values = movie_values(study, int(cells["number"].iloc[row]), summary, channels=channels)
+            except NoValuesError as error:
+                left_out.add_cells(cells.iloc[[row]], str(error))
+                continue
+            if np.isfinite(values).any():
+                parts.append(values)
+                some.append(row)
+            else:
+                left_out.add_cells(cells.iloc[[row]], f"all windows are NaN in its {summary}")
+        kept += some
+        directions += _directions(found, study, cells.iloc[some])
+    if not parts:
+        raise PopulationError(
+            f"no cell has values for {summary!r} ({left_out.rows[-1]['reason']}): choose another summary"
+        )
+    chosen = cells.iloc[kept].reset_index(drop=True)
+    columns = pd.DataFrame(directions, index=chosen.index)
+    chosen = pd.concat([chosen, columns], axis=1)
+    chosen.attrs = dict(cells.attrs)
+    return *_stacked(parts, chosen), chosen
+
+
+def _stacked(parts: list[xr.DataArray], cells: pd.DataFrame) -> tuple[xr.DataArray, xr.DataArray | None]:
+    first = parts[0]
+    for part, cell in zip(parts, cells["cell"], strict=True):
+        for name in first.dims:
+            if part.sizes.get(name) != first.sizes[name] or list(part[name].values) != list(
+                first[name].values
+            ):
+                raise PopulationError(
+                    f"{name}s of cell {cell} are {_listed(part, name)}, of cell {cells['cell'].iloc[0]} "
+                    f"{_listed(first, name)}: run the movies with the same settings, at one frame interval"
+                )
+    values = xr.DataArray(
+        np.stack([part.values for part in parts]),
+        dims=("cell", *first.dims),
+        coords={name: first[name] for name in (*first.dims, "compartment") if name in first.coords},
+        attrs={"units": first.attrs.get("units", "a.u.")},
+        name=first.name,
+    )
+    if not all("area" in part.coords for part in parts):
+        return values, None
+    areas = np.stack([part["area"].values for part in parts])
+    return values, xr.DataArray(areas, dims=("cell", "layer", first.dims[-1]))
+
+
+def _listed(part: xr.DataArray, name: Any) -> str:
+    return ", ".join(map(str, part[name].values[:4])) if name in part.coords else "none"
+
+
+def _directions(found: FoundStudy, study: Study, cells: pd.DataFrame) -> list[dict[str, float]]:
+    """Directions in the disk of some cells of a study."""
+    if cells.empty:
+        return []
+    table = window_table(found)
+    frames = study.cells[(study.cells["status"] == "ok") & study.cells["cell"].isin(cells["number"])]
+    frames = frames.sort_values(["cell", "frame"]).reset_index(drop=True)
+    moments = RowMoments(frames[["centroid_y", "centroid_x"]].to_numpy(np.float64), table.sectors)
+    for block in table.blocks(frames[["cell", "frame"]], table.channels()[:1], *GEOMETRY):
+        moments.add(block)
+    axis, long = moments.long_axis()
+    frames = frames.assign(turn=moments.turn, axis=axis, long=long)
+    edge = study.edge
+    return [
+        movie_directions(
+            frames[frames["cell"] == cell],
+            edge.loc[edge["cell"] == cell, ["sector", "velocity"]],
+            table.sectors,
+        )
+        for cell in cells["number"]
+    ]

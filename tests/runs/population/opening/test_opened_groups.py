@@ -1,0 +1,50 @@
+from pathlib import Path
+
+import pytest
+
+from cytodisk.errors import ParameterError, PopulationWarning
+from cytodisk.runs.population.opening.left_out import left_out_of
+from cytodisk.runs.population.opening.open_population import open_population
+
+
+def written(folder: Path, text: str) -> Path:
+    (folder / "groups.csv").write_text(text)
+    return folder / "groups.csv"
+
+
+def test_groups_by_file_and_cell_come_from_a_table(day1, tmp_path: Path) -> None:
+    table = "file,cell,condition,experiment,dose\ncells.tif,1,control,a,0\ncells.tif,2,control,b,0\n"
+    table += "cells.tif,3,drug,a,2.5\ncells.tif,4,drug,b,2.5\n"
+    population = open_population(day1, groups=written(tmp_path, table))
+    assert population.cells["condition"].tolist() == ["control", "control", "drug", "drug"]
+    assert population.cells["experiment"].tolist() == ["a", "b"] * 2
+    assert population.cells["dose"].tolist() == [0.0, 0.0, 2.5, 2.5]
+
+
+def test_a_table_takes_the_place_of_what_the_study_says(changed, tmp_path: Path) -> None:
+    study = changed("day2", cells=lambda cells: cells.assign(condition="before", plate=7))
+    groups = written(tmp_path, "file,condition\ncells,after\n")
+    population = open_population(study, groups=groups)
+    assert population.conditions == ("after",)
+    assert population.cells["plate"].tolist() == [7] * 4
+
+
+def test_cells_that_no_row_is_about_are_left_out(day1, tmp_path: Path) -> None:
+    groups = written(tmp_path, "cell,condition\n1,control\n2,drug\n")
+    with pytest.warns(PopulationWarning, match="2 of 4 cells are in no row"):
+        population = open_population(day1, groups=groups)
+    assert len(population) == 2
+    told = left_out_of(population.cells.attrs)
+    assert told["label"].tolist() == [3, 4]
+    assert set(told["reason"]) == {"it has no condition in the table of groups"}
+
+
+def test_studies_are_told_apart_by_their_names(day1, changed, tmp_path: Path) -> None:
+    groups = written(tmp_path, "file,experiment\nday1,a\nday2,b\n")
+    population = open_population([day1, changed("day2")], groups=groups)
+    assert population.cells["experiment"].tolist() == ["a"] * 4 + ["b"] * 4
+
+
+def test_a_row_about_no_cell_is_refused(day1, tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match=r"other\.tif"):
+        open_population(day1, groups=written(tmp_path, "file,condition\ncells.tif,a\nother.tif,b\n"))
