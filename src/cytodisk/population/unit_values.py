@@ -57,7 +57,8 @@ def window_means(pop: Population, channels: Sequence[str], codes: IntArray, unit
     found = np.empty((units, int(np.prod(shape))))  # each cell is a unit
     for rows, block in pop.blocks(channels):
         code = codes[rows]
-        found[code[code >= 0]] = block[code >= 0].reshape(-1, found.shape[1])
+        used = code >= 0
+        found[code[used]] = block[used].reshape(int(used.sum()), found.shape[1])
     return found
 
 
