@@ -1,0 +1,27 @@
+"""Comparisons of conditions agree with statsmodels: Holm, false discovery rate, effect sizes."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from plain_population import compared
+
+multitest = pytest.importorskip("statsmodels.stats.multitest", reason="statsmodels is not installed")
+meta_analysis = pytest.importorskip("statsmodels.stats.meta_analysis", reason="statsmodels is not installed")
+
+
+def test_q_values_are_those_of_multipletests() -> None:
+    windows = compared((5, 5), paired=False).found.windows
+    expected = multitest.multipletests(windows["p"].to_numpy().ravel(), method="fdr_bh")[1]
+    assert_allclose(windows["q"].to_numpy().ravel(), expected, rtol=0, atol=1e-12)
+
+
+def test_effect_sizes_are_those_of_effectsize_smd() -> None:
+    case = compared((4, 6), paired=False)
+    drug, control = (
+        (values.mean(axis=0), values.std(axis=0, ddof=1), len(values)) for values in (case.drug, case.control)
+    )
+    expected, variance = meta_analysis.effectsize_smd(*drug, *control)
+    windows = case.found.windows
+    assert_allclose(windows["effect_size"], expected, rtol=3e-3)  # it approximates Hedges' factor
+    half = 0.5 * (windows["high"] - windows["low"]).to_numpy()
+    assert_allclose(half, 1.96 * np.sqrt(variance), rtol=0.12)  # by a normal distribution
