@@ -85,9 +85,16 @@ from .analysis.shape.complexity import complexity_score as complexity_score
 
 # Populations: many cells by condition and experiment
 from .population.population import Population as Population
-from .population.comparison import compare_conditions as compare_conditions
-from .population.comparison import ConditionComparison as ConditionComparison
+from .population.conditions.comparison import compare_conditions as compare_conditions
+from .population.conditions.comparison import ConditionComparison as ConditionComparison
+from .population.conditions.with_control import compare_with_control as compare_with_control
+from .population.conditions.with_zero import compare_with_zero as compare_with_zero
+from .population.conditions.with_zero import ZeroComparison as ZeroComparison
+from .population.conditions.dose_trend import dose_trend as dose_trend
+from .population.conditions.dose_trend import DoseTrend as DoseTrend
 from .population.comparison_parameters import ComparisonParameters as ComparisonParameters
+from .population.comparison_parameters import DoseParameters as DoseParameters
+from .population.comparison_parameters import PermutationParameters as PermutationParameters
 from .population.named_warning import NamedWarning as NamedWarning
 from .runs.population.opening.open_population import open_population as open_population
 from .runs.population.opening.population_tables import population_from_tables as population_from_tables

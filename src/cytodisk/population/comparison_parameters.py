@@ -6,6 +6,7 @@ from cytodisk.parameters import MOST_SEED, Parameters, parameter
 
 Unit: TypeAlias = Literal["experiment", "cell"]
 Design: TypeAlias = Literal["auto", "paired", "unpaired"]
+Scale: TypeAlias = Literal["rank", "linear", "log"]
 Normalisation: TypeAlias = Literal["none", "cell mean", "cell total", "z-score", "background"]
 
 MOST_PERMUTATIONS = 1_000_000
@@ -21,6 +22,16 @@ class PermutationParameters(Parameters):
         most=MOST_PERMUTATIONS,
     )
     seed: int = parameter(0, "Start of the random numbers.", least=0, most=MOST_SEED)
+
+
+class DoseParameters(PermutationParameters):
+    """How a trend over a dose is tested."""
+
+    scale: Scale = parameter(
+        "rank",
+        'How far doses lie apart. "rank": each dose is a step from the next lower one. "linear": as they '
+        'are. "log": by factors of 10, for doses above 0.',
+    )
 
 
 class ComparisonParameters(PermutationParameters):

@@ -2,41 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.checks import instance_of
 from cytodisk.population.comparison_parameters import ComparisonParameters
-from cytodisk.population.comparison_sentences import found_words, reach_words
-from cytodisk.population.comparison_tables import (
-    cluster_table,
-    numbers_of_results,
-    scalar_rows,
-    window_dataset,
-)
-from cytodisk.population.comparison_warnings import (
+from cytodisk.population.conditions.comparison_sentences import found_words, reach_words
+from cytodisk.population.conditions.comparison_warnings import (
     alignment_warnings,
     design_warnings,
     driven,
     too_few,
     untested,
 )
-from cytodisk.population.effect_sizes import Effects, group_effects, pair_effects
-from cytodisk.population.exchange_test import exchange_test
-from cytodisk.population.exchanges import Exchanges, LabelExchanges, SignExchanges
-from cytodisk.population.experiment_units import Units, units_of
-from cytodisk.population.left_out import left_out_table
+from cytodisk.population.conditions.experiment_units import units_of
+from cytodisk.population.conditions.left_out import left_out_table
+from cytodisk.population.conditions.tested_units import TwoConditions, tested_units
+from cytodisk.population.conditions.unit_values import usable_cells
 from cytodisk.population.named_warning import NamedWarning
 from cytodisk.population.population import Population
-from cytodisk.population.studentised import GroupDifference, PairDifference, Statistic
-from cytodisk.population.unit_values import scalar_means, usable_cells, window_means
-from cytodisk.population.window_neighbours import ClusterField
 from cytodisk.taking import takes
 
 
@@ -96,6 +84,7 @@ def compare_conditions(
     treated: str,
     *,
     channel: str | Sequence[str] | None = None,
+    progress: Callable[[int, int], None] | None = None,
     parameters: ComparisonParameters | None = None,
     **settings: Any,
 ) -> ConditionComparison:
@@ -111,6 +100,8 @@ def compare_conditions(
         Names of conditions.
     channel : str or sequence of str, optional
         By default all. Channels that are tested together are corrected together.
+    progress : callable, optional
+        Called with (exchanges done, exchanges in all).
     parameters : ComparisonParameters, optional
         All parameters together; those that are given by name overrule them.
     **settings
@@ -152,36 +143,35 @@ def compare_conditions(
     channels = chosen_channels(pop, channel)
     usable = usable_cells(pop, channels)
     units = units_of(pop.cells, usable, (control, treated), chosen.unit, chosen.design)
-    exchanges = _exchanges(units, chosen)
-    values = window_means(pop, channels, units.codes, units.count)
-    shape = (len(channels), pop.raw.shape[2], pop.raw.shape[3])
-    families = np.repeat(np.arange(len(channels)), int(np.prod(shape[1:])))
-    effects = _effects(values, units)
-    field = ClusterField(shape, closed=pop.last == "sector")
-    tested = exchange_test(_statistic(values, units, families), exchanges, field)
-    windows = window_dataset(pop, channels, effects, tested)
-    clusters = cluster_table(pop, channels, effects.difference, tested)
-    numbers = scalar_means(pop, channels, units.codes, units.count)
-    scalar_test = exchange_test(_statistic(numbers.values, units, None), exchanges)
-    scalars = scalar_rows(numbers.table, _effects(numbers.values, units), scalar_test)
-    results = numbers_of_results(values, windows, clusters, numbers.values, scalars)
-    alone = {name: number for name, (number, _) in results.items()} if chosen.unit == "experiment" else {}
-    left_out = left_out_table(alone, units, chosen.seed)
+    test = TwoConditions(units, chosen)
+    found = tested_units(pop, channels, units.codes, units.count, test, progress)
+    results = found.results if chosen.unit == "experiment" else {}
+    left_out = left_out_table({name: number for name, (number, _) in results.items()}, units, chosen.seed)
     warnings = (
-        *too_few(exchanges.smallest_p, units),
+        *too_few(test.exchanges.smallest_p, units),
         *design_warnings(pop, units, chosen.unit),
         *alignment_warnings(pop, channels, units.codes),
-        *untested(windows["status"].values),
+        *untested(found.windows["status"].values),
         *driven(left_out, [name for name, (_, different) in results.items() if different]),
     )
     sentences = (
-        reach_words(exchanges, units),
+        reach_words(test.exchanges, units),
         units.found,
-        *found_words((control, treated), windows, clusters, scalars),
+        *found_words((control, treated), found.windows, found.clusters, found.scalars),
     )
-    windows = windows.squeeze("channel") if len(channels) == 1 else windows
-    told = exchanges.smallest_p, units.design, sentences, warnings
-    return ConditionComparison(control, treated, windows, clusters, scalars, left_out, units.table, *told)
+    return ConditionComparison(
+        control,
+        treated,
+        found.windows.squeeze("channel") if len(channels) == 1 else found.windows,
+        found.clusters,
+        found.scalars,
+        left_out,
+        units.table,
+        test.exchanges.smallest_p,
+        units.design,
+        sentences,
+        warnings,
+    )
 
 
 def chosen_channels(pop: Population, channel: str | Sequence[str] | None) -> tuple[str, ...]:
@@ -198,21 +188,3 @@ def chosen_channels(pop: Population, channel: str | Sequence[str] | None) -> tup
     for name in names:
         pop.channel_number(name)
     return tuple(dict.fromkeys(names))
-
-
-def _exchanges(units: Units, chosen: ComparisonParameters) -> Exchanges:
-    if units.paired:
-        return SignExchanges(units.count // 2, chosen.permutations, chosen.seed)
-    return LabelExchanges(units.treated, chosen.permutations, chosen.seed)
-
-
-def _statistic(values: FloatArray, units: Units, families: IntArray | None) -> Statistic:
-    if units.paired:
-        return PairDifference(values[units.treated] - values[~units.treated], families)
-    return GroupDifference(values, units.treated, families)
-
-
-def _effects(values: FloatArray, units: Units) -> Effects:
-    if units.paired:
-        return pair_effects(values[~units.treated], values[units.treated])
-    return group_effects(values, units.treated)

@@ -66,7 +66,9 @@ class GroupDifference:
         self.testable = self._enough(treated)
         variance = ratio(squares, self._count - 1, self._count > 1)
         per_unit = 1.0 / max(self.sizes[0], 1) + 1.0 / max(self.sizes[1], 1)
-        self._shared = None if families is None else _medians(variance * per_unit, self.testable, families)
+        self._shared = (
+            None if families is None else shared_medians(variance * per_unit, self.testable, families)
+        )
 
     @property
     def degrees(self) -> float:
@@ -100,7 +102,7 @@ class GroupDifference:
             error = 0.5 * (error + self._shared)
         if sum(self.sizes) < 3:
             error = np.ones_like(error)
-        return _scores(np.where(enough, difference, 0.0), error, np.sqrt(self._least))
+        return sure_scores(np.where(enough, difference, 0.0), error, np.sqrt(self._least))
 
     def _sums(self, labels: NDArray[np.generic]) -> tuple[FloatArray, FloatArray, FloatArray]:
         ways, units = labels.shape
@@ -135,7 +137,7 @@ class PairDifference:
         self._squares = (self._values**2).sum(axis=0)
         self.testable = np.asarray((self._count >= 0.75 * len(finite)) & (self._count >= min(2, len(finite))))
         mean_square = ratio(self._squares, self._count**2, self._count > 0)
-        self._shared = None if families is None else _medians(mean_square, self.testable, families)
+        self._shared = None if families is None else shared_medians(mean_square, self.testable, families)
         self._own = max(len(finite) - 1, 1)
 
     @property
@@ -154,11 +156,22 @@ class PairDifference:
             error = 0.5 * (error + self._shared)
         if len(labels[0]) < 2:
             error = np.ones_like(error)
-        return _scores(np.where(self.testable, mean, 0.0), error, np.sqrt(_ROUNDING * self._squares))
+        return sure_scores(np.where(self.testable, mean, 0.0), error, np.sqrt(_ROUNDING * self._squares))
 
 
-def _scores(difference: FloatArray, error: FloatArray, rounding: FloatArray) -> FloatArray:
-    """Differences over the roots of their squared errors; a difference without any error is sure."""
+def sure_scores(difference: FloatArray, error: FloatArray, rounding: FloatArray) -> FloatArray:
+    """Differences over the roots of their squared errors; a difference without any error is sure.
+
+    Parameters
+    ----------
+    difference, error : ndarray of shape (ways, windows) and dtype float64
+    rounding : ndarray of shape (windows,) and dtype float64
+        Differences up to this one are 0.
+
+    Returns
+    -------
+    ndarray of shape (ways, windows) and dtype float64
+    """
     sure = np.where(np.abs(difference) > rounding, np.sign(difference) * _SURE, 0.0)
     return np.where(error > 0, ratio(difference, np.sqrt(error), error > 0, 0.0), sure)
 
@@ -168,8 +181,19 @@ def _column_means(values: FloatArray, finite: BoolArray) -> FloatArray:
     return ratio(np.where(finite, values, 0.0).sum(axis=0), count, count > 0)
 
 
-def _medians(errors: FloatArray, testable: BoolArray, families: IntArray) -> FloatArray:
-    """Median of the squared errors of the windows of each family, for every window."""
+def shared_medians(errors: FloatArray, testable: BoolArray, families: IntArray) -> FloatArray:
+    """Median of the squared errors of the windows of each family, for every window.
+
+    Parameters
+    ----------
+    errors : ndarray of shape (windows,) and dtype float64
+    testable : ndarray of shape (windows,) and dtype bool
+    families : ndarray of shape (windows,) and dtype int64
+
+    Returns
+    -------
+    ndarray of shape (windows,) and dtype float64
+    """
     found = np.zeros(len(errors))
     for family in np.unique(families):
         of = families == family

@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cytodisk.population.comparison_warnings import LEVEL, sizes_words
-from cytodisk.population.exchanges import Exchanges
-from cytodisk.population.experiment_units import Units
-from cytodisk.population.window_words import p_words
+from cytodisk.population.conditions.comparison_warnings import LEVEL, sizes_words
+from cytodisk.population.conditions.experiment_units import Units
+from cytodisk.population.conditions.window_words import p_words
+from cytodisk.population.exchange.exchanges import Exchanges
 
 
 def reach_words(exchanges: Exchanges, units: Units) -> str:
@@ -84,13 +84,12 @@ def _of_windows(against: str, channel: str, windows: xr.Dataset, clusters: pd.Da
         more = f" and {len(found) - 3} more" if len(found) > 3 else ""
         return f"{words}; clusters: {'; '.join(parts)}{more}."
     if not different.any():
-        best = np.unravel_index(int(np.nanargmin(p)), p.shape)
+        best = np.unravel_index(int(np.nanargmax(np.abs(windows["score"].values))), p.shape)
         low, high = (float(windows[name].values[best]) for name in ("low", "high"))
         size = float(windows["effect_size"].values[best])
-        words += (
-            f", none in a cluster; the strongest window has {p_words(float(p[best]))}, Hedges' g {size:.2g} "
-            f"({low:.2g} to {high:.2g})"
-        )
+        words += f", none in a cluster; the strongest window has {p_words(float(p[best]))}"
+        if np.isfinite(size):
+            words += f", Hedges' g {size:.2g} ({low:.2g} to {high:.2g})"
     return f"{words}."
 
 

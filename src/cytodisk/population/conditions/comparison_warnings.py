@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from cytodisk.population.cell_directions import SIGNAL
-from cytodisk.population.experiment_units import Units
+from cytodisk.population.conditions.experiment_units import Units
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT, names_in
 from cytodisk.population.named_warning import NamedWarning
 from cytodisk.population.population import Population

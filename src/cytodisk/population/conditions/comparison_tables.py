@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import fields
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
+from numpy.typing import NDArray
 
 from cytodisk.arrays import FloatArray
-from cytodisk.population.effect_sizes import Effects
-from cytodisk.population.exchange_test import ExchangeTest
+from cytodisk.population.conditions.window_words import runs_of
+from cytodisk.population.exchange.exchange_test import ExchangeTest
 from cytodisk.population.population import Population
-from cytodisk.population.window_words import runs_of
 
 LEVEL = 0.05
 CLUSTER_COLUMNS = (
@@ -27,12 +27,14 @@ CLUSTER_COLUMNS = (
     "sectors",
     "difference",
 )
+LEVELS = {"control", "treated", "difference", "difference_low", "difference_high"}
+"""Columns with the unit of the values."""
 _FEW = "too few units have a value"
 _MOST_RESULTS = 5  # of a kind, that are looked at without one experiment at a time
 
 
 def window_dataset(
-    pop: Population, channels: Sequence[str], effects: Effects, tested: ExchangeTest
+    pop: Population, channels: Sequence[str], effects: Mapping[str, FloatArray], tested: ExchangeTest
 ) -> xr.Dataset:
     """Effects and p-values of windows, with dims (channel, layer, last).
 
@@ -40,7 +42,7 @@ def window_dataset(
     ----------
     pop : Population
     channels : sequence of str
-    effects : Effects
+    effects : dict of str to ndarray of shape (windows,)
     tested : ExchangeTest
 
     Returns
@@ -48,8 +50,13 @@ def window_dataset(
     Dataset
     """
     shape = (len(channels), *pop.raw.shape[2:])
-    arrays = {one.name: getattr(effects, one.name) for one in fields(effects)}
-    arrays |= {"score": tested.scores, "p": tested.p, "p_fwer": tested.p_fwer, "q": tested.q}
+    arrays: dict[str, NDArray[Any]] = {
+        **effects,
+        "score": tested.scores,
+        "p": tested.p,
+        "p_fwer": tested.p_fwer,
+        "q": tested.q,
+    }
     arrays["cluster"] = tested.labels
     arrays["status"] = np.where(np.isfinite(tested.p), "ok", _FEW)
     coords = {
@@ -61,9 +68,9 @@ def window_dataset(
         {name: (pop.raw.dims[1:], array.reshape(shape)) for name, array in arrays.items()},
         coords | {"channel": list(channels)},
     )
-    for name in ("control", "treated", "difference", "difference_low", "difference_high"):
+    for name in LEVELS & {*found}:
         found[name].attrs["units"] = pop.units
-    for name in ("n_control", "n_treated"):
+    for name in (name for name in effects if name.startswith("n_")):
         found[name] = found[name].astype(np.int64)
     return found
 
@@ -106,25 +113,26 @@ def cluster_table(
     return pd.DataFrame(rows, columns=list(CLUSTER_COLUMNS))
 
 
-def scalar_rows(scalars: pd.DataFrame, effects: Effects, tested: ExchangeTest) -> pd.DataFrame:
+def scalar_rows(
+    scalars: pd.DataFrame, effects: Mapping[str, FloatArray], tested: ExchangeTest
+) -> pd.DataFrame:
     """One row for each scalar with its effects and p-values.
 
     Parameters
     ----------
     scalars : DataFrame
         Columns scalar, channel, what.
-    effects : Effects
+    effects : dict of str to ndarray of shape (scalars,)
     tested : ExchangeTest
 
     Returns
     -------
     DataFrame
     """
-    numbers = {one.name: getattr(effects, one.name) for one in fields(effects)}
-    numbers |= {"p": tested.p, "p_fwer": tested.p_fwer, "q": tested.q}
+    numbers = {**effects, "p": tested.p, "p_fwer": tested.p_fwer, "q": tested.q}
     table = scalars.assign(**numbers)
     table["status"] = np.where(np.isfinite(tested.p), "ok", _FEW)
-    return table.astype({"n_control": np.int64, "n_treated": np.int64})
+    return table.astype({name: np.int64 for name in effects if name.startswith("n_")})
 
 
 def numbers_of_results(

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import false_discovery_control, t
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
-from cytodisk.population.exchanges import MOST_LABELS, Exchanges
-from cytodisk.population.studentised import Statistic
-from cytodisk.population.window_neighbours import ClusterField
+from cytodisk.population.exchange.exchanges import MOST_LABELS, Exchanges
+from cytodisk.population.exchange.studentised import Statistic
+from cytodisk.population.exchange.window_neighbours import ClusterField
 
 _MOST_SCORES = 2_000_000
 _TIE = 1e-9  # two scores that differ by less, as a share, are equal
@@ -42,7 +43,10 @@ class ExchangeTest:
 
 
 def exchange_test(
-    statistic: Statistic, exchanges: Exchanges, field: ClusterField | None = None
+    statistic: Statistic,
+    exchanges: Exchanges,
+    field: ClusterField | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> ExchangeTest:
     """Test all windows together.
 
@@ -52,6 +56,8 @@ def exchange_test(
     exchanges : Exchanges
     field : ClusterField, optional
         How windows lie beside each other; without it there are no clusters.
+    progress : callable, optional
+        Called with (exchanges done, exchanges in all).
 
     Returns
     -------
@@ -70,6 +76,8 @@ def exchange_test(
         if found is None:
             found = _Counts.of(scores[0], testable, field, threshold)
         found.add(scores)
+        if progress is not None:
+            progress(found.ways, exchanges.count)
     assert found is not None  # the observed labels are always there
     p, stepped = found.exceeding / found.ways, found.stepped / found.ways
     p_fwer = nothing.copy()

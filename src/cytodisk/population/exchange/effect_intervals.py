@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from scipy.special import gammaln, nctdtrinc
@@ -14,33 +14,27 @@ from cytodisk.population.ratios import ratio
 CONFIDENCE = 0.95
 
 
-@dataclass(frozen=True, eq=False)
-class Effects:
-    """Of each window: fields of shape (windows,) and dtype float64, NaN where there is none.
+Effects: TypeAlias = dict[str, FloatArray]
+"""By name an array of shape (windows,), NaN where there is none.
 
-    Attributes
-    ----------
-    control, treated : ndarray
-        Means of the units.
-    difference, difference_low, difference_high : ndarray
-        Treated minus control, and its interval by Student's t (Welch's for groups, of pairs where paired).
-    effect_size, low, high : ndarray
-        Hedges' g and its interval from the noncentral t distribution; in pairs over the standard deviation of
-        the two conditions, so that it can be compared with that of groups.
-    n_control, n_treated : ndarray
-        Units with a value.
-    """
+control, treated: means of the units. difference, difference_low, difference_high: treated minus control, and
+its interval by Student's t (Welch's for groups, of pairs where paired). effect_size, low, high: Hedges' g and
+its interval from the noncentral t distribution; in pairs over the standard deviation of the two conditions,
+so that it can be compared with that of groups. n_control, n_treated: units with a value.
+"""
 
-    control: FloatArray
-    treated: FloatArray
-    difference: FloatArray
-    difference_low: FloatArray
-    difference_high: FloatArray
-    effect_size: FloatArray
-    low: FloatArray
-    high: FloatArray
-    n_control: FloatArray
-    n_treated: FloatArray
+_NAMES = (
+    "control",
+    "treated",
+    "difference",
+    "difference_low",
+    "difference_high",
+    "effect_size",
+    "low",
+    "high",
+    "n_control",
+    "n_treated",
+)
 
 
 def group_effects(values: FloatArray, treated: BoolArray) -> Effects:
@@ -54,8 +48,8 @@ def group_effects(values: FloatArray, treated: BoolArray) -> Effects:
 
     Returns
     -------
-    Effects
-        Hedges (1981), doi:10.3102/10769986006002107; interval: Steiger & Fouladi (1997).
+    dict of str to ndarray
+        See `Effects`. Hedges (1981), doi:10.3102/10769986006002107; interval: Steiger & Fouladi (1997).
     """
     (m0, v0, n0), (m1, v1, n1) = (_moments(values[group]) for group in (~treated, treated))
     enough = (n0 > 0) & (n1 > 0)
@@ -71,7 +65,7 @@ def group_effects(values: FloatArray, treated: BoolArray) -> Effects:
         worth = np.sqrt(n0 * n1 / (n0 + n1))
     scale = np.where(enough & (own > 0) & (spread > 0), spread, np.nan)
     g, low, high = _hedges(difference / scale * worth, own, 1.0 / worth)
-    return Effects(m0, m1, difference, difference - half, difference + half, g, low, high, n0, n1)
+    return _effects(m0, m1, difference, difference - half, difference + half, g, low, high, n0, n1)
 
 
 def pair_effects(control: FloatArray, treated: FloatArray) -> Effects:
@@ -83,8 +77,8 @@ def pair_effects(control: FloatArray, treated: FloatArray) -> Effects:
 
     Returns
     -------
-    Effects
-        Interval of the effect size: Algina & Keselman (2003), doi:10.1177/0013164403256358.
+    dict of str to ndarray
+        See `Effects`. Interval of the effect size: Algina & Keselman (2003), doi:10.1177/0013164403256358.
     """
     both = np.isfinite(control) & np.isfinite(treated)
     first, second = np.where(both, control, np.nan), np.where(both, treated, np.nan)
@@ -95,7 +89,7 @@ def pair_effects(control: FloatArray, treated: FloatArray) -> Effects:
         spread = np.sqrt((v0 + v1) / 2.0)
         score = np.where((error > 0) & (spread > 0), difference / error, np.nan)
         g, low, high = _hedges(score, n - 1, error / spread)
-    return Effects(m0, m1, difference, difference - half, difference + half, g, low, high, n, n)
+    return _effects(m0, m1, difference, difference - half, difference + half, g, low, high, n, n)
 
 
 def mean_effects(values: FloatArray) -> Effects:
@@ -107,15 +101,19 @@ def mean_effects(values: FloatArray) -> Effects:
 
     Returns
     -------
-    Effects
-        The effect size is the mean over the standard deviation of the units.
+    dict of str to ndarray
+        See `Effects`. The effect size is the mean over the standard deviation of the units.
     """
     mean, variance, n = _moments(values)
     with np.errstate(invalid="ignore", divide="ignore"):
         error = np.sqrt(variance / n)
         half = t.ppf(0.5 + CONFIDENCE / 2, n - 1) * error
         g, low, high = _hedges(np.where(error > 0, mean / error, np.nan), n - 1, 1.0 / np.sqrt(n))
-    return Effects(np.zeros_like(mean), mean, mean, mean - half, mean + half, g, low, high, n, n)
+    return _effects(np.zeros_like(mean), mean, mean, mean - half, mean + half, g, low, high, n, n)
+
+
+def _effects(*arrays: FloatArray) -> Effects:
+    return dict(zip(_NAMES, arrays, strict=True))
 
 
 def bias_factor(degrees: FloatArray) -> FloatArray:

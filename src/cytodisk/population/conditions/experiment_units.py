@@ -102,8 +102,8 @@ def units_of(
     use = usable & (side >= 0) & (number >= 0)
     if not use.any():
         raise PopulationError(
-            "experiments are unknown: cells have no name of the independent repetition (day, dish, animal) in "
-            "a column experiment, without which a difference between conditions cannot be told from one "
+            "experiments are unknown: cells have no name of the independent repetition (day, dish, animal) "
+            "in a column experiment, without which a difference between conditions cannot be told from one "
             "between dishes: add it, as with --groups, or pass unit='cell' to treat cells as independent"
         )
     taken, found, shared = _chosen_design(design, number, side, use, names)
@@ -150,14 +150,14 @@ def _chosen_design(
     words = _named([names[k] for k in shared])
     if design == "paired" and len(shared) < 2:
         raise PopulationError(
-            f"design='paired' needs experiments that hold both conditions, {len(shared)} does: give both halves "
-            "of an experiment one name in the column experiment, or pass design='unpaired'"
+            f"design='paired' needs experiments that hold both conditions, {len(shared)} does: give both "
+            "halves of an experiment one name in the column experiment, or pass design='unpaired'"
         )
     if design == "auto" and len(shared) and len(shared) < _FEWEST_SHARED * (len(shared) + len(single)):
         raise PopulationError(
             f"experiments {words} hold both conditions, but {_named([names[k] for k in single])} hold only "
-            "one: pass design='paired' to use the former alone, or design='unpaired' if equal names are different "
-            "experiments"
+            "one: pass design='paired' to use the former alone, or design='unpaired' if equal names are "
+            "different experiments"
         )
     if design == "unpaired" or (design == "auto" and not len(shared)):
         if not len(shared):

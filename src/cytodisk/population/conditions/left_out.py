@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 
 from cytodisk.arrays import FloatArray
-from cytodisk.population.exchange_test import exchange_test
-from cytodisk.population.exchanges import LabelExchanges, SignExchanges
-from cytodisk.population.experiment_units import Units
-from cytodisk.population.studentised import GroupDifference, PairDifference
+from cytodisk.population.conditions.experiment_units import Units
+from cytodisk.population.exchange.exchange_test import exchange_test
+from cytodisk.population.exchange.exchanges import LabelExchanges, SignExchanges
+from cytodisk.population.exchange.studentised import GroupDifference, PairDifference
 
 _MOST = 999  # permutations: these p-values compare experiments and correct nothing
 COLUMNS = ("result", "experiment", "difference_of_all", "difference", "p")

@@ -1,0 +1,140 @@
+"""`compare_with_control`: several conditions, each against one control."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cytodisk.arrays import FloatArray
+from cytodisk.errors import PopulationError
+from cytodisk.population.comparison_parameters import ComparisonParameters
+from cytodisk.population.conditions.comparison import ConditionComparison, compare_conditions
+from cytodisk.population.conditions.comparison_warnings import LEVEL
+from cytodisk.population.population import Population
+from cytodisk.taking import takes
+
+
+@takes(ComparisonParameters)
+def compare_with_control(
+    pop: Population,
+    control: str,
+    others: Sequence[str] | None = None,
+    *,
+    channel: str | Sequence[str] | None = None,
+    parameters: ComparisonParameters | None = None,
+    **settings: Any,
+) -> dict[str, ConditionComparison]:
+    """Compare several conditions with one control.
+
+    Labels are exchanged between the two conditions of a comparison alone, and the p-values are corrected over
+    the comparisons by Holm's procedure.
+
+    Parameters
+    ----------
+    pop : Population
+    control : str
+    others : sequence of str, optional
+        By default all conditions but the control.
+    channel : str or sequence of str, optional
+        By default all.
+    parameters : ComparisonParameters, optional
+        All parameters together; those that are given by name overrule them.
+    **settings
+        See `ComparisonParameters`.
+
+    Returns
+    -------
+    dict of str to ConditionComparison
+        By name of the other condition. Windows, clusters and scalars have `p_holm` beside: p_fwer of windows
+        and scalars, and p of clusters, corrected over the comparisons.
+
+    Raises
+    ------
+    PopulationError
+        As `compare_conditions`, or there is no other condition.
+
+    Notes
+    -----
+    Holm (1979). A family is all windows (or clusters, or scalars) of a comparison, with the smallest p-value
+    of its members.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.population(experiments=4, effect=3.0, seed=0)
+    >>> pop = cd.Population(truth.values, truth.cells)
+    >>> found = cd.compare_with_control(pop, "control")
+    >>> list(found), "p_holm" in found["drug"].windows
+    (['drug'], True)
+    """
+    names = [name for name in pop.conditions if name != control] if others is None else list(others)
+    if isinstance(others, str):
+        names = [others]
+    if not names:
+        raise PopulationError(f"there is no condition beside {control!r} to compare it with")
+    found = {
+        name: compare_conditions(pop, control, name, channel=channel, parameters=parameters, **settings)
+        for name in names
+    }
+    windows = holm({name: one.windows["p_fwer"].values for name, one in found.items()})
+    clusters = holm({name: one.clusters["p"].to_numpy(np.float64) for name, one in found.items()})
+    scalars = holm({name: one.scalars["p_fwer"].to_numpy(np.float64) for name, one in found.items()})
+    return {
+        name: replace(
+            one,
+            windows=one.windows.assign(p_holm=(one.windows["p_fwer"].dims, windows[name])),
+            clusters=one.clusters.assign(p_holm=clusters[name]),
+            scalars=one.scalars.assign(p_holm=scalars[name]),
+            sentences=(*one.sentences, *_words(name, len(names), windows[name])),
+        )
+        for name, one in found.items()
+    }
+
+
+def holm(families: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """p-values of families corrected over the families.
+
+    Parameters
+    ----------
+    families : dict of str to ndarray of any shape
+        p-values that hold within the family; NaN for what is not tested.
+
+    Returns
+    -------
+    dict of str to ndarray
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from cytodisk.population.conditions.with_control import holm
+    >>> found = holm({"a": np.array([0.01, 0.3]), "b": np.array([0.04])})
+    >>> found["a"].tolist(), found["b"].tolist()
+    ([0.02, 0.6], [0.04])
+    """
+    smallest = {name: _least(p) for name, p in families.items()}
+    order = sorted(families, key=lambda name: smallest[name])
+    found, reached = {}, 0.0
+    for rank, name in enumerate(order):
+        left = len(order) - rank
+        found[name] = np.clip(np.maximum(left * families[name], reached), None, 1.0)
+        reached = min(1.0, max(reached, left * smallest[name]))
+    return found
+
+
+def _least(p: NDArray[np.float64]) -> float:
+    finite = p[np.isfinite(p)]
+    return float(finite.min()) if finite.size else 1.0
+
+
+def _words(name: str, count: int, windows: FloatArray) -> list[str]:
+    if count < 2:
+        return []
+    left = int((windows <= LEVEL).sum())
+    return [
+        f"{count} conditions were compared with the control; corrected for that (Holm), {left} windows of "
+        f"{name} differ."
+    ]

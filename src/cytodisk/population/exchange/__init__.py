@@ -1,0 +1,1 @@
+"""Labels exchanged between experiments, and the p-values that follow."""
