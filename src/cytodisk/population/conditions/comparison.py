@@ -21,7 +21,7 @@ from cytodisk.population.conditions.comparison_warnings import (
 )
 from cytodisk.population.conditions.experiment_units import units_of
 from cytodisk.population.conditions.left_out import left_out_table
-from cytodisk.population.conditions.tested_units import TwoConditions, tested_units
+from cytodisk.population.conditions.tested_units import TwoConditions, unit_results
 from cytodisk.population.conditions.unit_values import usable_cells
 from cytodisk.population.named_warning import NamedWarning
 from cytodisk.population.population import Population
@@ -144,7 +144,7 @@ def compare_conditions(
     usable = usable_cells(pop, channels)
     units = units_of(pop.cells, usable, (control, treated), chosen.unit, chosen.design)
     test = TwoConditions(units, chosen)
-    found = tested_units(pop, channels, units.codes, units.count, test, progress)
+    found = unit_results(pop, channels, units.codes, units.count, test, progress)
     results = found.results if chosen.unit == "experiment" else {}
     left_out = left_out_table({name: number for name, (number, _) in results.items()}, units, chosen.seed)
     warnings = (

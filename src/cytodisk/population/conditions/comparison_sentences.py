@@ -85,11 +85,13 @@ def _of_windows(against: str, channel: str, windows: xr.Dataset, clusters: pd.Da
         return f"{words}; clusters: {'; '.join(parts)}{more}."
     if not different.any():
         best = np.unravel_index(int(np.nanargmax(np.abs(windows["score"].values))), p.shape)
-        low, high = (float(windows[name].values[best]) for name in ("low", "high"))
-        size = float(windows["effect_size"].values[best])
-        words += f", none in a cluster; the strongest window has {p_words(float(p[best]))}"
-        if np.isfinite(size):
-            words += f", Hedges' g {size:.2g} ({low:.2g} to {high:.2g})"
+        difference, low, high = (
+            float(windows[name].values[best]) for name in ("difference", "difference_low", "difference_high")
+        )
+        words += (
+            f", none in a cluster; the strongest of them has {p_words(float(p[best]))}, {difference:+.3g}"
+        )
+        words += f" ({low:.3g} to {high:.3g}){_unit(windows)}" if np.isfinite(low) else _unit(windows)
     return f"{words}."
 
 

@@ -15,7 +15,7 @@ from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import DoseParameters
 from cytodisk.population.conditions.comparison import chosen_channels
-from cytodisk.population.conditions.tested_units import tested_units
+from cytodisk.population.conditions.tested_units import unit_results
 from cytodisk.population.conditions.unit_values import usable_cells
 from cytodisk.population.exchange.dose_exchanges import DoseExchanges, DoseSlope, without_levels
 from cytodisk.population.exchange.effect_intervals import CONFIDENCE
@@ -110,7 +110,7 @@ def dose_trend(
         )
     blocks = experiment if within else np.zeros(len(doses), dtype=np.int64)
     test = _Trend(scaled, blocks, chosen)
-    found = tested_units(pop, channels, codes, len(doses), test)
+    found = unit_results(pop, channels, codes, len(doses), test)
     design = "within experiments" if within else "between experiments"
     p = test.exchanges.smallest_p
     step = {"rank": "step of the dose", "linear": "unit of dose", "log": "factor of 10"}[chosen.scale]

@@ -109,7 +109,7 @@ class TestedUnits:
     results: dict[str, tuple[FloatArray, bool]]
 
 
-def tested_units(
+def unit_results(
     pop: Population,
     channels: Sequence[str],
     codes: IntArray,

@@ -15,7 +15,7 @@ from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import PermutationParameters
 from cytodisk.population.conditions.comparison import chosen_channels
 from cytodisk.population.conditions.experiment_units import checked_conditions
-from cytodisk.population.conditions.tested_units import AgainstZero, tested_units
+from cytodisk.population.conditions.tested_units import AgainstZero, unit_results
 from cytodisk.population.conditions.unit_values import usable_cells
 from cytodisk.population.group_columns import EXPERIMENT, codes_of, names_in
 from cytodisk.population.population import Population
@@ -98,7 +98,7 @@ def compare_with_zero(
         use &= (checked_conditions(pop.cells, [condition]) == condition).to_numpy()
     codes, names = experiment_codes(pop.cells, use)
     test = AgainstZero(len(names), chosen)
-    found = tested_units(pop, channels, codes, len(names), test)
+    found = unit_results(pop, channels, codes, len(names), test)
     p = test.exchanges.smallest_p
     different = found.windows["p_fwer"] <= 0.05
     words = (
