@@ -32,7 +32,7 @@ def reach_words(exchanges: Exchanges, units: Units) -> str:
     )
     if exchanges.smallest_p > LEVEL:
         return f"{words}: no difference can reach {LEVEL:g}."
-    return f"{words}."
+    return f"{words.rstrip('.')}."
 
 
 def found_words(
@@ -92,7 +92,7 @@ def _of_windows(against: str, channel: str, windows: xr.Dataset, clusters: pd.Da
             f", none in a cluster; the strongest of them has {p_words(float(p[best]))}, {difference:+.3g}"
         )
         words += f" ({low:.3g} to {high:.3g}){_unit(windows)}" if np.isfinite(low) else _unit(windows)
-    return f"{words}."
+    return f"{words.rstrip('.')}."
 
 
 def _scalar_words(row: pd.Series) -> str:
