@@ -90,6 +90,8 @@ from .population.conditions.comparison import ConditionComparison as ConditionCo
 from .population.conditions.with_control import compare_with_control as compare_with_control
 from .population.conditions.with_zero import compare_with_zero as compare_with_zero
 from .population.conditions.with_zero import ZeroComparison as ZeroComparison
+from .population.conditions.pattern_test import pattern_test as pattern_test
+from .population.conditions.pattern_test import PatternTest as PatternTest
 from .population.conditions.dose_trend import dose_trend as dose_trend
 from .population.conditions.dose_trend import DoseTrend as DoseTrend
 from .population.comparison_parameters import ComparisonParameters as ComparisonParameters

@@ -1,0 +1,137 @@
+"""`pattern_test`: is there a pattern around the cell with respect to its direction?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from cytodisk.errors import PopulationError
+from cytodisk.population.cell_directions import SIGNAL
+from cytodisk.population.comparison_parameters import PermutationParameters
+from cytodisk.population.conditions.comparison import chosen_channels
+from cytodisk.population.conditions.comparison_tables import cluster_table, window_dataset
+from cytodisk.population.conditions.experiment_units import checked_conditions
+from cytodisk.population.conditions.unit_values import usable_cells, window_means
+from cytodisk.population.exchange.exchange_test import exchange_test
+from cytodisk.population.exchange.turns import TurnedPattern, TurnExchanges
+from cytodisk.population.exchange.window_neighbours import ClusterField
+from cytodisk.population.group_columns import EXPERIMENT, codes_of, names_in
+from cytodisk.population.population import Population
+from cytodisk.taking import takes
+
+
+@dataclass(frozen=True, eq=False)
+class PatternTest:
+    """Where aligned cells differ from the mean of their layer.
+
+    Attributes
+    ----------
+    windows : Dataset with dims ([channel,] layer, sector)
+        `difference` of the window from the mean of its layer, mean over experiments; `p`, `p_fwer`, `q`,
+        `cluster` and `status`, as in `ConditionComparison`.
+    clusters : DataFrame
+    cells : int
+        Number of cells with a direction, which were used.
+    sentences : tuple of str
+    """
+
+    windows: xr.Dataset
+    clusters: pd.DataFrame
+    cells: int
+    sentences: tuple[str, ...]
+
+
+@takes(PermutationParameters)
+def pattern_test(
+    pop: Population,
+    condition: str | None = None,
+    *,
+    channel: str | Sequence[str] | None = None,
+    parameters: PermutationParameters | None = None,
+    **settings: Any,
+) -> PatternTest:
+    """Test whether a signal has a place with respect to the direction that cells are aligned by.
+
+    Each cell is turned at random, which keeps its own pattern and undoes its direction. Cells without a
+    direction are left out.
+
+    Parameters
+    ----------
+    pop : Population
+        Aligned by nucleus, front, motion, axis or a signal.
+    condition : str, optional
+        By default all cells.
+    channel : str or sequence of str, optional
+        By default all but the one that cells are aligned by.
+    parameters : PermutationParameters, optional
+        All parameters together; those that are given by name overrule them.
+    **settings
+        See `PermutationParameters`.
+
+    Returns
+    -------
+    PatternTest
+
+    Raises
+    ------
+    PopulationError
+        Cells are not aligned, or by the signal that is tested: turned and aligned again it would come out the
+        same, so no test can be made.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> truth = cd.simulate.population(effect=0.0, seed=0)
+    >>> pop = cd.Population(truth.values, truth.cells).align("nucleus")
+    >>> found = cd.pattern_test(pop, permutations=199)
+    >>> bool((found.windows["p_fwer"] > 0.05).all())
+    True
+    """
+    chosen = PermutationParameters.chosen(parameters, settings)
+    if pop.aligned_by == "none":
+        raise PopulationError("pattern_test: cells are not aligned: call align first, as align('nucleus')")
+    own = pop.aligned_by.removeprefix(SIGNAL) if pop.aligned_by.startswith(SIGNAL) else ""
+    channels = chosen_channels(pop, channel)
+    channels = tuple(name for name in channels if name != own or channel is not None)
+    if own in channels or not channels:
+        raise PopulationError(
+            f"pattern_test: cells are aligned by {own}: turned at random and aligned by it again, it comes "
+            "out the same, so its pattern cannot be tested; test another channel, or align by something else"
+        )
+    use = usable_cells(pop, channels) & (pop.alignment["status"] == "ok").to_numpy()
+    if condition is not None:
+        use &= (checked_conditions(pop.cells, [condition]) == condition).to_numpy()
+    if use.sum() < 2:
+        raise PopulationError(
+            f"pattern_test: {int(use.sum())} cells have a direction and values: 2 are needed"
+        )
+    cells = pop.select(use)
+    values = window_means(cells, channels, np.arange(len(cells)), len(cells))
+    layers, sectors = pop.raw.shape[2:]
+    statistic = TurnedPattern(values.reshape(len(cells), -1, sectors), _weights(cells))
+    exchanges = TurnExchanges(len(cells), sectors, chosen.permutations, chosen.seed)
+    field = ClusterField((len(channels), layers, sectors), closed=True)
+    tested = exchange_test(statistic, exchanges, field)
+    difference = statistic.means()
+    windows = window_dataset(pop, channels, {"difference": difference}, tested)
+    clusters = cluster_table(pop, channels, difference, tested)
+    different = int((tested.p_fwer <= 0.05).sum())
+    words = (
+        f"{len(cells)} cells with a direction were turned at random {chosen.permutations} times.",
+        f"{different} of {len(difference)} windows differ from the mean of their layer (max-T, p ≤ 0.05).",
+    )
+    windows = windows.squeeze("channel") if len(channels) == 1 else windows
+    return PatternTest(windows, clusters, len(cells), words)
+
+
+def _weights(cells: Population) -> np.ndarray:
+    """Each experiment counts the same, and each cell where experiments are unknown."""
+    codes, names = codes_of(names_in(cells.cells, EXPERIMENT))
+    if not names or (codes < 0).any():
+        return np.full(len(cells), 1.0 / len(cells))
+    return np.asarray(1.0 / (np.bincount(codes)[codes] * len(names)))
