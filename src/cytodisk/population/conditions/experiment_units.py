@@ -91,6 +91,10 @@ def units_of(
             raise PopulationError(f"condition {name!r} has no cell with values: choose another one")
     experiment = names_in(cells, EXPERIMENT)
     if unit == "cell":
+        if design == "paired":
+            raise PopulationError(
+                "unit='cell' has no pairs: leave design='paired' out, or use unit='experiment'"
+            )
         use = usable & (side >= 0)
         order = np.flatnonzero(use)[np.argsort(side[use], kind="stable")]
         codes = np.full(len(cells), -1, dtype=np.int64)

@@ -9,6 +9,7 @@ from scipy.special import gammaln, nctdtrinc
 from scipy.stats import t
 
 from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.population.exchange.column_moments import column_moments
 from cytodisk.population.ratios import ratio
 
 CONFIDENCE = 0.95
@@ -51,7 +52,7 @@ def group_effects(values: FloatArray, treated: BoolArray) -> Effects:
     dict of str to ndarray
         See `Effects`. Hedges (1981), doi:10.3102/10769986006002107; interval: Steiger & Fouladi (1997).
     """
-    (m0, v0, n0), (m1, v1, n1) = (_moments(values[group]) for group in (~treated, treated))
+    (m0, v0, n0), (m1, v1, n1) = (_moments(values, group) for group in (~treated, treated))
     enough = (n0 > 0) & (n1 > 0)
     difference = np.where(enough, m1 - m0, np.nan)
     e0, e1 = ratio(v0, n0, n0 > 1), ratio(v1, n1, n1 > 1)
@@ -143,10 +144,9 @@ def _hedges(score: FloatArray, degrees: FloatArray, per_score: FloatArray) -> tu
     return (score * per_score * factor, *(end * per_score * factor for end in ends))
 
 
-def _moments(values: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _moments(
+    values: FloatArray, chosen: BoolArray | None = None
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Mean, variance and number of the values in each column; NaN where there are too few."""
-    finite = np.isfinite(values)
-    n = finite.sum(axis=0).astype(np.float64)
-    mean = ratio(np.where(finite, values, 0.0).sum(axis=0), n, n > 0)
-    squares = (np.where(finite, values - mean, 0.0) ** 2).sum(axis=0)
-    return mean, ratio(squares, n - 1, n > 1), n
+    found = column_moments(values, chosen)
+    return found.mean, found.variance, found.count

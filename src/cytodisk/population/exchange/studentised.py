@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.population.exchange.column_moments import ROWS, column_moments
 from cytodisk.population.ratios import ratio
 
-_UNITS = 4096  # taken at a time in a product
 _SURE = 1e6  # score of a difference between values that do not vary
 _ROUNDING = 1e-13  # of the squares of values: what is left of a variance of 0
 
@@ -54,21 +54,19 @@ class GroupDifference:
 
     def __init__(self, values: FloatArray, treated: BoolArray, families: IntArray | None = None) -> None:
         self.sizes = int((~treated).sum()), int(treated.sum())
-        self._finite = np.isfinite(values)
-        self._complete = bool(self._finite.all())
-        centred = values - _column_means(values, self._finite)
-        self._values = centred if self._complete else np.where(self._finite, centred, 0.0)
-        squares = (self._values**2).sum(axis=0)
-        self._count = self._finite.sum(axis=0).astype(np.float64)
-        self._total = self._values.sum(axis=0)
-        self._squares = squares
-        self._least = _ROUNDING * (np.where(self._finite, values, 0.0) ** 2).sum(axis=0)
-        self.testable = self._enough(treated)
-        variance = ratio(squares, self._count - 1, self._count > 1)
+        self._values = values
+        moments = column_moments(values)
+        self._mean, self._squares, self._count = moments.mean, moments.squares, moments.count
+        self._complete = bool((self._count == len(values)).all())
+        self._least = _ROUNDING * moments.raw_squares
+        self.testable = self._count >= 0.75 * len(values)
+        if not self._complete:
+            for group, size in zip((~treated, treated), self.sizes, strict=True):
+                self.testable &= np.isfinite(values[group]).sum(axis=0) >= min(2, size)
         per_unit = 1.0 / max(self.sizes[0], 1) + 1.0 / max(self.sizes[1], 1)
-        self._shared = (
-            None if families is None else shared_medians(variance * per_unit, self.testable, families)
-        )
+        self._shared = None
+        if families is not None:
+            self._shared = shared_medians(moments.variance * per_unit, self.testable, families)
 
     @property
     def degrees(self) -> float:
@@ -76,17 +74,10 @@ class GroupDifference:
         own = max(sum(self.sizes) - 2, 1)
         return float(own if self._shared is None else 2 * own)
 
-    def _enough(self, treated: BoolArray) -> BoolArray:
-        """Windows with a value in most units, and in two of each condition that has two."""
-        enough = self._count >= 0.75 * len(self._finite)
-        for group in (treated, ~treated):
-            enough &= self._finite[group].sum(axis=0) >= min(2, int(group.sum()))
-        return np.asarray(enough)
-
     def scores(self, labels: NDArray[np.generic]) -> FloatArray:
         """Scores (ways, windows) for which units are treated (ways, units)."""
         total, squares, count = self._sums(labels)
-        other, n_other = self._total - total, self._count - count
+        other, n_other = -total, self._count - count  # of values about the mean of all
         enough = (count >= min(2, self.sizes[1])) & (n_other >= min(2, self.sizes[0])) & self.testable
         with np.errstate(invalid="ignore", divide="ignore"):
             difference = total / count - other / n_other
@@ -105,17 +96,19 @@ class GroupDifference:
         return sure_scores(np.where(enough, difference, 0.0), error, np.sqrt(self._least))
 
     def _sums(self, labels: NDArray[np.generic]) -> tuple[FloatArray, FloatArray, FloatArray]:
-        ways, units = labels.shape
-        shape = ways, self._values.shape[1]
+        """Sum and sum of squares, about the mean of all, and number of the treated units' values."""
+        shape = len(labels), self._values.shape[1]
         total, squares = np.zeros(shape), np.zeros(shape)
-        count = np.zeros(shape) if not self._complete else np.full((1, 1), float(self.sizes[1]))
-        for start in range(0, units, _UNITS):
-            rows = slice(start, start + _UNITS)
-            chosen, values = labels[:, rows].astype(np.float64), self._values[rows]
+        count = np.full((1, 1), float(self.sizes[1])) if self._complete else np.zeros(shape)
+        for start in range(0, len(self._values), ROWS):
+            rows = slice(start, start + ROWS)
+            chosen, values = labels[:, rows].astype(np.float64), self._values[rows] - self._mean
+            if not self._complete:
+                finite = np.isfinite(values)
+                values = np.where(finite, values, 0.0)
+                count += chosen @ finite.astype(np.float64)
             total += chosen @ values
             squares += chosen @ values**2
-            if not self._complete:
-                count += chosen @ self._finite[rows].astype(np.float64)
         return total, squares, count
 
 
@@ -174,11 +167,6 @@ def sure_scores(difference: FloatArray, error: FloatArray, rounding: FloatArray)
     """
     sure = np.where(np.abs(difference) > rounding, np.sign(difference) * _SURE, 0.0)
     return np.where(error > 0, ratio(difference, np.sqrt(error), error > 0, 0.0), sure)
-
-
-def _column_means(values: FloatArray, finite: BoolArray) -> FloatArray:
-    count = finite.sum(axis=0)
-    return ratio(np.where(finite, values, 0.0).sum(axis=0), count, count > 0)
 
 
 def shared_medians(errors: FloatArray, testable: BoolArray, families: IntArray) -> FloatArray:
