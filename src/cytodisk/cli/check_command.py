@@ -6,7 +6,7 @@ import typer
 
 from cytodisk.cli.console import console_for
 from cytodisk.cli.map_command import say_inputs
-from cytodisk.cli.options import Given, MaskFiles, NucleiFiles, SignalFiles, with_parameters
+from cytodisk.cli.options import Given, GroupsFile, MaskFiles, NucleiFiles, SignalFiles, with_parameters
 from cytodisk.runs.cells.cell_parameters import CheckParameters
 
 if TYPE_CHECKING:
@@ -21,18 +21,21 @@ def check_command(
     given: Given,
     signal: SignalFiles = None,
     nuclei: NucleiFiles = None,
+    groups: GroupsFile = None,
     every: Annotated[
         bool, typer.Option("--all", help="Print a line for every cell, or frame of a stack.")
     ] = False,
 ) -> None:
     from cytodisk.cli.checked_words import Checked
     from cytodisk.cli.contents_lines import say_contents
+    from cytodisk.runs.cells.cell_groups import with_groups
     from cytodisk.runs.cells.cell_inputs import open_inputs
     from cytodisk.runs.map.checked_cells import check_cells
 
     console = console_for(False)
     say_contents(console, (masks, signal, nuclei))
     inputs = open_inputs(masks, signal, given.of(CheckParameters), nuclei=nuclei)
+    inputs = with_groups(inputs, groups)
     say_inputs(console, inputs)
     _say_evidence(console, inputs)
     found = Checked(inputs)

@@ -9,7 +9,7 @@ WIDTH = 100
 """Letters in a line of help, at most; less in a narrow window."""
 
 GROUPS = {
-    "Files": "signal nuclei out parameters",
+    "Files": "signal nuclei groups out parameters",
     "What the files hold": "pixel-size frame-interval channels movie kind label fragments holes link tracks "
     "axes signal-axes scene z mask-channel signal-channels nuclei-kind nuclei-axes nuclei-channel",
     "Nuclei": "several missing nucleus-radius",

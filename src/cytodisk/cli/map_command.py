@@ -8,6 +8,7 @@ from cytodisk.cli.map_totals import finish_map
 from cytodisk.cli.options import (
     Figures,
     Given,
+    GroupsFile,
     MaskFiles,
     NucleiFiles,
     OutFolder,
@@ -31,16 +32,19 @@ def map_command(
     given: Given,
     signal: SignalFiles = None,
     nuclei: NucleiFiles = None,
+    groups: GroupsFile = None,
     figures: Figures = 8,
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.pages.cell_pages import write_cell_figures
+    from cytodisk.runs.cells.cell_groups import with_groups
     from cytodisk.runs.cells.cell_inputs import open_inputs
     from cytodisk.runs.map.map_study import map_study
 
     console = console_for(quiet)
     options = given.options(MapOptions)
     inputs = open_inputs(masks, signal, given.of(MapParameters), nuclei=nuclei)
+    inputs = with_groups(inputs, groups)
     say_inputs(console, inputs)
     work = with_nuclei_or_not("map", nuclei)
     with compiling(quiet, work, options.workers), progress_bar(quiet, "cells") as progress:

@@ -11,6 +11,7 @@ from cytodisk.cli.nucleus_words import nucleus_ratio_words, nucleus_share_words
 from cytodisk.cli.options import (
     Figures,
     Given,
+    GroupsFile,
     MovieFile,
     MovieNuclei,
     OutFolder,
@@ -35,15 +36,18 @@ def movie_command(
     given: Given,
     signal: Signal = None,
     nuclei: MovieNuclei = None,
+    groups: GroupsFile = None,
     figures: Figures = 4,
     quiet: Quiet = False,
 ) -> None:
+    from cytodisk.runs.movie.movie_groups import with_movie_groups
     from cytodisk.runs.movie.movie_inputs import open_movie
     from cytodisk.runs.movie.movie_study import movie_study
 
     console = console_for(quiet)
     options = given.options(RunOptions)
     inputs = open_movie(masks, signal, given.of(MovieParameters), nuclei=nuclei)
+    inputs = with_movie_groups(inputs, masks, groups)
     say_movie(console, inputs)
     work = with_nuclei_or_not("movie", nuclei)
     with compiling(quiet, work, options.workers), progress_bar(quiet, "frames") as progress:

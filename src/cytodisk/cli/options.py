@@ -77,6 +77,14 @@ MovieNuclei = Annotated[
         "of these formats; in each frame a nucleus goes to the cell that holds most of it.",
     ),
 ]
+GroupsFile = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="TABLE",
+        help="What was done to which cell: a CSV table with the columns file, cell (its label) or frame, and "
+        "condition, experiment or your own. Those become columns of the table of cells.",
+    ),
+]
 OutFolder = Annotated[
     Path,
     typer.Option("--out", "-o", metavar="FOLDER", help="Folder for the results.", show_default=False),

@@ -10,6 +10,7 @@ from cytodisk.cli.map_command import say_inputs
 from cytodisk.cli.map_totals import say_reasons
 from cytodisk.cli.options import (
     Given,
+    GroupsFile,
     MaskFiles,
     OutFolder,
     Quiet,
@@ -35,13 +36,14 @@ def shapes_command(
     masks: MaskFiles,
     out: OutFolder,
     given: Given,
+    groups: GroupsFile = None,
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.runs.shapes.shape_study import open_shape_inputs, shape_study
 
     settings, options = given.of(ShapeParameters), given.options(RunOptions)
     console = console_for(quiet)
-    inputs = open_shape_inputs(masks, settings)
+    inputs = open_shape_inputs(masks, settings, groups)
     say_inputs(console, inputs)
     say_compiling(quiet, "shapes")
     with progress_bar(quiet, "cells") as progress:

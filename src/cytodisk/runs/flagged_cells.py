@@ -17,9 +17,24 @@ from cytodisk.store.study_kind import CELLS
 from cytodisk.store.tables import read_table
 
 if TYPE_CHECKING:
+    from cytodisk.runs.groups.given_groups import GivenGroups
     from cytodisk.runs.qc_flags.qc_flag import QCFlag
 
 _FLAGS, _REMARKS = "qc_flags", "mask_remarks"
+
+
+def fill_cells(folder: StudyFolder, groups: GivenGroups | None = None) -> None:
+    """Write what is known when all cells are done into the table of cells: groups and QC flags.
+
+    Parameters
+    ----------
+    folder : StudyFolder
+        All tables stand.
+    groups : GivenGroups, optional
+    """
+    if groups is not None:
+        groups.fill(folder)
+    fill_flags(folder)
 
 
 def fill_flags(folder: StudyFolder) -> None:

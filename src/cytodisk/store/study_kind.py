@@ -19,6 +19,7 @@ PARAMETERS = "parameters.toml"
 CELLS = "cells.parquet"
 MAPS, FIGURES, PARTS = "maps", "figures", ".parts"
 ACTIVITY = "activity.zarr.zip"
+_WHICH = ("cell", "source", "frame", "time_s", "label")
 
 
 @dataclass(frozen=True)
@@ -86,6 +87,11 @@ class StudyKind:
     def with_channels(self, channels: Sequence[str]) -> StudyKind:
         """The same where cells have nuclei and a signal: numbers of each channel in nucleus and cytoplasm."""
         return replace(self, cells=(*self.cells, *channel_columns(channels)))
+
+    def with_own(self, columns: Columns) -> StudyKind:
+        """The same with columns of the user's, as of conditions, after those that say which cell it is."""
+        first = 1 + max(place for place, column in enumerate(self.cells) if column.name in _WHICH)
+        return replace(self, cells=(*self.cells[:first], *columns, *self.cells[first:]))
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,6 +21,7 @@ from cytodisk.images.signal_files import common_name, pair_images
 from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.cells.fitting_signal import check_signal
 from cytodisk.runs.cells.folder_inputs import SignalFile, with_common_channels, with_common_scale
+from cytodisk.runs.cells.folder_words import folder_words
 from cytodisk.runs.cells.nuclei_given import with_nucleus_layers
 from cytodisk.runs.cells.nuclei_inputs import (
     NucleiInput,
@@ -33,6 +33,7 @@ from cytodisk.runs.cells.outline_sources import sized_like, with_sizes
 from cytodisk.runs.channel_names import channels_words, check_signal_given, name_channels, with_common_name
 from cytodisk.runs.file_notes import file_notes
 from cytodisk.runs.file_scales import agreed, most_common_size
+from cytodisk.runs.groups.given_groups import GivenGroups
 from cytodisk.scale import Scale
 
 _KINDS = {"mask": "one mask", "stack": "a stack of masks", "labels": "a label image, one cell a label"}
@@ -57,6 +58,8 @@ class CellInputs:
         What a user should know of the files of a folder before the run.
     nuclei : dict of str to NucleiInput
         By name of the source; empty without nuclei.
+    groups : GivenGroups or None
+        What was done to which cell.
     """
 
     masks: Path
@@ -66,6 +69,7 @@ class CellInputs:
     scale: Scale
     remarks: tuple[str, ...] = ()
     nuclei: dict[str, NucleiInput] = field(default_factory=dict)
+    groups: GivenGroups | None = None
 
     @property
     def is_folder(self) -> bool:
@@ -105,13 +109,21 @@ class CellInputs:
             "nuclei": [found.file.path for found in self.nuclei_files],
         }
         by_role = {role: paths for role, paths in found.items() if paths}
-        return by_role if self.is_folder else {role: paths[0] for role, paths in by_role.items()}
+        of_groups = {} if self.groups is None else {"groups": self.groups.groups.path}
+        return (
+            by_role if self.is_folder else {role: paths[0] for role, paths in by_role.items()}
+        ) | of_groups
 
     @property
     def understood(self) -> dict[str, str]:
         """What each file was read as, in words."""
         if self.is_folder:
-            return self._understood_folder()
+            words = folder_words(self.sources, self.signal_files, len(self.nuclei_files))
+        else:
+            words = self._understood_file()
+        return words if self.groups is None else words | {"groups": self.groups.words}
+
+    def _understood_file(self) -> dict[str, str]:
         source, words = self.sources[0], {}
         if source.file is not None and source.kind is not None:
             masks = source.file
@@ -123,27 +135,6 @@ class CellInputs:
         for nuclei in self.nuclei_files:
             words["nuclei"] = nuclei.words
         return words
-
-    def _understood_folder(self) -> dict[str, str]:
-        kinds = Counter("" if source.kind is None else source.kind for source in self.sources)
-        names = {"labels": "label image", "mask": "single mask", "stack": "stack", "": "unusable file"}
-        counts = ", ".join(_count(kinds[kind], name) for kind, name in names.items() if kinds[kind])
-        words = {"masks": f"{_count(len(self.sources), 'file')}: {counts}"}
-        left_out = [name for source in self.sources for name in source.instead_of]
-        if left_out:
-            words["masks"] += (
-                f"; {len(left_out)} left out (as {left_out[0]}): another file has masks of the same image"
-            )
-        signals = self.signal_files
-        if signals:
-            words["signal"] = f"{_count(len(signals), 'image')} with {channels_words(signals[0])}"
-        if self.nuclei_files:
-            words["nuclei"] = _count(len(self.nuclei_files), "file")
-        return words
-
-
-def _count(number: int, of: str) -> str:
-    return f"{number} {of}" if number == 1 else f"{number} {of}s"
 
 
 def open_inputs(

@@ -8,18 +8,22 @@ import pandas as pd
 
 from cytodisk.arrays import BoolArray
 from cytodisk.images.short_lists import shortened
-from cytodisk.runs.groups.known_cells import CELL, KnownCells
+from cytodisk.runs.groups.known_cells import CELL, FILE, KEYS, KnownCells
 
 _MOST_NAMED = 8
 
 
-def missing_words(table: str, known: KnownCells, missing: BoolArray, of_condition: bool) -> Iterator[str]:
+def missing_words(
+    table: str, keys: Sequence[str], known: KnownCells, missing: BoolArray, of_condition: bool
+) -> Iterator[str]:
     """A sentence on cells that no row is about, if there are any.
 
     Parameters
     ----------
     table : str
         Name of the table of groups.
+    keys : sequence of str
+        Its columns that say which cells a row is about.
     known : KnownCells
     missing : ndarray of bool
         By row of the cells.
@@ -30,8 +34,9 @@ def missing_words(table: str, known: KnownCells, missing: BoolArray, of_conditio
     if lost.empty:
         return
     total = known.table.loc[known.table[CELL] != 0, "number"].nunique()
-    shown = [known.place(int(at)) for at in lost["at"].iloc[:_MOST_NAMED]]
-    names = shortened([*shown, *[""] * (len(lost) - len(shown))], _MOST_NAMED)
+    named = lost.drop_duplicates([key for key in KEYS if key in keys or key == FILE])
+    shown = [known.place(int(at), keys) for at in named["at"].iloc[:_MOST_NAMED]]
+    names = shortened([*shown, *[""] * (len(named) - len(shown))], _MOST_NAMED)
     what = "condition" if of_condition else "values"
     yield f"{table}: {len(lost)} of {total} cells are in no row, so they have no {what}: {names}"
 

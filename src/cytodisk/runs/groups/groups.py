@@ -108,6 +108,7 @@ class Groups:
         for name in (column.name for column in self.columns if column.kind == pa.string()):
             values[name] = values[name].astype("object").where(values[name].notna(), None)
         missing = (row_of < 0) & (known.table[CELL] != 0).to_numpy()
-        lost = missing_words(self.path.name, known, missing, CONDITION in self.names)
-        words = summary_words([str(key) for key in self.keys], values, known)
+        keys = [str(key) for key in self.keys]
+        lost = missing_words(self.path.name, keys, known, missing, CONDITION in self.names)
+        words = summary_words(keys, values, known)
         return GroupedCells(values, (*self.told, *remarks, *lost), words)

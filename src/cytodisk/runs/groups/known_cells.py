@@ -54,13 +54,16 @@ class KnownCells:
         table["number"] = cells["cell"].to_numpy() if "cell" in cells else table["at"]
         return cls(NamedFiles(named.drop_duplicates().reset_index(drop=True), folder), table)
 
-    def place(self, at: int) -> str:
-        """Where a cell is, in words, as "label 4 of a.tif"."""
+    def place(self, at: int, keys: Sequence[str] = KEYS) -> str:
+        """Where a cell is, in words, as "label 4 of a.tif"; without its label if that is no key."""
         row = self.table.iloc[at]
-        there = self.table.loc[self.table[FILE] == row[FILE], FRAME]
-        frame = f" in frame {row[FRAME]}" if there.nunique() > 1 else ""
         name = self.files.names[int(row[FILE])]
-        return f"label {row[CELL]}{frame}" + (f" of {name}" if name else "")
+        there = self.table.loc[self.table[FILE] == row[FILE], FRAME]
+        parts = [f"label {row[CELL]}"] if CELL in keys else []
+        if FRAME in keys and there.nunique() > 1:
+            parts.append(f"in frame {row[FRAME]}" if parts else f"frame {row[FRAME]}")
+        words = " ".join(parts)
+        return f"{words} of {name}" if words and name else words or name or f"cell {row['number']}"
 
 
 def numbers_words(numbers: Sequence[int]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from functools import partial
 from typing import Any
 
 from cytodisk.images.mask_names import without_name
@@ -11,7 +12,7 @@ from cytodisk.runs.cells.cell_inputs import CellInputs
 from cytodisk.runs.cells.cell_parts import CellRun
 from cytodisk.runs.cells.nucleus_rows import nuclei_warnings
 from cytodisk.runs.depth_layers import check_depths
-from cytodisk.runs.flagged_cells import fill_flags
+from cytodisk.runs.flagged_cells import fill_cells
 from cytodisk.runs.map.map_kind import MAP
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_work import DrawCell, MapWork
@@ -82,8 +83,9 @@ def map_study(
         return keys, [*inputs.remarks, *nuclei_warnings(folder, keys), *warnings]
 
     kind = MAP.with_nuclei.with_channels(inputs.channels) if inputs.nuclei else MAP
+    kind = kind if inputs.groups is None else inputs.groups.kind(kind)
     run = StudyRun(kind, provenance, inputs.parameters, options, options.writes)
-    return run.into(out, work, open_study, fill_flags)
+    return run.into(out, work, open_study, partial(fill_cells, groups=inputs.groups))
 
 
 def _warning(row: dict[str, Any], of_many: bool) -> str:

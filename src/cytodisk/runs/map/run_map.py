@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
+from cytodisk.runs.cells.cell_groups import with_groups
 from cytodisk.runs.cells.cell_inputs import open_inputs
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.map.map_study import map_study
@@ -20,6 +21,7 @@ def run_map(
     *,
     signal: str | os.PathLike[str] | None = None,
     nuclei: str | os.PathLike[str] | None = None,
+    groups: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
     parameters: MapParameters | None = None,
     **settings: Any,
@@ -37,6 +39,9 @@ def run_map(
     nuclei : path-like, optional
         Label image, or 0/1 mask, of the nuclei, with the shape and the frames of the masks; each goes to the
         cell that holds most of it. For a folder of masks a folder, or an ending of names as "_nuclei".
+    groups : path-like, optional
+        CSV table that says what was done to which cell: columns `file`, `cell` (its label) or `frame`, and
+        `condition`, `experiment` or your own, which become columns of the table of cells.
     progress : callable, optional
         Called with (cells done, cells in all).
     parameters : MapParameters, optional
@@ -72,4 +77,4 @@ def run_map(
     """
     options, values = MapOptions.split(settings, MapParameters)
     inputs = open_inputs(masks, signal, MapParameters.chosen(parameters, values), nuclei=nuclei)
-    return map_study(inputs, out, progress=progress, **dict(options))
+    return map_study(with_groups(inputs, groups), out, progress=progress, **dict(options))

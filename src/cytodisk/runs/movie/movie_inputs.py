@@ -29,6 +29,7 @@ from cytodisk.runs.channel_names import channels_words, check_signal_given, name
 from cytodisk.runs.depth_layers import check_depths, depth_words
 from cytodisk.runs.file_notes import file_notes
 from cytodisk.runs.file_scales import agreed
+from cytodisk.runs.groups.given_groups import GivenGroups
 from cytodisk.runs.movie.movie_parameters import FollowedCellParameters
 from cytodisk.runs.movie.nuclei_of_movie import open_nuclei_of_movie, refuse_cells
 from cytodisk.scale import Scale
@@ -75,6 +76,8 @@ class MovieInputs:
     mothers : dict of int to int
         Labels of tracks that begin with a division, and of the track that divided.
     nuclei : NucleiFile or None
+    groups : GivenGroups or None
+        What was done to which cell.
     """
 
     masks: FrameFile
@@ -86,6 +89,7 @@ class MovieInputs:
     scale: Scale
     mothers: dict[int, int] = field(default_factory=dict)
     nuclei: NucleiFile | None = None
+    groups: GivenGroups | None = None
 
     @property
     def understood(self) -> dict[str, str]:
@@ -113,13 +117,14 @@ class MovieInputs:
         for role, file in self._files.items():
             if file.files:
                 words[role] += f"; {file.evidence}"
-        return words
+        return words if self.groups is None else words | {"groups": self.groups.words}
 
     @property
     def notes(self) -> tuple[str, ...]:
         """What is wrong with the files, in words."""
         given = self.parameters
-        return file_notes(self._files.values(), Scale(given.pixel_size_um, given.frame_interval_s))
+        notes = file_notes(self._files.values(), Scale(given.pixel_size_um, given.frame_interval_s))
+        return notes if self.groups is None else (*notes, *self.groups.found.warnings)
 
     @property
     def _files(self) -> dict[str, FrameFile]:
@@ -131,7 +136,9 @@ class MovieInputs:
     def paths(self) -> dict[str, Path | list[Path]]:
         """Files by their role; a list where each frame has its own."""
         tracks = self.parameters.tracks
-        paths = {role: list(file.files) or file.path for role, file in self._files.items()}
+        paths: dict[str, Path | list[Path]] = {}
+        paths |= {role: list(file.files) or file.path for role, file in self._files.items()}
+        paths |= {} if self.groups is None else {"groups": self.groups.groups.path}
         return paths | ({} if tracks is None else {"tracks": Path(tracks)})
 
     @property

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from concurrent.futures import Future
+from functools import partial
 from typing import Any
 
 from cytodisk.errors import MaskError, ReadError, as_data
@@ -18,7 +19,7 @@ from cytodisk.motion.tracking_parameters import MovieSettings
 from cytodisk.runs.cells.cell_nuclei import CellNucleus
 from cytodisk.runs.cells.nucleus_rows import nuclei_warnings
 from cytodisk.runs.executor import Executor, finished
-from cytodisk.runs.flagged_cells import fill_flags
+from cytodisk.runs.flagged_cells import fill_cells
 from cytodisk.runs.frame_rows import FramePlace
 from cytodisk.runs.movie.measured_frame import FrameRows, FrameTask, measure_frame, unmapped_rows
 from cytodisk.runs.movie.movie_inputs import MovieInputs
@@ -83,7 +84,9 @@ def movie_study(
     kind = MOVIE
     if inputs.nuclei is not None:
         kind = MOVIE.with_nuclei.with_channels(inputs.signal.channels if inputs.signal else ())
-    return StudyRun(kind, provenance, inputs.parameters, options).into(out, work, open_study, fill_flags)
+    kind = kind if inputs.groups is None else inputs.groups.kind(kind)
+    fill = partial(fill_cells, groups=inputs.groups)
+    return StudyRun(kind, provenance, inputs.parameters, options).into(out, work, open_study, fill)
 
 
 class _Run:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
+from cytodisk.runs.movie.movie_groups import with_movie_groups
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_study import movie_study
@@ -20,6 +21,7 @@ def run_movie(
     *,
     signal: str | os.PathLike[str] | None = None,
     nuclei: str | os.PathLike[str] | None = None,
+    groups: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
     parameters: MovieParameters | None = None,
     **settings: Any,
@@ -37,6 +39,8 @@ def run_movie(
     nuclei : path-like, optional
         As many label images, or 0/1 masks, of the nuclei; in each frame a nucleus goes to the cell that holds
         most of it. It is followed as the cell's edge is.
+    groups : path-like, optional
+        CSV table that says what was done to which cell, or from which frame on; see `run_map`.
     progress : callable, optional
         Called with (frames done, frames in all), counted over all cells.
     parameters : MovieParameters, optional
@@ -72,4 +76,5 @@ def run_movie(
     """
     options, values = RunOptions.split(settings, MovieParameters)
     inputs = open_movie(masks, signal, MovieParameters.chosen(parameters, values), nuclei=nuclei)
+    inputs = with_movie_groups(inputs, masks, groups)
     return movie_study(inputs, out, progress=progress, **dict(options))

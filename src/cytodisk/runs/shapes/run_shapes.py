@@ -18,6 +18,7 @@ def run_shapes(
     masks: str | os.PathLike[str],
     out: str | os.PathLike[str],
     *,
+    groups: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
     parameters: ShapeParameters | None = None,
     **settings: Any,
@@ -30,6 +31,8 @@ def run_shapes(
         One mask, a stack of masks or a label image, or a folder of those.
     out : path-like
         Folder for the results.
+    groups : path-like, optional
+        CSV table that says what was done to which cell; see `run_map`.
     progress : callable, optional
         Called with (cells done, cells in all).
     parameters : ShapeParameters, optional
@@ -64,4 +67,5 @@ def run_shapes(
     """
     options, values = RunOptions.split(settings, ShapeParameters)
     chosen = ShapeParameters.chosen(parameters, values)
-    return shape_study(open_shape_inputs(masks, chosen), out, chosen, progress=progress, **dict(options))
+    inputs = open_shape_inputs(masks, chosen, groups)
+    return shape_study(inputs, out, chosen, progress=progress, **dict(options))

@@ -17,6 +17,7 @@ from cytodisk.errors import ReadError
 from cytodisk.geometry.mask import clean_mask
 from cytodisk.geometry.mask_parameters import Holes
 from cytodisk.images.mask_files import list_images
+from cytodisk.runs.cells.cell_groups import with_groups
 from cytodisk.runs.cells.cell_inputs import CellInputs, open_inputs
 from cytodisk.runs.cells.cell_parameters import FileParameters
 from cytodisk.runs.cells.cell_parts import CellRun, CellTask, Rows
@@ -24,9 +25,11 @@ from cytodisk.runs.provenance import describe_run
 from cytodisk.runs.run_options import Progress, RunOptions, silent
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 from cytodisk.runs.shapes.shape_tables import (
+    SHAPE_NAMES,
     SHAPE_STUDY,
     open_shapes,
     shape_table,
+    with_own,
     write_shape_texts,
     write_shapes,
 )
@@ -44,7 +47,11 @@ _LAYOUT = (
 )  # packages that the score depends on beside the others
 
 
-def open_shape_inputs(masks: str | os.PathLike[str], parameters: ShapeParameters) -> CellInputs:
+def open_shape_inputs(
+    masks: str | os.PathLike[str],
+    parameters: ShapeParameters,
+    groups: str | os.PathLike[str] | None = None,
+) -> CellInputs:
     """Open the files of a run.
 
     Parameters
@@ -52,6 +59,8 @@ def open_shape_inputs(masks: str | os.PathLike[str], parameters: ShapeParameters
     masks : path-like
         One mask, a stack of masks or a label image, or a folder of those; see `open_mask_files`.
     parameters : ShapeParameters
+    groups : path-like, optional
+        What was done to which cell; see `read_groups`.
 
     Returns
     -------
@@ -60,10 +69,13 @@ def open_shape_inputs(masks: str | os.PathLike[str], parameters: ShapeParameters
 
     Raises
     ------
-    ReadError, MaskError
-        The masks cannot be used at all.
+    ReadError, MaskError, ParameterError
+        The masks cannot be used at all, or the table of groups cannot.
     """
-    return open_inputs(masks, None, parameters.part(FileParameters))
+    inputs = with_groups(open_inputs(masks, None, parameters.part(FileParameters)), groups)
+    if inputs.groups is not None:
+        inputs.groups.refuse(SHAPE_NAMES)
+    return inputs
 
 
 @takes(RunOptions)
@@ -109,11 +121,12 @@ def shape_study(
         measure = partial(measure_shape, scale=inputs.scale, holes=parameters.holes)
         keys = CellRun(inputs, measure, CELLS_AT_ONCE).fill(folder, options.workers, progress or silent)
         table = shape_table(folder.read_rows(keys), inputs.scale, parameters.part(ScoreParameters))
-        write_shapes(table, folder.path)
+        write_shapes(with_own(table, inputs.groups), folder.path)
         return keys, [*inputs.remarks, *_warnings(table)]
 
-    run = StudyRun(SHAPE_STUDY, _describe(inputs, parameters), parameters, options)
-    return run.into(out, work, open_shapes, write_shape_texts)
+    kind = SHAPE_STUDY if inputs.groups is None else inputs.groups.kind(SHAPE_STUDY)
+    run = StudyRun(kind, _describe(inputs, parameters), parameters, options)
+    return run.into(out, work, open_shapes, partial(write_shape_texts, groups=inputs.groups))
 
 
 def _describe(inputs: CellInputs, parameters: ShapeParameters) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from cytodisk.analysis.shape.features import FEATURES, GROUPS, SCALE_FREE, featu
 from cytodisk.analysis.shape.score_parameters import ScoreParameters
 from cytodisk.errors import EarlierVersionWarning
 from cytodisk.files import replacing
+from cytodisk.runs.groups.given_groups import GivenGroups
 from cytodisk.scale import Scale
 from cytodisk.store.columns_file import write_columns_file
 from cytodisk.store.csv_tables import write_csv
@@ -53,6 +54,9 @@ SHAPE_STUDY = StudyKind(
     {},
     (SHAPES, SHAPES_CSV, FEATURES_CSV),
 )
+
+SHAPE_NAMES = {*SCORES, *(feature.name for feature in FEATURES)}
+"""Of the columns of the table of shapes beside those of cells."""
 
 
 def shape_table(rows: Iterable[dict[str, Any]], scale: Scale, parameters: ScoreParameters) -> pd.DataFrame:
@@ -97,22 +101,50 @@ def write_shapes(table: pd.DataFrame, folder: Path) -> None:
         write_table(table, temporary)
 
 
-def write_shape_texts(folder: StudyFolder) -> None:
+def with_own(table: pd.DataFrame, groups: GivenGroups | None) -> pd.DataFrame:
+    """The table of shapes with the columns of a table of groups behind the label, if there is one.
+
+    Parameters
+    ----------
+    table : DataFrame
+        As `shape_table` returns it.
+    groups : GivenGroups, optional
+
+    Returns
+    -------
+    DataFrame
+    """
+    if groups is None:
+        return table
+    place = list(table.columns).index(LABEL.name) + 1
+    own = groups.match(table).values
+    joined = pd.concat([table.iloc[:, :place], own, table.iloc[:, place:]], axis=1)
+    joined.attrs = table.attrs | {"units": dict.fromkeys(own, "") | table.attrs["units"]}
+    return joined
+
+
+def write_shape_texts(folder: StudyFolder, groups: GivenGroups | None = None) -> None:
     """Write the table of shapes as CSV, and what its features and the columns of all tables are.
 
     Parameters
     ----------
     folder : StudyFolder
         All tables stand.
+    groups : GivenGroups, optional
+        Its columns are filled into the table of cells.
     """
+    own: Columns = ()
+    if groups is not None:
+        groups.fill(folder)
+        own = groups.groups.columns
     table = read_table(folder.path / SHAPES)
     units = table.attrs["units"]
     write_csv(table, folder.path / SHAPES_CSV)
     write_csv(describe_features(units), folder.path / FEATURES_CSV)
-    meanings = {column.name: column.meaning for column in _CELL} | _SCORE_WORDS
+    meanings = {column.name: column.meaning for column in (*_CELL, *own)} | _SCORE_WORDS
     meanings |= {feature.name: feature.description for feature in FEATURES}
     told = [(SHAPES, name, unit, meanings[name]) for name, unit in units.items()]
-    cells = [(CELLS, column.name, column.unit, column.meaning) for column in _CELL]
+    cells = [(CELLS, column.name, column.unit, column.meaning) for column in folder.kind.cells]
     write_columns_file(folder.path, [*cells, *told])
 
 
