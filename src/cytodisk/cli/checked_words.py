@@ -52,6 +52,8 @@ class Checked:
         self._by_label: dict[tuple[str, int], list[tuple[int, int]]] = {}  # frame and area
         self._looked_at = self._unusable = self._flagged = self._on_border = 0
         self._nuclei: Counter[str] = Counter()
+        given = inputs.groups
+        self._groups = {} if given is None else given.found.texts
 
     @property
     def faults(self) -> int:
@@ -66,7 +68,8 @@ class Checked:
     def header(self) -> str:
         """Names of the columns of `line`."""
         file, nuclei = ("file\t" * self._inputs.is_folder, "nuclei\t" * bool(self._inputs.nuclei))
-        return f"cell\t{file}frame\tlabel\t{nuclei}usable\tremarks"
+        groups = "".join(f"{name}\t" for name in self._groups)
+        return f"cell\t{file}frame\tlabel\t{groups}{nuclei}usable\tremarks"
 
     def line(self, checked: "CheckedCell") -> str:
         """One cell, with tabs between columns."""
@@ -81,7 +84,8 @@ class Checked:
         said = self._reason(checked) or "; ".join(remarks)
         nucleus = checked.nucleus
         labels = "" if nucleus is None else "\t" + ("" if nucleus.match is None else nucleus.match.labels)
-        return f"{place}\t{found.frame}\t{found.label}{labels}\t{usable}\t{said}"
+        groups = "".join(f"\t{self._groups[name][found.cell]}" for name in self._groups)
+        return f"{place}\t{found.frame}\t{found.label}{groups}{labels}\t{usable}\t{said}"
 
     def add(self, checked: "CheckedCell") -> None:
         """Take a cell into account."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -37,6 +38,16 @@ class GroupedCells:
     values: pd.DataFrame
     warnings: tuple[str, ...]
     words: str
+
+    @property
+    def texts(self) -> dict[str, list[str]]:
+        """The values of each column as texts, "" for none."""
+        return {str(name): [_text(value) for value in self.values[name]] for name in self.values}
+
+
+def _text(value: Any) -> str:
+    """A value as the table had it."""
+    return "" if pd.isna(value) else f"{value:g}" if isinstance(value, float) else str(value)
 
 
 @dataclass(frozen=True, eq=False)
