@@ -150,7 +150,8 @@ def test_scalars_follow_from_the_windows(values: xr.DataArray, cells: pd.DataFra
     values = values.assign_coords(compartment=("layer", ["cytoplasm", "cytoplasm", "nucleus"]))
     table = cd.Population(values, cells, scalars=["area"]).normalise("cell mean").scalar_table()
     raw = values.to_numpy()[:, 1]
-    assert_allclose(table["mean_RhoA"], 1.0)
+    assert_allclose(table["mean_RhoA"], raw.mean(axis=(1, 2)))
+    assert_allclose(table["layer_1_RhoA"], raw[:, 1].mean(axis=1) / raw.mean(axis=(1, 2)))
     assert_allclose(table["edge_to_centre_RhoA"], raw[:, 0].mean(axis=1) / raw[:, 1].mean(axis=1))
     expected = raw[:, 2].mean(axis=1) / raw[:, :2].mean(axis=(1, 2))
     assert_allclose(table["nucleus_to_cytoplasm_RhoA"], expected)

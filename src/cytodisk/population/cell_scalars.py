@@ -39,7 +39,7 @@ def scalar_names(
     """
     names = {}
     for channel in channels:
-        names[MEAN.format(channel)] = channel, "mean of the cell"
+        names[MEAN.format(channel)] = channel, "mean of the cell, not normalised"
         for layer in range(len(compartments)):
             names[LAYER.format(layer, channel)] = channel, f"mean of layer {layer}"
         if last != "sector":
@@ -70,7 +70,7 @@ def scalars_of(
         Columns of cells that are scalars themselves.
     channels, compartments : sequence of str
     blocks, levels : callable
-        See `Population`.
+        See `Population`; values that are not turned, normalised and as they were.
     last : str
 
     Returns
@@ -81,11 +81,10 @@ def scalars_of(
     columns = {name: np.full(len(cells), np.nan) for name in names}
     for (rows, block), (_, level, weight) in zip(blocks(), levels(), strict=True):
         for k, channel in enumerate(channels):
-            weights = _turned_alike(weight, block)
-            columns[MEAN.format(channel)][rows] = _mean(block[:, k], weights, (1, 2))
+            columns[MEAN.format(channel)][rows] = _mean(level[:, k], weight, (1, 2))
             for layer in range(len(compartments)):
                 columns[LAYER.format(layer, channel)][rows] = _mean(
-                    block[:, k, layer], weights[:, layer], (1,)
+                    block[:, k, layer], weight[:, layer], (1,)
                 )
             if last == "sector":
                 _fill_ratios(columns, channel, rows, level[:, k], weight, compartments)
@@ -128,11 +127,6 @@ def _outside(compartments: Sequence[str]) -> list[int]:
 def _above(above: FloatArray, below: FloatArray) -> FloatArray:
     """NaN where what it is divided by is not above 0."""
     return ratio(above, below, below > 0)
-
-
-def _turned_alike(weight: FloatArray, block: FloatArray) -> FloatArray:
-    """Weights by layer alone, which a turn leaves as they are."""
-    return np.broadcast_to(weight.mean(axis=-1, keepdims=True), (len(block), *weight.shape[1:]))
 
 
 def _mean(values: FloatArray, weight: FloatArray, axes: tuple[int, ...]) -> FloatArray:

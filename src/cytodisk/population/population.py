@@ -249,11 +249,12 @@ class Population(CellValues):
         Returns
         -------
         DataFrame
-            A row for each cell. For each channel `mean_CHANNEL` and `layer_K_CHANNEL` from normalised values;
+            A row for each cell. For each channel `layer_K_CHANNEL` from normalised values; `mean_CHANNEL`,
             `edge_to_centre_CHANNEL` (outermost over innermost layer of the cytoplasm),
             `nucleus_to_cytoplasm_CHANNEL` and `polarity_CHANNEL` (size of the first harmonic around the cell
             over the mean) from values without background, not normalised. Then the columns in `scalars`.
         """
+        still = self.unturned()
         return scalars_of(
-            self.cells, self.scalars, self.channels, self.compartments, self.blocks, self.levels, self.last
+            self.cells, self.scalars, self.channels, self.compartments, still.blocks, self.levels, self.last
         )

@@ -66,7 +66,10 @@ class DoseExchanges:
     @property
     def smallest_p(self) -> float:
         """Doses that lie evenly around their mean give the same trend with the other sign."""
-        return max(1.0 / self.count, (2.0 if all(map(self._is_even, self._members)) else 1.0) / self._ways)
+        return max(
+            1.0 / self.count,
+            (2.0 if all(map(self._is_even, self._members)) else 1.0) / min(self._ways, 10**15),
+        )
 
     def _is_even(self, members: IntArray) -> bool:
         doses = np.sort(self.doses[members])

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from cytodisk.arrays import BoolArray
 
 Label = TypeVar("Label", bound=np.generic)
+_VERY_MANY = 10**15  # ways to exchange labels, of which more make no difference
 MOST_LABELS = 30_000_000  # labels held at a time
 
 
@@ -71,7 +72,7 @@ class LabelExchanges:
     def smallest_p(self) -> float:
         """With groups of one size both labels exchanged give the same difference with the other sign."""
         equal = 2 * int(self.treated.sum()) == len(self.treated)
-        return max(1.0 / self.count, (2.0 if equal else 1.0) / self._ways)
+        return max(1.0 / self.count, (2.0 if equal else 1.0) / min(self._ways, _VERY_MANY))
 
     def chunks(self, size: int) -> Iterator[BoolArray]:
         """Labels of some ways at a time."""
@@ -125,7 +126,7 @@ class SignExchanges:
     @property
     def smallest_p(self) -> float:
         """All pairs exchanged give the same difference with the other sign."""
-        return max(1.0 / self.count, 2.0 ** (1 - self.pairs))
+        return max(1.0 / self.count, 2.0 ** (1 - min(self.pairs, 60)))
 
     def chunks(self, size: int) -> Iterator[NDArray[np.int8]]:
         """Signs of some ways at a time."""
