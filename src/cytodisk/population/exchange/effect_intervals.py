@@ -64,8 +64,9 @@ def group_effects(values: FloatArray, treated: BoolArray) -> Effects:
         squares = np.where(n0 > 1, v0 * (n0 - 1), 0.0) + np.where(n1 > 1, v1 * (n1 - 1), 0.0)
         spread = np.sqrt(squares / own)
         worth = np.sqrt(n0 * n1 / (n0 + n1))
+        per_score = 1.0 / worth
     scale = np.where(enough & (own > 0) & (spread > 0), spread, np.nan)
-    g, low, high = _hedges(difference / scale * worth, own, 1.0 / worth)
+    g, low, high = _hedges(difference / scale * worth, own, per_score)
     return _effects(m0, m1, difference, difference - half, difference + half, g, low, high, n0, n1)
 
 
