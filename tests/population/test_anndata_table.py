@@ -125,6 +125,7 @@ def test_directions_and_areas_turn_with_the_windows(population: cd.Population) -
     table = population.align("nucleus").normalise("cell mean").to_anndata()
     notes = table.uns["cytodisk"]
     assert (notes["align"], notes["normalise"]) == ("nucleus", "cell mean")
+    assert notes["units"]["values"] == "× cell mean"
     np.testing.assert_allclose(table.obsm["direction_nucleus"][:3], [[1, 0], [0.5, 0], [1, 0]], atol=1e-12)
     assert np.isnan(table.obsm["direction_nucleus"][3]).all()
     assert table.obs["alignment_shift"].tolist() == [0, 1, 2, 0]

@@ -37,6 +37,9 @@ class WindowsOfCells(Protocol):
 
     def __len__(self) -> int: ...
 
+    @property
+    def units(self) -> str: ...
+
     def blocks(self) -> Iterator[tuple[slice, FloatArray]]: ...
 
     def scalar_table(self) -> pd.DataFrame: ...
@@ -216,7 +219,7 @@ def _notes(population: WindowsOfCells) -> dict[str, Any]:
     return {
         "version": version("cytodisk"),
         "values": str(raw.attrs.get("long_name", raw.name or "")),
-        "units": {"values": str(raw.attrs.get("units", "")), **units},
+        "units": {"values": population.units, **units},
         "grid": grid | {"nucleus_layers": inside},
         "normalise": ", ".join(population.normalisation) or "none",
         "align": population.aligned_by,
