@@ -1,16 +1,14 @@
-"""Benchmarks of real populations go the way of a user, and do not test what cannot be tested."""
+"""Benchmarks of populations go on where they were stopped, and test what `compare_conditions` tests."""
 
 import sys
+from argparse import Namespace
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import pytest
-import tifffile
-
-import cytodisk as cd
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 
@@ -24,106 +22,65 @@ def load() -> Iterator[Any]:
         sys.path.remove(str(BENCHMARKS))
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """24 cells of two lines and three treatments, as the source has them."""
-    words = {
-        "cell_lines": ["dlm8"] * 12 + ["dunn"] * 12,
-        "treatments": (["control"] * 4 + ["cytd"] * 4 + ["jasp"] * 4) * 2,
-    }
-    for name, lines in words.items():
-        (tmp_path / f"{name}.txt").write_text("\n".join(lines), encoding="utf-8")
-    return tmp_path
+@pytest.mark.parametrize(
+    ("experiments", "design", "level"),
+    [
+        (3, "unpaired", 0.0),
+        (4, "unpaired", 2 / 70),
+        (5, "unpaired", 12 / 252),
+        (6, "unpaired", 46 / 924),
+        (7, "unpaired", 0.05),  # 999 of 3432 are drawn
+        (4, "paired", 0.0),
+        (6, "paired", 2 / 64),
+        (8, "paired", 12 / 256),
+    ],
+)
+def test_what_few_experiments_can_attain(load: Any, experiments: int, design: str, level: float) -> None:
+    cases = load("population_cases")
+    assert cases.attainable(cases.Case(0.1, design, experiments), 999) == pytest.approx(level)
 
 
-@pytest.fixture
-def cells(load: Any, folder: Path) -> cd.Population:
-    """A population of scalars: cytochalasin D raises the complexity, jasplakinolide nothing."""
-    groups = load("population_osteosarcoma").write_groups(folder, folder / "groups.csv")
-    rng = np.random.default_rng(0)
-    shift = 3.0 * (groups["condition"] == "cytochalasin D")
-    table = groups.assign(complexity=rng.normal(size=24) + shift, area=rng.normal(size=24), solidity=0.5)
-    return cd.Population(None, table, scalars=["complexity", "area", "solidity"])
+@pytest.mark.parametrize("design", ["unpaired", "paired"])
+@pytest.mark.parametrize("unit", ["experiment", "cell"])
+def test_the_fast_way_gives_the_p_values_of_the_comparison(load: Any, design: str, unit: str) -> None:
+    cases = load("population_cases")
+    case = cases.Case(0.1, design, 5, "signal", unit)
+    found = cases.Tester(case, 199).p_values(3)
+    assert found == pytest.approx(cases.p_values_of_comparison(case, 3, 199))
 
 
-def test_groups_of_osteosarcoma_cells_are_by_place_in_the_stack(load: Any, folder: Path) -> None:
-    load("population_osteosarcoma").write_groups(folder, folder / "groups.csv", every=5)
-    groups = pd.read_csv(folder / "groups.csv")
-    assert groups.columns.tolist() == ["frame", "condition", "line"]
-    assert groups.iloc[1].tolist() == [5, "cytochalasin D", "DLM8"]
-
-
-def test_unknown_experiments_are_refused_and_cells_described(load: Any, cells: cd.Population) -> None:
-    benchmark = load("population_osteosarcoma")
-    assert "experiments are unknown" in benchmark.refusal(cells)
-    named = cells.with_cells(cells.cells.assign(experiment=np.arange(24) % 2 + 1))
-    assert benchmark.refusal(named) == ""
-    table = benchmark.effects(cells)
-    assert len(table) == 3 * 4
-    assert "p" not in table
-    assert set(table["warning"]) == {"cells as units"}
-    raised = table.query("scalar == 'complexity' and treatment == 'cytochalasin D'")
-    assert raised["effect_size"].min() > 1.5
-    assert benchmark.largest(table, 1) == ["complexity", "area"]
-
-
-def test_the_picture_of_osteosarcoma_cells_says_that_nothing_was_tested(
-    load: Any, cells: cd.Population, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+def test_a_stopped_run_goes_on_and_one_of_other_settings_is_refused(
+    load: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    benchmark = load("population_osteosarcoma")
-    table = benchmark.effects(cells)
-    benchmark.print_effects(table, ["complexity", "area"])
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[1].startswith("complexity")
-    assert lines[1].count("to") == 4
-    benchmark.draw(cells, table, ["complexity", "area"], tmp_path / "picture.png")
-    assert (tmp_path / "picture.png").stat().st_size > 10_000
+    benchmark, path = load("population_null"), tmp_path / "results"
+    case, settings = benchmark.Case(0.1, "paired", 4), {"studies": 3}
+    chosen = Namespace(first_seed=0, permutations=99)
+    with ThreadPoolExecutor(1) as pool:
+        rate = benchmark.rates(case, chosen, 3, pool, benchmark.Results(path, settings))
+        with path.open("a", encoding="utf-8") as file:
+            file.write('\n{"case": "0.1 pai')  # stopped in the middle of a line
+        monkeypatch.setattr(benchmark, "count", None)  # nothing is left to do
+        assert benchmark.rates(case, chosen, 3, pool, benchmark.Results(path, settings)) == rate
+    with pytest.raises(SystemExit, match="other settings"):
+        benchmark.Results(path, {"studies": 4})
 
 
-def test_variance_between_wells(load: Any) -> None:
-    share = load("population_schwann").between_share
-    rng = np.random.default_rng(0)
-    wells = pd.Series(np.repeat(np.arange(300), 20))
-    values = pd.Series(rng.normal(scale=0.5, size=300)[wells] + rng.normal(size=len(wells)))
-    assert share(values, wells) == pytest.approx(0.2, abs=0.03)  # 0.25 of 1.25
-    assert share(pd.Series(rng.normal(size=len(wells))), wells) < 0.01
-    unequal = wells < rng.integers(0, 600, len(wells))
-    assert share(values[unequal], wells[unequal]) == pytest.approx(0.2, abs=0.05)
+def test_rates_above_or_below_the_level_are_not_met(load: Any) -> None:
+    met = load("population_null").is_met
+    right = dict.fromkeys(("windows", "clusters", "mean", "scalars"), 0.05)
+    assert met(right, 0.05, 4000)
+    assert met(right | {"clusters": 0.01}, 0.05, 4000)
+    for wrong in ({"windows": 0.07}, {"mean": 0.03}, {"clusters": 0.07}, {"scalars": 0.07}):
+        assert not met(right | wrong, 0.05, 4000)
 
 
-def test_wells_are_written_as_a_user_has_them(load: Any, tmp_path: Path) -> None:
-    benchmark = load("population_schwann")
-    source = tmp_path / "schwann_nuclei"
-    source.mkdir()
-    one, inner = cd.simulate.disk(25, margin=30), cd.simulate.disk(9, margin=46)
-    for well in ("B7", "D6"):
-        cells, nuclei = np.hstack([one, one]), np.hstack([inner, inner])
-        cells[: len(one) // 2, len(one) // 2] |= well == "D6"  # the left one reaches the border
-        tifffile.imwrite(source / f"{well}_cells.tif", cells.astype(np.uint8))
-        tifffile.imwrite(source / f"{well}_nuclei.tif", nuclei.astype(np.uint8))
-        signal = np.stack([7.0 + 10.0 * nuclei, 8.0 + cells, 9.0 + cells]).astype(np.uint16)
-        tifffile.imwrite(source / f"{well}_signal.tif", signal, photometric="minisblack")
-    groups = pd.read_csv(benchmark.write_inputs(tmp_path, tmp_path / "out"))
-    assert groups["condition"].tolist() == ["row B", "row D"]
-    assert groups["experiment"].tolist() == ["B7", "D6"]
-    assert groups[[f"background_{name}" for name in benchmark.CHANNELS]].iloc[0].tolist() == [7, 8, 9]
-    masks = [tifffile.imread(tmp_path / f"out/cells/{well}.tif") for well in ("B7", "D6")]
-    counts = [len(np.unique(mask)) - 1 for mask in masks]
-    assert counts == [2, 1]
-
-
-@pytest.mark.slow
-@pytest.mark.filterwarnings("ignore")
-def test_real_wells_cannot_show_a_difference(
-    load: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    benchmark = load("population_schwann")
-    if not (benchmark.DATA / "schwann_nuclei").is_dir():
-        pytest.skip("the real data are not there: set CYTODISK_DATA")
-    arguments = ["--quick", "--out", str(tmp_path), "--layers", "3", "--sectors", "6"]
-    monkeypatch.setattr(sys, "argv", ["population_schwann.py", *arguments])
-    assert benchmark.main() == 0
-    out = capsys.readouterr().out
-    assert "1 + 2 experiments can give p = 0.33 at best" in out
-    assert "WARNING too few experiments" in out
-    assert (tmp_path / "schwann.png").exists()
+def test_a_region_grows_and_shrinks_around_sector_0(load: Any) -> None:
+    benchmark = load("population_region")
+    region = benchmark.planted_region()
+    assert region.sum() == 120
+    assert benchmark.grown(region, 1).sum() == 7 * 22
+    assert benchmark.grown(region, -1).sum() == 5 * 18  # layer 0 is the cell's edge, no border
+    figures = benchmark.measure(0, 3.0, 1.0)
+    assert np.shape(figures) == (3, len(benchmark.COLUMNS))
+    assert figures[0, 0] > 0.9
+    assert not figures[0, 2:].any()
