@@ -82,6 +82,7 @@ from .analysis.event_average import average_around as average_around
 # Shapes
 from .analysis.shape.features import shape_features as shape_features
 from .analysis.shape.complexity import complexity_score as complexity_score
+from .analysis.shape.medoid_cell import medoid_cell as medoid_cell
 
 # Populations: many cells by condition and experiment
 from .population.population import Population as Population

@@ -13,3 +13,6 @@ from .report.page import write_report as write_report
 from .compared_layers import write_comparison as write_comparison
 from .compared_cells import write_compared_cells as write_compared_cells
 from .compared_movie import write_compared_movie as write_compared_movie
+
+# Figures of a population
+from .population.power_page import write_power_figure as write_power_figure

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
 
 from cytodisk.errors import ParameterError
 from cytodisk.pages.correlation_pages import curves_page, events_page, maps_page, pairs_page, peaks_page
 from cytodisk.pages.drawn_correlation import DrawnCorrelation
 from cytodisk.pages.drawn_movie import DrawnMovie
+from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.style import paper_style
 from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.figures_folder import drawing
 from cytodisk.store.study import Study
 from cytodisk.store.study_folder import part_key
-
-FORMATS = ("png", "pdf", "svg")
 
 _PAGES: dict[str, Callable[[DrawnCorrelation], Sheet | None]] = {
     "curves": curves_page,
@@ -26,8 +24,6 @@ _PAGES: dict[str, Callable[[DrawnCorrelation], Sheet | None]] = {
     "pairs": pairs_page,
     "events": events_page,
 }
-# Without dates, the same picture is the same file.
-_DATELESS: dict[str, dict[str, Any]] = {"png": {}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
 
 
 def write_correlation_figures(
@@ -92,7 +88,7 @@ def write_correlation_figures(
     >>> [path.name for path in cd.pages.write_correlation_figures(study, correlation)]
     ['cell_00000_curves.png', 'cell_00000_maps.png', 'cell_00000_peaks.png', 'cell_00000_events.png']
     """
-    chosen = _formats(formats)
+    chosen = chosen_formats(formats)
     _check_cell(correlation, cell)
     one = DrawnCorrelation(DrawnMovie(study, cell), correlation)
     report = progress or (lambda done, whole: None)
@@ -105,18 +101,9 @@ def write_correlation_figures(
             with paper_style():
                 sheet = draw(one)
                 if sheet is not None:
-                    paths += _save(sheet, folder, stems[what], chosen)
+                    paths += save_in_formats(sheet, folder, stems[what], chosen)
     report(len(_PAGES), len(_PAGES))
     return paths
-
-
-def _formats(formats: Any) -> list[str]:
-    given = [formats] if isinstance(formats, str) else list(formats)
-    unknown = [name for name in given if name not in FORMATS]
-    if unknown or not given:
-        came = repr(unknown[0]) if unknown else "none"
-        raise ParameterError(f"formats must be of {', '.join(FORMATS)}, got {came}")
-    return list(dict.fromkeys(given))
 
 
 def _check_cell(correlation: Correlation, cell: int) -> None:
@@ -126,8 +113,3 @@ def _check_cell(correlation: Correlation, cell: int) -> None:
         raise ParameterError(f"cell {cell} is not in {correlation.path}: it has {there}")
     if rows["status"].iloc[0] != "ok":
         raise ParameterError(f"cell {cell} has no correlation to draw: {rows['reason'].iloc[0]}")
-
-
-def _save(sheet: Sheet, folder: Path, name: str, formats: Sequence[str]) -> list[Path]:
-    """Write a page in each format."""
-    return [sheet.save(folder / f"{name}.{kind}", format=kind, metadata=_DATELESS[kind]) for kind in formats]

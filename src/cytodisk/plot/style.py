@@ -217,7 +217,13 @@ def scale_bar(ax: Axes, scale: Scale | None = None) -> tuple[Line2D, Text]:
 
 
 def colour_bar(
-    mappable: ScalarMappable, into: Axes, label: str, unit: str | None = None, *, extend: str = "neither"
+    mappable: ScalarMappable,
+    into: Axes,
+    label: str,
+    unit: str | None = None,
+    *,
+    extend: str = "neither",
+    upright: bool = True,
 ) -> Colorbar:
     """Draw a colour bar with its label and unit.
 
@@ -233,6 +239,8 @@ def colour_bar(
         Follows the label in brackets.
     extend : {"neither", "both", "min", "max"}
         At which ends values are cut off.
+    upright : bool
+        Or from left to right.
 
     Returns
     -------
@@ -246,7 +254,8 @@ def colour_bar(
     >>> drawn = ax.imshow([[0, 1], [2, 3]])
     >>> bar = cd.plot.colour_bar(drawn, ax, "signal")
     """
-    bar = into.figure.colorbar(mappable, cax=into, extend=extend, extendfrac=0.04)
+    way = "vertical" if upright else "horizontal"
+    bar = into.figure.colorbar(mappable, cax=into, extend=extend, extendfrac=0.04, orientation=way)
     bar.set_label(f"{label} ({unit})" if unit else label, parse_math=False)
     bar.outline.set_linewidth(0.4)
     bar.ax.tick_params(width=0.4, length=2)

@@ -56,10 +56,10 @@ def test_experiments_count_alike_however_many_cells_they_have() -> None:
 
 
 def test_looks_say_which_experiments_are_the_same() -> None:
-    shared = experiment_looks(scalar_cells())
+    shared = experiment_looks(scalar_cells(), shared=True)
     assert shared["control", "a"] == shared["drug", "a"]
     assert len({look.mark for look in shared.values()}) == 3
-    own = experiment_looks(scalar_cells(paired=False))
+    own = experiment_looks(scalar_cells(paired=False), shared=False)
     assert own["control", "controla"].colour != own["drug", "druga"].colour
     assert own["control", "controla"].mark == own["drug", "druga"].mark
     assert len(set(condition_colours([str(k) for k in range(20)]).values())) == 20

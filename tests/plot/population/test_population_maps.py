@@ -135,8 +135,8 @@ def test_key_counts_what_is_there() -> None:
     found = DifferenceMap.of(comparison(), cluster_labels=labels())
     key = [handle.get_label() for handle in difference_key(found)]
     assert key == [
-        "window, p < 0.05 (max-T): 3 of 23",
-        "cluster, p < 0.05: 6 windows",
+        "window, p ≤ 0.05 (max-T): 3 of 23",
+        "cluster, p ≤ 0.05: 6 windows",
         "not tested: 1 of 24 windows",
     ]
 

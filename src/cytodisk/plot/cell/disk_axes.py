@@ -37,7 +37,9 @@ def fit_disk(ax: Axes) -> None:
     ax.set_axis_off()
 
 
-def frame_disk(ax: Axes, sectors: int | None = None, nucleus_radius: float | None = None) -> None:
+def frame_disk(
+    ax: Axes, sectors: int | None = None, nucleus_radius: float | None = None, *, angles: bool = True
+) -> None:
     """Fit the axes to the unit disk, hide them, and draw the circle with ticks every 30°, labels every 90°.
 
     Parameters
@@ -47,6 +49,8 @@ def frame_disk(ax: Axes, sectors: int | None = None, nucleus_radius: float | Non
         Number of sectors of the windows: labels then give the sector that begins there, or holds the angle.
     nucleus_radius : float, optional
         Radius of the nucleus, whose circle is drawn as thick as the rim.
+    angles : bool
+        Without them labels are the numbers of sectors alone, which take less room.
     """
     fit_disk(ax)
     for radius in (1.0,) if nucleus_radius is None else (1.0, nucleus_radius):
@@ -67,6 +71,7 @@ def frame_disk(ax: Axes, sectors: int | None = None, nucleus_radius: float | Non
         if sectors is not None:
             number = sectors * degrees // 360
             words = f"sector {number} ({words})" if across == "center" else f"{number}\n{words}"
+            words = words if angles else str(number)
         ax.text(_LABEL_RADIUS * u, _LABEL_RADIUS * v, words, ha=across, va=down, fontsize=size)
 
 

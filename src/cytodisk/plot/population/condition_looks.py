@@ -46,20 +46,22 @@ def condition_colours(conditions: Sequence[str]) -> dict[str, str]:
 
 def are_shared(units: pd.DataFrame) -> bool:
     """Whether an experiment has cells of several conditions, as in a paired design."""
-    pairs = units[["condition", "experiment"]].drop_duplicates()
+    pairs = units.loc[units["experiment"] != "", ["condition", "experiment"]].drop_duplicates()
     return bool(pairs["experiment"].duplicated().any())
 
 
-def experiment_looks(units: pd.DataFrame) -> dict[tuple[str, str], Look]:
+def experiment_looks(units: pd.DataFrame, *, shared: bool) -> dict[tuple[str, str], Look]:
     """How each experiment is drawn, by (condition, experiment).
 
-    An experiment of several conditions has one colour and one mark in all of them. Where each experiment
-    has one condition, it has the colour of that, and marks begin anew.
+    A shared experiment has one colour and one mark in all conditions. Others have the colour of their
+    condition, and marks begin anew.
 
     Parameters
     ----------
     units : DataFrame
         With the columns condition and experiment; rows may repeat.
+    shared : bool
+        Whether equal names in several conditions are one experiment.
 
     Returns
     -------
@@ -68,7 +70,6 @@ def experiment_looks(units: pd.DataFrame) -> dict[tuple[str, str], Look]:
     pairs = units[["condition", "experiment"]].drop_duplicates()
     conditions, experiments = (list(dict.fromkeys(pairs[name])) for name in ("condition", "experiment"))
     of_condition, looks = condition_colours(conditions), {}
-    shared = are_shared(units)
     colours = dict(zip(experiments, _enough(EXPERIMENT_COLOURS, len(experiments)), strict=False))
     seen: dict[str, int] = dict.fromkeys(conditions, 0)
     for condition, experiment in pairs.itertuples(index=False):
@@ -81,6 +82,8 @@ def experiment_looks(units: pd.DataFrame) -> dict[tuple[str, str], Look]:
 
 def checked_units(table: Any, name: str, columns: Iterable[str] = ()) -> pd.DataFrame:
     """A table with the columns condition and experiment, and others that are needed.
+
+    An experiment that is not known becomes an empty text.
 
     Raises
     ------
@@ -96,8 +99,10 @@ def checked_units(table: Any, name: str, columns: Iterable[str] = ()) -> pd.Data
         )
     if table.empty:
         raise ParameterError(f"{name} has no rows: pass a table of at least one cell")
-    known = {column: table[column].astype(str) for column in ("condition", "experiment")}
-    return table.assign(**known)
+    known = {column: table[column].astype(object) for column in ("condition", "experiment")}
+    return table.assign(
+        **{name: column.where(column.notna(), "").astype(str) for name, column in known.items()}
+    )
 
 
 def _enough(colours: Sequence[str], count: int) -> list[str]:

@@ -104,7 +104,7 @@ def draw_condition_profiles(
     return lines
 
 
-def condition_key(lines: list[Line2D], *, cells: bool = False) -> list[Any]:
+def condition_key(lines: list[Line2D], *, cells: bool = False, experiments: bool = True) -> list[Any]:
     """Handles of a legend for lines of conditions, experiments and cells.
 
     Parameters
@@ -113,6 +113,8 @@ def condition_key(lines: list[Line2D], *, cells: bool = False) -> list[Any]:
         The means.
     cells : bool
         Whether cells have lines too.
+    experiments : bool
+        Whether experiments are known; else a line is the mean of all cells.
 
     Returns
     -------
@@ -131,10 +133,12 @@ def condition_key(lines: list[Line2D], *, cells: bool = False) -> list[Any]:
     ['control', 'one experiment', '95 % interval over experiments']
     """
     grey = LINE_COLOUR
-    more: list[Any] = [
-        Line2D([], [], color=grey, label="one experiment", **EXPERIMENT_LOOK),
-        Patch(color=grey, alpha=BAND_OPACITY, linewidth=0, label="95 % interval over experiments"),
-    ]
+    more: list[Any] = []
+    if experiments:
+        more = [
+            Line2D([], [], color=grey, label="one experiment", **EXPERIMENT_LOOK),
+            Patch(color=grey, alpha=BAND_OPACITY, linewidth=0, label="95 % interval over experiments"),
+        ]
     if cells:
         more.insert(0, Line2D([], [], color="0.75", linewidth=0.5, label="one cell"))
     named = [
@@ -163,7 +167,7 @@ def _label_layers(ax: Axes, layers: Any, places: FloatArray, depths: xr.DataArra
     every = -(-len(layers) // _MOST_TICKS)
     shown = range(0, len(layers), every)
     words, label = [f"{int(layers[k])}" for k in shown], "layer, 0 at the edge"
-    if depths is not None:
+    if depths is not None and bool(np.isfinite(depths.to_numpy()).any()):
         others = [dim for dim in depths.dims if dim != "layer"]
         deep = depths.median(others).to_numpy() if others else depths.to_numpy()
         words = [f"{word}\n{_short(deep[k])}" for word, k in zip(words, shown, strict=True)]

@@ -28,9 +28,9 @@ class DifferenceMap:
     tested : ndarray of shape (layers, sectors) and dtype bool
         Whether the window was tested.
     significant : ndarray of shape (layers, sectors) and dtype bool
-        Where the p corrected for all windows (max-T) is below `alpha`.
+        Where the p corrected for all windows (max-T) is at most `alpha`.
     cluster : ndarray of shape (layers, sectors) and dtype int
-        Number of the window's cluster, 0 for none. Only clusters with p below `alpha` have one.
+        Number of the window's cluster, 0 for none. Only clusters with p of at most `alpha` have one.
     alpha : float
 
     Examples
@@ -70,13 +70,13 @@ class DifferenceMap:
         Parameters
         ----------
         windows : Dataset with dims (layer, sector)
-            difference, and p_fwer where it was tested.
+            difference, and p_fwer and cluster where it was tested.
         cluster_labels : array_like or DataArray of shape (layers, sectors), optional
-            Number of each window's cluster, 0 for none.
+            Number of each window's cluster, 0 for none; by default the variable cluster.
         clusters : DataFrame, optional
             cluster and p; without it all labels are drawn.
         alpha : float
-            p below it counts as significant.
+            p of at most it counts as significant.
 
         Raises
         ------
@@ -94,6 +94,8 @@ class DifferenceMap:
         if "p_fwer" in windows:
             p = _table(windows["p_fwer"], "p_fwer")
         labels = np.zeros(difference.shape, dtype=np.int64)
+        if cluster_labels is None:
+            cluster_labels = windows.get("cluster")
         if cluster_labels is not None:
             labels = np.nan_to_num(number_table(cluster_labels, "cluster_labels", _DIMS)).astype(np.int64)
         if labels.shape != difference.shape:
@@ -102,9 +104,14 @@ class DifferenceMap:
                 "same comparison"
             )
         if clusters is not None:
-            kept = clusters.loc[clusters["p"] < alpha, "cluster"].to_numpy()
+            kept = clusters.loc[clusters["p"] <= alpha, "cluster"].to_numpy()
             labels = np.where(np.isin(labels, kept), labels, 0)
-        return cls(difference, np.isfinite(p), p < alpha, labels, alpha)
+        return cls(difference, np.isfinite(p), p <= alpha, labels, alpha)
+
+    @property
+    def is_different(self) -> bool:
+        """Whether a window or a cluster is significant."""
+        return bool(self.significant.any() or self.cluster.any())
 
     @property
     def limit(self) -> float:

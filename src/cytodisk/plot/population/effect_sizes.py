@@ -34,7 +34,7 @@ def draw_effect_sizes(
         scalar, effect_size (Hedges g), low and high; p_fwer, the p corrected for all scalars, where they
         were tested. A row without an effect size keeps its line, empty.
     alpha : float
-        Scalars with p_fwer below it are filled.
+        Scalars with p_fwer of at most it are filled.
     color : str
 
     Returns
@@ -80,7 +80,7 @@ def draw_effect_sizes(
     reach = _reach(effect, low, high)
     points = []
     for place in np.flatnonzero(np.isfinite(effect)).tolist():
-        sure = bool(corrected[place] < alpha)
+        sure = bool(corrected[place] <= alpha)
         _draw_interval(ax, place, low[place], high[place], reach, color)
         look: Any = {"markerfacecolor": color if sure else "white", "markeredgecolor": color}
         (point,) = ax.plot(

@@ -15,17 +15,32 @@ from matplotlib.patheffects import withStroke
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
-from cytodisk.plot.cell.disk_axes import disk_polygons, draw_disk_means
+from cytodisk.plot.cell.disk_axes import disk_polygons, frame_disk
 from cytodisk.plot.cell.sector_numbers import number_sectors
-from cytodisk.plot.cell.window_polygons import draw_window_means, window_polygons
+from cytodisk.plot.cell.window_polygons import (
+    add_filled_windows,
+    draw_window_means,
+    window_polygons,
+    window_values,
+)
 from cytodisk.plot.cell.window_regions import region
+from cytodisk.plot.field_of_view import field_of_view, frame_field
 from cytodisk.plot.population.difference_map import DifferenceMap
-from cytodisk.plot.style import DIVERGING_COLOURS, LINE_COLOUR, MISSING_COLOUR, SIGNAL_COLOURS, signal_limits
+from cytodisk.plot.style import (
+    DIVERGING_COLOURS,
+    LINE_COLOUR,
+    MISSING_COLOUR,
+    SIGNAL_COLOURS,
+    scale_bar,
+    signal_limits,
+)
+from cytodisk.plot.units import scale_for
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
 SIGNIFICANT_NAME, CLUSTER_NAME, UNTESTED_NAME, SECTOR_NAME = "significant", "cluster", "not tested", "sector"
 
 _MOST_VECTOR = 3000  # windows; more become pixels inside vector files
+_MARGIN = 0.13  # of a cell's longer side
 _HATCH, _HATCH_COLOUR = "xxxxx", "0.45"
 _FRAME: Any = {"edgecolor": LINE_COLOUR, "linewidth": 0.9}
 _AROUND: Any = {"edgecolor": "black", "linewidth": 1.8, "linestyle": (0, (1.6, 1.1))}
@@ -105,7 +120,7 @@ def draw_atlas(
                 words,
                 (0.5, 0.0),
                 xycoords="axes fraction",
-                xytext=(0, -12),
+                xytext=(0, -12 if isinstance(on, CellWindows) else -1),  # below the scale bar
                 textcoords="offset points",
                 ha="center",
                 va="top",
@@ -230,10 +245,10 @@ def difference_key(found: DifferenceMap) -> list[Any]:
     known, tested = int(np.isfinite(found.difference).sum()), int(found.tested.sum())
     handles: list[Any] = []
     if found.significant.any():
-        words = f"window, p < {found.alpha:g} (max-T): {int(found.significant.sum())} of {tested}"
+        words = f"window, p ≤ {found.alpha:g} (max-T): {int(found.significant.sum())} of {tested}"
         handles.append(Patch(facecolor="none", label=words, **_FRAME))
     if found.cluster.any():
-        words = f"cluster, p < {found.alpha:g}: {int((found.cluster > 0).sum())} windows"
+        words = f"cluster, p ≤ {found.alpha:g}: {int((found.cluster > 0).sum())} windows"
         handles.append(Patch(facecolor="none", label=words, **_AROUND))
     if tested < known:
         words = f"not tested: {known - tested} of {known} windows"
@@ -256,8 +271,12 @@ def _filled(
     if isinstance(on, CellWindows):
         drawn = draw_window_means(ax, on, _turned(table, on, first), cmap=cmap, limits=limits)
         number_sectors(ax, on, SECTOR_NAME, first=first)
+        frame_field(ax, field_of_view([on.disk.outline_yx], _MARGIN))  # room for the numbers
+        scale_bar(ax, scale_for(on))
     else:
-        drawn = draw_disk_means(ax, on, table, cmap=cmap, limits=limits, number_sectors=True)
+        values = window_values(table, (on.layers, on.sectors))
+        drawn = add_filled_windows(ax, disk_polygons(on), values, cmap, limits)
+        frame_disk(ax, on.sectors, on.nucleus_radius, angles=False)
     drawn.set_rasterized(table.size > _MOST_VECTOR)
     return drawn
 

@@ -26,7 +26,6 @@ _APART, _FURTHEST = 0.045, 0.16  # of the means of experiments, and the outermos
 _MEAN_AT = 0.38  # of mean and interval, beside the swarm
 _BINS = 24
 _MOST_CELLS = 1500  # of a condition that get a dot
-_FEW_CONDITIONS = 3
 _GOLDEN = 0.6180339887
 
 
@@ -38,6 +37,7 @@ def draw_super_plot(
     conditions: Sequence[str] | None = None,
     tests: pd.DataFrame | None = None,
     label: str = "",
+    paired: bool | None = None,
 ) -> list[PathCollection]:
     """Draw a scalar by condition: cells small, means of experiments large, beside them mean and interval.
 
@@ -55,6 +55,9 @@ def draw_super_plot(
         the interval of the effect size. They are written above.
     label : str
         Of the upright axis, with the unit; by default the name of the scalar.
+    paired : bool, optional
+        Whether an experiment of two conditions is one, whose means are joined; by default where names of
+        experiments are those of several conditions.
 
     Returns
     -------
@@ -96,14 +99,15 @@ def draw_super_plot(
     """
     rows = checked_units(cells, "cells", (scalar,))
     names = list(dict.fromkeys(rows["condition"])) if conditions is None else [str(one) for one in conditions]
-    looks = experiment_looks(_in_order(rows, names))
+    shared = are_shared(rows) if paired is None else paired
+    looks = experiment_looks(_in_order(rows, names), shared=shared)
     dots, means = [], {}
     for place, name in enumerate(names):
         own = rows[rows["condition"] == name]
         dots.append(_draw_cells(ax, place, own, scalar, looks))
         means[name] = own.groupby("experiment", sort=False, observed=True)[scalar].mean().dropna()
-    beside = _places(means, are_shared(rows))
-    if are_shared(rows):
+    beside = _places(means, shared)
+    if shared:
         _join(ax, [means[name] for name in names], [beside[name] for name in names])
     for place, name in enumerate(names):
         _draw_means(ax, place, means[name], beside[name], {e: looks[name, str(e)] for e in means[name].index})
@@ -117,7 +121,9 @@ def draw_super_plot(
     return dots
 
 
-def experiment_key(cells: pd.DataFrame, conditions: Sequence[str] | None = None) -> list[Any]:
+def experiment_key(
+    cells: pd.DataFrame, conditions: Sequence[str] | None = None, *, paired: bool | None = None
+) -> list[Any]:
     """Handles of a legend: which mark is which experiment, and what is a cell, a mean and an interval.
 
     Parameters
@@ -125,6 +131,8 @@ def experiment_key(cells: pd.DataFrame, conditions: Sequence[str] | None = None)
     cells : DataFrame
         condition and experiment.
     conditions : sequence of str, optional
+        As for `draw_super_plot`.
+    paired : bool, optional
         As for `draw_super_plot`.
 
     Returns
@@ -145,17 +153,21 @@ def experiment_key(cells: pd.DataFrame, conditions: Sequence[str] | None = None)
     """
     rows = checked_units(cells, "cells")
     names = list(dict.fromkeys(rows["condition"])) if conditions is None else [str(one) for one in conditions]
-    looks, shared = experiment_looks(_in_order(rows, names)), are_shared(rows)
+    shared = are_shared(rows) if paired is None else paired
+    looks = experiment_looks(_in_order(rows, names), shared=shared)
     if shared:
-        named: Mapping[str, Look] = {experiment: look for (_, experiment), look in looks.items()}
+        named: Mapping[str, Look] = {
+            experiment: look for (_, experiment), look in looks.items() if experiment
+        }
     else:
-        named = {f"mean of one experiment of {c}": look for (c, _), look in reversed(list(looks.items()))}
+        known = [(unit, look) for unit, look in looks.items() if unit[1]]
+        named = {f"mean of one experiment of {unit[0]}": look for unit, look in reversed(known)}
         named = dict(reversed(list(named.items())))
     handles: list[Any] = [
         Line2D([], [], linewidth=0, label=name, **_mean_look(look, 5.0)) for name, look in named.items()
     ]
     handles.append(Line2D([], [], linewidth=0, marker="o", markersize=2.0, color="0.6", label="cell"))
-    words = "mean and 95 % interval over experiments"
+    words = "mean and 95 % interval over experiments" if named else "mean of cells"
     handles.append(Line2D([], [], color=LINE_COLOUR, marker="_", markersize=6, linewidth=0.9, label=words))
     return handles
 
@@ -228,6 +240,8 @@ def _draw_means(
     ax: Axes, place: int, means: pd.Series, beside: Mapping[str, float], looks: Mapping[Any, Look]
 ) -> None:
     for experiment, value in means.items():
+        if not experiment:  # all that is known is that they are cells
+            continue
         look, x = looks[experiment], place + beside[str(experiment)]
         (mark,) = ax.plot([x], [value], linewidth=0, zorder=4.0, **_mean_look(look, 5.5))
         mark.set_gid(EXPERIMENT_NAME)
@@ -257,11 +271,11 @@ def _write_tests(ax: Axes, names: Sequence[str], tests: pd.DataFrame) -> None:
         row = rows.loc[name].to_dict()
         effect = f"g = {rounded(float(row['effect_size']), 2)}"
         interval = f"[{rounded(float(row['low']), 2)}, {rounded(float(row['high']), 2)}]"
-        between = " " if len(names) <= _FEW_CONDITIONS else "\n"
+        between = " " if len(names) == 2 else "\n"
         words = f"{p_words(float(row['p']))}\n{effect}{between}{interval}".replace("-", "−")
         ax.annotate(
             words,
-            (place, 1.0),
+            (0.5 if len(names) == 2 else place, 1.0),
             xycoords=ax.get_xaxis_transform(),
             xytext=(0, 3),
             textcoords="offset points",

@@ -1,0 +1,1 @@
+"""Figures of a population: by condition, by experiment, and cell by cell."""

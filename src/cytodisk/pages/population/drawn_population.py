@@ -1,0 +1,191 @@
+"""A population's study, opened for drawing, and the words of its pages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from cytodisk.arrays import BoolArray
+from cytodisk.number_words import rounded
+from cytodisk.pages.drawn_correlation import Heading, broken_lines
+from cytodisk.pages.drawn_movie import LEFT_MM
+from cytodisk.pages.grid_words import grid_words
+from cytodisk.pages.population.cell_sources import CellSources
+from cytodisk.plot.population.difference_map import DifferenceMap
+from cytodisk.plot.units import with_unit
+from cytodisk.runs.channel_names import shown_name
+from cytodisk.store.populations.population_study import PopulationStudy
+from cytodisk.windows.polar_windows import PolarGrid
+
+CHARACTER_MM = 1.3
+"""Width of a character of a name at 7 points, rather too much than too little."""
+
+_BOLD_MM = 1.9  # mean width of a character, bold at 8 points
+_LONGEST_CHANNEL = 24
+_OF_CELL = {
+    "cell mean": "{} / mean of the cell",
+    "cell total": "{} / total of the cell, per window of mean area",
+    "z-score": "{}, sd from the mean of the cell",
+    "background": "{} above background",
+}
+_DIRECTIONS = {
+    "nucleus": "the nucleus",
+    "front": "the front",
+    "motion": "the motion",
+    "axis": "the long axis",
+}
+
+
+def counted(number: int, noun: str) -> str:
+    """A number of things, as "1 cell" or "2 cells"."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnPopulation:
+    """A population's study with what its pages draw.
+
+    Attributes
+    ----------
+    study : PopulationStudy
+    """
+
+    study: PopulationStudy
+
+    @cached_property
+    def sources(self) -> CellSources:
+        """The studies that its cells are from."""
+        return CellSources(self.study.cells, np.flatnonzero(self._is_used))
+
+    @cached_property
+    def used(self) -> pd.DataFrame:
+        """The cells that are in the means; an experiment that is unknown is an empty text."""
+        cells = self.study.cells[self._is_used].reset_index(drop=True)
+        return cells.assign(experiment=cells["experiment"].fillna("").astype(str))
+
+    @cached_property
+    def _is_used(self) -> BoolArray:
+        return np.asarray(self.study.cells["left_out"].fillna("") == "", dtype=bool)
+
+    @property
+    def conditions(self) -> list[str]:
+        """The control first."""
+        return list(self.study.conditions)
+
+    @property
+    def compared(self) -> list[str]:
+        """Conditions that were compared with the control, or stand beside it where nothing was tested."""
+        return [name for name in self.study.compared if name in self.conditions]
+
+    @property
+    def channels(self) -> list[str]:
+        """Names of channels that have values."""
+        return [name for name in self.study.channels if name]
+
+    @cached_property
+    def grid(self) -> PolarGrid:
+        """The windows on the disk; with the radii of one cell where they differ between cells."""
+        atlas = self.study.atlas_arrays
+        inside = 0
+        if "compartment" in atlas.coords:
+            inside = int((atlas["compartment"].to_numpy() == "nucleus").sum())
+        return self.sources.grid(atlas.sizes["layer"], atlas.sizes["sector"], inside)
+
+    @property
+    def repeated(self) -> bool:
+        """Whether a condition has several experiments."""
+        known = self.used[self.used["experiment"] != ""]
+        return bool((known.groupby("condition")["experiment"].nunique() > 1).any())
+
+    def atlas(self, channel: str) -> xr.Dataset:
+        """Means and counts of a channel by condition, layer and sector."""
+        return self.study.atlas_arrays.sel(channel=channel)
+
+    def difference(self, condition: str, channel: str) -> DifferenceMap:
+        """Difference of a condition from the control in a channel."""
+        clusters = self.study.clusters
+        own = clusters[(clusters["condition"] == condition) & (clusters["channel"] == channel)]
+        return DifferenceMap.of(self.study.window_arrays(condition).sel(channel=channel), clusters=own)
+
+    def channel_words(self, channel: str) -> str:
+        """Name of a channel for headings and labels."""
+        return shown_name(channel, _LONGEST_CHANNEL)
+
+    def value_label(self, channel: str) -> str:
+        """What the values of windows are, with their unit."""
+        settings, name = self.study.parameters, self.channel_words(channel)
+        summary = str(settings.get("summary") or "mean")
+        words = f"{summary.replace('_', ' ')} {name}"
+        normalised = str(settings.get("normalise") or "none")
+        if normalised in _OF_CELL:
+            words = _OF_CELL[normalised].format(name if summary == "mean" else words)
+        return with_unit(words, self.unit)
+
+    @property
+    def unit(self) -> str:
+        """Unit of the values of windows."""
+        return str(self.study.atlas_arrays["mean"].attrs.get("units", ""))
+
+    @property
+    def paired(self) -> bool:
+        """Whether experiments were compared with themselves."""
+        return bool((self.study.comparisons["design"] == "paired").any())
+
+    def facts(self) -> list[str]:
+        """Numbers of cells and experiments, grid, alignment."""
+        cells = self.used
+        count = int(cells.loc[cells["experiment"] != "", "experiment"].nunique())
+        facts = [
+            counted(len(cells), "cell"),
+            counted(count, "experiment") if count else "experiments unknown",
+        ]
+        if not self.study.is_curves and self.channels:
+            facts.append(grid_words(self.grid))
+        align = str(self.study.parameters.get("align") or "none")
+        if align != "none":
+            what = _DIRECTIONS.get(align, f"the brightest side of {align.removeprefix('signal:')}")
+            facts.append(f"sector 0 at {what}")
+        return facts
+
+    def comparison_words(self, condition: str) -> str:
+        """How a condition was compared, and the smallest p that this can give."""
+        rows = self.study.comparisons
+        row = rows[rows["condition"] == condition].iloc[0]
+        design, first, second = str(row["design"]), int(row["n_control"]), int(row["n_treated"])
+        against = f"{condition} against {row['control']}"
+        unit = "cells" if row["unit"] == "cell" else "experiments"
+        smallest = float(row["smallest_p"])
+        if design not in ("paired", "unpaired") or not np.isfinite(smallest):
+            return f"{against}: not tested"
+        units = f"{first} pairs" if design == "paired" else f"{first} + {second} {unit}"
+        return f"{against}: {units}, {design}, smallest p possible {rounded(smallest, 2)}"
+
+    def heading(self, width_mm: float, what: str, *notes: str) -> Heading:
+        """What a page shows, and of which cells.
+
+        Parameters
+        ----------
+        width_mm : float
+            Width of the page: long lines are broken.
+        what : str
+        *notes : str
+            More to say below it.
+        """
+        room = width_mm - 2 * LEFT_MM
+        title = broken_lines(what.split(" "), " ", room, _BOLD_MM)
+        lines: list[str] = []
+        for part in (*self.facts(), *notes):
+            pieces = broken_lines(part.split(" "), " ", room)
+            joined = broken_lines([*lines[-1:], pieces[0]], " · ", room)
+            lines = [*lines[:-1], *joined, *pieces[1:]]
+        return Heading(title, lines)
+
+    @property
+    def path(self) -> Path:
+        """Folder of the study."""
+        return self.study.path

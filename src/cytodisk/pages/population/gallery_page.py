@@ -1,0 +1,119 @@
+"""Page of cells: the nearest to the mean of each condition, and the farthest from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+
+from cytodisk.arrays import AnyArray, FloatArray
+from cytodisk.disk.disk_map import DiskMap
+from cytodisk.errors import CytodiskError
+from cytodisk.pages.drawn_movie import LEFT_MM
+from cytodisk.pages.population.drawn_population import DrawnPopulation
+from cytodisk.pages.sheet import Sheet
+from cytodisk.plot.population.cell_gallery import draw_gallery, draw_window_gallery
+from cytodisk.plot.style import DOUBLE_COLUMN_MM, colour_bar
+from cytodisk.runs.channel_names import shortened
+from cytodisk.windows.polar_windows import CellWindows
+
+PLACES = ("nearest", "farthest")
+
+_ROOM, _GAP, _TITLE, _BELOW, _SIDE, _BAR = 3.0, 1.5, 7.5, 5.5, 5.0, 13.0  # mm
+_SMALL, _CHARACTER = 6.0, 1.12  # points, mm: of names
+
+
+@dataclass(frozen=True)
+class _Shown:
+    row: int
+    name: str
+    windows: CellWindows
+    values: FloatArray
+    image: AnyArray | None
+    disk: DiskMap
+
+
+def gallery_page(one: DrawnPopulation, channel: str) -> Sheet | None:
+    """Cells of each condition with their signal, or window means without images; None without maps."""
+    table = one.study.gallery
+    table = table[table["channel"] == channel]
+    found = {
+        (condition, place): _shown(one, table, condition, place, channel)
+        for condition in one.conditions
+        for place in PLACES
+    }
+    cells = [cell for row in found.values() for cell in row]
+    if not cells:
+        return None
+    images = all(cell.image is not None for cell in cells)
+    most = {place: max(len(found[name, place]) for name in one.conditions) for place in PLACES}
+    columns = sum(most.values())
+    room = DOUBLE_COLUMN_MM - LEFT_MM - _SIDE - _BAR - _ROOM - (columns - 1) * _GAP
+    size = min(room / columns, 24.0)
+    notes = [] if images else [f"means of windows: {one.sources.image_fault or 'images are not there'}"]
+    words = (
+        f"{one.channel_words(channel)}: cells nearest to the mean of their condition, and farthest from it"
+    )
+    heading = one.heading(DOUBLE_COLUMN_MM, words, *notes)
+    step = _TITLE + size + 3.5
+    sheet = Sheet(heading.height_mm + 3.0 + len(one.conditions) * step + _BELOW)
+    heading.write(sheet)
+    axes: list[Axes] = []
+    for number, condition in enumerate(one.conditions):
+        top = heading.height_mm + 3.0 + number * step + _TITLE
+        sheet.text(LEFT_MM, top + 0.5 * size, condition, rotation=90, ha="left", va="center")
+        for place in PLACES:
+            left = LEFT_MM + _SIDE + (0.0 if place == "nearest" else most["nearest"] * (size + _GAP) + _ROOM)
+            if number == 0:
+                sheet.text(left, heading.height_mm + 1.0, place, weight="bold")
+            places = range(len(found[condition, place]))
+            axes += [sheet.axes(left + column * (size + _GAP), top, size, size) for column in places]
+    drawn = _draw(axes, cells, images)
+    for ax, cell in zip(axes, cells, strict=True):
+        ax.set_title(
+            _two_lines(cell.name, int(size / _CHARACTER)),
+            fontsize=_SMALL,
+            pad=2.0,
+            linespacing=1.0,
+            parse_math=False,
+        )
+    left = LEFT_MM + _SIDE + columns * (size + _GAP) + _ROOM
+    bar = sheet.axes(left, heading.height_mm + 3.0 + _TITLE, 2.2, min(size * 1.2, 26.0))
+    label = f"{one.channel_words(channel)} (a.u.)" if images else one.value_label(channel)
+    colour_bar(drawn, bar, label, extend="both")
+    return sheet
+
+
+def _draw(axes: list[Axes], cells: list[_Shown], images: bool) -> Any:
+    if images:
+        return draw_gallery(axes, [cell.disk for cell in cells], [cell.image for cell in cells])[0]
+    windows, values = [cell.windows for cell in cells], [cell.values for cell in cells]
+    return draw_window_gallery(axes, windows, values)[0]
+
+
+def _shown(
+    one: DrawnPopulation, table: pd.DataFrame, condition: str, place: str, channel: str
+) -> list[_Shown]:
+    own = table[(table["condition"] == condition) & (table["place"] == place)]
+    shown = []
+    for _, cell in own.sort_values("rank", kind="stable").groupby("rank", sort=False):
+        row = int(cell["row"].iloc[0])
+        try:
+            windows = one.sources.windows(row)
+        except CytodiskError:
+            continue  # the page tells how many are shown by showing them
+        values = np.full(windows.areas.shape, np.nan)
+        values[cell["layer"].to_numpy(), cell["sector"].to_numpy()] = cell["value"].to_numpy(dtype=np.float64)
+        values = np.roll(values, one.sources.shift(row), axis=1)
+        disk, image = one.sources.image(row, channel, windows.disk)
+        shown.append(_Shown(row, one.sources.name(row), windows, values, image, disk))
+    return shown
+
+
+def _two_lines(name: str, longest: int) -> str:
+    """Name of a cell in two lines: file, and which cell of it."""
+    first, _, last = name.rpartition(", ")
+    return f"{shortened(first, longest)}\n{last}" if first else shortened(last, longest)

@@ -1,0 +1,159 @@
+"""Pages of scalars: SuperPlots of the most important ones, and the effect sizes of all."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from cytodisk.pages.drawn_correlation import broken_lines
+from cytodisk.pages.drawn_movie import LEFT_MM
+from cytodisk.pages.population.drawn_population import DrawnPopulation
+from cytodisk.pages.sheet import Sheet
+from cytodisk.plot.population.condition_looks import condition_colours
+from cytodisk.plot.population.effect_sizes import draw_effect_sizes
+from cytodisk.plot.population.super_plot import draw_super_plot, experiment_key
+from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM
+from cytodisk.plot.units import with_unit
+
+MOST_PANELS = 6
+MOST_ROWS = 44
+
+_LEFT, _STEP, _LEAST, _GAP, _TALL, _ABOVE, _BELOW = 12.5, 10.5, 26.0, 3.0, 29.0, 9.5, 7.0  # mm
+_NAMES, _ROW, _P_ROOM, _LINE = 40.0, 3.7, 9.0, 3.6  # mm
+_LAYER = re.compile(r"layer_\d+_")
+_KEY_STYLE: Any = {"handlelength": 1.4, "labelspacing": 0.35, "columnspacing": 1.2}
+_WORDS = {
+    "mean": "mean of {}",
+    "edge_to_centre": "edge to centre of {}",
+    "nucleus_to_cytoplasm": "nucleus to cytoplasm of {}",
+    "polarity": "polarity of {}",
+}
+
+
+def scalars_page(one: DrawnPopulation) -> Sheet | None:
+    """SuperPlots of the scalars that differ most; None where there is no scalar."""
+    names = chosen_scalars(one)
+    if not names:
+        return None
+    count = len(one.conditions)
+    panel = max(_LEAST, _STEP * count + 4.0)
+    columns = 2 if 2 * (panel + _LEFT + _GAP) <= SINGLE_COLUMN_MM else 1
+    width = SINGLE_COLUMN_MM
+    if columns == 1 and panel + _LEFT + _GAP > SINGLE_COLUMN_MM:
+        width = DOUBLE_COLUMN_MM
+    panel = (width - 2 * _GAP) / columns - _LEFT
+    cells = one.used
+    key = experiment_key(cells, one.conditions, paired=one.paired)
+    shown, last = key[:-2], key[-2:]
+    longest = max((len(str(handle.get_label())) for handle in shown), default=0)
+    abreast = max(1, int((width - 2 * LEFT_MM) / (1.25 * longest + 7.0)))
+    key_height = _LINE * (-(-len(shown) // abreast) + 1) + 3.0
+    heading = one.heading(width, "Scalars, cell by cell", *_notes(one, names))
+    rows = -(-len(names) // columns)
+    above = _ABOVE + (3.2 if count > 3 else 0.0)
+    first = heading.height_mm + key_height
+    sheet = Sheet(first + rows * (above + _TALL + _BELOW), width)
+    heading.write(sheet)
+    if shown:
+        sheet.key(LEFT_MM, heading.height_mm - 2.0, shown, abreast, borderaxespad=0.0, **_KEY_STYLE)
+    below = heading.height_mm - 2.0 + _LINE * -(-len(shown) // abreast) + 0.4
+    sheet.key(LEFT_MM, below, last, 2, borderaxespad=0.0, **_KEY_STYLE)
+    for number, name in enumerate(names):
+        row, column = divmod(number, columns)
+        left = _GAP + column * (panel + _LEFT) + _LEFT - 1.0
+        ax = sheet.axes(left, first + row * (above + _TALL + _BELOW) + above, panel - 1.0, _TALL)
+        tests = _tests_of(one, name)
+        label = scalar_label(one, name)
+        draw_super_plot(
+            ax, cells, name, conditions=one.conditions, tests=tests, label=label, paired=one.paired
+        )
+    return sheet
+
+
+def effects_page(one: DrawnPopulation) -> Sheet | None:
+    """Effect sizes of all scalars, a column for each condition; None where nothing was compared."""
+    scalars = one.study.scalars
+    known = scalars[np.isfinite(scalars["effect_size"].to_numpy(dtype=np.float64))]
+    treated = [name for name in one.compared if (known["condition"] == name).any()]
+    if not treated:
+        return None
+    largest = known.assign(size=known["effect_size"].abs()).groupby("scalar", sort=False)["size"].max()
+    order = list(largest.index)
+    if len(order) > MOST_ROWS:
+        kept = set(largest.sort_values(ascending=False, kind="stable").index[:MOST_ROWS])
+        order = [name for name in order if name in kept]
+    note = "" if len(order) == len(largest) else f"{len(order)} of {len(largest)}, the largest effect sizes"
+    width = SINGLE_COLUMN_MM if len(treated) == 1 else DOUBLE_COLUMN_MM
+    panel = (width - _NAMES - len(treated) * _P_ROOM - 2.0) / len(treated)
+    heading = one.heading(width, "Effect sizes of scalars", *([note] if note else []))
+    lines = [
+        line
+        for name in treated
+        for line in broken_lines(one.comparison_words(name).split(" "), " ", width - 2 * LEFT_MM)
+    ]
+    lines.append("filled: p ≤ 0.05; on the right: p, corrected for all scalars (max-T)")
+    tall, top = _ROW * len(order) + 2.0, heading.height_mm + 3.5
+    sheet = Sheet(top + tall + 11.0 + _LINE * len(lines), width)
+    heading.write(sheet)
+    colours = condition_colours(one.conditions)
+    for number, name in enumerate(treated):
+        own = known[known["condition"] == name].set_index("scalar").reindex(order).reset_index()
+        own["scalar"] = [scalar_words(one, scalar) for scalar in order]
+        ax = sheet.axes(_NAMES + number * (panel + _P_ROOM), top, panel, tall)
+        draw_effect_sizes(ax, own, color=colours[name])
+        ax.set_title(f"{name} − {one.study.control}", parse_math=False)
+        ax.tick_params(labelleft=number == 0)
+        ax.set_xlabel("effect size (Hedges g)")
+    for number, words in enumerate(lines):
+        sheet.text(LEFT_MM, top + tall + 11.0 + _LINE * number, words, color="0.3")
+    return sheet
+
+
+def chosen_scalars(one: DrawnPopulation) -> list[str]:
+    """Scalars with a SuperPlot: those with the smallest p, then the largest effects; layers have a page."""
+    names = [name for name in one.study.scalar_names if name in one.used and not _LAYER.match(name)]
+    names = [name for name in names if one.used[name].notna().any()]
+    found = one.study.scalars
+    if found.empty:
+        return names[:MOST_PANELS]
+    by_scalar = found.assign(size=-found["effect_size"].abs()).groupby("scalar")[["p_fwer", "size"]].min()
+    ranked = by_scalar.reindex(names).fillna({"p_fwer": 1.0, "size": 0.0})
+    order = ranked.sort_values(["p_fwer", "size"], kind="stable").index[:MOST_PANELS]
+    return [name for name in names if name in set(order)]
+
+
+def scalar_words(one: DrawnPopulation, name: str) -> str:
+    """A scalar in words, as "polarity of Rac1"."""
+    for channel in sorted(one.channels, key=len, reverse=True):
+        if name.endswith(f"_{channel}"):
+            kind, shown = name.removesuffix(f"_{channel}"), one.channel_words(channel)
+            if kind.startswith("layer_"):
+                return f"layer {kind.removeprefix('layer_')} of {shown}"
+            return _WORDS.get(kind, kind.replace("_", " ") + " of {}").format(shown)
+    return name.replace("_", " ")
+
+
+def scalar_label(one: DrawnPopulation, name: str) -> str:
+    """A scalar in words with its unit."""
+    units: dict[str, str] = one.study.cells.attrs.get("units", {})
+    return with_unit(scalar_words(one, name), units.get(name, ""))
+
+
+def _tests_of(one: DrawnPopulation, name: str) -> pd.DataFrame | None:
+    rows = one.study.scalars
+    own = rows[rows["scalar"] == name]
+    return None if own.empty else own.assign(p=own["p_fwer"])
+
+
+def _notes(one: DrawnPopulation, names: list[str]) -> list[str]:
+    notes = []
+    everyone = [name for name in one.study.scalar_names if not _LAYER.match(name)]
+    if len(names) < len(everyone):
+        notes.append(f"{len(names)} of {len(everyone)} scalars")
+    if one.compared and not one.study.scalars.empty:
+        notes.append("p corrected for all scalars (max-T)")
+        notes.append("g: Hedges g with its 95 % interval")
+    return notes

@@ -1,0 +1,229 @@
+"""Pages of a population: whole, readable, and with the numbers of its tables."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from drawn_study import study_of
+from matplotlib.figure import Figure
+
+import cytodisk as cd
+from cytodisk.errors import ReadError
+from cytodisk.pages.population.cell_sources import CellSources
+from cytodisk.pages.population.direction_page import directions_page
+from cytodisk.pages.population.drawn_population import DrawnPopulation
+from cytodisk.pages.population.gallery_page import gallery_page
+from cytodisk.pages.population.map_pages import atlas_page, cell_atlas_page
+from cytodisk.pages.population.power_page import write_power_figure
+from cytodisk.pages.population.profile_pages import profiles_page
+from cytodisk.pages.population.scalar_pages import chosen_scalars, effects_page, scalar_words, scalars_page
+from cytodisk.pages.sheet import Sheet
+from cytodisk.plot.style import paper_style
+from cytodisk.store.study import Study
+
+ABSENT = Path("not there")
+
+
+def population(conditions: int = 2, **settings: Any) -> cd.Population:
+    names = ("control", "blebbistatin 25 µM", "Y-27632", "nocodazole", "latrunculin", "DMSO")[:conditions]
+    given = {"experiments": 4, "cells": 3, "effect": 3.0, "layers": 3, "sectors": 8} | settings
+    truth = cd.simulate.population(conditions=names, seed=0, **given)
+    return cd.Population(truth.values + 10.0, truth.cells)
+
+
+def drawn(pop: cd.Population, **parameters: Any) -> DrawnPopulation:
+    return DrawnPopulation(study_of(pop, ABSENT, **parameters))
+
+
+def words_of(figure: Figure) -> list[str]:
+    texts = figure.findobj(lambda artist: hasattr(artist, "get_text"))
+    return [text.get_text() for text in texts if text.get_text()]
+
+
+@pytest.fixture
+def page(tmp_path: Path, drawn_pages: Callable[[Sheet, Path], Figure]) -> Callable[..., Figure]:
+    """Draw a page, check that it is whole, and give its figure."""
+
+    def draw(make: Callable[..., Sheet | None], *arguments: Any) -> Figure:
+        with paper_style():
+            sheet = make(*arguments)
+            assert sheet is not None
+            return drawn_pages(sheet, tmp_path / "page.png")
+
+    return draw
+
+
+@pytest.fixture
+def drawn_pages(drawn: list[Figure]) -> Callable[[Sheet, Path], Figure]:
+    def save(sheet: Sheet, path: Path) -> Figure:
+        sheet.save(path)
+        return drawn[-1]
+
+    return save
+
+
+@pytest.fixture(scope="module")
+def two() -> DrawnPopulation:
+    return drawn(population())
+
+
+@pytest.mark.parametrize("conditions", [1, 2, 3, 6])
+def test_an_atlas_shows_each_condition_and_each_difference(page: Any, conditions: int) -> None:
+    one = drawn(population(conditions, experiments=2, cells=2))
+    figure = page(atlas_page, one, "signal")
+    titles = [ax.get_title() for ax in figure.axes if ax.get_title()]
+    assert titles[:conditions] == one.conditions
+    joined = [title.replace("\n", " ") for title in titles[conditions:]]
+    assert joined == [f"{name} − control" for name in one.conditions[1:]]
+    counts = [text for text in words_of(figure) if text == "4 cells\n2 experiments"]
+    assert len(counts) == conditions
+    assert figure.get_size_inches()[0] * 25.4 == pytest.approx(85.0 if conditions < 4 else 180.0)
+
+
+def test_an_atlas_says_how_it_was_tested(page: Any, two: DrawnPopulation) -> None:
+    told = " ".join(words_of(page(atlas_page, two, "signal")))
+    assert "8 experiments" in told
+    assert "4 + 4 experiments, unpaired, smallest p possible 0.029" in told
+    assert "max-T" in told
+    assert "mean signal (a.u.)" in told
+    assert "equal areas" in told  # the studies of these cells are not there
+
+
+def test_labels_tell_how_values_were_made(page: Any) -> None:
+    one = drawn(population().normalise("cell mean").align("nucleus"), normalise="cell mean", align="nucleus")
+    told = words_of(page(atlas_page, one, "signal"))
+    assert "signal / mean of the cell (a.u.)" in told
+    assert any("sector 0 at the nucleus" in words for words in told)
+    assert (
+        drawn(population(), summary="peak_correlation").value_label("signal").startswith("peak correlation")
+    )
+
+
+def test_without_experiments_nothing_is_tested(page: Any) -> None:
+    pop = population()
+    one = drawn(pop.with_cells(pop.cells.assign(experiment=None)))
+    told = " ".join(words_of(page(atlas_page, one, "signal")))
+    assert "experiments unknown" in told
+    assert "not tested" in told
+    assert not two_marks(page(scalars_page, one))
+    assert "mean of cells" in words_of(page(scalars_page, one))
+    assert "one experiment" not in words_of(page(profiles_page, one))
+    assert effects_page(one) is None
+
+
+def two_marks(figure: Figure) -> list[Any]:
+    return [line for ax in figure.axes for line in ax.lines if line.get_gid() == "experiment"]
+
+
+def test_scalars_are_those_that_differ_most(page: Any, two: DrawnPopulation) -> None:
+    figure = page(scalars_page, two)
+    labels = [ax.get_ylabel() for ax in figure.axes]
+    assert labels == ["mean of signal (a.u.)", "edge to centre of signal", "polarity of signal"]
+    assert chosen_scalars(two) == ["mean_signal", "edge_to_centre_signal", "polarity_signal"]
+    assert len(two_marks(figure)) == 3 * 8
+    assert any(words.startswith("p = ") for words in words_of(figure))
+    assert scalar_words(two, "layer_2_signal") == "layer 2 of signal"
+    assert scalar_words(two, "nucleus_area") == "nucleus area"
+
+
+def test_paired_experiments_are_joined(page: Any) -> None:
+    one = drawn(population(3, paired=True))
+    figure = page(scalars_page, one)
+    pairs = [line for ax in figure.axes for line in ax.lines if line.get_gid() == "pair"]
+    assert len(pairs) == 3 * 4 * 2
+    assert {"experiment 1", "experiment 4"} <= set(words_of(figure))
+
+
+def test_effect_sizes_have_a_row_a_scalar(page: Any, two: DrawnPopulation) -> None:
+    figure = page(effects_page, two)
+    (ax,) = figure.axes
+    names = [label.get_text() for label in ax.get_yticklabels()]
+    assert names == [scalar_words(two, name) for name in two.study.scalars["scalar"]]
+    several = page(effects_page, drawn(population(4, experiments=3)))
+    assert several.axes[0].get_title() == "blebbistatin 25 µM − control"
+
+
+def test_very_many_scalars_are_cut_to_the_largest(page: Any) -> None:
+    one = drawn(population())
+    row = one.study.scalars.iloc[[0]]
+    many = [row.assign(scalar=f"feature_{k}", effect_size=k / 100.0) for k in range(100)]
+    one.study.__dict__["scalars"] = pd.concat(many, ignore_index=True)
+    figure = page(effects_page, one)
+    assert "44 of 100, the largest effect sizes" in " ".join(words_of(figure))
+    assert figure.axes[0].get_yticklabels()[0].get_text() == "feature 56"
+
+
+def test_profiles_have_a_line_an_experiment(page: Any, two: DrawnPopulation) -> None:
+    figure = page(profiles_page, two)
+    lines = [line.get_gid() for line in figure.axes[0].lines]
+    assert (lines.count("experiment"), lines.count("mean")) == (8, 2)
+    assert {"edge of the cell", "95 % interval over experiments"} <= set(words_of(figure))
+
+
+def test_directions_have_a_rose_a_condition(page: Any, two: DrawnPopulation) -> None:
+    figure = page(directions_page, two)
+    assert [ax.get_title() for ax in figure.axes] == two.conditions * 2
+    assert {"nucleus", "front"} <= set(words_of(figure))
+    cells = two.study.cells.assign(polarity_direction_signal=90.0)
+    turned = DrawnPopulation(study_of(population(), ABSENT))
+    turned.study.__dict__["cells"] = cells
+    assert "brightest side of signal" in words_of(page(directions_page, turned))
+
+
+def test_no_maps_no_pages_on_cells(two: DrawnPopulation) -> None:
+    assert cell_atlas_page(two, "signal") is None
+    assert gallery_page(two, "signal") is None
+    assert "does not say which studies" in two.sources.missing
+    gone = CellSources(two.study.cells.assign(study="no/such folder", number=0), np.arange(3))
+    assert gone.missing == "no/such folder is not there any more"
+    with pytest.raises(ReadError, match="not there any more"):
+        gone.disk(0)
+
+
+@pytest.fixture(scope="module")
+def mapped(tmp_path_factory: pytest.TempPathFactory) -> Study:
+    folder = tmp_path_factory.mktemp("mapped")
+    masks = np.zeros((40, 130), dtype=np.uint8)
+    for label, (radius, x) in enumerate([(9, 15), (12, 45), (11, 75), (15, 110)], 1):
+        y, column = np.ogrid[:40, :130]
+        masks[(y - 20) ** 2 + (column - x) ** 2 <= radius**2] = label
+    import tifffile
+
+    tifffile.imwrite(folder / "masks.tif", masks)
+    tifffile.imwrite(folder / "signal.tif", (masks * 10).astype(np.uint16))
+    return cd.run_map(folder / "masks.tif", folder / "out", signal=folder / "signal.tif", layers=3, sectors=8)
+
+
+def with_maps(study: Study, **columns: Any) -> DrawnPopulation:
+    pop = population(cells=1, experiments=2)
+    cells = pop.cells.assign(study=str(study.path), number=np.arange(len(pop)), **columns)
+    cells["cell"] = [f"masks.tif, cell {number}" for number in range(1, 5)]
+    return drawn(pop.with_cells(cells))
+
+
+def test_the_atlas_is_carried_onto_the_most_usual_cell(page: Any, mapped: Study) -> None:
+    one = with_maps(mapped)
+    assert one.sources.representative in (1, 2)  # neither the smallest nor the largest
+    figure = page(cell_atlas_page, one, "signal")
+    told = " ".join(words_of(figure))
+    assert f"most usual shape: {one.sources.name(one.sources.representative)}" in told
+    assert one.grid.layers == 3
+    assert one.sources.note == ""
+
+
+def test_a_gallery_names_its_cells(page: Any, mapped: Study) -> None:
+    figure = page(gallery_page, with_maps(mapped), "signal")
+    titles = [ax.get_title() for ax in figure.axes if ax.get_title()]
+    assert set(titles) == {f"masks.tif\ncell {number}" for number in range(1, 5)}
+    assert {"nearest", "farthest", "control"} <= set(words_of(figure))
+
+
+def test_power_is_written_in_the_formats_that_are_wanted(tmp_path: Path, drawn: list[Figure]) -> None:
+    power = pd.DataFrame({"experiments": [4, 8], "effect_size": 1.0, "detection": [0.3, 0.7]})
+    notes = ["12 cells of each experiment", "10 % of the variance between experiments", "unpaired"]
+    paths = write_power_figure(tmp_path, power, notes=notes, formats=("png", "svg"))
+    assert [path.name for path in paths] == ["power.png", "power.svg"]
+    assert any("10 % of the variance" in words for words in words_of(drawn[-1]))
