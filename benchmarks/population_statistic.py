@@ -34,7 +34,7 @@ def study(experiments: int, effect: float, spread: Floats, seed: int) -> tuple[F
 
 def labels_of(experiments: int) -> Floats:
     """All ways to choose the treated units, the observed one first."""
-    ways = [way for way in combinations(range(2 * experiments), experiments)]
+    ways = list(combinations(range(2 * experiments), experiments))
     labels = np.zeros((len(ways), 2 * experiments))
     for row, way in zip(labels, reversed(ways), strict=True):  # the last has the second half
         row[list(way)] = 1.0
