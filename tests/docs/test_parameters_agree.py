@@ -128,7 +128,7 @@ def test_positions_and_names_can_be_mixed_but_not_doubled() -> None:
 @pytest.mark.parametrize("command", ["map", "movie", "shapes", "compare-windows"])
 def test_a_run_lists_its_parameters_and_options(command: str) -> None:
     run, _ = COMMANDS[command]
-    with pytest.raises(cd.errors.ParameterError, match=r"no parameter 'bogus'.* workers, resume, overwrite"):
+    with pytest.raises(cd.errors.ParameterError, match=r"no parameter 'bogus'.* resume, overwrite, workers"):
         run("masks.tif", "out", bogus=2)
     with pytest.raises(cd.errors.ParameterError, match=r"did you mean workers\?"):
         run("masks.tif", "out", worker=2)
