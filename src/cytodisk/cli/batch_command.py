@@ -9,7 +9,7 @@ import typer
 from cytodisk.cli.console import console_for, count, fail, progress_bar
 from cytodisk.cli.first_start import say_compiling, with_nuclei_or_not
 from cytodisk.cli.flag_words import MOST_FLAGS
-from cytodisk.cli.options import Given, Quiet, with_parameters
+from cytodisk.cli.options import Given, GroupsFile, Quiet, with_parameters
 from cytodisk.runs.run_options import BatchOptions
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ def batch_command(
         ),
     ],
     given: Given,
+    groups: GroupsFile = None,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="List the inputs as they are understood and run nothing.")
     ] = False,
@@ -42,7 +43,7 @@ def batch_command(
 
     console = console_for(quiet)
     options = given.options(BatchOptions)
-    batch = read_batch(study)
+    batch = read_batch(study, groups)
     console.print(f"inputs: {len(batch.inputs)} ({_kinds(batch)})")
     if dry_run:
         _list_inputs(batch)

@@ -14,6 +14,7 @@ from cytodisk.errors import ParameterError
 from cytodisk.files import real_path
 from cytodisk.number_words import comma_in_toml
 from cytodisk.runs.batch.batch_file_rows import COLUMNS, KEYS, PARAMETERS_OF, FileRow, RowReader
+from cytodisk.runs.batch.batch_groups import read_batch_groups
 from cytodisk.runs.batch.batch_input import BatchInput
 from cytodisk.runs.batch.input_columns import OWN_COLUMNS
 from cytodisk.runs.channel_names import common_signal_name
@@ -27,6 +28,7 @@ from cytodisk.runs.given_tables.given_table import (
 )
 from cytodisk.runs.given_tables.table_faults import Faults
 from cytodisk.runs.given_tables.taken_names import RENAMED, TABLE_NAMES, renamed_words
+from cytodisk.runs.groups.groups import Groups
 
 _SIZES = ("pixel_size_um", "frame_interval_s")
 _TAKEN = {*KEYS, *OWN_COLUMNS, *TABLE_NAMES}
@@ -45,21 +47,26 @@ class Batch:
         In the order of the file; no two have one name.
     columns : tuple of str
         Names of the columns that inputs carry: "condition", "experiment" and those of the user.
+    groups : Groups or None
+        What was done to which cell, for cells of one input that differ.
     """
 
     path: Path
     table: Path | None
     inputs: tuple[BatchInput, ...]
     columns: tuple[str, ...]
+    groups: Groups | None = None
 
 
-def read_batch(path: Path) -> Batch:
+def read_batch(path: Path, groups: Path | None = None) -> Batch:
     """Read a batch file and find its inputs.
 
     Parameters
     ----------
     path : Path
-        TOML with [study] (kind, columns, table), [parameters] and [[inputs]].
+        TOML with [study] (kind, columns, table, groups), [parameters] and [[inputs]].
+    groups : Path, optional
+        Table of groups, in the place of the one that the file names.
 
     Returns
     -------
@@ -69,6 +76,8 @@ def read_batch(path: Path) -> Batch:
     ------
     ParameterError
         The file cannot be read, or anything in it cannot be used; all faults are said at once.
+    ReadError
+        The table of groups cannot be read.
     """
     text = _read(path, "batch file")
     try:
@@ -79,7 +88,7 @@ def read_batch(path: Path) -> Batch:
     faults = Faults()
     faults.add_unknown("top", "table", content, ("study", "parameters", "inputs"))
     study, parameters = _section(content, "study", faults), _section(content, "parameters", faults)
-    faults.add_unknown("[study]", "name", study, ("kind", "columns", "table"))
+    faults.add_unknown("[study]", "name", study, ("kind", "columns", "table", "groups"))
     kind = study.get("kind", "movie")
     if kind not in tuple(PARAMETERS_OF):
         faults.add("[study]", f"kind must be movie or map, got {kind!r}")
@@ -97,7 +106,10 @@ def read_batch(path: Path) -> Batch:
     inputs = tuple(_all_different(reader, rows))
     faults.raise_if_any(path)
     name = common_signal_name([item.signal for item in inputs if item.signal is not None])
-    return Batch(path, table, tuple(replace(item, signal_name=name) for item in inputs), columns)
+    if groups is None and "groups" in study:
+        groups = path.absolute().parent / str(study["groups"])
+    of_groups = None if groups is None else read_batch_groups(groups, inputs, columns)
+    return Batch(path, table, tuple(replace(item, signal_name=name) for item in inputs), columns, of_groups)
 
 
 def _read(path: Path, what: str) -> str:

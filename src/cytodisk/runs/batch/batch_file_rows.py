@@ -76,7 +76,9 @@ class RowReader:
         """The inputs of a row, in natural order of their names; faults are noted."""
         for name in (name for name in row.values if name in RENAMED):
             self.faults.add(row.place, renamed_words(name))
-        names = [name for name in row.values if name not in RENAMED]
+        if "groups" in row.values:
+            self.faults.add(row.place, "groups stands in [study]: one table for all inputs")
+        names = [name for name in row.values if name not in (*RENAMED, "groups")]
         self.faults.add_unknown(row.place, "column", names, [*KEYS, *self.columns])
         kind = row.values.get("kind", self.kind)
         if kind not in tuple(PARAMETERS_OF):

@@ -135,6 +135,7 @@ def describe_batch(batch: Batch, csv: bool = False) -> dict[str, Any]:
     """
     names = [item.name for item in batch.inputs]
     files = {"batch file": batch.path} | ({} if batch.table is None else {"table": batch.table})
+    files |= {} if batch.groups is None else {"groups": batch.groups.path}
     return {
         "run": "batch",
         "command": "cytodisk batch",
@@ -150,7 +151,7 @@ def describe_batch(batch: Batch, csv: bool = False) -> dict[str, Any]:
         "inputs": {role: _described_file(path) for role, path in files.items()},
         "batch file": batch.path.read_text(encoding="utf-8-sig"),
         "number of inputs": len(batch.inputs),
-        "columns": list(batch.columns),
+        "columns": list(dict.fromkeys([*batch.columns, *(batch.groups.names if batch.groups else ())])),
         "versions": installed(),
         "python": platform.python_version(),
         "platform": platform.platform(),

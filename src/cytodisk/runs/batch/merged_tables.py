@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from cytodisk.errors import StudyError
 from cytodisk.runs.batch.batch_file import Batch
 from cytodisk.runs.batch.batch_input import BatchInput, Value
 from cytodisk.runs.batch.input_columns import INPUT, INPUT_COLUMNS, UNITS
-from cytodisk.runs.batch.input_row import InputRow, read_row, row_key, study_key
+from cytodisk.runs.batch.input_row import InputRow, read_row
+from cytodisk.runs.batch.merged_groups import MergedGroups, match_batch, opened_table
 from cytodisk.runs.map.map_kind import MAP
 from cytodisk.runs.movie.movie_kind import MOVIE
 from cytodisk.store.columns_file import COLUMNS_CSV, write_columns_file
@@ -65,12 +64,13 @@ def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None], csv
     StudyError
         A row or a study is missing, or the tables cannot be written.
     """
+    groups = None if batch.groups is None else match_batch(store, batch.groups, batch.inputs)
     own = _own_columns(batch)
     done: list[_Done] = []
     with store.work_folder() as folder:
         file, columns = folder / f"{INPUTS}.parquet", (*own, *INPUT_COLUMNS)
         columns_schema = schema(columns, "")
-        write_rows(_input_rows(store, batch, done, saw), columns_schema, file)
+        write_rows(_input_rows(store, batch, done, saw, groups), columns_schema, file)
         parquet_to_csv(file, folder / csv_of(file.name))
         names = [csv_of(file.name), file.name]
         told = [*_told(INPUTS, columns, columns_schema)]
@@ -81,7 +81,7 @@ def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None], csv
             columns = (*own, *_unit_columns(measured), *measured)
             columns_schema = _schema(columns, having)
             file = folder / f"{name}.parquet"
-            merge_tables(_parts(store, having, name, batch, columns_schema), columns_schema, file)
+            merge_tables(_parts(store, having, name, batch, columns_schema, groups), columns_schema, file)
             names.append(file.name)
             if csv:
                 parquet_to_csv(file, folder / csv_of(file.name))
@@ -90,7 +90,7 @@ def merge_batch(store: Store, batch: Batch, saw: Callable[[InputRow], None], csv
         write_columns_file(folder, told)
         for name in (*names, COLUMNS_CSV):
             store.put_file(folder / name, name)
-    return list(_remarks(done))
+    return [*_remarks(done), *(() if groups is None else groups.warnings)]
 
 
 def _has_table(item: BatchInput, name: str) -> bool:
@@ -116,8 +116,10 @@ def _remarks(done: Sequence[_Done]) -> Iterator[str]:
 def _own_columns(batch: Batch) -> Columns:
     """The input's name, and the columns that the user gives."""
     types = [_type([item.columns[k] for item in batch.inputs]) for k in range(len(batch.columns))]
-    own = (Column(name, kind, "", "your own") for name, kind in zip(batch.columns, types, strict=True))
-    return (INPUT, *own)
+    own = {name: Column(name, kind, "", "your own") for name, kind in zip(batch.columns, types, strict=True)}
+    if batch.groups is not None:  # a column of both has no value in the batch file
+        own |= {column.name: column for column in batch.groups.columns}
+    return (INPUT, *own.values())
 
 
 def _unit_columns(columns: Columns) -> Columns:
@@ -147,7 +149,11 @@ def _values(batch: Batch, item: BatchInput, own: Any) -> dict[str, Any]:
 
 
 def _input_rows(
-    store: Store, batch: Batch, done: list[_Done], saw: Callable[[InputRow], None]
+    store: Store,
+    batch: Batch,
+    done: list[_Done],
+    saw: Callable[[InputRow], None],
+    groups: MergedGroups | None,
 ) -> Iterator[dict[str, Any]]:
     """Rows of the table of inputs; on the way, those that have a study are noted."""
     own = schema(_own_columns(batch), "")
@@ -158,7 +164,8 @@ def _input_rows(
         saw(row)
         if row.complete:
             done.append(_Done(item, (row.length_unit, row.velocity_unit), row.qc_flags))
-        yield _values(batch, item, own) | _columns_of(row) | _paths(batch, item)
+        of_groups = {} if groups is None else groups.of_input(item.name)
+        yield _values(batch, item, own) | of_groups | _columns_of(row) | _paths(batch, item)
 
 
 def _columns_of(row: InputRow) -> dict[str, Any]:
@@ -211,15 +218,24 @@ def _tables(batch: Batch) -> dict[str, Columns]:
     return {name: tuple(columns.values()) for name, columns in merged.items()}
 
 
-def _parts(store: Store, done: Sequence[_Done], name: str, batch: Batch, columns: Any) -> Iterator[Any]:
+def _parts(
+    store: Store,
+    done: Sequence[_Done],
+    name: str,
+    batch: Batch,
+    columns: Any,
+    groups: MergedGroups | None,
+) -> Iterator[Any]:
     """A table of all studies, a row group at a time."""
     for one in done:
         length_unit, velocity_unit = one.units
         given = _values(batch, one.item, columns)
         given |= {"length_unit": length_unit, "velocity_unit": velocity_unit}
-        with _opened(store, one.item.name, name) as file:
+        with opened_table(store, one.item.name, name) as file:
             for group in range(file.num_row_groups):
-                yield _widened(file.read_row_group(group, use_threads=False), given, columns)
+                table = file.read_row_group(group, use_threads=False)
+                by_row = {} if groups is None else groups.of_rows(one.item.name, table)
+                yield _widened(table, given | by_row, columns)
 
 
 def _channel_columns(store: Store, done: Sequence[_Done]) -> Columns:
@@ -227,22 +243,14 @@ def _channel_columns(store: Store, done: Sequence[_Done]) -> Columns:
     channels: dict[str, None] = {}
     for one in done:
         if one.item.nuclei is not None:
-            with _opened(store, one.item.name, "cells") as file:
+            with opened_table(store, one.item.name, "cells") as file:
                 channels |= dict.fromkeys(channels_among(file.schema_arrow.names))
     return channel_columns(list(channels))
 
 
-@contextmanager
-def _opened(store: Store, name: str, table: str) -> Iterator[Any]:
-    """A table of an input's study as a Parquet file; raises StudyError where it is damaged."""
-    try:
-        with store.open(f"{study_key(name)}/{table}.parquet") as opened, pq.ParquetFile(opened) as file:
-            yield file
-    except (pa.ArrowException, StudyError) as error:
-        raise StudyError(
-            f"the study of input {name} is damaged: {error}: remove {study_key(name)} and "
-            f"{row_key(name)}, and run the same command with --resume: then it is done anew"
-        ) from error
+def _column(given: Any, kind: Any, rows: int) -> Any:
+    """One value, or one a row, as a column."""
+    return given if isinstance(given, pa.Array) else pa.repeat(pa.scalar(given, kind), rows)
 
 
 def _widened(table: Any, given: dict[str, Any], columns: Any) -> Any:
@@ -251,7 +259,7 @@ def _widened(table: Any, given: dict[str, Any], columns: Any) -> Any:
     arrays = [
         table.column(field.name).cast(field.type)
         if field.name in found
-        else pa.repeat(pa.scalar(given.get(field.name), field.type), len(table))
+        else _column(given.get(field.name), field.type, len(table))
         for field in columns
     ]
     return pa.table(arrays, schema=columns)

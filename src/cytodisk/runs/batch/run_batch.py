@@ -17,6 +17,7 @@ def run_batch(
     batch_file: str | os.PathLike[str],
     out: str | os.PathLike[str],
     *,
+    groups: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
     tell: Tell = print,
     **settings: Any,
@@ -29,6 +30,9 @@ def run_batch(
         TOML file that names the inputs and their parameters.
     out : path-like
         Folder for the results, or a URL.
+    groups : path-like, optional
+        CSV table that says what was done to which cell, in the place of the one that the batch file names;
+        see `run_map`.
     progress : callable, optional
         Called with (inputs done, inputs in all).
     tell : callable
@@ -63,4 +67,5 @@ def run_batch(
     >>> run_batch("batch.toml", "all").statuses
     Counter({'ok': 1})
     """
-    return batch_study(read_batch(Path(batch_file)), out, progress=progress, tell=tell, **settings)
+    batch = read_batch(Path(batch_file), None if groups is None else Path(groups))
+    return batch_study(batch, out, progress=progress, tell=tell, **settings)

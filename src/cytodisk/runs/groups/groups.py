@@ -85,6 +85,12 @@ class Groups:
         """The columns of the table for each of some cells; see `match`."""
         return self.match(cells).values
 
+    def check_files(self, cells: pd.DataFrame) -> None:
+        """Raise ParameterError if a row names a file that some cells, or rows of mask files, do not have."""
+        faults, known = Faults(), KnownCells.of(cells, self.path.absolute().parent)
+        RowMatching(self.path, self.keys, self.lines, known).files(faults)
+        faults.raise_if_any(self.path, WHAT)
+
     def match(self, cells: pd.DataFrame) -> GroupedCells:
         """What the table says of some cells.
 
