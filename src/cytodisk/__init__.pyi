@@ -107,12 +107,15 @@ from .runs.map.run_map import run_map as run_map
 from .runs.movie.run_movie import run_movie as run_movie
 from .runs.shapes.run_shapes import run_shapes as run_shapes
 from .runs.correlate.run_correlate import run_correlate as run_correlate
+from .runs.population.correlations.run_batch_correlate import run_batch_correlate as run_batch_correlate
 from .runs.compare_windows.run_compare_windows import run_compare_windows as run_compare_windows
 from .runs.batch.run_batch import run_batch as run_batch
 from .runs.map.map_parameters import MapParameters as MapParameters
 from .runs.movie.movie_parameters import MovieParameters as MovieParameters
 from .runs.shapes.shape_parameters import ShapeParameters as ShapeParameters
 from .runs.correlate.correlate_parameters import CorrelateParameters as CorrelateParameters
+from .runs.population.correlations.pool_parameters import BatchCorrelateParameters as BatchCorrelateParameters
+from .runs.population.correlations.pool_parameters import PoolOptions as PoolOptions
 from .runs.compare_windows.compare_parameters import CompareWindowsParameters as CompareWindowsParameters
 from .runs.compare_windows.compare_parameters import CompareMovieParameters as CompareMovieParameters
 from .runs.compare_windows.compare_parameters import CompareNucleiParameters as CompareNucleiParameters
@@ -123,6 +126,8 @@ from .runs.run_options import BatchOptions as BatchOptions
 # Results of runs
 from .store.study import open_study as open_study
 from .store.study import Study as Study
+from .store.populations.pooled_correlation import open_pooled_correlation as open_pooled_correlation
+from .store.populations.pooled_correlation import PooledCorrelation as PooledCorrelation
 from .runs.compare_windows.comparison import open_comparison as open_comparison
 from .runs.compare_windows.comparison import Comparison as Comparison
 from .runs.shapes.shape_tables import open_shapes as open_shapes

@@ -13,7 +13,13 @@ import pytest
 import cytodisk as cd
 
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
-SLOW = {"complexity_score", "run_batch", "run_correlate"}  # UMAP is compiled, processes are started
+SLOW = {  # UMAP is compiled, processes are started
+    "complexity_score",
+    "open_pooled_correlation",
+    "run_batch",
+    "run_batch_correlate",
+    "run_correlate",
+}
 SPACES: tuple[ModuleType, ...] = (cd, cd.plot, cd.pages, cd.simulate)
 
 

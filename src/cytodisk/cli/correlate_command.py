@@ -5,11 +5,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 
 import typer
 
+from cytodisk.cli.batches.given_folder import is_batch
 from cytodisk.cli.console import console_for, earlier_version_lines, progress_bar
 from cytodisk.cli.correlation_words import say_correlation, say_replaced, say_verdicts
 from cytodisk.cli.flag_words import say_flags, say_study_flags
-from cytodisk.cli.options import Figures, Given, MovieStudy, Quiet, with_parameters
+from cytodisk.cli.options import Figures, Given, MovieStudyOrBatch, Quiet, with_parameters
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
+from cytodisk.runs.population.correlations.pool_parameters import BatchCorrelateParameters, PoolOptions
 from cytodisk.runs.run_options import TableOptions
 
 if TYPE_CHECKING:
@@ -22,9 +24,9 @@ NOTHING_CHANGED = "Stopped; nothing was changed."
 Format = Literal["png", "pdf", "svg"]
 
 
-@with_parameters(CorrelateParameters, TableOptions)
+@with_parameters(BatchCorrelateParameters, PoolOptions)
 def correlate_command(
-    study: MovieStudy,
+    study: MovieStudyOrBatch,
     given: Given,
     signal: Annotated[
         str | None,
@@ -36,6 +38,12 @@ def correlate_command(
     cell: Annotated[
         list[int] | None, typer.Option(metavar="NUMBER", help="Only this cell; can be given again.")
     ] = None,
+    groups: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="PATH", help="Of a batch: table of groups, with the condition and experiment of cells."
+        ),
+    ] = None,
     figures: Figures = 4,
     formats: Annotated[
         str, typer.Option("--format", metavar="A,B,…", help="Of figures: png, pdf, svg, or several.")
@@ -45,6 +53,10 @@ def correlate_command(
     from cytodisk.runs.correlate.correlate_study import channels_of, correlate_study
 
     wanted = _formats(formats)
+    if is_batch(study):
+        _correlate_batch(study, given, (signal, with_), cell, groups, wanted, quiet)
+        return
+    _refuse_of_batch(study, given, groups)
     settings, options = given.of(CorrelateParameters), given.options(TableOptions)
     console = console_for(quiet)
     there = opened(console, study)
@@ -60,8 +72,37 @@ def correlate_command(
     say_verdicts(console, found)
 
 
+def _correlate_batch(
+    batch: Path,
+    given: Given,
+    names: tuple[str | None, str],
+    cells: list[int] | None,
+    groups: Path | None,
+    formats: tuple[Format, ...],
+    quiet: bool,
+) -> None:
+    from cytodisk.cli.batches.batch_correlation import correlate_batch
+    from cytodisk.errors import ParameterError
+
+    if cells:
+        raise ParameterError(f"{batch} is a batch, whose cells all count: leave --cell out")
+    settings, options = given.of(BatchCorrelateParameters), dict(given.options(PoolOptions))
+    correlate_batch(batch, names, settings, groups=groups, formats=formats, options=options, quiet=quiet)
+
+
+def _refuse_of_batch(study: Path, given: Given, groups: Path | None) -> None:
+    """Refuse what is for a batch alone, where a study is given."""
+    from cytodisk.errors import ParameterError
+
+    of_batch = given.beyond(CorrelateParameters, TableOptions) + ["--groups"] * (groups is not None)
+    if of_batch:
+        raise ParameterError(
+            f"{', '.join(of_batch)}: only for the folder of a batch, and {study} is none: leave it out"
+        )
+
+
 def report_command(
-    study: MovieStudy,
+    study: MovieStudyOrBatch,
     cell: Annotated[
         int | None,
         typer.Option(metavar="NUMBER", help="The cell to show (default that with the most frames)."),
@@ -72,10 +113,29 @@ def report_command(
     signal: Annotated[
         Path | None, typer.Option(metavar="PATH", help="The movie's image, if it is no longer where it was.")
     ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Of a batch: keep the pages that are younger than their studies.")
+    ] = False,
     quiet: Quiet = False,
 ) -> None:
+    if is_batch(study):
+        from cytodisk.cli.batches.batch_report import report_batch
+
+        _refuse_of_study(study, {"--cell": cell, "--out": out, "--signal": signal})
+        report_batch(study, resume=resume, quiet=quiet)
+        return
     console = console_for(quiet)
     write_page(console, quiet, opened(console, study), out, cell, signal)
+
+
+def _refuse_of_study(batch: Path, flags: dict[str, Any]) -> None:
+    from cytodisk.errors import ParameterError
+
+    if given := [flag for flag, value in flags.items() if value is not None]:
+        raise ParameterError(
+            f"{', '.join(given)}: not for a batch, whose studies each have a page in their folder: leave it "
+            f"out, or name one of {batch / 'inputs'}"
+        )
 
 
 def opened(console: "Console | None", path: Path) -> "Study":

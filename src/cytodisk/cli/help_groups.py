@@ -26,6 +26,7 @@ GROUPS = {
 CORRELATION_GROUPS = {
     "What is correlated": "signal with cell max-lag frames without-frames sectors skip-lags against pairs "
     "clusters control geometry",
+    "Many movies": "groups compare permutations resume",
     "How it is correlated": "statistic detrend detrend-frames difference min-pairs rule surrogates null seed",
     "Results": "name csv figures format parameters quiet help",
 }

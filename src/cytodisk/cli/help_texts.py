@@ -64,6 +64,10 @@ batch file or the folder cannot be used. With --dry-run 2 if files of an input c
 STUDY is the folder that cytodisk movie wrote. Positive lag: the edge moves after the signal. Tables and
 figures go to STUDY/correlation/SIGNAL~WITH.
 
+Of a folder that cytodisk batch wrote, each movie is correlated, and the curves of all cells are pooled: mean
+and interval over experiments, tested against 0 and between conditions. A figure and tables go to the same
+place in the folder of the batch.
+
 Examples:
 
   cytodisk correlate out/ --signal VASP --with velocity --max-lag 20
@@ -71,6 +75,8 @@ Examples:
   cytodisk correlate out/ --signal Rac1 --with RhoA --pairs --format pdf,png
 
   cytodisk correlate out/ --signal Rac1 --with Rac1 --against edge --detrend linear
+
+  cytodisk correlate all/ --signal Rac1 --compare control,drug --resume
 
 Exit code: 0 when done (a cell that cannot be correlated has a row with the reason), 2 if none could be.
 """,
@@ -96,6 +102,8 @@ Examples:
   cytodisk report out/
 
   cytodisk report out/ --cell 3
+
+  cytodisk report all/ --resume     (the folder of a batch: a page for each study)
 """,
     "compare-windows": """Compare kinds of windows on your own masks: how many are empty, how regular.
 

@@ -41,8 +41,9 @@ MovieFile = Annotated[
         show_default=False,
     ),
 ]
-MovieStudy = Annotated[
-    Path, typer.Argument(metavar="STUDY", help="Folder of a movie's study.", show_default=False)
+MovieStudyOrBatch = Annotated[
+    Path,
+    typer.Argument(metavar="STUDY", help="Folder of a movie's study, or of a batch.", show_default=False),
 ]
 Signal = Annotated[
     Path | None,

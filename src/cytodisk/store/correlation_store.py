@@ -35,7 +35,34 @@ _LONGEST_NAME, _MARK = 70, 12  # characters: three such names make one of a fold
 
 
 @dataclass(frozen=True)
-class Correlation:
+class CorrelationFolder:
+    """A folder with the tables of a correlation, which are read when asked for.
+
+    Attributes
+    ----------
+    path : Path
+    signal, with_, name : str
+        See `Correlation`.
+    settings : dict
+    """
+
+    path: Path
+    signal: str
+    with_: str
+    name: str
+    settings: dict[str, Any]
+
+    def _optional(self, name: str) -> pd.DataFrame | None:
+        return self._table(name) if (self.path / f"{name}.parquet").exists() else None
+
+    def _table(self, name: str) -> pd.DataFrame:
+        told = self.settings.get(TABLES, {}).get(name, {})
+        columns = tuple(Column(column, pa.type_for_alias(kind), "", "") for column, kind in told.items())
+        return read_checked(self.path / f"{name}.parquet", columns, remedy=_REMEDY, finite=False)
+
+
+@dataclass(frozen=True)
+class Correlation(CorrelationFolder):
     """A correlation of a study, read from disk; tables are read when asked for.
 
     Every table has its units by column in `attrs["units"]`.
@@ -51,12 +78,6 @@ class Correlation:
     settings : dict
         What was asked for, and the version of cytodisk.
     """
-
-    path: Path
-    signal: str
-    with_: str
-    name: str
-    settings: dict[str, Any]
 
     @cached_property
     def cells(self) -> pd.DataFrame:
@@ -102,14 +123,6 @@ class Correlation:
     def event_averages(self) -> pd.DataFrame | None:
         """One row for each kind of event, layer and delay: the signal around onsets; None as for `events`."""
         return self._optional("event_averages")
-
-    def _optional(self, name: str) -> pd.DataFrame | None:
-        return self._table(name) if (self.path / f"{name}.parquet").exists() else None
-
-    def _table(self, name: str) -> pd.DataFrame:
-        told = self.settings.get(TABLES, {}).get(name, {})
-        columns = tuple(Column(column, pa.type_for_alias(kind), "", "") for column, kind in told.items())
-        return read_checked(self.path / f"{name}.parquet", columns, remedy=_REMEDY, finite=False)
 
 
 def correlation_path(study: Path, signal: str, with_: str, name: str = "") -> Path:

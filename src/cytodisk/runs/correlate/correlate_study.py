@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import pandas as pd
@@ -70,7 +71,7 @@ def correlate_study(
     names = channels_of(study)
     _check_names(names, signal, with_, options)
     _check_frames(study, options)
-    max_lag = options.max_lag if options.max_lag is not None else _usual_lag(study, chosen, options.min_pairs)
+    max_lag = options.max_lag if options.max_lag is not None else usual_lag(study, chosen, options.min_pairs)
     correlating = CellCorrelation(study, signal, with_, max_lag, options)
     found: dict[str, list[pd.DataFrame]] = {}
     rows = []
@@ -172,9 +173,10 @@ def _check_frames(study: Study, options: CorrelateParameters) -> None:
         )
 
 
-def _usual_lag(study: Study, cells: list[int], min_pairs: int) -> int:
+def usual_lag(study: Study, cells: Sequence[int], min_pairs: int) -> int:
     """A quarter of the longest cell's frames, at most twenty, and what leaves enough pairs of frames."""
-    frames = max(study.activity(cell).sizes["time"] for cell in cells)
+    there = study.cells
+    frames = max(int((there["cell"] == cell).sum()) for cell in cells)
     return max(1, min(_LONGEST_LAG, frames // 4, frames - min_pairs))
 
 

@@ -1,0 +1,1 @@
+"""Commands of a study, on the folder of a batch."""

@@ -1,0 +1,215 @@
+"""`cytodisk correlate` on a batch folder: each movie by itself, then all of them together."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from cytodisk.errors import ParameterError
+from cytodisk.population.group_columns import CONDITION, EXPERIMENT
+from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
+from cytodisk.runs.correlate.correlate_study import channels_of
+from cytodisk.runs.population.correlations.batch_movies import BatchMovies, common_lag, movies_of
+from cytodisk.runs.population.correlations.pool_parameters import (
+    BatchCorrelateParameters,
+    PoolOptions,
+    PoolParameters,
+)
+from cytodisk.runs.population.correlations.pooled_columns import POOLED_TABLES
+from cytodisk.runs.population.correlations.pooled_curves import Pooled, conditions_compared, pool_curves
+from cytodisk.runs.population.correlations.study_curves import REFUSED, cells_of, correlated, curves_of
+from cytodisk.runs.run_options import Progress
+from cytodisk.runs.versions import installed
+from cytodisk.store.correlation_store import write_correlation
+from cytodisk.store.populations.pooled_correlation import PooledCorrelation, open_pooled_correlation
+from cytodisk.store.study import open_study
+from cytodisk.store.tables import Columns
+from cytodisk.taking import takes
+
+_GROUP = ["input", "cell"]
+
+
+@takes(BatchCorrelateParameters, PoolOptions)
+def run_batch_correlate(
+    batch: str | os.PathLike[str],
+    signal: str,
+    with_: str = "velocity",
+    *,
+    groups: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+    parameters: BatchCorrelateParameters | None = None,
+    **settings: Any,
+) -> PooledCorrelation:
+    """Correlate every movie of a batch, and pool the curves of all cells: `cytodisk correlate BATCH`.
+
+    Each movie has its own tables, as `run_correlate` writes them; the pooled ones go to
+    BATCH/correlation/SIGNAL~WITH.
+
+    Parameters
+    ----------
+    batch : path-like
+        Folder that `cytodisk batch` wrote. Its columns condition and experiment group the cells.
+    signal : str
+        A channel of all studies.
+    with_ : str
+        "velocity", "velocity_cell_frame" or a channel. Positive lag: it moves after the signal.
+    groups : path-like, optional
+        Table of groups: which condition and experiment each cell is of. Its columns take the place of those
+        of the batch.
+    progress : callable, optional
+        Called with (steps done, in all).
+    parameters : BatchCorrelateParameters, optional
+        All parameters together; those that are given by name overrule them.
+    **settings
+        See `BatchCorrelateParameters` and `PoolOptions`.
+
+    Returns
+    -------
+    PooledCorrelation
+        A study or cell that cannot be correlated has a row that says why.
+
+    Raises
+    ------
+    PopulationError
+        The movies cannot be pooled: their windows or frame intervals differ; or a condition is not there.
+    ParameterError
+        No cell could be correlated, or a parameter is out of its range.
+
+    See Also
+    --------
+    run_correlate : One movie.
+    open_pooled_correlation : Reads the tables.
+
+    Notes
+    -----
+    Without `max_lag` the longest lag is the usual one of the movie in the middle, the same for all. A movie
+    too short for the longer lags counts at the shorter ones.
+
+    A curve is the mean over the sectors of a layer, one a cell. An experiment's curve is the mean of its
+    cells' in Fisher's z, the pooled curve the mean of the experiments', so a dish with many cells counts as
+    much as one with few. Against 0 the signs of whole experiments are turned; between conditions their
+    labels are exchanged. With n experiments turned signs reach p = 2 / 2ⁿ at best: 6 are needed for 0.05.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> from pathlib import Path
+    >>> import cytodisk as cd
+    >>> lines = ["[study]", "kind = 'movie'", "[parameters]", "layers = 2", "channels = ['Rac1', 'RhoA']"]
+    >>> for day in range(2):
+    ...     movie = cd.simulate.movie("fluctuating", frames=24, radius_px=14, seed=day)
+    ...     tifffile.imwrite(f"masks{day}.tif", movie.masks.astype("uint8"), photometric="minisblack")
+    ...     tifffile.imwrite(f"signal{day}.ome.tif", movie.signal.to_numpy(), metadata={"axes": "TCYX"})
+    ...     lines += ["[[inputs]]", f"masks = 'masks{day}.tif'", f"signal = 'signal{day}.ome.tif'"]
+    ...     lines += ["condition = 'control'", f"experiment = 'day {day}'"]
+    >>> _ = Path("batch.toml").write_text("\\n".join(lines))
+    >>> _ = cd.run_batch("batch.toml", "all")
+    >>> found = cd.run_batch_correlate("all", "Rac1", max_lag=3, surrogates=0)
+    >>> found.sentences[0]
+    'control against 0: 2 experiments can give p = 0.5 at best.'
+    """
+    folder = Path(batch)
+    options, values = PoolOptions.split(settings, BatchCorrelateParameters)
+    chosen = BatchCorrelateParameters.chosen(parameters, values)
+    movies = movies_of(folder, groups)
+    there = [name for name in movies.groups[CONDITION].drop_duplicates() if name]
+    conditions_compared(there, chosen.compare)  # before the movies, which take long
+    of_each = chosen.part(CorrelateParameters)
+    if of_each.max_lag is None:
+        of_each = of_each.changed(max_lag=common_lag(movies, of_each.min_pairs))
+    studies, cells, curves = _each(movies, (signal, with_), of_each, options, progress)
+    if not curves:
+        reasons = [row["reason"] for row in studies if row["status"] == REFUSED]
+        raise ParameterError(f"no movie of batch {folder} can be correlated: {reasons[0]}")
+    table = _with_groups(pd.concat(cells, ignore_index=True), movies.groups)
+    joined = _with_groups(pd.concat(curves, ignore_index=True), movies.groups)
+    pooled = pool_curves(joined, table[table["status"] == "ok"], (signal, with_), chosen.part(PoolParameters))
+    tables = {"studies": _studies(studies, table), "cells": table, "curves": joined} | pooled.tables
+    tables = {name: one for name, one in tables.items() if len(one)}
+    content = chosen.model_dump() | _said(movies, pooled) | {"max_lag": of_each.max_lag}
+    content["given"] = chosen.model_dump(mode="json", exclude_defaults=True)
+    ordered = {name: _ordered(one, POOLED_TABLES[name]) for name, one in tables.items()}
+    write_correlation(folder, signal, with_, ordered, POOLED_TABLES, content, chosen.name, options.csv)
+    return open_pooled_correlation(folder, signal, with_, chosen.name)
+
+
+def only_channel(batch: str | os.PathLike[str]) -> str:
+    """The channel of a batch whose movies have one.
+
+    Raises
+    ------
+    ParameterError
+        They have several: the message names them.
+    """
+    study = movies_of(Path(batch)).studies[0]
+    names = channels_of(open_study(study.folder))
+    if len(names) > 1:
+        raise ParameterError(f"signal is not given: pass --signal with one of {', '.join(map(repr, names))}")
+    return names[0]
+
+
+def _each(
+    movies: BatchMovies,
+    names: tuple[str, str],
+    parameters: CorrelateParameters,
+    options: PoolOptions,
+    progress: Progress | None,
+) -> tuple[list[dict[str, Any]], list[pd.DataFrame], list[pd.DataFrame]]:
+    """Correlate the movies one by one: rows of studies, and tables of cells and curves."""
+    rows, cells, curves = list(movies.left_out), [], []
+    for place, study in enumerate(movies.studies):
+        report = _share(progress, place, len(movies.studies))
+        found, row = correlated(
+            study, names, parameters, resume=options.resume, csv=options.csv, progress=report
+        )
+        rows.append(row)
+        if found is not None:
+            cells.append(cells_of(study, found))
+            curves.append(curves_of(study, found))
+        if report is not None:
+            report(1, 1)
+    return rows, cells, curves
+
+
+def _share(progress: Progress | None, place: int, whole: int) -> Progress | None:
+    """What to call with the steps of one study, to report percents of all."""
+    if progress is None:
+        return None
+    return lambda done, steps: progress(100 * place + round(100 * done / max(steps, 1)), 100 * whole)
+
+
+def _with_groups(table: pd.DataFrame, groups: pd.DataFrame) -> pd.DataFrame:
+    """The table with condition and experiment of each cell; a cell without a condition is left out."""
+    found = table.merge(groups, on=_GROUP, how="left")
+    if "status" in found:
+        for name in (CONDITION, EXPERIMENT):
+            unknown = found[name].fillna("") == ""
+            if not unknown.all():
+                left = unknown & (found["status"] == "ok")
+                found.loc[left, ["status", "reason"]] = ["left out", f"it has no {name}"]
+    return found.fillna({CONDITION: "", EXPERIMENT: ""})
+
+
+def _studies(rows: list[dict[str, Any]], cells: pd.DataFrame) -> pd.DataFrame:
+    """A row for each input, with the number of its cells that are pooled."""
+    counts = cells[cells["status"] == "ok"].groupby("input").size()
+    table = pd.DataFrame(rows)
+    return table.assign(cells=table["input"].map(counts).fillna(0).astype(int))
+
+
+def _said(movies: BatchMovies, pooled: Pooled) -> dict[str, Any]:
+    return {
+        "sentences": [*pooled.sentences, *movies.remarks],
+        "warnings": pooled.warnings,
+        "cytodisk": installed(("cytodisk",))["cytodisk"],
+    }
+
+
+def _ordered(table: pd.DataFrame, columns: Columns) -> pd.DataFrame:
+    """The table with its columns in order, and their units."""
+    found = table.reindex(columns=[column.name for column in columns])
+    found.attrs = {"units": {column.name: column.unit for column in columns}}
+    return found

@@ -1,0 +1,123 @@
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import tifffile
+
+import cytodisk as cd
+from cytodisk.errors import ParameterError, PopulationError, ReadError
+from cytodisk.runs.population.correlations.run_batch_correlate import only_channel, run_batch_correlate
+from cytodisk.store.populations.pooled_correlation import PooledCorrelation, open_pooled_correlation
+
+pytestmark = pytest.mark.slow  # a process for each movie
+
+LAG = 2
+HEAD = """
+[study]
+kind = "movie"
+
+[parameters]
+layers = 2
+sectors = 8
+frame_interval_s = 5.0
+"""
+SETTINGS = {"surrogates": 0, "geometry": False, "clusters": False}
+
+
+def write_movie(folder: Path, name: str, seed: int, frames: int = 40) -> None:
+    truth = cd.simulate.movie("fluctuating", frames=frames, radius_px=14, seed=seed, lag_frames=LAG)
+    tifffile.imwrite(folder / f"{name}_masks.tif", truth.masks.astype("uint8"), photometric="minisblack")
+    metadata = {"axes": "TCYX", "Channel": {"Name": ["follower", "other"]}}
+    tifffile.imwrite(folder / f"{name}_signal.ome.tif", truth.signal.to_numpy(), metadata=metadata)
+
+
+def entry(name: str, experiment: str) -> str:
+    files = f'masks = "{name}_masks.tif"\nsignal = "{name}_signal.ome.tif"'
+    group = f'condition = "control"\nexperiment = "{experiment}"'
+    return f'\n[[inputs]]\nname = "{name}"\n{files}\n{group}\n'
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("movies")
+    for seed in range(2):
+        write_movie(folder, f"m{seed}", seed)
+    write_movie(folder, "short", 7, frames=8)
+    tifffile.imwrite(folder / "image.tif", cd.simulate.disk(12).astype("uint8"))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def batch(files: Path) -> Path:
+    entries = [entry(f"m{seed}", f"day {seed}") for seed in range(2)]
+    image = '\n[[inputs]]\nname = "image"\nkind = "map"\nmasks = "image.tif"\n'
+    (files / "batch.toml").write_text(HEAD + "".join([*entries, entry("short", "day 1")]) + image)
+    cd.run_batch(files / "batch.toml", files / "out", workers=2)
+    return files / "out"
+
+
+@pytest.fixture(scope="module")
+def pooled(batch: Path) -> PooledCorrelation:
+    return run_batch_correlate(batch, "follower", max_lag=6, csv=True, **SETTINGS)
+
+
+def test_every_movie_counts_or_has_a_row_that_says_why(pooled: PooledCorrelation) -> None:
+    studies = pooled.studies.set_index("input")
+    assert studies["status"].to_dict() == {
+        "m0": "ok",
+        "m1": "ok",
+        "short": "refused",
+        "image": "left out",
+    }
+    assert studies.loc["image", "reason"] == "no movie: it has no time to correlate over"
+    assert "frames" in studies.loc["short", "reason"]
+    assert studies["cells"].sum() == 2
+
+
+def test_tables_hold_what_the_movies_hold(batch: Path, pooled: PooledCorrelation) -> None:
+    for name in ("m0", "m1"):
+        own = cd.open_study(batch / "inputs" / name).correlation("follower").layer_curves
+        curve = pooled.curves[pooled.curves["input"] == name]
+        np.testing.assert_array_equal(curve["correlation"], own["correlation"])
+    z = np.arctanh(pooled.curves.set_index(["layer", "lag"])["correlation"]).groupby(level=[0, 1]).mean()
+    mean = pooled.pooled.set_index(["layer", "lag"])["correlation"]
+    np.testing.assert_allclose(mean, np.tanh(z.loc[mean.index]))
+    assert pooled.pooled.attrs["units"]["lag_s"] == "s"
+    assert set(pooled.curves["experiment"]) == {"day 0", "day 1"}
+    assert (pooled.path / "pooled.csv").exists()
+
+
+def test_two_experiments_can_show_nothing_and_that_comes_first(pooled: PooledCorrelation) -> None:
+    assert "2 experiments can give p = 0.5 at best" in pooled.sentences[0]
+    assert pooled.conditions == ("control",)
+
+
+def test_resume_keeps_what_is_there_and_other_settings_do_not(batch: Path, pooled: PooledCorrelation) -> None:
+    again = run_batch_correlate(batch, "follower", max_lag=6, csv=True, resume=True, **SETTINGS)
+    assert again.studies["status"].tolist().count("kept") == 2
+    pd.testing.assert_frame_equal(again.pooled, pooled.pooled)
+    other = run_batch_correlate(batch, "follower", max_lag=5, resume=True, name="short", **SETTINGS)
+    assert other.studies["status"].tolist().count("kept") == 0
+    assert open_pooled_correlation(batch, "follower", name="short").pooled["lag"].max() == 5
+
+
+def test_the_longest_lag_is_that_of_the_movie_in_the_middle(batch: Path) -> None:
+    found = run_batch_correlate(batch, "other", **SETTINGS)
+    assert found.settings["max_lag"] == 10
+
+
+def test_a_batch_goes_on_after_it_was_correlated(files: Path, batch: Path, pooled: PooledCorrelation) -> None:
+    cd.run_batch(files / "batch.toml", batch, resume=True)
+    assert len(open_pooled_correlation(batch, "follower").pooled) == len(pooled.pooled)
+
+
+def test_what_is_asked_wrongly_says_what_there_is(batch: Path) -> None:
+    with pytest.raises(ParameterError, match="'VASP' is not in the study: it has 'follower', 'other'"):
+        run_batch_correlate(batch, "VASP", **SETTINGS)
+    with pytest.raises(ParameterError, match="pass --signal with one of 'follower', 'other'"):
+        only_channel(batch)
+    with pytest.raises(PopulationError, match="'drug' is not in the batch: it has 'control'"):
+        run_batch_correlate(batch, "follower", compare=["control", "drug"], **SETTINGS)
+    with pytest.raises(ReadError, match="no correlation of follower with other"):
+        open_pooled_correlation(batch, "follower", "other")
