@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 import cytodisk as cd
+from cytodisk.population.conditions.experiment_units import units_of
+from cytodisk.population.conditions.unit_values import scalar_means, usable_cells, window_means
 from cytodisk.population.exchange.exchange_test import ExchangeTest, exchange_test
 from cytodisk.population.exchange.exchanges import LabelExchanges, SignExchanges
-from cytodisk.population.conditions.experiment_units import units_of
 from cytodisk.population.exchange.studentised import GroupDifference, PairDifference
-from cytodisk.population.conditions.unit_values import scalar_means, usable_cells, window_means
 from cytodisk.population.exchange.window_neighbours import ClusterField
 
 ALPHA = 0.05
