@@ -17,6 +17,8 @@ from cytodisk.runs.compare_windows.compare_parameters import (
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_parameters import MovieParameters
+from cytodisk.runs.population.population_parameters import PopulationParameters
+from cytodisk.runs.population.power.power_parameters import PowerParameters
 from cytodisk.runs.run_options import BatchOptions, MapOptions, RunOptions
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 
@@ -31,6 +33,8 @@ MODELS: dict[str, type[Parameters]] = {
     "cytodisk compare-windows": CompareWindowsParameters,
     "cytodisk compare-windows --movie": CompareMovieParameters,
     "cytodisk compare-windows --nuclei": CompareNucleiParameters,
+    "cytodisk population": PopulationParameters,
+    "cytodisk population --power": PowerParameters,
     "cytodisk batch": BatchOptions,
 }
 WORDS = """A parameter has one name: the keyword in Python, the key in ``parameters.toml`` and, with dashes,

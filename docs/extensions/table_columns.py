@@ -12,6 +12,7 @@ from cytodisk.runs.compare_windows.compare_tables import COMPARED_CELLS, COMPARE
 from cytodisk.runs.correlate.correlation_columns import CORRELATION_TABLES
 from cytodisk.runs.map.map_kind import MAP
 from cytodisk.runs.movie.movie_kind import MOVIE
+from cytodisk.runs.population.population_kind import POPULATION
 from cytodisk.runs.shapes.shape_tables import SHAPE_STUDY
 from cytodisk.store.study_kind import StudyKind
 from cytodisk.store.tables import Columns
@@ -50,6 +51,12 @@ def write_page(app: Sphinx, _config: Any) -> None:
     compared = tables_of(COMPARED_CELLS, COMPARED_MOVIE, COMPARED_NUCLEI)
     lines += run("Comparisons of windows", "``cytodisk compare-windows`` writes these tables.", compared)
     lines += ["``comparison_columns.csv`` explains the columns of the summaries, which are CSV files.", ""]
+    lines += run("Populations", "``cytodisk population`` writes these tables.", tables_of(POPULATION))
+    lines += [
+        "``cells`` also has the columns of the studies and of the table of groups, and the scalars of each "
+        "channel. Values are in the unit of the signal, or relative where cells were normalised.",
+        "",
+    ]
     inputs = {"inputs": (INPUT, *INPUT_COLUMNS)}
     lines += run("Many inputs", "``cytodisk batch`` writes this table, also as CSV.", inputs)
     lines += [

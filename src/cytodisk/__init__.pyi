@@ -101,6 +101,8 @@ from .population.comparison_parameters import PermutationParameters as Permutati
 from .population.named_warning import NamedWarning as NamedWarning
 from .runs.population.opening.open_population import open_population as open_population
 from .runs.population.opening.population_tables import population_from_tables as population_from_tables
+from .runs.population.power.population_power import population_power as population_power
+from .runs.population.power.power_parameters import PowerParameters as PowerParameters
 
 # Runs: what the commands do
 from .runs.map.run_map import run_map as run_map
@@ -110,6 +112,7 @@ from .runs.correlate.run_correlate import run_correlate as run_correlate
 from .runs.population.correlations.run_batch_correlate import run_batch_correlate as run_batch_correlate
 from .runs.compare_windows.run_compare_windows import run_compare_windows as run_compare_windows
 from .runs.batch.run_batch import run_batch as run_batch
+from .runs.population.run_population import run_population as run_population
 from .runs.map.map_parameters import MapParameters as MapParameters
 from .runs.movie.movie_parameters import MovieParameters as MovieParameters
 from .runs.shapes.shape_parameters import ShapeParameters as ShapeParameters
@@ -119,6 +122,8 @@ from .runs.population.correlations.pool_parameters import PoolOptions as PoolOpt
 from .runs.compare_windows.compare_parameters import CompareWindowsParameters as CompareWindowsParameters
 from .runs.compare_windows.compare_parameters import CompareMovieParameters as CompareMovieParameters
 from .runs.compare_windows.compare_parameters import CompareNucleiParameters as CompareNucleiParameters
+from .runs.population.population_parameters import PopulationParameters as PopulationParameters
+from .runs.run_options import FolderOptions as FolderOptions
 from .runs.run_options import MapOptions as MapOptions
 from .runs.run_options import RunOptions as RunOptions
 from .runs.run_options import BatchOptions as BatchOptions
@@ -131,5 +136,8 @@ from .store.populations.pooled_correlation import PooledCorrelation as PooledCor
 from .runs.compare_windows.comparison import open_comparison as open_comparison
 from .runs.compare_windows.comparison import Comparison as Comparison
 from .runs.shapes.shape_tables import open_shapes as open_shapes
+from .store.populations.population_study import open_population_study as open_population_study
+from .store.populations.population_study import PopulationStudy as PopulationStudy
+from .store.populations.population_study import StudyWarning as StudyWarning
 from .runs.qc_flags.study_flags import qc_flags as qc_flags
 from .pages.report.page import write_report as write_report

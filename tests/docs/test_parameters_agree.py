@@ -34,6 +34,7 @@ COMMANDS: dict[str, tuple[Callable[..., Any], tuple[type[Parameters], ...]]] = {
             cd.RunOptions,
         ),
     ),
+    "population": (cd.run_population, (cd.PopulationParameters, cd.FolderOptions)),
     "batch": (cd.run_batch, (cd.BatchOptions,)),
 }
 FUNCTIONS = (

@@ -10,7 +10,8 @@ from cytodisk.cli.lazy_command import LazyCommand
 from cytodisk.errors import CytodiskError
 from cytodisk.stopping import Stopped, is_stop, stopping_tidily
 
-_ELSEWHERE = {"report": "correlate_command"}  # the others have a module of their own
+_ELSEWHERE = {"report": "correlate_command", "population": "population.population_command"}
+"""Modules of commands that have none of their name beside this one."""
 
 
 def _command(name: str) -> LazyCommand:

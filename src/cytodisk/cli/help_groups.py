@@ -32,6 +32,16 @@ CORRELATION_GROUPS = {
 }
 """The same for a command with the flag `--with`."""
 
+POPULATION_GROUPS = {
+    "What is compared": "compare channel scalars groups dose dose-scale",
+    "What each cell contributes": "summary normalise align",
+    "How it is tested": "unit design permutations seed",
+    "Planning experiments": "power effects experiments cells between-experiments between-dishes studies",
+    "The run": "resume overwrite",
+    "Results": "out csv figures parameters quiet help",
+}
+"""The same for a command with the flag `--compare`."""
+
 
 class GroupedCommand(TyperCommand):
     """A command whose help lists flags under headings, as plain text."""
@@ -78,7 +88,8 @@ def grouped(flags: Sequence[str]) -> list[tuple[str, list[str]]]:
     >>> grouped(["csv", "sectors", "signal", "layers"])
     [('Files', ['signal']), ('Windows', ['layers', 'sectors']), ('Results', ['csv'])]
     """
-    groups, found = CORRELATION_GROUPS if "with" in flags else GROUPS, []
+    groups = CORRELATION_GROUPS if "with" in flags else POPULATION_GROUPS if "compare" in flags else GROUPS
+    found: list[tuple[str, list[str]]] = []
     left = list(flags)
     for heading, names in groups.items():
         there = [name for name in names.split() if name in left]

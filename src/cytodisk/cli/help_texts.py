@@ -93,6 +93,30 @@ Examples:
 
 Exit code: 0 when done (refused cells have a row with the reason), 2 if nothing could be measured.
 """,
+    "population": """Compare conditions: is the signal different, where, by how much, and how sure is that?
+
+PATH is what cytodisk batch, map, movie or shapes wrote, or a folder of such studies. Each cell needs a
+condition and an experiment, the independent repetition (day, dish, animal): from the batch file, or from
+--groups table.csv with the columns file or cell, condition and experiment. Experiments are compared, not
+cells: cells of one dish are not independent.
+
+Examples:
+
+  cytodisk population all/ --compare control,drug --channel Rac1 --align nucleus -o atlas/
+
+  cytodisk population out/ --groups table.csv -o atlas/
+
+  cytodisk population all/ --dose dose --normalise "cell mean" -o doses/
+
+  cytodisk population --power
+
+  cytodisk population all/ --power --effects 1,2 --experiments 4,6
+
+With --power nothing is compared: a table says how often a difference of a size is found with so many
+experiments, with the variances of your cells where you pass PATH.
+
+Exit code: 0 when done, 2 if there is nothing to show, or the input or the folder cannot be used.
+""",
     "report": """Write one HTML page that shows a study: QC flags, windows, activity, velocity, correlation.
 
 The page holds all it needs: it opens in any browser, without a network, and can be sent as one file.

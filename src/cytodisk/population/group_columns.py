@@ -27,7 +27,7 @@ def names_in(table: pd.DataFrame, column: str) -> pd.Series[str]:
         given = given.astype("Int64")  # a whole number beside an empty field came as 1.0
     texts = given.astype(object).where(given.notna(), np.nan)
     texts = texts.map(lambda value: str(value).strip(), na_action="ignore")
-    return texts.where(texts != "", np.nan)
+    return texts.where(texts != "", np.nan).astype(object)  # also where none is given
 
 
 def codes_of(names: pd.Series[str]) -> tuple[np.ndarray, tuple[str, ...]]:

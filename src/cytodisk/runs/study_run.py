@@ -16,7 +16,7 @@ from cytodisk.runs.run_options import FolderOptions
 from cytodisk.store.csv_tables import check_csv_room, has_csv_tables
 from cytodisk.store.study_folder import StudyFolder
 from cytodisk.store.study_kind import PARAMETERS, StudyKind
-from cytodisk.store.study_room import WRITES, alone_in, refuse_to_add
+from cytodisk.store.study_room import WRITES, alone_in, check_folder, is_empty, refuse_to_add
 
 Result = TypeVar("Result")
 
@@ -48,6 +48,7 @@ class StudyRun:
         work: Callable[[StudyFolder], tuple[Sequence[str], Sequence[str]]],
         read: Callable[[Path], Result],
         tables: Callable[[StudyFolder], None] | None = None,
+        prepare: Callable[[], None] | None = None,
     ) -> Result:
         """Do the work in a folder and mark the study as complete, unless it is.
 
@@ -62,6 +63,9 @@ class StudyRun:
             Opens the complete study.
         tables : callable, optional
             Completes the tables when all parts are in them, before the study counts as complete.
+        prepare : callable, optional
+            Called before anything is written or removed, unless the study is complete: if it raises an
+            error, the folder is as it was.
 
         Returns
         -------
@@ -81,6 +85,10 @@ class StudyRun:
                 refuse_to_add(place, provenance, self.writes)
             complete = StudyFolder.complete(out, provenance, kind) if options.resume else None
             if complete is None:
+                if prepare is not None:
+                    if not is_empty(place):
+                        check_folder(place, provenance | kind.provenance, kind, **options.again)
+                    prepare()
                 folder = StudyFolder.start(out, provenance, kind, **options.again)
                 write_parameters(self.parameters, place / PARAMETERS)
                 keys, warnings = work(folder)

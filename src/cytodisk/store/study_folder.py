@@ -14,10 +14,10 @@ from cytodisk.store.columns_file import write_columns
 from cytodisk.store.csv_tables import csv_of, parquet_to_csv
 from cytodisk.store.merging import merge_tables, write_rows
 from cytodisk.store.provenance_file import PROVENANCE, other_version, read_provenance, write_json
-from cytodisk.store.removal import is_left_over, remove_left_overs, remove_parts
+from cytodisk.store.removal import remove_left_overs, remove_parts
 from cytodisk.store.study_kind import CELLS, FIGURES, MAPS, PARTS, StudyKind, is_derived
 from cytodisk.store.study_parts import UNITS, StudyParts
-from cytodisk.store.study_room import make_room
+from cytodisk.store.study_room import is_empty, make_room
 from cytodisk.store.written_files import FILES, lost_files, recorded, some_of, writing_files
 
 _DIGITS = (5, 6)  # of a cell or frame in a key; a folder never has a million
@@ -92,7 +92,7 @@ class StudyFolder(StudyParts):
             if folder.exists() and not folder.is_dir():
                 raise StudyError(f"output {folder} is a file: pass a folder")
             make_folder(folder)
-            if any(not is_left_over(file) for file in folder.iterdir()):
+            if not is_empty(folder):
                 make_room(folder, study.provenance, kind, resume, overwrite)
             there = (read_provenance(folder) if resume else None) or {}
             study.provenance[FILES] = recorded(there) | dict.fromkeys(kind.names, "")

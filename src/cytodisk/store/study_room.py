@@ -21,6 +21,7 @@ from cytodisk.store.provenance_file import (
 from cytodisk.store.removal import (
     LOCK,
     input_files,
+    is_left_over,
     known_files,
     refuse_removal,
     remove_files,
@@ -87,6 +88,39 @@ def make_room(
         The folder holds something else, or another run (`OtherRunError`); or files are in the way, or would
         be removed, that are not the study's.
     """
+    there, names = check_folder(folder, provenance, kind, resume, overwrite)
+    if overwrite:
+        # The old provenance stays, marked, until the new one replaces it: a kill leaves a known study.
+        write_json(folder / PROVENANCE, there | {"status": "being replaced", "fingerprint": {}})
+        remove_files(folder, names)
+        remove_parts(folder)
+
+
+def check_folder(
+    folder: Path, provenance: dict[str, Any], kind: StudyKind, resume: bool, overwrite: bool
+) -> tuple[dict[str, Any], list[str]]:
+    """Check that a run may write to a folder that is not empty, and what it replaces.
+
+    Parameters
+    ----------
+    folder : Path
+    provenance : dict
+    kind : StudyKind
+    resume, overwrite : bool
+        As `make_room` takes them.
+
+    Returns
+    -------
+    there : dict
+        Provenance of the study that stands there.
+    names : list of str
+        Its files, where they are to be replaced.
+
+    Raises
+    ------
+    StudyError
+        As for `make_room`.
+    """
     there = read_provenance(folder)
     if there is None and os.path.lexists(folder / PROVENANCE):
         raise StudyError(
@@ -94,17 +128,17 @@ def make_room(
             "of another program: pass another folder"
         )
     check_room(there, provenance, f"output folder {folder}", resume, overwrite)
-    if there is None:
-        return
+    assert there is not None  # it was checked
     known = known_files(folder, there)
     _refuse_strangers(folder, kind, known)
-    if overwrite:
-        names = [name for name in known if os.path.lexists(folder / name)]
-        refuse_removal(folder, names, input_files(provenance))
-        # The old provenance stays, marked, until the new one replaces it: a kill leaves a known study.
-        write_json(folder / PROVENANCE, there | {"status": "being replaced", "fingerprint": {}})
-        remove_files(folder, names)
-        remove_parts(folder)
+    names = [name for name in known if os.path.lexists(folder / name)] if overwrite else []
+    refuse_removal(folder, names, input_files(provenance))
+    return there, names
+
+
+def is_empty(folder: Path) -> bool:
+    """Whether a folder holds nothing but what runs left that were stopped."""
+    return all(is_left_over(file) for file in folder.iterdir())
 
 
 def _refuse_strangers(folder: Path, kind: StudyKind, known: set[str]) -> None:

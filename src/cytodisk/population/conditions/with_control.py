@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -25,6 +25,7 @@ def compare_with_control(
     others: Sequence[str] | None = None,
     *,
     channel: str | Sequence[str] | None = None,
+    progress: Callable[[int, int], None] | None = None,
     parameters: ComparisonParameters | None = None,
     **settings: Any,
 ) -> dict[str, ConditionComparison]:
@@ -41,6 +42,8 @@ def compare_with_control(
         By default all conditions but the control.
     channel : str or sequence of str, optional
         By default all.
+    progress : callable, optional
+        Called with (exchanges done, exchanges in all), over all comparisons.
     parameters : ComparisonParameters, optional
         All parameters together; those that are given by name overrule them.
     **settings
@@ -76,10 +79,12 @@ def compare_with_control(
         names = [others]
     if not names:
         raise PopulationError(f"there is no condition beside {control!r} to compare it with")
-    found = {
-        name: compare_conditions(pop, control, name, channel=channel, parameters=parameters, **settings)
-        for name in names
-    }
+    found = {}
+    for place, name in enumerate(names):
+        part = _part_of(progress, place, len(names))
+        found[name] = compare_conditions(
+            pop, control, name, channel=channel, progress=part, parameters=parameters, **settings
+        )
     windows = holm({name: one.windows["p_fwer"].values for name, one in found.items()})
     clusters = holm({name: one.clusters["p"].to_numpy(np.float64) for name, one in found.items()})
     scalars = holm({name: one.scalars["p_fwer"].to_numpy(np.float64) for name, one in found.items()})
@@ -93,6 +98,15 @@ def compare_with_control(
         )
         for name, one in found.items()
     }
+
+
+def _part_of(
+    progress: Callable[[int, int], None] | None, place: int, count: int
+) -> Callable[[int, int], None] | None:
+    """What one comparison of several reports to."""
+    if progress is None:
+        return None
+    return lambda done, total: progress(place * total + done, count * total)
 
 
 def holm(families: Mapping[str, FloatArray]) -> dict[str, FloatArray]:

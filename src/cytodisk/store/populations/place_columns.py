@@ -71,7 +71,7 @@ def p_values(of: str) -> Columns:
             "p_fwer",
             pa.float64(),
             "1",
-            f"the same for the largest difference of all {of} (max-T): below 0.05 it is significant",
+            f"the same for the largest difference of all {of} (max-T): at most 0.05 is significant",
         ),
         Column(
             "q", pa.float64(), "1", f"false discovery rate (Benjamini and Hochberg) over all {of}, from p"

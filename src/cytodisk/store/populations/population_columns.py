@@ -16,6 +16,8 @@ from cytodisk.store.populations.place_columns import (
 )
 from cytodisk.store.tables import CHANNEL, Column, Columns
 
+HOLM = Column("p_holm", pa.float64(), "1", "")
+
 CELL_COLUMNS: Columns = (
     CONDITION,
     EXPERIMENT,
@@ -29,8 +31,9 @@ CELL_COLUMNS: Columns = (
     Column(
         "distance_to_mean",
         pa.float64(),
-        SIGNAL,
-        "root mean square of the cell's windows minus the mean of its condition: small for a typical cell",
+        "1",
+        "how far the cell's windows are from the mean of its condition: root mean square over windows, each "
+        "in standard deviations over cells; about 1 for a typical cell",
     ),
     Column(
         "left_out", pa.string(), "", "why the cell is in no mean and in no test; empty for one that is used"
@@ -52,11 +55,15 @@ ATLAS_COLUMNS: Columns = (
 WINDOW_COLUMNS: Columns = (
     *PAIR,
     *WINDOW,
-    Column("difference", pa.float64(), SIGNAL, "treated minus control, means over experiments"),
+    Column("mean_control", pa.float64(), SIGNAL, "mean over the control's experiments"),
+    Column("mean_treated", pa.float64(), SIGNAL, "mean over the treated condition's experiments"),
+    Column("difference", pa.float64(), SIGNAL, "mean_treated minus mean_control"),
     Column("difference_low", pa.float64(), SIGNAL, "lower end of the 95 % interval of difference"),
     Column("difference_high", pa.float64(), SIGNAL, "upper end of the 95 % interval of difference"),
     *EFFECT,
+    Column("score", pa.float64(), "1", "the statistic that is tested: difference over its standard error"),
     *p_values("windows and channels of this comparison"),
+    HOLM._replace(meaning="p_fwer corrected for all conditions that are compared with the control (Holm)"),
     Column("cluster", pa.int64(), "", "number of the cluster that the window is in; 0 for none"),
     Column("n_control", pa.int64(), "", "number of experiments of the control with a value here"),
     Column("n_treated", pa.int64(), "", "number of experiments of the treated condition with a value here"),
@@ -73,9 +80,10 @@ CLUSTER_COLUMNS: Columns = (
         "p",
         pa.float64(),
         "1",
-        "share of relabelled experiments whose largest cluster has at least this mass: below 0.05 it is "
+        "share of relabelled experiments whose largest cluster has at least this mass: at most 0.05 is "
         "significant; corrected for all clusters and channels of this comparison",
     ),
+    HOLM._replace(meaning="p corrected for all conditions that are compared with the control (Holm)"),
     Column("n_windows", pa.int64(), "", "number of its windows"),
     Column("layers", pa.string(), "", "its layers, as 0-2"),
     Column("sectors", pa.string(), "", "its sectors, as 12-25; 55-3 goes on over the last. Lags of curves"),
@@ -86,6 +94,7 @@ SCALAR_COLUMNS: Columns = (
     *PAIR,
     Column("scalar", pa.string(), "", "what is compared: a column of the table of cells"),
     CHANNEL._replace(meaning="name of the channel that it was measured in; empty for none"),
+    Column("what", pa.string(), "", "what it is, in words"),
     Column("unit", pa.string(), "", "its unit"),
     Column("mean_control", pa.float64(), "", "mean over the control's experiments; see unit"),
     Column("mean_treated", pa.float64(), "", "mean over the treated condition's experiments; see unit"),
@@ -94,8 +103,10 @@ SCALAR_COLUMNS: Columns = (
     Column("difference_high", pa.float64(), "", "upper end of the 95 % interval of difference"),
     *EFFECT,
     *p_values("scalars of this comparison"),
+    HOLM._replace(meaning="p_fwer corrected for all conditions that are compared with the control (Holm)"),
     Column("n_control", pa.int64(), "", "number of experiments of the control with a value"),
     Column("n_treated", pa.int64(), "", "number of experiments of the treated condition with a value"),
+    Column("status", pa.string(), "", "ok, or why the scalar is not tested"),
 )
 
 PROFILE_COLUMNS: Columns = (
@@ -121,12 +132,10 @@ EXPERIMENT_COLUMNS: Columns = (
 LEFT_OUT_COLUMNS: Columns = (
     *PAIR,
     Column("left_out", pa.string(), "", "the experiment that is left out"),
-    Column("result", pa.string(), "", "what is compared without it: a scalar, a cluster or a window"),
-    CHANNEL,
+    Column("result", pa.string(), "", "what is compared without it: a scalar, a cluster, or windows"),
     Column("difference", pa.float64(), "", "treated minus control, with all experiments"),
     Column("difference_without", pa.float64(), "", "treated minus control, without this experiment"),
-    Column("p", pa.float64(), "1", "probability with all experiments"),
-    Column("p_without", pa.float64(), "1", "probability without this experiment"),
+    Column("p_without", pa.float64(), "1", "probability without it, of this number alone, not corrected"),
 )
 
 COMPARISON_COLUMNS: Columns = (
@@ -143,26 +152,39 @@ COMPARISON_COLUMNS: Columns = (
     Column("n_treated", pa.int64(), "", "the same of the treated condition"),
     Column("smallest_p", pa.float64(), "1", "smallest probability that this number can reach at all"),
     Column("windows_tested", pa.int64(), "", "number of windows, all channels, that are tested"),
-    Column("windows_found", pa.int64(), "", "number of these that differ, p_fwer below 0.05"),
-    Column("clusters_found", pa.int64(), "", "number of clusters with p below 0.05"),
-    Column("scalars_found", pa.int64(), "", "number of scalars with p_fwer below 0.05"),
+    Column("windows_found", pa.int64(), "", "number of these that differ, p_fwer at most 0.05"),
+    Column("clusters_found", pa.int64(), "", "number of clusters with p at most 0.05"),
+    Column("scalars_found", pa.int64(), "", "number of scalars with p_fwer at most 0.05"),
     Column("smallest_found", pa.float64(), "1", "smallest p_fwer of all windows"),
-    Column(
-        "p_holm",
-        pa.float64(),
-        "1",
-        "smallest_found corrected for several conditions that are compared with one control (Holm)",
+    HOLM._replace(
+        meaning="smallest_found corrected for all conditions that are compared with the control (Holm)"
     ),
     Column("finding", pa.string(), "", "what was found, in a sentence with its numbers"),
 )
 
+_STEP = "for one step of the dose (see dose_scale)"
+_TREND: Columns = (
+    Column("slope", pa.float64(), SIGNAL, f"change {_STEP}"),
+    Column("slope_low", pa.float64(), SIGNAL, "lower end of the 95 % interval of slope"),
+    Column("slope_high", pa.float64(), SIGNAL, "upper end of the 95 % interval of slope"),
+    Column("correlation", pa.float64(), "1", "correlation of the means of experiments with the dose"),
+)
 TREND_COLUMNS: Columns = (
-    Column("scalar", pa.string(), "", "what follows the dose: a scalar; empty for a window"),
     *WINDOW,
-    Column("slope", pa.float64(), "", "change for one step of the dose's number"),
-    Column("slope_low", pa.float64(), "", "lower end of the 95 % interval of slope"),
-    Column("slope_high", pa.float64(), "", "upper end of the 95 % interval of slope"),
-    *p_values("windows and channels, or all scalars, of the trend"),
+    *_TREND,
+    *p_values("windows and channels of the trend"),
+    Column("cluster", pa.int64(), "", "number of the cluster that the window is in; 0 for none"),
+    Column("n_units", pa.int64(), "", "number of experiments and doses with a value here"),
+    Column("status", pa.string(), "", "ok, or why the window is not tested"),
+)
+
+SCALAR_TREND_COLUMNS: Columns = (
+    Column("scalar", pa.string(), "", "what follows the dose: a column of the table of cells"),
+    CHANNEL._replace(meaning="name of the channel that it was measured in; empty for none"),
+    *(column._replace(unit="") for column in _TREND),
+    *p_values("scalars of the trend"),
+    Column("n_units", pa.int64(), "", "number of experiments and doses with a value"),
+    Column("status", pa.string(), "", "ok, or why the scalar is not tested"),
 )
 
 GALLERY_COLUMNS: Columns = (
@@ -175,6 +197,15 @@ GALLERY_COLUMNS: Columns = (
     *WINDOW,
     Column("value", pa.float64(), SIGNAL, "value of the window, normalised and aligned as in the atlas"),
 )
+
+EXCLUDED_COLUMNS: Columns = (
+    Column("input", pa.string(), "", "name of the study that it is from"),
+    Column("source", pa.string(), "", "name of its mask file"),
+    Column("frame", pa.int64(), "", "number of its frame, from 0; empty for a file as a whole"),
+    Column("label", pa.int64(), "", "value of the cell in its label image; empty for a file as a whole"),
+    Column("reason", pa.string(), "", "why it is not in the population"),
+)
+"""Cells and files of the studies that are in no row of the table of cells."""
 
 WARNING_COLUMNS: Columns = (
     *PAIR,
@@ -195,7 +226,9 @@ TABLES: dict[str, Columns] = {
     "left_out": LEFT_OUT_COLUMNS,
     "comparisons": COMPARISON_COLUMNS,
     "trends": TREND_COLUMNS,
+    "scalar_trends": SCALAR_TREND_COLUMNS,
     "gallery": GALLERY_COLUMNS,
+    "excluded": EXCLUDED_COLUMNS,
     "warnings": WARNING_COLUMNS,
 }
 """Columns of every table, by its name. All tables are there in every study; some may have no rows."""

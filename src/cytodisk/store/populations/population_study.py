@@ -163,13 +163,23 @@ class PopulationStudy:
 
     @cached_property
     def trends(self) -> pd.DataFrame:
-        """One row a window or scalar: how it follows the dose; no rows without --dose."""
+        """One row a window: how it follows the dose; no rows without --dose."""
         return self._table("trends")
+
+    @cached_property
+    def scalar_trends(self) -> pd.DataFrame:
+        """One row a scalar: how it follows the dose; no rows without --dose."""
+        return self._table("scalar_trends")
 
     @cached_property
     def gallery(self) -> pd.DataFrame:
         """One row a window of the cells nearest to the mean of their condition, and farthest from it."""
         return self._table("gallery")
+
+    @cached_property
+    def excluded(self) -> pd.DataFrame:
+        """One row a cell, or file, of the studies that is not among `cells`, with the reason."""
+        return self._table("excluded")
 
     @cached_property
     def atlas_arrays(self) -> xr.Dataset:

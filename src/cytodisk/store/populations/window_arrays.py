@@ -59,6 +59,7 @@ def window_rows(found: xr.Dataset) -> pd.DataFrame:
     """
     dims = [str(name) for name in found.sizes]
     rows = found.reset_coords().to_dataframe(dim_order=dims).reset_index()
-    texts = [name for name in rows if not pd.api.types.is_numeric_dtype(rows[name])]
-    rows[texts] = rows[texts].astype(object).fillna("")
+    for name in rows.columns:
+        if not pd.api.types.is_numeric_dtype(rows[name]):
+            rows[name] = rows[name].astype(object).fillna("")
     return rows

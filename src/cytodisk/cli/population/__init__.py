@@ -1,0 +1,1 @@
+"""`cytodisk population`: what it asks for and what it says."""

@@ -1,0 +1,78 @@
+"""Parameters of `cytodisk population`."""
+
+from typing import Literal, TypeAlias
+
+from pydantic import field_validator
+
+from cytodisk.parameters import parameter
+from cytodisk.population.comparison_parameters import (
+    ComparisonParameters,
+    DoseParameters,
+    Normalisation,
+    Scale,
+)
+from cytodisk.runs.population.movies.summary_names import MovieSummary
+
+Alignment: TypeAlias = Literal["none", "nucleus", "front", "motion", "axis"]
+
+
+class PopulationParameters(ComparisonParameters):
+    """What decides the result of `cytodisk population`, beside the studies and the table of groups."""
+
+    compare: tuple[str, ...] = parameter(
+        (),
+        "Conditions to compare, the control first; without it all that are there.",
+        words="names of conditions with commas between, the control first",
+    )
+    channel: tuple[str, ...] = parameter(
+        (),
+        "Channels to compare; without it all that all studies have. Channels are corrected together.",
+        words="names of channels with commas between",
+    )
+    summary: MovieSummary = parameter(
+        "mean", "What a cell of a movie contributes; a cell of an image contributes its windows as they are."
+    )
+    normalise: Normalisation = parameter(
+        "none", "What each cell's values are divided by, or relative to, before cells are compared."
+    )
+    align: Alignment | str = parameter(
+        "none",
+        "Direction that becomes sector 0 of each cell: of the nucleus, the front, the motion, the long axis, "
+        "or of a channel's brightest side, as signal:CHANNEL.",
+        words="none, nucleus, front, motion, axis or signal:CHANNEL",
+    )
+    scalars: tuple[str, ...] = parameter(
+        (),
+        "Numbers of the tables of cells to compare beside those of the signal, such as area; without it the "
+        "usual ones.",
+        words="names of columns with commas between",
+    )
+    dose: str | None = parameter(
+        None, "Column with the dose of each cell, a number: then a trend over it is tested, too."
+    )
+
+    dose_scale: Scale = parameter("rank", str(DoseParameters.model_fields["scale"].description))
+
+    @field_validator("compare", "channel", "scalars")
+    @classmethod
+    def _different(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        names = tuple(name.strip() for name in names)
+        if not all(names) or len(set(names)) < len(names):
+            raise ValueError("must be different names")
+        return names
+
+    @field_validator("compare")
+    @classmethod
+    def _at_least_two(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        if len(names) == 1:
+            raise ValueError("must name two conditions or more, the control first, such as control,drug")
+        return names
+
+    @field_validator("align")
+    @classmethod
+    def _known(cls, align: str) -> str:
+        if align.startswith("signal:") and align != "signal:":
+            return align
+        if align not in ("none", "nucleus", "front", "motion", "axis"):
+            raise ValueError("must be none, nucleus, front, motion, axis or signal:CHANNEL")
+        return align

@@ -1,0 +1,1 @@
+"""Plan experiments: how often a difference is found."""

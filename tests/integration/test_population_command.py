@@ -1,0 +1,128 @@
+"""`cytodisk population`, from masks and a table of groups to words and tables."""
+
+import os
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from command_line import Run, assert_refused
+
+import cytodisk as cd
+from cytodisk.cli.population.power_words import plan_lines, power_lines
+from cytodisk.runs.population.power.population_power import plan_of
+from deadlines import run_to_the_end
+
+
+@pytest.fixture(scope="module")
+def cells(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("cells")
+    made = cd.simulate.population_images(folder / "images", experiments=4, cells=2, seed=2)
+    cd.run_map(made.masks, folder / "maps", signal=made.images, layers=3, sectors=8, maps=False)
+    table = pd.read_csv(made.groups)
+    table.to_csv(folder / "groups.csv", index=False)
+    table.drop(columns="experiment").to_csv(folder / "unknown.csv", index=False)
+    return folder
+
+
+def test_what_can_be_reached_is_the_first_line(run: Run, cells: Path, tmp_path: Path) -> None:
+    out = tmp_path / "atlas"
+    code, said, _ = run("population", cells / "maps", "--groups", cells / "groups.csv", "-o", out)
+    lines = said.splitlines()
+    assert code == 0
+    assert lines[0].startswith("4 + 4 experiments can give p = 0.029 at best")
+    assert "the design is unpaired" in lines[1]
+    assert lines[2].startswith("'control' is taken as the control, by its name: pass --compare control,drug")
+    assert "Rac1, drug against control: " in said
+    assert "16 cells: control 8 in 4 experiments; drug 8 in 4 experiments" in lines
+    assert f"results: {out}" in lines
+    code, said, _ = run("population", cells / "maps", "--groups", cells / "groups.csv", "-o", out, "--resume")
+    assert (code, said.splitlines()[0]) == (0, lines[0])
+
+
+def test_cells_of_unknown_experiments_are_told(run: Run, cells: Path, tmp_path: Path) -> None:
+    command = ("population", cells / "maps", "--groups", cells / "unknown.csv", "-o")
+    code, said, _ = run(*command, tmp_path / "a")
+    lines = said.splitlines()
+    assert code == 0
+    assert lines[0].startswith("Nothing can be tested: of the cells (8 of control, 8 of drug) no experiment")
+    assert any(line.startswith("Warning experiments unknown: ") for line in lines)
+    code, said, _ = run(*command, tmp_path / "b", "--unit", "cell", "--permutations", "99")
+    assert "Warning cells as units" in said
+
+
+def test_parameters_of_one_run_are_those_of_the_next(run: Run, cells: Path, tmp_path: Path) -> None:
+    command = ("population", cells / "maps", "--groups", cells / "groups.csv", "-q", "-o")
+    assert run(*command, tmp_path / "a", "--channel", "Rac1", "--normalise", "cell mean")[0] == 0
+    assert run(*command, tmp_path / "b", "--parameters", tmp_path / "a" / "parameters.toml")[0] == 0
+    found = cd.open_population_study(tmp_path / "b")
+    assert found.channels == ("Rac1",)
+    assert found.atlas.attrs["units"]["mean"] == "× cell mean"
+
+
+def test_faults_are_one_line_with_the_remedy(run: Run, cells: Path, tmp_path: Path) -> None:
+    maps, groups, out = cells / "maps", ("--groups", cells / "groups.csv"), ("-o", tmp_path / "out")
+    assert_refused(run("population"), "PATH is missing: pass")
+    assert_refused(run("population", maps), "--out is missing", "-o atlas/")
+    assert_refused(run("population", tmp_path / "none", *out), "does not exist")
+    assert_refused(run("population", maps, *out, "--effects", "1"), "--effects: only with --power")
+    assert_refused(
+        run("population", maps, *groups, *out, "--compare", "drug"), "--compare must name two conditions"
+    )
+    assert_refused(run("population", maps, *groups, *out, "--align", "nucleus"), "--nuclei")
+    assert_refused(run("population", "--power", *out), "--out: not with --power; leave it out")
+    assert_refused(run("population", "--power", "--channel", "a"), "--channel: not with --power", "pass PATH")
+    assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
+def test_power_is_a_table_to_plan_with(run: Run) -> None:
+    few = ("--experiments", "3,4", "--studies", "20")
+    code, said, _ = run("population", "--power", "--effects", "1,4", *few)
+    lines = [line.strip() for line in said.splitlines()]
+    assert code == 0
+    assert lines[0].startswith("assumed, not measured: 10% of the variance of cells between experiments")
+    assert "3 + 3        nothing: p = 0.1 at best" in lines
+    assert sum(line.startswith("4 pairs      nothing: p = 0.12 at best") for line in lines) == 2
+    row = next(line for line in lines if line.startswith("4 + 4"))
+    assert row.split()[3].endswith("%")
+
+
+def test_power_takes_the_variance_of_cells_at_hand(run: Run, cells: Path) -> None:
+    command = ("population", cells / "maps", "--groups", cells / "groups.csv", "--power")
+    few = ("--effects", "2", "--experiments", "4", "--studies", "20")
+    code, said, _ = run(*command, "--channel", "Rac1", *few)
+    assert code == 0
+    assert said.startswith("measured in your 8 experiments, 2 conditions: ")
+    assert "2 cells of each condition in each experiment" in said
+    assert "each experiment holds one condition" in said
+
+
+def test_a_plan_says_what_was_assumed_and_what_given() -> None:
+    given = cd.PowerParameters(cells=5, between_experiments=0.2, between_dishes=0.0)
+    assert plan_lines(plan_of(given), given)[0].startswith("as given: 20% of the variance")
+    some = cd.PowerParameters(cells=5)
+    assert plan_lines(plan_of(some), some)[0].startswith("assumed, not measured")
+    table = cd.population_power(effects=(2.0,), experiments=(2,), studies=20)
+    assert any("2 pairs" in line for line in power_lines(table))
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(os, "killpg"), reason="process groups are POSIX")
+def test_a_killed_command_is_done_by_the_next(cells: Path, tmp_path: Path) -> None:
+    import signal
+    import subprocess
+    import time
+
+    out = tmp_path / "atlas"
+    files = [str(cells / "maps"), "--groups", str(cells / "groups.csv"), "-o", str(out), "-q"]
+    command = [sys.executable, "-m", "cytodisk", "population", *files]
+    run_to_the_end([*command])
+    whole = {file.name: file.read_bytes() for file in out.glob("*.parquet")}
+    for wait_s in (0.5, 1.5, 2.5, 3.0, 3.5):
+        run_to_the_end(["rm", "-r", str(out)])
+        process = subprocess.Popen(command, start_new_session=True)
+        time.sleep(wait_s)
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        run_to_the_end([*command, "--resume"])
+        assert {file.name: file.read_bytes() for file in out.glob("*.parquet")} == whole
