@@ -1,5 +1,6 @@
 """Pages of a population: whole, readable, and with the numbers of its tables."""
 
+import itertools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from drawn_study import study_of
 from matplotlib.figure import Figure
 
 import cytodisk as cd
-from cytodisk.errors import ReadError
+from cytodisk.errors import ParameterError, ReadError
 from cytodisk.pages.population.cell_sources import CellSources
 from cytodisk.pages.population.direction_page import directions_page
 from cytodisk.pages.population.drawn_population import DrawnPopulation
@@ -222,8 +223,18 @@ def test_a_gallery_names_its_cells(page: Any, mapped: Study) -> None:
 
 
 def test_power_is_written_in_the_formats_that_are_wanted(tmp_path: Path, drawn: list[Figure]) -> None:
-    power = pd.DataFrame({"experiments": [4, 8], "effect_size": 1.0, "detection": [0.3, 0.7]})
+    power = pd.DataFrame(itertools.product(["unpaired", "paired"], [4, 8], [0.5, 1.0, 3.0]))
+    power.columns = pd.Index(["design", "experiments", "effect"])
+    power = power.assign(window=0.9, scalar=np.linspace(0.0, 1.0, 12))
     notes = ["12 cells of each experiment", "10 % of the variance between experiments", "unpaired"]
     paths = write_power_figure(tmp_path, power, notes=notes, formats=("png", "svg"))
     assert [path.name for path in paths] == ["power.png", "power.svg"]
-    assert any("10 % of the variance" in words for words in words_of(drawn[-1]))
+    figure = drawn[-1]
+    assert any("10 % of the variance" in words for words in words_of(figure))
+    assert [ax.get_title(loc="left") for ax in figure.axes] == ["unpaired", "paired"] * 2
+    assert [ax.get_xlabel() for ax in figure.axes[:2]] == [
+        "experiments of each condition",
+        "pairs of experiments",
+    ]
+    with pytest.raises(ParameterError, match="pass the table of population_power"):
+        write_power_figure(tmp_path, power.drop(columns="design"))

@@ -197,16 +197,18 @@ def test_pooled_curves_are_means_of_experiments(ax: Axes) -> None:
         draw_pooled_curves(ax, curves.rename(cell="unit"), cells)
 
 
-def test_power_has_a_line_an_effect_size(ax: Axes) -> None:
-    power = pd.DataFrame(itertools.product([3, 5], [0.5, 1.0]), columns=["experiments", "effect_size"])
-    power["detection"] = [0.1, 0.2, 0.3, 0.3]
+def test_power_has_a_line_an_effect(ax: Axes) -> None:
+    power = pd.DataFrame(itertools.product([3, 5], [0.5, 1.0]), columns=["experiments", "effect"])
+    power["window"] = [0.1, 0.2, 0.3, 0.3]
     small, large = draw_power(ax, power)
     assert np.asarray(small.get_ydata()).tolist() == [0.1, 0.3]
     assert (small.get_label(), large.get_label()) == ("0.5", "1")
     heights = [text.xy[1] for text in ax.texts[:2]]  # type: ignore[attr-defined]
     assert abs(heights[1] - heights[0]) > 0.04  # labels of lines that end together stay apart
-    with pytest.raises(ParameterError, match="no column 'detection'"):
-        draw_power(ax, power.drop(columns="detection"))
+    with pytest.raises(ParameterError, match="no column 'scalar'"):
+        draw_power(ax, power, "scalar")
+    with pytest.raises(ParameterError, match="select one design"):
+        draw_power(ax, pd.concat([power, power]))
 
 
 @pytest.mark.parametrize("wrong", [{"condition": ["a"]}, {"condition": [], "experiment": [], "size": []}])

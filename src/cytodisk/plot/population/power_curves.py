@@ -12,17 +12,17 @@ from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from cytodisk.errors import ParameterError
 
-_COLUMNS = ("experiments", "effect_size", "detection")
 _WANTED = 0.8
-_APART = 0.045  # of the axis between labels of lines
+_APART = 0.075  # of the axis between labels of lines
 
 
 def draw_power(
     ax: Axes,
     power: pd.DataFrame,
+    found: str = "window",
     *,
     label: str = "experiments of each condition",
-    effect: str = "effect size\n(sd of cells)",
+    named: bool = True,
 ) -> list[Line2D]:
     """Draw the share of studies that find an effect, by number of experiments: a line an effect size.
 
@@ -30,21 +30,28 @@ def draw_power(
     ----------
     ax : Axes
     power : DataFrame
-        experiments, effect_size and detection, a share from 0 to 1.
+        experiments, effect (in standard deviations of a cell) and shares from 0 to 1, as
+        `population_power` returns it, of one design.
+    found : str
+        Name of the column with the share, such as window or scalar.
     label : str
         Of the axis of experiments.
-    effect : str
-        What the numbers at the ends of the lines are, and in which unit.
+    named : bool
+        Write the effect at the end of each line, to the right of the axes.
 
     Returns
     -------
     list of Line2D
-        From the smallest effect size to the largest, dark to light; its number stands at the end of each.
+        From the smallest effect to the largest, dark to light. The broken line is at 80 %.
 
     Raises
     ------
     ParameterError
-        A column is missing, or there are no rows.
+        A column is missing, there are no rows, or an effect stands twice.
+
+    See Also
+    --------
+    population_power : Makes the table.
 
     Examples
     --------
@@ -54,8 +61,8 @@ def draw_power(
     >>> power = pd.DataFrame(
     ...     {
     ...         "experiments": [4, 6, 8, 4, 6, 8],
-    ...         "effect_size": [1.0, 1.0, 1.0, 2.0, 2.0, 2.0],
-    ...         "detection": [0.2, 0.4, 0.6, 0.5, 0.8, 0.95],
+    ...         "effect": [1.0, 1.0, 1.0, 2.0, 2.0, 2.0],
+    ...         "window": [0.2, 0.4, 0.6, 0.5, 0.8, 0.95],
     ...     }
     ... )
     >>> figure, ax = plt.subplots()
@@ -63,16 +70,21 @@ def draw_power(
     >>> [line.get_label() for line in lines]
     ['1', '2']
     """
-    missing = [name for name in _COLUMNS if name not in power]
+    missing = [name for name in ("experiments", "effect", found) if name not in power]
     if missing or power.empty:
         what = f"has no column {missing[0]!r}" if missing else "has no rows"
-        raise ParameterError(f"power {what}: pass a table with experiments, effect_size and detection")
-    sizes = np.unique(power["effect_size"].to_numpy(dtype=np.float64))
+        raise ParameterError(f"power {what}: pass a table with experiments, effect and {found}")
+    if power.duplicated(["experiments", "effect"]).any():
+        raise ParameterError(
+            "power has an effect twice for one number of experiments: select one design, as in "
+            "power[power['design'] == 'paired']"
+        )
+    sizes = np.unique(power["effect"].to_numpy(dtype=np.float64))
     colours = [to_hex(one) for one in mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(sizes)))]
     lines, ends = [], []
     for size, colour in zip(sizes.tolist(), colours, strict=True):
-        own = power[power["effect_size"] == size].sort_values("experiments")
-        x, y = (own[name].to_numpy(dtype=np.float64) for name in ("experiments", "detection"))
+        own = power[power["effect"] == size].sort_values("experiments")
+        x, y = (own[name].to_numpy(dtype=np.float64) for name in ("experiments", found))
         (line,) = ax.plot(x, y, "o-", color=colour, markersize=3.0, linewidth=1.2, label=f"{size:g}")
         line.set_clip_on(False)
         lines.append(line)
@@ -80,21 +92,22 @@ def draw_power(
     ax.axhline(_WANTED, color="0.5", linewidth=0.6, linestyle=(0, (3, 2)), zorder=0.5)
     counts = np.unique(power["experiments"].to_numpy(dtype=np.float64))
     ax.set(xlim=(counts[0] - 0.3, counts[-1] + 0.3), ylim=(0.0, 1.0), xlabel=label)
-    ax.set_ylabel("studies that find the effect")
+    ax.set_ylabel("studies that find it")
     ax.yaxis.set_major_formatter(PercentFormatter(1.0))
-    ax.xaxis.set_major_locator(MaxNLocator(8, integer=True))
-    _label_ends(ax, lines, ends, effect)
+    ax.xaxis.set_major_locator(MaxNLocator(6, integer=True))
+    if named:
+        _label_ends(ax, lines, ends)
     return lines
 
 
-def _label_ends(ax: Axes, lines: list[Line2D], ends: list[tuple[float, float]], effect: str) -> None:
-    """The effect size at the end of each line, moved up where labels would lie over each other."""
+def _label_ends(ax: Axes, lines: list[Line2D], ends: list[tuple[float, float]]) -> None:
+    """The effect at the end of each line, moved up where labels would lie over each other."""
     order = np.argsort([y for _, y in ends], kind="stable")
     heights = np.array([ends[k][1] for k in order])
     for k in range(1, len(heights)):
         heights[k] = max(heights[k], heights[k - 1] + _APART)
-    over = max(0.0, float(heights[-1]) - 1.02)
-    heights -= over * np.linspace(0.0, 1.0, len(heights)) if len(heights) > 1 else over
+    for k in range(len(heights) - 1, -1, -1):
+        heights[k] = min(heights[k], 1.02 - _APART * (len(heights) - 1 - k))
     right = max(x for x, _ in ends)
     for k, height in zip(order.tolist(), heights.tolist(), strict=True):
         ax.annotate(
@@ -106,12 +119,3 @@ def _label_ends(ax: Axes, lines: list[Line2D], ends: list[tuple[float, float]], 
             color=lines[k].get_color(),
             annotation_clip=False,
         )
-    ax.annotate(
-        effect,
-        (right, 1.0),
-        xytext=(6, 12),
-        textcoords="offset points",
-        va="bottom",
-        color="0.3",
-        annotation_clip=False,
-    )
