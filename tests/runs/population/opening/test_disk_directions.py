@@ -1,4 +1,3 @@
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ ANGLES = (0.0, 50.0, 140.0, 265.0)
 
 
 def drop(angle: float, size: int = 80) -> tuple[Any, Any, Any]:
-    """A cell with its thin end at an angle, an eccentric nucleus, and a signal that grows towards that end."""
+    """A cell with its thin end at an angle, an eccentric nucleus, and a signal that grows along it."""
     y, x = np.mgrid[:size, :size] - size / 2 + 0.5
     c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     along, across = c * x + s * y, c * y - s * x
