@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import pandas as pd
 
@@ -36,8 +37,30 @@ def window_blocks(study: Study, *columns: str) -> Iterator[pd.DataFrame]:
         yield study.windows[list(columns)]
         return
     with opened_table(study.path / WINDOWS) as file:
-        for block in file.iter_batches(batch_size=ROWS_AT_ONCE, columns=list(columns)):
+        for block in row_blocks(file, columns, ROWS_AT_ONCE):
             yield block.to_pandas()
+
+
+def row_blocks(file: Any, columns: Sequence[str], rows: int) -> Iterator[Any]:
+    """Some columns of a Parquet file, a block of rows after the other.
+
+    Parameters
+    ----------
+    file : pyarrow.parquet.ParquetFile
+    columns : sequence of str
+    rows : int
+        Most in a block.
+
+    Yields
+    ------
+    pyarrow.RecordBatch
+
+    Notes
+    -----
+    Each row group is read on its own: a reader of all groups keeps what it has read until its end.
+    """
+    for group in range(file.num_row_groups):
+        yield from file.iter_batches(rows, [group], columns=list(columns), use_threads=False)
 
 
 def _is_read(study: Study) -> bool:

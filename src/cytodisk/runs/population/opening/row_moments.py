@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.runs.population.opening.streamed_windows import WindowBlock
 
 _ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
@@ -42,15 +42,17 @@ class RowMoments:
         weight = block.numbers["area"]
         known = np.isfinite(y) & np.isfinite(x) & (weight > 0)
         row = block.row[known]
+        if not len(row):
+            return
         y, x = y[known] - self.centroid[row, 0], x[known] - self.centroid[row, 1]
-        number = len(self.centroid)
+        few = _FewRows(row)
         for sums, (in_x, in_y) in zip(self.sums, _ORDERS, strict=True):
-            sums += np.bincount(row, weight[known] * x**in_x * y**in_y, number)
+            few.add(sums, weight[known] * x**in_x * y**in_y)
         rim = block.layer[known] == 0
-        angle = 2.0 * np.pi * (block.sector[known][rim] + 0.5) / self.sectors
-        turned = (x[rim] + 1j * y[rim]) * np.exp(-1j * angle)
-        self.edge.real += np.bincount(row[rim], turned.real, number)
-        self.edge.imag += np.bincount(row[rim], turned.imag, number)
+        angle = 2.0 * np.pi * (block.sector[known] + 0.5) / self.sectors
+        turned = np.where(rim, (x + 1j * y) * np.exp(-1j * angle), 0.0)
+        few.add(self.edge.real, turned.real)
+        few.add(self.edge.imag, turned.imag)
 
     @property
     def turn(self) -> FloatArray:
@@ -81,3 +83,17 @@ class RowMoments:
             long, short = np.sqrt(middle + half), np.sqrt(np.maximum(middle - half, 0.0))
             direction = np.degrees(angle) + np.where(skew < 0.0, 180.0, 0.0)
             return direction % 360.0, (long - short) / (long + short)
+
+
+class _FewRows:
+    """The rows of a table that a block is about, which mostly are few and beside each other."""
+
+    def __init__(self, row: IntArray) -> None:
+        first = int(row.min())
+        self._there = slice(first, int(row.max()) + 1)
+        self._row = row - first
+
+    def add(self, total: FloatArray, values: FloatArray) -> None:
+        """Add values to the sums of their rows."""
+        there = total[self._there]
+        there += np.bincount(self._row, values, len(there))

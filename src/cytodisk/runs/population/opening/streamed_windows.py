@@ -17,6 +17,7 @@ from cytodisk.errors import ReadError
 from cytodisk.reading_files import reading_file
 from cytodisk.store.study import WINDOWS
 from cytodisk.store.table_file import REMEDY
+from cytodisk.store.window_blocks import row_blocks
 
 ROWS_AT_ONCE = 500_000
 PLACE = ("cell", "frame", "channel", "layer", "sector")
@@ -130,7 +131,7 @@ class WindowTable:
             there = set(file.schema_arrow.names)
             if missing := [name for name in columns if name not in there]:
                 raise ReadError(f"{self.path}: column {missing[0]} is missing: {REMEDY}")
-            for batch in file.iter_batches(batch_size=ROWS_AT_ONCE, columns=columns):
+            for batch in row_blocks(file, columns, ROWS_AT_ONCE):
                 yield _with_dictionary(pa.Table.from_batches([batch]))
 
     def _whole(self, table: Any, name: str) -> IntArray:
