@@ -115,10 +115,11 @@ def read_checked(
             field = found.field(place).with_type(column.kind)
             table = table.set_column(place, field, table.column(place).cast(column.kind))
         frame: pd.DataFrame = table.to_pandas()
-        frame.attrs["units"] = {one.name: (one.metadata or {}).get(b"unit", b"").decode() for one in found}
+        unit_by_name = {one.name: (one.metadata or {}).get(b"unit", b"").decode() for one in found}
     for column in known:
         _check_values(path, column, frame, remedy, finite)
     _check_blocks(path, frame, block, remedy)
+    frame.attrs["units"] = unit_by_name  # at the end: pandas copies attrs with each column that is taken
     return frame
 
 
@@ -186,7 +187,7 @@ def read_cells(folder: Path, provenance: dict[str, Any]) -> pd.DataFrame:
     cells = read_checked(folder / CELLS, CELL_COLUMNS, optional, units=units_in(provenance))
     if not len(cells):
         raise ReadError(f"{folder / CELLS} has no rows: {REMEDY}")
-    twice = cells.duplicated(["cell", "frame"])
+    twice = cells[["cell", "frame"]].duplicated()
     if twice.any():
         row = cells[twice].iloc[0]
         raise ReadError(

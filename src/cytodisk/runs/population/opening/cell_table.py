@@ -69,28 +69,25 @@ def cell_rows(study: FoundStudy) -> pd.DataFrame:
             found = read_table(study.folder / SHAPES)
     else:
         found = read_cells(study.folder, study.provenance)
-    units = found.attrs["units"]
+    units, found.attrs = found.attrs["units"], {}
     if "source" not in found:  # of a movie, which is one file
         found = found.assign(source=_mask_name(study))
-    found = found.rename(columns={"cell": "number"})
+    if study.run != "shapes":
+        found = found[_kept([str(name) for name in found])]
     own = {name: value for name, value in study.own.items() if name not in found}
-    found = found.assign(input=study.name, study=str(study.folder), **own)
     for name in study.own.keys() - own.keys():  # of a cell before that of its file
         found[name] = found[name].where(found[name].notna(), study.own[name])
-    if study.run != "shapes":
-        names = [str(name) for name in found]
-        found = found[[name for name in names if _is_kept(name, names)]]
+    found = found.rename(columns={"cell": "number"})
+    found = found.assign(input=study.name, study=str(study.folder), **own)
     found.attrs["units"] = units
     return found
 
 
-def _is_kept(name: str, all_names: list[str]) -> bool:
-    of_channels = {column.name for column in channel_columns(channels_among(all_names))}
-    return (
-        name in (*PLACES, "status", "reason", *_KEPT, CONDITION, EXPERIMENT)
-        or name in of_channels
-        or name not in _KNOWN
-    )
+def _kept(names: list[str]) -> list[str]:
+    """Columns that a population has: what is measured of cells, and those of the user."""
+    of_channels = {column.name for column in channel_columns(channels_among(names))}
+    kept = {*PLACES, "status", "reason", *_KEPT, CONDITION, EXPERIMENT} | of_channels
+    return [name for name in names if name in kept or name not in _KNOWN]
 
 
 def _mask_name(study: FoundStudy) -> str:
