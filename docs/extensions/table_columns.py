@@ -41,6 +41,11 @@ def write_page(app: Sphinx, _config: Any) -> None:
         "once for each channel, with its name.",
         {name: only_new(columns, mapped.get(name, ())) for name, columns in with_nuclei.items()},
     )
+    lines += [
+        "With ``--groups`` the tables of cells (and ``shapes.parquet``) have ``condition``, ``experiment`` "
+        "and your own columns behind ``label``: see :ref:`groups`.",
+        "",
+    ]
     lines += run(
         "Correlations",
         "``cytodisk correlate`` writes these tables into ``correlation/SIGNAL~WITH/``.",

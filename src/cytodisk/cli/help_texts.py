@@ -15,6 +15,8 @@ Examples:
 
   cytodisk map cellpose_folder/ --signal _img -o out/ --workers 4 --no-maps
 
+  cytodisk map cellpose_folder/ --signal _img -o out/ --groups groups.csv
+
   cytodisk map labels.tif -o out/ --parameters other_study/parameters.toml --resume
 
 Exit code: 0 when done (refused cells have a row with the reason), 2 if nothing could be mapped or an input is
@@ -43,7 +45,7 @@ Exit code: 0 when done (frames without a map have a row with the reason), 2 if n
     "batch": """Run many movies and images in one go, and merge their tables.
 
 STUDY is a TOML file that names the inputs, by patterns or in a table, with their condition, experiment and
-scale. Each input runs in a process of its own: a crash, a time-out or a lack of memory costs a row, not
+scale. Cells of one input that differ go into a table of groups (--groups). Each input runs in a process of its own: a crash, a time-out or a lack of memory costs a row, not
 the run.
 
 Examples:

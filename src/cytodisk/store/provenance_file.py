@@ -16,6 +16,7 @@ from cytodisk.store.json_shapes import provenance_fields
 PROVENANCE = "provenance.json"
 MAPS = "maps version"
 _REMEDY = "take it from a copy of the study, or pass another folder and run the command again"
+_GROUPS = "groups sha256"  # of the fingerprint
 _EARLIER_MAPS = "its maps are of an earlier version, with another mesh and relaxation"
 FORMAT = 3
 """Of the tables and files of a study: 1 had no list of files, and other names of columns; the list of 2 has
@@ -160,6 +161,9 @@ def way_out(there: dict[str, Any], here: dict[str, Any]) -> str:
     anew = "--overwrite to replace it, or another folder"
     if "method" in then and then | {"method": now.get("method")} == now:
         return f"pass --method {then['method']} to go on with it, {anew}"
+    if then | {_GROUPS: None} == now | {_GROUPS: None}:
+        instead = "cytodisk population takes another table of groups for a study that is done"
+        return f"{instead}, as --groups groups.csv; or pass {anew}"
     return f"pass {anew}"
 
 
