@@ -187,6 +187,33 @@ def test_names_that_differ_in_case_or_spaces_are_named(table: Write) -> None:
     assert second.startswith("groups.csv: experiments 'd 1' and 'D1' differ only in case")
 
 
+def test_rows_of_files_of_other_runs_are_told_and_are_no_fault(table: Write, tmp_path: Path) -> None:
+    (tmp_path / "day2").mkdir()
+    for name in ("c_masks.tif", "day2/a_masks.tif"):
+        (tmp_path / name).touch()
+    cells = CELLS.assign(path=[str(tmp_path / source) for source in CELLS["source"]])
+    found = table("file,condition\na,x\nb,x\nc,y\nday2/a_masks.tif,y\n").match(cells)
+    assert found.values["condition"].tolist() == ["x"] * 5
+    (words,) = found.warnings
+    assert words == "groups.csv: 2 rows are about files that are not of this run: c, day2/a_masks.tif"
+    (fault,) = faults_of(lambda: table("file,condition\nc,y\n").of(cells))
+    assert fault == "groups.csv: no row is about these masks, all are about other files: c"
+    (fault,) = faults_of(lambda: table("file,condition\nd,y\n").of(cells))
+    assert "no file 'd'" in fault
+
+
+def test_what_may_be_a_slip_is_told(table: Write) -> None:
+    first, second = table("file,conditon,experiment\na,x,d1\nb,y,\n").match(CELLS).warnings
+    assert first == "groups.csv: column 'conditon' is taken for one of your own: did you mean condition?"
+    assert second.startswith("groups.csv: 1 row has no experiment (line 3), without which")
+    assert not table("file,condition,experimenter\na,x,Ann\nb,y,Ben\n").told[1:]
+
+
+def test_a_name_may_be_composed_of_letter_and_accent(table: Write) -> None:
+    cells = pd.DataFrame({"source": ["u\u0308_masks.tif"], "label": [1], "frame": [0]})
+    assert table("file,condition\n\u00fc,\u00a0x \n").of(cells)["condition"].tolist() == ["x"]
+
+
 def test_what_was_found_is_said_in_words(table: Write) -> None:
     text = "file,condition,experiment,dose\na,control,d1,1\nb,drug,d1,2\n"
     assert table(text).match(CELLS).words == (

@@ -117,7 +117,7 @@ class Groups:
         faults.raise_if_any(self.path, WHAT)
         found = matching.cells(rows, faults)
         faults.raise_if_any(self.path, WHAT)
-        remarks = matching.without_cells(rows, found, faults)
+        matching.without_cells(rows, found, faults)
         faults.raise_if_any(self.path, WHAT)
         row_of = np.full(len(cells), -1, dtype=np.int64)
         row_of[found["at"]] = found["row"]
@@ -128,4 +128,4 @@ class Groups:
         keys = [str(key) for key in self.keys]
         lost = missing_words(self.path.name, keys, known, missing, CONDITION in self.names)
         words = summary_words(keys, values, known)
-        return GroupedCells(values, (*self.told, *remarks, *lost), words)
+        return GroupedCells(values, (*self.told, *matching.remarks, *lost), words)

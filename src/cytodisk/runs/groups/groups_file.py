@@ -22,7 +22,7 @@ from cytodisk.runs.given_tables.given_table import (
 )
 from cytodisk.runs.given_tables.table_faults import Faults
 from cytodisk.runs.given_tables.taken_names import RENAMED, TABLE_NAMES, renamed_words
-from cytodisk.runs.groups.group_spellings import spelling_warnings
+from cytodisk.runs.groups.group_slips import empty_warnings, name_warnings, spelling_warnings
 from cytodisk.runs.groups.groups import CONDITION, EXPERIMENT, WHAT, Groups
 from cytodisk.runs.groups.known_cells import FILE, KEYS
 from cytodisk.store.tables import Column
@@ -88,8 +88,10 @@ def read_groups(path: str | os.PathLike[str]) -> Groups:
         values[name], kind = _values(table, name, faults)
         columns.append(Column(name, kind, "", _MEANINGS.get(name, "your own, from the table of groups")))
     faults.raise_if_any(file, WHAT)
-    told = tuple(spelling_warnings(file.name, {name: values[name] for name in _TEXTS if name in values}))
-    return Groups(file, tuple(columns), keys, pd.DataFrame(values), table.lines, told)
+    texts = {name: values[name] for name in _TEXTS if name in values}
+    told = [*name_warnings(table, _TEXTS), *spelling_warnings(file.name, texts)]
+    told += empty_warnings(table, EXPERIMENT)
+    return Groups(file, tuple(columns), keys, pd.DataFrame(values), table.lines, tuple(told))
 
 
 def _known_name(name: str) -> str:

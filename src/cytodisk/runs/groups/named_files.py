@@ -9,12 +9,14 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
+from unicodedata import normalize
 
 import pandas as pd
 
 from cytodisk.files import real_path
 from cytodisk.images.mask_names import base_name, image_stem
 from cytodisk.images.short_lists import shortened
+from cytodisk.runs.groups.other_files import OtherFiles
 
 _LIKE = 0.6  # from which likeness on a name is proposed
 _MOST_COMPARED = 2000  # names, which takes milliseconds each
@@ -49,6 +51,7 @@ class NamedFiles:
         text : str
             A name, or a path with / or \\\\ between its parts.
         """
+        text = normalize("NFC", text)
         *parents, name = re.sub(r"^(\./)+", "", text.replace("\\", "/")).split("/")
         if not parents and text in self._inputs:
             return self._inputs[text]
@@ -57,6 +60,10 @@ class NamedFiles:
             if found:
                 return found
         return []
+
+    def is_elsewhere(self, text: str) -> bool:
+        """Whether a text that means no file of the run names one that is there all the same."""
+        return self._others.has(text)
 
     def is_clear(self, text: str, rows: Sequence[int]) -> bool:
         """Whether the rows that were found for a text are one file, or one input."""
@@ -82,12 +89,16 @@ class NamedFiles:
         return [str(text) for text in self.files[name].fillna("")]
 
     @cached_property
+    def _others(self) -> OtherFiles:
+        return OtherFiles([self.folder, *(path.parent for path in self._paths if path is not None)])
+
+    @cached_property
     def _inputs(self) -> dict[str, list[int]]:
         """Rows by the name of the input."""
         found: dict[str, list[int]] = {}
         for row, name in enumerate(self._column("input")):
             if name:
-                found.setdefault(name, []).append(row)
+                found.setdefault(normalize("NFC", name), []).append(row)
         return found
 
     @cached_property
@@ -98,7 +109,7 @@ class NamedFiles:
             name = source or Path(path).name
             if name:
                 for known, key in zip(levels, (name, image_stem(name), base_name(name)), strict=True):
-                    known.setdefault(key, []).append(row)
+                    known.setdefault(normalize("NFC", key), []).append(row)
         return levels
 
     def _lies_in(self, row: int, parents: Sequence[str], name: str) -> bool:
@@ -111,7 +122,8 @@ class NamedFiles:
             return real_path(Path(given or "/")) == real_path(path.parent)
         if real_path(self.folder / given) == real_path(path.parent):
             return True
-        return path.parent.parts[-len(parents) :] == tuple(parents)
+        own = tuple(normalize("NFC", part) for part in path.parent.parts)
+        return own[-len(parents) :] == tuple(parents)
 
     @cached_property
     def _paths(self) -> list[Path | None]:

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from cytodisk.arrays import IntArray
+from cytodisk.images.short_lists import shortened
 from cytodisk.runs.given_tables.table_faults import Faults
 from cytodisk.runs.groups.known_cells import CELL, FILE, FRAME, KEYS, KnownCells, numbers_words
 
@@ -36,6 +37,8 @@ class RowMatching:
         self._keys = keys
         self._lines = lines
         self._known = known
+        self.remarks: list[str] = []
+        """What a user should know of rows that count for nothing."""
 
     def files(self, faults: Faults) -> pd.DataFrame:
         """The rows with the number of the file; one that means all files of an input stands several times.
@@ -43,7 +46,7 @@ class RowMatching:
         Parameters
         ----------
         faults : Faults
-            Gets names that mean no file, or several.
+            Gets names that mean no file, or several; a file that is there but not of the run is no fault.
 
         Returns
         -------
@@ -60,12 +63,16 @@ class RowMatching:
         different = [text for text in pd.unique(rows["text"]) if text]
         pairs = [("", _ANY)]
         wrong: dict[str, list[int]] = {}
+        elsewhere: list[str] = []
         for text in different:
             found = self._known.files.find(text)
             if self._known.files.is_clear(text, found):
                 pairs += [(text, file) for file in found]
+            elif not found and self._known.files.is_elsewhere(text):
+                elsewhere.append(text)
             else:
                 wrong[text] = found
+        self._tell_of_others(rows["text"], elsewhere, faults)
         lost = np.flatnonzero(rows["text"].isin(wrong).to_numpy()).tolist()
         faults.add_rows(lost, lambda row: (self._place(row), self._file_words(rows["text"].iloc[row], wrong)))
         return rows.merge(pd.DataFrame(pairs, columns=["text", FILE]), on="text", how="inner")
@@ -101,7 +108,7 @@ class RowMatching:
         self._refuse_two_rows(found, faults)
         return found
 
-    def without_cells(self, rows: pd.DataFrame, found: pd.DataFrame, faults: Faults) -> list[str]:
+    def without_cells(self, rows: pd.DataFrame, found: pd.DataFrame, faults: Faults) -> None:
         """Rows that are about no cell: faults, but for files and images without usable masks.
 
         Parameters
@@ -111,11 +118,6 @@ class RowMatching:
         found : DataFrame
             As `cells` returns it.
         faults : Faults
-
-        Returns
-        -------
-        list of str
-            Remarks on rows that count for nothing, since their image has no cells.
         """
         lost = rows[~rows["row"].isin(found["row"])].drop_duplicates("row")
         empty = self._known.table[self._known.table[CELL] == 0]
@@ -131,10 +133,22 @@ class RowMatching:
         )
         remarks = [f"{self._place(row)}: the image has no usable masks" for row in lost.loc[excused, "row"]]
         more = len(remarks) - _MOST_REMARKS
-        return remarks[:_MOST_REMARKS] + ([f"{self._name}: … and {more} more such rows"] if more > 0 else [])
+        self.remarks += remarks[:_MOST_REMARKS]
+        self.remarks += [f"{self._name}: … and {more} more such rows"] if more > 0 else []
 
     def _place(self, row: int) -> str:
         return f"{self._name} line {self._lines[row]}"
+
+    def _tell_of_others(self, texts: Any, elsewhere: list[str], faults: Faults) -> None:
+        """A remark on rows about files of other runs; a fault if all rows are."""
+        number = int(texts.isin(elsewhere).sum())
+        if not number:
+            return
+        names = shortened(elsewhere)
+        if number == len(texts):
+            faults.add(self._name, f"no row is about these masks, all are about other files: {names}")
+        words = f"{number} rows are about files" if number > 1 else "1 row is about a file"
+        self.remarks.append(f"{self._name}: {words} that are not of this run: {names}")
 
     def _file_words(self, text: str, wrong: dict[str, list[int]]) -> str:
         files, found = self._known.files, wrong[text]
