@@ -6,7 +6,9 @@ import pytest
 import tifffile
 
 import cytodisk as cd
+from cytodisk.cli import app
 from cytodisk.errors import ParameterError, PopulationError, ReadError
+from cytodisk.pages.batch_reports import write_batch_reports
 from cytodisk.runs.population.correlations.run_batch_correlate import only_channel, run_batch_correlate
 from cytodisk.store.populations.pooled_correlation import PooledCorrelation, open_pooled_correlation
 
@@ -121,3 +123,35 @@ def test_what_is_asked_wrongly_says_what_there_is(batch: Path) -> None:
         run_batch_correlate(batch, "follower", compare=["control", "drug"], **SETTINGS)
     with pytest.raises(ReadError, match="no correlation of follower with other"):
         open_pooled_correlation(batch, "follower", "other")
+
+
+def test_the_command_says_what_was_found_and_draws_it(
+    batch: Path, pooled: PooledCorrelation, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["correlate", str(batch), "--signal", "follower", "--max-lag", "6", "--resume", "--csv"]
+    app([*command, "--surrogates", "0", "--no-geometry", "--no-clusters"], standalone_mode=False)
+    said = capsys.readouterr()
+    assert "2 of 4 inputs correlated, 2 of them before; 1 left out; 1 refused" in said.out
+    assert "2 experiments can give p = 0.5 at best" in said.out
+    assert "short refused:" in said.err
+    assert (pooled.path / "figures" / "curves.png").exists()
+
+
+def test_what_is_for_a_batch_is_refused_with_a_study(batch: Path) -> None:
+    with pytest.raises(ParameterError, match="--compare, --groups: only for the folder of a batch"):
+        app(
+            ["correlate", str(batch / "inputs" / "m0"), "--compare", "a,b", "--groups", "t.csv"],
+            standalone_mode=False,
+        )
+    with pytest.raises(ParameterError, match="--out: not for a batch"):
+        app(["report", str(batch), "-o", "page.html"], standalone_mode=False)
+
+
+def test_each_study_has_a_page_or_a_row_that_says_why(batch: Path) -> None:
+    found = write_batch_reports(batch)
+    pages = found.table.set_index("input")["page"].to_dict()
+    assert pages["m0"] == "inputs/m0/report.html"
+    assert (batch / pages["m0"]).exists()
+    assert found.table["condition"].tolist()[:2] == ["control", "control"]
+    again = write_batch_reports(batch, resume=True)
+    assert (again.table.loc[again.table["page"] != "", "status"] == "kept").all()
