@@ -40,6 +40,7 @@ from cytodisk.store.populations.window_arrays import window_rows
 from cytodisk.store.tables import Column
 
 _SCALARS_DONE, _ATLAS_DONE, _COMPARED = 0.1, 0.3, 0.9  # shares of the work after opening
+_SCALE = {"length_unit": "px", "pixel_size_um": None, "frame_interval_s": None}
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,8 @@ def population_result(
         "warnings": pd.DataFrame(tests.warnings, columns=list(StudyWarning._fields)),
     }
     step(1.0)
-    return PopulationResult(tables, more, _notes(shown, chosen, tests))
+    scale = {name: opened.cells.attrs.get(name, unknown) for name, unknown in _SCALE.items()}
+    return PopulationResult(tables, more, _notes(shown, chosen, tests) | scale)
 
 
 def _gallery(shown: Population, distances: Any, used: Any) -> pd.DataFrame:
@@ -143,7 +145,6 @@ def _tables(
 
 def _notes(shown: Population, chosen: ComparedConditions, tests: Compared) -> dict[str, Any]:
     of_signal = scalar_names(shown.channels, shown.compartments, shown.last)
-    depth = shown.raw.coords.get("depth")
     lag = shown.raw.coords.get("lag")
     return {
         "curves": shown.last == "lag",
@@ -153,5 +154,4 @@ def _notes(shown: Population, chosen: ComparedConditions, tests: Compared) -> di
         "scalars compared": list(dict.fromkeys([*of_signal, *shown.scalars])),
         "signal_unit": shown.units,
         "lag_unit": "" if lag is None else str(lag.attrs.get("units", "frames")),
-        "length_unit": "px" if depth is None else str(depth.attrs.get("units", "px")),
     }

@@ -89,6 +89,21 @@ def setting_of(study: FoundStudy, name: str) -> Any:
     return study.parameters.get(name, default)
 
 
+def common_scale(studies: Sequence[FoundStudy]) -> dict[str, Any]:
+    """Unit of lengths, and µm per pixel and seconds per frame: None where unknown, or where studies differ.
+
+    Parameters
+    ----------
+    studies : sequence of FoundStudy
+        With one unit of lengths.
+    """
+    found: dict[str, Any] = {"length_unit": studies[0].length_unit}
+    for name in ("pixel_size_um", "frame_interval_s"):
+        values = {study.provenance.get(name) for study in studies}
+        found[name] = values.pop() if len(values) == 1 else None
+    return found
+
+
 def command_of_study(study: FoundStudy) -> str:
     """The command that wrote a study."""
     return command_of(study.provenance)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,19 @@ from cytodisk.arrays import FloatArray
 from cytodisk.population.cell_directions import DIRECTION, STRENGTH
 
 TURN = "disk_turn"
+
+
+def direction_units(names: Iterable[str]) -> dict[str, str]:
+    """Units of those columns that hold directions, or their strength.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Columns of cells.
+    """
+    angles, strengths = DIRECTION.format(""), STRENGTH.format("")
+    of_angles = {name: "°" for name in names if name == TURN or name.startswith(angles)}
+    return of_angles | {name: "1" for name in names if name.startswith(strengths)}
 
 
 def image_directions(

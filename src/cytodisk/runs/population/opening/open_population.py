@@ -12,9 +12,10 @@ import pandas as pd
 from cytodisk.errors import PopulationError, PopulationWarning
 from cytodisk.population.population import Population
 from cytodisk.runs.population.movies.summary_names import MOVIE_SUMMARIES
-from cytodisk.runs.population.opening.alike_settings import check_alike
+from cytodisk.runs.population.opening.alike_settings import check_alike, common_scale
 from cytodisk.runs.population.opening.cell_names import cell_names
 from cytodisk.runs.population.opening.cell_table import joined_rows, usable_rows
+from cytodisk.runs.population.opening.disk_directions import direction_units
 from cytodisk.runs.population.opening.found_studies import Paths, find_studies
 from cytodisk.runs.population.opening.left_out import LEFT_OUT, LeftOut
 from cytodisk.runs.population.opening.map_population import map_population
@@ -117,7 +118,11 @@ def open_population(
     found = _READERS[run](studies, cells, frames, Wanted(summary, channels, scalars, left_out))
     _refuse_few(found.cells, left_out)
     notes += found.cells.attrs.get(NOTES, [])
-    found.cells.attrs = attrs | {LEFT_OUT: left_out.text, NOTES: notes}
+    scale = common_scale(studies)
+    attrs["units"] = attrs["units"] | direction_units([str(name) for name in found.cells])
+    found.cells.attrs = attrs | scale | {LEFT_OUT: left_out.text, NOTES: notes}
+    if found.values is not None:
+        found.values.attrs |= scale | {"summary": summary}
     return Population(found.values, found.cells, areas=found.areas, scalars=found.scalars)
 
 

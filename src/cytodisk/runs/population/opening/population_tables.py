@@ -12,6 +12,7 @@ import xarray as xr
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import PopulationError
 from cytodisk.images.short_lists import shortened
+from cytodisk.parameter_words import short_words
 from cytodisk.population.population import Population
 from cytodisk.runs.population.opening.chosen_scalars import chosen_scalars
 
@@ -106,7 +107,7 @@ def _places(of_windows: pd.Series[Any], of_cells: pd.Series[Any]) -> IntArray:
     if empty := int(of_cells.isna().sum() + of_windows.isna().sum()):
         raise PopulationError(f"column cell is empty in {empty} rows: fill it in")
     if (twice := of_cells[of_cells.duplicated()]).size:
-        raise PopulationError(f"cells: cell {twice.iloc[0]!r} stands twice: each cell is one row")
+        raise PopulationError(f"cells: cell {_shown(twice.iloc[0])} stands twice: each cell is one row")
     index = pd.Index(of_cells)
     row = index.get_indexer(pd.Index(of_windows))
     if (strange := of_windows[row < 0]).size:
@@ -116,7 +117,7 @@ def _places(of_windows: pd.Series[Any], of_cells: pd.Series[Any]) -> IntArray:
             else f" ({of_windows.dtype} there, {of_cells.dtype} here)"
         )
         raise PopulationError(
-            f"windows has cell {strange.iloc[0]!r}, which is not in cells{kinds}: add it there, or "
+            f"windows has cell {_shown(strange.iloc[0])}, which is not in cells{kinds}: add it there, or "
             "take it out"
         )
     without = of_cells[~np.isin(np.arange(len(of_cells)), row)]
@@ -132,7 +133,7 @@ def _whole(column: pd.Series[Any], name: str) -> IntArray:
     wrong = ~((numbers >= 0) & (numbers < _MOST_SIDE) & (numbers == np.floor(numbers)))
     if wrong.any():
         raise PopulationError(
-            f"windows: {name} must be a whole number from 0, got {column[wrong].iloc[0]!r} in "
+            f"windows: {name} must be a whole number from 0, got {_shown(column[wrong].iloc[0])} in "
             f"{int(wrong.sum())} rows"
         )
     return numbers.astype(np.int64)
@@ -155,8 +156,8 @@ def _refuse_twice(at: IntArray, windows: pd.DataFrame) -> None:
     if len(twice):
         row = windows.iloc[int(order[twice[0] + 1])]
         raise PopulationError(
-            f"windows: layer {row['layer']}, sector {row['sector']} of cell {row['cell']!r} stands twice: a "
-            "row for each window and channel; mean over frames first"
+            f"windows: layer {row['layer']}, sector {row['sector']} of cell {_shown(row['cell'])} stands "
+            "twice: a row for each window and channel; mean over frames first"
         )
 
 
@@ -165,3 +166,8 @@ def _numbers(windows: pd.DataFrame, name: str) -> FloatArray:
     if not pd.api.types.is_numeric_dtype(column):
         raise PopulationError(f"windows: column {name!r} holds {column.dtype}, no numbers: write numbers")
     return column.to_numpy(dtype=np.float64, na_value=np.nan)
+
+
+def _shown(value: Any) -> str:
+    """A name of a cell or a number as a user wrote it."""
+    return short_words(value.item() if hasattr(value, "item") else value)
