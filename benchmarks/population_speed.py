@@ -68,9 +68,8 @@ def main() -> int:
     for cells in chosen.cells:
         for unit in chosen.units:
             words = ["--cells", str(cells), "--units", unit, "--permutations", str(chosen.permutations)]
-            ran = subprocess.run(
-                [sys.executable, str(Path(__file__)), "--child", *words], check=True, capture_output=True
-            )
+            command = [sys.executable, str(Path(__file__)), "--child", *words]
+            ran = subprocess.run(command, check=True, stdout=subprocess.PIPE)
             row = json.loads(ran.stdout)
             print(
                 f"| {cells} | {unit} | {row['seconds']:.1f} | {row['before']:.0f} | {row['peak']:.0f} "

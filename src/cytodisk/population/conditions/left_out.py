@@ -32,8 +32,10 @@ def left_out_table(results: Mapping[str, FloatArray], units: Units, seed: int) -
     DataFrame
         Columns result, experiment, difference_of_all, difference, p (of this number alone, not corrected).
     """
+    if not results:
+        return pd.DataFrame(columns=list(COLUMNS))
     names = list(dict.fromkeys(units.names))
-    values = np.stack(list(results.values()), axis=1) if results else np.empty((units.count, 0))
+    values = np.stack(list(results.values()), axis=1)
     whole = _difference(values, units.treated, units.paired)
     rows = []
     for name in names:
@@ -63,8 +65,6 @@ def _mean(values: FloatArray) -> FloatArray:
 
 
 def _p(values: FloatArray, treated: np.ndarray, paired: bool, seed: int) -> FloatArray:
-    if not values.shape[1]:
-        return np.empty(0)
     if paired:
         differences = values[treated] - values[~treated]
         return exchange_test(PairDifference(differences), SignExchanges(len(differences), _MOST, seed)).p

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import PopulationError
@@ -62,8 +61,8 @@ def compare_with_control(
 
     Notes
     -----
-    Holm (1979). A family is all windows (or clusters, or scalars) of a comparison, with the smallest p-value
-    of its members.
+    Holm (1979). A family is all windows (or clusters, or scalars) of a comparison; it counts in the
+    correction of the others until all of its members differ, so windows are corrected for all comparisons.
 
     Examples
     --------
@@ -112,6 +111,9 @@ def _part_of(
 def holm(families: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
     """p-values of families corrected over the families.
 
+    Holm's procedure, in which a family counts until all of its members are rejected: while a member is left,
+    chance has one more family to err in (Goeman & Solari 2010, doi:10.1214/10-AOS829).
+
     Parameters
     ----------
     families : dict of str to ndarray of any shape
@@ -127,21 +129,19 @@ def holm(families: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
     >>> from cytodisk.population.conditions.with_control import holm
     >>> found = holm({"a": np.array([0.01, 0.3]), "b": np.array([0.04])})
     >>> found["a"].tolist(), found["b"].tolist()
-    ([0.02, 0.6], [0.04])
+    ([0.02, 0.3], [0.08])
     """
-    smallest = {name: _least(p) for name, p in families.items()}
-    order = sorted(families, key=lambda name: smallest[name])
-    found, reached = {}, 0.0
-    for rank, name in enumerate(order):
-        left = len(order) - rank
-        found[name] = np.clip(np.maximum(left * families[name], reached), None, 1.0)
-        reached = min(1.0, max(reached, left * smallest[name]))
-    return found
-
-
-def _least(p: NDArray[np.float64]) -> float:
-    finite = p[np.isfinite(p)]
-    return float(finite.min()) if finite.size else 1.0
+    every = np.concatenate([np.ravel(p) for p in families.values()])
+    family = np.repeat(np.arange(len(families)), [np.size(p) for p in families.values()])
+    order = np.argsort(every, kind="stable")
+    order = order[np.isfinite(every[order])]
+    number = np.arange(len(order))
+    last = [number[family[order] == one].max(initial=-1) for one in range(len(families))]
+    left = (np.array(last)[:, None] >= number).sum(axis=0)  # families that are not rejected as wholes before
+    corrected = np.full(len(every), np.nan)
+    corrected[order] = np.minimum(np.maximum.accumulate(left * every[order]), 1.0)
+    parts = np.split(corrected, np.cumsum([np.size(p) for p in families.values()])[:-1])
+    return {name: part.reshape(np.shape(p)) for (name, p), part in zip(families.items(), parts, strict=True)}
 
 
 def _words(name: str, count: int, windows: FloatArray) -> list[str]:
