@@ -1,6 +1,6 @@
 """False positives of `compare_conditions` in studies in which conditions differ by chance alone.
 
-    benchmarks/population_null.py [--studies 4000] [--first-seed 0] [--results FILE] [--all] [--workers 1]
+    benchmarks/population_null.py [--studies 4000] [--first-block 0] [--results FILE] [--all] [--workers 1]
 
 Cells of 4 × 12 windows, 8 in each condition and experiment, with 0, 10 and 30 % of the variance between
 experiments; 3 to 8 experiments of each condition, unpaired, and 3 to 8 pairs; as they are, and aligned
@@ -30,9 +30,10 @@ from pathlib import Path
 import cytodisk as cd
 from population_cases import (
     ALIGNMENTS,
+    BLOCK,
     TESTS,
     Case,
-    Tester,
+    Studies,
     attainable,
     is_found,
     p_values_of_comparison,
@@ -43,8 +44,6 @@ SHARES, SIZES = (0.0, 0.1, 0.3), range(3, 9)
 ALIGNED_SIZES = {"unpaired": 5, "paired": 6}
 CELL_SIZE = {"unpaired": 5, "paired": 6}
 EXACT, AT_MOST = ("windows", "mean"), ("clusters", "scalars")
-_AT_ONCE = 200  # studies of a process
-_CHECKED = 2  # studies of each case that go through compare_conditions, too
 
 
 def cases(every: bool) -> Iterator[Case]:
@@ -64,22 +63,22 @@ def cell_cases() -> Iterator[Case]:
             yield Case(share, design, experiments, unit="cell")
 
 
-def count(first: int, number: int, case: Case, permutations: int) -> Counter[str]:
-    """How many of a number of studies find something, by test."""
-    tester, found = Tester(case, permutations), Counter[str]()
-    if not first:
-        _check(case, tester, permutations)
-    for seed in range(first, first + number):
-        found.update(name for name, p in tester.p_values(seed).items() if is_found(p))
+def count(block: int, case: Case, permutations: int) -> Counter[str]:
+    """How many studies of a block find something, by test."""
+    studies, found = Studies(case, block, permutations), Counter[str]()
+    for number in range(BLOCK):
+        p_values = studies.p_values(number, block * BLOCK + number)
+        if not (block or number):
+            _check(case, studies, p_values, permutations)
+        found.update(name for name, p in p_values.items() if is_found(p))
     return found
 
 
-def _check(case: Case, tester: Tester, permutations: int) -> None:
-    """Stop unless the p-values are those of `compare_conditions`."""
-    for seed in range(_CHECKED):
-        whole, fast = p_values_of_comparison(case, seed, permutations), tester.p_values(seed)
-        if any(abs(whole[name] - fast[name]) > 1e-12 for name in TESTS):
-            raise SystemExit(f"{case.key}, seed {seed}: compare_conditions gives {whole}, not {fast}")
+def _check(case: Case, studies: Studies, fast: dict[str, float], permutations: int) -> None:
+    """Stop unless the p-values of the first study are those of `compare_conditions`."""
+    whole = p_values_of_comparison(case, studies.alone(0), 0, permutations)
+    if any(abs(whole[name] - fast[name]) > 1e-12 for name in TESTS):
+        raise SystemExit(f"{case.key}: compare_conditions gives {whole}, not {fast}")
 
 
 class Results:
@@ -113,10 +112,9 @@ def rates(
     """Share of the studies in which each test finds something."""
     found = results.get(case)
     if found is None:
-        starts = range(chosen.first_seed, chosen.first_seed + studies, _AT_ONCE)
-        sizes = [min(_AT_ONCE, chosen.first_seed + studies - start) for start in starts]
+        blocks = range(chosen.first_block, chosen.first_block + studies // BLOCK)
         work = partial(count, case=case, permutations=chosen.permutations)
-        found = sum(pool.map(work, starts, sizes), Counter())
+        found = sum(pool.map(work, blocks), Counter())
         results.keep(case, found)
     return {name: found[name] / studies for name in TESTS}
 
@@ -153,13 +151,15 @@ def main() -> int:
     parser.add_argument("--studies", type=int, default=4000, help="of each case (default 4000)")
     parser.add_argument("--cell-studies", type=int, default=400, help="with cells as units (default 400)")
     parser.add_argument("--permutations", type=int, default=999, help="at most (default 999)")
-    parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument("--first-block", type=int, default=0, help=f"seed of the first {BLOCK} studies")
     parser.add_argument("--results", type=Path, help="file of cases that are done, to go on with")
     parser.add_argument("--all", action="store_true", help="alignments with all numbers of experiments")
     parser.add_argument("--workers", type=int, default=1, help="processes (default 1)")
     chosen = parser.parse_args()
+    if chosen.studies % BLOCK or chosen.cell_studies % BLOCK:
+        parser.error(f"studies are simulated {BLOCK} at a time: pass a multiple of it")
     os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    names = ("studies", "cell_studies", "permutations", "first_seed")
+    names = ("studies", "cell_studies", "permutations", "first_block")
     settings = {"version": cd.__version__} | {name: getattr(chosen, name) for name in names}
     results, good, started = Results(chosen.results, settings), True, time.perf_counter()
     with ProcessPoolExecutor(chosen.workers) as pool:

@@ -42,11 +42,16 @@ def test_what_few_experiments_can_attain(load: Any, experiments: int, design: st
 
 @pytest.mark.parametrize("design", ["unpaired", "paired"])
 @pytest.mark.parametrize("unit", ["experiment", "cell"])
-def test_the_fast_way_gives_the_p_values_of_the_comparison(load: Any, design: str, unit: str) -> None:
+def test_the_fast_way_gives_the_p_values_of_the_comparison(
+    load: Any, design: str, unit: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     cases = load("population_cases")
+    monkeypatch.setattr(cases, "BLOCK", 3)
     case = cases.Case(0.1, design, 5, "signal", unit)
-    found = cases.Tester(case, 199).p_values(3)
-    assert found == pytest.approx(cases.p_values_of_comparison(case, 3, 199))
+    studies = cases.Studies(case, 1, 199)
+    for number in range(3):
+        expected = cases.p_values_of_comparison(case, studies.alone(number), 7, 199)
+        assert studies.p_values(number, 7) == pytest.approx(expected)
 
 
 def test_a_stopped_run_goes_on_and_one_of_other_settings_is_refused(
@@ -54,13 +59,13 @@ def test_a_stopped_run_goes_on_and_one_of_other_settings_is_refused(
 ) -> None:
     benchmark, path = load("population_null"), tmp_path / "results"
     case, settings = benchmark.Case(0.1, "paired", 4), {"studies": 3}
-    chosen = Namespace(first_seed=0, permutations=99)
+    chosen = Namespace(first_block=0, permutations=99)
     with ThreadPoolExecutor(1) as pool:
-        rate = benchmark.rates(case, chosen, 3, pool, benchmark.Results(path, settings))
+        rate = benchmark.rates(case, chosen, benchmark.BLOCK, pool, benchmark.Results(path, settings))
         with path.open("a", encoding="utf-8") as file:
             file.write('\n{"case": "0.1 pai')  # stopped in the middle of a line
         monkeypatch.setattr(benchmark, "count", None)  # nothing is left to do
-        assert benchmark.rates(case, chosen, 3, pool, benchmark.Results(path, settings)) == rate
+        assert benchmark.rates(case, chosen, benchmark.BLOCK, pool, benchmark.Results(path, settings)) == rate
     with pytest.raises(SystemExit, match="other settings"):
         benchmark.Results(path, {"studies": 4})
 
