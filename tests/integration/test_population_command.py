@@ -27,7 +27,8 @@ def cells(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_what_can_be_reached_is_the_first_line(run: Run, cells: Path, tmp_path: Path) -> None:
     out = tmp_path / "atlas"
-    code, said, _ = run("population", cells / "maps", "--groups", cells / "groups.csv", "-o", out)
+    command = ("population", cells / "maps", "--groups", cells / "groups.csv", "--channel", "Rac1", "-o", out)
+    code, said, _ = run(*command)
     lines = said.splitlines()
     assert code == 0
     assert lines[0].startswith("4 + 4 experiments can give p = 0.029 at best")
@@ -36,12 +37,16 @@ def test_what_can_be_reached_is_the_first_line(run: Run, cells: Path, tmp_path: 
     assert "Rac1, drug against control: " in said
     assert "16 cells: control 8 in 4 experiments; drug 8 in 4 experiments" in lines
     assert f"results: {out}" in lines
-    code, said, _ = run("population", cells / "maps", "--groups", cells / "groups.csv", "-o", out, "--resume")
+    assert any(line.startswith(f"figures: {out / 'figures'} (atlas_Rac1, profiles, ") for line in lines)
+    drawn = {file: file.stat().st_mtime_ns for file in (out / "figures").iterdir()}
+    code, said, error = run(*command, "--resume")
     assert (code, said.splitlines()[0]) == (0, lines[0])
+    assert "this study is complete already" in error
+    assert {file: file.stat().st_mtime_ns for file in (out / "figures").iterdir()} == drawn
 
 
 def test_cells_of_unknown_experiments_are_told(run: Run, cells: Path, tmp_path: Path) -> None:
-    command = ("population", cells / "maps", "--groups", cells / "unknown.csv", "-o")
+    command = ("population", cells / "maps", "--no-figures", "--groups", cells / "unknown.csv", "-o")
     code, said, _ = run(*command, tmp_path / "a")
     lines = said.splitlines()
     assert code == 0
@@ -49,10 +54,11 @@ def test_cells_of_unknown_experiments_are_told(run: Run, cells: Path, tmp_path: 
     assert any(line.startswith("Warning experiments unknown: ") for line in lines)
     code, said, _ = run(*command, tmp_path / "b", "--unit", "cell", "--permutations", "99")
     assert "Warning cells as units" in said
+    assert not (tmp_path / "b" / "figures").exists()
 
 
 def test_parameters_of_one_run_are_those_of_the_next(run: Run, cells: Path, tmp_path: Path) -> None:
-    command = ("population", cells / "maps", "--groups", cells / "groups.csv", "-q", "-o")
+    command = ("population", cells / "maps", "--groups", cells / "groups.csv", "-q", "--no-figures", "-o")
     assert run(*command, tmp_path / "a", "--channel", "Rac1", "--normalise", "cell mean")[0] == 0
     assert run(*command, tmp_path / "b", "--parameters", tmp_path / "a" / "parameters.toml")[0] == 0
     found = cd.open_population_study(tmp_path / "b")
@@ -70,7 +76,7 @@ def test_faults_are_one_line_with_the_remedy(run: Run, cells: Path, tmp_path: Pa
         run("population", maps, *groups, *out, "--compare", "drug"), "--compare must name two conditions"
     )
     assert_refused(run("population", maps, *groups, *out, "--align", "nucleus"), "--nuclei")
-    assert_refused(run("population", "--power", *out), "--out: not with --power; leave it out")
+    assert_refused(run("population", maps, *groups, *out, "--format", "bmp"), "format must be png, pdf, svg")
     assert_refused(run("population", "--power", "--channel", "a"), "--channel: not with --power", "pass PATH")
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
 
@@ -85,6 +91,16 @@ def test_power_is_a_table_to_plan_with(run: Run) -> None:
     assert sum(line.startswith("4 pairs      nothing: p = 0.12 at best") for line in lines) == 2
     row = next(line for line in lines if line.startswith("4 + 4"))
     assert row.split()[3].endswith("%")
+
+
+def test_a_plan_can_be_kept(run: Run, tmp_path: Path) -> None:
+    command = ("population", "--power", "--effects", "1", "--experiments", "4", "--studies", "20", "-q", "-o")
+    assert run(*command, tmp_path / "plan")[0] == 0
+    table = pd.read_csv(tmp_path / "plan" / "power.csv")
+    assert table["design"].tolist() == ["unpaired", "paired"]
+    assert (tmp_path / "plan" / "power.png").exists()
+    assert_refused(run(*command, tmp_path / "plan"), "power.csv is there", "--overwrite")
+    assert run(*command, tmp_path / "plan", "--overwrite")[0] == 0
 
 
 def test_power_takes_the_variance_of_cells_at_hand(run: Run, cells: Path) -> None:
@@ -114,7 +130,7 @@ def test_a_killed_command_is_done_by_the_next(cells: Path, tmp_path: Path) -> No
     import time
 
     out = tmp_path / "atlas"
-    files = [str(cells / "maps"), "--groups", str(cells / "groups.csv"), "-o", str(out), "-q"]
+    files = [str(cells / "maps"), "--groups", str(cells / "groups.csv"), "-o", str(out), "-q", "--no-figures"]
     command = [sys.executable, "-m", "cytodisk", "population", *files]
     run_to_the_end([*command])
     whole = {file.name: file.read_bytes() for file in out.glob("*.parquet")}

@@ -20,6 +20,7 @@ PERCENT = "percent"
 _FEWEST_FOR_TIME = 2  # steps after the first that was told
 _RATE_OVER_S = 600.0  # what is counted may take minutes each
 RESUME = "run it again with --resume"
+COMPLETE = "this study is complete already: nothing was run again"
 
 
 def fail(message: str) -> None:
@@ -148,7 +149,7 @@ def progress_bar(
             print(kept if stopped is None else stopped, file=sys.stderr)
             raise typer.Exit(stop.exit_code) from None
         if stopped is None and not bar.tasks[task].total and not quiet:
-            print("this study is complete already: nothing was run again", file=sys.stderr)
+            print(COMPLETE, file=sys.stderr)
 
 
 def rate_words(a_second: float, unit: str) -> str:

@@ -52,7 +52,7 @@ def correlate_command(
 ) -> None:
     from cytodisk.runs.correlate.correlate_study import channels_of, correlate_study
 
-    wanted = _formats(formats)
+    wanted = figure_formats(formats)
     if is_batch(study):
         _correlate_batch(study, given, (signal, with_), cell, groups, wanted, quiet)
         return
@@ -194,7 +194,8 @@ def earlier_settings(study: "Study", *names: str) -> dict[str, Any] | None:
     return study.correlation(*names).settings if names in there else None
 
 
-def _formats(text: str) -> tuple["Format", ...]:
+def figure_formats(text: str) -> tuple["Format", ...]:
+    """The formats in a text such as "png,pdf"; raises ParameterError if one is unknown."""
     from cytodisk.errors import ParameterError
 
     wanted = tuple(dict.fromkeys(part.strip().lower() for part in text.split(",")))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -42,6 +42,29 @@ def drawing(study: Path, *names: str, of: Path | None = None) -> Iterator[Path]:
         with writing_to(folder):
             folder.mkdir(exist_ok=True)
         yield folder
+
+
+def drawn_figures(study: Path, formats: Sequence[str]) -> list[Path]:
+    """The figures of a study that are there, and whole, in these formats; none unless all are.
+
+    Parameters
+    ----------
+    study : Path
+    formats : sequence of str
+        Such as "png".
+
+    Returns
+    -------
+    list of Path
+    """
+    marks = recorded(read_provenance(study) or {})
+    by_format = [
+        {name: mark for name, mark in marks.items() if name.startswith(f"{FIGURES}/") and name.endswith(one)}
+        for one in formats
+    ]
+    own = {name: mark for some in by_format for name, mark in some.items()}
+    whole = all(by_format) and all(own.values()) and not lost_files(study, own)
+    return [study / name for name in own] if whole else []
 
 
 def is_drawn(study: Path, name: str, last: str) -> bool:

@@ -6,22 +6,24 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cytodisk.cli.console import console_for, progress_bar
+from cytodisk.cli.console import COMPLETE, PERCENT, console_for, progress_bar
+from cytodisk.cli.correlate_command import Format, figure_formats
 from cytodisk.cli.options import Given, Quiet, with_parameters
+from cytodisk.cli.population.kept_plan import keep_plan, refuse_kept_plan
+from cytodisk.cli.population.planned import planned
 from cytodisk.cli.population.population_words import say_population
-from cytodisk.cli.population.power_words import say_plan, say_power
 from cytodisk.errors import ParameterError
 from cytodisk.runs.population.population_parameters import PopulationParameters
 from cytodisk.runs.population.power.power_parameters import PowerParameters
 from cytodisk.runs.run_options import FolderOptions
+from cytodisk.store.study_kind import FIGURES
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rich.console import Console
 
-    from cytodisk.population.population import Population
-
-_OF_CELLS = ("compare", "channel", "summary", "normalise", "align")
-"""Parameters of a comparison that a plan takes for the cells at hand."""
+    from cytodisk.store.populations.population_study import PopulationStudy
 
 
 @with_parameters(PopulationParameters, FolderOptions, modes={"--power": PowerParameters})
@@ -48,6 +50,10 @@ def population_command(
             "was done to which cell.",
         ),
     ] = None,
+    figures: Annotated[bool, typer.Option(help="Draw the atlas, profiles and scalars.")] = True,
+    formats: Annotated[
+        str, typer.Option("--format", metavar="A,B,…", help="Of figures: png, pdf, svg, or several.")
+    ] = "png",
     power: Annotated[
         bool, typer.Option("--power", help="Plan: how many experiments find a difference of which size.")
     ] = False,
@@ -55,7 +61,13 @@ def population_command(
 ) -> None:
     console = console_for(quiet)
     if power:
-        _plan(console, given, paths or [], out, groups)
+        wanted = figure_formats(formats) if figures else ()
+        if out is not None and not given.values.get("overwrite"):
+            refuse_kept_plan(out)
+        table, notes = planned(console, given, paths or [], groups, out is not None)
+        if out is not None:
+            keep_plan(out, table, notes, wanted)
+            console.print(f"results: {out}")
         return
     if beyond := given.beyond(PopulationParameters, FolderOptions):
         raise ParameterError(f"{', '.join(beyond)}: only with --power; pass that too, or leave it out")
@@ -65,53 +77,45 @@ def population_command(
         )
     if out is None:
         raise ParameterError("--out is missing: name a folder for the results, as -o atlas/")
-    _compare(console, given, paths, out, groups)
+    wanted = figure_formats(formats) if figures else ()
+    study = _compare(console, given, paths, out, groups)
+    drawn = _draw(console, study, wanted) if wanted else []
+    say_population(console, study, drawn)
 
 
-def _compare(console: "Console", given: Given, paths: list[Path], out: Path, groups: Path | None) -> None:
+def _compare(
+    console: "Console", given: Given, paths: list[Path], out: Path, groups: Path | None
+) -> "PopulationStudy":
     from cytodisk.runs.population.run_population import run_population
 
     settings, options = given.of(PopulationParameters), given.options(FolderOptions)
-    with progress_bar(console.quiet, "percent", stopped=_STOPPED) as progress:
+    steps: list[int] = []
+    with progress_bar(console.quiet, PERCENT, stopped=_STOPPED) as progress:
+
+        def report(done: int, total: int) -> None:
+            steps.append(done)
+            progress(done, total)
+
         study = run_population(
-            paths, out, groups=groups, progress=progress, parameters=settings, **dict(options)
+            paths, out, groups=groups, progress=report, parameters=settings, **dict(options)
         )
-    say_population(console, study)
+    if not steps and not console.quiet:
+        print(COMPLETE, file=sys.stderr)
+    return study
+
+
+def _draw(console: "Console", study: "PopulationStudy", formats: "Sequence[Format]") -> list[str]:
+    """Draw all figures; what is said of them."""
+    from cytodisk.pages.population.write_population_figures import missing_figures, write_population_figures
+    from cytodisk.store.figures_folder import drawn_figures
+
+    paths = drawn_figures(study.path, formats)
+    stopped = f"Stopped while drawing; the tables are in {study.path}."
+    if not paths:
+        with progress_bar(console.quiet, "pages drawn", stopped=stopped) as progress:
+            paths = write_population_figures(study, formats=formats, progress=progress)
+    names = ", ".join(dict.fromkeys(path.stem for path in paths))
+    return [f"figures: {study.path / FIGURES} ({names})", *missing_figures(study)] if paths else []
 
 
 _STOPPED = "Stopped; the results are not complete: run it again with --resume."
-
-
-def _plan(console: "Console", given: Given, paths: list[Path], out: Path | None, groups: Path | None) -> None:
-    """Say how many experiments find a difference of which size."""
-    from cytodisk.runs.population.power.population_power import plan_of, population_power
-
-    known = {*PowerParameters.model_fields, *(_OF_CELLS if paths else ())}
-    beyond = [given.flags[name] for name in given.values if name not in known]
-    beyond += [flag for flag, value in (("--out", out), ("--groups", None if paths else groups)) if value]
-    if beyond:
-        advice = "leave it out" if paths else "leave it out, or pass PATH if it is about your cells"
-        raise ParameterError(f"{', '.join(beyond)}: not with --power; {advice}")
-    settings = given.of(PowerParameters)
-    population = _cells_at_hand(given, paths, groups) if paths else None
-    say_plan(console, plan_of(settings, population), settings)
-    with progress_bar(console.quiet, "lines", stopped="Stopped.") as progress:
-        table = population_power(population, progress=progress, parameters=settings)
-    say_power(console, table)
-
-
-def _cells_at_hand(given: Given, paths: list[Path], groups: Path | None) -> "Population":
-    """The population whose variance a plan takes, of the conditions and channels that are asked for."""
-    import warnings
-
-    from cytodisk.errors import PopulationWarning
-    from cytodisk.runs.population.population_at_hand import population_at_hand
-
-    values = {name: value for name, value in given.values.items() if name in _OF_CELLS}
-    chosen = PopulationParameters.called(values, given.flags)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", PopulationWarning)
-        population = population_at_hand(paths, groups, chosen)
-    for one in caught:
-        print(f"Warning: {one.message}", file=sys.stderr)
-    return population

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 from cytodisk.cli.console import count
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rich.console import Console
 
     from cytodisk.store.populations.population_study import PopulationStudy, StudyWarning
@@ -13,8 +15,8 @@ if TYPE_CHECKING:
 _MOST_REASONS = 8
 
 
-def say_population(console: "Console", study: "PopulationStudy") -> None:
-    """Say what can be reached, the design, what was found, and what speaks against it."""
+def say_population(console: "Console", study: "PopulationStudy", drawn: "Sequence[str]" = ()) -> None:
+    """Say what can be reached, the design, what was found, what speaks against it, and where figures are."""
     for note in study.provenance.get("warnings", ()):
         if not console.quiet:
             print(f"Warning: {note}", file=sys.stderr)
@@ -25,6 +27,8 @@ def say_population(console: "Console", study: "PopulationStudy") -> None:
         console.print(line)
     for warning in study.warnings:
         console.print(warning_line(warning))
+    for line in drawn:
+        console.print(line)
     console.print(f"results: {study.path}")
 
 

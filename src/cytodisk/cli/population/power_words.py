@@ -19,14 +19,8 @@ _DESIGNS = {
 }
 
 
-def say_plan(console: "Console", plan: "Plan", parameters: "PowerParameters") -> None:
-    """Say which variances the plan is for, and whether they are those of cells at hand."""
-    for line in plan_lines(plan, parameters):
-        console.print(line)
-
-
 def plan_lines(plan: "Plan", parameters: "PowerParameters") -> list[str]:
-    """The lines of `say_plan`."""
+    """Which variances the plan is for, and whether they are those of cells at hand."""
     shares = (
         f"{plan.between_experiments:.0%} of the variance of cells between experiments, "
         f"{plan.between_dishes:.0%} between the conditions of one experiment, {plan.cells} cells of each "

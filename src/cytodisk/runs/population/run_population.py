@@ -80,9 +80,9 @@ def run_population(
     Examples
     --------
     >>> import cytodisk as cd
-    >>> images = cd.simulate.population_images("images", experiments=2, cells=2, seed=0)
-    >>> _ = cd.run_map("images", "maps", signal="_signal", groups="images/groups.csv", layers=3, sectors=6)
-    >>> found = cd.run_population("maps", "atlas")
+    >>> made = cd.simulate.population_images("images", experiments=2, cells=2)
+    >>> _ = cd.run_map(made.masks, "maps", signal=made.images, layers=3, sectors=6)
+    >>> found = cd.run_population("maps", "atlas", groups=made.groups)
     >>> found.conditions, len(found.cells)
     (('control', 'drug'), 8)
     """

@@ -57,6 +57,19 @@ class PopulationStudy:
     See Also
     --------
     open_population_study : Opens one.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> made = cd.simulate.population_images("images", experiments=3, cells=2)
+    >>> settings = {"groups": made.groups, "layers": 3, "sectors": 6}
+    >>> _ = cd.run_map(made.masks, "maps", signal=made.images, **settings)
+    >>> _ = cd.run_population("maps", "atlas", channel=["Rac1"])  # or: cytodisk population maps -o atlas …
+    >>> study = cd.open_population_study("atlas")
+    >>> study
+    <PopulationStudy atlas: 12 cells, control, drug>
+    >>> study.window_arrays("drug")["p_fwer"].sizes
+    Frozen({'channel': 1, 'layer': 3, 'sector': 6})
     """
 
     path: Path
@@ -235,7 +248,21 @@ def open_population_study(path: str | os.PathLike[str]) -> PopulationStudy:
 
     See Also
     --------
+    run_population : Writes the study.
     open_study : Read what run_map or run_movie wrote.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> made = cd.simulate.population_images("images", experiments=3, cells=2)
+    >>> settings = {"groups": made.groups, "layers": 3, "sectors": 6}
+    >>> _ = cd.run_map(made.masks, "maps", signal=made.images, **settings)
+    >>> _ = cd.run_population("maps", "atlas", channel=["Rac1"])  # or: cytodisk population maps -o atlas …
+    >>> study = cd.open_population_study("atlas")
+    >>> study.sentences[0]
+    '3 + 3 experiments can give p = 0.1 at best (all 20 exchanges of labels): no difference can reach 0.05.'
+    >>> study.scalars[["scalar", "difference", "p"]].shape
+    (7, 3)
     """
     folder = Path(path)
     provenance = read_complete(folder, RUN)
