@@ -103,4 +103,5 @@ def _scalar_words(row: pd.Series) -> str:
 
 
 def _unit(windows: xr.Dataset) -> str:
-    return f" {windows['difference'].attrs.get('units', '')}".rstrip()
+    unit = str(windows["difference"].attrs.get("units", ""))
+    return "" if unit in ("", "1") else f" {unit}"

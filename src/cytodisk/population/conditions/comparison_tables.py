@@ -11,7 +11,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from cytodisk.arrays import FloatArray
-from cytodisk.population.conditions.window_words import runs_of
+from cytodisk.population.conditions.window_words import lags_of, runs_of
 from cytodisk.population.exchange.exchange_test import ExchangeTest
 from cytodisk.population.population import Population
 
@@ -92,7 +92,8 @@ def cluster_table(
     DataFrame
     """
     shape = (len(channels), *pop.raw.shape[2:])
-    closed = shape[2] if pop.last == "sector" else None
+    lags = pop.raw["lag"] if pop.last == "lag" else None
+    unit = "" if lags is None else str(lags.attrs.get("units", "frame"))
     rows = []
     for number, (mass, p) in enumerate(zip(tested.masses, tested.cluster_p, strict=True), 1):
         inside = tested.labels == number
@@ -106,7 +107,7 @@ def cluster_table(
                 float(p),
                 int(inside.sum()),
                 runs_of(layers),
-                runs_of(sectors, closed),
+                runs_of(sectors, shape[2]) if lags is None else lags_of(sectors, lags.values, unit),
                 float(difference[inside].mean()),
             )
         )

@@ -28,6 +28,26 @@ def runs_of(numbers: NDArray[np.integer], closed_at: int | None = None) -> str:
     return ", ".join(f"{part[0]}" if len(part) == 1 else f"{part[0]}–{part[-1]}" for part in parts)
 
 
+def lags_of(places: NDArray[np.integer], lags: NDArray[np.floating], unit: str) -> str:
+    """Places along the lags of curves as lags: "−10 to 5 s, 20 s".
+
+    Parameters
+    ----------
+    places : ndarray of int
+    lags : ndarray of float
+    unit : str
+        As "s" or "frame".
+
+    Returns
+    -------
+    str
+    """
+    some = np.unique(places)
+    parts = np.split(some, np.flatnonzero(np.diff(some) > 1) + 1)
+    ends = [dict.fromkeys(f"{lags[k]:g}".replace("-", "−") for k in (part[0], part[-1])) for part in parts]
+    return ", ".join(f"{' to '.join(words)} {unit}" for words in ends)
+
+
 def p_words(p: float) -> str:
     """A p-value as it is said: "p = 0.029", "p < 0.001"."""
     return "p < 0.001" if p < 0.001 else f"p = {p:.2g}"
