@@ -93,7 +93,7 @@ def cluster_table(
     """
     shape = (len(channels), *pop.raw.shape[2:])
     lags = pop.raw["lag"] if pop.last == "lag" else None
-    unit = "" if lags is None else str(lags.attrs.get("units", "frame"))
+    unit = "" if lags is None else str(lags.attrs.get("units", ""))
     rows = []
     for number, (mass, p) in enumerate(zip(tested.masses, tested.cluster_p, strict=True), 1):
         inside = tested.labels == number

@@ -36,7 +36,7 @@ def lags_of(places: NDArray[np.integer], lags: NDArray[np.floating], unit: str) 
     places : ndarray of int
     lags : ndarray of float
     unit : str
-        As "s" or "frame".
+        As "s"; empty where it is not known.
 
     Returns
     -------
@@ -45,7 +45,7 @@ def lags_of(places: NDArray[np.integer], lags: NDArray[np.floating], unit: str) 
     some = np.unique(places)
     parts = np.split(some, np.flatnonzero(np.diff(some) > 1) + 1)
     ends = [dict.fromkeys(f"{lags[k]:g}".replace("-", "−") for k in (part[0], part[-1])) for part in parts]
-    return ", ".join(f"{' to '.join(words)} {unit}" for words in ends)
+    return ", ".join(f"{' to '.join(words)} {unit}".rstrip() for words in ends)
 
 
 def p_words(p: float) -> str:
