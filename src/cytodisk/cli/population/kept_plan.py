@@ -22,7 +22,7 @@ def refuse_kept_plan(folder: Path) -> None:
 
 
 def keep_plan(folder: Path, table: "pd.DataFrame", notes: Sequence[str], formats: Sequence[str]) -> None:
-    """Write the table of a plan, and of its unpaired design a picture.
+    """Write the table of a plan, and its picture.
 
     Parameters
     ----------
@@ -47,7 +47,4 @@ def keep_plan(folder: Path, table: "pd.DataFrame", notes: Sequence[str], formats
         folder.mkdir(parents=True, exist_ok=True)
         write_csv(table, folder / _TABLE)
     if formats:
-        own = table[table["design"] == "unpaired"]
-        shown = own.rename(columns={"effect": "effect_size", "window": "detection"})
-        words = ["share of studies that find any window of a region", *notes[:1]]
-        write_power_figure(folder, shown, notes=words, formats=formats)
+        write_power_figure(folder, table, notes=notes[:1], formats=formats)

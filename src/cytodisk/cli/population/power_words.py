@@ -63,9 +63,9 @@ def power_lines(table: "pd.DataFrame") -> list[str]:
         f"Effects in standard deviations of a cell within its condition; {attrs['studies']} simulated "
         f"studies a number, tested as cytodisk population tests (p ≤ {_LEVEL:g}).",
         "",
-        f"A region differs, a sixth of {layers} × {sectors} windows: how often any of it is found, and in "
-        "brackets which share of it (max-T):",
-        *_blocks(table, lambda row: f"{row['window']:.0%} ({row['windows']:.0%})", _WIDE),
+        f"A region differs, a sixth of {layers} × {sectors} windows: how often it is found as a cluster of "
+        "windows, and in brackets which share of its windows is found one by one (max-T):",
+        *_blocks(table, lambda row: f"{row['cluster']:.0%} ({row['windows']:.0%})", _WIDE),
         "",
         "One number by cell differs, such as a ratio or an area, tested alone: how often it is found:",
         *_blocks(table, lambda row: f"{row['scalar']:.0%}", _WIDE),
