@@ -16,6 +16,7 @@ _FILE = """
 [study]
 kind = "map"
 columns = ["plate"]
+groups = "groups.csv"
 [parameters]
 layers = 2
 sectors = 6
@@ -51,6 +52,7 @@ def batch(tmp_path_factory: pytest.TempPathFactory) -> Path:
         signal = labels[: 10 if name == "c" else None] * (seed + 1.0)
         tifffile.imwrite(folder / f"{name}_signal.tif", signal.astype("float32"))
     (folder / "batch.toml").write_text(_FILE)
+    (folder / "groups.csv").write_text("file,cell,dish\na,1,x\na,2,y\na,3,x\nb,,z\nc,,z\n")
     run_batch(folder / "batch.toml", folder / "out")
     return folder / "out"
 
@@ -62,6 +64,7 @@ def test_a_batch_is_a_population_of_all_its_cells(batch: Path) -> None:
     assert cells["condition"].tolist() == ["control"] * 3 + ["drug"] * 3
     assert cells["experiment"].tolist() == ["day 1"] * 6
     assert cells["plate"].tolist() == [1] * 3 + [2] * 3
+    assert cells["dish"].tolist() == ["x", "y", "x", "z", "z", "z"]
     np.testing.assert_allclose(population.values[:, 0, 0, 0], [1, 2, 3, 2, 4, 6])
     assert Path(cells["study"].iloc[4]) == batch / "inputs" / "b"
     found = open_population(batch / "inputs" / "b")  # one of its studies alone

@@ -74,11 +74,11 @@ def cell_rows(study: FoundStudy) -> pd.DataFrame:
         found = found.assign(source=_mask_name(study))
     if study.run != "shapes":
         found = found[_kept([str(name) for name in found])]
-    own = {name: value for name, value in study.own.items() if name not in found}
-    for name in study.own.keys() - own.keys():  # of a cell before that of its file
-        found[name] = found[name].where(found[name].notna(), study.own[name])
+    for name in () if study.own is None else study.own:
+        given = study.own[name].reindex(found["cell"]).set_axis(found.index)
+        found[name] = found[name].where(is_given(found[name]), given) if name in found else given
     found = found.rename(columns={"cell": "number"})
-    found = found.assign(input=study.name, study=str(study.folder), **own)
+    found = found.assign(input=study.name, study=str(study.folder.absolute()))
     found.attrs["units"] = units
     return found
 

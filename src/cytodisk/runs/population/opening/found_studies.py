@@ -9,13 +9,16 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
+import pandas as pd
+import pyarrow.parquet as pq
+
 from cytodisk.errors import PopulationError, ReadError
 from cytodisk.files import real_path
 from cytodisk.images.mask_names import natural_order
+from cytodisk.reading_files import reading_file
 from cytodisk.runs.batch.input_row import STUDIES
 from cytodisk.runs.population.opening.left_out import LeftOut
 from cytodisk.store.provenance_file import PROVENANCE, read_complete, read_provenance
-from cytodisk.store.tables import read_table
 
 Paths: TypeAlias = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
 
@@ -33,14 +36,14 @@ class FoundStudy:
         Of its input in the batch, or of its folder; no other study has it.
     folder : Path
     provenance : dict
-    own : dict of str to value
-        Columns that the batch file gives to the input.
+    own : DataFrame, optional
+        The user's columns in a batch, by number of the cell.
     """
 
     name: str
     folder: Path
     provenance: dict[str, Any]
-    own: dict[str, Any] = field(default_factory=dict)
+    own: pd.DataFrame | None = field(default=None, compare=False)
 
     @property
     def run(self) -> str:
@@ -142,31 +145,42 @@ def _of_batch(folder: Path, batch: dict[str, Any], left_out: LeftOut, several: b
             f"batch {folder} has a column replicate, which is called experiment now: rename it in the batch "
             "file and run cytodisk batch again with --overwrite"
         )
-    try:
-        table = read_table(folder / "inputs.parquet")
-    except Exception as error:
-        raise PopulationError(
-            f"batch {folder}: inputs.parquet cannot be read ({error}): run the same command again with "
-            "--resume"
-        ) from error
+    inputs = _merged(folder, "inputs", ["input", "status", "reason", "masks"])
+    own = _own_columns(folder, columns) if columns else {}
     studies = []
     before = f"{folder.resolve().name}/" if several else ""
-    for row in table.to_dict("records"):
-        name = str(row["input"])
+    for row in inputs.to_dict("records"):
+        name, status = str(row["input"]), row["status"]
         inside = folder / STUDIES / name
-        own = {column: row[column] for column in columns if column in row}
-        if (inside / PROVENANCE).exists() and row.get("status") in ("ok", "refused"):
-            studies.append(FoundStudy(before + name, inside, _complete(inside, *_KINDS), own))
-        elif row.get("status") == "ok":
+        if (inside / PROVENANCE).exists() and status in ("ok", "refused"):
+            studies.append(FoundStudy(before + name, inside, _complete(inside, *_KINDS), own.get(name)))
+        elif status == "ok":
             raise PopulationError(
                 f"input {name} of batch {folder} is done, but {inside} is gone: run the same command again "
                 "with --resume"
             )
         else:
-            left_out.add(
-                before + name, f"{row.get('status')}: {row.get('reason')}", source=row.get("masks") or ""
-            )
+            left_out.add(before + name, f"{status}: {row['reason']}", source=row["masks"] or "")
     return studies
+
+
+def _own_columns(folder: Path, columns: list[str]) -> dict[str, pd.DataFrame]:
+    """The user's columns by input and number of the cell: of a cell in several frames, those of the first."""
+    table = _merged(folder, "cells", ["input", "cell", *columns])
+    table = table[~table[["input", "cell"]].duplicated()]
+    return {str(name): rows.set_index("cell")[columns] for name, rows in table.groupby("input", sort=False)}
+
+
+def _merged(folder: Path, name: str, columns: list[str]) -> pd.DataFrame:
+    """Some columns of a merged table of a batch."""
+    path = folder / f"{name}.parquet"
+    with reading_file(path, "a merged table of a batch", "run the same command again with --resume"):
+        found: pd.DataFrame = pq.read_table(path, columns=columns).to_pandas()
+        if missing := [column for column in columns if column not in found]:
+            raise ReadError(
+                f"{path}: column {missing[0]} is missing: run the same command again with --resume"
+            )
+        return found
 
 
 def _reasons(left_out: LeftOut) -> str:
