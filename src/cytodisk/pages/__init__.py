@@ -3,7 +3,7 @@
 Studies: write_cell_figures and write_overview of masks, write_movie_figures, write_correlation_figures,
 write_shape_figures; write_animation, a cell beside its disk through time; write_report, one HTML page.
 
-Populations: write_power_figure.
+Populations: write_population_figures, write_power_figure.
 
 Comparisons of windows: write_comparison, write_compared_cells, write_compared_movie.
 """

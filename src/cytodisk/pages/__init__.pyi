@@ -15,4 +15,5 @@ from .compared_cells import write_compared_cells as write_compared_cells
 from .compared_movie import write_compared_movie as write_compared_movie
 
 # Figures of a population
+from .population.write_population_figures import write_population_figures as write_population_figures
 from .population.power_page import write_power_figure as write_power_figure

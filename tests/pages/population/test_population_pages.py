@@ -96,7 +96,7 @@ def test_an_atlas_says_how_it_was_tested(page: Any, two: DrawnPopulation) -> Non
 def test_labels_tell_how_values_were_made(page: Any) -> None:
     one = drawn(population().normalise("cell mean").align("nucleus"), normalise="cell mean", align="nucleus")
     told = words_of(page(atlas_page, one, "signal"))
-    assert "signal / mean of the cell (a.u.)" in told
+    assert "signal (a.u.)" in told  # the unit says what each cell was divided by
     assert any("sector 0 at the nucleus" in words for words in told)
     assert (
         drawn(population(), summary="peak_correlation").value_label("signal").startswith("peak correlation")

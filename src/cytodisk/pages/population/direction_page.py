@@ -10,14 +10,14 @@ from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.population.condition_looks import condition_colours
 from cytodisk.plot.population.directions import draw_directions
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM
+from cytodisk.runs.population.cells_of_study import BRIGHTEST_SIDE
 
-DIRECTION_OF = "polarity_direction_"
 _MAPPED = "disk_direction_"
-_MOST_ABREAST, _WIDEST, _TITLE, _BELOW, _SIDE, _GAP = 5, 36.0, 5.0, 11.0, 8.0, 3.5  # mm but for the first
+_MOST_ABREAST, _WIDEST, _TITLE, _BELOW, _SIDE, _GAP = 5, 36.0, 5.0, 14.0, 8.0, 6.0  # mm but for the first
 
 
 def directions_page(one: DrawnPopulation) -> Sheet | None:
-    """Roses of the directions of cells, a row for each kind; None where no cell has a direction."""
+    """Roses of the brightest sides of channels, or of directions; None where no cell has one."""
     kinds = [name for name in _columns(one) if np.isfinite(one.used[name].to_numpy(dtype=np.float64)).any()]
     if not kinds:
         return None
@@ -27,7 +27,11 @@ def directions_page(one: DrawnPopulation) -> Sheet | None:
     width = SINGLE_COLUMN_MM if abreast <= 2 else DOUBLE_COLUMN_MM
     panel = min((width - 2 * LEFT_MM - _SIDE - (abreast - 1) * _GAP) / abreast, _WIDEST)
     notes = ["a dot: a cell", "arrow: resultant of an experiment (thin), mean (thick)", "1 at the rim"]
-    heading = one.heading(width, "Directions of cells in the disk", *notes)
+    of_signal = not kinds[0].startswith(_MAPPED)
+    title = (
+        "Where around the cell the signal is brightest" if of_signal else "Directions of cells in the disk"
+    )
+    heading = one.heading(width, title, *notes)
     step = _TITLE + panel + _BELOW
     sheet = Sheet(heading.height_mm + len(kinds) * len(blocks) * step, width)
     heading.write(sheet)
@@ -50,12 +54,13 @@ def directions_page(one: DrawnPopulation) -> Sheet | None:
 
 def _columns(one: DrawnPopulation) -> list[str]:
     """The signal's directions after the alignment, or what the maps tell of the cells."""
-    of_signal = [f"{DIRECTION_OF}{channel}" for channel in one.channels]
+    of_signal = [BRIGHTEST_SIDE.format(channel) for channel in one.channels]
     found = [name for name in of_signal if name in one.used]
     return found or [str(name) for name in one.used if str(name).startswith(_MAPPED)]
 
 
 def _words(one: DrawnPopulation, kind: str) -> str:
-    if kind.startswith(DIRECTION_OF):
-        return f"brightest side of {one.channel_words(kind.removeprefix(DIRECTION_OF))}"
+    for channel in one.channels:
+        if kind == BRIGHTEST_SIDE.format(channel):
+            return f"brightest side of {one.channel_words(channel)}"
     return kind.removeprefix(_MAPPED).replace("_", " ")

@@ -27,12 +27,6 @@ CHARACTER_MM = 1.3
 
 _BOLD_MM = 1.9  # mean width of a character, bold at 8 points
 _LONGEST_CHANNEL = 24
-_OF_CELL = {
-    "cell mean": "{} / mean of the cell",
-    "cell total": "{} / total of the cell, per window of mean area",
-    "z-score": "{}, sd from the mean of the cell",
-    "background": "{} above background",
-}
 _DIRECTIONS = {
     "nucleus": "the nucleus",
     "front": "the front",
@@ -122,8 +116,8 @@ class DrawnPopulation:
         summary = str(settings.get("summary") or "mean")
         words = f"{summary.replace('_', ' ')} {name}"
         normalised = str(settings.get("normalise") or "none")
-        if normalised in _OF_CELL:
-            words = _OF_CELL[normalised].format(name if summary == "mean" else words)
+        if normalised != "none" and summary == "mean":
+            words = f"{name} above background" if normalised == "background" else name
         return with_unit(words, self.unit)
 
     @property
@@ -156,12 +150,12 @@ class DrawnPopulation:
         """How a condition was compared, and the smallest p that this can give."""
         rows = self.study.comparisons
         row = rows[rows["condition"] == condition].iloc[0]
-        design, first, second = str(row["design"]), int(row["n_control"]), int(row["n_treated"])
-        against = f"{condition} against {row['control']}"
+        design, against = str(row["design"]), f"{condition} against {row['control']}"
         unit = "cells" if row["unit"] == "cell" else "experiments"
         smallest = float(row["smallest_p"])
         if design not in ("paired", "unpaired") or not np.isfinite(smallest):
             return f"{against}: not tested"
+        first, second = int(row["n_control"]), int(row["n_treated"])
         units = f"{first} pairs" if design == "paired" else f"{first} + {second} {unit}"
         return f"{against}: {units}, {design}, smallest p possible {rounded(smallest, 2)}"
 

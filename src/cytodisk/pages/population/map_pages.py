@@ -149,7 +149,7 @@ class _Maps:
             bar = self.sheet.axes(lefts[1], top, wide[1], _BAR)
             drawn = colour_bar(self.change, bar, change, extend=self.extend, upright=False)
             end = nice_length(self.change.get_clim()[1])
-            drawn.set_ticks([-end, 0.0, end])
+            drawn.set_ticks([-end, 0.0, end], labels=[f"−{end:g}", "0", f"{end:g}"])
 
 
 class _KeyLines:

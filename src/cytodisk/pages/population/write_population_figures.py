@@ -62,6 +62,15 @@ def write_population_figures(
     See Also
     --------
     write_power_figure : How many experiments it takes.
+
+    Examples
+    --------
+    >>> import cytodisk as cd
+    >>> made = cd.simulate.population_images("made", experiments=2, cells=2, seed=0)
+    >>> _ = cd.run_map(made.masks, "maps", signal=made.images, groups=made.groups, layers=3, sectors=6)
+    >>> study = cd.run_population("maps", "atlas", channel=("Rac1",))
+    >>> [path.name for path in cd.pages.write_population_figures(study)][:2]
+    ['atlas_Rac1.png', 'atlas_on_cell_Rac1.png']
     """
     chosen = chosen_formats(formats)
     one = DrawnPopulation(study)

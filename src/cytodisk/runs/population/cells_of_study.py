@@ -9,6 +9,7 @@ import pandas as pd
 
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import PopulationError
+from cytodisk.population.cell_directions import signal_direction
 from cytodisk.population.cell_scalars import LAYER, MEAN, scalar_names
 from cytodisk.population.population import Population
 from cytodisk.store.nuclei.nucleus_columns import NUCLEUS_COLUMNS
@@ -18,6 +19,10 @@ from cytodisk.store.populations.population_writing import columns_of
 from cytodisk.store.tables import SOURCE_COLUMNS, Column
 from cytodisk.store.window_columns import WINDOW_SIZE_COLUMNS
 
+BRIGHTEST_SIDE = "polarity_direction_{}"
+"""Column of the direction of a channel's polarity."""
+
+_AS_ALIGNED = "from sector 0 of the population on, in the disk"
 _INPUT = "as in the table of cells that it comes from, or in the table of groups"
 _KNOWN = (SOURCE_COLUMNS, NUCLEUS_COLUMNS, PLACE_COLUMNS, WINDOW_SIZE_COLUMNS)
 _OWN = ("direction", "strength", "shift", "alignment", "distance_to_mean", "left_out")
@@ -60,8 +65,19 @@ def cells_of_study(population: Population, left_out: pd.Series[str], scalars: pd
     cells["shift"] = turned["shift"].to_numpy().astype(np.float64)
     cells["alignment"] = turned["status"].to_numpy()
     cells["left_out"] = left_out.to_numpy()
-    new = [name for name in scalars if name not in cells]
-    return pd.concat([cells.reset_index(drop=True), scalars[new].reset_index(drop=True)], axis=1)
+    more = scalars.reset_index(drop=True).assign(**_brightest_sides(population))
+    new = [name for name in more if name not in cells]
+    return pd.concat([cells.reset_index(drop=True), more[new]], axis=1)
+
+
+def _brightest_sides(population: Population) -> dict[str, FloatArray]:
+    """Direction of each channel's first harmonic around the cells, by name of the column."""
+    if population.last != "sector":
+        return {}
+    return {
+        BRIGHTEST_SIDE.format(name): signal_direction(population.blocks([name]), len(population))[0]
+        for name in population.channels
+    }
 
 
 def with_distances(cells: pd.DataFrame, used: BoolArray, distances: FloatArray) -> pd.DataFrame:
@@ -88,8 +104,13 @@ def more_columns(cells: pd.DataFrame, population: Population) -> dict[str, Colum
     meanings = {str(name): (str(units.get(name, "")), told.get(str(name), _INPUT)) for name in cells}
     of_signal = scalar_names(population.channels, population.compartments, population.last)
     for name, (channel, words) in of_signal.items():
-        unit = population.units if name in (MEAN.format(channel), *_layers(channel, population)) else "1"
+        unit = population.units if name in _layers(channel, population) else "1"
+        if name == MEAN.format(channel):
+            unit = str(population.raw.attrs.get("units", "a.u."))  # it is not normalised
         meanings[name] = unit, f"signal of {channel}: {words}"
+    for channel in population.channels:
+        words = f"direction of the brightest side of {channel}, {_AS_ALIGNED}"
+        meanings[BRIGHTEST_SIDE.format(channel)] = "°", words
     return columns_of(cells, CELL_COLUMNS, meanings)
 
 
