@@ -29,7 +29,7 @@ def test_check_says_which_cells_have_which_condition(run: Run, labels: Path, tmp
     assert code == 0
     lines = said.splitlines()
     assert (
-        "groups: by cell; conditions: control (1 cell), drug (1 cell); experiments: day 1 (2 cells); "
+        "groups: by cell; conditions: control (1 cell of 1 experiment), drug (1 cell of 1 experiment); "
         "columns dose"
     ) in lines
     assert "cell\tframe\tlabel\tcondition\texperiment\tdose\tusable\tremarks" in lines

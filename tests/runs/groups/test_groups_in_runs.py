@@ -67,8 +67,9 @@ def test_the_columns_stand_behind_the_label_in_all_tables_of_cells(masks: Path, 
     given = cd.open_study(tmp_path / "out").provenance["inputs"]["groups"]
     assert given["path"] == str(table)
     assert len(given["sha256"]) == 64
-    assert given["read as"].startswith(
-        "by file and cell; conditions: control (1 cell), drug (2 cells); experiments"
+    assert given["read as"] == (
+        "by file and cell; conditions: control (1 cell of 1 experiment), drug (2 cells of 2 experiments); "
+        "columns dose"
     )
 
 

@@ -217,7 +217,13 @@ def test_a_name_may_be_composed_of_letter_and_accent(table: Write) -> None:
 def test_what_was_found_is_said_in_words(table: Write) -> None:
     text = "file,condition,experiment,dose\na,control,d1,1\nb,drug,d1,2\n"
     assert table(text).match(CELLS).words == (
-        "by file; conditions: control (3 cells), drug (2 cells); experiments: d1 (5 cells); columns dose"
+        "by file; conditions: control (3 cells of 1 experiment), drug (2 cells of 1 experiment); columns dose"
+    )
+    assert table("file,experiment\na,d1\nb,d2\n").match(CELLS).words == (
+        "by file; no column condition; 5 cells of 2 experiments"
+    )
+    assert table("cell,condition\n7,x\n").match(CELLS).words == (
+        "by cell; conditions: x (1 cell); no column experiment"
     )
 
 

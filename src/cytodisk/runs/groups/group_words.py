@@ -11,6 +11,7 @@ from cytodisk.images.short_lists import shortened
 from cytodisk.runs.groups.known_cells import CELL, FILE, KEYS, KnownCells
 
 _MOST_NAMED = 8
+_NUMBER = "\nnumber"  # which no user can write as the name of a column
 
 
 def missing_words(
@@ -42,7 +43,7 @@ def missing_words(
 
 
 def summary_words(keys: Sequence[str], values: pd.DataFrame, known: KnownCells) -> str:
-    """The keys, and the number of cells by condition and experiment.
+    """The keys, and the number of cells and experiments by condition.
 
     Parameters
     ----------
@@ -52,16 +53,28 @@ def summary_words(keys: Sequence[str], values: pd.DataFrame, known: KnownCells) 
         By row of the cells.
     known : KnownCells
     """
-    words = [f"by {' and '.join(keys)}"]
     is_cell = (known.table[CELL] != 0).to_numpy()
-    number = known.table["number"].to_numpy()[is_cell]
-    for name in ("condition", "experiment"):
-        if name in values:
-            given = pd.DataFrame({"number": number, name: values[name].to_numpy()[is_cell]})
-            counts = given.drop_duplicates().groupby(name, sort=False).size()
-            shown = [
-                f"{group} ({count} {'cell' if count == 1 else 'cells'})" for group, count in counts.items()
-            ]
-            words.append(f"{name}s: {shortened(shown, _MOST_NAMED)}" if shown else f"no {name}")
+    cells = values[is_cell].assign(**{_NUMBER: known.table["number"].to_numpy()[is_cell]})
+    words = [f"by {' and '.join(keys)}"]
+    if "condition" in values:
+        by_condition = cells.dropna(subset="condition").groupby("condition", sort=False)
+        shown = [f"{name} ({_counts(some)})" for name, some in by_condition]
+        words.append(f"conditions: {shortened(shown, _MOST_NAMED)}" if shown else "no condition")
+    else:
+        words.append(f"no column condition; {_counts(cells)}")
+    if "experiment" not in values:
+        words.append("no column experiment")
     own = [str(name) for name in values if name not in ("condition", "experiment")]
     return "; ".join([*words, f"columns {', '.join(own)}"] if own else words)
+
+
+def _counts(cells: pd.DataFrame) -> str:
+    """As "12 cells of 3 experiments"."""
+    words = [_count(cells[_NUMBER].nunique(), "cell")]
+    if "experiment" in cells:
+        words.append(_count(cells["experiment"].nunique(), "experiment"))
+    return " of ".join(words)
+
+
+def _count(number: int, of: str) -> str:
+    return f"{number} {of}" if number == 1 else f"{number} {of}s"
