@@ -45,6 +45,8 @@ def batch_command(
     options = given.options(BatchOptions)
     batch = read_batch(study, groups)
     console.print(f"inputs: {len(batch.inputs)} ({_kinds(batch)})")
+    if batch.groups is not None:
+        console.print(f"groups: {batch.groups.path}, {count(len(batch.groups.keys), 'row')}")
     if dry_run:
         _list_inputs(batch)
         return

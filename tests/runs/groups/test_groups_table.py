@@ -1,10 +1,13 @@
 """A table of groups: which cells its rows are about, and what is said where it cannot be used."""
 
+import csv
 from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from cytodisk.errors import ParameterError, ReadError
 from cytodisk.runs.groups.groups import Groups
@@ -241,6 +244,29 @@ def test_a_file_that_is_no_text_is_refused(tmp_path: Path, content: bytes | None
         (tmp_path / "groups.csv").write_bytes(content)
     with pytest.raises(ReadError, match=words):
         read_groups(tmp_path / "groups.csv")
+
+
+@given(
+    st.lists(st.sampled_from(("file", "cell", "frame", "condition", "experiment", "dose", "")), max_size=5),
+    st.lists(
+        st.lists(st.sampled_from(("a", "b", "1", "7", "0", "x", "X ", "1,5", "nan", "-1", "")), max_size=5)
+    ),
+    st.sampled_from((",", ";", "\t")),
+)
+@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_any_table_is_read_or_refused_with_words(
+    tmp_path: Path, names: list[str], rows: list[list[str]], separator: str
+) -> None:
+    with (tmp_path / "groups.csv").open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file, delimiter=separator).writerows([names, *rows])
+    said = ""
+    try:
+        values = read_groups(tmp_path / "groups.csv").of(CELLS)
+    except ParameterError as error:
+        said, values = str(error), CELLS[[]]
+    assert said == "" or "groups.csv cannot be used:\n  groups.csv" in said
+    assert values.index.equals(CELLS.index)
+    assert not {"file", "cell", "frame"} & {*values}
 
 
 @pytest.mark.slow
