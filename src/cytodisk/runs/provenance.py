@@ -21,6 +21,7 @@ def describe_run(
     understood: Mapping[str, str],
     scale: Scale,
     notes: Sequence[str] = (),
+    given: Mapping[str, str] | None = None,
 ) -> dict[str, Any]:
     """Provenance of a run that starts now.
 
@@ -35,6 +36,8 @@ def describe_run(
         That the results are in.
     notes : sequence of str
         What is wrong with the files; the first of the warnings.
+    given : dict of role to str, optional
+        What the user gave where that is not the path itself, as "_img" for images in the folder of masks.
 
     Returns
     -------
@@ -55,7 +58,10 @@ def describe_run(
     return {
         "status": "running",
         "fingerprint": fingerprint,
-        "inputs": {role: found | {"read as": understood[role]} for role, found in found_by_role.items()},
+        "inputs": {
+            role: found | {"read as": understood[role]} | _as_given(role, found, given or {})
+            for role, found in found_by_role.items()
+        },
         "parameters": settings,
         **asdict(scale),
         "length_unit": scale.length_unit,
@@ -67,3 +73,7 @@ def describe_run(
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
         "warnings": list(notes),
     }
+
+
+def _as_given(role: str, found: Mapping[str, Any], given: Mapping[str, str]) -> dict[str, str]:
+    return {"given": given[role]} if given.get(role, found["path"]) != found["path"] else {}

@@ -31,7 +31,7 @@ def test_labels_are_those_of_the_windows(cell: ShownCell) -> None:
     """At whole pixels a label is the window of the pixel's centre: mostly that of its largest share."""
     box = box_around(cell)
     box = Box(box.top, box.left, box.height, box.width, 1.0)
-    found = window_labels(cell, box, 0)
+    found = window_labels(cell.maps[0], cell.grid, box)
     windows = cd.polar_windows(LAYERS, SECTORS).on(cell.maps[0])
     expected = windows.labels[box.top : box.top + box.height, box.left : box.left + box.width]
     inside = expected >= 0
@@ -40,9 +40,9 @@ def test_labels_are_those_of_the_windows(cell: ShownCell) -> None:
 
 
 def test_finer_labels_agree_with_coarse_ones(cell: ShownCell) -> None:
-    box = box_around(cell)
-    coarse = window_labels(cell, Box(box.top, box.left, box.height, box.width, 1.0), 0)
-    fine = window_labels(cell, Box(box.top, box.left, box.height, box.width, 3.0), 0)
+    box, disk = box_around(cell), cell.maps[0]
+    coarse = window_labels(disk, cell.grid, Box(box.top, box.left, box.height, box.width, 1.0))
+    fine = window_labels(disk, cell.grid, Box(box.top, box.left, box.height, box.width, 3.0))
     np.testing.assert_array_equal(fine[1::3, 1::3], coarse)
 
 

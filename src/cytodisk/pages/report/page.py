@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import shlex
 from collections.abc import Callable
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +19,7 @@ from cytodisk.pages.report.page_figures import figures_of, library_script
 from cytodisk.pages.report.pictures import MOST_BYTES, OUTSIDE, Pictures, box_around, encode_frames, size_of
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_correlations import pairs_of
+from cytodisk.pages.report.template import rendered
 from cytodisk.pages.report.words import MOST_PLACES, page_words
 from cytodisk.plot.correlation.correlation_peaks import LAG_COLOURS
 from cytodisk.plot.style import DIVERGING_COLOURS
@@ -31,7 +31,7 @@ from cytodisk.store.study import Study
 from cytodisk.store.written_files import writing_files
 
 REPORT = "report.html"
-_SCRIPTS = ("decode", "state", "pixels", "views", "controls", "main")
+_SCRIPTS = ("decode", "numbers", "state", "pixels", "views", "controls", "main")
 
 Progress = Callable[[int, int], None]
 
@@ -165,8 +165,6 @@ def _flags(study: Study, found: FoundSignal) -> list[QCFlag]:
 
 
 def _render(cell: ShownCell, found: FoundSignal, progress: Progress | None) -> str:
-    from jinja2 import Environment, StrictUndefined
-
     box = box_around(cell)
     limits = Pictures(cell, box, found.source).limits()
     cell = cell.every_frames(Pictures(cell, box, found.source).every(limits))
@@ -181,20 +179,15 @@ def _render(cell: ShownCell, found: FoundSignal, progress: Progress | None) -> s
         "palettes": {"correlation": palette(DIVERGING_COLOURS), "lag": palette(LAG_COLOURS)},
     }
     words = page_words(cell, _flags(cell.study, found), found, box, left_out)
-    template = Environment(autoescape=True, undefined=StrictUndefined).from_string(_asset("page.html"))
-    return template.render(
-        words
-        | {
-            "data": data,
-            "most_places": MOST_PLACES,
-            "style": _asset("page.css"),
-            "library": library_script(),
-            "scripts": [_asset(f"{name}.js") for name in _SCRIPTS],
-            "data_json": json_for_script(data),
-            "pictures_json": json_for_script(pictures),
-            "figures_json": json_for_script(figures_of(cell, box, correlated=bool(pairs))),
-        }
-    )
+    words |= {
+        "data": data,
+        "most_places": MOST_PLACES,
+        "library": library_script(),
+        "data_json": json_for_script(data),
+        "pictures_json": json_for_script(pictures),
+        "figures_json": json_for_script(figures_of(cell, box, correlated=bool(pairs))),
+    }
+    return rendered("page", ["page"], _SCRIPTS, words)
 
 
 def _any(pictures: list[dict[str, Any]]) -> bool:
@@ -230,6 +223,3 @@ def _signal_flags(study: Study, found: FoundSignal) -> list[QCFlag]:
         )
     ]
 
-
-def _asset(name: str) -> str:
-    return (files("cytodisk.pages.report") / "assets" / name).read_text(encoding="utf-8")

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from scipy.ndimage import binary_dilation
 
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ReadError
+from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.images.signal_files import FrameSource, load_image
 from cytodisk.pages.report.encode import grey_levels, pack_labels, pack_picture
 from cytodisk.pages.report.shown_cell import ShownCell
+from cytodisk.windows.polar_windows import PolarGrid
 
 MOST_BYTES = 10_000_000
 """Of pictures and labels together, as text; a longer movie is thinned out."""
@@ -90,38 +93,55 @@ def box_around(cell: ShownCell) -> Box:
     outlines = [record.boundary.contour.outline_yx for record in cell.maps.records if record.boundary]
     low = np.min([outline.min(axis=0) for outline in outlines], axis=0)
     high = np.max([outline.max(axis=0) for outline in outlines], axis=0)
+    return box_between(low, high, cell.maps.image_shape, LONGEST_SIDE)
+
+
+def box_between(low: FloatArray, high: FloatArray, image_shape: Sequence[int], longest: int) -> Box:
+    """The box with a margin around two corners (row, column), at most so many picture pixels long."""
     margin = 2 + _MARGIN * (high - low).max()
     top, left = np.maximum(np.floor(low - margin), 0).astype(int).tolist()
-    shape = np.array(cell.maps.image_shape)
-    bottom, right = np.minimum(np.ceil(high + margin) + 1, shape).astype(int).tolist()
+    bottom, right = np.minimum(np.ceil(high + margin) + 1, image_shape).astype(int).tolist()
     height, width = bottom - top, right - left
-    return Box(top, left, height, width, min(_FINEST, LONGEST_SIDE / max(height, width)))
+    return Box(top, left, height, width, min(_FINEST, longest / max(height, width)))
 
 
-def window_labels(cell: ShownCell, box: Box, time: int) -> Any:
+def window_labels(disk: DiskMap, grid: PolarGrid, box: Box) -> Any:
     """Number of the window at each pixel of a picture.
 
     Parameters
     ----------
-    cell : ShownCell
+    disk : DiskMap
+    grid : PolarGrid
     box : Box
-    time : int
-        A frame with a map.
 
     Returns
     -------
     ndarray of shape (H, W) and dtype uint16
         `OUTSIDE` outside the cell.
     """
-    disk, (y, x) = cell.maps[time], box.axes_yx
-    # The outline is nowhere further from the mask than its neighbouring pixels.
-    row, column = np.nonzero(box.nearest(binary_dilation(disk.mask, np.ones((3, 3), dtype=bool))))
+    y, x = box.axes_yx
+    row, column = np.nonzero(_near(disk.placed_mask, box))
     uv = disk.to_disk(np.column_stack([y[row], x[column]]))
     inside = np.isfinite(uv[:, 0])
     labels = np.full(box.shape, OUTSIDE, dtype=np.uint16)
-    grid = cell.grid.on(disk).grid  # with the radii of this frame
-    labels[row[inside], column[inside]] = np.minimum(grid.window_of(uv[inside]), OUTSIDE - 1)
+    own = grid.on(disk).grid  # with the radii of this map
+    labels[row[inside], column[inside]] = np.minimum(own.window_of(uv[inside]), OUTSIDE - 1)
     return labels
+
+
+def _near(placed: PlacedMask, box: Box) -> BoolArray:
+    """Pixels of a picture at the mask or next to it: the outline is nowhere further from it."""
+    near = binary_dilation(np.pad(placed.box, 1), np.ones((3, 3), dtype=bool))
+    rows, columns = (
+        np.floor(along + 0.5).astype(int) - first + 1
+        for along, first in zip(box.axes_yx, placed.corner, strict=True)
+    )
+    in_rows, in_columns = (
+        (place >= 0) & (place < size) for place, size in zip((rows, columns), near.shape, strict=True)
+    )
+    found = np.zeros(box.shape, dtype=bool)
+    found[np.ix_(in_rows, in_columns)] = near[np.ix_(rows[in_rows], columns[in_columns])]
+    return found
 
 
 def resampled(image: Any, box: Box) -> FloatArray:
@@ -152,6 +172,23 @@ def _shares(before: int, after: int) -> FloatArray:
     return np.asarray(overlap / overlap.sum(axis=1, keepdims=True))
 
 
+def grey_picture(image: Any, box: Box, low: float, high: float) -> Any:
+    """Grey levels of the box's part of an image, of the box's shape and dtype uint8; see `grey_levels`."""
+    if box.repeats_pixels:  # first the few pixels, then their copies
+        return box.nearest(grey_levels(image, low, high))
+    return grey_levels(resampled(image, box), low, high)
+
+
+def picture_limits(images: Sequence[FloatArray]) -> tuple[float, float]:
+    """Black and white for some images of one channel, the second above the first."""
+    values = np.concatenate([image.ravel() for image in images]) if images else np.zeros(0)
+    values = values[np.isfinite(values)]
+    if not values.size:
+        return 0.0, 1.0
+    low, high = np.percentile(values, _PERCENTILES).tolist()
+    return (low, high) if high > low else (low - 0.5, low + 0.5)
+
+
 @dataclass(frozen=True, eq=False)
 class Pictures:
     """Encoder of a cell's frames.
@@ -172,18 +209,13 @@ class Pictures:
         """Labels and channels of a frame, each None where there is none."""
         labels = None
         if self.cell.maps.records[time].has_map:
-            labels = pack_labels(window_labels(self.cell, self.box, time))
+            labels = pack_labels(window_labels(self.cell.maps[time], self.cell.grid, self.box))
         pixels = self._pixels(time)
         if pixels is None:
             return {"labels": labels, "channels": None}
         pairs = zip(pixels, limits, strict=True)
-        channels = [pack_picture(self._grey(image, *pair)) for image, pair in pairs]
+        channels = [pack_picture(grey_picture(image, self.box, *pair)) for image, pair in pairs]
         return {"labels": labels, "channels": channels}
-
-    def _grey(self, image: Any, low: float, high: float) -> Any:
-        if self.box.repeats_pixels:  # first the few pixels, then their copies
-            return self.box.nearest(grey_levels(image, low, high))
-        return grey_levels(resampled(image, self.box), low, high)
 
     def _pixels(self, time: int) -> Any:
         image = load_image(self.source, time)
@@ -196,16 +228,8 @@ class Pictures:
             return []
         found = [self._pixels(time) for time in self._spread()]
         known = [pixels for pixels in found if pixels is not None]
-        return [self._limits_of([pixels[k] for pixels in known]) for k in range(len(self.source.channels))]
-
-    def _limits_of(self, images: list[Any]) -> tuple[float, float]:
-        parts = [resampled(image, self.box).ravel() for image in images]
-        values = np.concatenate(parts) if parts else np.zeros(0)
-        values = values[np.isfinite(values)]
-        if not values.size:
-            return 0.0, 1.0
-        low, high = np.percentile(values, _PERCENTILES).tolist()
-        return (low, high) if high > low else (low - 0.5, low + 0.5)
+        channels = range(len(self.source.channels))
+        return [picture_limits([resampled(pixels[k], self.box) for pixels in known]) for k in channels]
 
     def _spread(self) -> list[int]:
         frames = self.cell.frames

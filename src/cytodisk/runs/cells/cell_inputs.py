@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from cytodisk.checks import is_path
@@ -60,6 +60,8 @@ class CellInputs:
         By name of the source; empty without nuclei.
     groups : GivenGroups or None
         What was done to which cell.
+    given : dict of str to str
+        What the user gave by role, as "_img" for a signal beside its masks.
     """
 
     masks: Path
@@ -70,6 +72,7 @@ class CellInputs:
     remarks: tuple[str, ...] = ()
     nuclei: dict[str, NucleiInput] = field(default_factory=dict)
     groups: GivenGroups | None = None
+    given: dict[str, str] = field(default_factory=dict)
 
     @property
     def is_folder(self) -> bool:
@@ -175,8 +178,10 @@ def open_inputs(
     is_path("masks", masks)
     check_signal_given(signal, parameters)
     parameters = with_nucleus_layers(nuclei, parameters)
+    by_role = {"masks": masks, "signal": signal, "nuclei": nuclei}
+    given = {role: os.fspath(path) for role, path in by_role.items() if path is not None}
     if is_folder_of_files(Path(masks)) or is_pattern(Path(masks)):
-        return _open_folder(Path(masks), signal, nuclei, parameters, signal_name)
+        return replace(_open_folder(Path(masks), signal, nuclei, parameters, signal_name), given=given)
     choice = sized_like(parameters.mask_choice, masks, signal, parameters.signal_choice, "C")
     sources = open_mask_files(masks, parameters.part(KindParameters), choice=choice)
     image, parameters = with_common_name(
@@ -187,7 +192,8 @@ def open_inputs(
     check_choice(files, parameters.scene, parameters.z)
     pixel_size_um = parameters.pixel_size_um or agreed(files, "pixel_size_um")
     signals = {sources[0].name: SignalFile(image)}
-    return CellInputs(Path(masks), sources, signals, parameters, Scale(pixel_size_um), nuclei=of_nuclei)
+    scale = Scale(pixel_size_um)
+    return CellInputs(Path(masks), sources, signals, parameters, scale, nuclei=of_nuclei, given=given)
 
 
 def _files(nuclei: Mapping[str, NucleiInput]) -> list[FrameFile]:

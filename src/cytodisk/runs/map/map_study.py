@@ -69,7 +69,9 @@ def map_study(
     """
     options = MapOptions.of(**settings)
     check_depths(polar_grid(inputs.parameters.part(PolarGridParameters)), inputs.scale)
-    provenance = describe_run(inputs.paths, inputs.parameters, inputs.understood, inputs.scale, inputs.notes)
+    provenance = describe_run(
+        inputs.paths, inputs.parameters, inputs.understood, inputs.scale, inputs.notes, inputs.given
+    )
 
     def work(folder: StudyFolder) -> tuple[list[str], list[str]]:
         parameters = inputs.parameters.part(MapParameters)

@@ -62,7 +62,8 @@ def run_again(study: Study, suffix: str, **changes: Any) -> str:
         As "cytodisk movie masks.tif --parameters out/parameters.toml --sectors 48 -o out_48".
     """
     inputs = study.provenance.get("inputs", {})
-    paths = {role: inputs.get(role, {}).get("path") for role in ("masks", "signal", "nuclei")}
+    told = {role: inputs.get(role, {}) for role in ("masks", "signal", "nuclei")}
+    paths = {role: one.get("given") or one.get("path") for role, one in told.items()}
     words = ["cytodisk", "movie" if study.is_movie else "map", shown_path(paths.pop("masks") or "masks.tif")]
     words += [word for role, path in paths.items() if path for word in (f"--{role}", shown_path(path))]
     words += ["--parameters", shown_path(str(study.path / PARAMETERS))]

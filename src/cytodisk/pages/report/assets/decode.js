@@ -32,14 +32,14 @@ window.cytodisk = { ready: false, shown: null, drawMilliseconds: null };
     return Uint8Array.from({ length: width * height }, (_, k) => data[4 * k]);
   };
 
-  const decode = async ({ labels, channels }, shape) => ({
+  page.decode = async ({ labels, channels }, shape) => ({
     labels: labels && new Uint16Array(await inflate(labels)),
     channels: channels && (await Promise.all(channels.map((text) => picture(text, shape)))),
   });
 
   const kept = new Map();
   const fetchFrame = (index) => {
-    const found = kept.get(index) ?? decode(page.pictures[index], page.data.picture.shape);
+    const found = kept.get(index) ?? page.decode(page.pictures[index], page.data.picture.shape);
     kept.delete(index); // the ones asked for last stand last
     kept.set(index, found);
     if (kept.size > MOST_KEPT) kept.delete(kept.keys().next().value);

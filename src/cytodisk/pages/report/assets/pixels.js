@@ -34,8 +34,8 @@
 
   // Lines between windows and around the cell, white paper outside a cell without pixels, and the
   // chosen window: white just inside and black just outside, so that it stands out from every colour.
-  page.cellLines = ({ labels, channels }, chosen) => {
-    const [height, width] = page.data.picture.shape;
+  page.cellLines = ({ labels, channels }, chosen, shape = page.data.picture.shape) => {
+    const [height, width] = shape;
     const grey = channels?.[page.state.channel];
     const pixels = new Uint32Array(height * width);
     if (!grey) pixels.fill(WHITE);
@@ -43,11 +43,10 @@
     const inner = (page.data.cytoplasm_layers ?? Infinity) * page.data.sectors; // windows of the nucleus
     for (let k = 0; k < labels.length; k++) {
       const here = labels[k];
-      const right = labels[k + 1];
-      const below = labels[k + width];
+      const right = (k + 1) % width ? labels[k + 1] : here; // not the next row's first
+      const below = labels[k + width] ?? here;
       if (here !== OUTSIDE) pixels[k] = 0;
       if (here === right && here === below) continue;
-      if (below === undefined) continue;
       const edge = here === OUTSIDE || right === OUTSIDE || below === OUTSIDE;
       const nuclear = here >= inner !== right >= inner || here >= inner !== below >= inner;
       pixels[k] = edge ? (grey ? WHITE : BLACK) : nuclear ? SKY : FAINT;

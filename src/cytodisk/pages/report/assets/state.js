@@ -2,6 +2,7 @@
 // What is chosen, what lies under the pointer, and the numbers that belong to it.
 (() => {
   const page = window.cytodisk;
+  const { known, words } = page;
 
   page.state = {
     index: 0, // place among the shown frames
@@ -70,20 +71,6 @@
     const { frames, every } = page.data;
     return clamp(Math.round((frame - frames[0]) / every), frames.length);
   };
-
-  // Numbers in words, with a true minus; a dash for none.
-  const known = (value) => typeof value === "number" && Number.isFinite(value);
-  const words = (value, text) => (known(value) ? String(text(value)).replace("-", "−") : "–");
-  page.digits = (value) =>
-    words(value, () => {
-      const size = Math.abs(value);
-      if (size === 0) return 0;
-      if (size >= 1e5 || size < 1e-3) return value.toExponential(1);
-      return size >= 1000 ? value.toFixed(0) : value.toPrecision(3);
-    });
-  page.withUnit = (value, unit) => (known(value) && unit ? `${page.digits(value)} ${unit}` : page.digits(value));
-  page.fixed = (value) => words(value, () => value.toFixed(2).replace(/^-(0\.00)$/, "$1"));
-  page.chance = (value) => words(value, () => Number(value.toPrecision(2)));
 
   // Times and lags come in frames; the axes are in seconds where they are known.
   page.seconds = (frames, digits) => {

@@ -1,0 +1,163 @@
+"""The words of the page of a study of single cells: what came of it, its QC flags, what the page leaves out."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import pandas as pd
+
+from cytodisk.pages.grid_words import grid_words
+from cytodisk.pages.report.cells.cell_table import CONDITION, EXPERIMENT
+from cytodisk.pages.report.shown_names import without_folders
+from cytodisk.runs.qc_flags.qc_flag import QCFlag, counted
+from cytodisk.store.study import Study
+from cytodisk.windows.study_grid import polar_grid_of
+
+_MOST_PLACES = 8
+_MOST_REASONS = 6
+
+
+def cell_names(cells: pd.DataFrame) -> dict[int, str]:
+    """Each cell by file, frame and label, as far as these differ, as "f02_masks.tif, label 3".
+
+    Parameters
+    ----------
+    cells : DataFrame
+        The table of cells of a study.
+    """
+    frames, labels = cells["frame"].nunique() > 1, cells["label"].nunique() > 1
+    many = "source" in cells
+    names = {}
+    for row in cells[["cell", *(["source"] if many else []), "frame", "label"]].to_dict("records"):
+        words = [str(row["source"])] if many else []
+        words += [f"frame {row['frame']}"] if frames else []
+        words += [f"label {row['label']}"] if labels and row["label"] else []
+        names[int(row["cell"])] = ", ".join(words) or f"cell {row['cell']}"
+    return names
+
+
+def finding(study: Study) -> str:
+    """What came of the run, in a sentence with its numbers."""
+    rows = study.cells
+    cells = rows[rows["label"] != 0]
+    mapped = cells[cells["status"] == "ok"]
+    files = rows["source"].nunique() if "source" in rows else 1
+    valid = int(mapped["certificate_valid"].astype(bool).sum())
+    words = f"{len(mapped)} of {counted(len(cells), 'cell')}"
+    words += f" in {counted(files, 'file')} {'is' if len(mapped) == 1 else 'are'} mapped"
+    if len(mapped):
+        words += " one to one" if valid == len(mapped) else f", {valid} of them one to one"
+    lost = cells.loc[cells["status"] != "ok", "status"].value_counts()
+    parts = [words, *(f"{count} {status}" for status, count in lost.items())]
+    flagged = int((mapped["qc_flags"].fillna("") != "").sum())
+    parts.append(f"{flagged} of the mapped have QC flags" if flagged else "none of the mapped has a QC flag")
+    empty = rows.loc[rows["label"] == 0, "status"].value_counts()
+    parts += [f"{counted(count, 'image')} without a cell ({status})" for status, count in empty.items()]
+    return "; ".join(parts) + "."
+
+
+def groups_words(study: Study) -> str:
+    """Cells by condition and experiment, and the command that compares them; empty without conditions."""
+    rows = study.cells
+    mapped = rows[rows["status"] == "ok"]
+    if CONDITION not in rows or mapped[CONDITION].dropna().empty:
+        return ""
+    words = []
+    for name, part in mapped.groupby(CONDITION, sort=False):
+        repeats = part[EXPERIMENT].dropna().nunique() if EXPERIMENT in part else 0
+        words.append(f"{name}: {counted(len(part), 'cell')}" + (f" in {counted(repeats, 'experiment')}" if repeats else ""))
+    return "; ".join(words)
+
+
+def compare_command(study: Study) -> str:
+    """The command that compares a study's conditions; empty with fewer than two."""
+    rows = study.cells
+    if CONDITION not in rows:
+        return ""
+    names = [str(name) for name in rows[CONDITION].dropna().unique()]
+    if len(names) < 2:
+        return ""
+    folder = str(study.path)
+    return shlex.join(["cytodisk", "population", folder, "--compare", ",".join(names), "-o", f"{folder}_population"])
+
+
+def lost_groups(study: Study) -> list[dict[str, Any]]:
+    """Why cells were lost: reasons that differ in numbers alone are one, those of most cells first."""
+    names, groups = cell_names(study.cells), {}
+    for row in study.cells[study.cells["status"] != "ok"].to_dict("records"):
+        reason = without_folders(str(row["reason"]), study)
+        alike = re.sub(r"\d+", "N", reason.replace(str(row.get("source", "")) or "\n", "FILE"))
+        groups.setdefault((row["status"], alike), []).append((int(row["cell"]), reason))
+    ordered = sorted(groups.items(), key=lambda item: -len(item[1]))
+    found = [
+        {
+            "status": status,
+            "count": len(cells),
+            "reason": cells[0][1],
+            "cells": [{"cell": cell, "name": names[cell]} for cell, _ in cells[:_MOST_PLACES]],
+            "more": max(0, len(cells) - _MOST_PLACES),
+        }
+        for (status, _), cells in ordered
+    ]
+    return found[:_MOST_REASONS]
+
+
+def flag_words(flags: Sequence[QCFlag], study: Study) -> list[dict[str, Any]]:
+    """QC flags with the first of their cells, by name."""
+    names = cell_names(study.cells)
+    return [
+        {
+            "name": flag.name,
+            "what": without_folders(flag.what, study),
+            "meaning": flag.meaning,
+            "advice": without_folders(flag.advice, study),
+            "cells": [
+                {"cell": place.cell, "name": names[place.cell], "note": without_folders(place.note, study)}
+                for place in flag.places[:_MOST_PLACES]
+            ],
+            "count": len({place.cell for place in flag.places}),
+        }
+        for flag in flags
+    ]
+
+
+def facts(study: Study) -> Iterator[tuple[str, str]]:
+    """What the head of the page says of the study."""
+    rows, pixel = study.cells, study.scale.pixel_size_um
+    yield "cells", str(int((rows["label"] != 0).sum()))
+    yield "mapped", str(int((rows["status"] == "ok").sum()))
+    yield "pixel", f"{pixel:.4g} µm" if pixel else "size unknown"
+    yield "windows", grid_words(polar_grid_of(study.provenance))
+    yield "cytodisk", str(study.provenance.get("versions", {}).get("cytodisk", "unknown"))
+
+
+def left_out(study: Study, shown: Sequence[int], wanted: Sequence[int], fault: str) -> list[str]:
+    """What the page shows less of than the study holds, as sentences.
+
+    Parameters
+    ----------
+    study : Study
+    shown : sequence of int
+        Cells with a picture.
+    wanted : sequence of int
+        Cells that could have had one, from the first that was asked for.
+    fault : str
+        Why there are no pixels; empty if there are.
+    """
+    folder, words = shlex.quote(str(study.path)), []
+    if fault:
+        words.append(
+            f"The images are not on this page: {fault}. Cells are drawn as their windows alone; all numbers "
+            f"are those of the run. Put the files back, then run: cytodisk report {folder}"
+        )
+    if len(shown) < len(wanted):
+        following = next((cell for cell in wanted if cell > max(shown, default=-1)), None)
+        words.append(
+            f"Pictures of {counted(len(shown), 'cell')} are on this page, of {len(study.cells)}: a page of all "
+            "would be too large for a browser or take too long to write. All cells are in the list. Pictures of "
+            f"the next ones: cytodisk report {folder} --cell {following}"
+        )
+    return words

@@ -1,0 +1,58 @@
+"""Templates, styles and scripts of the pages, put together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from importlib.resources import files
+from typing import Any
+
+from cytodisk.errors import MissingPartError
+
+
+def jinja() -> Any:
+    """The template engine.
+
+    Raises
+    ------
+    MissingPartError
+        It is not installed.
+    """
+    try:
+        import jinja2
+    except ImportError as error:
+        raise MissingPartError.of("the report page needs Jinja2", "report") from error
+    return jinja2
+
+
+def rendered(page: str, styles: Iterable[str], scripts: Iterable[str], words: Mapping[str, Any]) -> str:
+    """A page as text.
+
+    Parameters
+    ----------
+    page : str
+        Name of its template.
+    styles, scripts : iterable of str
+        Names of the files that stand in it, in their order.
+    words : dict
+        What the template writes; text is escaped.
+
+    Returns
+    -------
+    str
+    """
+    engine = jinja()
+    loader = engine.FunctionLoader(_asset)
+    environment = engine.Environment(autoescape=True, undefined=engine.StrictUndefined, loader=loader)
+    return str(
+        environment.get_template(f"{page}.html").render(
+            words
+            | {
+                "style": "\n".join(_asset(f"{name}.css") for name in styles),
+                "scripts": [_asset(f"{name}.js") for name in scripts],
+            }
+        )
+    )
+
+
+def _asset(name: str) -> str:
+    return (files("cytodisk.pages.report") / "assets" / name).read_text(encoding="utf-8")
