@@ -53,6 +53,6 @@ def test_a_run(
 
 def test_what_reads_a_study(run: Run, masks: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study = cd.run_movie(masks, tmp_path / "out", layers=2, sectors=6).path
-    monkeypatch.setattr("cytodisk.pages.report.page._render", ran_out(""))
+    monkeypatch.setattr("cytodisk.pages.report.page.movie_page", ran_out(""))
     assert_refused(run("report", study), *WORDS)
     assert not list(study.glob("*.html"))

@@ -9,7 +9,7 @@ import typer
 from cytodisk.cli.console import console_for, count, fail, progress_bar
 from cytodisk.cli.first_start import say_compiling, with_nuclei_or_not
 from cytodisk.cli.flag_words import MOST_FLAGS
-from cytodisk.cli.options import Given, GroupsFile, Quiet, with_parameters
+from cytodisk.cli.options import Given, GroupsFile, NoReport, Quiet, with_parameters
 from cytodisk.runs.run_options import BatchOptions
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ def batch_command(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="List the inputs as they are understood and run nothing.")
     ] = False,
+    no_report: NoReport = False,
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.runs.batch.batch_file import read_batch
@@ -62,7 +63,7 @@ def batch_command(
             tell=console.print,
             **dict(options),
         )
-    _finish(console, summary)
+    _finish(console, summary, not no_report)
 
 
 def _kinds(batch: "Batch") -> str:
@@ -100,7 +101,7 @@ def _list_inputs(batch: "Batch") -> None:
         fail(f"{faults} of {count(len(batch.inputs), 'input')} cannot be used: the column fault says why")
 
 
-def _finish(console: "Console", summary: "BatchSummary") -> None:
+def _finish(console: "Console", summary: "BatchSummary", report: bool) -> None:
     total = sum(summary.statuses.values())
     done = summary.statuses.pop("ok", 0)
     lost = ", ".join(f"{number} {status}" for status, number in sorted(summary.statuses.items()))
@@ -119,5 +120,18 @@ def _finish(console: "Console", summary: "BatchSummary") -> None:
     if lost:
         console.print("mend what failed and run the same command with --resume: only that is done again")
     console.print(f"tables: {summary.out}; studies of the inputs: {summary.out.rstrip('/')}/inputs")
+    if report:
+        _write_page(console, summary.out)
     if not done:
         fail("no input went well")
+
+
+def _write_page(console: "Console", out: str) -> None:
+    from cytodisk.cli.report.report_words import say_page
+    from cytodisk.pages.report.page import write_batch_report
+    from cytodisk.store.url_store import is_url
+
+    if is_url(out):
+        console.print("no report: the results are not on this computer; copy them and run cytodisk report FOLDER")
+        return
+    say_page(console, lambda: write_batch_report(Path(out)))

@@ -1,4 +1,4 @@
-"""`cytodisk correlate` and `cytodisk report`."""
+"""`cytodisk correlate`."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 import typer
 
 from cytodisk.cli.batches.given_folder import is_batch
-from cytodisk.cli.console import console_for, earlier_version_lines, progress_bar
+from cytodisk.cli.console import console_for, progress_bar
 from cytodisk.cli.correlation_words import say_correlation, say_replaced, say_verdicts
-from cytodisk.cli.flag_words import say_flags, say_study_flags
+from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.cli.options import Figures, Given, MovieStudyOrBatch, Quiet, with_parameters
+from cytodisk.cli.report.report_command import opened
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.population.correlations.pool_parameters import BatchCorrelateParameters, PoolOptions
 from cytodisk.runs.run_options import TableOptions
@@ -99,77 +100,6 @@ def _refuse_of_batch(study: Path, given: Given, groups: Path | None) -> None:
         raise ParameterError(
             f"{', '.join(of_batch)}: only for the folder of a batch, and {study} is none: leave it out"
         )
-
-
-def report_command(
-    study: MovieStudyOrBatch,
-    cell: Annotated[
-        int | None,
-        typer.Option(metavar="NUMBER", help="The cell to show (default that with the most frames)."),
-    ] = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="PATH", help="The page (default STUDY/report.html).")
-    ] = None,
-    signal: Annotated[
-        Path | None, typer.Option(metavar="PATH", help="The movie's image, if it is no longer where it was.")
-    ] = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Of a batch: keep the pages that are younger than their studies.")
-    ] = False,
-    quiet: Quiet = False,
-) -> None:
-    if is_batch(study):
-        from cytodisk.cli.batches.batch_report import report_batch
-
-        _refuse_of_study(study, {"--cell": cell, "--out": out, "--signal": signal})
-        report_batch(study, resume=resume, quiet=quiet)
-        return
-    console = console_for(quiet)
-    write_page(console, quiet, opened(console, study), out, cell, signal)
-
-
-def _refuse_of_study(batch: Path, flags: dict[str, Any]) -> None:
-    from cytodisk.errors import ParameterError
-
-    if given := [flag for flag, value in flags.items() if value is not None]:
-        raise ParameterError(
-            f"{', '.join(given)}: not for a batch, whose studies each have a page in their folder: leave it "
-            f"out, or name one of {batch / 'inputs'}"
-        )
-
-
-def opened(console: "Console | None", path: Path) -> "Study":
-    """Open a study and say if its maps are of an earlier version; nothing without a console."""
-    from cytodisk.store.provenance_file import other_maps
-    from cytodisk.store.study import open_study
-
-    with earlier_version_lines(lambda _: None):
-        study = open_study(path)
-    if console is not None and (words := other_maps(study.provenance)):
-        console.print(words)
-    return study
-
-
-def write_page(
-    console: "Console",
-    quiet: bool,
-    study: "Study",
-    out: Path | None = None,
-    cell: int | None = None,
-    signal: Path | None = None,
-    flags: bool = True,
-) -> None:
-    """Write the report and say where it is and, with `flags`, what is wrong with the study."""
-    from cytodisk.pages.report.page import EARLIER_MAPS, page_flags, write_report
-    from cytodisk.runs.study_signal import open_signal
-
-    image = open_signal(study, signal) if signal is not None else None
-    with progress_bar(quiet, "frames", stopped=NOTHING_CHANGED) as progress:
-        page = write_report(study, out, cell=cell, signal=image, progress=progress)
-    if flags:
-        shown = [flag for flag in page_flags(study, image) if flag.name != EARLIER_MAPS]  # said at the start
-        say_flags(console, shown, "they are first on the page")
-    console.print(f"report: {page} ({page.stat().st_size / 1e6:.1f} MB), open it in a browser")
 
 
 def draw_correlation(

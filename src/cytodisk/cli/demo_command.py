@@ -7,12 +7,13 @@ from typing import Annotated
 import typer
 
 from cytodisk.cli.console import console_for, progress_bar
-from cytodisk.cli.correlate_command import NOTHING_CHANGED, draw_correlation, write_page
+from cytodisk.cli.correlate_command import NOTHING_CHANGED, draw_correlation
 from cytodisk.cli.correlation_words import say_correlation, say_verdicts
 from cytodisk.cli.first_start import say_compiling
 from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.cli.movie_command import draw_movie, finish_movie, say_movie
 from cytodisk.cli.options import Quiet
+from cytodisk.cli.report.report_command import write_page
 from cytodisk.errors import MissingPartError
 
 _AGAIN = "run the same command again"

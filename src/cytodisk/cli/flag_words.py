@@ -20,14 +20,19 @@ def say_study_flags(console: "Console", study: "Study", found: "Correlation | No
     from cytodisk.runs.qc_flags.one_correlation import with_one
     from cytodisk.runs.qc_flags.study_flags import qc_flags
 
-    page = f"cytodisk report {study.path}" if study.is_movie else "cytodisk.qc_flags(study) in Python"
-    cells = study.cells
-    many = "source" in cells and cells["source"].nunique() > 1
-    files = dict(zip(cells["cell"], cells["source"], strict=True)) if many else {}
+    page = f"cytodisk report {study.path}"
+    files = file_names(study)
     shown = qc_flags(study if found is None else with_one(study, found))
     say_flags(console, shown, f"see {page}", files)
     if found is not None and _places(qc_flags(study)) - _places(shown):
         console.print(f"flags of other results: {page}")
+
+
+def file_names(study: "Study") -> dict[int, str]:
+    """Name of the file of each cell, where they come from several."""
+    cells = study.cells
+    many = "source" in cells and cells["source"].nunique() > 1
+    return dict(zip(cells["cell"], cells["source"], strict=True)) if many else {}
 
 
 def _places(flags: Sequence["QCFlag"]) -> set[tuple[str, "Place"]]:

@@ -119,7 +119,10 @@ experiments, with the variances of your cells where you pass PATH.
 
 Exit code: 0 when done, 2 if there is nothing to show, or the input or the folder cannot be used.
 """,
-    "report": """Write one HTML page that shows a study: QC flags, windows, activity, velocity, correlation.
+    "report": """Write one HTML page that shows a study, a batch or a population, with what was found first.
+
+A movie: QC flags, linked views of one cell. Single masks: QC flags, all cells to sort and to open. A batch:
+a page of each study, and one of all inputs and cells. A population: what differs between conditions.
 
 The page holds all it needs: it opens in any browser, without a network, and can be sent as one file.
 

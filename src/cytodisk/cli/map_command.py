@@ -10,12 +10,14 @@ from cytodisk.cli.options import (
     Given,
     GroupsFile,
     MaskFiles,
+    NoReport,
     NucleiFiles,
     OutFolder,
     Quiet,
     SignalFiles,
     with_parameters,
 )
+from cytodisk.cli.report.report_words import page_of
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.run_options import MapOptions
 
@@ -34,6 +36,7 @@ def map_command(
     nuclei: NucleiFiles = None,
     groups: GroupsFile = None,
     figures: Figures = 8,
+    no_report: NoReport = False,
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.pages.cell_pages import write_cell_figures
@@ -56,7 +59,9 @@ def map_command(
             progress=progress,
             **dict(options),
         )
-    finish_map(console, study, figures, inputs.is_folder)
+    finish_map(
+        console, study, figures, inputs.is_folder, None if no_report else page_of(study, inputs, quiet)
+    )
 
 
 def say_inputs(console: "Console", inputs: "CellInputs") -> None:

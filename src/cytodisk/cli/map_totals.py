@@ -3,13 +3,15 @@
 import re
 import sys
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cytodisk.cli.console import count, fail
 from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.cli.nuclei_words import nuclei_words
 from cytodisk.cli.nucleus_words import nucleus_ratio_words, nucleus_share_words
+from cytodisk.cli.report.report_words import say_page
 from cytodisk.images.mask_names import without_name
 from cytodisk.store.nuclei.summary_columns import channels_among
 
@@ -24,8 +26,16 @@ _LOST = {"refused": "refused", "no image": "without an image", "unreadable": "wi
 _EMPTY = {"no cell": "empty", "no image": "without an image", "unreadable": "damaged", "refused": "no masks"}
 
 
-def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool) -> None:
-    """Draw the overview and say what came out; exit code 2 if that is nothing, or an input is damaged."""
+def finish_map(
+    console: "Console",
+    study: "Study",
+    figures: int,
+    of_folder: bool,
+    write_page: Callable[[], Path] | None = None,
+) -> None:
+    """Draw the overview, write the page and say what came out; exit code 2 if that is nothing, or an input
+    is damaged.
+    """
     from cytodisk.pages.overview import write_overview
     from cytodisk.store.figures_folder import drawing
 
@@ -63,6 +73,8 @@ def finish_map(console: "Console", study: "Study", figures: int, of_folder: bool
         console.print(f"figures drawn for the first {count(figures)}: --figures -1 draws all")
     say_study_flags(console, study)
     console.print(f"results: {study.path}")
+    if write_page is not None:
+        say_page(console, write_page)
     unreadable = int((rows["status"] == "unreadable").sum())
     if not len(mapped):
         fail(f"no cell could be mapped: {lost['reason'].iloc[0] if len(lost) else 'the file holds no cell'}")

@@ -100,6 +100,9 @@ ParametersFile = Annotated[
 Figures = Annotated[
     int, typer.Option(metavar="NUMBER", help="Number of cells to draw, from the first; -1 for all.")
 ]
+NoReport = Annotated[
+    bool, typer.Option("--no-report", help="Do without the page report.html, which takes a second or two.")
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 

@@ -83,6 +83,8 @@ class SourceCell:
         (row, column) of the first pixel of `mask` in the image.
     image_shape : (int, int)
     fault : CytodiskError or None
+    refused : ndarray of shape (h, w), or None
+        Pixels as of `mask` that are refused as one cell; to be shown.
     """
 
     cell: int
@@ -93,6 +95,7 @@ class SourceCell:
     corner: tuple[int, int] = (0, 0)
     image_shape: tuple[int, int] = (0, 0)
     fault: CytodiskError | None = None
+    refused: np.ndarray[Any, Any] | None = None
 
 
 def open_mask_files(
@@ -274,8 +277,8 @@ def _of_one_cell(found: SourceCell, source: MaskSource, label: int | None) -> So
     """The same cell, or its fault where it is several."""
     if found.mask is None or source.look is None:
         return found
-    mask = without_others(found.mask, source.look.fragments, label)
-    return replace(found, mask=None, fault=mask) if isinstance(mask, SeveralCells) else found
+    mask, whole = without_others(found.mask, source.look.fragments, label), found.mask
+    return replace(found, mask=None, fault=mask, refused=whole) if isinstance(mask, SeveralCells) else found
 
 
 def _labelled(frame: FramePixels, label: int, place: Box, nothing: SourceCell) -> SourceCell:

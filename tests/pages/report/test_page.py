@@ -13,8 +13,9 @@ from report_study import FRAMES, GAP, NAMES
 
 from cytodisk.errors import MissingPartError, ParameterError, SignalError, StudyError
 from cytodisk.images.frames import open_frames
-from cytodisk.pages.report import page
-from cytodisk.pages.report.page import page_flags, write_report
+from cytodisk.pages.report import movie_page as page
+from cytodisk.pages.report.movie_page import page_flags
+from cytodisk.pages.report.page import write_report
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
@@ -46,12 +47,6 @@ def test_default_path_and_progress_and_the_same_page_again(study: Study, tmp_pat
     ids = re.compile(r"p\d{4,}|[0-9a-f]{8}-[0-9a-f-]{27}")  # the library's own
     first, second = (ids.sub("", page) for page in pages)
     assert first == second
-
-
-def test_study_of_single_masks_is_refused(study: Study) -> None:
-    single = Study(study.path, study.cells.drop(columns="frame"), study.provenance | {"run": "map"})
-    with pytest.raises(StudyError, match="has no time: the report shows movies"):
-        write_report(single)
 
 
 def test_study_without_a_map_is_refused(study: Study) -> None:

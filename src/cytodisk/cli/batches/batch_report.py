@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 from cytodisk.cli.console import console_for, count, progress_bar
+from cytodisk.cli.report.report_words import say_page
 
 _MOST_FAILED = 20
 
@@ -11,7 +12,7 @@ _MOST_FAILED = 20
 def report_batch(batch: Path, *, resume: bool, quiet: bool) -> None:
     """Write the page of each study of a batch, and the page that lists them."""
     from cytodisk.pages.batch_reports import write_batch_reports
-    from cytodisk.pages.report.page import REPORT
+    from cytodisk.pages.report.page import REPORT, write_batch_report
 
     console = console_for(quiet)
     stopped = "Stopped; the pages that are done stay: run it again with --resume."
@@ -26,3 +27,4 @@ def report_batch(batch: Path, *, resume: bool, quiet: bool) -> None:
     if len(found.failed) > _MOST_FAILED:
         print(f"… and {len(found.failed) - _MOST_FAILED} more: look into their folders", file=sys.stderr)
     console.print(f"pages: {batch / 'inputs'}/NAME/{REPORT}, open them in a browser")
+    say_page(console, lambda: write_batch_report(batch))

@@ -1,37 +1,24 @@
-"""`write_report`: one self-contained HTML page of a movie's study."""
+"""`write_report`: one self-contained HTML page of a study, a batch or a population."""
 
 from __future__ import annotations
 
 import os
-import shlex
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from cytodisk.errors import ParameterError, StudyError
 from cytodisk.files import real_path, replacing
 from cytodisk.images.signal_files import FrameSource
-from cytodisk.pages.report.bokeh_parts import bokeh, palette
-from cytodisk.pages.report.encode import json_for_script
-from cytodisk.pages.report.page_figures import figures_of, library_script
-from cytodisk.pages.report.pictures import MOST_BYTES, OUTSIDE, Pictures, box_around, encode_frames, size_of
-from cytodisk.pages.report.shown_cell import ShownCell
-from cytodisk.pages.report.shown_correlations import pairs_of
-from cytodisk.pages.report.template import rendered
-from cytodisk.pages.report.words import MOST_PLACES, page_words
-from cytodisk.plot.correlation.correlation_peaks import LAG_COLOURS
-from cytodisk.plot.style import DIVERGING_COLOURS
-from cytodisk.runs.qc_flags.qc_flag import QCFlag
-from cytodisk.runs.qc_flags.study_flags import qc_flags
-from cytodisk.runs.study_signal import FoundSignal, shown_signal
-from cytodisk.store.provenance_file import other_maps, writer_of
+from cytodisk.pages.report.batches.page import batch_page
+from cytodisk.pages.report.bokeh_parts import bokeh
+from cytodisk.pages.report.cells.page import cells_page
+from cytodisk.pages.report.movie_page import movie_page, open_cell, usual_cell
+from cytodisk.pages.report.template import jinja
+from cytodisk.runs.study_signal import shown_signal
 from cytodisk.store.study import Study
 from cytodisk.store.written_files import writing_files
 
 REPORT = "report.html"
-_SCRIPTS = ("decode", "numbers", "state", "pixels", "views", "controls", "main")
 
 Progress = Callable[[int, int], None]
 
@@ -44,23 +31,23 @@ def write_report(
     signal: FrameSource | None = None,
     progress: Progress | None = None,
 ) -> Path:
-    """Write a page with the study's QC flags and linked views of one of its cells.
+    """Write a page with a study's QC flags and its cells: linked views of one cell of a movie, or all masks.
 
-    The page is one file that needs no network: BokehJS, pictures and numbers are inside.
+    The page is one file that needs no network: scripts, pictures and numbers are inside.
 
     Parameters
     ----------
     study : Study
-        Study of a movie.
     path : path-like, optional
         By default report.html in the study, or report_cell_00003.html for a cell that is not the usual one.
     cell : int, optional
-        By default the one with the most mapped frames.
+        Of a movie the cell to show, by default the one with the most mapped frames; of single masks the first
+        cell with a picture, for studies with more cells than a page has room for.
     signal : FrameSource, optional
         The movie behind the windows, with the study's channels; by default the file that the study names,
         if it is still there and unchanged. Otherwise the page shows windows over plain masks, and says so.
     progress : callable, optional
-        Called with the number of frames done and that of all.
+        Called with the number of frames, or cells, done and that of all.
 
     Returns
     -------
@@ -70,13 +57,14 @@ def write_report(
     Raises
     ------
     StudyError
-        The study has no time or no mapped frame, or the page cannot be written.
+        No frame of a movie is mapped, or the page cannot be written.
     ParameterError
-        The study has no such cell, none of its frames is mapped, or a page cannot hold so many windows.
+        The study has no such cell, none of its frames is mapped, a page cannot hold so many windows, or
+        `signal` is given for single masks.
     SignalError
         The signal has images of another size, other channels or fewer frames than the study.
     MissingPartError
-        Bokeh is not installed.
+        The parts for reports are not installed.
 
     See Also
     --------
@@ -86,140 +74,88 @@ def write_report(
     --------
     >>> import tifffile
     >>> import cytodisk as cd
-    >>> truth = cd.simulate.movie("growing", frames=5, radius_px=12.0)
-    >>> tifffile.imwrite("masks.tif", truth.masks.astype("uint8"), metadata={"axes": "TYX"})
-    >>> study = cd.run_movie("masks.tif", "out", layers=2, sectors=6)
+    >>> tifffile.imwrite("labels.tif", cd.simulate.label_image(cells=3))
+    >>> study = cd.run_map("labels.tif", "out", layers=2, sectors=6)
     >>> cd.write_report(study).name
     'report.html'
     """
-    bokeh()  # before any work is done
-    usual = _usual_cell(study)
-    shown = _open_cell(study, usual if cell is None else cell)
-    usual_path = study.path / (REPORT if shown.cell == usual else f"report_cell_{shown.cell:05d}.html")
-    target = usual_path if path is None else Path(path)
-    if not target.parent.is_dir():
-        raise StudyError(f"cannot write {target}: there is no folder {target.parent}")
-    html = _render(shown, shown_signal(study, signal), progress)
-    own = [target.name] if real_path(target.parent) == real_path(study.path) else []
-    with writing_files(study.path, *own), replacing(target) as temporary:
-        temporary.write_text(html, encoding="utf-8")
-    return target
-
-
-def _usual_cell(study: Study) -> int:
-    """The cell with the most mapped frames, the first of several."""
-    if not study.is_movie:
-        raise StudyError(
-            f"study {study.path} has no time: the report shows movies, so make one with cytodisk movie; the "
-            "pictures of single masks are in figures/"
-        )
-    mapped = study.cells.loc[study.cells["status"] == "ok", "cell"]
-    if mapped.empty:
-        raise StudyError(f"study {study.path} has no mapped frame: column 'reason' of cells.parquet says why")
-    cells, counts = np.unique(mapped, return_counts=True)
-    return int(cells[counts.argmax()])
-
-
-def _open_cell(study: Study, cell: int) -> ShownCell:
-    rows = study.cells[study.cells["cell"] == cell]
-    if rows.empty:
-        count = study.cells["cell"].nunique()
-        raise ParameterError(f"cell must be a number of the study's {count} cells from 0, got {cell}")
-    if not (rows["status"] == "ok").any():
-        raise ParameterError(f"cell {cell} has no mapped frame: choose another one, or leave it out")
-    data = ShownCell(study, cell)
-    if data.grid.n_windows >= OUTSIDE:
+    if study.is_movie:
+        return _write_movie(study, path, cell, signal, progress)
+    if signal is not None:
         raise ParameterError(
-            f"study {study.path} has {data.grid.n_windows} windows a cell, a page holds fewer than "
-            f"{OUTSIDE}: run it with fewer layers or sectors"
+            "signal is for movies: put the images of single masks where they were, and run again"
         )
-    return data.thinned()
+    jinja()  # before any work is done
+    first = int(study.cells["cell"].iloc[0]) if cell is None else cell
+    target = study.path / _name(first, int(study.cells["cell"].iloc[0])) if path is None else Path(path)
+    return write_page(study.path, target, lambda: cells_page(study, first, progress=progress))
 
 
-def page_flags(study: Study, signal: FrameSource | None = None) -> list[QCFlag]:
-    """The QC flags that stand on the page of a study.
+def write_batch_report(folder: Path, path: str | os.PathLike[str] | None = None) -> Path:
+    """Write the page of a batch: its inputs and cells to sort and filter, linked to the pages of its studies.
 
     Parameters
     ----------
-    study : Study
-        Study of a movie.
-    signal : FrameSource, optional
-        As for `write_report`.
+    folder : Path
+        Of the batch.
+    path : path-like, optional
+        By default report.html in the folder.
 
     Returns
     -------
-    list of QCFlag
-        Those of `qc_flags`, and before them one if the maps are of another version, and one if the signal
-        cannot be shown.
+    Path
+        Path of the page.
 
     Raises
     ------
-    SignalError
-        As for `write_report`.
+    ReadError
+        The folder holds no complete batch.
+    MissingPartError
+        The parts for reports are not installed.
     """
-    return _flags(study, shown_signal(study, signal))
+    jinja()
+    target = folder / REPORT if path is None else Path(path)
+    return write_page(folder, target, lambda: batch_page(folder))
 
 
-def _flags(study: Study, found: FoundSignal) -> list[QCFlag]:
-    return [*_map_flags(study), *_signal_flags(study, found), *qc_flags(study)]
+def _write_movie(
+    study: Study,
+    path: str | os.PathLike[str] | None,
+    cell: int | None,
+    signal: FrameSource | None,
+    progress: Progress | None,
+) -> Path:
+    bokeh()  # before any work is done
+    usual = usual_cell(study)
+    shown = open_cell(study, usual if cell is None else cell)
+    target = study.path / _name(shown.cell, usual) if path is None else Path(path)
+    return write_page(study.path, target, lambda: movie_page(shown, shown_signal(study, signal), progress))
 
 
-def _render(cell: ShownCell, found: FoundSignal, progress: Progress | None) -> str:
-    box = box_around(cell)
-    limits = Pictures(cell, box, found.source).limits()
-    cell = cell.every_frames(Pictures(cell, box, found.source).every(limits))
-    pictures = list(encode_frames(Pictures(cell, box, found.source), limits, progress))
-    while sum(map(size_of, pictures)) > MOST_BYTES and len(pictures) > 1:  # larger than the frames judged by
-        cell, pictures = cell.every_frames(2 * cell.every), pictures[::2]
-    pairs, left_out = pairs_of(cell)
-    data = cell.as_json() | {
-        "pairs": pairs,
-        "first": next(k for k, frame in enumerate(pictures) if frame["labels"]) if _any(pictures) else 0,
-        "picture": {"shape": box.shape, "limits": limits, "box": vars(box)},
-        "palettes": {"correlation": palette(DIVERGING_COLOURS), "lag": palette(LAG_COLOURS)},
-    }
-    words = page_words(cell, _flags(cell.study, found), found, box, left_out)
-    words |= {
-        "data": data,
-        "most_places": MOST_PLACES,
-        "library": library_script(),
-        "data_json": json_for_script(data),
-        "pictures_json": json_for_script(pictures),
-        "figures_json": json_for_script(figures_of(cell, box, correlated=bool(pairs))),
-    }
-    return rendered("page", ["page"], _SCRIPTS, words)
+def _name(cell: int, usual: int) -> str:
+    return REPORT if cell == usual else f"report_cell_{cell:05d}.html"
 
 
-def _any(pictures: list[dict[str, Any]]) -> bool:
-    return any(frame["labels"] for frame in pictures)
+def write_page(study: Path, target: Path, page: Callable[[], str]) -> Path:
+    """Write a page whole or not at all; in the folder of a study it counts as the study's.
 
+    Parameters
+    ----------
+    study : Path
+        Folder of the study.
+    target : Path
+    page : callable
+        Gives the text.
 
-EARLIER_MAPS = "earlier maps"  # name of a flag
-
-
-def _map_flags(study: Study) -> list[QCFlag]:
-    if not other_maps(study.provenance):
-        return []
-    return [
-        QCFlag(
-            EARLIER_MAPS,
-            f"the maps were made by {writer_of(study.provenance)}",
-            "Windows lie at other places than in studies made now.",
-            "Do not compare window by window with those; run cytodisk movie again where you must.",
-        )
-    ]
-
-
-def _signal_flags(study: Study, found: FoundSignal) -> list[QCFlag]:
-    if not found.fault:
-        return []
-    return [
-        QCFlag(
-            "signal not shown",
-            f"the movie's pixels are not on this page: {found.fault}",
-            "The cell is drawn as its windows alone; all numbers are those of the run.",
-            "Put the file back where it was, or name the place where it is now: cytodisk report "
-            f"{shlex.quote(study.path.name or '.')} --signal FILE",
-        )
-    ]
-
+    Returns
+    -------
+    Path
+        The target.
+    """
+    if not target.parent.is_dir():
+        raise StudyError(f"cannot write {target}: there is no folder {target.parent}")
+    html = page()
+    own = [target.name] if real_path(target.parent) == real_path(study) else []
+    with writing_files(study, *own), replacing(target) as temporary:
+        temporary.write_text(html, encoding="utf-8")
+    return target

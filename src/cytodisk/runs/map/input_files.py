@@ -74,7 +74,9 @@ def _beside(base: Path, told: Mapping[str, Any] | None) -> str | Path | None:
 
 def _parameters(study: Study) -> FileParameters:
     settings = study.provenance["parameters"]
-    return FileParameters.of(**{name: settings[name] for name in FileParameters.model_fields if name in settings})
+    return FileParameters.of(
+        **{name: settings[name] for name in FileParameters.model_fields if name in settings}
+    )
 
 
 def _changes(inputs: CellInputs, told: Mapping[str, Any]) -> Iterator[str]:

@@ -131,7 +131,7 @@
     const limits = stretched(asMeans ? ofMeans : page.pixelLimits(shown, channel, contrast));
     page.state.channel = 0;
     page.paintCell(byId("cell-picture"), shown, {
-      channel, means: asMeans ? means ?? [] : null, limits, lines: state.grid ? "all" : "outline", chosen: chosen(),
+      channel, means: asMeans ? means ?? [] : null, limits, lines: state.grid ? "all" : "outline", chosen: picture.windows ? chosen() : null,
     });
     page.drawBar(byId("cell-bar"), limits, palette, unit);
     drawScale(picture, fit(picture));
@@ -188,7 +188,7 @@
     const column = Math.floor(((event.clientX - left) / width) * canvas.width);
     const row = Math.floor(((event.clientY - top) / height) * canvas.height);
     const label = shown.decoded.labels?.[row * canvas.width + column] ?? OUTSIDE;
-    return label === OUTSIDE || !shown.numbers.area ? null : label;
+    return label === OUTSIDE || !shown.picture.windows ? null : label;
   };
   const overDisk = (event) => page.windowOnDisk(byId("cell-disk"), gridOf(shown.picture), event);
 

@@ -37,9 +37,10 @@
     });
   };
 
+  // links: addresses by row, null for none, in the place of open.
   // root: element for the list. table: { columns, rows }. open(row): what a click does; name(row): its words.
   // card(row): content of a card, for lists with cards. choices: [{ label, options: [{ label, test }] }].
-  page.list = ({ root, table, label, open = null, name = null, card = null, choices = [], sort = null }) => {
+  page.list = ({ root, table, label, open = null, name = null, links = null, card = null, choices = [], sort = null }) => {
     const { columns, rows } = table;
     const state = { sort, descending: false, text: "", all: false, cards: Boolean(card), start: 0, choices: [] };
     const texts = rows.map((row) => row.filter((value) => typeof value === "string").join("\n").toLowerCase());
@@ -85,6 +86,7 @@
     const cellOf = (column, value, k, first) => {
       const words = shownValue(column, value);
       const look = column.number ? "number" : words.length > 24 ? "long" : null;
+      if (first && links?.[k]) return make("td", { class: look }, make("a", { href: links[k], "aria-label": `open ${name(rows[k])}` }, words));
       if (!first || !open) return make("td", { class: look, title: look === "long" ? words : null }, words);
       const button = make("button", { type: "button", class: "opens", "aria-label": `open ${name(rows[k])}` }, words);
       return make("td", { class: look }, button);
@@ -95,7 +97,8 @@
       const body = make("tbody");
       for (const k of numbers) {
         const cells = shown.map(({ column, at }, number) => cellOf(column, rows[k][at], k, number === 0));
-        body.append(make("tr", open ? { class: "opening", onclick: () => open(k) } : {}, ...cells));
+        const go = open ?? (links?.[k] ? () => (location.href = links[k]) : null);
+        body.append(make("tr", go ? { class: "opening", onclick: () => go(k) } : {}, ...cells));
       }
       const titles = make("tr", {}, ...shown.map(({ column }) => head(column)));
       return make("table", { class: "list" }, make("caption", { class: "unseen" }, label), make("thead", {}, titles), body);

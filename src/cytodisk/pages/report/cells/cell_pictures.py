@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from cytodisk.arrays import BoolArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import CytodiskError, ReadError
 from cytodisk.images.mask_files import MaskImage, SourceCell, list_images
@@ -26,6 +27,8 @@ from cytodisk.pages.report.pictures import (
 )
 from cytodisk.runs.cells.cell_inputs import CellInputs
 from cytodisk.store.study import Study
+from cytodisk.store.study_folder import part_key
+from cytodisk.store.study_kind import MAPS
 from cytodisk.windows.polar_windows import PolarGrid
 from cytodisk.windows.study_grid import polar_grid_of
 
@@ -105,21 +108,31 @@ class CellPictures:
     ) -> dict[str, Any] | None:
         if self._has_map(cell):
             disk = self.study.map(cell)
-            (low, high), placed = _ends(disk), disk.placed_mask
-            box = box_between(low, high, placed.image_shape, LONGEST_SIDE)
-            picture = {"labels": pack_labels(window_labels(disk, self.grid, box)), **self._numbers(cell, disk)}
-        elif found is not None and found.mask is not None and np.any(found.mask):
-            box, labels = _mask_labels(found)
-            picture = {"labels": pack_labels(labels), "numbers": None, "radii": None}
+            outline, shape = disk.outline_yx, disk.placed_mask.image_shape
+            box = box_between(outline.min(axis=0), outline.max(axis=0), shape, LONGEST_SIDE)
+            labels, radii = window_labels(disk, self.grid, box), self._radii(disk)
+        elif found is not None and (mask := _mask_of(found)) is not None:
+            box, labels = _mask_labels(mask, found)
+            radii = None
         else:
             return None
-        place = {"shape": list(box.shape), "box": [box.top, box.left, box.height, box.width]}
-        return picture | place | _channels(loaded, box)
+        return {
+            "shape": list(box.shape),
+            "box": [box.top, box.left, box.height, box.width],
+            "labels": pack_labels(labels),
+            "windows": self._has_map(cell),  # else labels tell the mask alone
+            "numbers": self._numbers(cell) if self._has_map(cell) or self.grid.has_radii else None,
+            "radii": radii,
+            **_channels(loaded, box),
+        }
 
-    def _numbers(self, cell: int, disk: DiskMap) -> dict[str, Any]:
-        numbers = self.numbers.by_cell.get(cell, {})
-        radii = None if self.grid.has_radii else self.grid.on(disk).grid.radii.tolist()
-        return {"numbers": {name: pack_floats(_short(values)) for name, values in numbers.items()}, "radii": radii}
+    def _numbers(self, cell: int) -> dict[str, Any] | None:
+        found = self.numbers.by_cell.get(cell)
+        return found and {name: pack_floats(_short(values)) for name, values in found.items()}
+
+    def _radii(self, disk: DiskMap) -> list[float] | None:
+        """Of a grid whose cells have radii of their own."""
+        return None if self.grid.has_radii else self.grid.on(disk).grid.radii.tolist()
 
     @cached_property
     def grid(self) -> PolarGrid:
@@ -127,26 +140,30 @@ class CellPictures:
         return polar_grid_of(self.study.provenance)
 
     def _has_map(self, cell: int) -> bool:
-        return cell in self._mapped
+        return cell in self.mapped
 
     @cached_property
-    def _mapped(self) -> set[int]:
-        """Cells whose map was kept."""
+    def mapped(self) -> set[int]:
+        """Cells whose map is in the study."""
         rows = self.study.cells
-        kept = (self.study.path / "maps").is_dir()
-        return set(rows.loc[rows["status"] == "ok", "cell"].tolist()) if kept else set()
+        cells = rows.loc[rows["status"] == "ok", "cell"].tolist()
+        maps = self.study.path / MAPS
+        return {cell for cell in cells if (maps / f"cell_{part_key(cell)}.npz").is_file()}
 
 
-def _ends(disk: DiskMap) -> tuple[Any, Any]:
-    return disk.outline_yx.min(axis=0), disk.outline_yx.max(axis=0)
+def _mask_of(found: SourceCell) -> BoolArray | None:
+    """Pixels of a cell, also where it was refused; None if there are none."""
+    pixels = found.refused if found.mask is None else found.mask
+    return np.asarray(pixels) != 0 if pixels is not None and np.any(pixels) else None
 
 
-def _mask_labels(found: SourceCell) -> tuple[Box, Any]:
+def _mask_labels(mask: BoolArray, found: SourceCell) -> tuple[Box, Any]:
     """A box around a cell without a map, and 0 where its mask is."""
-    assert found.mask is not None  # it was asked for
-    mask, corner = np.asarray(found.mask) != 0, np.array(found.corner)
+    corner = np.array(found.corner)
     places = np.argwhere(mask)
-    box = box_between(places.min(axis=0) + corner, places.max(axis=0) + corner, found.image_shape, LONGEST_SIDE)
+    box = box_between(
+        places.min(axis=0) + corner, places.max(axis=0) + corner, found.image_shape, LONGEST_SIDE
+    )
     y, x = (
         np.floor(along + 0.5).astype(int) - first for along, first in zip(box.axes_yx, corner, strict=True)
     )
@@ -168,7 +185,10 @@ def _channels(loaded: SignalFrame | None, box: Box) -> dict[str, Any]:
     own = replace(box, top=0, left=0)
     limits = [picture_limits([resampled(image, own)]) for image in values]
     pairs = zip(values, limits, strict=True)
-    return {"channels": [pack_picture(grey_picture(image, own, *pair)) for image, pair in pairs], "limits": limits}
+    return {
+        "channels": [pack_picture(grey_picture(image, own, *pair)) for image, pair in pairs],
+        "limits": limits,
+    }
 
 
 def _short(values: Any) -> Any:
@@ -190,5 +210,3 @@ def means_limits(numbers: WindowNumbers) -> list[Any]:
     """Means of windows by channel, of all cells that are kept, to choose colours from."""
     found = [one["mean"] for one in numbers.by_cell.values()]
     return [np.concatenate([values[k] for values in found]) for k in range(len(numbers.channels)) if found]
-
-

@@ -39,14 +39,20 @@ def listed_cells(study: Study, numbers: WindowNumbers) -> dict[str, Any]:
     single = [name for name in _LEFT_OUT if name != "frame" or not rows["frame"].any()]
     table = rows.drop(columns=[*single]).assign(**means)
     for name in ("reason", "notes"):
-        table[name] = [without_folders(str(words), study) if pd.notna(words) else None for words in table[name]]
+        table[name] = [
+            without_folders(str(words), study) if pd.notna(words) else None for words in table[name]
+        ]
     table.attrs = {"units": rows.attrs["units"] | dict.fromkeys(means, "a.u.")}
     ratios = [column_of(RATIO, name) for name in channels_among(map(str, rows))]
     own = own_columns(study)
     main = ["cell", "source", "label", "frame", *own, "status", "qc_flags", "area", *means, *ratios]
-    labels = _LABELS | {column_of(RATIO, name): f"nucleus/cytoplasm {_short(name)}" for name in _channels(rows)}
+    labels = _LABELS | {
+        column_of(RATIO, name): f"nucleus/cytoplasm {_short(name)}" for name in _channels(rows)
+    }
     labels |= {_MEAN.format(channel=name): f"mean {_short(name)}" for name in numbers.channels}
-    return listed(table, main=[*main, "area_distortion", "reason"], labels=labels, meanings=meanings_of(study))
+    return listed(
+        table, main=[*main, "area_distortion", "reason"], labels=labels, meanings=meanings_of(study)
+    )
 
 
 def own_columns(study: Study) -> list[str]:

@@ -1,4 +1,4 @@
-"""The words of the page of a study of single cells: what came of it, its QC flags, what the page leaves out."""
+"""The words of the page of single cells: what came of the run, its QC flags, what the page leaves out."""
 
 from __future__ import annotations
 
@@ -68,7 +68,10 @@ def groups_words(study: Study) -> str:
     words = []
     for name, part in mapped.groupby(CONDITION, sort=False):
         repeats = part[EXPERIMENT].dropna().nunique() if EXPERIMENT in part else 0
-        words.append(f"{name}: {counted(len(part), 'cell')}" + (f" in {counted(repeats, 'experiment')}" if repeats else ""))
+        words.append(
+            f"{name}: {counted(len(part), 'cell')}"
+            + (f" in {counted(repeats, 'experiment')}" if repeats else "")
+        )
     return "; ".join(words)
 
 
@@ -81,7 +84,9 @@ def compare_command(study: Study) -> str:
     if len(names) < 2:
         return ""
     folder = str(study.path)
-    return shlex.join(["cytodisk", "population", folder, "--compare", ",".join(names), "-o", f"{folder}_population"])
+    return shlex.join(
+        ["cytodisk", "population", folder, "--compare", ",".join(names), "-o", f"{folder}_population"]
+    )
 
 
 def lost_groups(study: Study) -> list[dict[str, Any]]:
@@ -134,7 +139,9 @@ def facts(study: Study) -> Iterator[tuple[str, str]]:
     yield "cytodisk", str(study.provenance.get("versions", {}).get("cytodisk", "unknown"))
 
 
-def left_out(study: Study, shown: Sequence[int], wanted: Sequence[int], fault: str) -> list[str]:
+def left_out(
+    study: Study, shown: Sequence[int], wanted: Sequence[int], fault: str, with_map: int
+) -> list[str]:
     """What the page shows less of than the study holds, as sentences.
 
     Parameters
@@ -146,8 +153,16 @@ def left_out(study: Study, shown: Sequence[int], wanted: Sequence[int], fault: s
         Cells that could have had one, from the first that was asked for.
     fault : str
         Why there are no pixels; empty if there are.
+    with_map : int
+        Number of cells whose map is in the study.
     """
     folder, words = shlex.quote(str(study.path)), []
+    lost = int((study.cells["status"] == "ok").sum()) - with_map
+    if lost > 0:
+        words.append(
+            f"The maps of {counted(lost, 'cell')} were not kept (--no-maps): no windows are drawn in their "
+            "pictures."
+        )
     if fault:
         words.append(
             f"The images are not on this page: {fault}. Cells are drawn as their windows alone; all numbers "
@@ -156,8 +171,7 @@ def left_out(study: Study, shown: Sequence[int], wanted: Sequence[int], fault: s
     if len(shown) < len(wanted):
         following = next((cell for cell in wanted if cell > max(shown, default=-1)), None)
         words.append(
-            f"Pictures of {counted(len(shown), 'cell')} are on this page, of {len(study.cells)}: a page of all "
-            "would be too large for a browser or take too long to write. All cells are in the list. Pictures of "
-            f"the next ones: cytodisk report {folder} --cell {following}"
+            f"Pictures of {len(shown)} of {counted(len(study.cells), 'cell')} are on this page; the list has "
+            f"all. A page with pictures of the next ones: cytodisk report {folder} --cell {following}"
         )
     return words

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 from cytodisk.errors import ParameterError
@@ -91,7 +90,8 @@ def cells_page(
     room = MOST_BYTES // (_BYTES_A_CELL + _BYTES_A_WINDOW * grid.n_windows)
     chosen = wanted[: max(1, min(most, room))]
     numbers = window_numbers(study, chosen, grid.n_windows)
-    pictures = _within_bytes(CellPictures(study, found.inputs, numbers), chosen, progress)
+    maker = CellPictures(study, found.inputs, numbers)
+    pictures = _within_bytes(maker, chosen, progress)
     data = _data(study, grid, numbers, pictures)
     words = {
         "title": real_path(study.path).name,
@@ -102,7 +102,7 @@ def cells_page(
         "lost": lost_groups(study),
         "flags": [*_earlier(study), *flag_words(qc_flags(study), study)],
         "left_out": [
-            *left_out(study, list(pictures), wanted, found.fault),
+            *left_out(study, list(pictures), wanted, found.fault, len(maker.mapped)),
             *filter(None, [rows_words(study.cells, "cells.parquet")]),
         ],
         "settings": _settings(study),
@@ -190,7 +190,9 @@ def _settings(study: Study) -> list[tuple[str, str]]:
         for role, one in told.get("inputs", {}).items()
     ]
     for name, value in told.get("parameters", {}).items():
-        words.append((name, "not set" if value is None else value if isinstance(value, str) else json.dumps(value)))
+        words.append(
+            (name, "not set" if value is None else value if isinstance(value, str) else json.dumps(value))
+        )
     words += [(name, str(told[name])) for name in ("started", "finished", "python") if name in told]
     versions = told.get("versions", {})
     return [*words, ("versions", ", ".join(f"{name} {version}" for name, version in versions.items()))]

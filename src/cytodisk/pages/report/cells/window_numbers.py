@@ -25,7 +25,7 @@ class WindowNumbers:
     channels : tuple of str
         Empty without a signal.
     means : DataFrame
-        Mean of each channel over each mapped cell, windows counted by their pixels; index: number of the cell.
+        Mean of each channel over each mapped cell, windows counted by their pixels; by number of the cell.
     by_cell : dict of int to dict of str to array
         Of chosen cells: mean and sd, shape (channels, windows), area and depth, shape (windows,).
     """

@@ -1,0 +1,1 @@
+"""`cytodisk report`, and the page that other commands end with."""
