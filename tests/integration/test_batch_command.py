@@ -90,7 +90,7 @@ def test_what_failed_is_said(
     statuses = Counter({"ok": ok, "refused": 1, "timed out": 30})
     summary = BatchSummary("out", statuses, failed, ["a remark"])
     monkeypatch.setattr(module, "batch_study", lambda *args, **options: summary)
-    exit_code, said, errors = run("batch", study, "-o", "out")
+    exit_code, said, errors = run("batch", study, "-o", "out", "--no-report")
     assert exit_code == code
     assert said.splitlines()[:4] == [
         "inputs: 2 (movies 2)",

@@ -37,13 +37,13 @@ def listed(
         "columns", and "rows" with the first `MOST_ROWS`.
     """
     units, first = table.attrs.get("units", {}), list(dict.fromkeys(main))
-    told = [name for name in table if table[name].notna().any() and not (table[name] == "").all()]
+    told = [str(name) for name in table if table[name].notna().any() and not (table[name] == "").all()]
     shown = [name for name in first if name in told]
     names = [*shown, *(name for name in told if name not in shown)]
     columns = [
         {
-            "name": str(name),
-            "label": (labels or {}).get(name, str(name).replace("_", " ")),
+            "name": name,
+            "label": (labels or {}).get(name, name.replace("_", " ")),
             "unit": units.get(name, "") if units.get(name, "") not in ("1", "frame") else "",
             "title": (meanings or {}).get(name, ""),
             "number": _is_number(table[name]),

@@ -45,8 +45,8 @@ def rendered(page: str, styles: Iterable[str], scripts: Iterable[str], words: Ma
     environment = engine.Environment(autoescape=True, undefined=engine.StrictUndefined, loader=loader)
     return str(
         environment.get_template(f"{page}.html").render(
-            words
-            | {
+            {
+                **words,
                 "style": "\n".join(_asset(f"{name}.css") for name in styles),
                 "scripts": [_asset(f"{name}.js") for name in scripts],
             }

@@ -67,6 +67,8 @@
     return { mean, sd, area: area?.values, depth: depth?.values };
   };
 
+  // Cells that were mapped without a nucleus where others have one have fewer layers.
+  const inside = (values, { radii, sectors }) => [...values].slice(0, (radii.length - 1) * sectors);
   const gridOf = (picture) => ({ radii: picture.radii ?? page.data.radii, sectors: page.data.sectors });
   const rowOf = (array, number) => array && page.row(array, number);
   const meansOf = () => rowOf(shown.numbers.mean, state.channel);
@@ -74,7 +76,8 @@
 
   const layerWords = (window) => {
     const layer = Math.floor(window / page.data.sectors);
-    return `layer ${layer}${page.data.layer_places[layer]}, sector ${window % page.data.sectors}`;
+    const place = shown.picture.plain ? (layer ? "" : " (edge)") : page.data.layer_places[layer];
+    return `layer ${layer}${place}, sector ${window % page.data.sectors}`;
   };
 
   const readOut = () => {
@@ -144,8 +147,9 @@
       byId("disk-shows").textContent = name ? `mean ${name}` : "area of windows";
       const values = means ?? numbers.area;
       const shownLimits = means ? diskLimits : ends(numbers.area);
-      const nucleus = page.data.cytoplasm_layers;
-      page.drawDisk(byId("cell-disk"), gridOf(picture), [...values], { limits: shownLimits, palette, chosen: chosen(), nucleus });
+      const nucleus = picture.plain ? null : page.data.cytoplasm_layers;
+      const grid = gridOf(picture);
+      page.drawDisk(byId("cell-disk"), grid, inside(values, grid), { limits: shownLimits, palette, chosen: chosen(), nucleus });
       page.drawBar(byId("disk-bar"), shownLimits, palette, means ? unit : page.data.units.area);
     }
     readOut();

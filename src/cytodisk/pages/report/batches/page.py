@@ -97,7 +97,7 @@ def _command(folder: Path, inputs: pd.DataFrame) -> str:
     )
 
 
-def _lost(inputs: pd.DataFrame) -> list[dict[str, str]]:
+def _lost(inputs: pd.DataFrame) -> list[dict[Any, str]]:
     rows = inputs[inputs["status"] != "ok"]
     lost = rows[["input", "status", "reason"]].head(_MOST_NAMED).astype(str)
     lost["reason"] = [re.sub(r"/\S*/(?=[^\s/])", "", words) for words in lost["reason"]]  # folders

@@ -110,7 +110,8 @@ class CellPictures:
             disk = self.study.map(cell)
             outline, shape = disk.outline_yx, disk.placed_mask.image_shape
             box = box_between(outline.min(axis=0), outline.max(axis=0), shape, LONGEST_SIDE)
-            labels, radii = window_labels(disk, self.grid, box), self._radii(disk)
+            grid = self._grid_of(disk)
+            labels, radii = window_labels(disk, grid, box), self._radii(grid, disk)
         elif found is not None and (mask := _mask_of(found)) is not None:
             box, labels = _mask_labels(mask, found)
             radii = None
@@ -121,6 +122,7 @@ class CellPictures:
             "box": [box.top, box.left, box.height, box.width],
             "labels": pack_labels(labels),
             "windows": self._has_map(cell),  # else labels tell the mask alone
+            "plain": self._has_map(cell) and grid is not self.grid,
             "numbers": self._numbers(cell) if self._has_map(cell) or self.grid.has_radii else None,
             "radii": radii,
             **_channels(loaded, box),
@@ -130,14 +132,25 @@ class CellPictures:
         found = self.numbers.by_cell.get(cell)
         return found and {name: pack_floats(_short(values)) for name, values in found.items()}
 
-    def _radii(self, disk: DiskMap) -> list[float] | None:
-        """Of a grid whose cells have radii of their own."""
-        return None if self.grid.has_radii else self.grid.on(disk).grid.radii.tolist()
+    def _grid_of(self, disk: DiskMap) -> PolarGrid:
+        """The study's grid, or that of cells that were mapped without a nucleus where others have one."""
+        return self._plain if disk.nucleus is None and self.grid.nucleus_layers else self.grid
+
+    def _radii(self, grid: PolarGrid, disk: DiskMap) -> list[float] | None:
+        """Of cells with radii of their own."""
+        if grid is self.grid and grid.has_radii:
+            return None
+        return grid.on(disk).grid.radii.tolist()
 
     @cached_property
     def grid(self) -> PolarGrid:
         """The windows on the disk; layers by depth have radii in each cell alone."""
         return polar_grid_of(self.study.provenance)
+
+    @cached_property
+    def _plain(self) -> PolarGrid:
+        told = self.study.provenance
+        return polar_grid_of(told | {"parameters": told["parameters"] | {"nucleus_layers": None}})
 
     def _has_map(self, cell: int) -> bool:
         return cell in self.mapped

@@ -91,7 +91,8 @@ def compare_command(study: Study) -> str:
 
 def lost_groups(study: Study) -> list[dict[str, Any]]:
     """Why cells were lost: reasons that differ in numbers alone are one, those of most cells first."""
-    names, groups = cell_names(study.cells), {}
+    names = cell_names(study.cells)
+    groups: dict[tuple[str, str], list[tuple[int, str]]] = {}
     for row in study.cells[study.cells["status"] != "ok"].to_dict("records"):
         reason = without_folders(str(row["reason"]), study)
         alike = re.sub(r"\d+", "N", reason.replace(str(row.get("source", "")) or "\n", "FILE"))

@@ -59,6 +59,8 @@ def window_numbers(study: Study, chosen: Sequence[int], n_windows: int) -> Windo
         weighted = known[["cell", "channel", "n_pixels"]].assign(total=known["mean"] * known["n_pixels"])
         totals.append(weighted.groupby(["cell", "channel"], sort=False)[["total", "n_pixels"]].sum())
         kept.append(block[np.isin(block["cell"].to_numpy(), wanted)])
+    if not totals:  # no cell is mapped
+        return WindowNumbers((), pd.DataFrame(), {})
     sums = pd.concat(totals).groupby(level=["cell", "channel"], sort=False).sum()
     means = (sums["total"] / sums["n_pixels"].where(sums["n_pixels"] > 0)).unstack("channel")
     rows = pd.concat(kept)
