@@ -132,6 +132,6 @@ def _write_page(console: "Console", out: str) -> None:
     from cytodisk.store.url_store import is_url
 
     if is_url(out):
-        console.print("no report: the results are not on this computer; copy them and run cytodisk report FOLDER")
+        console.print("no report: the results are not on this computer; copy them and run cytodisk report")
         return
     say_page(console, lambda: write_batch_report(Path(out)))

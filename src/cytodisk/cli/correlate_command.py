@@ -16,8 +16,6 @@ from cytodisk.runs.population.correlations.pool_parameters import BatchCorrelate
 from cytodisk.runs.run_options import TableOptions
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from cytodisk.store.correlation_store import Correlation
     from cytodisk.store.study import Study
 
