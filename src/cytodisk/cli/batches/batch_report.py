@@ -4,7 +4,6 @@ import sys
 from pathlib import Path
 
 from cytodisk.cli.console import console_for, count, progress_bar
-from cytodisk.cli.report.report_words import say_page
 
 _MOST_FAILED = 20
 
@@ -12,7 +11,7 @@ _MOST_FAILED = 20
 def report_batch(batch: Path, *, resume: bool, quiet: bool) -> None:
     """Write the page of each study of a batch, and the page that lists them."""
     from cytodisk.pages.batch_reports import write_batch_reports
-    from cytodisk.pages.report.page import REPORT, write_batch_report
+    from cytodisk.pages.report.page import REPORT
 
     console = console_for(quiet)
     stopped = "Stopped; the pages that are done stay: run it again with --resume."
@@ -27,4 +26,3 @@ def report_batch(batch: Path, *, resume: bool, quiet: bool) -> None:
     if len(found.failed) > _MOST_FAILED:
         print(f"… and {len(found.failed) - _MOST_FAILED} more: look into their folders", file=sys.stderr)
     console.print(f"pages: {batch / 'inputs'}/NAME/{REPORT}, open them in a browser")
-    say_page(console, lambda: write_batch_report(batch))

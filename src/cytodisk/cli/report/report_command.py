@@ -9,7 +9,7 @@ from cytodisk.cli.batches.given_folder import is_batch
 from cytodisk.cli.console import console_for, earlier_version_lines, progress_bar
 from cytodisk.cli.flag_words import file_names, say_flags
 from cytodisk.cli.options import Quiet
-from cytodisk.cli.report.report_words import say_written
+from cytodisk.cli.report.report_words import say_page, say_written
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -48,9 +48,11 @@ def report_command(
     console = console_for(quiet)
     if is_batch(study):
         from cytodisk.cli.batches.batch_report import report_batch
+        from cytodisk.pages.report.page import write_batch_report
 
         _refuse_of_study(study, {"--cell": cell, "--out": out, "--signal": signal})
         report_batch(study, resume=resume, quiet=quiet)
+        say_page(console, lambda: write_batch_report(study))
         return
     write_page(console, quiet, opened(console, study), out, cell, signal)
 

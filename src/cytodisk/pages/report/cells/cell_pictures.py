@@ -140,7 +140,7 @@ class CellPictures:
         """Of cells with radii of their own."""
         if grid is self.grid and grid.has_radii:
             return None
-        return grid.on(disk).grid.radii.tolist()
+        return [float(radius) for radius in grid.on(disk).grid.radii]
 
     @cached_property
     def grid(self) -> PolarGrid:
