@@ -173,6 +173,13 @@ def test_alignment_by_what_is_tested_is_warned_of() -> None:
     assert "direction missing" in names_of(cd.compare_conditions(pop, "control", "drug"))
 
 
+def test_a_rise_that_makes_others_fall_is_warned_of() -> None:
+    pop = population(list("abcdef"), list("ghijkl"), cells=40, effect=8.0)
+    found = cd.compare_conditions(pop.normalise("cell mean"), "control", "drug")
+    assert "shares of a cell" in names_of(found)
+    assert "shares of a cell" not in names_of(cd.compare_conditions(pop, "control", "drug"))
+
+
 def test_windows_without_values_are_told() -> None:
     pop = population(list("abcd"), list("efgh"))
     values = pop.raw.squeeze("channel").copy()

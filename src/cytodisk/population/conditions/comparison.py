@@ -16,6 +16,7 @@ from cytodisk.population.conditions.comparison_warnings import (
     alignment_warnings,
     design_warnings,
     driven,
+    of_shares,
     too_few,
     untested,
 )
@@ -151,6 +152,7 @@ def compare_conditions(
         *too_few(test.exchanges.smallest_p, units),
         *design_warnings(pop, units, chosen.unit),
         *alignment_warnings(pop, channels, units.codes),
+        *of_shares(pop, found.windows),
         *untested(found.windows["status"].values),
         *driven(left_out, [name for name, (_, different) in results.items() if different]),
     )

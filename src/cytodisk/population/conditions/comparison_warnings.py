@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from cytodisk.population.cell_directions import SIGNAL
 from cytodisk.population.conditions.experiment_units import Units
@@ -16,6 +17,7 @@ from cytodisk.population.population import Population
 LEVEL = 0.05
 _UNEQUAL = 5.0  # cells of the largest experiment over those of the smallest
 _MANY = 0.2  # share of cells without a direction
+_BY_CELL = ("cell mean", "cell total", "z-score")
 _TOGETHER = ("day", "date", "plate", "slide", "microscope", "operator", "animal", "batch")
 
 
@@ -120,6 +122,34 @@ def alignment_warnings(pop: Population, channels: Sequence[str], codes: np.ndarr
             "conditions looks like one in pattern. The level of the test holds.",
             "Align by the nucleus, the front or another channel before you speak of a pattern.",
         )
+
+
+def of_shares(pop: Population, windows: xr.Dataset) -> Iterator[NamedWarning]:
+    """Windows that rise and windows that fall, where each cell's level was taken out.
+
+    Parameters
+    ----------
+    pop : Population
+    windows : Dataset with dims (channel, layer, last)
+
+    Yields
+    ------
+    NamedWarning
+    """
+    by = [name for name in pop.normalisation if name in _BY_CELL]
+    for channel in windows["channel"].values if by else ():
+        own = windows.sel(channel=channel)
+        different = (own["p_fwer"] <= LEVEL).values
+        raised = int((different & (own["difference"] > 0).values).sum())
+        lowered = int((different & (own["difference"] < 0).values).sum())
+        if raised and lowered:
+            yield NamedWarning(
+                "shares of a cell",
+                f"{channel} rises in {raised} windows and falls in {lowered}, normalised by {by[-1]}.",
+                "Each cell's own level is taken out, so a rise in one place makes all others fall: one of the "
+                "two may have no cause of its own.",
+                "Compare with --normalise none or background, too, where cells are equally bright.",
+            )
 
 
 def untested(status: np.ndarray) -> Iterator[NamedWarning]:
