@@ -70,6 +70,7 @@ def test_each_movie_contributes_its_summary(movies: Path) -> None:
     np.testing.assert_allclose(population.areas[1].values.ravel(), areas)
     assert population.cells["frames"].tolist() == [12, 10]
     assert population.raw.attrs["frame_interval_s"] == 2.0
+    assert 0.0 < population.raw["depth"][0] < population.raw["depth"][1]
     assert open_population(movies, channels=["B"]).channels == ("B",)
 
 

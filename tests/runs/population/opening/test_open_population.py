@@ -245,3 +245,26 @@ def test_cells_mapped_without_a_nucleus_are_left_out(changed) -> None:
     population = open_population(changed("nucleated", inputs=inputs, cells=plain, parameters=parameters))
     assert population.compartments == ("cytoplasm", "nucleus")
     assert left_out_of(population.cells.attrs)["reason"].item().startswith("it was mapped without a nucleus")
+
+
+def test_what_does_not_fit_into_memory_is_refused(day1, monkeypatch) -> None:
+    monkeypatch.setattr(map_values, "free_bytes", lambda: 1000)
+    with pytest.raises(PopulationError, match=r"need 0.0 GB of memory, .*: name some channels"):
+        open_population(day1)
+
+
+def test_damaged_studies_say_which_file_and_what_to_do(changed) -> None:
+    odd = changed("odd", parameters={"layers": "many"})
+    with pytest.raises(ReadError, match=r"provenance.json: parameters: layers must be .* --overwrite"):
+        open_population(odd)
+    cut = changed("cut")
+    content = (cut / "windows.parquet").read_bytes()
+    (cut / "windows.parquet").write_bytes(content[:-100])
+    with pytest.raises(ReadError, match=r"windows.parquet is not a table of windows"):
+        open_population(cut)
+    (cut / "windows.parquet").unlink()
+    with pytest.raises(ReadError, match=r"windows.parquet does not exist"):
+        open_population(cut)
+    (cut / "cells.parquet").write_bytes(b"no table")
+    with pytest.raises(ReadError, match=r"cells.parquet is not a table that cytodisk wrote"):
+        open_population(cut)

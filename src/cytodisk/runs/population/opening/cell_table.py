@@ -74,8 +74,9 @@ def cell_rows(study: FoundStudy) -> pd.DataFrame:
         found = found.assign(source=_mask_name(study))
     if study.run != "shapes":
         found = found[_kept([str(name) for name in found])]
-    for name in () if study.own is None else study.own:
-        given = study.own[name].reindex(found["cell"]).set_axis(found.index)
+    own = pd.DataFrame() if study.own is None else study.own
+    for name in own:
+        given = own[name].reindex(found["cell"]).set_axis(found.index)
         found[name] = found[name].where(is_given(found[name]), given) if name in found else given
     found = found.rename(columns={"cell": "number"})
     found = found.assign(input=study.name, study=str(study.folder.absolute()))

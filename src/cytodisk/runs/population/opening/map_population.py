@@ -9,12 +9,12 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cytodisk.arrays import FloatArray
 from cytodisk.errors import PopulationError
 from cytodisk.runs.population.opening.chosen_channels import chosen_channels
 from cytodisk.runs.population.opening.chosen_scalars import chosen_scalars
 from cytodisk.runs.population.opening.disk_directions import image_directions
 from cytodisk.runs.population.opening.found_studies import FoundStudy
+from cytodisk.runs.population.opening.layer_depths import median_of_cells
 from cytodisk.runs.population.opening.map_values import CellArrays, grid_of, read_map_values
 from cytodisk.runs.population.opening.opened_cells import OpenedCells, Wanted
 from cytodisk.store.table_file import units_in
@@ -68,7 +68,7 @@ def _labelled(
     layers = {
         "layer": np.arange(grid.layers),
         "compartment": ("layer", grid.compartments.astype(object)),
-        "depth": ("layer", _median(arrays.depths), {"units": length}),
+        "depth": ("layer", median_of_cells(arrays.depths), {"units": length}),
         "sector": np.arange(grid.sectors),
     }
     attrs = {"units": "a.u."}
@@ -86,11 +86,3 @@ def _labelled(
         arrays.areas, dims=("cell", "layer", "sector"), name="area", attrs={"units": f"{length}²"}
     )
     return values, areas
-
-
-def _median(depths: FloatArray) -> FloatArray:
-    """Median over cells, NaN for a layer that no cell has."""
-    known = np.isfinite(depths)
-    return np.array(
-        [np.median(depths[known[:, k], k]) if known[:, k].any() else np.nan for k in range(depths.shape[1])]
-    )

@@ -9,13 +9,17 @@ import numpy as np
 import pandas as pd
 
 from cytodisk.arrays import BoolArray, FloatArray
-from cytodisk.population.ratios import ratio
+from cytodisk.errors import CytodiskError, PopulationError, ReadError
+from cytodisk.memory import free_bytes
 from cytodisk.runs.population.opening.alike_settings import setting_of
 from cytodisk.runs.population.opening.found_studies import FoundStudy
+from cytodisk.runs.population.opening.layer_depths import LayerDepths
 from cytodisk.runs.population.opening.left_out import LeftOut
 from cytodisk.runs.population.opening.row_moments import RowMoments
 from cytodisk.runs.population.opening.seen_windows import SeenWindows
-from cytodisk.runs.population.opening.streamed_windows import GEOMETRY, WindowBlock, WindowTable
+from cytodisk.runs.population.opening.streamed_windows import GEOMETRY, WindowTable
+from cytodisk.store.provenance_file import PROVENANCE
+from cytodisk.store.table_file import REMEDY
 from cytodisk.windows.grid_parameters import PolarGridParameters
 from cytodisk.windows.polar_windows import PolarGrid, polar_grid
 
@@ -51,13 +55,16 @@ class CellArrays(NamedTuple):
 
 
 def grid_of(study: FoundStudy) -> PolarGrid:
-    """The grid of a study's windows."""
+    """The grid of a study's windows; raises ReadError where the study's parameters are none of a grid."""
     given = {name: setting_of(study, name) for name in PolarGridParameters.model_fields}
     if given["depth_um"] is not None:
         given = {"sectors": given["sectors"], "depth_um": tuple(given["depth_um"])} | {
             "nucleus_layers": given["nucleus_layers"]
         }
-    return polar_grid(PolarGridParameters.of(**given))
+    try:
+        return polar_grid(PolarGridParameters.of(**given))
+    except CytodiskError as error:
+        raise ReadError(f"{study.folder / PROVENANCE}: parameters: {error}: {REMEDY}") from error
 
 
 def window_table(study: FoundStudy) -> WindowTable:
@@ -99,6 +106,7 @@ def read_map_values(
     """
     grid = grid_of(studies[0])
     kind = precision(len(cells), len(channels), grid.n_windows)
+    _check_memory(len(cells) * (len(channels) + 1) * grid.n_windows * np.dtype(kind).itemsize)
     arrays = CellArrays(
         np.full((len(cells), len(channels), grid.layers, grid.sectors), np.nan, dtype=kind),
         np.full((len(cells), grid.layers, grid.sectors), np.nan, dtype=kind),
@@ -120,13 +128,21 @@ def read_map_values(
     return arrays.of(kept), chosen
 
 
+def _check_memory(needed: int) -> None:
+    if needed > (free := free_bytes()):
+        raise PopulationError(
+            f"the windows of all cells need {needed / 1e9:.1f} GB of memory, {free / 1e9:.1f} GB are free: "
+            "name some channels (--channel), or map with fewer windows"
+        )
+
+
 def _fill(part: CellArrays, study: FoundStudy, cells: pd.DataFrame, channels: Sequence[str]) -> BoolArray:
     """Read a study into its part of the arrays; which cells lack a channel as a whole."""
     table = window_table(study)
     numbers = cells["number"].to_numpy(np.int64)
     keys = pd.DataFrame({"cell": numbers, "frame": cells["frame"].to_numpy()})
     moments = RowMoments(cells[["centroid_y", "centroid_x"]].to_numpy(np.float64), table.sectors)
-    depths = _LayerDepths(len(cells), table.layers)
+    depths = LayerDepths(len(cells), table.layers)
     seen = SeenWindows(table.path, numbers, part.values.shape)
     values = part.values.reshape(-1)  # a view
     for block in table.blocks(keys, channels, "mean", "depth", *GEOMETRY):
@@ -138,26 +154,6 @@ def _fill(part: CellArrays, study: FoundStudy, cells: pd.DataFrame, channels: Se
     part.depths[:], part.turn[:] = depths.means, moments.turn
     part.axis[:], part.axis_strength[:] = moments.long_axis()
     return seen.lacking()
-
-
-class _LayerDepths:
-    """Mean depth of the windows of each layer, weighted by area."""
-
-    def __init__(self, cells: int, layers: int) -> None:
-        self._shape = cells, layers
-        self._sum, self._weight = np.zeros(cells * layers), np.zeros(cells * layers)
-
-    def add(self, block: WindowBlock) -> None:
-        depth, area = block.numbers["depth"], block.numbers["area"]
-        known = np.isfinite(depth) & (area > 0)
-        place = (block.row * self._shape[1] + block.layer)[known]
-        self._sum += np.bincount(place, (depth * area)[known], len(self._sum))
-        self._weight += np.bincount(place, area[known], len(self._sum))
-
-    @property
-    def means(self) -> FloatArray:
-        found = ratio(self._sum, self._weight, self._weight > 0)
-        return np.asarray(found.reshape(self._shape))
 
 
 def _reasons(values: FloatArray, lacking: BoolArray, channels: Sequence[str]) -> Any:

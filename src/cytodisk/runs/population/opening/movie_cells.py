@@ -14,6 +14,7 @@ from cytodisk.runs.population.movie_values import movie_values
 from cytodisk.runs.population.opening.cell_table import FRAMES, PLACES
 from cytodisk.runs.population.opening.disk_directions import movie_directions
 from cytodisk.runs.population.opening.found_studies import FoundStudy
+from cytodisk.runs.population.opening.layer_depths import LayerDepths, median_of_cells
 from cytodisk.runs.population.opening.left_out import LeftOut
 from cytodisk.runs.population.opening.map_values import window_table
 from cytodisk.runs.population.opening.row_moments import RowMoments
@@ -96,6 +97,7 @@ def read_movie_values(
     parts: list[xr.DataArray] = []
     kept: list[int] = []
     directions: list[dict[str, float]] = []
+    depths: list[Any] = []
     of_study = cells.groupby("input", sort=False).indices
     for found in studies:
         rows = of_study.get(found.name, ())
@@ -117,7 +119,10 @@ def read_movie_values(
             else:
                 left_out.add_cells(cells.iloc[[row]], f"all windows are NaN in its {summary}")
         kept += some
-        directions += _directions(found, study, cells.iloc[some])
+        if some:
+            of_cells, deep = _directions_and_depths(found, study, cells.iloc[some])
+            directions += of_cells
+            depths.append(deep)
     if not parts:
         raise PopulationError(
             f"no cell has values for {summary!r} ({left_out.rows[-1]['reason']}): choose another summary"
@@ -126,7 +131,12 @@ def read_movie_values(
     columns = pd.DataFrame(directions, index=chosen.index)
     chosen = pd.concat([chosen, columns], axis=1)
     chosen.attrs = dict(cells.attrs)
-    return *_stacked(parts, chosen), chosen
+    values, areas = _stacked(parts, chosen)
+    deep = median_of_cells(np.concatenate(depths))
+    if values.sizes["layer"] == len(deep):
+        unit = studies[0].length_unit
+        values = values.assign_coords(depth=("layer", deep, {"units": unit}))
+    return values, areas, chosen
 
 
 def _stacked(parts: list[xr.DataArray], cells: pd.DataFrame) -> tuple[xr.DataArray, xr.DataArray | None]:
@@ -157,20 +167,22 @@ def _listed(part: xr.DataArray, name: Any) -> str:
     return ", ".join(map(str, part[name].values[:4])) if name in part.coords else "none"
 
 
-def _directions(found: FoundStudy, study: Study, cells: pd.DataFrame) -> list[dict[str, float]]:
-    """Directions in the disk of some cells of a study."""
-    if cells.empty:
-        return []
+def _directions_and_depths(
+    found: FoundStudy, study: Study, cells: pd.DataFrame
+) -> tuple[list[dict[str, float]], Any]:
+    """Directions in the disk of some cells of a study, and depths of their layers (cells, layers)."""
     table = window_table(found)
     frames = study.cells[(study.cells["status"] == "ok") & study.cells["cell"].isin(cells["number"])]
     frames = frames.sort_values(["cell", "frame"]).reset_index(drop=True)
     moments = RowMoments(frames[["centroid_y", "centroid_x"]].to_numpy(np.float64), table.sectors)
-    for block in table.blocks(frames[["cell", "frame"]], table.channels()[:1], *GEOMETRY):
+    depths = LayerDepths(len(frames), table.layers)
+    for block in table.blocks(frames[["cell", "frame"]], table.channels()[:1], "depth", *GEOMETRY):
         moments.add(block)
+        depths.add(block)
     axis, long = moments.long_axis()
     frames = frames.assign(turn=moments.turn, axis=axis, long=long)
     edge = study.edge
-    return [
+    directions = [
         movie_directions(
             frames[frames["cell"] == cell],
             edge.loc[edge["cell"] == cell, ["sector", "velocity"]],
@@ -178,3 +190,5 @@ def _directions(found: FoundStudy, study: Study, cells: pd.DataFrame) -> list[di
         )
         for cell in cells["number"]
     ]
+    deep = pd.DataFrame(depths.means).groupby(frames["cell"]).mean()
+    return directions, deep.loc[cells["number"]].to_numpy()
