@@ -146,8 +146,8 @@ def of_shares(pop: Population, windows: xr.Dataset) -> Iterator[NamedWarning]:
             yield NamedWarning(
                 "shares of a cell",
                 f"{channel} rises in {raised} windows and falls in {lowered}, normalised by {by[-1]}.",
-                "Each cell's own level is taken out, so a rise in one place makes all others fall: one of the "
-                "two may have no cause of its own.",
+                "Each cell's own level is taken out, so a rise in one place makes all others fall: one of "
+                "the two may have no cause of its own.",
                 "Compare with --normalise none or background, too, where cells are equally bright.",
             )
 
