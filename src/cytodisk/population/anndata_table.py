@@ -61,11 +61,7 @@ def population_anndata(population: WindowsOfCells) -> AnnData:
     MissingPartError
         anndata is not installed.
     """
-    try:
-        from anndata import AnnData
-    except ImportError as error:
-        fault = f"cannot be imported ({error})"
-        raise MissingPartError.of("a table for scanpy needs anndata", "anndata", fault) from error
+    table = require_anndata()
     obs = _observations(population)
     windows = population.raw[0].size if len(population) else int(np.prod(population.raw.shape[1:]))
     if windows:
@@ -73,9 +69,26 @@ def population_anndata(population: WindowsOfCells) -> AnnData:
         var["cells"] = _counts(values)
     else:
         values, var = _scalars(population)
-    return AnnData(
+    return table(
         X=values, obs=obs, var=var, obsm=dict(_tables(population, obs)), uns={"cytodisk": _notes(population)}
     )
+
+
+def require_anndata() -> type[AnnData]:
+    """The class of tables.
+
+    Raises
+    ------
+    MissingPartError
+        anndata is not installed.
+    """
+    try:
+        from anndata import AnnData
+    except ImportError as error:
+        fault = f"cannot be imported ({error})"
+        raise MissingPartError.of("a table for scanpy needs anndata", "anndata", fault) from error
+    table: type[AnnData] = AnnData
+    return table
 
 
 def write_h5ad(population: WindowsOfCells, path: str | os.PathLike[str]) -> None:

@@ -49,6 +49,14 @@ class FolderOptions(TableOptions):
         return {"resume": self.resume, "overwrite": self.overwrite}
 
 
+class PopulationOptions(FolderOptions):
+    """How a run of `cytodisk population` is done."""
+
+    h5ad: bool = parameter(
+        False, "Write the cells and their windows as population.h5ad too, for scanpy; needs anndata."
+    )
+
+
 class RunOptions(FolderOptions):
     """How a run is done."""
 

@@ -15,7 +15,7 @@ from cytodisk.cli.population.population_words import say_population
 from cytodisk.errors import ParameterError
 from cytodisk.runs.population.population_parameters import PopulationParameters
 from cytodisk.runs.population.power.power_parameters import PowerParameters
-from cytodisk.runs.run_options import FolderOptions
+from cytodisk.runs.run_options import PopulationOptions
 from cytodisk.store.study_kind import FIGURES
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from cytodisk.store.populations.population_study import PopulationStudy
 
 
-@with_parameters(PopulationParameters, FolderOptions, modes={"--power": PowerParameters})
+@with_parameters(PopulationParameters, PopulationOptions, modes={"--power": PowerParameters})
 def population_command(
     given: Given,
     paths: Annotated[
@@ -69,7 +69,7 @@ def population_command(
             keep_plan(out, table, notes, wanted)
             console.print(f"results: {out}")
         return
-    if beyond := given.beyond(PopulationParameters, FolderOptions):
+    if beyond := given.beyond(PopulationParameters, PopulationOptions):
         raise ParameterError(f"{', '.join(beyond)}: only with --power; pass that too, or leave it out")
     if not paths:
         raise ParameterError(
@@ -88,7 +88,7 @@ def _compare(
 ) -> "PopulationStudy":
     from cytodisk.runs.population.run_population import run_population
 
-    settings, options = given.of(PopulationParameters), given.options(FolderOptions)
+    settings, options = given.of(PopulationParameters), given.options(PopulationOptions)
     steps: list[int] = []
     with progress_bar(console.quiet, PERCENT, stopped=_STOPPED) as progress:
 

@@ -10,12 +10,13 @@ from cytodisk.errors import PopulationWarning
 from cytodisk.population.population import Population
 from cytodisk.runs.population.opening.found_studies import Paths
 from cytodisk.runs.population.population_at_hand import opened_population
+from cytodisk.runs.population.population_h5ad import keep_h5ad, refuse_without_anndata
 from cytodisk.runs.population.population_inputs import population_inputs
 from cytodisk.runs.population.population_kind import POPULATION, with_tables_of
 from cytodisk.runs.population.population_parameters import PopulationParameters
 from cytodisk.runs.population.population_work import PopulationResult, population_result
 from cytodisk.runs.provenance import describe_run
-from cytodisk.runs.run_options import FolderOptions, Progress, silent
+from cytodisk.runs.run_options import PopulationOptions, Progress, silent
 from cytodisk.runs.study_run import StudyRun
 from cytodisk.scale import Scale
 from cytodisk.store.populations.population_study import PopulationStudy, open_population_study
@@ -30,7 +31,7 @@ from cytodisk.taking import takes
 _OPENED = 40  # percents of the work, when the studies are read
 
 
-@takes(PopulationParameters, FolderOptions)
+@takes(PopulationParameters, PopulationOptions)
 def run_population(
     path: Paths,
     out: str | os.PathLike[str],
@@ -56,7 +57,7 @@ def run_population(
     parameters : PopulationParameters, optional
         All parameters together; those that are given by name overrule them.
     **settings
-        See `PopulationParameters` and `FolderOptions`.
+        See `PopulationParameters` and `PopulationOptions`.
 
     Returns
     -------
@@ -70,6 +71,8 @@ def run_population(
         A table is damaged, or a parameter is unknown or out of its range.
     StudyError
         The folder cannot be used.
+    MissingPartError
+        A file for scanpy is wanted and anndata is not installed.
 
     See Also
     --------
@@ -86,8 +89,9 @@ def run_population(
     >>> found.conditions, len(found.cells)
     (('control', 'drug'), 8)
     """
-    options, values = FolderOptions.split(settings, PopulationParameters)
+    options, values = PopulationOptions.split(settings, PopulationParameters)
     chosen = PopulationParameters.chosen(parameters, values)
+    refuse_without_anndata(options.h5ad)
     report = progress or silent
     inputs = population_inputs(path, groups, chosen.summary)
     read_as = {"studies": "tables of studies", "groups": "table of groups"}
@@ -110,7 +114,11 @@ def run_population(
         return [], notes
 
     run = StudyRun(POPULATION, provenance, chosen, options)
-    return run.into(out, work, open_population_study, write_population_columns, prepare)
+    study = run.into(out, work, open_population_study, write_population_columns, prepare)
+    if options.h5ad:
+        keep_h5ad(study.path, path, groups, chosen)
+        study = open_population_study(study.path)
+    return study
 
 
 def write_result(folder: StudyFolder, result: PopulationResult) -> None:
