@@ -8,12 +8,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+import tifffile
+import xarray as xr
 from drawn_study import study_of
 from matplotlib.figure import Figure
 
 import cytodisk as cd
 from cytodisk.errors import ParameterError, ReadError
 from cytodisk.pages.population.cell_sources import CellSources
+from cytodisk.pages.population.curve_page import curves_page
 from cytodisk.pages.population.direction_page import directions_page
 from cytodisk.pages.population.drawn_population import DrawnPopulation
 from cytodisk.pages.population.gallery_page import gallery_page
@@ -98,8 +101,8 @@ def test_labels_tell_how_values_were_made(page: Any) -> None:
     told = words_of(page(atlas_page, one, "signal"))
     assert "signal (a.u.)" in told  # the unit says what each cell was divided by
     assert any("sector 0 at the nucleus" in words for words in told)
-    assert (
-        drawn(population(), summary="peak_correlation").value_label("signal").startswith("peak correlation")
+    assert drawn(population(), summary="peak_correlation").value_label("signal") == (
+        "peak correlation of signal (a.u.)"
     )
 
 
@@ -191,11 +194,10 @@ def mapped(tmp_path_factory: pytest.TempPathFactory) -> Study:
     for label, (radius, x) in enumerate([(9, 15), (12, 45), (11, 75), (15, 110)], 1):
         y, column = np.ogrid[:40, :130]
         masks[(y - 20) ** 2 + (column - x) ** 2 <= radius**2] = label
-    import tifffile
-
     tifffile.imwrite(folder / "masks.tif", masks)
     tifffile.imwrite(folder / "signal.tif", (masks * 10).astype(np.uint16))
-    return cd.run_map(folder / "masks.tif", folder / "out", signal=folder / "signal.tif", layers=3, sectors=8)
+    signal = {"signal": folder / "signal.tif", "channels": ("signal",)}
+    return cd.run_map(folder / "masks.tif", folder / "out", layers=3, sectors=8, **signal)
 
 
 def with_maps(study: Study, **columns: Any) -> DrawnPopulation:
@@ -220,6 +222,52 @@ def test_a_gallery_names_its_cells(page: Any, mapped: Study) -> None:
     titles = [ax.get_title() for ax in figure.axes if ax.get_title()]
     assert set(titles) == {f"masks.tif\ncell {number}" for number in range(1, 5)}
     assert {"nearest", "farthest", "control"} <= set(words_of(figure))
+
+
+def test_a_gallery_shows_the_images_that_were_measured(page: Any, mapped: Study) -> None:
+    one = with_maps(mapped)
+    one.study.__dict__["gallery"] = one.study.gallery.assign(channel="signal")
+    figure = page(gallery_page, one, "signal")
+    shown = [np.asarray(ax.images[0].get_array()) for ax in figure.axes if ax.images]
+    usual = [int(np.bincount(image[image > 0].astype(int)).argmax()) for image in shown]
+    assert set(usual) == {10, 20, 30, 40}  # each cell has its own grey
+    assert not any("means of windows" in words for words in words_of(figure))
+    bars = [words for words in words_of(figure) if words.endswith(" px")]
+    assert len(bars) == 1
+
+
+def test_images_that_are_gone_are_told(page: Any, mapped: Study) -> None:
+    signal = mapped.path.parent / "signal.tif"
+    hidden = signal.rename(signal.with_suffix(".hidden"))
+    try:
+        figure = page(gallery_page, with_maps(mapped), "signal")
+    finally:
+        hidden.rename(signal)
+    assert not any(ax.images for ax in figure.axes)
+    assert any(words.startswith("means of windows: ") for words in words_of(figure))
+
+
+def test_curves_have_a_panel_a_layer(page: Any) -> None:
+    lag = np.arange(-4, 5) * 5.0
+    cells = pd.DataFrame({"condition": np.repeat(["control", "drug"], 12), "experiment": list("abcdef") * 4})
+    values = np.exp(-(lag**2) / 50) * np.ones((24, 1, 3, 1)) + np.random.default_rng(0).normal(
+        0, 0.05, (24, 1, 3, 9)
+    )
+    values[12:, :, 0] += 1.0
+    coords = {"channel": ["Rac1"], "lag": ("lag", lag, {"units": "s"})}
+    pop = cd.Population(xr.DataArray(values, coords, ("cell", "channel", "layer", "lag")), cells)
+    one = drawn(pop, summary="around_events")
+    one.study.provenance.update({"curves": True, "lag_unit": "s"})
+    figure = page(curves_page, one, "Rac1")
+    assert [ax.get_title(loc="left") for ax in figure.axes] == [
+        "layer 0 (edge)",
+        "layer 1",
+        "layer 2 (centre)",
+    ]
+    assert figure.axes[-1].get_xlabel() == "time after the onset (s)"
+    dots = [[line for line in ax.lines if line.get_gid() == "differs"] for ax in figure.axes]
+    assert [len(marks) for marks in dots] == [1, 0, 0]
+    assert len(np.asarray(dots[0][0].get_xdata())) == 9
 
 
 def test_power_is_written_in_the_formats_that_are_wanted(tmp_path: Path, drawn: list[Figure]) -> None:

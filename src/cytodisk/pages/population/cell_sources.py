@@ -15,6 +15,7 @@ from cytodisk.analysis.shape.medoid_cell import medoid_cell
 from cytodisk.arrays import AnyArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import CytodiskError, EarlierVersionWarning, ReadError
+from cytodisk.pages.population.cell_images import CellImages
 from cytodisk.store.study import Study, open_study
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 from cytodisk.windows.study_grid import polar_grid_of
@@ -43,6 +44,7 @@ class CellSources:
         self.cells, self.used = cells, used
         self.note = self.image_fault = ""
         self._studies: dict[str, Study | str] = {}
+        self._images: dict[str, CellImages] = {}
 
     def study(self, row: int) -> Study:
         """The study that a cell is from.
@@ -71,13 +73,7 @@ class CellSources:
             It was not kept, or the study is not there.
         """
         study, number = self.study(row), int(self.cells["number"].iloc[row])
-        if not study.is_movie:
-            return study.map(number)
-        own = study.cells[(study.cells["cell"] == number) & (study.cells["status"] == "ok")]
-        frames = own["frame"].to_numpy()
-        if not len(frames):
-            raise ReadError(f"cell {number} of {study.path} has no frame with a map")
-        return study.map(number, int(frames[len(frames) // 2]))
+        return study.map(number, self.frame(row)) if study.is_movie else study.map(number)
 
     def windows(self, row: int) -> CellWindows:
         """The windows of a cell.
@@ -91,8 +87,30 @@ class CellSources:
 
     def image(self, row: int, channel: str, disk: DiskMap) -> tuple[DiskMap, AnyArray | None]:
         """The signal around a cell with the map placed in it; without the image the map as it is."""
-        del row, channel
-        return disk, None
+        study = self.study(row)
+        images = self._images.setdefault(str(study.path), CellImages(study))
+        frame = self.frame(row)
+        found = images.around(disk, int(self.cells["number"].iloc[row]), frame, channel)
+        self.image_fault = images.fault or self.image_fault
+        return (disk, None) if found is None else found
+
+    def frame(self, row: int) -> int:
+        """Number of the frame that a cell is drawn in; of a movie the middle one of those with a map.
+
+        Raises
+        ------
+        ReadError
+            No frame of the movie has a map.
+        """
+        study, number = self.study(row), int(self.cells["number"].iloc[row])
+        if not study.is_movie:
+            frames = study.cells.loc[study.cells["cell"] == number, "frame"]
+            return int(frames.iloc[0]) if len(frames) else 0
+        own = study.cells[(study.cells["cell"] == number) & (study.cells["status"] == "ok")]
+        frames = own["frame"]
+        if frames.empty:
+            raise ReadError(f"cell {number} of {study.path} has no frame with a map")
+        return int(frames.iloc[len(frames) // 2])
 
     def shift(self, row: int) -> int:
         """Sector of the cell that is sector 0 of the population."""

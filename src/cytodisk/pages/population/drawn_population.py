@@ -27,6 +27,13 @@ CHARACTER_MM = 1.3
 
 _BOLD_MM = 1.9  # mean width of a character, bold at 8 points
 _LONGEST_CHANNEL = 24
+_SUMMARIES = {
+    "sd": "sd over frames of {}",
+    "velocity": "edge velocity",
+    "peak_correlation": "peak correlation of {}",
+    "lag": "lag of the peak of {}",
+    "around_events": "{} less that at any moment",
+}
 _DIRECTIONS = {
     "nucleus": "the nucleus",
     "front": "the front",
@@ -114,7 +121,7 @@ class DrawnPopulation:
         """What the values of windows are, with their unit."""
         settings, name = self.study.parameters, self.channel_words(channel)
         summary = str(settings.get("summary") or "mean")
-        words = f"{summary.replace('_', ' ')} {name}"
+        words = _SUMMARIES.get(summary, "mean {}").format(name)
         normalised = str(settings.get("normalise") or "none")
         if normalised != "none" and summary == "mean":
             words = f"{name} above background" if normalised == "background" else name

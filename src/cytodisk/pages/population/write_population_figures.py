@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
+from cytodisk.pages.population.curve_page import curves_page
 from cytodisk.pages.population.direction_page import directions_page
 from cytodisk.pages.population.drawn_population import DrawnPopulation
 from cytodisk.pages.population.gallery_page import gallery_page
@@ -47,8 +48,9 @@ def write_population_figures(
         Of each of the first four channels `atlas_<channel>` (conditions and their difference on the disk),
         `atlas_on_cell_<channel>` (the same on the cell with the most usual shape) and `gallery_<channel>`
         (cells nearest to the mean and farthest from it); `profiles`, the signal by depth; `scalars`, the
-        most important ones as SuperPlots; `effect_sizes` of all; `directions`. What there are no numbers or
-        maps for is not drawn: see `missing_figures`.
+        most important ones as SuperPlots; `effect_sizes` of all; `directions` in which channels are
+        brightest. Where curves are compared, such as the signal around events, `curves_<channel>` stands for
+        the pictures of windows. What there are no numbers or maps for is not drawn: see `missing_figures`.
 
     Raises
     ------
@@ -99,7 +101,11 @@ def missing_figures(study: PopulationStudy) -> list[str]:
 
 def _pages(one: DrawnPopulation) -> dict[str, Page]:
     pages: dict[str, Page] = {}
-    channels = [] if one.study.is_curves else one.channels[:MOST_CHANNELS]
+    channels = one.channels[:MOST_CHANNELS]
+    if one.study.is_curves:
+        for channel, name in zip(channels, file_names(channels), strict=True):
+            pages[f"curves_{name}"] = _of(curves_page, one, channel)
+        channels = []
     for channel, name in zip(channels, file_names(channels), strict=True):
         pages[f"atlas_{name}"] = _of(atlas_page, one, channel)
         pages[f"atlas_on_cell_{name}"] = _of(cell_atlas_page, one, channel)

@@ -13,6 +13,9 @@ from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.errors import ParameterError
 from cytodisk.plot.number_tables import number_table
 
+ALPHA = 0.05
+"""Largest p that counts as significant."""
+
 _PERCENTILE = 99.0
 _DIMS = ("layer", "sector")
 
@@ -54,7 +57,7 @@ class DifferenceMap:
     tested: BoolArray
     significant: BoolArray
     cluster: IntArray
-    alpha: float = 0.05
+    alpha: float = ALPHA
 
     @classmethod
     def of(
@@ -63,7 +66,7 @@ class DifferenceMap:
         *,
         cluster_labels: Any = None,
         clusters: pd.DataFrame | None = None,
-        alpha: float = 0.05,
+        alpha: float = ALPHA,
     ) -> DifferenceMap:
         """Take what is drawn out of a comparison of conditions, of one channel.
 
