@@ -65,6 +65,13 @@ def test_a_channel_can_align_cells_without_being_compared() -> None:
     assert found.tables["cells"]["strength"].min() > 0
 
 
+def test_the_bright_side_is_told_as_aligned() -> None:
+    truth = cd.simulate.population(0, experiments=2, cells=3, polarity=8.0, effect=0.0, turned="nucleus")
+    cells = _result(truth, align="nucleus").tables["cells"]
+    away = np.radians(cells["polarity_direction_signal"].to_numpy())
+    assert np.abs(np.angle(np.exp(1j * away))).max() < 0.3  # polarity is highest at sector 0
+
+
 def test_distances_find_the_odd_cell() -> None:
     truth = cd.simulate.population(0, experiments=3, cells=5, effect=0.0)
     truth.values[7] += 5.0

@@ -9,6 +9,7 @@ from typing import Any
 from cytodisk.errors import PopulationWarning
 from cytodisk.population.population import Population
 from cytodisk.runs.population.opening.found_studies import Paths
+from cytodisk.runs.population.opening.shape_population import NOTES
 from cytodisk.runs.population.population_at_hand import opened_population
 from cytodisk.runs.population.population_h5ad import keep_h5ad, refuse_without_anndata
 from cytodisk.runs.population.population_inputs import population_inputs
@@ -143,8 +144,7 @@ def _opened(
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", PopulationWarning)
         population = opened_population(path, groups, chosen)
-    notes = [str(one.message) for one in caught if issubclass(one.category, PopulationWarning)]
     for one in caught:
         if not issubclass(one.category, PopulationWarning):
             warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
-    return population, notes
+    return population, [str(note) for note in population.cells.attrs.get(NOTES, [])]
