@@ -28,6 +28,9 @@ def test_several_conditions_are_each_compared_with_the_control() -> None:
     hits = windows[windows["p_fwer"] <= 0.05]
     assert set(hits["condition"]) <= {"b"}
     assert found.tables["atlas"]["condition"].unique().tolist() == ["DMSO", "a", "b"]
+    assert all("a" in words or "b against DMSO" in words for words in found.notes["sentences"])
+    assert any(words.startswith("b against DMSO: Of ") for words in found.notes["sentences"])
+    assert any("corrected for that (Holm)" in words for words in found.notes["sentences"])
 
 
 def test_the_first_named_condition_is_the_control() -> None:

@@ -161,6 +161,10 @@ def test_cells_of_unknown_experiments_are_described_not_tested(cell_study: Path,
     assert windows["p"].isna().all()
     assert windows["difference"].notna().all()
     assert not study.experiments["used"].any()
+    scalars = study.scalars.set_index("scalar")
+    assert set(scalars["status"]) == {"not tested"}
+    drug = study.cells[study.cells["condition"] == "drug"]
+    assert scalars.loc["area", "mean_treated"] == pytest.approx(drug["area"].mean())
 
 
 def test_cells_as_units_are_warned_of(cell_study: Path, tmp_path: Path) -> None:

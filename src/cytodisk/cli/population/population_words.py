@@ -1,6 +1,5 @@
 """What `cytodisk population` says at its end."""
 
-import sys
 from typing import TYPE_CHECKING
 
 from cytodisk.cli.console import count
@@ -17,9 +16,6 @@ _MOST_REASONS = 8
 
 def say_population(console: "Console", study: "PopulationStudy", drawn: "Sequence[str]" = ()) -> None:
     """Say what can be reached, the design, what was found, what speaks against it, and where figures are."""
-    for note in study.provenance.get("warnings", ()):
-        if not console.quiet:
-            print(f"Warning: {note}", file=sys.stderr)
     for sentence in study.sentences:
         console.print(sentence)
     console.print(cells_words(study))
@@ -27,6 +23,8 @@ def say_population(console: "Console", study: "PopulationStudy", drawn: "Sequenc
         console.print(line)
     for warning in study.warnings:
         console.print(warning_line(warning))
+    for note in study.provenance.get("warnings", ()):
+        console.print(f"Warning: {note}")
     for line in drawn:
         console.print(line)
     console.print(f"results: {study.path}")

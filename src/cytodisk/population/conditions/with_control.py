@@ -93,7 +93,7 @@ def compare_with_control(
             windows=one.windows.assign(p_holm=(one.windows["p_fwer"].dims, windows[name])),
             clusters=one.clusters.assign(p_holm=clusters[name]),
             scalars=one.scalars.assign(p_holm=scalars[name]),
-            sentences=(*one.sentences, *_words(name, len(names), windows[name])),
+            sentences=(*one.sentences, *_words(name, len(names), windows[name], scalars[name])),
         )
         for name, one in found.items()
     }
@@ -144,11 +144,13 @@ def holm(families: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
     return {name: part.reshape(np.shape(p)) for (name, p), part in zip(families.items(), parts, strict=True)}
 
 
-def _words(name: str, count: int, windows: FloatArray) -> list[str]:
-    if count < 2:
+def _words(name: str, count: int, *families: FloatArray) -> list[str]:
+    """How many windows and scalars are left; nothing of one condition alone."""
+    kinds = zip(("windows", "scalars"), families, strict=True)
+    left = [f"{int((p <= LEVEL).sum())} {kind}" for kind, p in kinds if np.isfinite(p).any()]
+    if count < 2 or not left:
         return []
-    left = int((windows <= LEVEL).sum())
     return [
-        f"{count} conditions were compared with the control; corrected for that (Holm), {left} windows of "
-        f"{name} differ."
+        f"{count} conditions were compared with the control; corrected for that (Holm), {' and '.join(left)} "
+        f"of {name} differ."
     ]

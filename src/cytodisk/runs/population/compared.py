@@ -108,10 +108,13 @@ def _sentences(
     finding: list[str] = []
     several = len(found) > 1
     for name, one in found.items():
-        before = f"{name} against {chosen.control}: " if several else ""
+        pair = f"{name} against {chosen.control}"
+        before = f"{pair}: " if several else ""
         reach.append(before + one.sentences[0])
         design.append(before + one.sentences[1])
-        finding += one.sentences[2:]
+        finding += [
+            words if not several or name in words else f"{pair}: {words}" for words in one.sentences[2:]
+        ]
     if trend is not None:
         reach.append(trend.sentences[0])
         finding += trend.sentences[1:]

@@ -78,6 +78,33 @@ def described_windows(atlas: xr.Dataset, control: str, treated: Sequence[str]) -
     return _joined(parts, control)
 
 
+def described_scalars(
+    scalars: pd.DataFrame, conditions: pd.Series[str], control: str, treated: Sequence[str]
+) -> pd.DataFrame:
+    """The table scalars where nothing is tested: means of all cells and their differences.
+
+    Parameters
+    ----------
+    scalars : DataFrame
+        One column a scalar that is compared, a row a cell.
+    conditions : Series of str
+        Of the cells.
+    control : str
+    treated : sequence of str
+
+    Returns
+    -------
+    DataFrame
+    """
+    means = scalars.groupby(conditions.to_numpy()).mean()
+    parts = {}
+    for name in treated:
+        first, second = means.loc[control], means.loc[name]
+        table = pd.DataFrame({"mean_control": first, "mean_treated": second, "difference": second - first})
+        parts[name] = table.rename_axis("scalar").reset_index().assign(status="not tested")
+    return _joined(parts, control)
+
+
 def _joined(tables: Mapping[str, pd.DataFrame], control: str) -> pd.DataFrame:
     """Tables of several comparisons, one below the other, with the conditions that are compared."""
     parts = [table.assign(condition=name, control=control) for name, table in tables.items() if len(table)]

@@ -19,6 +19,7 @@ from cytodisk.runs.population.compared import Compared, compared
 from cytodisk.runs.population.comparison_rows import (
     comparison_row,
     comparison_tables,
+    described_scalars,
     described_windows,
     experiment_table,
     trend_tables,
@@ -35,7 +36,7 @@ from cytodisk.runs.population.opening.left_out import left_out_of
 from cytodisk.runs.population.population_at_hand import of_channels, prepared
 from cytodisk.runs.population.population_parameters import PopulationParameters
 from cytodisk.runs.population.typical_cells import distances_to_mean, gallery
-from cytodisk.store.populations.population_study import StudyWarning
+from cytodisk.store.populations.population_study import SCALARS, StudyWarning
 from cytodisk.store.populations.window_arrays import window_rows
 from cytodisk.store.tables import Column
 
@@ -100,6 +101,12 @@ def population_result(
     )
     cells = with_distances(cells_of_study(whole, left_out, whole_scalars), used, distances)
     tables, more = _tables(shown, chosen, parameters, tests, atlas), more_columns(cells, whole)
+    notes = _notes(shown, chosen, tests)
+    if not tests.found and chosen.control:
+        compared_ones = whole_scalars.loc[used, notes[SCALARS]]
+        tables["scalars"] = described_scalars(
+            compared_ones, shown.cells[CONDITION], chosen.control, chosen.treated
+        )
     if len(tables["scalars"]):
         units = {name: column.unit for name, column in more.items()}
         tables["scalars"]["unit"] = tables["scalars"]["scalar"].map(units).fillna("")
@@ -112,7 +119,7 @@ def population_result(
     }
     step(1.0)
     scale = {name: opened.cells.attrs.get(name, unknown) for name, unknown in _SCALE.items()}
-    return PopulationResult(tables, more, _notes(shown, chosen, tests) | scale)
+    return PopulationResult(tables, more, notes | scale)
 
 
 def _gallery(shown: Population, distances: Any, used: Any) -> pd.DataFrame:
@@ -151,7 +158,7 @@ def _notes(shown: Population, chosen: ComparedConditions, tests: Compared) -> di
         "control": chosen.control,
         "conditions": list(chosen.names),
         "sentences": list(tests.sentences),
-        "scalars compared": list(dict.fromkeys([*of_signal, *shown.scalars])),
+        SCALARS: list(dict.fromkeys([*of_signal, *shown.scalars])),
         "signal_unit": shown.units,
         "lag_unit": "" if lag is None else str(lag.attrs.get("units", "frames")),
     }
