@@ -78,7 +78,7 @@ def _list_inputs(batch: "Batch") -> None:
     import csv
     from dataclasses import astuple, fields
 
-    from cytodisk.runs.batch.dry_run import Understood, understand
+    from cytodisk.runs.batch.dry_run import Understood, refuse_groups, understand
     from cytodisk.store.csv_tables import text_made_harmless
 
     writer = csv.writer(sys.stdout, lineterminator="\n")  # which writes None as an empty field
@@ -97,6 +97,8 @@ def _list_inputs(batch: "Batch") -> None:
         of_nuclei = [item.nuclei] * nuclei
         write(item.name, item.kind, item.masks, item.signal, *of_nuclei, *item.columns, *astuple(found))
         faults += bool(found.fault)
+    for words in refuse_groups(batch):
+        print(f"note: {words}", file=sys.stderr)
     if faults:
         fail(f"{faults} of {count(len(batch.inputs), 'input')} cannot be used: the column fault says why")
 

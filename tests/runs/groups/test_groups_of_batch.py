@@ -11,7 +11,9 @@ import tifffile
 
 import cytodisk as cd
 from cytodisk.errors import ParameterError
+from cytodisk.runs.batch.batch_file import read_batch
 from cytodisk.runs.batch.batch_study import BatchSummary
+from cytodisk.runs.batch.dry_run import refuse_groups
 
 STUDY = """
 [study]
@@ -165,6 +167,21 @@ def test_a_table_that_does_not_fit_is_refused_before_anything_runs(
     with pytest.raises(ParameterError, match=words):
         cd.run_batch(folder / "study.toml", folder / "out", tell=lambda _: None)
     assert not (folder / "out").exists()
+
+
+def test_a_dry_run_compares_labels_of_images(folder: Path) -> None:
+    assert refuse_groups(read_batch(folder / "study.toml")) == ()
+    write_table(folder, "file,cell,condition", "labels,2,control", "movie,7,drug")
+    with pytest.raises(ParameterError, match=r"there is no cell 2 of labels\.tif: labels of cells are 1, 3$"):
+        refuse_groups(read_batch(folder / "study.toml"))
+    (folder / "study.toml").write_text(STUDY.partition('[[inputs]]\nmasks = "movie')[0])
+    write_table(
+        folder, "file,cell,condition", "labels,1,control", "more,1,drug", "folder/a_masks.tif,2,control"
+    )
+    (words,) = refuse_groups(read_batch(folder / "study.toml"))
+    assert words.endswith(
+        "2 of 5 cells are in no row, so they have no condition: label 3 of labels.tif, label 3 of b_masks.tif"
+    )
 
 
 def test_groups_of_one_input_are_refused_by_name(folder: Path) -> None:

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
+import pandas as pd
+
 from cytodisk.errors import CytodiskError
 from cytodisk.images.chosen_channels import with_names
+from cytodisk.runs.batch.batch_file import Batch
 from cytodisk.runs.batch.batch_file_rows import SCALE
+from cytodisk.runs.batch.batch_groups import masks_of
 from cytodisk.runs.batch.batch_input import BatchInput
-from cytodisk.runs.cells.cell_inputs import open_inputs
+from cytodisk.runs.cells.cell_groups import cells_of
+from cytodisk.runs.cells.cell_inputs import CellInputs, open_inputs
 from cytodisk.runs.depth_layers import check_depths
+from cytodisk.runs.groups.groups import Groups
 from cytodisk.runs.map.map_parameters import WindowsOfMapsParameters
 from cytodisk.runs.movie.movie_inputs import open_movie_files
 from cytodisk.runs.movie.movie_parameters import MovieParameters
@@ -90,11 +97,51 @@ def _with_files(given: Understood, item: BatchInput) -> Understood:
         if signal is not None:
             signal = with_names(signal, item.signal_name)
     else:
-        inputs = open_inputs(item.masks, item.signal, item.parameters, item.signal_name, item.nuclei)
+        inputs = _opened(item)
         signal, pixel_size_um = next(iter(inputs.signal_files), None), inputs.scale.pixel_size_um
     check_depths(_grid(item.parameters), Scale(pixel_size_um))
     channels = signal.channels if signal is not None else ()
     return replace(given, pixel_size_um=pixel_size_um, channels=_together(channels))
+
+
+def refuse_groups(batch: Batch) -> tuple[str, ...]:
+    """Compare the table of groups of a batch with the cells of its images, not with labels of movies.
+
+    Parameters
+    ----------
+    batch : Batch
+
+    Returns
+    -------
+    tuple of str
+        What a user should know, where all inputs are images.
+
+    Raises
+    ------
+    ParameterError
+        The table does not fit.
+    """
+    if batch.groups is None:
+        return ()
+    parts = [_cells(item, batch.groups) for item in batch.inputs]
+    cells = pd.concat(parts, ignore_index=True)
+    number = cells.groupby(["input", "cell"], sort=False).ngroup()
+    found = batch.groups.match(cells.assign(cell=number))
+    return found.warnings if all(item.kind == "map" for item in batch.inputs) else ()
+
+
+def _cells(item: BatchInput, groups: Groups) -> pd.DataFrame:
+    """The cells of an input; one without a label for a movie, and for files that cannot be used."""
+    cells = pd.DataFrame({"cell": [0], "source": [item.masks.name], "frame": [0], "label": [0]})
+    if item.kind == "map":
+        with suppress(CytodiskError):  # which stands in the input's line
+            cells = cells_of(_opened(item).sources, groups)
+    paths = [str(masks_of(item, source)) for source in cells["source"]]
+    return cells.assign(input=item.name, path=paths)
+
+
+def _opened(item: BatchInput) -> CellInputs:
+    return open_inputs(item.masks, item.signal, item.parameters, item.signal_name, item.nuclei)
 
 
 def _grid(parameters: WindowsOfMapsParameters) -> PolarGrid:

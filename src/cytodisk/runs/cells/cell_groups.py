@@ -12,6 +12,7 @@ from cytodisk.errors import CytodiskError
 from cytodisk.images.mask_files import MaskSource, read_source_cells
 from cytodisk.runs.cells.cell_inputs import CellInputs
 from cytodisk.runs.groups.given_groups import GivenGroups
+from cytodisk.runs.groups.groups import Groups
 from cytodisk.runs.groups.groups_file import read_groups
 from cytodisk.runs.groups.known_cells import CELL
 
@@ -38,10 +39,27 @@ def with_groups(inputs: CellInputs, groups: str | os.PathLike[str] | None) -> Ce
     if groups is None:
         return inputs
     found = read_groups(groups)
-    rows = list(_cells(inputs.sources, CELL in found.keys))
-    cells = pd.DataFrame(rows, columns=["source", "frame", "label"]).reset_index(names="cell")
-    given = GivenGroups(found, cells, {source.name: source.path for source in inputs.sources})
+    given = GivenGroups(
+        found, cells_of(inputs.sources, found), {source.name: source.path for source in inputs.sources}
+    )
     return replace(inputs, groups=given, remarks=(*inputs.remarks, *given.found.warnings))
+
+
+def cells_of(sources: Sequence[MaskSource], groups: Groups) -> pd.DataFrame:
+    """The cells of mask files as far as a table of groups asks for them, by `cell`, their number in the run.
+
+    Parameters
+    ----------
+    sources : sequence of MaskSource
+    groups : Groups
+
+    Returns
+    -------
+    DataFrame
+        With `source`, `frame` and `label`.
+    """
+    rows = list(_cells(sources, CELL in groups.keys))
+    return pd.DataFrame(rows, columns=["source", "frame", "label"]).reset_index(names="cell")
 
 
 def _cells(sources: Sequence[MaskSource], by_label: bool) -> Iterator[tuple[str, int, int]]:
