@@ -79,7 +79,7 @@ def test_cells_that_are_not_in_it_are_told_with_the_reason(changed) -> None:
     told = left_out_of(population.cells.attrs)
     assert told[["input", "label", "reason"]].values.tolist() == [
         ["day2", 1, "refused: several cells in one mask"],
-        ["day2", 3, "it has no condition in the table of groups"],
+        ["day2", 3, "its condition is empty"],
         ["day2", 2, "all windows of Rac1 are NaN"],
     ]
     json.dumps(population.cells.attrs)

@@ -36,7 +36,7 @@ def test_cells_that_no_row_is_about_are_left_out(day1, tmp_path: Path) -> None:
     assert len(population) == 2
     told = left_out_of(population.cells.attrs)
     assert told["label"].tolist() == [3, 4]
-    assert set(told["reason"]) == {"it has no condition in the table of groups"}
+    assert set(told["reason"]) == {"its condition is empty"}
 
 
 def test_studies_are_told_apart_by_their_names(day1, changed, tmp_path: Path) -> None:

@@ -191,7 +191,7 @@ def _reasons(table: pd.DataFrame, studies: Sequence[FoundStudy]) -> Iterator[pd.
         )
     for name in (CONDITION, EXPERIMENT):
         if name in table and (known := is_given(table[name])).any():
-            yield _words(~known, f"it has no {name} in the table of groups")
+            yield _words(~known, f"its {name} is empty")
 
 
 def _words(chosen: pd.Series[bool], words: Any) -> pd.Series[str]:
@@ -201,3 +201,10 @@ def _words(chosen: pd.Series[bool], words: Any) -> pd.Series[str]:
 def is_given(column: pd.Series[Any]) -> pd.Series[bool]:
     """Whether a column has a value, row by row; blanks are none."""
     return column.notna() & (column.astype(str).str.strip() != "")
+
+
+def with_columns(cells: pd.DataFrame, columns: dict[str, Any] | pd.DataFrame) -> pd.DataFrame:
+    """Cells with more columns, and the same attrs."""
+    found = pd.concat([cells, pd.DataFrame(columns, index=cells.index)], axis=1)
+    found.attrs = dict(cells.attrs)
+    return found

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from cytodisk.errors import PopulationError
+from cytodisk.runs.population.opening.cell_table import with_columns
 from cytodisk.runs.population.opening.chosen_channels import chosen_channels
 from cytodisk.runs.population.opening.chosen_scalars import chosen_scalars
 from cytodisk.runs.population.opening.disk_directions import image_directions
@@ -51,13 +51,6 @@ def map_population(
     cells = with_columns(cells, image_directions(cells, arrays.turn, arrays.axis, arrays.axis_strength))
     values, areas = _labelled(arrays, studies[0], channels)
     return OpenedCells(values, areas, cells, chosen_scalars(cells, channels, wanted.scalars))
-
-
-def with_columns(cells: pd.DataFrame, columns: dict[str, Any]) -> pd.DataFrame:
-    """Cells with more columns, and the same attrs."""
-    found = pd.concat([cells, pd.DataFrame(columns, index=cells.index)], axis=1)
-    found.attrs = dict(cells.attrs)
-    return found
 
 
 def _labelled(

@@ -11,7 +11,7 @@ import xarray as xr
 
 from cytodisk.errors import NoValuesError, PopulationError
 from cytodisk.runs.population.movie_values import movie_values
-from cytodisk.runs.population.opening.cell_table import FRAMES, PLACES
+from cytodisk.runs.population.opening.cell_table import FRAMES, PLACES, with_columns
 from cytodisk.runs.population.opening.disk_directions import movie_directions
 from cytodisk.runs.population.opening.found_studies import FoundStudy
 from cytodisk.runs.population.opening.layer_depths import LayerDepths, median_of_cells
@@ -98,29 +98,16 @@ def read_movie_values(
     kept: list[int] = []
     directions: list[dict[str, float]] = []
     depths: list[Any] = []
-    of_study = cells.groupby("input", sort=False).indices
-    for found in studies:
-        rows = of_study.get(found.name, ())
-        study = Study(
-            found.folder,
-            frames[frames["input"] == found.name].rename(columns={"number": "cell"}),
-            found.provenance,
-        )
-        some = []
-        for row in rows:
-            try:
-                values = movie_values(study, int(cells["number"].iloc[row]), summary, channels=channels)
-            except NoValuesError as error:
-                left_out.add_cells(cells.iloc[[row]], str(error))
-                continue
-            if np.isfinite(values).any():
-                parts.append(values)
-                some.append(row)
-            else:
-                left_out.add_cells(cells.iloc[[row]], f"all windows are NaN in its {summary}")
-        kept += some
-        if some:
-            of_cells, deep = _directions_and_depths(found, study, cells.iloc[some])
+    rows_of, frames_of = (table.groupby("input", sort=False).indices for table in (cells, frames))
+    for found in (study for study in studies if study.name in rows_of):
+        own = frames.iloc[frames_of[found.name]].rename(columns={"number": "cell"})
+        study = Study(found.folder, own, found.provenance)
+        having = _summed_up(study, cells.iloc[rows_of[found.name]], channels, summary, left_out)
+        if having:
+            rows = [int(rows_of[found.name][k]) for k in having]
+            of_cells, deep = _directions_and_depths(found, study, cells.iloc[rows])
+            parts += having.values()
+            kept += rows
             directions += of_cells
             depths.append(deep)
     if not parts:
@@ -128,15 +115,30 @@ def read_movie_values(
             f"no cell has values for {summary!r} ({left_out.rows[-1]['reason']}): choose another summary"
         )
     chosen = cells.iloc[kept].reset_index(drop=True)
-    columns = pd.DataFrame(directions, index=chosen.index)
-    chosen = pd.concat([chosen, columns], axis=1)
-    chosen.attrs = dict(cells.attrs)
+    chosen = with_columns(chosen, pd.DataFrame(directions, index=chosen.index))
     values, areas = _stacked(parts, chosen)
     deep = median_of_cells(np.concatenate(depths))
     if values.sizes["layer"] == len(deep):
-        unit = studies[0].length_unit
-        values = values.assign_coords(depth=("layer", deep, {"units": unit}))
+        values = values.assign_coords(depth=("layer", deep, {"units": studies[0].length_unit}))
     return values, areas, chosen
+
+
+def _summed_up(
+    study: Study, cells: pd.DataFrame, channels: Sequence[str] | None, summary: str, left_out: LeftOut
+) -> dict[int, xr.DataArray]:
+    """Values of those cells of a study that have some, by row; why the others have none is noted."""
+    found = {}
+    for row, number in enumerate(cells["number"]):
+        try:
+            values = movie_values(study, int(number), summary, channels=channels)
+        except NoValuesError as error:
+            left_out.add_cells(cells.iloc[[row]], str(error))
+            continue
+        if np.isfinite(values).any():
+            found[row] = values
+        else:
+            left_out.add_cells(cells.iloc[[row]], f"all windows are NaN in its {summary}")
+    return found
 
 
 def _stacked(parts: list[xr.DataArray], cells: pd.DataFrame) -> tuple[xr.DataArray, xr.DataArray | None]:

@@ -46,11 +46,17 @@ class RowMoments:
             return
         y, x = y[known] - self.centroid[row, 0], x[known] - self.centroid[row, 1]
         few = _FewRows(row)
+        powers: dict[tuple[int, int], FloatArray] = {(0, 0): weight[known]}
         for sums, (in_x, in_y) in zip(self.sums, _ORDERS, strict=True):
-            few.add(sums, weight[known] * x**in_x * y**in_y)
+            if in_x:
+                powers[in_x, in_y] = powers[in_x - 1, in_y] * x
+            elif in_y:
+                powers[in_x, in_y] = powers[in_x, in_y - 1] * y
+            few.add(sums, powers[in_x, in_y])
         rim = block.layer[known] == 0
-        angle = 2.0 * np.pi * (block.sector[known] + 0.5) / self.sectors
-        turned = np.where(rim, (x + 1j * y) * np.exp(-1j * angle), 0.0)
+        angle = 2.0 * np.pi * (block.sector[known][rim] + 0.5) / self.sectors
+        turned = np.zeros(len(row), dtype=np.complex128)
+        turned[rim] = (x[rim] + 1j * y[rim]) * np.exp(-1j * angle)
         few.add(self.edge.real, turned.real)
         few.add(self.edge.imag, turned.imag)
 
