@@ -135,6 +135,9 @@ def test_the_command_says_what_was_found_and_draws_it(
     assert "2 experiments can give p = 0.5 at best" in said.out
     assert "short refused:" in said.err
     assert (pooled.path / "figures" / "curves.png").exists()
+    page = (batch / "report.html").read_text(encoding="utf-8")
+    assert "follower with velocity, all movies together" in page
+    assert "data:image/png;base64," in page
 
 
 def test_what_is_for_a_batch_is_refused_with_a_study(batch: Path) -> None:

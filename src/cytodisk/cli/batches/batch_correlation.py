@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cytodisk.cli.console import PERCENT, console_for, count, progress_bar
+from cytodisk.cli.report.report_words import say_page
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -44,6 +45,7 @@ def correlate_batch(
     quiet : bool
     """
     from cytodisk.pages.population.pooled_page import write_pooled_figure
+    from cytodisk.pages.report.page import write_batch_report
     from cytodisk.runs.population.correlations.run_batch_correlate import only_channel, run_batch_correlate
 
     console = console_for(quiet)
@@ -55,6 +57,7 @@ def correlate_batch(
     figures = write_pooled_figure(batch, found, formats)
     _say(console, found)
     console.print(f"pooled: {found.path}; figure: {', '.join(str(figure) for figure in figures)}")
+    say_page(console, lambda: write_batch_report(batch))
 
 
 def _say(console: "Console", found: "PooledCorrelation") -> None:

@@ -11,7 +11,6 @@ _MOST_FAILED = 20
 def report_batch(batch: Path, *, resume: bool, quiet: bool) -> None:
     """Write the page of each study of a batch, and the page that lists them."""
     from cytodisk.pages.batch_reports import write_batch_reports
-    from cytodisk.pages.report.page import REPORT
 
     console = console_for(quiet)
     stopped = "Stopped; the pages that are done stay: run it again with --resume."
@@ -25,4 +24,3 @@ def report_batch(batch: Path, *, resume: bool, quiet: bool) -> None:
         print(f"{row.input} {row.status}: {row.reason}", file=sys.stderr)
     if len(found.failed) > _MOST_FAILED:
         print(f"… and {len(found.failed) - _MOST_FAILED} more: look into their folders", file=sys.stderr)
-    console.print(f"pages: {batch / 'inputs'}/NAME/{REPORT}, open them in a browser")

@@ -12,6 +12,7 @@ import pandas as pd
 from cytodisk.errors import ReadError
 from cytodisk.files import real_path
 from cytodisk.pages.report.batches.batch_tables import listed_cells, listed_inputs, own_columns, read_inputs
+from cytodisk.pages.report.batches.pooled import pooled_correlations
 from cytodisk.pages.report.encode import json_for_script
 from cytodisk.pages.report.listed import MOST_ROWS
 from cytodisk.pages.report.template import rendered
@@ -52,6 +53,7 @@ def batch_page(folder: Path) -> str:
         "flags": _flags(inputs),
         "left_out": list(_left_out(folder, inputs, count, data)),
         "command": _command(folder, inputs),
+        "correlations": pooled_correlations(folder),
         "version": str(provenance.get("versions", {}).get("cytodisk", "unknown")),
         "data_json": json_for_script(data),
     }
