@@ -1,10 +1,13 @@
-"""Measure and draw what the page "Is it different?" shows: dishes, false positives, smallest p.
+"""Measure and draw what the page "Is it different?" shows: an example, dishes, false positives, planning.
 
-    docs/draw_populations.py [--studies 400] [--workers 2]
+    docs/draw_populations.py [--studies 400] [--workers 2] [--only PART …]
 
-Writes into `docs/source/guides/is_it_different`: `dishes.png` and the tables `null.csv` (how often a test
-finds a difference where there is none) and `smallest_p.csv`. The studies are those of
-`benchmarks/population_null.py`, which measures more cases.
+Writes into `docs/source/guides/is_it_different`:
+
+* example: `atlas.png` and `said.txt`, a picture and the sentences of a run on simulated images;
+* null: `dishes.png` and `null.csv`, how often a test finds a difference where there is none, in studies of
+  `benchmarks/population_null.py`, which measures more cases;
+* plan: `smallest_p.csv` and `power.csv`, what `cytodisk population --power` prints.
 """
 
 import argparse
@@ -14,6 +17,7 @@ from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pandas as pd
@@ -32,26 +36,60 @@ from population_null import count  # noqa: E402
 TARGET = REPOSITORY / "docs" / "source" / "guides" / "is_it_different"
 SHARES, PERMUTATIONS = (0.0, 0.1, 0.3), 999
 EXPERIMENTS, SHOWN = 5, 4  # in the table of false positives, and in the picture
-SIZES = range(3, 9)
+SIZES, EFFECTS = range(3, 9), (0.5, 1.0, 1.5, 2.0)
+PARTS = ("example", "null", "plan")
 COLOURS = {"control": "0.45", "drug": "#0072B2", "cells": "#E69F00", "experiments": "#009E73"}
 WIDTH_MM, HEIGHT_MM, DPI, PALETTE = 150.0, 62.0, 220, 128
 
 
 def main() -> None:
-    """Write the picture and the tables."""
+    """Write the pictures and the tables."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--studies", type=int, default=400, help="of each case (default 400)")
+    parser.add_argument("--studies", type=int, default=400, help="of each null case (default 400)")
     parser.add_argument("--workers", type=int, default=2, help="processes (default 2)")
+    parser.add_argument("--only", nargs="+", choices=PARTS, default=PARTS)
     chosen = parser.parse_args()
     os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     TARGET.mkdir(parents=True, exist_ok=True)
-    with ProcessPoolExecutor(chosen.workers) as pool:
-        null = false_positives(pool, chosen.studies)
+    if "example" in chosen.only:
+        example()
+    if "null" in chosen.only:
+        with ProcessPoolExecutor(chosen.workers) as pool:
+            null = false_positives(pool, chosen.studies)
         write(null, "null.csv")
+        draw(null)
+    if "plan" in chosen.only:
         write(smallest_p(), "smallest_p.csv")
-    draw(null)
+        write(power(), "power.csv")
+
+
+def example() -> None:
+    """From images to the atlas, as the page's commands do it."""
+    with TemporaryDirectory() as place:
+        here = Path(place)
+        made = cd.simulate.population_images(
+            here / "plate", seed=1, experiments=6, cells=5, paired=True, effect=0.4, nuclei=True
+        )
+        grid = {"layers": 4, "sectors": 12, "nucleus_layers": 1}
+        images = {"signal": made.images, "nuclei": made.nuclei, "groups": made.groups}
+        cd.run_map(made.masks, here / "maps", **images, **grid)
+        asked = {"compare": ("control", "drug"), "channel": ("Rac1",), "normalise": "cell mean"}
+        study = cd.run_population(here / "maps", here / "atlas", align="nucleus", **asked)
+        drawn = {path.name: path for path in cd.pages.write_population_figures(study)}
+        shrink(drawn["atlas_on_cell_Rac1.png"], TARGET / "atlas.png")
+        said = "\n".join([*study.sentences, *map(str, study.warnings)])
+    (TARGET / "said.txt").write_text(f"{said}\n", encoding="utf-8")
+    print(said)
+
+
+def shrink(picture: Path, target: Path) -> None:
+    """A picture with few colours, which takes little space."""
+    with Image.open(picture) as drawn:
+        small = drawn.convert("RGB").quantize(PALETTE, dither=Image.Dither.NONE)
+    with replacing(target) as temporary:
+        small.save(temporary, "png", optimize=True)
 
 
 def write(table: pd.DataFrame, name: str) -> None:
@@ -91,6 +129,20 @@ def smallest_p() -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
+def power() -> pd.DataFrame:
+    """Percent of studies that find a region as a cluster, and one number by cell, by size of the effect."""
+    found = cd.population_power()
+    rows = []
+    for (design, experiments), own in found.groupby(["design", "experiments"], sort=False):
+        words = f"{experiments} pairs" if design == "paired" else f"{experiments} + {experiments}"
+        shares = own.set_index("effect").loc[list(EFFECTS), ["cluster", "scalar"]]
+        rows.append(
+            {"Experiments": words}
+            | {f"{effect:g} sd": f"{row.cluster:.0%} / {row.scalar:.0%}" for effect, row in shares.iterrows()}
+        )
+    return pd.DataFrame(rows)
+
+
 def draw(null: pd.DataFrame) -> None:
     """Dishes of a study without any effect, and false positives."""
     with cd.plot.paper_style():
@@ -98,11 +150,10 @@ def draw(null: pd.DataFrame) -> None:
         dishes, bars = figure.subplots(1, 2, width_ratios=(1.2, 1.0))
         draw_dishes(dishes)
         draw_rates(bars, null)
-        with replacing(TARGET / "dishes.png") as temporary:
-            figure.savefig(temporary, dpi=DPI)
-            with Image.open(temporary) as drawn:
-                small = drawn.convert("RGB").quantize(PALETTE, dither=Image.Dither.NONE)
-            small.save(temporary, "png", optimize=True)
+        with TemporaryDirectory() as place:
+            picture = Path(place) / "dishes.png"
+            figure.savefig(picture, dpi=DPI)
+            shrink(picture, TARGET / "dishes.png")
 
 
 def draw_dishes(ax: Axes) -> None:

@@ -127,6 +127,7 @@ from .runs.run_options import FolderOptions as FolderOptions
 from .runs.run_options import MapOptions as MapOptions
 from .runs.run_options import RunOptions as RunOptions
 from .runs.run_options import BatchOptions as BatchOptions
+from .runs.run_options import PopulationOptions as PopulationOptions
 
 # Results of runs
 from .store.study import open_study as open_study
