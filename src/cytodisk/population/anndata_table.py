@@ -21,6 +21,13 @@ if TYPE_CHECKING:
     from anndata import AnnData as AnnData
 
 _NAMES = ("input", "file", "cell", "frame")  # columns that together name a cell
+_SECTOR_0 = {
+    "none": "begins at +u of the disk",
+    "nucleus": "begins away from the nucleus",
+    "axis": "begins at the further end of the long axis",
+    "front": "begins where the edge moves out",
+    "motion": "begins where the cell moves to",
+}
 _DIRECTION, _STRENGTH = "disk_direction_", "direction_strength_"
 
 
@@ -236,7 +243,5 @@ def _notes(population: WindowsOfCells) -> dict[str, Any]:
         "grid": grid | {"nucleus_layers": inside},
         "normalise": ", ".join(population.normalisation) or "none",
         "align": population.aligned_by,
-        "sector_0": "begins at +u of the disk"
-        if population.aligned_by == "none"
-        else f"begins at the direction of {population.aligned_by}",
+        "sector_0": _SECTOR_0.get(population.aligned_by, "begins at the brightest side of the signal"),
     }
