@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 
 import typer
 
-from cytodisk.cli.batches.given_folder import is_batch
 from cytodisk.cli.console import console_for, progress_bar
 from cytodisk.cli.correlation_words import say_correlation, say_replaced, say_verdicts
 from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.cli.options import Figures, Given, MovieStudyOrBatch, Quiet, with_parameters
+from cytodisk.cli.report.given_folder import is_batch
 from cytodisk.cli.report.report_command import opened
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.population.correlations.pool_parameters import BatchCorrelateParameters, PoolOptions

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cytodisk.cli.batches.given_folder import is_batch
 from cytodisk.cli.console import console_for, earlier_version_lines, progress_bar
 from cytodisk.cli.flag_words import file_names, say_flags
 from cytodisk.cli.options import Quiet
+from cytodisk.cli.report.given_folder import is_batch
 from cytodisk.cli.report.report_words import say_page, say_written
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def report_command(
 ) -> None:
     console = console_for(quiet)
     if is_batch(study):
-        from cytodisk.cli.batches.batch_report import report_batch
+        from cytodisk.cli.report.batch_report import report_batch
         from cytodisk.pages.report.page import write_batch_report
 
         _refuse_of_study(study, {"--cell": cell, "--out": out, "--signal": signal})

@@ -8,8 +8,8 @@ from typing import Any
 
 from cytodisk.errors import CytodiskError
 from cytodisk.store.correlation_store import list_correlations, titled
-from cytodisk.store.figures_folder import FIGURES
 from cytodisk.store.populations.pooled_correlation import PooledCorrelation, open_pooled_correlation
+from cytodisk.store.study_kind import FIGURES
 
 PICTURE = "curves.png"
 
