@@ -14,6 +14,7 @@ from cytodisk.checks import instance_of
 from cytodisk.errors import PopulationError
 from cytodisk.population.cell_directions import no_alignment
 from cytodisk.population.cell_scaling import BLOCK_VALUES, CellScaling, rolled
+from cytodisk.population.excluded_cells import excluded_cells
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT, names_in
 from cytodisk.population.population_checks import checked_areas, checked_scalars, checked_values
 
@@ -87,6 +88,15 @@ class CellValues:
         if "compartment" in self.raw.coords:
             return tuple(str(name) for name in self.raw["compartment"].values)
         return ("cell",) * self.raw.sizes["layer"]
+
+    @property
+    def excluded(self) -> pd.DataFrame:
+        """Cells that the studies have and the population has not, each with the reason.
+
+        Columns `input` (of the batch, or name of the study's folder), `source` (file of the masks), `frame`,
+        `label` and `reason`; frame and label are empty for a file as a whole.
+        """
+        return excluded_cells(self.cells.attrs)
 
     @property
     def values(self) -> xr.DataArray:

@@ -32,7 +32,6 @@ from cytodisk.runs.population.conditions_compared import (
     with_conditions,
 )
 from cytodisk.runs.population.depth_profiles import depth_profiles
-from cytodisk.runs.population.opening.left_out import left_out_of
 from cytodisk.runs.population.population_at_hand import of_channels, prepared
 from cytodisk.runs.population.population_parameters import PopulationParameters
 from cytodisk.runs.population.typical_cells import distances_to_mean, gallery
@@ -114,7 +113,7 @@ def population_result(
         "cells": cells,
         "gallery": _gallery(shown, distances, used),
         "profiles": depth_profiles(shown, whole_scalars[used].reset_index(drop=True)),
-        "excluded": left_out_of(opened.cells.attrs),
+        "excluded": opened.excluded,
         "warnings": pd.DataFrame(tests.warnings, columns=list(StudyWarning._fields)),
     }
     step(1.0)

@@ -9,7 +9,6 @@ from cytodisk import simulate
 from cytodisk.errors import PopulationError
 from cytodisk.runs.movie.run_movie import run_movie
 from cytodisk.runs.population.movie_values import movie_values
-from cytodisk.runs.population.opening.left_out import left_out_of
 from cytodisk.runs.population.opening.movie_cells import rows_by_cell
 from cytodisk.runs.population.opening.open_population import open_population
 from cytodisk.store.study import open_study
@@ -76,7 +75,7 @@ def test_each_movie_contributes_its_summary(movies: Path) -> None:
 
 @pytest.mark.slow
 def test_a_movie_that_gives_nothing_is_told_with_the_reason(movies: Path) -> None:
-    told = left_out_of(open_population(movies).cells.attrs)
+    told = open_population(movies).excluded
     assert told["input"].tolist() == ["movie2"]
     assert told["reason"].item().startswith("4 of 4 frames have values, the mean over time needs at least 5")
     with pytest.raises(PopulationError, match=r"'peak_correlation'|cytodisk correlate"):

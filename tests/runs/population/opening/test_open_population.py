@@ -7,7 +7,6 @@ import pytest
 
 from cytodisk.errors import PopulationError, PopulationWarning, ReadError
 from cytodisk.runs.population.opening import map_values
-from cytodisk.runs.population.opening.left_out import left_out_of
 from cytodisk.runs.population.opening.open_population import open_population
 
 
@@ -26,7 +25,7 @@ def test_a_study_is_a_population_of_its_cells(day1) -> None:
     assert population.raw["depth"].attrs["units"] == "px"
     assert population.raw["depth"][0] < population.raw["depth"][1]
     assert population.values.dtype == np.float64
-    assert left_out_of(cells.attrs).empty
+    assert population.excluded.empty
 
 
 def test_rows_may_be_in_any_order(day1, changed) -> None:
@@ -76,7 +75,7 @@ def test_cells_that_are_not_in_it_are_told_with_the_reason(changed) -> None:
     population = open_population([study, more])
     assert population.cells["cell"].tolist() == ["day2, cell 4", *(f"day3, cell {k}" for k in (1, 2, 3, 4))]
     assert population.conditions == ("a", "b")
-    told = left_out_of(population.cells.attrs)
+    told = population.excluded
     assert told[["input", "label", "reason"]].values.tolist() == [
         ["day2", 1, "refused: several cells in one mask"],
         ["day2", 3, "its condition is empty"],
@@ -90,7 +89,7 @@ def test_a_cell_without_one_of_the_channels_is_left_out(changed) -> None:
         return windows[(windows["cell"] != 2) | (windows["channel"] == "Rac1")]
 
     population = open_population(changed("day2", windows=without))
-    assert left_out_of(population.cells.attrs)["reason"].tolist() == ["it has no channel RhoA"]
+    assert population.excluded["reason"].tolist() == ["it has no channel RhoA"]
 
 
 def test_windows_without_a_value_stay_nan(changed) -> None:
@@ -244,7 +243,7 @@ def test_cells_mapped_without_a_nucleus_are_left_out(changed) -> None:
     parameters = {"nucleus_layers": 1, "layers": 1, "missing": "plain"}
     population = open_population(changed("nucleated", inputs=inputs, cells=plain, parameters=parameters))
     assert population.compartments == ("cytoplasm", "nucleus")
-    assert left_out_of(population.cells.attrs)["reason"].item().startswith("it was mapped without a nucleus")
+    assert population.excluded["reason"].item().startswith("it was mapped without a nucleus")
 
 
 def test_what_does_not_fit_into_memory_is_refused(day1, monkeypatch) -> None:

@@ -8,7 +8,6 @@ import tifffile
 from cytodisk import simulate
 from cytodisk.errors import PopulationError
 from cytodisk.runs.batch.run_batch import run_batch
-from cytodisk.runs.population.opening.left_out import left_out_of
 from cytodisk.runs.population.opening.open_population import open_population
 
 pytestmark = pytest.mark.slow  # a process for each input
@@ -72,7 +71,7 @@ def test_a_batch_is_a_population_of_all_its_cells(batch: Path) -> None:
 
 
 def test_an_input_without_results_is_told_with_the_reason(batch: Path) -> None:
-    told = left_out_of(open_population(batch).cells.attrs)
+    told = open_population(batch).excluded
     assert told["input"].unique().tolist() == ["c"]
     assert told["source"].unique().tolist() == ["c.tif"]
     assert told["reason"].str.startswith("refused: ").all()

@@ -3,7 +3,6 @@ from pathlib import Path
 import pytest
 
 from cytodisk.errors import ParameterError, PopulationWarning
-from cytodisk.runs.population.opening.left_out import left_out_of
 from cytodisk.runs.population.opening.open_population import open_population
 
 
@@ -34,7 +33,7 @@ def test_cells_that_no_row_is_about_are_left_out(day1, tmp_path: Path) -> None:
     with pytest.warns(PopulationWarning, match="2 of 4 cells are in no row"):
         population = open_population(day1, groups=groups)
     assert len(population) == 2
-    told = left_out_of(population.cells.attrs)
+    told = population.excluded
     assert told["label"].tolist() == [3, 4]
     assert set(told["reason"]) == {"its condition is empty"}
 

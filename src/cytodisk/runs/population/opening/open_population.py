@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import pandas as pd
 
 from cytodisk.errors import PopulationError, PopulationWarning
+from cytodisk.population.excluded_cells import EXCLUDED, excluded_text
 from cytodisk.population.population import Population
 from cytodisk.runs.population.movies.summary_names import MOVIE_SUMMARIES
 from cytodisk.runs.population.opening.alike_settings import check_alike, common_scale
@@ -17,7 +18,7 @@ from cytodisk.runs.population.opening.cell_names import cell_names
 from cytodisk.runs.population.opening.cell_table import joined_rows, usable_rows
 from cytodisk.runs.population.opening.disk_directions import direction_units
 from cytodisk.runs.population.opening.found_studies import Paths, find_studies
-from cytodisk.runs.population.opening.left_out import LEFT_OUT, LeftOut
+from cytodisk.runs.population.opening.left_out import LeftOut
 from cytodisk.runs.population.opening.map_population import map_population
 from cytodisk.runs.population.opening.movie_cells import rows_by_cell
 from cytodisk.runs.population.opening.movie_population import movie_population
@@ -40,7 +41,7 @@ def open_population(
     """Read the cells of a batch, or of studies, as one population.
 
     Cells that cannot be in it (refused, no windows, no condition where others have one) are listed with the
-    reason in `left_out_of(pop.cells.attrs)`. Windows are read block by block, in double precision; above
+    reason in `pop.excluded`. Windows are read block by block, in double precision; above
     600 MB in single precision, and `pop.raw.attrs["precision"]` says so.
 
     Parameters
@@ -120,7 +121,7 @@ def open_population(
     notes += found.cells.attrs.get(NOTES, [])
     scale = common_scale(studies)
     attrs["units"] = attrs["units"] | direction_units([str(name) for name in found.cells])
-    found.cells.attrs = attrs | scale | {LEFT_OUT: left_out.text, NOTES: notes}
+    found.cells.attrs = attrs | scale | {EXCLUDED: excluded_text(left_out.rows), NOTES: notes}
     if found.values is not None:
         found.values.attrs |= scale | {"summary": summary}
     return Population(found.values, found.cells, areas=found.areas, scalars=found.scalars)
