@@ -2,6 +2,7 @@ from pathlib import Path
 
 import pytest
 
+import cytodisk as cd
 from cytodisk.errors import ParameterError, PopulationWarning
 from cytodisk.runs.population.opening.open_population import open_population
 
@@ -42,6 +43,14 @@ def test_studies_are_told_apart_by_their_names(day1, changed, tmp_path: Path) ->
     groups = written(tmp_path, "file,experiment\nday1,a\nday2,b\n")
     population = open_population([day1, changed("day2")], groups=groups)
     assert population.cells["experiment"].tolist() == ["a"] * 4 + ["b"] * 4
+
+
+def test_the_path_of_masks_is_known_from_the_study(day1, tmp_path: Path) -> None:
+    masks = Path(cd.open_study(day1).provenance["inputs"]["masks"]["path"])
+    groups = written(tmp_path, f"file,condition\n{masks.parent.name}/cells.tif,a\n")
+    assert open_population(day1, groups=groups).conditions == ("a",)
+    with pytest.raises(ParameterError, match=r"no file 'another/cells\.tif'"):
+        open_population(day1, groups=written(tmp_path, "file,condition\nanother/cells.tif,a\n"))
 
 
 def test_a_row_about_no_cell_is_refused(day1, tmp_path: Path) -> None:

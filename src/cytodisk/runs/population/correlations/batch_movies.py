@@ -74,7 +74,7 @@ def movies_of(folder: Path, groups: str | os.PathLike[str] | None = None) -> Bat
         raise PopulationError(f"batch {folder} has no movie: correlations need kind = 'movie' in its file")
     remarks = check_alike(movies)
     check_intervals(movies)
-    cells, told = with_groups(rows_by_cell(joined_rows(movies)), groups)
+    cells, told = with_groups(rows_by_cell(joined_rows(movies)), groups, movies)
     return BatchMovies(folder, tuple(movies), (*lost, *others), (*remarks, *told), _groups(cells))
 
 

@@ -108,7 +108,7 @@ def open_population(
     run = studies[0].run
     frames = joined_rows(studies)
     cells = rows_by_cell(frames) if run == "movie" else frames
-    cells, told = with_groups(cells, groups)
+    cells, told = with_groups(cells, groups, studies)
     notes += told
     for note in notes:
         warnings.warn(note, PopulationWarning, stacklevel=2)
