@@ -45,6 +45,28 @@ def test_what_can_be_reached_is_the_first_line(run: Run, cells: Path, tmp_path: 
     assert {file: file.stat().st_mtime_ns for file in (out / "figures").iterdir()} == drawn
 
 
+def test_figures_that_were_not_all_drawn_are_drawn_again(
+    run: Run, cells: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from cytodisk.pages.population import write_population_figures as pages
+
+    out = tmp_path / "atlas"
+    command = ("population", cells / "maps", "--groups", cells / "groups.csv", "--channel", "Rac1", "-o", out)
+
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(pages, "profiles_page", stopped)
+        code, said, error = run(*command)
+    assert code != 0
+    assert f"Stopped while drawing; the tables are in {out}." in error
+    assert f"results: {out}" in said
+    assert (out / "figures" / "atlas_Rac1.png").exists()
+    assert run(*command, "--resume")[0] == 0
+    assert (out / "figures" / "profiles.png").exists()
+
+
 def test_cells_of_unknown_experiments_are_told(run: Run, cells: Path, tmp_path: Path) -> None:
     command = ("population", cells / "maps", "--no-figures", "--groups", cells / "unknown.csv", "-o")
     code, said, _ = run(*command, tmp_path / "a")

@@ -9,7 +9,9 @@ from pathlib import Path
 from cytodisk.files import writing_to
 from cytodisk.store.provenance_file import read_provenance
 from cytodisk.store.study_kind import FIGURES
-from cytodisk.store.written_files import lost_files, recorded, writing_files
+from cytodisk.store.written_files import lost_files, note_of_study, recorded, writing_files
+
+DRAWN = "figures drawn"  # of the provenance
 
 
 @contextmanager
@@ -44,8 +46,14 @@ def drawing(study: Path, *names: str, of: Path | None = None) -> Iterator[Path]:
         yield folder
 
 
+def note_drawn(study: Path, formats: Sequence[str]) -> None:
+    """Note that all figures of a study are drawn in these formats; see `drawn_figures`."""
+    before = (read_provenance(study) or {}).get(DRAWN, [])
+    note_of_study(study, DRAWN, sorted({*before, *formats}))
+
+
 def drawn_figures(study: Path, formats: Sequence[str]) -> list[Path]:
-    """The figures of a study that are there, and whole, in these formats; none unless all are.
+    """The figures of a study in these formats; none unless all were drawn, and are whole.
 
     Parameters
     ----------
@@ -57,13 +65,16 @@ def drawn_figures(study: Path, formats: Sequence[str]) -> list[Path]:
     -------
     list of Path
     """
-    marks = recorded(read_provenance(study) or {})
+    there = read_provenance(study) or {}
+    if not set(formats) <= set(there.get(DRAWN, [])):
+        return []
+    marks = recorded(there)
     by_format = [
         {name: mark for name, mark in marks.items() if name.startswith(f"{FIGURES}/") and name.endswith(one)}
         for one in formats
     ]
     own = {name: mark for some in by_format for name, mark in some.items()}
-    whole = all(by_format) and all(own.values()) and not lost_files(study, own)
+    whole = all(own.values()) and not lost_files(study, own)
     return [study / name for name in own] if whole else []
 
 

@@ -137,6 +137,14 @@ def writing_files(folder: Path, *names: str) -> Iterator[None]:
         _change(folder, {name: mark_of(folder / name) for name in names})
 
 
+def note_of_study(folder: Path, name: str, value: Any) -> None:
+    """Set an entry of the provenance of a complete study, beside what others write there."""
+    with _held(folder):
+        there = read_provenance(folder)
+        if there is not None and there.get(name) != value:
+            write_json(folder / PROVENANCE, there | {name: value})
+
+
 def _change(folder: Path, marks: Mapping[str, str], *, check: bool = False) -> None:
     if not marks:
         return

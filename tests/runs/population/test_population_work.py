@@ -141,3 +141,17 @@ def test_warnings_that_several_comparisons_share_are_told_once() -> None:
     warnings: pd.DataFrame = _result(truth).tables["warnings"]
     few = warnings[warnings["name"] == "too few experiments"]
     assert few["condition"].tolist() == [""]
+
+
+def test_curves_have_lags_and_a_compartment() -> None:
+    truth = cd.simulate.population(0, experiments=3, cells=2, layers=2, sectors=9)
+    lags = truth.values.rename(sector="lag").assign_coords(lag=np.arange(-4.0, 5.0))
+    lags["lag"].attrs["units"] = "s"
+    population = cd.Population(lags, truth.cells)
+    found = population_result(population, cd.PopulationParameters(), lambda share: None)
+    assert found.notes["curves"]
+    assert found.notes["lag_unit"] == "s"
+    windows = found.tables["windows"]
+    assert sorted(windows["lag"].unique()) == [-4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0]
+    assert windows["compartment"].unique().tolist() == ["cell"]
+    assert "polarity_signal" not in found.tables["cells"]

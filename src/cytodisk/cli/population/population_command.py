@@ -79,8 +79,10 @@ def population_command(
         raise ParameterError("--out is missing: name a folder for the results, as -o atlas/")
     wanted = figure_formats(formats) if figures else ()
     study = _compare(console, given, paths, out, groups)
-    drawn = _draw(console, study, wanted) if wanted else []
-    say_population(console, study, drawn)
+    say_population(console, study)
+    console.print(f"results: {study.path}")
+    for line in _draw(console, study, wanted) if wanted else ():
+        console.print(line)
 
 
 def _compare(
@@ -107,13 +109,14 @@ def _compare(
 def _draw(console: "Console", study: "PopulationStudy", formats: "Sequence[Format]") -> list[str]:
     """Draw all figures; what is said of them."""
     from cytodisk.pages.population.write_population_figures import missing_figures, write_population_figures
-    from cytodisk.store.figures_folder import drawn_figures
+    from cytodisk.store.figures_folder import drawn_figures, note_drawn
 
     paths = drawn_figures(study.path, formats)
     stopped = f"Stopped while drawing; the tables are in {study.path}."
     if not paths:
         with progress_bar(console.quiet, "pages drawn", stopped=stopped) as progress:
             paths = write_population_figures(study, formats=formats, progress=progress)
+        note_drawn(study.path, formats)
     names = ", ".join(dict.fromkeys(path.stem for path in paths))
     return [f"figures: {study.path / FIGURES} ({names})", *missing_figures(study)] if paths else []
 

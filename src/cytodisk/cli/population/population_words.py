@@ -5,8 +5,6 @@ from typing import TYPE_CHECKING
 from cytodisk.cli.console import count
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rich.console import Console
 
     from cytodisk.store.populations.population_study import PopulationStudy, StudyWarning
@@ -14,8 +12,8 @@ if TYPE_CHECKING:
 _MOST_REASONS = 8
 
 
-def say_population(console: "Console", study: "PopulationStudy", drawn: "Sequence[str]" = ()) -> None:
-    """Say what can be reached, the design, what was found, what speaks against it, and where figures are."""
+def say_population(console: "Console", study: "PopulationStudy") -> None:
+    """Say what can be reached, the design, what was found, and what speaks against it."""
     for sentence in study.sentences:
         console.print(sentence)
     console.print(cells_words(study))
@@ -25,9 +23,6 @@ def say_population(console: "Console", study: "PopulationStudy", drawn: "Sequenc
         console.print(warning_line(warning))
     for note in study.provenance.get("warnings", ()):
         console.print(f"Warning: {note}")
-    for line in drawn:
-        console.print(line)
-    console.print(f"results: {study.path}")
 
 
 def cells_words(study: "PopulationStudy") -> str:

@@ -38,6 +38,8 @@ def cell_atlas_page(one: DrawnPopulation, channel: str) -> Sheet | None:
     if row is None:
         return None
     windows = one.sources.windows(row)
+    if windows.grid.layers != one.grid.layers:
+        return None  # the edge alone, such as its velocity, has no windows inside a cell
     title = f"{one.channel_words(channel)} by condition, carried onto a cell"
     notes = [f"the cell with the most usual shape: {one.sources.name(row)}"]
     return _maps_page(one, channel, windows, title, notes, first=one.sources.shift(row))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -40,6 +40,7 @@ from cytodisk.store.populations.window_arrays import window_rows
 from cytodisk.store.tables import Column
 
 _SCALARS_DONE, _ATLAS_DONE, _COMPARED = 0.1, 0.3, 0.9  # shares of the work after opening
+_BY_WINDOW = ("atlas", "windows", "trends", "gallery")
 _SCALE = {"length_unit": "px", "pixel_size_um": None, "frame_interval_s": None}
 
 
@@ -116,9 +117,18 @@ def population_result(
         "excluded": opened.excluded,
         "warnings": pd.DataFrame(tests.warnings, columns=list(StudyWarning._fields)),
     }
+    for name in _BY_WINDOW:
+        tables[name] = _with_compartments(tables[name], shown.compartments)
     step(1.0)
     scale = {name: opened.cells.attrs.get(name, unknown) for name, unknown in _SCALE.items()}
     return PopulationResult(tables, more, notes | scale)
+
+
+def _with_compartments(table: pd.DataFrame, compartments: Sequence[str]) -> pd.DataFrame:
+    """A table by window that says the compartment of each layer."""
+    if "layer" not in table:
+        return table
+    return table.assign(compartment=np.array(compartments, dtype=object)[table["layer"]])
 
 
 def _gallery(shown: Population, distances: Any, used: Any) -> pd.DataFrame:
