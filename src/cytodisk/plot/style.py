@@ -73,6 +73,13 @@ class _PlainNumbers(ScalarFormatter):
         return power
 
 
+def plain_numbers() -> ScalarFormatter:
+    """Numbers of an axis that stay short: from 10 000 on, and below 0.001, a power of ten stands apart."""
+    numbers = _PlainNumbers(useMathText=False)
+    numbers.set_powerlimits((-3, 4))
+    return numbers
+
+
 @contextmanager
 def paper_style() -> Iterator[None]:
     """Apply `PAPER` to what is made inside the block.
@@ -260,9 +267,7 @@ def colour_bar(
     bar.outline.set_linewidth(0.4)
     bar.ax.tick_params(width=0.4, length=2)
     bar.locator = MaxNLocator(5, steps=[1, 2, 2.5, 5, 10])
-    numbers = _PlainNumbers(useMathText=False)
-    numbers.set_powerlimits((-3, 4))
-    bar.formatter = numbers
+    bar.formatter = plain_numbers()
     bar.update_ticks()
     return bar
 

@@ -121,6 +121,18 @@ def test_unpaired_experiments_are_not_joined(ax: Axes) -> None:
     assert len(experiment_key(scalar_cells(paired=False))) == 4
 
 
+def test_an_interval_does_not_dwarf_the_cells(ax: Axes) -> None:
+    """Two experiments that differ give an interval of 12.7 standard errors on either side."""
+    rows = scalar_cells()
+    rows = rows[rows["experiment"] != "c"]
+    rows["size"] += 3.0 * (rows["experiment"] == "b")
+    nothing = {"condition": ["drug"], "p": [1.0], "effect_size": [np.nan], "low": [np.nan], "high": [np.nan]}
+    draw_super_plot(ax, rows, "size", tests=pd.DataFrame(nothing))
+    assert ax.get_ylim() == pytest.approx((-1.02, 18.02))
+    written = [text.get_text() for text in ax.texts if text.get_gid() == super_plot.TEST_NAME]
+    assert written == ["p = 1"]
+
+
 def test_cells_without_the_number_and_many_cells(ax: Axes) -> None:
     rows = scalar_cells()
     rows.loc[:3, "size"] = np.nan

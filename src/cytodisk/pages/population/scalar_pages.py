@@ -22,6 +22,7 @@ MOST_PANELS = 6
 MOST_ROWS = 44
 
 _LEFT, _STEP, _LEAST, _GAP, _TALL, _ABOVE, _BELOW = 12.5, 10.5, 26.0, 3.0, 29.0, 9.5, 7.0  # mm
+_ABOVE_BARE = 4.0  # mm, where no test is written above
 _NAMES, _ROW, _P_ROOM, _LINE = 40.0, 3.7, 9.0, 3.6  # mm
 _LAYER = re.compile(r"layer_\d+_")
 _KEY_STYLE: Any = {"handlelength": 1.4, "labelspacing": 0.35, "columnspacing": 1.2}
@@ -40,10 +41,11 @@ def scalars_page(one: DrawnPopulation) -> Sheet | None:
         return None
     count = len(one.conditions)
     panel = max(_LEAST, _STEP * count + 4.0)
-    columns = 2 if 2 * (panel + _LEFT + _GAP) <= SINGLE_COLUMN_MM else 1
-    width = SINGLE_COLUMN_MM
-    if columns == 1 and panel + _LEFT + _GAP > SINGLE_COLUMN_MM:
+    columns, width = 2, SINGLE_COLUMN_MM
+    if columns * (panel + _LEFT) + 2 * _GAP > width:
         width = DOUBLE_COLUMN_MM
+        columns = max(1, int((width - 2 * _GAP) / (panel + _LEFT)))
+    columns = min(columns, max(len(names), 2))
     panel = (width - 2 * _GAP) / columns - _LEFT
     cells = one.used
     key = experiment_key(cells, one.conditions, paired=one.paired)
@@ -53,7 +55,7 @@ def scalars_page(one: DrawnPopulation) -> Sheet | None:
     key_height = _LINE * (-(-len(shown) // abreast) + 1) + 3.0
     heading = one.heading(width, "Scalars, cell by cell", *_notes(one, names))
     rows = -(-len(names) // columns)
-    above = _ABOVE + (3.2 if count > 3 else 0.0)
+    above = _ABOVE + (3.2 if count > 2 else 0.0) if len(one.study.scalars) else _ABOVE_BARE
     first = heading.height_mm + key_height
     sheet = Sheet(first + rows * (above + _TALL + _BELOW), width)
     heading.write(sheet)
@@ -113,16 +115,29 @@ def effects_page(one: DrawnPopulation) -> Sheet | None:
 
 
 def chosen_scalars(one: DrawnPopulation) -> list[str]:
-    """Scalars with a SuperPlot: those with the smallest p, then the largest effects; layers have a page."""
+    """Scalars with a SuperPlot: those with the smallest p, then the largest effects, in the table's order.
+
+    Where nothing was tested, those whose conditions are farthest apart. Layers have a page of their own.
+    """
     names = [name for name in one.study.scalar_names if name in one.used and not _LAYER.match(name)]
     names = [name for name in names if one.used[name].notna().any()]
     found = one.study.scalars
     if found.empty:
-        return names[:MOST_PANELS]
+        sizes = {name: _apart(one, name) for name in names}
+        largest = sorted(names, key=lambda name: -sizes[name])[:MOST_PANELS]
+        return [name for name in names if name in largest]
     by_scalar = found.assign(size=-found["effect_size"].abs()).groupby("scalar")[["p_fwer", "size"]].min()
     ranked = by_scalar.reindex(names).fillna({"p_fwer": 1.0, "size": 0.0})
     order = ranked.sort_values(["p_fwer", "size"], kind="stable").index[:MOST_PANELS]
     return [name for name in names if name in set(order)]
+
+
+def _apart(one: DrawnPopulation, name: str) -> float:
+    """Largest distance between means of cells of two conditions, in standard deviations of cells."""
+    cells = one.used[["condition", name]].assign(value=pd.to_numeric(one.used[name], errors="coerce"))
+    groups = cells.groupby("condition", observed=True)["value"]
+    spread = float(np.sqrt(groups.var().mean()))
+    return float(np.ptp(groups.mean().dropna())) / spread if spread > 0.0 and groups.ngroups > 1 else 0.0
 
 
 def scalar_words(one: DrawnPopulation, name: str) -> str:
@@ -152,7 +167,8 @@ def _notes(one: DrawnPopulation, names: list[str]) -> list[str]:
     notes = []
     everyone = [name for name in one.study.scalar_names if not _LAYER.match(name)]
     if len(names) < len(everyone):
-        notes.append(f"{len(names)} of {len(everyone)} scalars")
+        how = "smallest p" if len(one.study.scalars) else "conditions farthest apart"
+        notes.append(f"{len(names)} of {len(everyone)} scalars: {how}")
     if one.compared and not one.study.scalars.empty:
         notes.append("p corrected for all scalars (max-T)")
         notes.append("g: Hedges g with its 95 % interval")

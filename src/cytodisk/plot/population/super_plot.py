@@ -16,7 +16,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.number_words import rounded
 from cytodisk.plot.population.condition_looks import Look, are_shared, checked_units, experiment_looks
 from cytodisk.plot.population.experiment_lines import interval_of_mean
-from cytodisk.plot.style import LINE_COLOUR
+from cytodisk.plot.style import LINE_COLOUR, plain_numbers
 from cytodisk.plot.time_axis import TICK_STEPS
 
 CELLS_NAME, EXPERIMENT_NAME, PAIR_NAME, MEAN_NAME, TEST_NAME = "cells", "experiment", "pair", "mean", "test"
@@ -24,6 +24,7 @@ CELLS_NAME, EXPERIMENT_NAME, PAIR_NAME, MEAN_NAME, TEST_NAME = "cells", "experim
 _WIDEST = 0.27  # of the swarm of cells, in steps from condition to condition
 _APART, _FURTHEST = 0.045, 0.16  # of the means of experiments, and the outermost of them
 _MEAN_AT = 0.38  # of mean and interval, beside the swarm
+_MARGIN = 0.06  # of the range of the cells
 _BINS = 24
 _MOST_CELLS = 1500  # of a condition that get a dot
 _GOLDEN = 0.6180339887
@@ -116,6 +117,8 @@ def draw_super_plot(
     ax.tick_params(axis="x", length=0)
     ax.set_ylabel(label or scalar, parse_math=False)
     ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
+    ax.yaxis.set_major_formatter(plain_numbers())
+    _fit(ax, dots)
     if tests is not None:
         _write_tests(ax, names, tests)
     return dots
@@ -263,16 +266,21 @@ def _join(ax: Axes, means: Sequence[pd.Series], beside: Sequence[Mapping[str, fl
             ax.plot(x, ends, color="0.45", linewidth=0.6, zorder=2.0, gid=PAIR_NAME)
 
 
+def _fit(ax: Axes, dots: Sequence[PathCollection]) -> None:
+    """Fit the axes to the cells: the interval of two experiments can be many times as long."""
+    values = np.concatenate([np.asarray(one.get_offsets())[:, 1] for one in dots])
+    if len(values):
+        room = _MARGIN * float(np.ptp(values)) or 0.5 * max(abs(float(values[0])), 1.0)
+        ax.set_ylim(float(values.min()) - room, float(values.max()) + room)
+
+
 def _write_tests(ax: Axes, names: Sequence[str], tests: pd.DataFrame) -> None:
     rows = tests.set_index(tests["condition"].astype(str))
     for place, name in enumerate(names):
         if name not in rows.index:
             continue
         row = rows.loc[name].to_dict()
-        effect = f"g = {rounded(float(row['effect_size']), 2)}"
-        interval = f"[{rounded(float(row['low']), 2)}, {rounded(float(row['high']), 2)}]"
-        between = " " if len(names) == 2 else "\n"
-        words = f"{p_words(float(row['p']))}\n{effect}{between}{interval}".replace("-", "−")
+        words = _test_words(row, " " if len(names) == 2 else "\n")
         ax.annotate(
             words,
             (0.5 if len(names) == 2 else place, 1.0),
@@ -285,3 +293,14 @@ def _write_tests(ax: Axes, names: Sequence[str], tests: pd.DataFrame) -> None:
             annotation_clip=False,
             gid=TEST_NAME,
         )
+
+
+def _test_words(row: Mapping[Any, Any], between: str) -> str:
+    """p, and the effect size with its interval as far as they are known."""
+    words = p_words(float(row["p"]))
+    effect, low, high = (float(row[name]) for name in ("effect_size", "low", "high"))
+    if np.isfinite(effect):
+        words += f"\ng = {rounded(effect, 2)}"
+    if np.isfinite(low) and np.isfinite(high):
+        words += f"{between}[{rounded(low, 2)}, {rounded(high, 2)}]"
+    return words.replace("-", "−")
