@@ -22,6 +22,17 @@ def test_a_control_is_known_by_its_name(name: str) -> None:
     assert f"--compare {name},a,b" in found.sentence
 
 
+def test_a_command_that_is_told_can_be_typed() -> None:
+    found = compared_conditions(_population("row B", "row D"), ())
+    assert "pass --compare 'row B,row D' to name it" in found.sentence
+
+
+def test_names_can_be_given_as_one_text() -> None:
+    found = cd.PopulationParameters(compare="control, drug", channel="Rac1", scalars="area,polarity")
+    assert found.compare == ("control", "drug")
+    assert (found.channel, found.scalars) == (("Rac1",), ("area", "polarity"))
+
+
 def test_the_first_of_two_is_the_control() -> None:
     found = compared_conditions(_population("siRNA", "rescue"), ())
     assert found.control == "siRNA"

@@ -79,9 +79,7 @@ def compared_conditions(population: Population, compare: Sequence[str]) -> Compa
         return ComparedConditions(there, "", words)
     control, why = _control_among(there)
     others = tuple(name for name in there if name != control)
-    words = (
-        f"{control!r} is taken as the control, {why}: pass --compare {control},{','.join(others)} to name it."
-    )
+    words = f"{control!r} is taken as the control, {why}: pass {_flag((control, *others))} to name it."
     return ComparedConditions((control, *others), control, words)
 
 

@@ -37,8 +37,8 @@ class PopulationParameters(ComparisonParameters):
     )
     align: Alignment | str = parameter(
         "none",
-        "Direction that becomes sector 0 of each cell: of the nucleus, the front, the motion, the long axis, "
-        "or of a channel's brightest side, as signal:CHANNEL.",
+        "Where sector 0 of each cell begins: on the side away from the nucleus, at the front, in the "
+        "direction of motion, of the long axis, or at a channel's brightest side, as signal:CHANNEL.",
         words="none, nucleus, front, motion, axis or signal:CHANNEL",
     )
     scalars: tuple[str, ...] = parameter(
@@ -52,6 +52,12 @@ class PopulationParameters(ComparisonParameters):
     )
 
     dose_scale: Scale = parameter("rank", str(DoseParameters.model_fields["scale"].description))
+
+    @field_validator("compare", "channel", "scalars", mode="before")
+    @classmethod
+    def _of_text(cls, names: object) -> object:
+        """Names in a text, as on the command line."""
+        return tuple(names.split(",")) if isinstance(names, str) else names
 
     @field_validator("compare", "channel", "scalars")
     @classmethod
