@@ -173,6 +173,22 @@ def test_alignment_by_what_is_tested_is_warned_of() -> None:
     assert "direction missing" in names_of(cd.compare_conditions(pop, "control", "drug"))
 
 
+@pytest.mark.parametrize(
+    ("control", "drug", "spread", "warned"),
+    [(8, 4, 3.0, True), (6, 6, 3.0, True), (6, 6, 1.0, False), (4, 8, 1.5, False)],
+)
+def test_a_spread_that_differs_is_warned_of(control: int, drug: int, spread: float, warned: bool) -> None:
+    names = [f"e{k}" for k in range(control + drug)]
+    pop = population(names[:control], names[control:], cells=30)
+    values = pop.raw.squeeze("channel").copy()
+    wide = (pop.cells["condition"] == "drug").to_numpy()
+    codes = pop.cells["experiment"].str[1:].astype(int).to_numpy()
+    dishes = np.random.default_rng(3).normal(size=(control + drug, *values.shape[1:]))
+    values += dishes[codes] * np.where(wide, spread, 1.0)[:, None, None]
+    found = cd.compare_conditions(cd.Population(values, pop.cells), "control", "drug")
+    assert ("unequal spread" in names_of(found)) == warned
+
+
 def test_a_rise_that_makes_others_fall_is_warned_of() -> None:
     pop = population(list("abcdef"), list("ghijkl"), cells=40, effect=8.0)
     found = cd.compare_conditions(pop.normalise("cell mean"), "control", "drug")

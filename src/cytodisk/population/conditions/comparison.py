@@ -23,6 +23,7 @@ from cytodisk.population.conditions.comparison_warnings import (
 from cytodisk.population.conditions.experiment_units import units_of
 from cytodisk.population.conditions.left_out import left_out_table
 from cytodisk.population.conditions.tested_units import TwoConditions, unit_results
+from cytodisk.population.conditions.unequal_spread import spread_warning
 from cytodisk.population.conditions.unit_values import usable_cells
 from cytodisk.population.named_warning import NamedWarning
 from cytodisk.population.population import Population
@@ -152,6 +153,7 @@ def compare_conditions(
         *too_few(test.exchanges.smallest_p, units),
         *design_warnings(pop, units, chosen.unit),
         *alignment_warnings(pop, channels, units.codes),
+        *spread_warning(found.values, units, (control, treated)),
         *of_shares(pop, found.windows),
         *untested(found.windows["status"].values),
         *driven(left_out, [name for name, (_, different) in results.items() if different]),

@@ -101,12 +101,15 @@ class TestedUnits:
     clusters, scalars : DataFrame
     results : dict of str to (ndarray of shape (units,), bool)
         See `numbers_of_results`.
+    values : ndarray of shape (units, windows) and dtype float64
+        Means of the units; in scalars where cells have no windows.
     """
 
     windows: xr.Dataset
     clusters: pd.DataFrame
     scalars: pd.DataFrame
     results: dict[str, tuple[FloatArray, bool]]
+    values: FloatArray
 
 
 def unit_results(
@@ -147,4 +150,5 @@ def unit_results(
     scalar_test = exchange_test(test.statistic(numbers.values, None), test.exchanges)
     scalars = scalar_rows(numbers.table, test.effects(numbers.values), scalar_test)
     results = numbers_of_results(values, windows, clusters, numbers.values, scalars)
-    return TestedUnits(windows, clusters, scalars, results)
+    shown = values if values.shape[1] else numbers.values
+    return TestedUnits(windows, clusters, scalars, results, shown)
