@@ -6,8 +6,8 @@ Reads `osteosarcoma/` (outlines of two cell lines: control, cytochalasin D, jasp
 CYTODISK_DATA and goes the way of a user: `run_shapes`, then `open_population` with a table of groups. The
 source does not say which cells were in one dish. So a comparison over experiments must be refused, and is;
 what is left is a description: effect sizes by cell (Hedges' g with its interval) of the complexity and of
-the features with the largest ones, in each line by itself. Prints them without p, writes a picture into
-FOLDER, and ends with status 1 if a test was made all the same.
+the features with the largest ones, in each line by itself. Prints them without p, writes a picture and the
+results of `run_population` into FOLDER, and ends with status 1 if a test was made all the same.
 """
 
 import argparse
@@ -145,13 +145,24 @@ def draw_effects(ax: Axes, table: pd.DataFrame, names: Sequence[str]) -> None:
     ax.figure.legend(handles, labels, loc="outside lower right", ncols=4, frameon=False, fontsize="small")
 
 
+def run(groups: pd.DataFrame, out: Path, line: str) -> list[str]:
+    """The way of the command for one line, in a folder of its own, and what it says."""
+    own = out / f"groups_{line}.csv"
+    groups[groups["line"] == line].to_csv(own, index=False)
+    asked = {"compare": ("control", *COLOURS), "overwrite": True}
+    study = cd.run_population(out / "shapes", out / line, groups=own, **asked)
+    cd.pages.write_population_figures(study)
+    warnings = (f"WARNING {warning.name}: {warning.consequence}" for warning in study.warnings)
+    return [*study.sentences, *warnings]
+
+
 def main() -> int:
     """Run the benchmark."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--quick", action="store_true", help=f"one cell in {_QUICK}")
-    parser.add_argument("--out", type=Path, help="folder for the picture")
+    parser.add_argument("--out", type=Path, help="folder for results and the picture")
     parser.add_argument("--features", type=int, default=10, help="how many are shown (default 10)")
     parser.add_argument("--data", type=Path, default=DATA)
     chosen = parser.parse_args()
@@ -170,7 +181,10 @@ def main() -> int:
     names = largest(table, chosen.features)
     print_effects(table, names)
     draw(pop, table, names, out / "osteosarcoma.png")
-    print(f"\npicture: {out / 'osteosarcoma.png'}")
+    groups = pop.cells[["frame", "condition", "line"]]
+    for line in LINES.values():
+        print(f"\ncytodisk population, {line}", *run(groups, out, line), sep="\n")
+    print(f"\nresults: {out}")
     return int(not refused)
 
 
