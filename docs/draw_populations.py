@@ -19,6 +19,7 @@ from functools import partial
 from pathlib import Path
 from shutil import copyfile
 from tempfile import TemporaryDirectory
+from textwrap import fill
 
 import numpy as np
 import pandas as pd
@@ -38,6 +39,7 @@ TARGET = REPOSITORY / "docs" / "source" / "guides" / "is_it_different"
 SHARES, PERMUTATIONS = (0.0, 0.1, 0.3), 999
 EXPERIMENTS, SHOWN = 5, 4  # in the table of false positives, and in the picture
 SIZES, EFFECTS = range(3, 9), (0.5, 1.0, 1.5, 2.0)
+WRAP = 96  # characters of a line on the page
 PARTS = ("example", "null", "plan")
 COLOURS = {"control": "0.45", "drug": "#0072B2", "cells": "#E69F00", "experiments": "#009E73"}
 WIDTH_MM, HEIGHT_MM, DPI, PALETTE = 150.0, 62.0, 220, 128
@@ -73,6 +75,8 @@ def example() -> None:
         made = cd.simulate.population_images(
             here / "plate", seed=1, experiments=6, cells=5, paired=True, effect=0.4, nuclei=True
         )
+        days = made.groups.read_text(encoding="utf-8").replace("experiment ", "day ")
+        made.groups.write_text(days, encoding="utf-8")
         grid = {"layers": 4, "sectors": 12, "nucleus_layers": 1}
         images = {"signal": made.images, "nuclei": made.nuclei, "groups": made.groups}
         cd.run_map(made.masks, here / "maps", **images, **grid)
@@ -80,7 +84,8 @@ def example() -> None:
         study = cd.run_population(here / "maps", here / "atlas", align="nucleus", **asked)
         drawn = {path.name: path for path in cd.pages.write_population_figures(study)}
         copyfile(drawn["atlas_on_cell_Rac1.png"], TARGET / "atlas.png")
-        said = "\n".join([*study.sentences, *map(str, study.warnings)])
+        lines = [*study.sentences, *(f"{warning.name}: {warning.finding}" for warning in study.warnings)]
+        said = "\n".join(fill(line, WRAP, subsequent_indent="  ") for line in lines)
     (TARGET / "said.txt").write_text(f"{said}\n", encoding="utf-8")
     print(said)
 

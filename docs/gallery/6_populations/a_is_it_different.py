@@ -31,7 +31,7 @@ print(truth.cells[["cell", "condition", "experiment", "area"]].iloc[::40])
 
 # %%
 # A population is values and a table. ``cd.open_population("maps")`` reads your own.
-# ``align`` turns each cell, so that sector 0 begins at the direction of its nucleus.
+# ``align`` turns each cell, so that sector 0 begins away from its nucleus.
 pop = cd.Population(truth.values, truth.cells, scalars=["area"]).align("nucleus")
 print(pop)
 print("cells without a direction:", (pop.alignment["status"] != "ok").sum())
@@ -47,8 +47,8 @@ for warning in found.warnings:
 # %%
 # Where
 # -----
-# The mean of each condition, and the difference. Black lines surround windows with
-# p < 0.05 after correction for all windows.
+# The mean of each condition, and the difference. Thin lines surround windows with
+# p < 0.05 after correction for all windows, broken lines clusters of windows.
 grid = cd.polar_windows(layers=6, sectors=24)
 atlas = pop.atlas().squeeze("channel")
 difference = cd.plot.DifferenceMap.of(found.windows)
