@@ -7,6 +7,9 @@ gives it to scanpy, with conditions and experiments beside the cells. Here: PCA,
 neighbours and UMAP. You need ``pip install 'cytodisk[anndata]' scanpy``.
 """
 
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -93,7 +96,10 @@ if sc is not None:
 # %%
 # Into a file and back
 # --------------------
-# The ``.h5ad`` file can be read by scanpy, Seurat, CELLxGENE and others.
+# scanpy, CELLxGENE and others read the ``.h5ad`` file. On the command line, type
+# ``cytodisk population maps --h5ad -o atlas``.
 if sc is not None:
-    pop.to_anndata().write_h5ad("population.h5ad")
-    print(sc.read_h5ad("population.h5ad"))
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "population.h5ad"
+        pop.to_anndata().write_h5ad(path)
+        print(sc.read_h5ad(path))
