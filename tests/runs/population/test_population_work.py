@@ -60,6 +60,20 @@ def test_a_dose_has_a_trend_beside() -> None:
     assert found.notes["sentences"][2].startswith("9 units at 3 doses")
 
 
+def test_a_dose_that_is_not_there_is_refused() -> None:
+    truth = cd.simulate.population(0, experiments=2, cells=2)
+    with pytest.raises(cd.errors.PopulationError, match="no column 'µM': give each cell its dose, a number"):
+        _result(truth, dose="µM")
+
+
+def test_pairs_that_are_not_whole_are_named_without_cells_of_unknown_experiments() -> None:
+    truth = cd.simulate.population(0, experiments=3, cells=2, paired=True)
+    truth.cells.loc[:1, "experiment"] = None
+    warnings = _result(truth).tables["warnings"].set_index("name")["finding"]
+    assert warnings["incomplete pairs"] == "experiment 1 holds only one of the conditions."
+    assert warnings["experiments unknown"] == "2 cells have no name of their experiment."
+
+
 def test_a_channel_can_align_cells_without_being_compared() -> None:
     truth = cd.simulate.population(0, channels=("Rac1", "RhoA"), experiments=2, cells=3, polarity=3.0)
     found = _result(truth, channel=("Rac1",), align="signal:RhoA")

@@ -69,11 +69,13 @@ def design_warnings(pop: Population, units: Units, unit: str) -> Iterator[NamedW
     yield from _unequal(units.table)
     yield from _confounded(pop.cells, units)
     left = units.table[(units.table["used"] == 0) | (units.table["used"] < units.table["cells"])]
-    if units.paired and (left["used"] == 0).any():
-        names = ", ".join(dict.fromkeys(left.loc[left["used"] == 0, "experiment"].astype(str)))
+    alone = left[(left["used"] == 0) & (left["experiment"] != "")]
+    if units.paired and len(alone):
+        names = list(dict.fromkeys(alone["experiment"].astype(str)))
+        verb = f"{', '.join(names)} {'hold' if len(names) > 1 else 'holds'}"
         yield NamedWarning(
             "incomplete pairs",
-            f"Experiments {names} hold only one of the conditions.",
+            f"{verb} only one of the conditions.",
             "Their cells are not in this test.",
             "Add the other half, or use --design unpaired if equal names are different experiments.",
         )

@@ -171,7 +171,8 @@ def _chosen_design(
             f"Experiments {words} stand in both conditions and are taken as different ones.",
             shared,
         )
-    left = f"; {_named([names[k] for k in single])} hold only one and are left out" if len(single) else ""
+    verbs = "holds only one and is" if len(single) == 1 else "hold only one and are"
+    left = f"; {_named([names[k] for k in single])} {verbs} left out" if len(single) else ""
     found = f"Experiments {words} hold both conditions{left}: the design is paired."
     return "paired", found, shared
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import ComparisonParameters, DoseParameters
 from cytodisk.population.conditions.comparison import ConditionComparison
 from cytodisk.population.conditions.dose_trend import DoseTrend, dose_trend
@@ -93,6 +94,11 @@ def _with_control(
 def _trend(population: Population, parameters: PopulationParameters) -> DoseTrend | None:
     if parameters.dose is None:
         return None
+    if parameters.dose not in population.cells:
+        raise PopulationError(
+            f"dose: the cells have no column {parameters.dose!r}: give each cell its dose, a number, in the "
+            "table of groups, or leave --dose out"
+        )
     how = DoseParameters(
         scale=parameters.dose_scale, permutations=parameters.permutations, seed=parameters.seed
     )
