@@ -16,8 +16,8 @@ from cytodisk.images.short_lists import shortened
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT, names_in
 from cytodisk.runs.correlate.correlate_study import usual_lag
 from cytodisk.runs.population.opening.alike_settings import check_alike
-from cytodisk.runs.population.opening.cell_table import joined_rows
 from cytodisk.runs.population.opening.found_studies import FoundStudy, find_studies
+from cytodisk.runs.population.opening.joined_cells import joined_rows
 from cytodisk.runs.population.opening.movie_cells import rows_by_cell
 from cytodisk.runs.population.opening.with_groups import with_groups
 from cytodisk.store.study import open_study

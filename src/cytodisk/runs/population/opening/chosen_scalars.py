@@ -9,8 +9,8 @@ import pandas as pd
 
 from cytodisk.errors import PopulationError
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT
-from cytodisk.runs.population.opening.cell_table import FRAMES, PLACES
 from cytodisk.runs.population.opening.disk_directions import TURN
+from cytodisk.runs.population.opening.joined_cells import FRAMES, PLACES
 from cytodisk.store.nuclei.summary_columns import PERINUCLEAR_SHARE, PERIPHERAL_SHARE, column_of
 
 _DEFAULT = ("area", "nucleus_area", "nucleus_polarity")

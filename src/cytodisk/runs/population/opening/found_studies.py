@@ -17,7 +17,7 @@ from cytodisk.files import real_path
 from cytodisk.images.mask_names import natural_order
 from cytodisk.reading_files import reading_file
 from cytodisk.runs.batch.input_row import STUDIES
-from cytodisk.runs.population.opening.left_out import LeftOut
+from cytodisk.runs.population.opening.noted_cells import LeftOut
 from cytodisk.store.provenance_file import PROVENANCE, read_complete, read_provenance
 
 Paths: TypeAlias = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]

@@ -9,11 +9,11 @@ import pandas as pd
 import xarray as xr
 
 from cytodisk.errors import PopulationError
-from cytodisk.runs.population.opening.cell_table import with_columns
-from cytodisk.runs.population.opening.chosen_channels import chosen_channels
 from cytodisk.runs.population.opening.chosen_scalars import chosen_scalars
+from cytodisk.runs.population.opening.common_channels import chosen_channels
 from cytodisk.runs.population.opening.disk_directions import image_directions
 from cytodisk.runs.population.opening.found_studies import FoundStudy
+from cytodisk.runs.population.opening.joined_cells import with_columns
 from cytodisk.runs.population.opening.layer_depths import median_of_cells
 from cytodisk.runs.population.opening.map_values import CellArrays, grid_of, read_map_values
 from cytodisk.runs.population.opening.opened_cells import OpenedCells, Wanted

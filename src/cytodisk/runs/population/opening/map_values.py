@@ -14,7 +14,7 @@ from cytodisk.memory import free_bytes
 from cytodisk.runs.population.opening.alike_settings import setting_of
 from cytodisk.runs.population.opening.found_studies import FoundStudy
 from cytodisk.runs.population.opening.layer_depths import LayerDepths
-from cytodisk.runs.population.opening.left_out import LeftOut
+from cytodisk.runs.population.opening.noted_cells import LeftOut
 from cytodisk.runs.population.opening.row_moments import RowMoments
 from cytodisk.runs.population.opening.seen_windows import SeenWindows
 from cytodisk.runs.population.opening.streamed_windows import GEOMETRY, WindowTable

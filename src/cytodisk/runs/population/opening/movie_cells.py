@@ -11,12 +11,12 @@ import xarray as xr
 
 from cytodisk.errors import NoValuesError, PopulationError
 from cytodisk.runs.population.movie_values import movie_values
-from cytodisk.runs.population.opening.cell_table import FRAMES, PLACES, with_columns
 from cytodisk.runs.population.opening.disk_directions import movie_directions
 from cytodisk.runs.population.opening.found_studies import FoundStudy
+from cytodisk.runs.population.opening.joined_cells import FRAMES, PLACES, with_columns
 from cytodisk.runs.population.opening.layer_depths import LayerDepths, median_of_cells
-from cytodisk.runs.population.opening.left_out import LeftOut
 from cytodisk.runs.population.opening.map_values import window_table
+from cytodisk.runs.population.opening.noted_cells import LeftOut
 from cytodisk.runs.population.opening.row_moments import RowMoments
 from cytodisk.runs.population.opening.streamed_windows import GEOMETRY
 from cytodisk.store.study import Study

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from cytodisk.runs.population.opening.chosen_channels import chosen_channels
 from cytodisk.runs.population.opening.chosen_scalars import chosen_scalars
+from cytodisk.runs.population.opening.common_channels import chosen_channels
 from cytodisk.runs.population.opening.found_studies import FoundStudy
 from cytodisk.runs.population.opening.movie_cells import read_movie_values
 from cytodisk.runs.population.opening.opened_cells import OpenedCells, Wanted

@@ -15,13 +15,13 @@ from cytodisk.population.population import Population
 from cytodisk.runs.population.movies.summary_names import MOVIE_SUMMARIES
 from cytodisk.runs.population.opening.alike_settings import check_alike, common_scale
 from cytodisk.runs.population.opening.cell_names import cell_names
-from cytodisk.runs.population.opening.cell_table import joined_rows, usable_rows
 from cytodisk.runs.population.opening.disk_directions import direction_units
 from cytodisk.runs.population.opening.found_studies import Paths, find_studies
-from cytodisk.runs.population.opening.left_out import LeftOut
+from cytodisk.runs.population.opening.joined_cells import joined_rows, usable_rows
 from cytodisk.runs.population.opening.map_population import map_population
 from cytodisk.runs.population.opening.movie_cells import rows_by_cell
 from cytodisk.runs.population.opening.movie_population import movie_population
+from cytodisk.runs.population.opening.noted_cells import LeftOut
 from cytodisk.runs.population.opening.opened_cells import Wanted
 from cytodisk.runs.population.opening.shape_population import NOTES, shape_population
 from cytodisk.runs.population.opening.with_groups import with_groups

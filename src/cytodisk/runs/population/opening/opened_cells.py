@@ -8,7 +8,7 @@ from typing import NamedTuple
 import pandas as pd
 import xarray as xr
 
-from cytodisk.runs.population.opening.left_out import LeftOut
+from cytodisk.runs.population.opening.noted_cells import LeftOut
 
 
 class Wanted(NamedTuple):

@@ -12,7 +12,7 @@ from cytodisk.errors import PopulationError
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT
 from cytodisk.reading_files import reading_file
 from cytodisk.runs.population.opening.found_studies import FoundStudy
-from cytodisk.runs.population.opening.left_out import LeftOut
+from cytodisk.runs.population.opening.noted_cells import LeftOut
 from cytodisk.runs.shapes.shape_tables import SHAPES
 from cytodisk.store.nuclei.nucleus_columns import NUCLEUS_COLUMNS
 from cytodisk.store.nuclei.summary_columns import PLACE_COLUMNS, channel_columns, channels_among
