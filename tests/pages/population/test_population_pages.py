@@ -19,7 +19,7 @@ from cytodisk.pages.population.cell_sources import CellSources
 from cytodisk.pages.population.curve_page import curves_page
 from cytodisk.pages.population.direction_page import directions_page
 from cytodisk.pages.population.drawn_population import DrawnPopulation
-from cytodisk.pages.population.gallery_page import gallery_page
+from cytodisk.pages.population.gallery_page import common_ending, gallery_page
 from cytodisk.pages.population.map_pages import atlas_page, cell_atlas_page
 from cytodisk.pages.population.power_page import write_power_figure
 from cytodisk.pages.population.profile_pages import profiles_page
@@ -100,7 +100,7 @@ def test_labels_tell_how_values_were_made(page: Any) -> None:
     one = drawn(population().normalise("cell mean").align("nucleus"), normalise="cell mean", align="nucleus")
     told = words_of(page(atlas_page, one, "signal"))
     assert "signal (a.u.)" in told  # the unit says what each cell was divided by
-    assert any("sector 0 at the nucleus" in words for words in told)
+    assert any("sector 0: away from the nucleus" in words for words in told)
     assert drawn(population(), summary="peak_correlation").value_label("signal") == (
         "peak correlation of signal (a.u.)"
     )
@@ -220,8 +220,16 @@ def test_the_atlas_is_carried_onto_the_most_usual_cell(page: Any, mapped: Study)
 def test_a_gallery_names_its_cells(page: Any, mapped: Study) -> None:
     figure = page(gallery_page, with_maps(mapped), "signal")
     titles = [ax.get_title() for ax in figure.axes if ax.get_title()]
-    assert set(titles) == {f"masks.tif\ncell {number}" for number in range(1, 5)}
+    assert set(titles) == {f"masks\ncell {number}" for number in range(1, 5)}
     assert {"nearest", "farthest", "control"} <= set(words_of(figure))
+
+
+def test_names_are_told_without_what_all_end_with() -> None:
+    assert common_ending(["control_1_cp_masks.tif", "drug_4_cp_masks.tif"]) == "_cp_masks.tif"
+    assert common_ending(["a.tif", "a.tif"]) == ".tif"
+    assert common_ending(["ab.tif", "cab.tif"]) == ".tif"
+    assert common_ending(["", "x"]) == ""
+    assert common_ending([]) == ""
 
 
 def test_a_gallery_shows_the_images_that_were_measured(page: Any, mapped: Study) -> None:

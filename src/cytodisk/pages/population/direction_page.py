@@ -12,7 +12,7 @@ from cytodisk.plot.population.directions import draw_directions
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM
 from cytodisk.runs.population.cells_of_study import BRIGHTEST_SIDE
 
-_MAPPED = "disk_direction_"
+_MAPPED, _AXIS = "disk_direction_", "axis"  # an axis has two ends: it is no direction
 _MOST_ABREAST, _WIDEST, _TITLE, _BELOW, _SIDE, _GAP = 5, 36.0, 5.0, 14.0, 8.0, 6.0  # mm but for the first
 
 
@@ -56,7 +56,8 @@ def _columns(one: DrawnPopulation) -> list[str]:
     """The signal's directions after the alignment, or what the maps tell of the cells."""
     of_signal = [BRIGHTEST_SIDE.format(channel) for channel in one.channels]
     found = [name for name in of_signal if name in one.used]
-    return found or [str(name) for name in one.used if str(name).startswith(_MAPPED)]
+    mapped = [str(name) for name in one.used if str(name).startswith(_MAPPED)]
+    return found or [name for name in mapped if name != f"{_MAPPED}{_AXIS}"]
 
 
 def _words(one: DrawnPopulation, kind: str) -> str:

@@ -35,10 +35,10 @@ _SUMMARIES = {
     "around_events": "{} less that at any moment",
 }
 _DIRECTIONS = {
-    "nucleus": "the nucleus",
-    "front": "the front",
-    "motion": "the motion",
-    "axis": "the long axis",
+    "nucleus": "away from the nucleus",
+    "front": "at the front",
+    "motion": "where the cell moves to",
+    "axis": "at an end of the long axis",
 }
 
 
@@ -149,8 +149,8 @@ class DrawnPopulation:
             facts.append(grid_words(self.grid))
         align = str(self.study.parameters.get("align") or "none")
         if align != "none":
-            what = _DIRECTIONS.get(align, f"the brightest side of {align.removeprefix('signal:')}")
-            facts.append(f"sector 0 at {what}")
+            what = _DIRECTIONS.get(align, f"at the brightest side of {align.removeprefix('signal:')}")
+            facts.append(f"sector 0: {what}")
         return facts
 
     def comparison_words(self, condition: str) -> str:

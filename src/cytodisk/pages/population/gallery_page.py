@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import Any
 
 import numpy as np
@@ -72,9 +75,10 @@ def gallery_page(one: DrawnPopulation, channel: str) -> Sheet | None:
             places = range(len(found[condition, place]))
             axes += [sheet.axes(left + column * (size + _GAP), top, size, size) for column in places]
     drawn = _draw(axes, cells, images)
+    ending = common_ending([cell.name.rpartition(", ")[0] for cell in cells])
     for ax, cell in zip(axes, cells, strict=True):
         ax.set_title(
-            _two_lines(cell.name, int(size / _CHARACTER)),
+            _two_lines(cell.name, ending, int(size / _CHARACTER)),
             fontsize=_SMALL,
             pad=2.0,
             linespacing=1.0,
@@ -113,7 +117,18 @@ def _shown(
     return shown
 
 
-def _two_lines(name: str, longest: int) -> str:
-    """Name of a cell in two lines: file, and which cell of it."""
+def _two_lines(name: str, ending: str, longest: int) -> str:
+    """Name of a cell in two lines: file, without what all have at its end, and which cell of it."""
     first, _, last = name.rpartition(", ")
+    first = first.removesuffix(ending)
     return f"{shortened(first, longest)}\n{last}" if first else shortened(last, longest)
+
+
+def common_ending(names: Sequence[str]) -> str:
+    """How all names end, from a sign between words on, as "_cp_masks.tif"; at least a letter stays."""
+    least = min(map(len, names), default=0)
+    same = (len({name[-length:] for name in names}) == 1 for length in range(1, least))
+    length = sum(takewhile(bool, same))
+    shared = names[0][len(names[0]) - length :] if length else ""
+    found = re.search(r"[\W_].*", shared)
+    return found[0] if found else ""
