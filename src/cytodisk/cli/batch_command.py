@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from cytodisk.runs.batch.batch_study import BatchSummary
 
 
-@with_parameters(BatchOptions, file=False)
+@with_parameters(BatchOptions, file=False, groups=GroupsFile)
 def batch_command(
     study: Annotated[Path, typer.Argument(metavar="STUDY", help="Batch file: TOML.", show_default=False)],
     out: Annotated[
@@ -33,7 +33,6 @@ def batch_command(
         ),
     ],
     given: Given,
-    groups: GroupsFile = None,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="List the inputs as they are understood and run nothing.")
     ] = False,
@@ -44,7 +43,7 @@ def batch_command(
 
     console = console_for(quiet)
     options = given.options(BatchOptions)
-    batch = read_batch(study, groups)
+    batch = read_batch(study, given.groups)
     console.print(f"inputs: {len(batch.inputs)} ({_kinds(batch)})")
     if batch.groups is not None:
         console.print(f"groups: {batch.groups.path}, {count(len(batch.groups.keys), 'row')}")

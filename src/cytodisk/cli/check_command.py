@@ -15,13 +15,12 @@ if TYPE_CHECKING:
     from cytodisk.runs.cells.cell_inputs import CellInputs
 
 
-@with_parameters(CheckParameters, file=False)
+@with_parameters(CheckParameters, file=False, groups=GroupsFile)
 def check_command(
     masks: MaskFiles,
     given: Given,
     signal: SignalFiles = None,
     nuclei: NucleiFiles = None,
-    groups: GroupsFile = None,
     every: Annotated[
         bool, typer.Option("--all", help="Print a line for every cell, or frame of a stack.")
     ] = False,
@@ -35,7 +34,7 @@ def check_command(
     console = console_for(False)
     say_contents(console, (masks, signal, nuclei))
     inputs = open_inputs(masks, signal, given.of(CheckParameters), nuclei=nuclei)
-    inputs = with_groups(inputs, groups)
+    inputs = with_groups(inputs, given.groups)
     say_inputs(console, inputs)
     _say_evidence(console, inputs)
     found = Checked(inputs)

@@ -21,9 +21,15 @@ if TYPE_CHECKING:
 
 NOTHING_CHANGED = "Stopped; nothing was changed."
 Format = Literal["png", "pdf", "svg"]
+GroupsOfBatch = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="PATH", help="Of a batch: table of groups, with the condition and experiment of cells."
+    ),
+]
 
 
-@with_parameters(BatchCorrelateParameters, PoolOptions)
+@with_parameters(BatchCorrelateParameters, PoolOptions, groups=GroupsOfBatch)
 def correlate_command(
     study: MovieStudyOrBatch,
     given: Given,
@@ -37,12 +43,6 @@ def correlate_command(
     cell: Annotated[
         list[int] | None, typer.Option(metavar="NUMBER", help="Only this cell; can be given again.")
     ] = None,
-    groups: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="PATH", help="Of a batch: table of groups, with the condition and experiment of cells."
-        ),
-    ] = None,
     figures: Figures = 4,
     formats: Annotated[
         str, typer.Option("--format", metavar="A,B,…", help="Of figures: png, pdf, svg, or several.")
@@ -53,9 +53,9 @@ def correlate_command(
 
     wanted = figure_formats(formats)
     if is_batch(study):
-        _correlate_batch(study, given, (signal, with_), cell, groups, wanted, quiet)
+        _correlate_batch(study, given, (signal, with_), cell, wanted, quiet)
         return
-    _refuse_of_batch(study, given, groups)
+    _refuse_of_batch(study, given)
     settings, options = given.of(CorrelateParameters), given.options(TableOptions)
     console = console_for(quiet)
     there = opened(console, study)
@@ -76,7 +76,6 @@ def _correlate_batch(
     given: Given,
     names: tuple[str | None, str],
     cells: list[int] | None,
-    groups: Path | None,
     formats: tuple[Format, ...],
     quiet: bool,
 ) -> None:
@@ -86,14 +85,16 @@ def _correlate_batch(
     if cells:
         raise ParameterError(f"{batch} is a batch, whose cells all count: leave --cell out")
     settings, options = given.of(BatchCorrelateParameters), dict(given.options(PoolOptions))
-    correlate_batch(batch, names, settings, groups=groups, formats=formats, options=options, quiet=quiet)
+    correlate_batch(
+        batch, names, settings, groups=given.groups, formats=formats, options=options, quiet=quiet
+    )
 
 
-def _refuse_of_batch(study: Path, given: Given, groups: Path | None) -> None:
+def _refuse_of_batch(study: Path, given: Given) -> None:
     """Refuse what is for a batch alone, where a study is given."""
     from cytodisk.errors import ParameterError
 
-    of_batch = given.beyond(CorrelateParameters, TableOptions) + ["--groups"] * (groups is not None)
+    of_batch = given.beyond(CorrelateParameters, TableOptions) + ["--groups"] * (given.groups is not None)
     if of_batch:
         raise ParameterError(
             f"{', '.join(of_batch)}: only for the folder of a batch, and {study} is none: leave it out"

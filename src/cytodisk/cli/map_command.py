@@ -27,14 +27,13 @@ if TYPE_CHECKING:
     from cytodisk.runs.cells.cell_inputs import CellInputs
 
 
-@with_parameters(MapParameters, MapOptions)
+@with_parameters(MapParameters, MapOptions, groups=GroupsFile)
 def map_command(
     masks: MaskFiles,
     out: OutFolder,
     given: Given,
     signal: SignalFiles = None,
     nuclei: NucleiFiles = None,
-    groups: GroupsFile = None,
     figures: Figures = 8,
     no_report: NoReport = False,
     quiet: Quiet = False,
@@ -47,7 +46,7 @@ def map_command(
     console = console_for(quiet)
     options = given.options(MapOptions)
     inputs = open_inputs(masks, signal, given.of(MapParameters), nuclei=nuclei)
-    inputs = with_groups(inputs, groups)
+    inputs = with_groups(inputs, given.groups)
     say_inputs(console, inputs)
     work = with_nuclei_or_not("map", nuclei)
     with compiling(quiet, work, options.workers), progress_bar(quiet, "cells") as progress:

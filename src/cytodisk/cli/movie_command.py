@@ -29,14 +29,13 @@ if TYPE_CHECKING:
     from cytodisk.store.study import Study
 
 
-@with_parameters(MovieParameters, RunOptions)
+@with_parameters(MovieParameters, RunOptions, groups=GroupsFile)
 def movie_command(
     masks: MovieFile,
     out: OutFolder,
     given: Given,
     signal: Signal = None,
     nuclei: MovieNuclei = None,
-    groups: GroupsFile = None,
     figures: Figures = 4,
     quiet: Quiet = False,
 ) -> None:
@@ -47,7 +46,7 @@ def movie_command(
     console = console_for(quiet)
     options = given.options(RunOptions)
     inputs = open_movie(masks, signal, given.of(MovieParameters), nuclei=nuclei)
-    inputs = with_movie_groups(inputs, masks, groups)
+    inputs = with_movie_groups(inputs, masks, given.groups)
     say_movie(console, inputs)
     work = with_nuclei_or_not("movie", nuclei)
     with compiling(quiet, work, options.workers), progress_bar(quiet, "frames") as progress:

@@ -118,11 +118,14 @@ class Given:
         That of `--parameters`.
     flags : dict of str to str
         By name.
+    groups : Path or None
+        That of `--groups`.
     """
 
     values: dict[str, Any]
     file: Path | None
     flags: dict[str, str]
+    groups: Path | None = None
 
     def of(self, model: type[Group]) -> Group:
         """The parameters that a command works with; errors name the flags."""
@@ -145,7 +148,10 @@ class Given:
 
 
 def with_parameters(
-    *models: type[Parameters], modes: Mapping[str, type[Parameters]] | None = None, file: bool = True
+    *models: type[Parameters],
+    modes: Mapping[str, type[Parameters]] | None = None,
+    file: bool = True,
+    groups: Any = None,
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Give a command an option for every field of its models, in the place of its parameter `given`.
 
@@ -158,6 +164,8 @@ def with_parameters(
         defaults; the help says which.
     file : bool
         Whether there is `--parameters`, too.
+    groups : annotation, optional
+        Of `--groups`, for commands that have it, as `GroupsFile`.
 
     Returns
     -------
@@ -177,12 +185,12 @@ def with_parameters(
                 for name, value in texts.items()
                 if value is not None
             }
-            path = values.pop("parameters", None)
+            path, of_groups = values.pop("parameters", None), values.pop("groups", None)
             if path is not None and given.get("overwrite") and "out" in values:
                 from cytodisk.store.removal import refuse_removal_of
 
                 refuse_removal_of(path, values["out"])
-            command(**values, given=Given(given, path, flags))
+            command(**values, given=Given(given, path, flags, of_groups))
 
         shown: list[inspect.Parameter] = []
         for one in inspect.signature(command).parameters.values():
@@ -192,6 +200,8 @@ def with_parameters(
             shown += [_option(name, field, more.get(name, "")) for name, field in fields.items()]
             if file:
                 shown.append(_keyword("parameters", ParametersFile))
+            if groups is not None:
+                shown.append(_keyword("groups", groups))
         run.__signature__ = inspect.Signature(shown)  # type: ignore[attr-defined]
         run.__annotations__ = {one.name: one.annotation for one in shown}
         run.__doc__, run.__name__ = command.__doc__, command.__name__

@@ -31,19 +31,18 @@ _FAR_FROM_LINE = (
 )
 
 
-@with_parameters(ShapeParameters, RunOptions)
+@with_parameters(ShapeParameters, RunOptions, groups=GroupsFile)
 def shapes_command(
     masks: MaskFiles,
     out: OutFolder,
     given: Given,
-    groups: GroupsFile = None,
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.runs.shapes.shape_study import open_shape_inputs, shape_study
 
     settings, options = given.of(ShapeParameters), given.options(RunOptions)
     console = console_for(quiet)
-    inputs = open_shape_inputs(masks, settings, groups)
+    inputs = open_shape_inputs(masks, settings, given.groups)
     say_inputs(console, inputs)
     say_compiling(quiet, "shapes")
     with progress_bar(quiet, "cells") as progress:
