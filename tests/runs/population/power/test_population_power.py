@@ -56,6 +56,16 @@ def test_a_bright_channel_does_not_count_for_more() -> None:
     assert bright.between_experiments == pytest.approx(plain.between_experiments)
 
 
+def test_shapes_alone_tell_their_shares() -> None:
+    rng = np.random.default_rng(0)
+    truth = cd.simulate.population(1, experiments=60, cells=5, layers=1, sectors=2)
+    experiment = truth.cells["experiment"].astype("category").cat.codes
+    area = rng.normal(size=experiment.max() + 1)[experiment] + rng.normal(size=len(experiment))
+    cells = truth.cells.assign(area=1e4 * area, roundness=area)
+    shares = variance_shares(cd.Population(None, cells, scalars=["area", "roundness"]))
+    assert shares.between_experiments == pytest.approx(0.5, abs=0.08)
+
+
 def test_a_plan_takes_what_is_given_before_what_is_measured() -> None:
     truth = cd.simulate.population(1, experiments=5, cells=7)
     population = cd.Population(truth.values, truth.cells)

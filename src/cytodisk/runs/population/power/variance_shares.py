@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -12,6 +14,9 @@ from cytodisk.errors import PopulationError
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT, codes_of, names_in
 from cytodisk.population.group_means import group_sums
 from cytodisk.population.population import Population
+
+Block: TypeAlias = tuple[slice, FloatArray]
+"""Rows of cells, and their values (cells, channels, layers, sectors)."""
 
 
 @dataclass(frozen=True)
@@ -40,10 +45,11 @@ class VarianceShares:
 
 
 def variance_shares(population: Population) -> VarianceShares:
-    """Shares of the variance of windows between experiments and between dishes, mean over windows.
+    """Shares of the variance of windows, or else of scalars, between experiments and between dishes.
 
     A dish is all cells of one condition in one experiment. Mean squares within and between dishes are taken
-    apart as in an analysis of variance by the method of moments; a share below 0 counts as 0.
+    apart as in an analysis of variance by the method of moments, mean over windows; a share below 0 counts
+    as 0.
 
     Parameters
     ----------
@@ -93,9 +99,9 @@ def variance_shares(population: Population) -> VarianceShares:
 
 def _components(population: Population, code: np.ndarray, dishes: pd.DataFrame) -> tuple[float, float, float]:
     """Variance of cells within dishes, of dishes of a condition, and what an experiment's dishes share."""
-    shape = population.raw.shape[1:]
-    sums = group_sums(population.blocks(), code, len(dishes), shape)
-    squares = group_sums(population.blocks(), code, len(dishes), shape, centre=sums.mean)
+    blocks, shape = _values_of(population)
+    sums = group_sums(iter(blocks()), code, len(dishes), shape)
+    squares = group_sums(iter(blocks()), code, len(dishes), shape, centre=sums.mean)
     scale = _spread_of_channels(squares.total, sums.count)
     degrees = np.maximum(sums.count - 1, 0)
     within = _mean_of(squares.total.sum(axis=0), degrees.sum(axis=0), scale)
@@ -115,6 +121,14 @@ def _components(population: Population, code: np.ndarray, dishes: pd.DataFrame) 
     ]
     alike = float(np.mean(pairs)) if pairs else 0.0
     return within, max(float(between) - within * float(per_cell), 0.0), alike
+
+
+def _values_of(population: Population) -> tuple[Callable[[], Iterable[Block]], tuple[int, ...]]:
+    """Blocks of windows, and their shape; of cells without windows their scalars, each as a channel."""
+    if population.channels:
+        return population.blocks, population.raw.shape[1:]
+    numbers = population.scalar_table().to_numpy(dtype=np.float64)[:, :, None, None]
+    return lambda: [(slice(0, len(numbers)), numbers)], numbers.shape[1:]
 
 
 def _spread_of_channels(total: FloatArray, count: FloatArray) -> FloatArray:
