@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pandas as pd
@@ -160,7 +161,8 @@ def test_a_killed_command_is_done_by_the_next(cells: Path, tmp_path: Path) -> No
         process = subprocess.Popen(command, start_new_session=True)
         while not (out / file).exists() and process.poll() is None:
             time.sleep(0.001)
-        os.killpg(process.pid, signal.SIGKILL)
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
         process.wait()
         run_to_the_end([*command, "--resume"])
         assert {file.name: file.read_bytes() for file in out.glob("*.parquet")} == whole

@@ -143,6 +143,16 @@ def test_a_wrong_request_changes_no_folder(cell_study: Path, done: Path, tmp_pat
     assert {file.name: file.read_bytes() for file in done.iterdir()} == before
 
 
+def test_a_population_beside_its_studies_is_none_of_them(cell_study: Path, tmp_path: Path) -> None:
+    shutil.copytree(cell_study / "maps", tmp_path / "all" / "maps")
+    given = {"groups": cell_study / "groups.csv", "channel": "Rac1"}
+    cd.run_population(tmp_path / "all", tmp_path / "all" / "atlas", **given)
+    again = cd.run_population(
+        tmp_path / "all", tmp_path / "all" / "atlas", resume=True, progress=_never, **given
+    )
+    assert len(again.cells) == 16
+
+
 def test_overwriting_replaces_the_run(cell_study: Path, tmp_path: Path) -> None:
     out = tmp_path / "atlas"
     _run(cell_study, out, channel=["Rac1"], csv=True)

@@ -126,15 +126,19 @@ def _complete(folder: Path, *runs: str) -> dict[str, Any]:
 
 
 def _side_by_side(folder: Path) -> list[FoundStudy]:
-    """Studies in the folders of a folder."""
+    """Studies in the folders of a folder; a population that was written there is none of its inputs."""
     inner = sorted((one for one in folder.iterdir() if one.is_dir()), key=lambda one: natural_order(one.name))
-    studies = [one for one in inner if (one / PROVENANCE).exists()]
+    studies = [one for one in inner if (one / PROVENANCE).exists() and not _is_population(one)]
     if not studies:
         what = "is empty" if not any(folder.iterdir()) else f"has no {PROVENANCE}, nor has a folder in it"
         raise PopulationError(
             f"{folder} {what}: it is no study; pass what cytodisk map, movie, shapes or batch wrote as its -o"
         )
     return [FoundStudy(one.name, one, _complete(one, *_KINDS)) for one in studies]
+
+
+def _is_population(folder: Path) -> bool:
+    return (read_provenance(folder) or {}).get("run") == POPULATION
 
 
 def _of_batch(folder: Path, batch: dict[str, Any], left_out: LeftOut, several: bool) -> list[FoundStudy]:
