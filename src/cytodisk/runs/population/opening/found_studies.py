@@ -18,6 +18,7 @@ from cytodisk.images.mask_names import natural_order
 from cytodisk.reading_files import reading_file
 from cytodisk.runs.batch.input_row import STUDIES
 from cytodisk.runs.population.opening.noted_cells import LeftOut
+from cytodisk.store.populations.population_study import RUN as POPULATION
 from cytodisk.store.provenance_file import PROVENANCE, read_complete, read_provenance
 
 Paths: TypeAlias = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
@@ -138,7 +139,7 @@ def _side_by_side(folder: Path) -> list[FoundStudy]:
 
 
 def _is_population(folder: Path) -> bool:
-    return (read_provenance(folder) or {}).get("run") == POPULATION
+    return bool((read_provenance(folder) or {}).get("run") == POPULATION)
 
 
 def _of_batch(folder: Path, batch: dict[str, Any], left_out: LeftOut, several: bool) -> list[FoundStudy]:
