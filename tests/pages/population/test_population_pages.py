@@ -200,8 +200,8 @@ def mapped(tmp_path_factory: pytest.TempPathFactory) -> Study:
     return cd.run_map(folder / "masks.tif", folder / "out", layers=3, sectors=8, **signal)
 
 
-def with_maps(study: Study, **columns: Any) -> DrawnPopulation:
-    pop = population(cells=1, experiments=2)
+def with_maps(study: Study, layers: int = 3, **columns: Any) -> DrawnPopulation:
+    pop = population(cells=1, experiments=2, layers=layers)
     cells = pop.cells.assign(study=str(study.path), number=np.arange(len(pop)), **columns)
     cells["cell"] = [f"masks.tif, cell {number}" for number in range(1, 5)]
     return drawn(pop.with_cells(cells))
@@ -214,6 +214,17 @@ def test_the_atlas_is_carried_onto_the_most_usual_cell(page: Any, mapped: Study)
     told = " ".join(words_of(figure))
     assert f"most usual shape: {one.sources.name(one.sources.representative)}" in told
     assert one.grid.layers == 3
+    assert one.sources.note == ""
+
+
+def test_what_is_of_the_edge_lies_on_the_edge(page: Any, mapped: Study) -> None:
+    """As the velocity of the edge: one layer of values, in a study whose grid has three."""
+    one = with_maps(mapped, layers=1)
+    for make in (atlas_page, cell_atlas_page):
+        figure = page(make, one, "signal")
+        shown = np.ma.asarray(figure.axes[0].collections[0].get_array()).reshape(3, 8)
+        assert np.ma.getmaskarray(shown).all(axis=1).tolist() == [False, True, True]
+        assert "no value" in words_of(figure)
     assert one.sources.note == ""
 
 
@@ -242,6 +253,15 @@ def test_a_gallery_shows_the_images_that_were_measured(page: Any, mapped: Study)
     assert not any("means of windows" in words for words in words_of(figure))
     bars = [words for words in words_of(figure) if words.endswith(" px")]
     assert len(bars) == 1
+
+
+def test_a_full_gallery_has_room_on_its_page(page: Any, mapped: Study) -> None:
+    one = with_maps(mapped)
+    table = one.study.gallery
+    ranks = [table.assign(rank=table["rank"] + 2 * k, row=table["row"] % 4) for k in range(2)]
+    one.study.__dict__["gallery"] = pd.concat(ranks, ignore_index=True)
+    figure = page(gallery_page, one, "signal")
+    assert len([ax for ax in figure.axes if ax.images]) >= 8
 
 
 def test_images_that_are_gone_are_told(page: Any, mapped: Study) -> None:

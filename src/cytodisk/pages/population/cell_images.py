@@ -49,27 +49,37 @@ class CellImages:
         channel : str
         """
         if self.study.is_movie:
-            return self._of_movie(disk, frame, channel)
+            return self._of_movie(disk, cell, frame, channel)
         image = self._image(cell, frame)
         if image is None:
             return None
+        if channel not in image.channels:
+            self.fault = f"{channel} is not a channel of the images"
+            return None
         rows, columns = _box(disk)
         try:
-            values = image.cut(rows, columns).values[list(image.channels).index(channel)]
-        except (CytodiskError, ValueError) as error:
+            values = image.cut(rows, columns).values[image.channels.index(channel)]
+        except CytodiskError as error:
             self.fault = str(error)
             return None
         return _placed(disk, rows, columns, values)
 
-    def _of_movie(self, disk: DiskMap, frame: int, channel: str) -> tuple[DiskMap, AnyArray] | None:
+    def _of_movie(
+        self, disk: DiskMap, cell: int, frame: int, channel: str
+    ) -> tuple[DiskMap, AnyArray] | None:
         found = self._movie
         self.fault = found.fault or ("" if found.source is not None else "the study has no signal")
         if found.source is None:
             return None
+        activity = self.study.activity(cell)
+        names = [str(name) for name in activity["channel"].to_numpy()] if "channel" in activity else []
+        if channel not in names:
+            self.fault = f"{channel} is not a channel of the images"
+            return None
         rows, columns = _box(disk)
         try:
-            values = found.source.frame(frame)[list(found.source.channels).index(channel)]
-        except (CytodiskError, ValueError) as error:
+            values = found.source.frame(frame)[names.index(channel)]
+        except CytodiskError as error:
             self.fault = str(error)
             return None
         return _placed(disk, rows, columns, values[rows, columns])

@@ -133,6 +133,8 @@ class CellSources:
                 continue
             if (grid.layers, grid.sectors, grid.nucleus_layers) == (layers, sectors, nucleus_layers):
                 return grid
+            if layers == 1 and grid.sectors == sectors:  # what is of the edge, such as its velocity
+                return grid
         self.note = "the studies of the cells are not there: all layers are drawn with equal areas"
         return PolarGrid(
             layers, sectors, nucleus_layers=nucleus_layers, nucleus_radius=_RADIUS if nucleus_layers else None

@@ -13,12 +13,14 @@ from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.layer_looks import cytoplasm_layers_of, layer_word, shown_layers
 from cytodisk.plot.population.condition_profiles import condition_key
 from cytodisk.plot.population.difference_map import ALPHA
+from cytodisk.plot.population.experiment_lines import fit_to_lines
 from cytodisk.plot.population.mean_curves import draw_mean_curves
 from cytodisk.plot.style import LINE_COLOUR, SINGLE_COLUMN_MM
 
 _LEFT, _RIGHT, _TALL, _TITLE, _GAP, _BELOW, _LINE = 15.5, 5.0, 22.0, 4.5, 2.0, 9.0, 3.6  # mm
 _KEY_STYLE: Any = {"handlelength": 1.6, "labelspacing": 0.35, "columnspacing": 1.2}
 _EVENTS = "around_events"
+_MOST_BAND = 1.0  # of the range of the means, that bands may reach beyond it
 
 
 def curves_page(one: DrawnPopulation, channel: str) -> Sheet:
@@ -52,9 +54,8 @@ def curves_page(one: DrawnPopulation, channel: str) -> Sheet:
         ax.set_title(layer_word(layer, atlas.sizes["layer"]), loc="left", pad=2.0)
         ax.set_ylabel("")
         axes.append(ax)
-    reach = min(ax.get_ylim()[0] for ax in axes), max(ax.get_ylim()[1] for ax in axes)
+    fit_to_lines(axes, _MOST_BAND)
     for ax in axes:
-        ax.set_ylim(*reach)
         ax.tick_params(labelbottom=ax is axes[-1])
     middle = first + 0.5 * (foot - first - _BELOW)
     label = {"rotation": 90, "ha": "left", "va": "center"}

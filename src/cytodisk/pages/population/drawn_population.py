@@ -105,13 +105,18 @@ class DrawnPopulation:
 
     def atlas(self, channel: str) -> xr.Dataset:
         """Means and counts of a channel by condition, layer and sector."""
-        return self.study.atlas_arrays.sel(channel=channel)
+        return self._on_grid(self.study.atlas_arrays.sel(channel=channel))
+
+    def _on_grid(self, windows: xr.Dataset) -> xr.Dataset:
+        """All layers of the grid: what is of the edge alone has no values in the others."""
+        return windows.reindex(layer=np.arange(self.grid.layers))
 
     def difference(self, condition: str, channel: str) -> DifferenceMap:
         """Difference of a condition from the control in a channel."""
         clusters = self.study.clusters
         own = clusters[(clusters["condition"] == condition) & (clusters["channel"] == channel)]
-        return DifferenceMap.of(self.study.window_arrays(condition).sel(channel=channel), clusters=own)
+        windows = self.study.window_arrays(condition).sel(channel=channel)
+        return DifferenceMap.of(self._on_grid(windows), clusters=own)
 
     def channel_words(self, channel: str) -> str:
         """Name of a channel for headings and labels."""

@@ -25,7 +25,7 @@ from cytodisk.windows.polar_windows import CellWindows
 
 PLACES = ("nearest", "farthest")
 
-_ROOM, _GAP, _TITLE, _BELOW, _SIDE, _BAR = 3.0, 1.5, 7.5, 5.5, 5.0, 13.0  # mm
+_ROOM, _GAP, _TITLE, _BELOW, _SIDE, _BAR = 3.0, 1.5, 7.5, 5.5, 5.0, 16.5  # mm
 _SMALL, _CHARACTER = 6.0, 1.12  # points, mm: of names
 
 

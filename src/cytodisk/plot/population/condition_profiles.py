@@ -20,10 +20,9 @@ from cytodisk.plot.population.condition_looks import checked_units, condition_co
 from cytodisk.plot.population.experiment_lines import (
     BAND_OPACITY,
     EXPERIMENT_LOOK,
-    EXPERIMENT_NAME,
     MEAN_LOOK,
-    MEAN_NAME,
     draw_experiment_lines,
+    fit_to_lines,
 )
 from cytodisk.plot.style import LINE_COLOUR, plain_numbers
 from cytodisk.plot.time_axis import TICK_STEPS
@@ -105,22 +104,8 @@ def draw_condition_profiles(
     ax.set_ylabel(label, parse_math=False)
     ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
     ax.yaxis.set_major_formatter(plain_numbers())
-    _fit(ax)
+    fit_to_lines([ax], _MOST_BAND)
     return lines
-
-
-def _fit(ax: Axes) -> None:
-    """Fit the axes to all lines, and to bands as far as they do not dwarf them."""
-    gids = (EXPERIMENT_NAME, MEAN_NAME)
-    shown = [np.asarray(line.get_ydata(), dtype=np.float64) for line in ax.lines if line.get_gid() in gids]
-    values = np.concatenate(shown)
-    values = values[np.isfinite(values)]
-    if not values.size:
-        return
-    low, high = float(values.min()), float(values.max())
-    room = _MOST_BAND * ((high - low) or max(abs(high), 1.0))
-    bottom, top = ax.get_ylim()
-    ax.set_ylim(max(bottom, low - room), min(top, high + room))
 
 
 def condition_key(lines: list[Line2D], *, cells: bool = False, experiments: bool = True) -> list[Any]:

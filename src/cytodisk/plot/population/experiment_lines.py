@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -87,6 +88,34 @@ def draw_experiment_lines(
     )
     line.set_gid(MEAN_NAME)
     return line
+
+
+def fit_to_lines(axes: Sequence[Axes], share: float) -> None:
+    """Fit axes to their lines of means and experiments, and to bands as far as they do not dwarf these.
+
+    Parameters
+    ----------
+    axes : sequence of Axes
+        All get the same limits.
+    share : float
+        How far bands may reach beyond the lines, over the range of these.
+    """
+    names = (EXPERIMENT_NAME, MEAN_NAME)
+    shown = [
+        np.asarray(line.get_ydata(), dtype=np.float64)
+        for ax in axes
+        for line in ax.lines
+        if line.get_gid() in names
+    ]
+    values = np.concatenate([np.empty(0), *shown])
+    values = values[np.isfinite(values)]
+    if not values.size:
+        return
+    low, high = float(values.min()), float(values.max())
+    room = share * ((high - low) or max(abs(high), 1.0))
+    bottom, top = min(ax.get_ylim()[0] for ax in axes), max(ax.get_ylim()[1] for ax in axes)
+    for ax in axes:
+        ax.set_ylim(max(bottom, low - room), min(top, high + room))
 
 
 def mean_by_experiment(values: FloatArray, experiments: Any) -> tuple[list[str], FloatArray]:
