@@ -1,14 +1,16 @@
-"""How often a region that differs is found, by its size of effect and the number of experiments.
+"""How often a region that differs is found, and whether `cytodisk population --power` says so beforehand.
 
-    benchmarks/population_power.py [--studies 200] [--cells 12] [--between 0.1] [--first-seed 0] [--workers 1]
+    benchmarks/population_power.py [--studies 200] [--cells 12] [--between 0.1] [--dishes 0.05] [--workers 1]
 
-Simulated studies of cells of 4 × 12 windows, of which a region of 2 × 4 is raised by so many standard
-deviations of a cell. For 3 to 8 experiments of each condition, and for 3 to 8 pairs, prints the share of
-the studies in which max-T finds a window of the region, in which a cluster at .05 holds one, and the
-share of the region's windows that max-T finds; and the smallest p-value that can be reached.
+Simulated studies of cells of 6 × 24 windows, of which a sixth is raised by so many standard deviations of
+a cell, with 3 to 8 experiments of each condition, and with 3 to 8 pairs. Each goes through
+`compare_conditions`. Prints the share of the studies in which max-T finds a window of the region, and in
+which a cluster at .05 holds one; beside each what `population_power` says, from other studies. Ends with
+status 1 if two of them differ by more than three standard errors.
 """
 
 import argparse
+import math
 import os
 import sys
 import time
@@ -19,24 +21,16 @@ from functools import partial
 import numpy as np
 
 import cytodisk as cd
-from population_cases import ALPHA, LAYERS, SECTORS
+from population_cases import ALPHA
 
 EFFECTS = (0.5, 1.0, 1.5, 2.0)
 SIZES = range(3, 9)
+OTHER_SEED = 1_000_000  # of the studies of `population_power`
 
 
-def measure(seed: int, effect: float, experiments: int, paired: bool, cells: int, share: float) -> np.ndarray:
-    """A window found, a cluster found, share of windows found, smallest p."""
-    truth = cd.simulate.population(
-        seed,
-        effect=effect,
-        experiments=experiments,
-        cells=cells,
-        paired=paired,
-        between_experiments=share,
-        layers=LAYERS,
-        sectors=SECTORS,
-    )
+def measure(seed: int, effect: float, experiments: int, paired: bool, how: dict[str, float]) -> np.ndarray:
+    """Whether a window of the region is found, and a cluster that holds one."""
+    truth = cd.simulate.population(seed, effect=effect, experiments=experiments, paired=paired, **how)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         found = cd.compare_conditions(
@@ -46,7 +40,13 @@ def measure(seed: int, effect: float, experiments: int, paired: bool, cells: int
     windows = (found.windows["p_fwer"].squeeze() <= ALPHA).to_numpy()[region]
     sure = found.clusters.loc[found.clusters["p"] <= ALPHA, "cluster"]
     clusters = found.windows["cluster"].squeeze().isin(sure).to_numpy()[region]
-    return np.array([windows.any(), clusters.any(), windows.mean(), found.smallest_p], dtype=float)
+    return np.array([windows.any(), clusters.any()], dtype=float)
+
+
+def agree(one: float, other: float, studies: int) -> bool:
+    """Whether two shares of so many studies each can be of one true share."""
+    mean = 0.5 * (one + other)
+    return abs(one - other) <= 3.0 * math.sqrt(2.0 * mean * (1.0 - mean) / studies)
 
 
 def main() -> int:
@@ -57,33 +57,43 @@ def main() -> int:
     parser.add_argument("--studies", type=int, default=200, help="of each number (default 200)")
     parser.add_argument("--cells", type=int, default=12, help="in each condition and experiment (default 12)")
     parser.add_argument("--between", type=float, default=0.1, help="share of the variance (default 0.1)")
+    parser.add_argument("--dishes", type=float, default=0.05, help="share of the variance (default 0.05)")
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--workers", type=int, default=1, help="processes (default 1)")
     chosen = parser.parse_args()
     os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     started, seeds = time.perf_counter(), range(chosen.first_seed, chosen.first_seed + chosen.studies)
-    effects = " | ".join(f"{effect:g} sd" for effect in EFFECTS)
-    print("Studies with a window by max-T / with a cluster / share of the region's windows by max-T\n")
-    print(f"| design | smallest p | {effects} |\n|{'---|' * (2 + len(EFFECTS))}", flush=True)
+    shares = {"cells": chosen.cells, "between_experiments": chosen.between, "between_dishes": chosen.dishes}
+    said = cd.population_power(
+        effects=EFFECTS, experiments=tuple(SIZES), studies=chosen.studies, seed=OTHER_SEED, **shares
+    )
+    grid = dict(zip(("layers", "sectors"), said.attrs["windows"], strict=True))
+    said = said.set_index(["design", "experiments", "effect"])
+    print("| design | smallest p | effect | window | said | cluster | said | agree? |")
+    print(f"|{'---|' * 8}", flush=True)
+    good = True
     with ProcessPoolExecutor(chosen.workers) as pool:
-        for paired in (False, True):
-            for experiments in SIZES:
-                cells, smallest = [], 1.0
-                for effect in EFFECTS:
-                    work = partial(
-                        measure,
-                        effect=effect,
-                        experiments=experiments,
-                        paired=paired,
-                        cells=chosen.cells,
-                        share=chosen.between,
-                    )
-                    *shares, smallest = np.mean(list(pool.map(work, seeds, chunksize=10)), axis=0)
-                    cells.append(" / ".join(f"{share:.2f}" for share in shares))
-                design = f"{experiments} pairs" if paired else f"{experiments} + {experiments}"
-                print(f"| {design} | {smallest:.4f} | {' | '.join(cells)} |", flush=True)
-    print(f"\n{time.perf_counter() - started:.0f} s")
-    return 0
+        for design, experiments, effect in said.index:
+            work = partial(
+                measure,
+                effect=effect,
+                experiments=experiments,
+                paired=design == "paired",
+                how=shares | grid,
+            )
+            window, cluster = np.mean(list(pool.map(work, seeds, chunksize=10)), axis=0)
+            row = said.loc[(design, experiments, effect)]
+            alike = agree(window, row["window"], chosen.studies)
+            alike &= agree(cluster, row["cluster"], chosen.studies)
+            good &= alike
+            words = f"{experiments} pairs" if design == "paired" else f"{experiments} + {experiments}"
+            print(
+                f"| {words} | {row['smallest_p']:.4f} | {effect:g} sd | {window:.3f} | {row['window']:.3f} "
+                f"| {cluster:.3f} | {row['cluster']:.3f} | {'yes' if alike else 'NO'} |",
+                flush=True,
+            )
+    print(f"\n{time.perf_counter() - started:.0f} s; {'all agree' if good else 'some do NOT agree'}")
+    return int(not good)
 
 
 if __name__ == "__main__":
