@@ -47,4 +47,5 @@ def keep_plan(folder: Path, table: "pd.DataFrame", notes: Sequence[str], formats
         folder.mkdir(parents=True, exist_ok=True)
         write_csv(table, folder / _TABLE)
     if formats:
-        write_power_figure(folder, table, notes=notes[:1], formats=formats)
+        known, _, shares = notes[0].partition(": ")
+        write_power_figure(folder, table, notes=[known, *shares.split(", ")], formats=formats)
