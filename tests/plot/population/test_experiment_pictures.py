@@ -183,6 +183,13 @@ def test_directions_have_their_resultants(ax: Axes) -> None:
     assert words == "resultant length 0.79\n4 cells, 2 experiments\n1 without a direction"
 
 
+def test_very_many_directions_are_a_rose_alone(ax: Axes) -> None:
+    dots = draw_directions(ax, np.linspace(0.0, 359.0, 400))
+    assert len(dots.get_offsets()) == 0
+    assert sum(patch.get_gid() == "rose" for patch in ax.patches) == 24
+    assert ax.texts[-1].get_text() == "resultant length 0.00\n400 cells"
+
+
 def test_no_direction_at_all(ax: Axes) -> None:
     draw_directions(ax, [np.nan, np.nan])
     assert ax.texts[-1].get_text() == "0 cells\n2 without a direction"

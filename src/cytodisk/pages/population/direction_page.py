@@ -8,7 +8,7 @@ from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.population.drawn_population import DrawnPopulation
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.population.condition_looks import condition_colours
-from cytodisk.plot.population.directions import draw_directions
+from cytodisk.plot.population.directions import MOST_DOTS, draw_directions
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM
 from cytodisk.runs.population.cells_of_study import BRIGHTEST_SIDE
 
@@ -26,7 +26,9 @@ def directions_page(one: DrawnPopulation) -> Sheet | None:
     abreast = max(map(len, blocks))
     width = SINGLE_COLUMN_MM if abreast <= 2 else DOUBLE_COLUMN_MM
     panel = min((width - 2 * LEFT_MM - _SIDE - (abreast - 1) * _GAP) / abreast, _WIDEST)
-    notes = ["a dot: a cell", "arrow: resultant of an experiment (thin), mean (thick)", "1 at the rim"]
+    dotted = int(one.used["condition"].value_counts().min()) <= MOST_DOTS
+    notes = ["a dot: a cell"] if dotted else ["area of a wedge: share of the cells"]
+    notes += ["arrow: resultant of an experiment (thin), mean (thick)", "1 at the rim"]
     of_signal = not kinds[0].startswith(_MAPPED)
     title = (
         "Where around the cell the signal is brightest" if of_signal else "Directions of cells in the disk"

@@ -22,6 +22,8 @@ _FEW = 12  # cells below which a rose says nothing
 _RIM, _STEP = 0.95, 0.045  # radius of the dots, and from one to the next that has the same direction
 _ALIKE = 4.0  # degrees within which dots are stacked
 _MOST_STACKED = 12
+MOST_DOTS = 300
+"""Cells of a condition that get a dot; more are a rose alone."""
 
 
 def draw_directions(
@@ -44,7 +46,8 @@ def draw_directions(
     Returns
     -------
     PathCollection
-        The dots, one a cell with a direction. Arrows have the gids "experiment" and "mean".
+        The dots, one a cell with a direction; none of more than 300 cells, where they would hide the rose.
+        Arrows have the gids "experiment" and "mean".
 
     Raises
     ------
@@ -76,7 +79,8 @@ def draw_directions(
     angles, names = np.radians(given[known]), names[known]
     if len(angles) >= _FEW:
         _draw_rose(ax, angles, color)
-    drawn = ax.scatter(*_stacked(angles), s=3.5, color=color, linewidths=0, zorder=3.0)
+    dotted = angles if len(angles) <= MOST_DOTS else angles[:0]
+    drawn = ax.scatter(*_stacked(dotted), s=3.5, color=color, linewidths=0, zorder=3.0)
     drawn.set_gid(DOTS_NAME)
     frame_disk(ax)
     words = f"{len(angles)} cells" if len(angles) != 1 else "1 cell"
