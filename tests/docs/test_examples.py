@@ -19,6 +19,7 @@ SLOW = {  # UMAP is compiled, processes are started
     "run_batch",
     "run_batch_correlate",
     "run_correlate",
+    "write_pooled_figure",
 }
 SPACES: tuple[ModuleType, ...] = (cd, cd.plot, cd.pages, cd.simulate)
 

@@ -80,8 +80,7 @@ def test_all_that_is_drawn_lies_on_a_column_and_in_the_axes(pooled: PooledCorrel
 
 
 def test_the_figure_is_written_where_the_correlation_is(pooled: PooledCorrelation) -> None:
-    batch = pooled.path.parents[1]
-    paths = write_pooled_figure(batch, pooled, ["png", "svg"])
+    paths = write_pooled_figure(pooled, formats=["png", "svg"])
     assert [path.name for path in paths] == ["curves.png", "curves.svg"]
     assert paths[0].parent == pooled.path / "figures"
     assert Path(paths[1]).read_text().count("control") >= 1

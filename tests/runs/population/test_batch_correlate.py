@@ -114,6 +114,18 @@ def test_a_batch_goes_on_after_it_was_correlated(files: Path, batch: Path, poole
     assert len(open_pooled_correlation(batch, "follower").pooled) == len(pooled.pooled)
 
 
+def test_a_table_of_groups_takes_the_place_of_those_of_the_batch(batch: Path, tmp_path: Path) -> None:
+    table = tmp_path / "groups.csv"
+    table.write_text("file,condition,experiment\nm0_masks.tif,drug,day 9\n", encoding="utf-8")
+    found = run_batch_correlate(
+        batch, "follower", groups=table, max_lag=6, name="own", resume=True, **SETTINGS
+    )
+    cells = found.cells.set_index("input")
+    assert found.conditions == ("drug",)
+    assert cells.loc["m0", "experiment"] == "day 9"
+    assert cells.loc["m1", ["status", "reason"]].tolist() == ["left out", "it has no condition"]
+
+
 def test_what_is_asked_wrongly_says_what_there_is(batch: Path) -> None:
     with pytest.raises(ParameterError, match="'VASP' is not in the study: it has 'follower', 'other'"):
         run_batch_correlate(batch, "VASP", **SETTINGS)

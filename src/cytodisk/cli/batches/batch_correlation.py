@@ -54,7 +54,7 @@ def correlate_batch(
         found = run_batch_correlate(
             batch, signal, names[1], groups=groups, progress=progress, parameters=parameters, **options
         )
-    figures = write_pooled_figure(batch, found, formats)
+    figures = write_pooled_figure(found, formats=formats)
     _say(console, found)
     console.print(f"pooled: {found.path}; figure: {', '.join(str(figure) for figure in figures)}")
     say_page(console, lambda: write_batch_report(batch))

@@ -37,16 +37,13 @@ _PARTIAL, _BEYOND = "partial", "beyond chance"
 _LONGEST = 18
 
 
-def write_pooled_figure(
-    batch: Path, pooled: PooledCorrelation, formats: Sequence[str] = ("png",)
-) -> list[Path]:
+def write_pooled_figure(pooled: PooledCorrelation, *, formats: Sequence[str] = ("png",)) -> list[Path]:
     """Draw the pooled curves into the folder `figures` of the correlation.
 
     Parameters
     ----------
-    batch : Path
-        Folder of the batch.
     pooled : PooledCorrelation
+        As of `run_batch_correlate`.
     formats : sequence of {"png", "pdf", "svg"}
 
     Returns
@@ -59,7 +56,28 @@ def write_pooled_figure(
         A format is unknown.
     StudyError
         The folder cannot be written.
+
+    See Also
+    --------
+    write_correlation_figures : One movie.
+
+    Examples
+    --------
+    >>> import tifffile
+    >>> from pathlib import Path
+    >>> import cytodisk as cd
+    >>> movie = cd.simulate.movie("fluctuating", frames=24, radius_px=14)
+    >>> tifffile.imwrite("masks.tif", movie.masks.astype("uint8"), photometric="minisblack")
+    >>> tifffile.imwrite("signal.ome.tif", movie.signal.to_numpy(), metadata={"axes": "TCYX"})
+    >>> lines = ["[study]", "kind = 'movie'", "[parameters]", "channels = ['Rac1', 'RhoA']", "[[inputs]]"]
+    >>> lines += ["masks = 'masks.tif'", "signal = 'signal.ome.tif'"]
+    >>> _ = Path("batch.toml").write_text("\\n".join(lines))
+    >>> _ = cd.run_batch("batch.toml", "all")
+    >>> pooled = cd.run_batch_correlate("all", "Rac1", max_lag=3, surrogates=0)
+    >>> [path.name for path in cd.pages.write_pooled_figure(pooled)]
+    ['curves.png']
     """
+    batch = pooled.path.parents[1]
     chosen = chosen_formats(formats)
     names = [f"{FIGURE}.{kind}" for kind in chosen]
     with drawing(batch, *names, of=pooled.path) as folder, paper_style():

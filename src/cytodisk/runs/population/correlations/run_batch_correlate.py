@@ -8,7 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from cytodisk.errors import ParameterError
+from cytodisk.errors import ParameterError, PopulationError
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.correlate.correlate_study import channels_of
@@ -74,7 +74,8 @@ def run_batch_correlate(
     Raises
     ------
     PopulationError
-        The movies cannot be pooled: their windows or frame intervals differ; or a condition is not there.
+        The movies cannot be pooled: their windows or frame intervals differ, a condition is not there, or no
+        cell has a condition, an experiment and a curve.
     ParameterError
         No cell could be correlated, or a parameter is out of its range.
 
@@ -127,6 +128,9 @@ def run_batch_correlate(
     table = _with_groups(pd.concat(cells, ignore_index=True), movies.groups)
     joined = _with_groups(pd.concat(curves, ignore_index=True), movies.groups)
     pooled = pool_curves(joined, table[table["status"] == "ok"], (signal, with_), chosen.part(PoolParameters))
+    if pooled.tables["pooled"].empty:
+        why = [words for words in table["reason"] if words] or ["no lag has enough pairs of frames"]
+        raise PopulationError(f"no cell of batch {folder} can be pooled: {why[0]}")
     tables = {"studies": _studies(studies, table), "cells": table, "curves": joined} | pooled.tables
     tables = {name: one for name, one in tables.items() if len(one)}
     content = chosen.model_dump() | _said(movies, pooled) | {"max_lag": of_each.max_lag}
