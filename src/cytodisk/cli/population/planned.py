@@ -23,7 +23,7 @@ _OF_CELLS = ("compare", "channel", "summary", "normalise", "align")
 
 
 def planned(
-    console: "Console", given: Given, paths: list[Path], groups: Path | None, is_kept: bool
+    console: "Console", given: Given, paths: list[Path], is_kept: bool
 ) -> tuple["pd.DataFrame", list[str]]:
     """Say how many experiments find a difference of which size.
 
@@ -33,7 +33,6 @@ def planned(
     given : Given
     paths : list of Path
         Studies whose variance is taken; none for the defaults.
-    groups : Path or None
     is_kept : bool
         The table goes to a folder.
 
@@ -56,12 +55,12 @@ def planned(
         *(["overwrite"] if is_kept else ()),
     }
     beyond = [given.flags[name] for name in given.values if name not in known]
-    beyond += ["--groups"] if groups and not paths else []
+    beyond += ["--groups"] if given.groups and not paths else []
     if beyond:
         advice = "leave it out" if paths else "leave it out, or pass PATH if it is about your cells"
         raise ParameterError(f"{', '.join(beyond)}: not with --power; {advice}")
     settings = given.of(PowerParameters)
-    population = _cells_at_hand(given, paths, groups) if paths else None
+    population = _cells_at_hand(given, paths) if paths else None
     notes = plan_lines(plan_of(settings, population), settings)
     for note in notes:
         console.print(note)
@@ -71,7 +70,7 @@ def planned(
     return table, notes
 
 
-def _cells_at_hand(given: Given, paths: list[Path], groups: Path | None) -> "Population":
+def _cells_at_hand(given: Given, paths: list[Path]) -> "Population":
     """The population whose variance a plan takes, of the conditions and channels that are asked for."""
     from cytodisk.runs.population.population_at_hand import population_at_hand
 
@@ -79,7 +78,7 @@ def _cells_at_hand(given: Given, paths: list[Path], groups: Path | None) -> "Pop
     chosen = PopulationParameters.called(values, given.flags)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", PopulationWarning)
-        population = population_at_hand(paths, groups, chosen)
+        population = population_at_hand(paths, given.groups, chosen)
     for one in caught:
         print(f"Warning: {one.message}", file=sys.stderr)
     return population

@@ -8,7 +8,7 @@ import typer
 
 from cytodisk.cli.console import COMPLETE, PERCENT, console_for, progress_bar
 from cytodisk.cli.correlate_command import Format, figure_formats
-from cytodisk.cli.options import Given, Quiet, with_parameters
+from cytodisk.cli.options import Given, GroupsFile, Quiet, with_parameters
 from cytodisk.cli.population.kept_plan import keep_plan, refuse_kept_plan
 from cytodisk.cli.population.planned import planned
 from cytodisk.cli.population.population_words import say_population
@@ -26,7 +26,9 @@ if TYPE_CHECKING:
     from cytodisk.store.populations.population_study import PopulationStudy
 
 
-@with_parameters(PopulationParameters, PopulationOptions, modes={"--power": PowerParameters})
+@with_parameters(
+    PopulationParameters, PopulationOptions, modes={"--power": PowerParameters}, groups=GroupsFile
+)
 def population_command(
     given: Given,
     paths: Annotated[
@@ -42,14 +44,6 @@ def population_command(
         Path | None,
         typer.Option("--out", "-o", metavar="FOLDER", help="Folder for the results.", show_default=False),
     ] = None,
-    groups: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="TABLE",
-            help="Table (CSV) with the columns file or cell, condition and experiment, and any others: what "
-            "was done to which cell.",
-        ),
-    ] = None,
     figures: Annotated[bool, typer.Option(help="Draw the atlas, profiles and scalars.")] = True,
     formats: Annotated[
         str, typer.Option("--format", metavar="A,B,…", help="Of figures: png, pdf, svg, or several.")
@@ -64,7 +58,7 @@ def population_command(
         wanted = figure_formats(formats) if figures else ()
         if out is not None and not given.values.get("overwrite"):
             refuse_kept_plan(out)
-        table, notes = planned(console, given, paths or [], groups, out is not None)
+        table, notes = planned(console, given, paths or [], out is not None)
         if out is not None:
             keep_plan(out, table, notes, wanted)
             console.print(f"results: {out}")
@@ -78,16 +72,14 @@ def population_command(
     if out is None:
         raise ParameterError("--out is missing: name a folder for the results, as -o atlas/")
     wanted = figure_formats(formats) if figures else ()
-    study = _compare(console, given, paths, out, groups)
+    study = _compare(console, given, paths, out)
     say_population(console, study)
     console.print(f"results: {study.path}")
     for line in _draw(console, study, wanted) if wanted else ():
         console.print(line)
 
 
-def _compare(
-    console: "Console", given: Given, paths: list[Path], out: Path, groups: Path | None
-) -> "PopulationStudy":
+def _compare(console: "Console", given: Given, paths: list[Path], out: Path) -> "PopulationStudy":
     from cytodisk.runs.population.run_population import run_population
 
     settings, options = given.of(PopulationParameters), given.options(PopulationOptions)
@@ -99,7 +91,7 @@ def _compare(
             progress(done, total)
 
         study = run_population(
-            paths, out, groups=groups, progress=report, parameters=settings, **dict(options)
+            paths, out, groups=given.groups, progress=report, parameters=settings, **dict(options)
         )
     if not steps and not console.quiet:
         print(COMPLETE, file=sys.stderr)
