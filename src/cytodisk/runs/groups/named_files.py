@@ -52,9 +52,9 @@ class NamedFiles:
             A name, or a path with / or \\\\ between its parts.
         """
         text = normalize("NFC", text)
-        *parents, name = re.sub(r"^(\./)+", "", text.replace("\\", "/")).split("/")
-        if not parents and text in self._inputs:
+        if text in self._inputs:
             return self._inputs[text]
+        *parents, name = re.sub(r"^(\./)+", "", text.replace("\\", "/")).split("/")
         for known in self._levels:
             found = [row for row in known.get(name, ()) if self._lies_in(row, parents, name)]
             if found:

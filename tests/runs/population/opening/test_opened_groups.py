@@ -56,3 +56,20 @@ def test_the_path_of_masks_is_known_from_the_study(day1, tmp_path: Path) -> None
 def test_a_row_about_no_cell_is_refused(day1, tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match=r"other\.tif"):
         open_population(day1, groups=written(tmp_path, "file,condition\ncells.tif,a\nother.tif,b\n"))
+
+
+def test_files_of_one_name_are_told_apart_by_their_paths(day1, changed, tmp_path: Path) -> None:
+    inputs = {"masks": {"path": "/data/day 2/cells.tif", "sha256": "other"}}
+    groups = written(tmp_path, "file,experiment\nday 2/cells.tif,b\nday1,a\n")
+    population = open_population([day1, changed("second", inputs=inputs)], groups=groups)
+    assert population.cells["experiment"].tolist() == ["a"] * 4 + ["b"] * 4
+
+
+def test_inputs_of_several_folders_are_named_with_them(day1, changed, tmp_path: Path) -> None:
+    other = tmp_path / "other" / "day1"
+    other.parent.mkdir()
+    changed("copy").rename(other)
+    names = open_population([day1, other]).cells["input"].unique().tolist()
+    assert names[1] == "other/day1"
+    groups = written(tmp_path, f"file,condition\n{names[0]},a\n{names[1]},b\n")
+    assert open_population([day1, other], groups=groups).cells["condition"].tolist() == ["a"] * 4 + ["b"] * 4
