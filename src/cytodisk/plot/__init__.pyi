@@ -60,7 +60,7 @@ from .population.population_maps import difference_key as difference_key
 from .population.condition_profiles import draw_condition_profiles as draw_condition_profiles
 from .population.condition_profiles import condition_key as condition_key
 from .population.super_plot import draw_super_plot as draw_super_plot
-from .population.super_plot import experiment_key as experiment_key
+from .population.experiment_key import experiment_key as experiment_key
 from .population.effect_sizes import draw_effect_sizes as draw_effect_sizes
 from .population.cell_gallery import draw_gallery as draw_gallery
 from .population.cell_gallery import draw_window_gallery as draw_window_gallery

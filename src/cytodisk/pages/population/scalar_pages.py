@@ -14,7 +14,8 @@ from cytodisk.pages.population.drawn_population import DrawnPopulation
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.population.condition_looks import condition_colours
 from cytodisk.plot.population.effect_sizes import draw_effect_sizes
-from cytodisk.plot.population.super_plot import draw_super_plot, experiment_key
+from cytodisk.plot.population.experiment_key import experiment_key
+from cytodisk.plot.population.super_plot import draw_super_plot
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM
 from cytodisk.plot.units import with_unit
 
