@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 import cytodisk as cd
-from cytodisk.errors import ParameterError, PopulationWarning
+from cytodisk.errors import ParameterError, PopulationError, PopulationWarning
 from cytodisk.runs.population.opening.open_population import open_population
 
 
@@ -73,3 +73,21 @@ def test_inputs_of_several_folders_are_named_with_them(day1, changed, tmp_path: 
     assert names[1] == "other/day1"
     groups = written(tmp_path, f"file,condition\n{names[0]},a\n{names[1]},b\n")
     assert open_population([day1, other], groups=groups).cells["condition"].tolist() == ["a"] * 4 + ["b"] * 4
+
+
+def test_columns_of_a_user_do_not_replace_those_of_a_population(day1, changed, tmp_path: Path) -> None:
+    study = changed("day2", cells=lambda cells: cells.assign(number=5))
+    with pytest.raises(PopulationError, match=r"day2: column 'number' is one that .* rename yours"):
+        open_population(study)
+    groups = written(tmp_path, "cell,study\n1,x\n2,x\n3,x\n4,x\n")
+    with pytest.raises(PopulationError, match=r"groups.csv: column 'study' is one that"):
+        open_population(day1, groups=groups)
+    measured = changed("day3", cells=lambda cells: cells.assign(disk_direction_axis=5.0))
+    with pytest.raises(
+        PopulationError, match=r"column 'disk_direction_axis' of the cells is one that is measured"
+    ):
+        open_population(measured)
+    given = changed(
+        "day4", cells=lambda cells: cells.assign(disk_direction_front=90.0, direction_strength_front=1.0)
+    )
+    assert open_population(given).align("front").alignment["status"].tolist() == ["ok"] * 4

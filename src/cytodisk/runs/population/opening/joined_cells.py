@@ -24,6 +24,7 @@ PLACES = ("cell", "input", "study", "source", "frame", "label", "number")
 """Which cell it is: its name, its study, and its number there."""
 
 FRAMES = "frames"
+_TAKEN = ("input", "study", "number", FRAMES)
 _KEPT = (
     "qc_flags",
     "touches_border",
@@ -61,6 +62,8 @@ def cell_rows(study: FoundStudy) -> pd.DataFrame:
     ------
     ReadError
         The table is missing or damaged.
+    PopulationError
+        A column of the user has a name that populations need.
     """
     if study.run == "shapes":
         with reading_file(study.folder / SHAPES, "a table of shapes", REMEDY):
@@ -78,10 +81,28 @@ def cell_rows(study: FoundStudy) -> pd.DataFrame:
     for name in own:
         given = own[name].reindex(found["cell"]).set_axis(found.index)
         found[name] = found[name].where(is_given(found[name]), given) if name in found else given
+    refuse_taken([str(name) for name in found], study.name)
     found = found.rename(columns={"cell": "number"})
     found = found.assign(input=study.name, study=str(study.folder.absolute()))
     found.attrs["units"] = units
     return found
+
+
+def refuse_taken(names: Sequence[str], place: str) -> None:
+    """Raise PopulationError where a user's column has a name that populations need.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Columns of a study's cells, or of a table of groups.
+    place : str
+        Which it is, for the message.
+    """
+    taken = [name for name in names if name in _TAKEN]
+    if taken:
+        raise PopulationError(
+            f"{place}: column {taken[0]!r} is one that the cells of a population have anyway: rename yours"
+        )
 
 
 def _kept(names: list[str]) -> list[str]:
@@ -205,6 +226,11 @@ def is_given(column: pd.Series[Any]) -> pd.Series[bool]:
 
 def with_columns(cells: pd.DataFrame, columns: dict[str, Any] | pd.DataFrame) -> pd.DataFrame:
     """Cells with more columns, and the same attrs."""
-    found = pd.concat([cells, pd.DataFrame(columns, index=cells.index)], axis=1)
+    more = pd.DataFrame(columns, index=cells.index)
+    if twice := [str(name) for name in more if name in cells]:
+        raise PopulationError(
+            f"column {twice[0]!r} of the cells is one that is measured here: rename yours, or leave it out"
+        )
+    found = pd.concat([cells, more], axis=1)
     found.attrs = dict(cells.attrs)
     return found

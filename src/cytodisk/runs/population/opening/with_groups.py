@@ -11,6 +11,7 @@ import pandas as pd
 
 from cytodisk.runs.groups.groups_file import read_groups
 from cytodisk.runs.population.opening.found_studies import FoundStudy
+from cytodisk.runs.population.opening.joined_cells import refuse_taken
 
 
 def with_groups(
@@ -37,6 +38,8 @@ def with_groups(
     ------
     ReadError, ParameterError
         The table cannot be used; all faults are said at once.
+    PopulationError
+        A column has a name that populations need.
     """
     if groups is None:
         return cells, ()
@@ -46,7 +49,9 @@ def with_groups(
     named = zip(files["input"], files["source"], strict=True)
     files["path"] = [_mask_path(by_study[name], source) for name, source in named]
     places["path"] = places[["input", "source"]].merge(files, how="left")["path"].to_numpy()
-    found = read_groups(groups).match(places)
+    table = read_groups(groups)
+    refuse_taken(table.names, table.path.name)
+    found = table.match(places)
     joined = pd.concat([cells.drop(columns=[*found.values], errors="ignore"), found.values], axis=1)
     joined.attrs = dict(cells.attrs)
     return joined, found.warnings
