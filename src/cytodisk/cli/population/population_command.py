@@ -8,10 +8,11 @@ import typer
 
 from cytodisk.cli.console import COMPLETE, PERCENT, console_for, progress_bar
 from cytodisk.cli.correlate_command import Format, figure_formats
-from cytodisk.cli.options import Given, GroupsFile, Quiet, with_parameters
+from cytodisk.cli.options import Given, GroupsFile, NoReport, Quiet, with_parameters
 from cytodisk.cli.population.kept_plan import keep_plan, refuse_kept_plan
 from cytodisk.cli.population.planned import planned
 from cytodisk.cli.population.population_words import say_population
+from cytodisk.cli.report.report_words import say_page
 from cytodisk.errors import ParameterError
 from cytodisk.runs.population.population_parameters import PopulationParameters
 from cytodisk.runs.population.power.power_parameters import PowerParameters
@@ -51,6 +52,7 @@ def population_command(
     power: Annotated[
         bool, typer.Option("--power", help="Plan: how many experiments find a difference of which size.")
     ] = False,
+    no_report: NoReport = False,
     quiet: Quiet = False,
 ) -> None:
     console = console_for(quiet)
@@ -77,6 +79,14 @@ def population_command(
     console.print(f"results: {study.path}")
     for line in _draw(console, study, wanted) if wanted else ():
         console.print(line)
+    if not no_report:
+        say_page(console, lambda: _page_of(study))
+
+
+def _page_of(study: "PopulationStudy") -> Path:
+    from cytodisk.pages.report.page import write_report
+
+    return write_report(study)
 
 
 def _compare(console: "Console", given: Given, paths: list[Path], out: Path) -> "PopulationStudy":

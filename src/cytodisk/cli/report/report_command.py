@@ -8,7 +8,7 @@ import typer
 from cytodisk.cli.console import console_for, earlier_version_lines, progress_bar
 from cytodisk.cli.flag_words import file_names, say_flags
 from cytodisk.cli.options import Quiet
-from cytodisk.cli.report.given_folder import is_batch
+from cytodisk.cli.report.given_folder import is_batch, is_run
 from cytodisk.cli.report.report_words import say_page, say_written
 
 if TYPE_CHECKING:
@@ -54,6 +54,13 @@ def report_command(
         report_batch(study, resume=resume, quiet=quiet)
         say_page(console, lambda: write_batch_report(study))
         return
+    if is_run(study, "population"):
+        from cytodisk.pages.report.page import write_report
+        from cytodisk.store.populations.population_study import open_population_study
+
+        _refuse_of_study(study, {"--cell": cell, "--signal": signal})
+        say_page(console, lambda: write_report(open_population_study(study), out))
+        return
     write_page(console, quiet, opened(console, study), out, cell, signal)
 
 
@@ -62,8 +69,8 @@ def _refuse_of_study(batch: Path, flags: dict[str, Any]) -> None:
 
     if given := [flag for flag, value in flags.items() if value is not None]:
         raise ParameterError(
-            f"{', '.join(given)}: not for a batch, whose studies each have a page in their folder: leave it "
-            f"out, or name one of {batch / 'inputs'}"
+            f"{', '.join(given)}: not for a batch or a population, whose studies each have a page in their "
+            "folder: leave it out, or name the folder of one of them"
         )
 
 

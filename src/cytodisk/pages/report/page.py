@@ -13,8 +13,10 @@ from cytodisk.pages.report.batches.page import batch_page
 from cytodisk.pages.report.bokeh_parts import bokeh
 from cytodisk.pages.report.cells.page import cells_page
 from cytodisk.pages.report.movie_page import movie_page, open_cell, usual_cell
+from cytodisk.pages.report.populations.page import population_page
 from cytodisk.pages.report.template import jinja
 from cytodisk.runs.study_signal import shown_signal
+from cytodisk.store.populations.population_study import PopulationStudy
 from cytodisk.store.study import Study
 from cytodisk.store.written_files import writing_files
 
@@ -24,20 +26,22 @@ Progress = Callable[[int, int], None]
 
 
 def write_report(
-    study: Study,
+    study: Study | PopulationStudy,
     path: str | os.PathLike[str] | None = None,
     *,
     cell: int | None = None,
     signal: FrameSource | None = None,
     progress: Progress | None = None,
 ) -> Path:
-    """Write a page with a study's QC flags and its cells: linked views of one cell of a movie, or all masks.
+    """Write the page of a study: what was found first, then QC flags or warnings, then views of it.
 
-    The page is one file that needs no network: scripts, pictures and numbers are inside.
+    Of a movie these are linked views of one cell; of single masks all cells to sort and to open; of a
+    population the conditions and their difference, window by window. The page is one file that needs no
+    network: scripts, pictures and numbers are inside.
 
     Parameters
     ----------
-    study : Study
+    study : Study or PopulationStudy
     path : path-like, optional
         By default report.html in the study, or report_cell_00003.html for a cell that is not the usual one.
     cell : int, optional
@@ -60,7 +64,7 @@ def write_report(
         No frame of a movie is mapped, or the page cannot be written.
     ParameterError
         The study has no such cell, none of its frames is mapped, a page cannot hold so many windows, or
-        `signal` is given for single masks.
+        `cell` or `signal` are given where they mean nothing.
     SignalError
         The signal has images of another size, other channels or fewer frames than the study.
     MissingPartError
@@ -79,6 +83,8 @@ def write_report(
     >>> cd.write_report(study).name
     'report.html'
     """
+    if isinstance(study, PopulationStudy):
+        return _write_population(study, path, cell, signal)
     if study.is_movie:
         return _write_movie(study, path, cell, signal, progress)
     if signal is not None:
@@ -89,6 +95,19 @@ def write_report(
     first = int(study.cells["cell"].iloc[0]) if cell is None else cell
     target = study.path / _name(first, int(study.cells["cell"].iloc[0])) if path is None else Path(path)
     return write_page(study.path, target, lambda: cells_page(study, first, progress=progress))
+
+
+def _write_population(
+    study: PopulationStudy,
+    path: str | os.PathLike[str] | None,
+    cell: int | None,
+    signal: FrameSource | None,
+) -> Path:
+    if cell is not None or signal is not None:
+        name = "signal" if cell is None else "cell"
+        raise ParameterError(f"{name} is for the study of one input, not for a population: leave it out")
+    target = study.path / REPORT if path is None else Path(path)
+    return write_page(study.path, target, lambda: population_page(study))
 
 
 def write_batch_report(folder: Path, path: str | os.PathLike[str] | None = None) -> Path:

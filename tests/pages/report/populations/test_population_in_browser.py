@@ -1,0 +1,79 @@
+from pathlib import Path
+from typing import Any
+
+import pytest
+from page_driver import errors, requests
+from selenium import webdriver
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.ui import Select, WebDriverWait
+
+from cytodisk.store.populations.population_study import PopulationStudy
+
+pytestmark = pytest.mark.slow
+
+
+class PopulationPage:
+    """The page of a population in a browser."""
+
+    def __init__(self, browser: webdriver.Chrome, path: Path) -> None:
+        self.browser = browser
+        browser.get(path.as_uri())
+        self.wait("cytodisk.ready")
+
+    def js(self, expression: str) -> Any:
+        return self.browser.execute_script(f"return {expression}")
+
+    def wait(self, condition: str) -> None:
+        WebDriverWait(self.browser, 15, 0.02).until(lambda _: self.js(condition), condition)
+
+    def text(self, name: str) -> str:
+        return str(self.browser.find_element(By.ID, name).text)
+
+
+@pytest.fixture
+def page(browser: webdriver.Chrome, population_written: Path) -> PopulationPage:
+    return PopulationPage(browser, population_written)
+
+
+def test_loads_alone_and_in_silence(page: PopulationPage, browser: webdriver.Chrome) -> None:
+    assert requests(browser) == [browser.current_url]
+    assert errors(browser) == []
+    assert page.js("document.documentElement.scrollWidth <= innerWidth")
+    for name in ("disk-0", "disk-2", "cell-2", "profiles", "superplot", "forest"):
+        assert page.js(f"document.getElementById('{name}').getBoundingClientRect().width > 100"), name
+
+
+def test_window_under_the_pointer_has_its_numbers(page: PopulationPage, compared: PopulationStudy) -> None:
+    page.js("document.getElementById('disk-2').scrollIntoView({ block: 'center' })")
+    box = page.js(
+        "(({left, top, width}) => [left, top, width])(document.getElementById('disk-2').getBoundingClientRect())"
+    )
+    radius = 0.9 * box[2] / 2.32
+    at = {"x": box[0] + box[2] / 2 + radius * 0.92, "y": box[1] + box[2] / 2 + radius * 0.39}
+    page.browser.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": "mouseMoved", **at})
+    page.wait("cytodisk.atlasState.window === 0")
+    page.wait("document.getElementById('read').textContent.includes('sector 0')")
+    words = page.text("read")
+    window = compared.window_arrays("drug").isel(channel=0, layer=0, sector=0)
+    assert f"{float(window['p_fwer']):.2g}" in words
+    assert "p corrected (max-T)" in words
+    assert "(8 cells, 4 experiments)" in words
+
+
+def test_channel_and_scalar_are_chosen(page: PopulationPage) -> None:
+    assert "Rac1" in page.text("value")
+    Select(page.browser.find_element(By.ID, "atlas-channel")).select_by_index(1)
+    assert "RhoA" in page.text("value")
+    Select(page.browser.find_element(By.ID, "scalar")).select_by_visible_text("area")
+    assert "area" in page.js("document.querySelector('#superplot svg').getAttribute('aria-label')")
+    dots = page.js("document.querySelectorAll('#superplot circle').length")
+    marks = page.js("document.querySelectorAll('#superplot path[transform]').length")
+    assert (dots, marks) == (16, 8)  # cells, experiments
+
+
+def test_tables_are_sorted_and_open_cells(page: PopulationPage) -> None:
+    page.browser.find_element(By.CSS_SELECTOR, '#table-cells th[data-name="cell"] button').click()
+    assert page.js("document.querySelector('#table-cells th[data-name=\"cell\"]').ariaSort") == "ascending"
+    page.browser.find_element(By.CSS_SELECTOR, "#table-cells tbody a").click()
+    page.wait("cytodisk.shownCell !== undefined && document.getElementById('cell')?.open")
+    assert page.js("location.pathname").endswith("/maps/report.html")
