@@ -38,7 +38,7 @@ POPULATION_GROUPS = {
     "How it is tested": "unit design permutations seed",
     "Planning experiments": "power effects experiments cells between-experiments between-dishes studies",
     "The run": "resume overwrite",
-    "Results": "out csv h5ad figures format parameters quiet help",
+    "Results": "out csv h5ad figures format no-report parameters quiet help",
 }
 """The same for a command with the flag `--compare`."""
 

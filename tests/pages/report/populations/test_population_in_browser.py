@@ -45,9 +45,8 @@ def test_loads_alone_and_in_silence(page: PopulationPage, browser: webdriver.Chr
 
 def test_window_under_the_pointer_has_its_numbers(page: PopulationPage, compared: PopulationStudy) -> None:
     page.js("document.getElementById('disk-2').scrollIntoView({ block: 'center' })")
-    box = page.js(
-        "(({left, top, width}) => [left, top, width])(document.getElementById('disk-2').getBoundingClientRect())"
-    )
+    disk = "document.getElementById('disk-2').getBoundingClientRect()"
+    box = page.js(f"(({{left, top, width}}) => [left, top, width])({disk})")
     radius = 0.9 * box[2] / 2.32
     at = {"x": box[0] + box[2] / 2 + radius * 0.92, "y": box[1] + box[2] / 2 + radius * 0.39}
     page.browser.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": "mouseMoved", **at})
