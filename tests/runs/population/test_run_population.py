@@ -11,7 +11,10 @@ import pytest
 import cytodisk as cd
 from cytodisk.errors import DamagedPartWarning
 from cytodisk.runs.population import run_population as module
+from cytodisk.runs.population.population_kind import POPULATION
 from cytodisk.store.populations.population_columns import TABLES
+from cytodisk.store.populations.population_writing import write_population_columns
+from cytodisk.store.study_folder import StudyFolder
 
 
 def _run(folder: Path, out: Path, **settings: object) -> cd.PopulationStudy:
@@ -103,6 +106,24 @@ def test_a_file_that_is_gone_is_made_anew(cell_study: Path, done: Path, tmp_path
     with pytest.warns(DamagedPartWarning, match=r"windows\.parquet gone or damaged"):
         study = _run(cell_study, out, channel=["Rac1"], resume=True)
     assert len(study.windows) == 24
+
+
+def test_tables_as_csv_are_added_without_a_new_run(cell_study: Path, tmp_path: Path) -> None:
+    out = tmp_path / "atlas"
+    _run(cell_study, out, channel="Rac1")
+    assert not (out / "windows.csv").exists()
+    study = _run(cell_study, out, channel="Rac1", csv=True, resume=True, progress=_never)
+    assert len(pd.read_csv(out / "windows.csv")) == len(study.windows)
+
+
+def test_columns_of_curves_are_told_with_their_lag(tmp_path: Path) -> None:
+    folder = StudyFolder(tmp_path, {"curves": True, "lag_unit": "s", "signal_unit": "a.u."}, POPULATION)
+    write_population_columns(folder)
+    told = pd.read_csv(tmp_path / "columns.csv")
+    windows = told[told["table"] == "windows.parquet"].set_index("column")["unit"]
+    assert windows["lag"] == "s"
+    assert windows["difference"] == "a.u."
+    assert "sector" not in windows
 
 
 def _never(done: int, total: int) -> None:

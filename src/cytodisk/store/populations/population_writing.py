@@ -12,6 +12,8 @@ import pyarrow.parquet as pq
 from cytodisk.files import replacing
 from cytodisk.store.columns_file import write_columns_file
 from cytodisk.store.populations.place_columns import SIGNAL
+from cytodisk.store.populations.population_columns import population_tables
+from cytodisk.store.populations.population_study import CURVES
 from cytodisk.store.study_folder import StudyFolder
 from cytodisk.store.tables import Column, Columns, unit_of
 
@@ -54,7 +56,7 @@ def write_population_columns(folder: StudyFolder) -> None:
     """
     rows = [
         (f"{name}.parquet", column.name, _unit(column, folder.provenance), column.meaning)
-        for name, columns in folder.kind.tables.items()
+        for name, columns in population_tables(bool(folder.provenance.get(CURVES))).items()
         for column in columns
     ]
     more = [
