@@ -161,14 +161,16 @@ class CellSources:
 
     @cached_property
     def missing(self) -> str:
-        """Why there is no representative cell; empty if there is one."""
-        if self.representative is not None:
-            return ""
-        try:
-            self.disk(int(self.used[0]))
-        except CytodiskError as error:
-            return str(error)
-        return "no cell has a map"
+        """Why no map of a cell can be read; empty if one can."""
+        words = "no cell has a map"
+        for place, row in enumerate(self._some_rows()):
+            try:
+                self.disk(row)
+            except CytodiskError as error:
+                words = words if place else str(error)
+            else:
+                return ""
+        return words
 
     def _some_rows(self) -> Iterator[int]:
         count = len(self.used)
