@@ -77,6 +77,15 @@ def test_windows_count_by_area(values: xr.DataArray, cells: pd.DataFrame) -> Non
     assert_allclose(means, 1.0)
 
 
+@pytest.mark.parametrize("method", ["cell mean", "cell total", "z-score"])
+def test_areas_turn_with_their_windows(method: str, values: xr.DataArray, cells: pd.DataFrame) -> None:
+    areas = xr.DataArray(np.random.default_rng(1).uniform(1, 5, (6, 3, 8)), dims=("cell", "layer", "sector"))
+    turned = cells.assign(disk_direction_nucleus=np.arange(6) * 90.0, direction_strength_nucleus=1.0)
+    pop = cd.Population(values, turned, areas=areas)
+    first, last = pop.normalise(method).align("nucleus"), pop.align("nucleus").normalise(method)
+    assert_allclose(last.values, first.values, rtol=1e-12)
+
+
 def test_a_cell_that_cannot_be_normalised_has_no_values_and_says_why(values, cells) -> None:
     values[2, 0] = 0.0
     pop = cd.Population(values, cells).normalise("cell mean")

@@ -111,7 +111,8 @@ class Population(CellValues):
         >>> float(pop.values[0].mean().round(6))
         1.0
         """
-        done = cell_levels(method, self.blocks(), self.scaling, self.cells, self.channels, self.weights)
+        still = self.unturned().blocks()  # as areas are
+        done = cell_levels(method, still, self.scaling, self.cells, self.channels, self.weights)
         status = np.where(self.level_status == "", done.status, self.level_status)
         history = self.normalisation if method == "none" else (*self.normalisation, method)
         return self.changed(scaling=done.scaling, level_status=status, normalisation=history)

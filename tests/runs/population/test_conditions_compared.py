@@ -27,6 +27,14 @@ def test_a_command_that_is_told_can_be_typed() -> None:
     assert "pass --compare 'row B,row D' to name it" in found.sentence
 
 
+def test_names_with_commas_are_put_together_again() -> None:
+    there = _population("10 nM, fresh", "DMSO", "10 nM, old, washed")
+    given = cd.PopulationParameters(compare="DMSO,10 nM, old, washed").compare
+    assert compared_conditions(there, given).names == ("DMSO", "10 nM, old, washed")
+    with pytest.raises(cd.errors.PopulationError, match="no cell has the condition '10 nM'"):
+        compared_conditions(there, given[:-1])
+
+
 def test_names_can_be_given_as_one_text() -> None:
     found = cd.PopulationParameters(compare="control, drug", channel="Rac1", scalars="area,polarity")
     assert found.compare == ("control", "drug")

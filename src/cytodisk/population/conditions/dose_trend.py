@@ -99,7 +99,8 @@ def dose_trend(
     """
     chosen = DoseParameters.chosen(parameters, settings)
     channels = chosen_channels(pop, channel)
-    codes, experiment, doses = _units(pop, usable_cells(pop, channels), dose)
+    usable = usable_cells(pop, channels)
+    codes, experiment, doses = _units(pop, usable, dose)
     scaled = _scaled(doses, chosen.scale)
     counts = np.bincount(experiment)
     within = bool((counts[counts > 0] > 1).all())
@@ -115,10 +116,14 @@ def dose_trend(
     p = test.exchanges.smallest_p
     step = {"rank": "step of the dose", "linear": "unit of dose", "log": "factor of 10"}[chosen.scale]
     different = found.windows["p_fwer"] <= 0.05
+    reach = "" if p <= 0.05 else ": no trend can reach 0.05"
+    without = int((usable & (codes < 0)).sum())
+    left_out = f"{without} of {int(usable.sum())} cells have no dose or no experiment: they are in no trend."
     words = (
         f"{len(doses)} units at {len(np.unique(doses))} doses, exchanged {design}, can give p = {p:.2g} at "
-        "best.",
+        f"best{reach}.",
         f"{int(different.sum())} of {different.size} windows have a trend (max-T, p ≤ 0.05; by {step}).",
+        *([left_out] if without else []),
     )
     windows = found.windows.squeeze("channel") if len(channels) == 1 else found.windows
     return DoseTrend(np.unique(doses), windows, found.clusters, found.scalars, p, design, words)
@@ -169,7 +174,7 @@ def _units(pop: Population, usable: BoolArray, dose: str) -> tuple[IntArray, Int
         raise PopulationError(
             f"dose_trend: cells has no column {dose!r}: add the dose of each cell as a number"
         )
-    given = pd.to_numeric(pop.cells[dose], errors="coerce").to_numpy(np.float64)
+    given = _numbers(pop.cells[dose], dose)
     experiment, names = codes_of(names_in(pop.cells, EXPERIMENT))
     if not names:
         raise PopulationError(
@@ -188,11 +193,32 @@ def _units(pop: Population, usable: BoolArray, dose: str) -> tuple[IntArray, Int
     return codes, present // len(levels), levels[present % len(levels)]
 
 
+def _numbers(column: pd.Series[Any], name: str) -> FloatArray:
+    """Doses as numbers, NaN where the column is empty.
+
+    Raises
+    ------
+    PopulationError
+        A dose is no number.
+    """
+    given = column.notna() & (column.astype(str).str.strip() != "")
+    numbers = pd.to_numeric(column.where(given).astype(object), errors="coerce").to_numpy(np.float64)
+    wrong = np.flatnonzero(given & ~np.isfinite(numbers))
+    if len(wrong):
+        raise PopulationError(
+            f"dose_trend: column {name!r} holds {str(column.iloc[wrong[0]])!r} ({len(wrong)} of "
+            f"{len(column)} cells have no finite number): write all doses as numbers of one unit"
+        )
+    return np.asarray(numbers)
+
+
 def _scaled(doses: FloatArray, scale: str) -> FloatArray:
     if scale == "linear":
         return doses
     if scale == "rank":
         return np.asarray(rankdata(doses, method="dense"), dtype=np.float64)
     if (doses <= 0).any():
-        raise PopulationError("dose_trend: a dose of 0 has no logarithm: use scale='rank'")
+        raise PopulationError(
+            f"dose_trend: a dose of {doses.min():g} has no logarithm: use scale='rank', as --dose-scale rank"
+        )
     return np.log10(doses)

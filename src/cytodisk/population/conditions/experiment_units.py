@@ -168,12 +168,12 @@ def _chosen_design(
             return "unpaired", "Each experiment holds one condition: the design is unpaired.", shared
         return (
             "unpaired",
-            f"Experiments {words} stand in both conditions and are taken as different ones.",
+            f"{_verb(words, shared, 'stand')} in both conditions, taken as different ones.",
             shared,
         )
     verbs = "holds only one and is" if len(single) == 1 else "hold only one and are"
     left = f"; {_named([names[k] for k in single])} {verbs} left out" if len(single) else ""
-    found = f"Experiments {words} hold both conditions{left}: the design is paired."
+    found = f"{_verb(words, shared, 'hold')} both conditions{left}: the design is paired."
     return "paired", found, shared
 
 
@@ -209,6 +209,11 @@ def _table(
 def _cell_names(cells: pd.DataFrame, order: IntArray) -> tuple[str, ...]:
     names = cells["cell"] if "cell" in cells else cells.index.to_series()
     return tuple(names.iloc[order].astype(str))
+
+
+def _verb(words: str, experiments: IntArray, verb: str) -> str:
+    """As "Experiments day1, day2 hold", "Experiment day1 holds"."""
+    return f"Experiment {words} {verb}s" if len(experiments) == 1 else f"Experiments {words} {verb}"
 
 
 def _named(names: list[str]) -> str:

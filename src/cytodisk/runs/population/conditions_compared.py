@@ -63,6 +63,7 @@ def compared_conditions(population: Population, compare: Sequence[str]) -> Compa
     """
     there = population.conditions
     if compare:
+        compare = _with_commas(there, compare)
         _refuse_missing(there, compare)
         return ComparedConditions(tuple(compare), compare[0])
     if not there:
@@ -81,6 +82,20 @@ def compared_conditions(population: Population, compare: Sequence[str]) -> Compa
     others = tuple(name for name in there if name != control)
     words = f"{control!r} is taken as the control, {why}: pass {_flag((control, *others))} to name it."
     return ComparedConditions((control, *others), control, words)
+
+
+def _with_commas(there: Sequence[str], compare: Sequence[str]) -> tuple[str, ...]:
+    """Names put together again that have commas themselves, as of "10 nM, fresh" beside "control"."""
+    if all(name in there for name in compare):
+        return tuple(compare)
+    by_pieces = {tuple(piece.strip() for piece in name.split(",")): name for name in there}
+    found, at = [], 0
+    while at < len(compare):
+        ends = range(len(compare), at, -1)
+        end = next((end for end in ends if tuple(compare[at:end]) in by_pieces), at + 1)
+        found.append(by_pieces.get(tuple(compare[at:end]), compare[at]))
+        at = end
+    return tuple(found)
 
 
 def _refuse_missing(there: Sequence[str], compare: Sequence[str]) -> None:
