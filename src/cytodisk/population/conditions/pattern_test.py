@@ -37,12 +37,18 @@ class PatternTest:
     clusters : DataFrame
     cells : int
         Number of cells with a direction, which were used.
+    experiments : tuple of str
+        Empty where they are unknown.
+    smallest_p : float
+        The smallest p-value that so many experiments can give.
     sentences : tuple of str
     """
 
     windows: xr.Dataset
     clusters: pd.DataFrame
     cells: int
+    experiments: tuple[str, ...]
+    smallest_p: float
     sentences: tuple[str, ...]
 
 
@@ -57,8 +63,9 @@ def pattern_test(
 ) -> PatternTest:
     """Test whether a signal has a place with respect to the direction that cells are aligned by.
 
-    Each cell is turned at random, which keeps its own pattern and undoes its direction. Cells without a
-    direction are left out.
+    Cells are averaged by experiment, and each experiment is turned at random, which keeps its own pattern and
+    undoes its direction: a pattern must lie at the same place in all of them. Where experiments are unknown,
+    each cell is turned, as if all were independent. Cells without a direction are left out.
 
     Parameters
     ----------
@@ -106,32 +113,29 @@ def pattern_test(
     use = usable_cells(pop, channels) & (pop.alignment["status"] == "ok").to_numpy()
     if condition is not None:
         use &= (checked_conditions(pop.cells, [condition]) == condition).to_numpy()
-    if use.sum() < 2:
-        raise PopulationError(
-            f"pattern_test: {int(use.sum())} cells have a direction and values: 2 are needed"
-        )
+    codes, names = codes_of(names_in(pop.cells, EXPERIMENT).where(pd.Series(use, index=pop.cells.index)))
+    use &= (codes >= 0) | (not names)
+    units, what = (len(names), "experiments") if names else (int(use.sum()), "cells")
+    if units < 2:
+        raise PopulationError(f"pattern_test: {units} of the {what} has a direction and values: 2 are needed")
     cells = pop.select(use)
-    values = window_means(cells, channels, np.arange(len(cells)), len(cells))
+    values = window_means(cells, channels, codes[use] if names else np.arange(units), units)
     layers, sectors = pop.raw.shape[2:]
-    statistic = TurnedPattern(values.reshape(len(cells), -1, sectors), _weights(cells))
-    exchanges = TurnExchanges(len(cells), sectors, chosen.permutations, chosen.seed)
+    statistic = TurnedPattern(values.reshape(units, -1, sectors), np.full(units, 1.0 / units))
+    exchanges = TurnExchanges(units, sectors, chosen.permutations, chosen.seed)
     field = ClusterField((len(channels), layers, sectors), closed=True)
     tested = exchange_test(statistic, exchanges, field)
     difference = statistic.means()
     windows = window_dataset(pop, channels, {"difference": difference}, tested)
     clusters = cluster_table(pop, channels, difference, tested)
     different = int((tested.p_fwer <= 0.05).sum())
+    by_cell = (
+        "" if names else " Experiments are unknown: cells are treated as independent, which they are not."
+    )
     words = (
-        f"{len(cells)} cells with a direction were turned at random {chosen.permutations} times.",
+        f"{units} {what}{f' with {len(cells)} cells' if names else ''} were turned at random "
+        f"{chosen.permutations} times: they can give p = {exchanges.smallest_p:.2g} at best.{by_cell}",
         f"{different} of {len(difference)} windows differ from the mean of their layer (max-T, p ≤ 0.05).",
     )
     windows = windows.squeeze("channel") if len(channels) == 1 else windows
-    return PatternTest(windows, clusters, len(cells), words)
-
-
-def _weights(cells: Population) -> np.ndarray:
-    """Each experiment counts the same, and each cell where experiments are unknown."""
-    codes, names = codes_of(names_in(cells.cells, EXPERIMENT))
-    if not names or (codes < 0).any():
-        return np.full(len(cells), 1.0 / len(cells))
-    return np.asarray(1.0 / (np.bincount(codes)[codes] * len(names)))
+    return PatternTest(windows, clusters, len(cells), names, exchanges.smallest_p, words)

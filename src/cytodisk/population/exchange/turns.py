@@ -43,8 +43,8 @@ class TurnExchanges:
 
     @property
     def smallest_p(self) -> float:
-        """One of all ways."""
-        return 1.0 / self.count
+        """All turned alike, each window has another place and the largest score is the same."""
+        return max(1.0 / self.count, float(self.sectors) ** (1 - self.cells))
 
     def chunks(self, size: int) -> Iterator[IntArray]:
         """Turns of some ways at a time."""
