@@ -38,7 +38,7 @@ def written(folder: Path, layout: str) -> tuple[Path, Path]:
     return folder / "masks.tif", signal
 
 
-def figures(folder: Path, name: str, windows: Any, image: Any) -> list[Path]:
+def figures(folder: Path, name: str, windows: Any, image: Any, _heading: str) -> list[Path]:
     mean = float(image.to_numpy()[:, windows.mask].mean())
     (folder / f"{name}.txt").write_text(f"{windows.mask.sum()} {mean:.12g}")
     return []

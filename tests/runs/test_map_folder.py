@@ -318,14 +318,19 @@ def test_maps_can_be_left_out(whole: cd.Study, written: Path, tmp_path: Path) ->
 def test_figures_and_outlines_lie_in_the_image(whole: cd.Study, written: Path, tmp_path: Path) -> None:
     drawn: dict[str, tuple[tuple[int, ...], tuple[int, ...]]] = {}
 
-    def draw(folder: Path, name: str, windows: cd.CellWindows, signal: object) -> list[Path]:
+    headings = []
+
+    def draw(folder: Path, name: str, windows: cd.CellWindows, signal: object, heading: str) -> list[Path]:
         drawn[name] = windows.mask.shape, np.shape(signal)
+        headings.append(heading)
         return []
 
     inputs = open_inputs(written / "masks", written / "images", SMALL)
     map_study(inputs, tmp_path / "out", draw=draw, draw_at_most=2, geojson=True)
     shape = tifffile.imread(written / "masks" / "im9_cp_masks.tif").shape
     assert drawn == {f"cell_{cell:05d}": (shape, (2, *shape)) for cell in range(2)}
+    places = zip(range(2), whole.cells["source"], whole.cells["label"], strict=False)
+    assert headings == [f"{source}, label {label} (cell {cell})" for cell, source, label in places]
     outlines = pd.read_json(tmp_path / "out" / "maps" / "cell_00005.geojson")["features"]
     x = [point[0] for feature in outlines for point in feature["geometry"]["coordinates"][0]]
     outline = whole.map(5).outline_yx

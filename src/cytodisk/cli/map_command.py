@@ -38,7 +38,7 @@ def map_command(
     no_report: NoReport = False,
     quiet: Quiet = False,
 ) -> None:
-    from cytodisk.pages.cell_pages import write_cell_figures
+    from cytodisk.pages.cell_pages import draw_cell_page
     from cytodisk.runs.cells.cell_groups import with_groups
     from cytodisk.runs.cells.cell_inputs import open_inputs
     from cytodisk.runs.map.map_study import map_study
@@ -53,7 +53,7 @@ def map_command(
         study = map_study(
             inputs,
             out,
-            draw=write_cell_figures if figures else None,  # workers that draw nothing stay small
+            draw=draw_cell_page if figures else None,  # workers that draw nothing stay small
             draw_at_most=None if figures < 0 else figures,
             progress=progress,
             **dict(options),

@@ -41,6 +41,7 @@ def write_cell_figures(
     windows: CellWindows,
     signal: xr.DataArray | None,
     scale: Scale | None = None,
+    heading: str = "",
 ) -> list[Path]:
     """Write the page of one cell: signal and means in cell and disk by channel, mesh and area distortion.
 
@@ -58,6 +59,8 @@ def write_cell_figures(
         One frame. The first three channels are drawn.
     scale : Scale, optional
         By default that of the windows; without a pixel size scale bars are in px.
+    heading : str
+        What stands above the pictures; by default the name.
 
     Returns
     -------
@@ -88,10 +91,17 @@ def write_cell_figures(
     known = scale_for(windows, scale)
     with paper_style():
         if signal is None:
-            sheet = _sheet_without_signal(name, windows, known)
+            sheet = _sheet_without_signal(heading or name, windows, known)
         else:
-            sheet = _sheet_with_signal(name, windows, signal, known)
+            sheet = _sheet_with_signal(heading or name, windows, signal, known)
         return [sheet.save(path)]
+
+
+def draw_cell_page(
+    folder: Path, name: str, windows: CellWindows, signal: xr.DataArray | None, heading: str
+) -> list[Path]:
+    """`write_cell_figures` as a run calls it."""
+    return write_cell_figures(folder, name, windows, signal, heading=heading)
 
 
 def _sheet_with_signal(name: str, windows: CellWindows, signal: xr.DataArray, scale: Scale) -> Sheet:

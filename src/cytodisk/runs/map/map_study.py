@@ -47,7 +47,7 @@ def map_study(
     out : path-like
         Folder of the study.
     draw : callable, optional
-        Draws a cell's figures: (folder, name, windows, signal) → paths.
+        Draws a cell's figures: (folder, name, windows, signal, heading) → paths.
     draw_at_most : int, optional
         How many cells, from the first, to draw.
     progress : callable, optional

@@ -35,7 +35,7 @@ from cytodisk.store.study_kind import FIGURES
 from cytodisk.windows.grid_parameters import PolarGridParameters
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid, polar_grid
 
-DrawCell: TypeAlias = Callable[[Path, str, CellWindows, xr.DataArray | None], list[Path]]
+DrawCell: TypeAlias = Callable[[Path, str, CellWindows, xr.DataArray | None, str], list[Path]]
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,8 @@ class MapWork:
         folder = self.folder.path / FIGURES
         with writing_to(folder):
             folder.mkdir(exist_ok=True)
-        draw(folder, f"cell_{found.cell:05d}", placed, image)
+        where = [found.source, *([f"frame {found.frame}"] if found.frame else []), f"label {found.label}"]
+        draw(folder, f"cell_{found.cell:05d}", placed, image, f"{', '.join(where)} (cell {found.cell})")
 
     def _map(self, found: SourceCell, nucleus: CellNucleus | None) -> DiskMap:
         mapping = self._mapping
