@@ -90,3 +90,28 @@ def test_a_large_region_makes_nothing_of_windows_beside_it() -> None:
         assert (p[:14] <= 0.05).mean() > 0.9
         found += bool((p[14:] <= 0.05).any())
     assert found <= 200 * 0.05 + 3 * np.sqrt(200 * 0.05 * 0.95)
+
+
+def test_windows_are_chosen_without_regard_to_labels() -> None:
+    """A window that one condition alone has is not told, and yet it counts in the largest score of all."""
+    rng = np.random.default_rng(4)
+    treated = np.repeat([False, True], [3, 9])
+    values = rng.normal(size=(12, 4))
+    values[:2, 3] = np.nan  # one control is left: no score as labels are, but with most others
+    statistic = GroupDifference(values, treated)
+    assert statistic.testable.tolist() == [True] * 4
+    found = exchange_test(statistic, LabelExchanges(treated, 999, 0))
+    assert np.isnan([found.p[3], found.p_fwer[3], found.q[3], found.scores[3]]).all()
+    ways = np.concatenate(list(LabelExchanges(treated, 999, 0).chunks(64)))
+    scores = np.zeros((len(ways), 4))
+    for way, labels in enumerate(ways):
+        for window in range(4):
+            groups = [values[chosen, window] for chosen in (labels, ~labels)]
+            known = [group[np.isfinite(group)] for group in groups]
+            if min(map(len, known)) > 1:
+                error = sum(group.var(ddof=1) / len(group) for group in known)
+                scores[way, window] = abs(known[0].mean() - known[1].mean()) / np.sqrt(error)
+    reach = scores[0] * (1 - 1e-9)
+    order = np.argsort(-scores[0])
+    stepped = [(scores[:, order[k:]].max(axis=1) >= reach[order[k]]).mean() for k in range(3)]
+    assert_allclose(found.p_fwer[order[:3]], np.maximum.accumulate(stepped), rtol=0, atol=1e-12)

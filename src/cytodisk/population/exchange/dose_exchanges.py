@@ -113,6 +113,7 @@ class DoseSlope:
         self, values: FloatArray, doses: FloatArray, blocks: IntArray, families: IntArray | None = None
     ) -> None:
         self.testable: BoolArray = np.asarray(np.isfinite(values).all(axis=0))
+        self.scored = self.testable
         self._blocks = blocks
         self._values = without_levels(np.where(self.testable, values, 0.0), blocks)
         self._squares = (self._values**2).sum(axis=0)

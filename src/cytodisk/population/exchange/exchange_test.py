@@ -63,11 +63,11 @@ def exchange_test(
     -------
     ExchangeTest
     """
-    testable = statistic.testable
+    testable, scored = statistic.testable, statistic.scored
     windows = len(testable)
     nothing = np.full(windows, np.nan)
     no_clusters = np.zeros(windows, dtype=np.int64), np.empty(0), np.empty(0)
-    if not testable.any():
+    if not scored.any():
         return ExchangeTest(nothing, nothing, nothing, nothing, *no_clusters)
     threshold = float(t.isf(_CLUSTER_TAIL, statistic.degrees))
     found: _Counts | None = None
@@ -85,9 +85,8 @@ def exchange_test(
     q = nothing.copy()
     q[testable] = false_discovery_control(p[testable])
     clusters = found.labels, found.masses, found.larger / found.ways
-    return ExchangeTest(
-        np.where(testable, found.observed, np.nan), np.where(testable, p, np.nan), p_fwer, q, *clusters
-    )
+    told = (np.where(scored, numbers, np.nan) for numbers in (found.observed, p, p_fwer, q))
+    return ExchangeTest(*told, *clusters)
 
 
 def _chunk_size(exchanges: Exchanges, windows: int) -> int:

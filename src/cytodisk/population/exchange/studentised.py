@@ -34,7 +34,11 @@ class Statistic(Protocol):
 
     @property
     def testable(self) -> BoolArray:
-        """Windows that have a score: (windows,)."""
+        """Windows that are tested together, chosen without regard to labels: (windows,)."""
+
+    @property
+    def scored(self) -> BoolArray:
+        """Those of them that have a score with the labels as they were: (windows,)."""
 
     def scores(self, labels: NDArray[np.generic]) -> FloatArray:
         """Scores (ways, windows) for labels (ways, units); 0 where there is none."""
@@ -42,6 +46,9 @@ class Statistic(Protocol):
 
 class GroupDifference:
     """Treated minus control over its standard error (Welch's), in each window.
+
+    Windows are testable where three quarters of the units have a value, whatever their labels: a choice by
+    the observed labels would not be made again for the exchanged ones, and the level would not be exact.
 
     Parameters
     ----------
@@ -60,9 +67,10 @@ class GroupDifference:
         self._complete = bool((self._count == len(values)).all())
         self._least = _ROUNDING * moments.raw_squares
         self.testable = self._count >= 0.75 * len(values)
+        self.scored = self.testable.copy()
         if not self._complete:
             for group, size in zip((~treated, treated), self.sizes, strict=True):
-                self.testable &= np.isfinite(values[group]).sum(axis=0) >= min(2, size)
+                self.scored &= np.isfinite(values[group]).sum(axis=0) >= min(2, size)
         per_unit = 1.0 / max(self.sizes[0], 1) + 1.0 / max(self.sizes[1], 1)
         self._shared = None
         if families is not None:
@@ -129,6 +137,7 @@ class PairDifference:
         self._count = finite.sum(axis=0).astype(np.float64)
         self._squares = (self._values**2).sum(axis=0)
         self.testable = np.asarray((self._count >= 0.75 * len(finite)) & (self._count >= min(2, len(finite))))
+        self.scored = self.testable
         mean_square = ratio(self._squares, self._count**2, self._count > 0)
         self._shared = None if families is None else shared_medians(mean_square, self.testable, families)
         self._own = max(len(finite) - 1, 1)

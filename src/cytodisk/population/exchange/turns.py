@@ -76,6 +76,7 @@ class TurnedPattern:
         own = (self._values**2).mean(axis=-1)
         self._error = np.sqrt((weights[:, None] ** 2 * own).sum(axis=0))[:, None]
         self.testable: BoolArray = np.broadcast_to(self._error > 0, self._values.shape[1:]).ravel()
+        self.scored = self.testable
 
     @property
     def degrees(self) -> float:
