@@ -69,6 +69,16 @@ def test_normalising_takes_out_the_level_of_each_cell(values: xr.DataArray, cell
     assert_allclose(pop.values, raw)
 
 
+@pytest.mark.parametrize(
+    ("method", "units"),
+    [("none", "a.u."), ("cell mean", "× cell mean"), ("cell total", "share of cell"), ("z-score", "sd")],
+)
+def test_units_are_those_after_normalising(method: str, units: str, values, cells) -> None:
+    pop = cd.Population(values, cells).normalise(method)
+    assert pop.units == pop.values.attrs["units"] == units
+    assert {pop.atlas()[name].attrs["units"] for name in ("mean", "sd", "sem")} == {units}
+
+
 def test_windows_count_by_area(values: xr.DataArray, cells: pd.DataFrame) -> None:
     weights = np.random.default_rng(1).uniform(1, 5, (6, 3, 8))
     areas = xr.DataArray(weights, dims=("cell", "layer", "sector"))

@@ -104,7 +104,7 @@ class CellValues:
         found = np.empty(self.raw.shape)
         for rows, block in self.blocks():
             found[rows] = block
-        return self.raw.copy(data=found)
+        return self.raw.copy(data=found).assign_attrs(units=self.units)
 
     def blocks(self, channels: Sequence[str] | None = None) -> Iterator[tuple[slice, FloatArray]]:
         """Values of some cells at a time, normalised and turned, in order.

@@ -209,7 +209,7 @@ class Population(CellValues):
         >>> dict(cd.Population(cells.values, cells.cells).atlas()["mean"].sizes)
         {'condition': 2, 'channel': 1, 'layer': 4, 'sector': 12}
         """
-        return atlas_of(by, self.cells, self.raw, self.blocks)
+        return atlas_of(by, self.cells, self.raw, self.blocks, self.units)
 
     def to_anndata(self) -> AnnData:
         """Cells × windows as `anndata.AnnData`, to go on in scanpy: PCA, neighbours, UMAP, clusters.

@@ -20,6 +20,7 @@ def atlas_of(
     cells: pd.DataFrame,
     raw: xr.DataArray,
     blocks: Callable[[], Iterator[tuple[slice, FloatArray]]],
+    units: str,
 ) -> xr.Dataset:
     """Mean, sd, sem and counts of windows for each name in a column.
 
@@ -30,6 +31,8 @@ def atlas_of(
     raw : DataArray with dims (cell, channel, layer, last)
     blocks : callable
         See `Population.blocks`.
+    units : str
+        Of the values in the blocks.
 
     Returns
     -------
@@ -61,7 +64,7 @@ def atlas_of(
     coords = {name: raw.coords[name] for name in raw.coords if "cell" not in raw.coords[name].dims}
     found = xr.Dataset({name: (dims, array) for name, array in arrays.items()}, coords | {by: list(names)})
     for name in ("mean", "sd", "sem"):
-        found[name].attrs["units"] = raw.attrs.get("units", "a.u.")
+        found[name].attrs["units"] = units
     return found
 
 

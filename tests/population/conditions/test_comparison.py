@@ -207,6 +207,26 @@ def test_windows_without_values_are_told() -> None:
     assert np.isfinite(found.windows["p"].values).sum() == 11
 
 
+def test_cells_that_cannot_be_normalised_are_told() -> None:
+    pop = population(list("abcd"), list("efgh"))
+    values = pop.raw.squeeze("channel").copy()
+    values[:2] = -1.0
+    values[3:6] = np.nan
+    found = cd.compare_conditions(cd.Population(values, pop.cells).normalise("cell mean"), "control", "drug")
+    assert found.units["reason"].tolist()[:2] == ["2 of its cells have no values", "no cell has values"]
+    assert found.sentences[2].startswith("5 of 24 cells have no values")
+    whole = cd.compare_conditions(pop, "control", "drug")
+    assert not any("no values" in sentence for sentence in whole.sentences)
+
+
+def test_cells_without_an_experiment_are_told_where_a_mean_is_tested() -> None:
+    pop = population(list("abcdef"), [])
+    cells = pop.cells.copy()
+    cells.loc[:1, "experiment"] = np.nan
+    found = cd.compare_with_zero(pop.with_cells(cells))
+    assert found.sentences[-1].startswith("2 of 18 cells have no name of their experiment")
+
+
 def test_channels_are_corrected_together() -> None:
     pop = population(list("abcde"), list("fghij"), effect=4.0)
     values = pop.raw.squeeze("channel").expand_dims(channel=["Rac1", "RhoA"]).copy()
@@ -231,6 +251,17 @@ def test_several_conditions_are_corrected_by_holm() -> None:
         2 * float(alone.windows["p_fwer"].min())
     )
     assert (found["other"].windows["p_holm"] >= found["other"].windows["p_fwer"]).all()
+    assert (
+        found["drug"]
+        .sentences[0]
+        .endswith(
+            "Corrected for 2 comparisons (Holm) it is 0.057 at best: no difference can then reach 0.05."
+        )
+    )
+    assert names_of(found["drug"])[0] == "too few experiments"
+    alone_again = cd.compare_with_control(three, "control", ["drug", "drug"])["drug"]
+    assert alone_again.sentences == alone.sentences
+    assert "too few experiments" not in names_of(alone_again)
     with pytest.raises(PopulationError, match="no condition beside"):
         cd.compare_with_control(population(list("abc"), []), "control")
 

@@ -11,7 +11,11 @@ import xarray as xr
 
 from cytodisk.checks import instance_of
 from cytodisk.population.comparison_parameters import ComparisonParameters
-from cytodisk.population.conditions.comparison_sentences import found_words, reach_words
+from cytodisk.population.conditions.comparison_sentences import (
+    found_words,
+    reach_words,
+    valueless_words,
+)
 from cytodisk.population.conditions.comparison_warnings import (
     alignment_warnings,
     design_warnings,
@@ -161,6 +165,7 @@ def compare_conditions(
     sentences = (
         reach_words(test.exchanges, units),
         units.found,
+        *valueless_words(units),
         *found_words((control, treated), found.windows, found.clusters, found.scalars),
     )
     return ConditionComparison(

@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from cytodisk.population.conditions.comparison_warnings import LEVEL, sizes_words
-from cytodisk.population.conditions.experiment_units import Units
+from cytodisk.population.conditions.experiment_units import NO_VALUES, Units
 from cytodisk.population.conditions.window_words import p_words
 from cytodisk.population.exchange.exchanges import Exchanges
 
@@ -33,6 +33,28 @@ def reach_words(exchanges: Exchanges, units: Units) -> str:
     if exchanges.smallest_p > LEVEL:
         return f"{words}: no difference can reach {LEVEL:g}."
     return f"{words.rstrip('.')}."
+
+
+def valueless_words(units: Units) -> Iterator[str]:
+    """How many cells are in no mean because they have no values.
+
+    Parameters
+    ----------
+    units : Units
+
+    Yields
+    ------
+    str
+        Nothing where all cells have values.
+    """
+    table = units.table
+    experiments = table[(table["used"] > 0) | (table["reason"] == NO_VALUES)]
+    missing = int((experiments["cells"] - experiments["used"]).sum())
+    if missing:
+        yield (
+            f"{missing} of {int(experiments['cells'].sum())} cells have no values, as `units` says by "
+            "experiment: they are not in the test."
+        )
 
 
 def found_words(

@@ -16,6 +16,9 @@ from cytodisk.population.group_columns import CONDITION, EXPERIMENT, codes_of, n
 _FEWEST_SHARED = 0.5  # share of the experiments that hold both conditions, below which auto asks
 _MOST_NAMED = 4
 
+NO_VALUES = "no cell has values"
+"""Reason of an experiment that is not used."""
+
 
 @dataclass(frozen=True, eq=False)
 class Units:
@@ -199,11 +202,17 @@ def _table(
     table = groups.agg(cells=("used", "size"), usable=("usable", "sum"), used=("used", "sum")).reset_index()
     reason = np.select(
         [table["used"] > 0, table["usable"] == 0, table["experiment"] == ""],
-        ["", "no cell has values", "no experiment is named"],
+        [_without_values(table), NO_VALUES, "no experiment is named"],
         unpaired_words,
     )
     table = table.drop(columns="usable").assign(reason=reason)
     return table[["experiment", "condition", "cells", "used", "reason"]]
+
+
+def _without_values(table: pd.DataFrame) -> list[str]:
+    """Cells of an experiment that are not used, in words; empty for none."""
+    missing = table["cells"] - table["used"]
+    return [f"{number} of its cells have no values" if number else "" for number in missing]
 
 
 def _cell_names(cells: pd.DataFrame, order: IntArray) -> tuple[str, ...]:

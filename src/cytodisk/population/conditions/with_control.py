@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +13,7 @@ from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import ComparisonParameters
 from cytodisk.population.conditions.comparison import ConditionComparison, compare_conditions
 from cytodisk.population.conditions.comparison_warnings import LEVEL
+from cytodisk.population.named_warning import NamedWarning
 from cytodisk.population.population import Population
 from cytodisk.taking import takes
 
@@ -73,7 +74,8 @@ def compare_with_control(
     >>> list(found), "p_holm" in found["drug"].windows
     (['drug'], True)
     """
-    names = [name for name in pop.conditions if name != control] if others is None else list(others)
+    wanted = [name for name in pop.conditions if name != control] if others is None else others
+    names = list(dict.fromkeys(wanted))
     if isinstance(others, str):
         names = [others]
     if not names:
@@ -87,13 +89,19 @@ def compare_with_control(
     windows = holm({name: one.windows["p_fwer"].values for name, one in found.items()})
     clusters = holm({name: one.clusters["p"].to_numpy(np.float64) for name, one in found.items()})
     scalars = holm({name: one.scalars["p_fwer"].to_numpy(np.float64) for name, one in found.items()})
+    first = len(names) * min(one.smallest_p for one in found.values())
     return {
         name: replace(
             one,
             windows=one.windows.assign(p_holm=(one.windows["p_fwer"].dims, windows[name])),
             clusters=one.clusters.assign(p_holm=clusters[name]),
             scalars=one.scalars.assign(p_holm=scalars[name]),
-            sentences=(*one.sentences, *_words(name, len(names), windows[name], scalars[name])),
+            sentences=(
+                one.sentences[0] + _reach_words(len(names), max(first, one.smallest_p)),
+                *one.sentences[1:],
+                *_words(name, len(names), windows[name], scalars[name]),
+            ),
+            warnings=(*_too_many(len(names), first, one.smallest_p), *one.warnings),
         )
         for name, one in found.items()
     }
@@ -142,6 +150,27 @@ def holm(families: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
     corrected[order] = np.minimum(np.maximum.accumulate(left * every[order]), 1.0)
     parts = np.split(corrected, np.cumsum([np.size(p) for p in families.values()])[:-1])
     return {name: part.reshape(np.shape(p)) for (name, p), part in zip(families.items(), parts, strict=True)}
+
+
+def _reach_words(count: int, best: float) -> str:
+    """What is left of the smallest p after the correction; nothing of one condition alone."""
+    if count < 2 or best > 1.0:
+        return ""
+    nothing = f": no difference can then reach {LEVEL:g}" if best > LEVEL else ""
+    return f" Corrected for {count} comparisons (Holm) it is {best:.2g} at best{nothing}."
+
+
+def _too_many(count: int, first: float, alone: float) -> Iterator[NamedWarning]:
+    """More comparisons than the number of experiments can bear: the first one cannot be rejected."""
+    if count > 1 and alone <= LEVEL < first:
+        yield NamedWarning(
+            "too few experiments",
+            f"Corrected for {count} comparisons with the control, p is {first:.2g} at best.",
+            f"No difference, however large, can reach p_holm ≤ {LEVEL:g}.",
+            "Repeat the experiment: 5 + 5 experiments can give 0.0079, 7 pairs 0.016, before the correction. "
+            "Compare one condition alone, as with --compare control,drug, only if you chose it before you "
+            "saw the results.",
+        )
 
 
 def _words(name: str, count: int, *families: FloatArray) -> list[str]:

@@ -101,9 +101,12 @@ def compare_with_zero(
     found = unit_results(pop, channels, codes, len(names), test)
     p = test.exchanges.smallest_p
     different = found.windows["p_fwer"] <= 0.05
+    nameless = int((use & (codes < 0)).sum())
+    left_out = f"{nameless} of {int(use.sum())} cells have no name of their experiment: they are not tested."
     words = (
         f"{len(names)} experiments can give p = {p:.2g} at best.",
         f"{int(different.sum())} of {different.size} windows differ from 0.",
+        *([left_out] if nameless else []),
     )
     windows = found.windows.squeeze("channel") if len(channels) == 1 else found.windows
     windows = windows.drop_vars(["control", "n_control"])

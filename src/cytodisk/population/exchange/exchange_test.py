@@ -85,8 +85,8 @@ def exchange_test(
     q = nothing.copy()
     q[testable] = false_discovery_control(p[testable])
     clusters = found.labels, found.masses, found.larger / found.ways
-    told = (np.where(scored, numbers, np.nan) for numbers in (found.observed, p, p_fwer, q))
-    return ExchangeTest(*told, *clusters)
+    told = [np.where(scored, numbers, np.nan) for numbers in (found.observed, p, p_fwer, q)]
+    return ExchangeTest(told[0], told[1], told[2], told[3], *clusters)
 
 
 def _chunk_size(exchanges: Exchanges, windows: int) -> int:
