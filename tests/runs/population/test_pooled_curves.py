@@ -72,6 +72,19 @@ def test_conditions_that_differ_are_told_apart_and_the_control_comes_first() -> 
     assert most["difference"] == pytest.approx(-0.5, abs=0.15)
 
 
+def test_several_conditions_are_corrected_by_holm() -> None:
+    curves, cells = curves_of({"control": 0.0, "a": 0.6, "b": 0.6}, experiments=4)
+    found = pool_curves(curves, cells, NAMES, PoolParameters(permutations=99))
+    table = found.tables["comparisons"].query("curve == 'raw'")
+    strongest = table.groupby("condition")[["p_fwer", "p_holm"]].min()
+    np.testing.assert_allclose(strongest["p_fwer"], 2 / 70)
+    np.testing.assert_allclose(strongest["p_holm"], 4 / 70)
+    words = "a differs from control cannot be told: p is 0.057 at best, corrected for 2 comparisons (Holm)."
+    assert f"Whether {words}" in found.sentences
+    alone = pool_curves(curves, cells, NAMES, PoolParameters(permutations=99, compare=("control", "a")))
+    assert any(sentence.startswith("a differs from control at") for sentence in alone.sentences)
+
+
 def test_the_mean_is_that_of_experiments_not_of_cells() -> None:
     curves, cells = curves_of({"control": 0.0}, experiments=2, cells=1)
     curves["correlation"] = np.where(curves["input"] == "control0", 0.0, np.tanh(0.4))

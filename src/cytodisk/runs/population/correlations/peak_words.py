@@ -117,15 +117,19 @@ def difference_sentences(comparisons: pd.DataFrame) -> list[str]:
     raw = comparisons[comparisons["curve"] == "raw"].dropna(subset="p_fwer")
     said = []
     for (name, control), rows in raw.groupby(["condition", "control"], sort=False):
-        significant = rows[rows["p_fwer"] <= LEVEL]
+        significant = rows[rows["p_holm"] <= LEVEL]
         chosen = significant if len(significant) else rows
         most: Any = chosen.iloc[int(chosen["difference"].abs().to_numpy().argmax())]
+        number = int(most["comparisons"])
+        corrected = f", corrected for {number} comparisons (Holm)" if number > 1 else ""
+        best = min(number * raw["smallest_p"].min(), 1.0)
         low, high = _two(most["difference_low"]), _two(most["difference_high"])
         size = f"{_two(most['difference'])} in Fisher's z (95 % interval {low} to {high})"
-        where = f"{size} in layer {most['layer']} at lag {lag_words(most)}, p = {most['p_fwer']:.2g}"
-        if most["smallest_p"] > LEVEL:
-            best = f"p is {most['smallest_p']:.2g} at best"
-            said.append(f"Whether {name} differs from {control} cannot be told: {best}.")
+        where = f"{size} in layer {most['layer']} at lag {lag_words(most)}"
+        where += f", p = {most['p_holm']:.2g}{corrected}"
+        if max(best, most["smallest_p"]) > LEVEL:
+            words = f"p is {max(best, most['smallest_p']):.2g} at best{corrected}"
+            said.append(f"Whether {name} differs from {control} cannot be told: {words}.")
         elif len(significant):
             count = f"{len(significant)} of {len(rows)} layers × lags"
             said.append(f"{name} differs from {control} at {count}, most by {where}.")

@@ -108,6 +108,13 @@ POOLED_TABLES: dict[str, Columns] = {
             "share of relabelled experiments with at least such a difference",
             "up to 0.05 the conditions differ",
         ),
+        Column(
+            "p_holm",
+            pa.float64(),
+            "1",
+            "p_fwer corrected for the number of conditions that are compared with the control (Holm)",
+        ),
+        Column("comparisons", pa.int64(), "", "number of conditions that were compared with the control"),
     ),
 }
 """Columns of each table by its name; comparisons is there where there are two conditions."""

@@ -13,6 +13,7 @@ from scipy.stats import t as student
 
 from cytodisk.errors import PopulationError
 from cytodisk.population.conditions.comparison import compare_conditions
+from cytodisk.population.conditions.with_control import holm
 from cytodisk.population.conditions.with_zero import compare_with_zero
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT
 from cytodisk.population.population import Population
@@ -132,8 +133,8 @@ class _OneKind:
         rest = [name for name in names if name not in (control, *others)]
         pooled = [self._pooled(name) for name in (control, *others, *rest)]
         tables = {"experiments": self._experiments(), "pooled": pd.concat(pooled, ignore_index=True)}
-        compared = [self._compared(control, other) for other in others]
-        return tables | ({"comparisons": pd.concat(compared, ignore_index=True)} if compared else {})
+        compared = {other: self._compared(control, other) for other in others}
+        return tables | ({"comparisons": _corrected(compared)} if compared else {})
 
     @property
     def _chance(self) -> dict[str, Any]:
@@ -189,6 +190,16 @@ class _OneKind:
         """Note a sentence, that on the raw curve alone: the others have the same cells, or fewer."""
         if self.kind == "raw":
             self.found.sentences.append(words)
+
+
+def _corrected(compared: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """Comparisons of several conditions with the control, corrected for their number."""
+    tested = {name: table for name, table in compared.items() if len(table)}
+    if not tested:
+        return pd.DataFrame()
+    p_holm = holm({name: table["p_fwer"].to_numpy(np.float64) for name, table in tested.items()})
+    parts = [table.assign(p_holm=p_holm[name], comparisons=len(tested)) for name, table in tested.items()]
+    return pd.concat(parts, ignore_index=True)
 
 
 def _turned_back(z: xr.DataArray) -> xr.DataArray:
