@@ -10,6 +10,7 @@ import pandas as pd
 
 import cytodisk as cd
 from cytodisk.population.population import Population
+from cytodisk.runs.population.comparison_rows import described_scalars
 from cytodisk.store.populations.population_study import PopulationStudy
 from cytodisk.store.populations.window_arrays import window_rows
 
@@ -41,7 +42,7 @@ def study_of(pop: Population, path: Path, **parameters: Any) -> PopulationStudy:
         atlas=atlas,
         windows=_windows(pop, found, control, treated),
         clusters=_joined(found, lambda one: one.clusters, control),
-        scalars=_joined(found, lambda one: one.scalars, control),
+        scalars=_scalars(pop, scalars, found, control, treated),
         comparisons=_comparisons(found, control, treated),
         profiles=_profiles(pop, scalars),
         gallery=_gallery(pop),
@@ -56,6 +57,16 @@ def _windows(pop: Population, found: dict[str, Any], control: str, treated: list
     first = mean.sel(condition=control, drop=True)
     differences = {name: mean.sel(condition=name, drop=True) - first for name in treated}
     return _joined(differences, lambda one: window_rows(one.to_dataset(name="difference")), control)
+
+
+def _scalars(
+    pop: Population, scalars: pd.DataFrame, found: dict[str, Any], control: str, treated: list[str]
+) -> pd.DataFrame:
+    tested = _joined(found, lambda one: one.scalars, control)
+    if found or not treated:
+        return tested
+    described = described_scalars(scalars, pop.cells["condition"], control, treated)
+    return described.reindex(columns=[*described, *(name for name in tested if name not in described)])
 
 
 def _by_channel(windows: Any, pop: Population) -> Any:

@@ -25,7 +25,7 @@ from cytodisk.pages.population.power_page import write_power_figure
 from cytodisk.pages.population.profile_pages import profiles_page
 from cytodisk.pages.population.scalar_pages import chosen_scalars, effects_page, scalar_words, scalars_page
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.style import paper_style
+from cytodisk.plot.style import DIVERGING_COLOURS, paper_style
 from cytodisk.store.study import Study
 
 ABSENT = Path("not there")
@@ -106,12 +106,28 @@ def test_labels_tell_how_values_were_made(page: Any) -> None:
     )
 
 
+@pytest.mark.parametrize(("summary", "is_signed"), [("mean", False), ("velocity", True)])
+def test_what_has_a_sign_has_0_in_the_middle_of_its_colours(page: Any, summary: str, is_signed: bool) -> None:
+    figure = page(atlas_page, drawn(population(), summary=summary), "signal")
+    windows = figure.axes[0].collections[0]
+    low, high = windows.get_clim()
+    assert (low == -high) == is_signed
+    assert (windows.get_cmap().name == DIVERGING_COLOURS) == is_signed
+
+
+def test_several_conditions_are_corrected_together(page: Any) -> None:
+    told = " ".join(words_of(page(effects_page, drawn(population(3)))))
+    assert "corrected for all scalars (max-T, Holm)" in told
+
+
 def test_without_experiments_nothing_is_tested(page: Any) -> None:
     pop = population()
     one = drawn(pop.with_cells(pop.cells.assign(experiment=None)))
     told = " ".join(words_of(page(atlas_page, one, "signal")))
     assert "experiments unknown" in told
     assert "not tested" in told
+    scalars = words_of(page(scalars_page, one))
+    assert not any("max-T" in words or words == "no p" for words in scalars)
     assert not two_marks(page(scalars_page, one))
     assert "mean of cells" in words_of(page(scalars_page, one))
     assert "one experiment" not in words_of(page(profiles_page, one))

@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from scipy import stats
 
@@ -167,6 +168,8 @@ def test_effect_sizes_are_filled_where_they_are_significant(ax: Axes) -> None:
     assert len(lines(ax, INTERVAL_NAME)) == 2
     assert [line.get_marker() for line in ax.lines].count("<") == 1
     assert [text.get_text() for text in ax.texts] == ["0.01", "0.9"]
+    several = draw_effect_sizes(Figure().add_subplot(), scalars.assign(p_holm=[0.06, 0.9, np.nan]))
+    assert to_rgba(several[0].get_markerfacecolor()) == to_rgba("white")
 
 
 def test_directions_have_their_resultants(ax: Axes) -> None:

@@ -80,7 +80,7 @@ def test_counts_that_are_unknown_are_not_written() -> None:
     one = atlas().sel(condition="control")
     assert count_words(one.drop_vars(["n_cells", "n_experiments"])) == ""
     assert count_words(one.drop_vars("n_experiments")) == "12 cells"
-    assert count_words(one.assign(n_experiments=0 * one["n_experiments"])) == "12 cells\nexperiments unknown"
+    assert count_words(one.assign(n_experiments=0 * one["n_experiments"])) == "12 cells\nexperiments\nunknown"
 
 
 def test_a_turned_atlas_lies_where_the_cell_has_its_sectors(ax: Axes, windows: CellWindows) -> None:
@@ -139,6 +139,18 @@ def test_key_counts_what_is_there() -> None:
         "cluster, p ≤ 0.05: 6 windows",
         "not tested: 1 of 24 windows",
     ]
+
+
+def test_several_comparisons_are_corrected_together() -> None:
+    p = comparison()["p_fwer"]
+    clusters = pd.DataFrame({"cluster": [1, 2], "p": [0.01, 0.03], "p_holm": [0.02, 0.06]})
+    windows = comparison(p_holm=(DIMS, np.where(p == p[0, 0], 0.06, p)))
+    found = DifferenceMap.of(windows, cluster_labels=labels(), clusters=clusters)
+    assert not found.significant.any()
+    assert sorted(np.unique(found.cluster)) == [0, 1]
+    assert found.correction == "max-T, Holm"
+    alone = DifferenceMap.of(comparison(p_holm=(DIMS, p.to_numpy())))
+    assert (int(alone.significant.sum()), alone.correction) == (3, "max-T")
 
 
 def test_limits_hold_almost_all() -> None:

@@ -12,7 +12,7 @@ from cytodisk.pages.population.drawn_population import DrawnPopulation
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.layer_looks import cytoplasm_layers_of, layer_word, shown_layers
 from cytodisk.plot.population.condition_profiles import condition_key
-from cytodisk.plot.population.difference_map import ALPHA
+from cytodisk.plot.population.difference_map import ALPHA, corrected_column
 from cytodisk.plot.population.experiment_lines import fit_to_lines
 from cytodisk.plot.population.mean_curves import draw_mean_curves
 from cytodisk.plot.style import LINE_COLOUR, SINGLE_COLUMN_MM
@@ -27,7 +27,8 @@ def curves_page(one: DrawnPopulation, channel: str) -> Sheet:
     """Mean curves of conditions by layer, with their intervals, and lags at which they differ."""
     atlas = one.study.atlas_arrays.sel(channel=channel)
     found = {name: one.study.window_arrays(name).sel(channel=channel) for name in one.compared}
-    differs = {name: windows["p_fwer"] <= ALPHA for name, windows in found.items() if "p_fwer" in windows}
+    p_names = {name: corrected_column(windows) for name, windows in found.items()}
+    differs = {name: found[name][p] <= ALPHA for name, p in p_names.items() if p in found[name]}
     any_differs = any(bool(one_of.any()) for one_of in differs.values())
     layers = shown_layers(atlas.sizes["layer"], cytoplasm_layers_of(atlas["mean"]))
     title = f"{one.channel_words(channel)} by condition"
@@ -37,7 +38,7 @@ def curves_page(one: DrawnPopulation, channel: str) -> Sheet:
     room = SINGLE_COLUMN_MM - 2 * LEFT_MM
     told = [one.comparison_words(name) for name in one.compared]
     if differs and not any_differs:
-        told.append(f"no lag with p ≤ {ALPHA:g} (max-T)")
+        told.append(f"no lag with p ≤ {ALPHA:g} ({one.correction})")
     lines = [line for words in told for line in broken_lines(words.split(" "), " ", room)]
     key_rows = -(-(len(one.conditions) + int(one.repeated) + int(any_differs)) // 2)
     first = heading.height_mm + 4.0 * key_rows + 1.0
@@ -63,7 +64,7 @@ def curves_page(one: DrawnPopulation, channel: str) -> Sheet:
     axes[-1].set_xlabel(_lag_label(one))
     key = [handle for handle in condition_key(drawn, experiments=one.repeated) if _is_drawn(handle)]
     if any_differs:
-        words = f"differs, p ≤ {ALPHA:g} (max-T)"
+        words = f"differs, p ≤ {ALPHA:g} ({one.correction})"
         key.append(Line2D([], [], color=LINE_COLOUR, marker=".", markersize=3.0, linewidth=0, label=words))
     sheet.key(LEFT_MM, heading.height_mm - 2.0, key, 2, borderaxespad=0.0, **_KEY_STYLE)
     for number, words in enumerate(lines):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -34,6 +34,7 @@ _SUMMARIES = {
     "lag": "lag of the peak of {}",
     "around_events": "{} less that at any moment",
 }
+_SIGNED = ("velocity", "peak_correlation", "lag")  # summaries whose 0 has a meaning of its own
 _DIRECTIONS = {
     "nucleus": "away from the nucleus",
     "front": "at the front",
@@ -98,6 +99,12 @@ class DrawnPopulation:
         return self.sources.grid(atlas.sizes["layer"], atlas.sizes["sector"], inside)
 
     @property
+    def are_known(self) -> bool:
+        """Whether each condition has an experiment that is known."""
+        known = self.used.loc[self.used["experiment"] != "", "condition"]
+        return set(self.conditions) <= set(known)
+
+    @property
     def repeated(self) -> bool:
         """Whether a condition has several experiments."""
         known = self.used[self.used["experiment"] != ""]
@@ -116,7 +123,7 @@ class DrawnPopulation:
         clusters = self.study.clusters
         own = clusters[(clusters["condition"] == condition) & (clusters["channel"] == channel)]
         windows = self.study.window_arrays(condition).sel(channel=channel)
-        return DifferenceMap.of(self._on_grid(windows), clusters=own)
+        return replace(DifferenceMap.of(self._on_grid(windows), clusters=own), correction=self.correction)
 
     def channel_words(self, channel: str) -> str:
         """Name of a channel for headings and labels."""
@@ -136,6 +143,23 @@ class DrawnPopulation:
     def unit(self) -> str:
         """Unit of the values of windows."""
         return str(self.study.atlas_arrays["mean"].attrs.get("units", ""))
+
+    @cached_property
+    def has_tested_scalars(self) -> bool:
+        """Whether any scalar has a p."""
+        scalars = self.study.scalars
+        return bool(len(scalars) and scalars["p_fwer"].notna().any())
+
+    @property
+    def is_signed(self) -> bool:
+        """Whether values of windows lie on both sides of 0, as edge velocity does."""
+        settings = self.study.parameters
+        return settings.get("summary") in _SIGNED or settings.get("normalise") == "z-score"
+
+    @property
+    def correction(self) -> str:
+        """How p was corrected, in words."""
+        return "max-T, Holm" if len(self.compared) > 1 else "max-T"
 
     @property
     def paired(self) -> bool:

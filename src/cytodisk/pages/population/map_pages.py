@@ -14,7 +14,15 @@ from cytodisk.pages.population.drawn_population import CHARACTER_MM, DrawnPopula
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.population.difference_map import DifferenceMap
 from cytodisk.plot.population.population_maps import difference_key, draw_atlas, draw_difference
-from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM, colour_bar, nice_length, signal_limits
+from cytodisk.plot.style import (
+    DIVERGING_COLOURS,
+    DOUBLE_COLUMN_MM,
+    SIGNAL_COLOURS,
+    SINGLE_COLUMN_MM,
+    colour_bar,
+    nice_length,
+    signal_limits,
+)
 from cytodisk.runs.channel_names import shortened
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
@@ -22,6 +30,7 @@ _MOST_ABREAST = 5  # conditions of a row
 _WIDEST = 42.0  # mm, of a disk with its numbers
 _TALLEST = 1.35  # of a cell, height over width
 _TITLE, _BELOW, _BAR, _BAR_BELOW, _LINE = 6.5, 11.5, 2.2, 8.5, 3.6  # mm
+_UNKNOWN = 3.2  # mm, of the third line below a condition: experiments unknown
 _GAP = 3.0
 _KEY_STYLE: Any = {"handlelength": 1.6, "labelspacing": 0.35, "columnspacing": 1.2}
 
@@ -64,7 +73,7 @@ def _maps_page(
     height = panel * _share(on)
     heading = one.heading(width, title, *(note for note in notes if note))
     keys = _KeyLines(one, found, width)
-    row_height = _TITLE + height + _BELOW
+    row_height = _TITLE + height + _BELOW + (0.0 if one.are_known else _UNKNOWN)
     blocks = len(rows) * (1 if beside else 1 + bool(found))
     bars = _BAR + _BAR_BELOW
     top = heading.height_mm
@@ -72,7 +81,7 @@ def _maps_page(
     sheet = Sheet(foot + keys.height_mm + 2.0, width)
     heading.write(sheet)
     page = _Maps(one, sheet, channel, on, first, panel, height)
-    limits = signal_limits(one.atlas(channel)["mean"].sel(condition=one.conditions))
+    limits = _limits(one, one.atlas(channel)["mean"].sel(condition=one.conditions))
     for number, names in enumerate(rows):
         page.conditions(names, top + number * row_height * (1 if beside else 1 + bool(found)), limits)
     at = [(2, top)] if beside else []
@@ -120,7 +129,8 @@ class _Maps:
     def conditions(self, names: Sequence[str], top: float, limits: tuple[float, float]) -> None:
         axes = [self._axes(column, top) for column in range(len(names))]
         atlas = self.one.atlas(self.channel).sel(condition=list(names))
-        drawn = draw_atlas(axes, atlas, self.on, limits=limits, first=self.first)
+        colours = DIVERGING_COLOURS if self.one.is_signed else SIGNAL_COLOURS
+        drawn = draw_atlas(axes, atlas, self.on, cmap=colours, limits=limits, first=self.first)
         for ax in axes:
             ax.set_title(self._fitted(ax.get_title()), parse_math=False)
         self.mean = drawn[0]
@@ -192,6 +202,13 @@ def _shared_key(found: Sequence[DifferenceMap]) -> list[Any]:
             handle.set_label(words)
             handles.setdefault(words, handle)
     return list(handles.values())
+
+
+def _limits(one: DrawnPopulation, values: Any) -> tuple[float, float]:
+    """Ends of the colours of conditions, with 0 in their middle where values lie on both sides of it."""
+    low, high = signal_limits(values)
+    end = max(abs(low), abs(high))
+    return (-end, end) if one.is_signed else (low, high)
 
 
 def _share(on: PolarGrid | CellWindows) -> float:

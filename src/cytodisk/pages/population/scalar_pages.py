@@ -13,6 +13,7 @@ from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.population.drawn_population import DrawnPopulation
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.population.condition_looks import condition_colours
+from cytodisk.plot.population.difference_map import corrected_column
 from cytodisk.plot.population.effect_sizes import draw_effect_sizes
 from cytodisk.plot.population.experiment_key import experiment_key
 from cytodisk.plot.population.super_plot import draw_super_plot
@@ -56,7 +57,7 @@ def scalars_page(one: DrawnPopulation) -> Sheet | None:
     key_height = _LINE * (-(-len(shown) // abreast) + 1) + 3.0
     heading = one.heading(width, "Scalars, cell by cell", *_notes(one, names))
     rows = -(-len(names) // columns)
-    above = _ABOVE + (3.2 if count > 2 else 0.0) if len(one.study.scalars) else _ABOVE_BARE
+    above = _ABOVE + (3.2 if count > 2 else 0.0) if one.has_tested_scalars else _ABOVE_BARE
     first = heading.height_mm + key_height
     sheet = Sheet(first + rows * (above + _TALL + _BELOW), width)
     heading.write(sheet)
@@ -97,7 +98,7 @@ def effects_page(one: DrawnPopulation) -> Sheet | None:
         for name in treated
         for line in broken_lines(one.comparison_words(name).split(" "), " ", width - 2 * LEFT_MM)
     ]
-    lines.append("filled: p ≤ 0.05; on the right: p, corrected for all scalars (max-T)")
+    lines.append(f"filled: p ≤ 0.05; on the right: p, corrected for all scalars ({one.correction})")
     tall, top = _ROW * len(order) + 2.0, heading.height_mm + 3.5
     sheet = Sheet(top + tall + 11.0 + _LINE * len(lines), width)
     heading.write(sheet)
@@ -123,13 +124,14 @@ def chosen_scalars(one: DrawnPopulation) -> list[str]:
     names = [name for name in one.study.scalar_names if name in one.used and not _LAYER.match(name)]
     names = [name for name in names if one.used[name].notna().any()]
     found = one.study.scalars
-    if found.empty:
+    if not one.has_tested_scalars:
         sizes = {name: _apart(one, name) for name in names}
         largest = sorted(names, key=lambda name: -sizes[name])[:MOST_PANELS]
         return [name for name in names if name in largest]
-    by_scalar = found.assign(size=-found["effect_size"].abs()).groupby("scalar")[["p_fwer", "size"]].min()
-    ranked = by_scalar.reindex(names).fillna({"p_fwer": 1.0, "size": 0.0})
-    order = ranked.sort_values(["p_fwer", "size"], kind="stable").index[:MOST_PANELS]
+    known = found.assign(least=found[corrected_column(found)], size=-found["effect_size"].abs())
+    by_scalar = known.groupby("scalar")[["least", "size"]].min()
+    ranked = by_scalar.reindex(names).fillna({"least": 1.0, "size": 0.0})
+    order = ranked.sort_values(["least", "size"], kind="stable").index[:MOST_PANELS]
     return [name for name in names if name in set(order)]
 
 
@@ -159,18 +161,20 @@ def scalar_label(one: DrawnPopulation, name: str) -> str:
 
 
 def _tests_of(one: DrawnPopulation, name: str) -> pd.DataFrame | None:
+    if not one.has_tested_scalars:
+        return None
     rows = one.study.scalars
     own = rows[rows["scalar"] == name]
-    return None if own.empty else own.assign(p=own["p_fwer"])
+    return None if own.empty else own.assign(p=own[corrected_column(own)])
 
 
 def _notes(one: DrawnPopulation, names: list[str]) -> list[str]:
     notes = []
     everyone = [name for name in one.study.scalar_names if not _LAYER.match(name)]
     if len(names) < len(everyone):
-        how = "smallest p" if len(one.study.scalars) else "conditions farthest apart"
+        how = "smallest p" if one.has_tested_scalars else "conditions farthest apart"
         notes.append(f"{len(names)} of {len(everyone)} scalars: {how}")
-    if one.compared and not one.study.scalars.empty:
-        notes.append("p corrected for all scalars (max-T)")
+    if one.has_tested_scalars:
+        notes.append(f"p corrected for all scalars ({one.correction})")
         notes.append("g: Hedges g with its 95 % interval")
     return notes

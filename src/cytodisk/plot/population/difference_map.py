@@ -31,10 +31,13 @@ class DifferenceMap:
     tested : ndarray of shape (layers, sectors) and dtype bool
         Whether the window was tested.
     significant : ndarray of shape (layers, sectors) and dtype bool
-        Where the p corrected for all windows (max-T) is at most `alpha`.
+        Where the corrected p is at most `alpha`: for all windows, and for all comparisons with the control
+        where there are several.
     cluster : ndarray of shape (layers, sectors) and dtype int
         Number of the window's cluster, 0 for none. Only clusters with p of at most `alpha` have one.
     alpha : float
+    correction : str
+        How p was corrected, in words.
 
     Examples
     --------
@@ -58,6 +61,7 @@ class DifferenceMap:
     significant: BoolArray
     cluster: IntArray
     alpha: float = ALPHA
+    correction: str = "max-T"
 
     @classmethod
     def of(
@@ -73,11 +77,12 @@ class DifferenceMap:
         Parameters
         ----------
         windows : Dataset with dims (layer, sector)
-            difference, and p_fwer and cluster where it was tested.
+            difference, and p_fwer and cluster where it was tested. With p_holm, p_fwer corrected for several
+            comparisons with one control, that is what counts.
         cluster_labels : array_like or DataArray of shape (layers, sectors), optional
             Number of each window's cluster, 0 for none; by default the variable cluster.
         clusters : DataFrame, optional
-            cluster and p; without it all labels are drawn.
+            cluster, and p or p_holm; without it all labels are drawn.
         alpha : float
             p of at most it counts as significant.
 
@@ -94,8 +99,12 @@ class DifferenceMap:
             )
         difference = _table(windows["difference"], "difference")
         p = np.full(difference.shape, np.nan)
+        correction = "max-T"
         if "p_fwer" in windows:
             p = _table(windows["p_fwer"], "p_fwer")
+        if "p_holm" in windows:
+            alone, p = p, _table(windows["p_holm"], "p_holm")
+            correction = "max-T" if np.array_equal(alone, p, equal_nan=True) else "max-T, Holm"
         labels = np.zeros(difference.shape, dtype=np.int64)
         if cluster_labels is None:
             cluster_labels = windows.get("cluster")
@@ -107,9 +116,9 @@ class DifferenceMap:
                 "same comparison"
             )
         if clusters is not None:
-            kept = clusters.loc[clusters["p"] <= alpha, "cluster"].to_numpy()
+            kept = clusters.loc[clusters[corrected_column(clusters, "p")] <= alpha, "cluster"].to_numpy()
             labels = np.where(np.isin(labels, kept), labels, 0)
-        return cls(difference, np.isfinite(p), p <= alpha, labels, alpha)
+        return cls(difference, np.isfinite(p), p <= alpha, labels, alpha, correction)
 
     @property
     def is_different(self) -> bool:
@@ -128,6 +137,11 @@ class DifferenceMap:
         low = bool(np.nanmin(self.difference, initial=0.0) < -self.limit * (1 + 1e-9))
         high = bool(np.nanmax(self.difference, initial=0.0) > self.limit * (1 + 1e-9))
         return {(True, True): "both", (True, False): "min", (False, True): "max"}.get((low, high), "neither")
+
+
+def corrected_column(table: Any, otherwise: str = "p_fwer") -> str:
+    """Name of the p that counts: corrected for several comparisons too, where the table has it."""
+    return "p_holm" if "p_holm" in table else otherwise
 
 
 def _table(values: xr.DataArray, name: str) -> FloatArray:

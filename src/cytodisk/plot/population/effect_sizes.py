@@ -12,6 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from cytodisk.errors import ParameterError
 from cytodisk.number_words import rounded
+from cytodisk.plot.population.difference_map import corrected_column
 from cytodisk.plot.style import LINE_COLOUR
 from cytodisk.plot.time_axis import TICK_STEPS
 
@@ -32,9 +33,10 @@ def draw_effect_sizes(
     ax : Axes
     scalars : DataFrame
         scalar, effect_size (Hedges g), low and high; p_fwer, the p corrected for all scalars, where they
-        were tested. A row without an effect size keeps its line, empty.
+        were tested, or p_holm, corrected for several conditions too. A row without an effect size keeps its
+        line, empty.
     alpha : float
-        Scalars with p_fwer of at most it are filled.
+        Scalars with a corrected p of at most it are filled.
     color : str
 
     Returns
@@ -76,7 +78,7 @@ def draw_effect_sizes(
     if scalars.empty:
         raise ParameterError("scalars has no rows: pass the scalars of a comparison")
     effect, low, high = (scalars[name].to_numpy(dtype=np.float64) for name in _COLUMNS[1:])
-    corrected = _column(scalars, "p_fwer")
+    corrected = _column(scalars, corrected_column(scalars))
     reach = _reach(effect, low, high)
     points = []
     for place in np.flatnonzero(np.isfinite(effect)).tolist():

@@ -130,14 +130,14 @@ def draw_atlas(
 
 
 def count_words(of_condition: xr.Dataset) -> str:
-    """How many cells and experiments a condition has, in two lines; empty if unknown."""
+    """How many cells and experiments a condition has, line by line; empty if unknown."""
     words = []
     for name, noun in (("n_cells", "cell"), ("n_experiments", "experiment")):
         if name in of_condition:
             count = int(np.nan_to_num(of_condition[name].to_numpy()).max(initial=0))
             words.append(f"{count} {noun}{'' if count == 1 else 's'}")
             if name == "n_experiments" and not count:
-                words[-1] = "experiments unknown"
+                words[-1] = "experiments\nunknown"
     return "\n".join(words)
 
 
@@ -245,7 +245,9 @@ def difference_key(found: DifferenceMap) -> list[Any]:
     known, tested = int(np.isfinite(found.difference).sum()), int(found.tested.sum())
     handles: list[Any] = []
     if found.significant.any():
-        words = f"window, p ≤ {found.alpha:g} (max-T): {int(found.significant.sum())} of {tested}"
+        words = (
+            f"window, p ≤ {found.alpha:g} ({found.correction}): {int(found.significant.sum())} of {tested}"
+        )
         handles.append(Patch(facecolor="none", label=words, **_FRAME))
     if found.cluster.any():
         words = f"cluster, p ≤ {found.alpha:g}: {int((found.cluster > 0).sum())} windows"

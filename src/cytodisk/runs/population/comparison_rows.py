@@ -129,7 +129,7 @@ def comparison_row(one: ConditionComparison, channels: tuple[str, ...], unit: st
     p, status = one.windows["p_fwer"].values, one.windows["status"].values
     used = one.units[one.units["used"] > 0]
     units = used.groupby(CONDITION)["used"].sum() if unit == "cell" else used.groupby(CONDITION).size()
-    known = p[np.isfinite(p)]
+    corrected = one.windows["p_holm"].values
     return {
         CONDITION: one.treated,
         "control": one.control,
@@ -140,11 +140,11 @@ def comparison_row(one: ConditionComparison, channels: tuple[str, ...], unit: st
         "n_treated": int(units.get(one.treated, 0)),
         "smallest_p": one.smallest_p,
         "windows_tested": int((status == "ok").sum()),
-        "windows_found": int((known <= LEVEL).sum()),
-        "clusters_found": int((one.clusters["p"] <= LEVEL).sum()),
-        "scalars_found": int((one.scalars["p_fwer"] <= LEVEL).sum()),
-        "smallest_found": _least(known),
-        "p_holm": _least(one.windows["p_holm"].values),
+        "windows_found": int((corrected <= LEVEL).sum()),
+        "clusters_found": int((one.clusters["p_holm"] <= LEVEL).sum()),
+        "scalars_found": int((one.scalars["p_holm"] <= LEVEL).sum()),
+        "smallest_found": _least(p),
+        "p_holm": _least(corrected),
         "finding": " ".join(one.sentences[2:]),
     }
 

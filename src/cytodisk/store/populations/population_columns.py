@@ -152,9 +152,9 @@ COMPARISON_COLUMNS: Columns = (
     Column("n_treated", pa.int64(), "", "the same of the treated condition"),
     Column("smallest_p", pa.float64(), "1", "smallest probability that this number can reach at all"),
     Column("windows_tested", pa.int64(), "", "number of windows, all channels, that are tested"),
-    Column("windows_found", pa.int64(), "", "number of these that differ, p_fwer at most 0.05"),
-    Column("clusters_found", pa.int64(), "", "number of clusters with p at most 0.05"),
-    Column("scalars_found", pa.int64(), "", "number of scalars with p_fwer at most 0.05"),
+    Column("windows_found", pa.int64(), "", "number of these that differ, p_holm at most 0.05"),
+    Column("clusters_found", pa.int64(), "", "number of clusters with p_holm at most 0.05"),
+    Column("scalars_found", pa.int64(), "", "number of scalars with p_holm at most 0.05"),
     Column("smallest_found", pa.float64(), "1", "smallest p_fwer of all windows"),
     HOLM._replace(
         meaning="smallest_found corrected for all conditions that are compared with the control (Holm)"

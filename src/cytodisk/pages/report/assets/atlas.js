@@ -43,12 +43,12 @@
   const panels = () => {
     const names = shownConditions();
     const means = names.map((name) => ofAtlas("mean", name));
-    const { palettes, unit, level } = page.data;
-    const limits = ends(means.flat(), false);
+    const { palettes, unit, level, signed } = page.data;
+    const limits = ends(means.flat(), signed);
     const found = names.map((name, k) => ({ title: name, values: means[k], limits, palette: palettes.signal, unit, marks: [], pale: null }));
     if (!comparison()) return found;
     const values = ofWindows(state.shows);
-    const p = ofWindows("p_fwer");
+    const p = ofWindows("p_holm");
     const tested = p.some(Number.isFinite);
     const marks = [...p.keys()].filter((k) => p[k] <= level);
     const pale = tested ? [...p.keys()].filter((k) => !(p[k] <= level) && Number.isFinite(values[k])) : null;
@@ -80,8 +80,11 @@
     const pixels = new Uint32Array(height * width).fill(0xffffffff);
     for (let k = 0; k < labels.length; k++) {
       const here = labels[k];
-      if (here === OUTSIDE) continue;
       const near = [(k + 1) % width ? labels[k + 1] : here, labels[k + width] ?? here];
+      if (here === OUTSIDE) {
+        if (near.some((one) => one !== OUTSIDE)) pixels[k] = 0xff555555;
+        continue;
+      }
       const row = Math.floor(k / width);
       pixels[k] = faded.has(here) ? white(table[here]) : table[here];
       if (faded.has(here) && (row + (k % width)) % 8 === 0) pixels[k] = 0xff9a9a9a;
@@ -116,7 +119,10 @@
     rows.push(["effect size g", `${page.digits(at("effect_size"))}${between("low", "high")}`]);
     if (Number.isFinite(at("p"))) {
       rows.push(["p of this window alone", page.chance(at("p"))]);
-      rows.push(["p corrected (max-T)", `${page.chance(at("p_fwer"))}${at("p_fwer") <= page.data.level ? ", significant" : ""}`]);
+      rows.push(["p corrected (max-T)", page.chance(at("p_fwer"))]);
+      const count = page.data.comparisons.length;
+      if (count > 1) rows.push([`p corrected for ${count} comparisons too (Holm)`, page.chance(at("p_holm"))]);
+      rows[rows.length - 1][1] += at("p_holm") <= page.data.level ? ", significant" : "";
       rows.push(["q (false discovery rate)", page.chance(at("q"))]);
     } else rows.push(["not tested", comparison().status[state.channel][k]]);
     if (at("cluster") > 0) rows.push(["cluster", String(at("cluster"))]);

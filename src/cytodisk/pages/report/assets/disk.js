@@ -122,7 +122,7 @@
     context.fillStyle = "rgba(255, 255, 255, 0.55)";
     context.fillRect(-1, -1, 2, 2);
     context.beginPath();
-    for (let at = -2; at < 2; at += 7 / unit) {
+    for (let at = -2.5; at < 0.5; at += 7 / unit) { // lines x + y = at + 1, from corner to corner
       context.moveTo(at, 1);
       context.lineTo(at + 2, -1);
     }

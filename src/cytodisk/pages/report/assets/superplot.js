@@ -115,14 +115,15 @@
     rowsOf(name).map((row) => {
       const at = (column) => valueOf(row, column) ?? NaN;
       const spread = page.known(at("low")) ? ` (${page.digits(at("low"))} to ${page.digits(at("high"))})` : "";
-      const p = page.known(at("p_fwer")) ? `, p ${page.chance(at("p"))}, corrected ${page.chance(at("p_fwer"))}` : ", not tested";
+      const p = page.known(at("p_fwer")) ? `, p ${page.chance(at("p"))}, corrected (${page.data.correction}) ${page.chance(at("p_holm"))}` : ", not tested";
+      if (!page.known(at("effect_size"))) return `difference ${page.digits(at("difference"))}, not tested`;
       return `difference ${page.digits(at("difference"))}, g ${page.digits(at("effect_size"))}${spread}${p}`;
     });
 
   // Effect sizes with their intervals, the largest first; a click shows the scalar cell by cell.
   page.drawForest = () => {
     const rows = rowsOf().filter((row) => page.known(valueOf(row, "effect_size")));
-    if (!rows.length) return byId("forest").replaceChildren("No effect sizes: there is no spread between experiments to measure by.");
+    if (!rows.length) return byId("forest").replaceChildren(page.data.tested ? "No effect sizes: there is no spread between experiments to measure by." : "No effect sizes: nothing was tested.");
     const size = (row) => Math.abs(valueOf(row, "effect_size"));
     const shown = rows.sort((a, b) => size(b) - size(a)).slice(0, 30);
     const ends = shown.flatMap((row) => ["low", "high", "effect_size"].map((name) => valueOf(row, name)));
@@ -135,7 +136,7 @@
     });
     chart.marks.append(svg("path", { d: `M${chart.toX(0)} ${chart.top}V${chart.bottom}`, stroke: "#999999" }));
     shown.forEach((row, k) => {
-      const [low, high, g, p] = ["low", "high", "effect_size", "p_fwer"].map((name) => valueOf(row, name));
+      const [low, high, g, p] = ["low", "high", "effect_size", "p_holm"].map((name) => valueOf(row, name));
       const sure = page.known(p) && p <= page.data.level;
       const line = { d: `M${chart.toX(low)} ${chart.toY(-k)}H${chart.toX(high)}`, stroke: sure ? "#111111" : "#888888", "stroke-width": 1.6 };
       const show = () => page.showScalar(valueOf(row, "scalar"));
@@ -149,7 +150,7 @@
     });
     replace("forest", chart.root);
     const more = rows.length - shown.length;
-    byId("forest-key").textContent = `Filled: p corrected for all scalars at most ${page.data.level}.${more > 0 ? ` The ${more} smallest are in the table.` : ""}`;
+    byId("forest-key").textContent = `Filled: p corrected for all scalars (${page.data.correction}) at most ${page.data.level}.${more > 0 ? ` The ${more} smallest are in the table.` : ""}`;
   };
 
   // Means over lags by condition, with their standard errors over experiments, of one layer.
@@ -178,7 +179,7 @@
       chart.marks.append(svg("path", { d: page.linePath(chart, lags, middle), fill: "none", stroke: colour, "stroke-width": 2.5 }, svg("title", {}, name)));
     }
     if (page.comparison()) {
-      const p = page.ofWindows("p_fwer").slice(layer * lags.length, (layer + 1) * lags.length);
+      const p = page.ofWindows("p_holm").slice(layer * lags.length, (layer + 1) * lags.length);
       lags.forEach((lag, k) => {
         if (p[k] <= data.level) chart.marks.append(svg("circle", { cx: chart.toX(lag), cy: chart.bottom - 6, r: 3, fill: "#111111" }, svg("title", {}, `p corrected ${page.chance(p[k])}`)));
       });

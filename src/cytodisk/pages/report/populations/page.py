@@ -28,8 +28,8 @@ from cytodisk.store.populations.population_study import PopulationStudy
 
 _SCRIPTS = ("decode", "numbers", "list", "disk", "chart", "atlas", "superplot", "population")
 _MAIN = {
-    "scalars": "scalar what condition mean_control mean_treated unit difference effect_size p p_fwer q "
-    "low high difference_low difference_high status",
+    "scalars": "scalar what condition mean_control mean_treated unit difference effect_size p p_fwer p_holm "
+    "q low high difference_low difference_high status",
     "clusters": "condition channel layers sectors n_windows difference p p_holm",
     "experiments": "condition experiment cells used reason",
     "left_out": "condition left_out result difference difference_without p p_without",
@@ -84,7 +84,8 @@ def population_page(study: PopulationStudy) -> str:
 def _listed(study: PopulationStudy, name: str) -> dict[str, Any]:
     table: pd.DataFrame = getattr(study, name)
     several = len(study.compared) > 1
-    main = [one for one in _MAIN[name].split() if several or one != "condition" or name == "experiments"]
+    alone = {"p_holm"} if name == "experiments" else {"condition", "p_holm"}
+    main = [one for one in _MAIN[name].split() if several or one not in alone]
     return listed(table, main=main, labels=_LABELS, meanings=_meanings(name))
 
 

@@ -31,6 +31,7 @@ _OF_WINDOWS = (
     "high",
     "p",
     "p_fwer",
+    "p_holm",
     "q",
     "cluster",
     "n_control",
@@ -58,6 +59,8 @@ def population_data(one: DrawnPopulation) -> dict[str, Any]:
         "colours": condition_colours(one.conditions),
         "control": study.control,
         "level": LEVEL,
+        "correction": one.correction,
+        "tested": any(np.isfinite(one.study.comparisons["smallest_p"])),
         "curves": study.is_curves,
         "lag_unit": str(study.provenance.get("lag_unit", "")),
         "unit": one.unit,
@@ -71,7 +74,11 @@ def population_data(one: DrawnPopulation) -> dict[str, Any]:
         "profiles": _profiles(study.profiles) if not study.is_curves else [],
         "scalars": _scalars(one),
         "cells": _cells(one),
-        "palettes": {"signal": palette(SIGNAL_COLOURS), "difference": palette(DIVERGING_COLOURS)},
+        "signed": one.is_signed,
+        "palettes": {
+            "signal": palette(DIVERGING_COLOURS if one.is_signed else SIGNAL_COLOURS),
+            "difference": palette(DIVERGING_COLOURS),
+        },
     }
 
 
@@ -157,14 +164,15 @@ def _scalars(one: DrawnPopulation) -> list[dict[str, Any]]:
     """What can be shown cell by cell: the scalars that were compared, those that differ first."""
     table = one.study.scalars
     units = one.study.cells.attrs.get("units", {})
-    first = table.sort_values("p_fwer", kind="stable", na_position="last")
+    first = table.sort_values("p_holm", kind="stable", na_position="last")
     ranked = list(dict.fromkeys([*first["scalar"], *one.study.scalar_names]))
     known = table.drop_duplicates("scalar").set_index("scalar")
     found = []
     for name in ranked:
         if name not in one.study.cells:
             continue
-        what = str(known.loc[name, "what"]) if name in known.index and "what" in known else ""
+        told = known.loc[name, "what"] if name in known.index and "what" in known else ""
+        what = told if isinstance(told, str) else ""  # nothing is told where nothing was tested
         unit = str(known.loc[name, "unit"]) if name in known.index else units.get(name, "")
         found.append({"name": name, "unit": "" if unit == "1" else unit, "what": what})
     return found
