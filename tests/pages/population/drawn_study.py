@@ -9,19 +9,21 @@ import numpy as np
 import pandas as pd
 
 import cytodisk as cd
+from cytodisk.population.conditions.with_control import smallest_corrected
 from cytodisk.population.population import Population
 from cytodisk.runs.population.comparison_rows import described_scalars
 from cytodisk.store.populations.population_study import PopulationStudy
 from cytodisk.store.populations.window_arrays import window_rows
 
-_COMPARISON = ["condition", "control", "unit", "design", "n_control", "n_treated", "smallest_p"]
+_COMPARISON = ["condition", "control", "unit", "design", "n_control", "n_treated"]
+_COMPARISON += ["smallest_p", "smallest_p_holm"]
 
 
 def study_of(pop: Population, path: Path, **parameters: Any) -> PopulationStudy:
     """Tables of a study whose control is the first condition; nothing is tested without experiments."""
     control, *treated = pop.conditions
     known = bool(pop.experiments)
-    found = {name: cd.compare_conditions(pop, control, name, permutations=99) for name in treated if known}
+    found = cd.compare_with_control(pop, control, treated, permutations=99) if treated and known else {}
     scalars = pop.scalar_table()
     cells = pop.cells.copy()
     cells = cells.assign(
@@ -82,6 +84,7 @@ def _joined(found: dict[str, Any], table_of: Any, control: str) -> pd.DataFrame:
 
 def _comparisons(found: dict[str, Any], control: str, treated: list[str]) -> pd.DataFrame:
     rows = []
+    smallest = smallest_corrected(found)
     for name in treated:
         one = found.get(name)
         counts = (
@@ -95,6 +98,7 @@ def _comparisons(found: dict[str, Any], control: str, treated: list[str]) -> pd.
                 "design": "not tested" if one is None else one.design,
                 "n_control": counts[0],
                 "n_treated": counts[1],
+                "smallest_p_holm": smallest.get(name, np.nan),
                 "smallest_p": np.nan if one is None else one.smallest_p,
             }
         )

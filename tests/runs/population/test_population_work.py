@@ -28,9 +28,15 @@ def test_several_conditions_are_each_compared_with_the_control() -> None:
     hits = windows[windows["p_fwer"] <= 0.05]
     assert set(hits["condition"]) <= {"b"}
     assert found.tables["atlas"]["condition"].unique().tolist() == ["DMSO", "a", "b"]
-    assert all("a" in words or "b against DMSO" in words for words in found.notes["sentences"])
-    assert any(words.startswith("b against DMSO: Of ") for words in found.notes["sentences"])
-    assert any("corrected for that (Holm)" in words for words in found.notes["sentences"])
+    sentences = found.notes["sentences"]
+    for name in ("a", "b"):
+        pair = f"{name} against DMSO"
+        assert sum(words.startswith(f"{pair}: 4 + 4 experiments") for words in sentences) == 1
+        assert sum(words.startswith(f"Scalars, {pair}: 0 of ") for words in sentences) == 1
+    corrected = "2 conditions were compared with the control, and each p is corrected for that (Holm)."
+    assert sentences.count(corrected) == 1
+    assert comparisons["smallest_p_holm"].tolist() == pytest.approx([4 / 70, 4 / 70])
+    assert (comparisons[["windows_found", "clusters_found", "scalars_found"]] == 0).all(axis=None)
 
 
 def test_the_first_named_condition_is_the_control() -> None:

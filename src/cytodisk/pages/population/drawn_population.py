@@ -188,7 +188,7 @@ class DrawnPopulation:
         row = rows[rows["condition"] == condition].iloc[0]
         design, against = str(row["design"]), f"{condition} against {row['control']}"
         unit = "cells" if row["unit"] == "cell" else "experiments"
-        smallest = float(row["smallest_p"])
+        smallest = float(row["smallest_p_holm"])
         if design not in ("paired", "unpaired") or not np.isfinite(smallest):
             return f"{against}: not tested"
         first, second = int(row["n_control"]), int(row["n_treated"])

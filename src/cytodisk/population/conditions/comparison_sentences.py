@@ -58,7 +58,11 @@ def valueless_words(units: Units) -> Iterator[str]:
 
 
 def found_words(
-    names: tuple[str, str], windows: xr.Dataset, clusters: pd.DataFrame, scalars: pd.DataFrame
+    names: tuple[str, str],
+    windows: xr.Dataset,
+    clusters: pd.DataFrame,
+    scalars: pd.DataFrame,
+    method: str = "max-T",
 ) -> Iterator[str]:
     """What differs, in windows, clusters and scalars.
 
@@ -69,6 +73,8 @@ def found_words(
     windows : Dataset with dims (channel, layer, last)
     clusters : DataFrame
     scalars : DataFrame
+    method : str
+        How p_fwer of windows is corrected.
 
     Yields
     ------
@@ -76,7 +82,7 @@ def found_words(
     """
     against = f"{names[1]} against {names[0]}"
     for channel in windows["channel"].values:
-        yield _of_windows(against, str(channel), windows.sel(channel=channel), clusters)
+        yield _of_windows(against, str(channel), windows.sel(channel=channel), clusters, method)
     if windows.sizes["channel"] > 1:
         yield f"The {windows.sizes['channel']} channels were tested and corrected together."
     tested = scalars[scalars["status"] == "ok"]
@@ -84,17 +90,18 @@ def found_words(
     if len(tested):
         rows = "; ".join(_scalar_words(row) for _, row in found.head(4).iterrows())
         more = f"; and {len(found) - 4} more" if len(found) > 4 else ""
-        words = f"Of {len(tested)} scalars tested together {len(found)} differ"
+        words = f"Scalars, {against}: {len(found)} of {len(tested)} differ ({method}, p ≤ {LEVEL:g})"
         yield f"{words}: {rows}{more}." if rows else f"{words}."
 
 
-def _of_windows(against: str, channel: str, windows: xr.Dataset, clusters: pd.DataFrame) -> str:
+def _of_windows(against: str, channel: str, windows: xr.Dataset, clusters: pd.DataFrame, method: str) -> str:
     p = windows["p_fwer"].values
     total = int(np.isfinite(p).sum())
     if not total:
         return f"{channel}, {against}: no window could be tested."
     different = p <= LEVEL
-    words = f"{channel}, {against}: {int(different.sum())} of {total} windows differ (max-T, p ≤ {LEVEL:g})"
+    words = f"{channel}, {against}: {int(different.sum())} of {total} windows differ"
+    words += f" ({method}, p ≤ {LEVEL:g})"
     own = clusters[clusters["channel"] == channel]
     found = own[own["p"] <= LEVEL]
     if len(found):

@@ -12,6 +12,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import ComparisonParameters
 from cytodisk.population.conditions.comparison import ConditionComparison, compare_conditions
+from cytodisk.population.conditions.comparison_sentences import found_words
 from cytodisk.population.conditions.comparison_warnings import LEVEL
 from cytodisk.population.named_warning import NamedWarning
 from cytodisk.population.population import Population
@@ -87,24 +88,64 @@ def compare_with_control(
             pop, control, name, channel=channel, progress=part, parameters=parameters, **settings
         )
     windows = holm({name: one.windows["p_fwer"].values for name, one in found.items()})
-    clusters = holm({name: one.clusters["p"].to_numpy(np.float64) for name, one in found.items()})
+    largest = {name: np.append(one.clusters["p"].to_numpy(np.float64), 1.0) for name, one in found.items()}
+    clusters = {name: p[:-1] for name, p in holm(largest).items()}  # one without clusters counts, too
     scalars = holm({name: one.scalars["p_fwer"].to_numpy(np.float64) for name, one in found.items()})
-    first = len(names) * min(one.smallest_p for one in found.values())
-    return {
+    corrected = {
         name: replace(
             one,
             windows=one.windows.assign(p_holm=(one.windows["p_fwer"].dims, windows[name])),
             clusters=one.clusters.assign(p_holm=clusters[name]),
             scalars=one.scalars.assign(p_holm=scalars[name]),
-            sentences=(
-                one.sentences[0] + _reach_words(len(names), max(first, one.smallest_p)),
-                *one.sentences[1:],
-                *_words(name, len(names), windows[name], scalars[name]),
-            ),
-            warnings=(*_too_many(len(names), first, one.smallest_p), *one.warnings),
         )
         for name, one in found.items()
     }
+    return _told(corrected) if len(corrected) > 1 else corrected
+
+
+def smallest_corrected(found: Mapping[str, ConditionComparison]) -> dict[str, float]:
+    """The smallest p_holm that each comparison with the control can give.
+
+    The first one that is rejected has the smallest p of all times the number of comparisons.
+
+    Parameters
+    ----------
+    found : dict of str to ConditionComparison
+
+    Returns
+    -------
+    dict of str to float
+    """
+    first = min((len(found) * one.smallest_p for one in found.values()), default=np.nan)
+    return {name: min(max(first, one.smallest_p), 1.0) for name, one in found.items()}
+
+
+def _told(found: Mapping[str, ConditionComparison]) -> dict[str, ConditionComparison]:
+    """Sentences and warnings of comparisons that are corrected for each other."""
+    best = smallest_corrected(found)
+    return {
+        name: replace(
+            one,
+            sentences=tuple(_sentences(one, len(found), best[name])),
+            warnings=(*_too_many(len(found), best[name], one.smallest_p), *one.warnings),
+        )
+        for name, one in found.items()
+    }
+
+
+def _sentences(one: ConditionComparison, count: int, best: float) -> Iterator[str]:
+    """Those of the comparison, with what was found by its corrected p."""
+    names = one.control, one.treated
+    windows = one.windows if "channel" in one.windows.dims else one.windows.expand_dims("channel")
+    alone = [*found_words(names, windows, one.clusters, one.scalars)]
+    nothing = f": no difference can then reach {LEVEL:g}" if best > LEVEL else ""
+    yield f"{one.sentences[0]} Corrected for {count} comparisons (Holm) it is {best:.2g} at best{nothing}."
+    yield from one.sentences[1 : len(one.sentences) - len(alone)]
+    yield f"{count} conditions were compared with the control, and each p is corrected for that (Holm)."
+    windows = windows.assign(p_fwer=windows["p_holm"])
+    clusters = one.clusters.assign(p=one.clusters["p_holm"])
+    scalars = one.scalars.assign(p_fwer=one.scalars["p_holm"])
+    yield from found_words(names, windows, clusters, scalars, "max-T and Holm")
 
 
 def _part_of(
@@ -152,34 +193,14 @@ def holm(families: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
     return {name: part.reshape(np.shape(p)) for (name, p), part in zip(families.items(), parts, strict=True)}
 
 
-def _reach_words(count: int, best: float) -> str:
-    """What is left of the smallest p after the correction; nothing of one condition alone."""
-    if count < 2 or best > 1.0:
-        return ""
-    nothing = f": no difference can then reach {LEVEL:g}" if best > LEVEL else ""
-    return f" Corrected for {count} comparisons (Holm) it is {best:.2g} at best{nothing}."
-
-
-def _too_many(count: int, first: float, alone: float) -> Iterator[NamedWarning]:
-    """More comparisons than the number of experiments can bear: the first one cannot be rejected."""
-    if count > 1 and alone <= LEVEL < first:
+def _too_many(count: int, best: float, alone: float) -> Iterator[NamedWarning]:
+    """More comparisons than the number of experiments can bear: none can be rejected."""
+    if alone <= LEVEL < best:
         yield NamedWarning(
             "too few experiments",
-            f"Corrected for {count} comparisons with the control, p is {first:.2g} at best.",
+            f"Corrected for {count} comparisons with the control, p is {best:.2g} at best.",
             f"No difference, however large, can reach p_holm ≤ {LEVEL:g}.",
             "Repeat the experiment: 5 + 5 experiments can give 0.0079, 7 pairs 0.016, before the correction. "
             "Compare one condition alone, as with --compare control,drug, only if you chose it before you "
             "saw the results.",
         )
-
-
-def _words(name: str, count: int, *families: FloatArray) -> list[str]:
-    """How many windows and scalars are left; nothing of one condition alone."""
-    kinds = zip(("windows", "scalars"), families, strict=True)
-    left = [f"{int((p <= LEVEL).sum())} {kind}" for kind, p in kinds if np.isfinite(p).any()]
-    if count < 2 or not left:
-        return []
-    return [
-        f"{count} conditions were compared with the control; corrected for that (Holm), {' and '.join(left)} "
-        f"of {name} differ."
-    ]

@@ -113,13 +113,15 @@ def _sentences(
     design: list[str] = []
     finding: list[str] = []
     several = len(found) > 1
+    of_all = set.intersection(*(set(one.sentences[2:]) for one in found.values())) if several else set()
     for name, one in found.items():
         pair = f"{name} against {chosen.control}"
         before = f"{pair}: " if several else ""
         reach.append(before + one.sentences[0])
         design.append(before + one.sentences[1])
         finding += [
-            words if not several or name in words else f"{pair}: {words}" for words in one.sentences[2:]
+            words if not several or words in of_all or pair in words else f"{pair}: {words}"
+            for words in one.sentences[2:]
         ]
     if trend is not None:
         reach.append(trend.sentences[0])

@@ -111,7 +111,9 @@ def _joined(tables: Mapping[str, pd.DataFrame], control: str) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
 
 
-def comparison_row(one: ConditionComparison, channels: tuple[str, ...], unit: str) -> dict[str, Any]:
+def comparison_row(
+    one: ConditionComparison, channels: tuple[str, ...], unit: str, smallest: float
+) -> dict[str, Any]:
     """The row of a comparison in the table comparisons.
 
     Parameters
@@ -121,6 +123,8 @@ def comparison_row(one: ConditionComparison, channels: tuple[str, ...], unit: st
         Those that were tested together.
     unit : str
         experiment or cell.
+    smallest : float
+        The smallest p_holm that there can be.
 
     Returns
     -------
@@ -139,6 +143,7 @@ def comparison_row(one: ConditionComparison, channels: tuple[str, ...], unit: st
         "n_control": int(units.get(one.control, 0)),
         "n_treated": int(units.get(one.treated, 0)),
         "smallest_p": one.smallest_p,
+        "smallest_p_holm": smallest,
         "windows_tested": int((status == "ok").sum()),
         "windows_found": int((corrected <= LEVEL).sum()),
         "clusters_found": int((one.clusters["p_holm"] <= LEVEL).sum()),

@@ -12,6 +12,7 @@ import xarray as xr
 
 from cytodisk.errors import PopulationError
 from cytodisk.population.cell_scalars import scalar_names
+from cytodisk.population.conditions.with_control import smallest_corrected
 from cytodisk.population.group_columns import CONDITION
 from cytodisk.population.population import Population
 from cytodisk.runs.population.cells_of_study import cells_of_study, more_columns, with_distances
@@ -145,7 +146,8 @@ def _tables(
     atlas: xr.Dataset,
 ) -> dict[str, pd.DataFrame]:
     channels, unit = shown.channels, parameters.unit
-    rows = [comparison_row(one, channels, unit) for one in tests.found.values()]
+    smallest = smallest_corrected(tests.found)
+    rows = [comparison_row(one, channels, unit, smallest[name]) for name, one in tests.found.items()]
     tables = comparison_tables(tests.found, chosen.control)
     if not tests.found and chosen.control:
         rows = [untested_row(name, chosen.control, channels, unit) for name in chosen.treated]

@@ -151,6 +151,12 @@ COMPARISON_COLUMNS: Columns = (
     Column("n_control", pa.int64(), "", "number of experiments (or cells, see unit) of the control"),
     Column("n_treated", pa.int64(), "", "the same of the treated condition"),
     Column("smallest_p", pa.float64(), "1", "smallest probability that this number can reach at all"),
+    Column(
+        "smallest_p_holm",
+        pa.float64(),
+        "1",
+        "the same after the correction for all conditions that are compared with the control (Holm)",
+    ),
     Column("windows_tested", pa.int64(), "", "number of windows, all channels, that are tested"),
     Column("windows_found", pa.int64(), "", "number of these that differ, p_holm at most 0.05"),
     Column("clusters_found", pa.int64(), "", "number of clusters with p_holm at most 0.05"),

@@ -42,7 +42,7 @@ def headline(one: DrawnPopulation) -> str:
     """What was found, in a sentence with its numbers; where nothing can be found, that comes first."""
     rows = one.study.comparisons
     tested = rows[rows["design"].isin(["paired", "unpaired"])]
-    able = tested[tested["smallest_p"] <= LEVEL]
+    able = tested[tested["smallest_p_holm"] <= LEVEL]
     if able.empty:
         return one.study.sentences[0] if one.study.sentences else "Nothing was compared."
     return " ".join(_found(row) for row in able.head(_MOST_COMPARISONS).to_dict("records"))
@@ -58,7 +58,7 @@ def _found(row: dict[Any, Any]) -> str:
         units = f"{row['n_control']} pairs"
     else:
         units = f"{row['n_control']} + {row['n_treated']} {row['unit']}s"
-    best = f"{units}, smallest p possible {row['smallest_p']:.2g}"
+    best = f"{units}, smallest p possible {row['smallest_p_holm']:.2g}"
     if not found:
         return f"{head}no window, cluster or scalar differs ({best})."
     differ = "differs" if len(found) == 1 and windows + clusters + scalars == 1 else "differ"
@@ -137,7 +137,8 @@ def _tests(one: DrawnPopulation) -> Iterator[str]:
             if row["design"] == "paired"
             else f"n = {row['n_control']} and {row['n_treated']} {unit}"
         )
-        yield f"{name} was compared with {control} ({number}; smallest p possible {row['smallest_p']:.2g})."
+        best = f"smallest p possible {row['smallest_p_holm']:.2g}"
+        yield f"{name} was compared with {control} ({number}; {best})."
     yield (
         f"Two-sided p values are from permutations, {how} (all of them, or {count} at random where there are "
         "more), corrected over all windows and channels by the largest statistic (max-T); clusters of "
