@@ -95,6 +95,7 @@ def test_parameters_of_one_run_are_those_of_the_next(run: Run, cells: Path, tmp_
 def test_faults_are_one_line_with_the_remedy(run: Run, cells: Path, tmp_path: Path) -> None:
     maps, groups, out = cells / "maps", ("--groups", cells / "groups.csv"), ("-o", tmp_path / "out")
     assert_refused(run("population"), "PATH is missing: pass")
+    assert_refused(run("population", maps, "--seed", "1", "--seed=2", *out), "--seed is given 2 times: keep")
     assert_refused(run("population", maps), "--out is missing", "-o atlas/")
     assert_refused(run("population", tmp_path / "none", *out), "does not exist")
     assert_refused(run("population", maps, *out, "--effects", "1"), "--effects: only with --power")

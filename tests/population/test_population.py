@@ -38,6 +38,9 @@ def test_rows_belong_to_cells_whatever_their_index(values: xr.DataArray, cells: 
         (lambda v, c: (v.isel(cell=slice(4)), c), "4 cells and the table 6 rows"),
         (lambda v, c: (v.rename(sector="angle"), c), "it needs cell, layer and sector"),
         (lambda v, c: (v.where(v < 2.9, np.inf), c), "infinite in"),
+        (lambda v, c: (v.where(v < 2.9, np.inf).astype("float32"), c), "infinite in"),
+        (lambda v, c: (v * 1e160, c), "beyond 1e\\+150"),
+        (lambda v, c: (v[..., :0], c), "values has no sector"),
         (lambda v, c: (v.astype(str), c), "must be numbers"),
         (lambda v, c: (v.assign_coords(channel=["a", "a"]), c), "channels with one name"),
     ],
@@ -51,6 +54,30 @@ def test_values_that_do_not_fit_are_refused(change, words: str, values, cells) -
 def test_scalars_are_columns_of_numbers(name: str, words: str, values, cells) -> None:
     with pytest.raises(PopulationError, match=words):
         cd.Population(values, cells, scalars=[name])
+
+
+@pytest.mark.parametrize("rows", [[0, 1, 2], np.ones(3, bool), np.arange(6), np.ones((6, 1), bool)])
+def test_cells_are_selected_by_one_truth_each(rows: object, values, cells) -> None:
+    with pytest.raises(PopulationError, match="rows must be 6 values of True and False"):
+        cd.Population(values, cells).select(rows)
+
+
+def test_a_table_has_no_column_twice(values: xr.DataArray, cells: pd.DataFrame) -> None:
+    twice = pd.concat([cells, cells[["experiment"]]], axis=1)
+    for made in (
+        lambda: cd.Population(values, twice),
+        lambda: cd.Population(values, cells).with_cells(twice),
+    ):
+        with pytest.raises(PopulationError, match="two columns 'experiment'"):
+            made()
+
+
+@pytest.mark.parametrize("test", [cd.dose_trend, cd.compare_with_zero, cd.pattern_test])
+def test_what_is_no_population_is_refused(test, values: xr.DataArray) -> None:
+    with pytest.raises(cd.errors.ParameterError, match="pop must be a Population, got DataArray"):
+        test(values)
+    with pytest.raises(cd.errors.ParameterError, match="pop must be a Population, got DataArray"):
+        cd.compare_with_control(values, "control")
 
 
 def test_normalising_takes_out_the_level_of_each_cell(values: xr.DataArray, cells: pd.DataFrame) -> None:

@@ -50,6 +50,18 @@ class GroupedCommand(TyperCommand):
         """What follows the name of the command in the first line, without the marks of a choice."""
         return [piece.strip("{}") for piece in super().collect_usage_pieces(ctx)]
 
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse, and refuse an option that is given twice: the first of them would count for nothing."""
+        _, _, given = self.make_parser(ctx).parse_args(args=list(args))
+        for param in given if not ctx.resilient_parsing else ():
+            once = param.param_type_name == "option" and not (
+                param.multiple or getattr(param, "is_flag", False)
+            )
+            if once and given.count(param) > 1:
+                ctx.fail(f"--{flag_name(param)} is given {given.count(param)} times: keep one")
+        found: list[str] = super().parse_args(ctx, args)
+        return found
+
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """Write arguments, then the flags by heading."""
         shown = [(param, param.get_help_record(ctx)) for param in self.get_params(ctx)]

@@ -10,13 +10,17 @@ import pandas as pd
 import xarray as xr
 
 from cytodisk.arrays import BoolArray, FloatArray
-from cytodisk.checks import instance_of
 from cytodisk.errors import PopulationError
 from cytodisk.population.cell_directions import no_alignment
 from cytodisk.population.cell_scaling import BLOCK_VALUES, CellScaling, rolled
 from cytodisk.population.excluded_cells import excluded_cells
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT, names_in
-from cytodisk.population.population_checks import checked_areas, checked_scalars, checked_values
+from cytodisk.population.population_checks import (
+    check_table,
+    checked_areas,
+    checked_scalars,
+    checked_values,
+)
 
 
 class CellValues:
@@ -30,7 +34,7 @@ class CellValues:
         areas: xr.DataArray | None = None,
         scalars: Sequence[str] = (),
     ) -> None:
-        instance_of("cells", cells, pd.DataFrame, "a DataFrame with a row for each cell")
+        check_table(cells)
         self.cells = cells.reset_index(drop=True)
         self.raw = checked_values(values, len(cells))
         self.areas = checked_areas(areas, self.raw)
@@ -167,8 +171,19 @@ class CellValues:
         Returns
         -------
         Population
+
+        Raises
+        ------
+        PopulationError
+            They are no truths, or not one for each cell.
         """
-        chosen = np.flatnonzero(np.asarray(rows, dtype=bool))
+        mask = np.asarray(rows)
+        if mask.dtype != np.bool_ or mask.shape != (len(self),):
+            raise PopulationError(
+                f"rows must be {len(self)} values of True and False, one a cell, got {mask.dtype} of shape "
+                f"{mask.shape}: write a condition, such as pop.cells['area'] > 100"
+            )
+        chosen = np.flatnonzero(mask)
         return self.changed(
             cells=self.cells.iloc[chosen].reset_index(drop=True),
             raw=self.raw.isel(cell=chosen),
@@ -196,6 +211,7 @@ class CellValues:
         """
         if len(cells) != len(self):
             raise PopulationError(f"cells has {len(cells)} rows for a population of {len(self)} cells")
+        check_table(cells)
         checked_scalars(self.scalars, cells)
         return self.changed(cells=cells.reset_index(drop=True))
 

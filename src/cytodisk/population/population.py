@@ -9,6 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from cytodisk.arrays import IntArray
+from cytodisk.checks import number_between
 from cytodisk.errors import PopulationError
 from cytodisk.population.anndata_table import population_anndata
 from cytodisk.population.cell_directions import SIGNAL, chosen_direction, no_alignment
@@ -139,6 +140,8 @@ class Population(CellValues):
         ------
         PopulationError
             There is no such direction, or values have no sectors.
+        ParameterError
+            `weakest` is no number from 0 to 1.
 
         Warnings
         --------
@@ -157,7 +160,8 @@ class Population(CellValues):
                 f"align: values run along {self.last}, not around the cell: use align('none')"
             )
         signal = None
-        if by.startswith(SIGNAL):
+        weakest = number_between("weakest", weakest, 0.0, 1.0)
+        if isinstance(by, str) and by.startswith(SIGNAL):
             number = self.channel_number(by.removeprefix(SIGNAL))
             signal = self.unturned().blocks([self.channels[number]])
         table = chosen_direction(by, self.cells, signal, self.raw.sizes["sector"], weakest)

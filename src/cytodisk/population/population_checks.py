@@ -16,6 +16,17 @@ DIMS = ("cell", "channel", "layer")
 LAST = ("sector", "lag")
 
 
+_LARGEST = 1e150  # whose square is a number
+
+
+def check_table(cells: pd.DataFrame) -> None:
+    """Raise where the table of cells is none, or has two columns with one name."""
+    instance_of("cells", cells, pd.DataFrame, "a DataFrame with a row for each cell")
+    if not cells.columns.is_unique:
+        twice = cells.columns[cells.columns.duplicated()][0]
+        raise PopulationError(f"cells has two columns {twice!r}: keep one")
+
+
 def checked_values(values: xr.DataArray | None, cells: int) -> xr.DataArray:
     """Values with dims (cell, channel, layer, sector or lag); without values, of no channel.
 
@@ -59,6 +70,10 @@ def checked_values(values: xr.DataArray | None, cells: int) -> xr.DataArray:
     elif "channel" not in values.coords:
         values = values.assign_coords(channel=[f"channel {k}" for k in range(values.sizes["channel"])])
     found = values.transpose(*DIMS, last[0])
+    if 0 in found.shape[1:]:
+        raise PopulationError(
+            f"values has no {found.dims[found.shape.index(0, 1)]}: pass None for cells without windows"
+        )
     names = [str(name) for name in found["channel"].values]
     if len(set(names)) < len(names):
         raise PopulationError(f"values has channels with one name: {', '.join(names)}")
@@ -68,13 +83,15 @@ def checked_values(values: xr.DataArray | None, cells: int) -> xr.DataArray:
 
 def _refuse_infinite(values: xr.DataArray) -> None:
     step = max(1, BLOCK_VALUES // max(1, int(np.prod(values.shape[1:]))))
+    largest = values.dtype.type(min(_LARGEST, float(np.finfo(values.dtype).max)))
     for start in range(0, len(values), step):
-        infinite = np.isinf(values.values[start : start + step]).reshape(-1, int(np.prod(values.shape[1:])))
+        sizes = np.abs(values.values[start : start + step]).reshape(-1, int(np.prod(values.shape[1:])))
+        infinite = sizes > largest
         if infinite.any():
             row = start + int(np.flatnonzero(infinite.any(axis=1))[0])
             raise PopulationError(
-                f"values of cell {row} are infinite in {int(infinite[row - start].sum())} windows: write NaN "
-                "where a window has no value"
+                f"values of cell {row} are infinite in {int(infinite[row - start].sum())} windows, or beyond "
+                f"{_LARGEST:g}: write NaN where a window has no value"
             )
 
 
@@ -98,8 +115,8 @@ def checked_areas(areas: xr.DataArray | None, values: xr.DataArray) -> xr.DataAr
     sizes = tuple(values.sizes[name] for name in wanted)
     if found.shape != sizes:
         raise PopulationError(f"areas is of shape {found.shape}, values are of {sizes}")
-    if bool((found < 0).any()):
-        raise PopulationError("areas has a window with less than 0")
+    if bool(((found < 0) | np.isinf(found)).any()):
+        raise PopulationError("areas has a window with less than 0, or an infinite one")
     return found
 
 

@@ -9,10 +9,12 @@ from pydantic import ConfigDict, Field, TypeAdapter, with_config
 from typing_extensions import TypedDict
 
 from cytodisk.checks import LARGEST_SCALE, SMALLEST_SCALE
+from cytodisk.parameters import MOST_SEED
 
 _MOST_SIDE = 1_000_000  # pixels
 _Whole = Annotated[int, Field(strict=True, ge=-(2**53), le=2**53)]
 _Count = Annotated[int, Field(strict=True, ge=0, le=2**53)]
+_Seed = Annotated[int, Field(strict=True, ge=0, le=MOST_SEED)]
 _Text = Annotated[str, Field(strict=True)]
 _Truth = Annotated[bool, Field(strict=True)]
 _Scale = Annotated[float, Field(strict=True, ge=SMALLEST_SCALE, le=LARGEST_SCALE)]
@@ -33,7 +35,7 @@ class _Settings(_With, total=False):
     max_lag: _Count
     min_pairs: _Count
     surrogates: _Count
-    seed: _Count
+    seed: _Seed
     against: Literal["window", "edge"]
     detrend: Literal["none", "linear", "median"]
     detrend_frames: _Count | None
@@ -80,7 +82,7 @@ class _Provenance(TypedDict, total=False):
     frame_interval_s: _Scale | None
     length_unit: Literal["px", "µm"]
     velocity_unit: _Text
-    seed: _Count | None
+    seed: _Seed | None
     layers: Annotated[int, Field(strict=True, ge=1, le=_MOST_SIDE)]
     image_shape: Annotated[list[_Side], _Two]
     writes: list[_Text]

@@ -161,7 +161,8 @@ def way_out(there: dict[str, Any], here: dict[str, Any]) -> str:
     anew = "--overwrite to replace it, or another folder"
     if "method" in then and then | {"method": now.get("method")} == now:
         return f"pass --method {then['method']} to go on with it, {anew}"
-    if then | {_GROUPS: None} == now | {_GROUPS: None}:
+    by_cells = command_of(there) != "cytodisk population"  # which can be grouped anew when they are done
+    if by_cells and then | {_GROUPS: None} == now | {_GROUPS: None}:
         instead = "cytodisk population takes another table of groups for a study that is done"
         return f"{instead}, as --groups groups.csv; or pass {anew}"
     return f"pass {anew}"

@@ -108,7 +108,7 @@ def test_experiments_that_are_unknown_cannot_be_tested() -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("control", "Drug"), "conditions are control, drug"),
+        (("control", "Drug"), "conditions are .control., .drug."),
         (("drug", "drug"), "compared with itself"),
     ],
 )

@@ -89,8 +89,24 @@ def test_other_inputs_or_parameters_are_another_run(cell_study: Path, done: Path
         _run(cell_study, done, channel=["Rac1"], seed=1, resume=True)
     table = pd.read_csv(cell_study / "groups.csv").assign(dish=3)
     table.to_csv(tmp_path / "groups.csv", index=False)
-    with pytest.raises(cd.errors.OtherRunError, match="groups sha256"):
+    with pytest.raises(cd.errors.OtherRunError, match=r"groups sha256.* now\): pass --overwrite"):
         _run(cell_study, done, groups=tmp_path / "groups.csv", channel=["Rac1"], resume=True)
+
+
+def test_a_seed_of_any_length_can_be_read_again(cell_study: Path, tmp_path: Path) -> None:
+    study = _run(cell_study, tmp_path, channel=["Rac1"], seed=2**100, permutations=99)
+    assert study.provenance["parameters"]["seed"] == 2**100
+
+
+def test_a_damaged_provenance_is_told(cell_study: Path, tmp_path: Path) -> None:
+    (tmp_path / "provenance.json").write_text('{"status": "comp')
+    with pytest.raises(cd.errors.PopulationError, match=r"it has no readable provenance\.json"):
+        cd.run_population(tmp_path, tmp_path / "out")
+
+
+def test_a_scale_of_doses_needs_a_dose() -> None:
+    with pytest.raises(cd.errors.ParameterError, match=r"no dose is named: pass --dose COLUMN"):
+        cd.PopulationParameters(dose_scale="log")
 
 
 def test_a_file_that_is_gone_is_made_anew(cell_study: Path, done: Path, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ import xarray as xr
 from scipy.stats import rankdata, t
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
+from cytodisk.checks import instance_of
 from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import DoseParameters
 from cytodisk.population.conditions.comparison import chosen_channels
@@ -97,6 +98,7 @@ def dose_trend(
     >>> cd.dose_trend(cd.Population(truth.values, cells)).smallest_p.__round__(3)
     0.029
     """
+    instance_of("pop", pop, Population, "a Population")
     chosen = DoseParameters.chosen(parameters, settings)
     channels = chosen_channels(pop, channel)
     usable = usable_cells(pop, channels)

@@ -141,7 +141,9 @@ def checked_conditions(cells: pd.DataFrame, wanted: Collection[str]) -> pd.Serie
         )
     for name in wanted:
         if name not in found:
-            raise PopulationError(f"condition {name!r} is not there: conditions are {', '.join(found)}")
+            raise PopulationError(
+                f"condition {name!r} is not there: conditions are {', '.join(map(repr, found))}"
+            )
     if len(set(wanted)) < len(wanted):
         raise PopulationError(f"a condition is compared with itself: {', '.join(wanted)}")
     return names

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from cytodisk.checks import instance_of
 from cytodisk.errors import PopulationError
 from cytodisk.population.cell_directions import SIGNAL
 from cytodisk.population.comparison_parameters import PermutationParameters
@@ -99,6 +100,7 @@ def pattern_test(
     >>> bool((found.windows["p_fwer"] > 0.05).all())
     True
     """
+    instance_of("pop", pop, Population, "a Population")
     chosen = PermutationParameters.chosen(parameters, settings)
     if pop.aligned_by == "none":
         raise PopulationError("pattern_test: cells are not aligned: call align first, as align('nucleus')")

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.arrays import FloatArray
+from cytodisk.checks import instance_of
 from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import ComparisonParameters
 from cytodisk.population.conditions.comparison import ConditionComparison, compare_conditions
@@ -75,6 +76,7 @@ def compare_with_control(
     >>> list(found), "p_holm" in found["drug"].windows
     (['drug'], True)
     """
+    instance_of("pop", pop, Population, "a Population")
     wanted = [name for name in pop.conditions if name != control] if others is None else others
     names = list(dict.fromkeys(wanted))
     if isinstance(others, str):

@@ -11,6 +11,7 @@ import pandas as pd
 import xarray as xr
 
 from cytodisk.arrays import IntArray
+from cytodisk.checks import instance_of
 from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import PermutationParameters
 from cytodisk.population.conditions.comparison import chosen_channels
@@ -91,6 +92,7 @@ def compare_with_zero(
     >>> found.smallest_p
     0.03125
     """
+    instance_of("pop", pop, Population, "a Population")
     chosen = PermutationParameters.chosen(parameters, settings)
     channels = chosen_channels(pop, channel)
     use = usable_cells(pop, channels)

@@ -1,8 +1,8 @@
 """Parameters of `cytodisk population`."""
 
-from typing import Literal, TypeAlias
+from typing import Literal, Self, TypeAlias
 
-from pydantic import field_validator
+from pydantic import field_validator, model_validator
 
 from cytodisk.parameters import parameter
 from cytodisk.population.comparison_parameters import (
@@ -82,3 +82,11 @@ class PopulationParameters(ComparisonParameters):
         if align not in ("none", "nucleus", "front", "motion", "axis"):
             raise ValueError("must be none, nucleus, front, motion, axis or signal:CHANNEL")
         return align
+
+    @model_validator(mode="after")
+    def _scale_of_a_dose(self) -> Self:
+        if self.dose is None and self.dose_scale != "rank":
+            raise ValueError(
+                f"dose_scale is {self.dose_scale!r}, and no dose is named: pass --dose COLUMN (dose=), too"
+            )
+        return self

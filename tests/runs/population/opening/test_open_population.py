@@ -165,7 +165,8 @@ def test_a_channel_that_not_all_have_is_named(day1, changed) -> None:
 
     other = changed("day2", windows=renamed)
     with pytest.raises(
-        PopulationError, match=r"'RhoA' is missing in day2 \(day2 has Rac1, Cdc42\); all have Rac1"
+        PopulationError,
+        match=r"'RhoA' is missing in day2 \(day2 has Rac1, Cdc42\); all have Rac1: pass --channel Rac1",
     ):
         open_population([day1, other])
     assert open_population([day1, other], channels=["Rac1"]).raw.shape == (8, 1, 2, 6)

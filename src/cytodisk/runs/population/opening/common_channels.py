@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 
 from cytodisk.errors import PopulationError
@@ -56,7 +57,8 @@ def _lacking_words(name: str, lacking: Sequence[str], there: dict[str, list[str]
     common = [one for one in next(iter(there.values())) if all(one in names for names in there.values())]
     has = f"{lacking[0]} has {', '.join(there[lacking[0]])}"
     if common:
-        remedy = f"all have {', '.join(common)}: pass channels={common!r}"
+        flag = f"--channel {shlex.quote(','.join(common))}"
+        remedy = f"all have {', '.join(common)}: pass {flag}, in Python channels={common!r}"
     else:
         remedy = "no channel is in all: name them alike with --channels, and run the studies again"
     return f"channel {name!r} is missing in {shortened(lacking)} ({has}); {remedy}"

@@ -111,7 +111,7 @@ def _studies_of(folder: Path, left_out: LeftOut, several: bool) -> list[FoundStu
         raise PopulationError(f"{folder} does not exist: check the path")
     if not folder.is_dir():
         raise PopulationError(f"{folder} is a file: pass the folder of a study, or of a batch")
-    if read_provenance(folder) is None:
+    if not (folder / PROVENANCE).exists():
         return _side_by_side(folder)
     provenance = _complete(folder, *_KINDS, "batch")
     if provenance["run"] == "batch":
