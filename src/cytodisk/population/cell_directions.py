@@ -9,7 +9,7 @@ import pandas as pd
 
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import PopulationError
-from cytodisk.population.ratios import ratio
+from cytodisk.population.ratios import known_mean
 
 DIRECTIONS = ("nucleus", "front", "motion", "axis")
 SIGNAL = "signal:"
@@ -122,14 +122,9 @@ def around(block: FloatArray) -> FloatArray:
 
     A sector without a value counts as the mean of its cell.
     """
-    finite = np.isfinite(block)
-    count = finite.sum(axis=-2)
-    total = np.where(finite, block, 0.0).sum(axis=-2)
-    means = ratio(total, count, count > 0)
-    has = np.isfinite(means)
-    every = has.sum(axis=-1, keepdims=True)
-    level = ratio(np.nansum(means, axis=-1, keepdims=True), every, every > 0)
-    return np.where(has, means, level)
+    means = known_mean(block, -2)
+    level = known_mean(means, -1)[..., None]
+    return np.where(np.isfinite(means), means, level)
 
 
 def first_harmonic(block: FloatArray) -> np.ndarray:

@@ -9,7 +9,7 @@ import pandas as pd
 
 from cytodisk.arrays import FloatArray
 from cytodisk.population.cell_directions import around, first_harmonic
-from cytodisk.population.ratios import ratio
+from cytodisk.population.ratios import known_mean, ratio
 
 Blocks = Callable[[], Iterator[tuple[slice, FloatArray]]]
 Levels = Callable[[], Iterator[tuple[slice, FloatArray, FloatArray]]]
@@ -81,10 +81,10 @@ def scalars_of(
     columns = {name: np.full(len(cells), np.nan) for name in names}
     for (rows, block), (_, level, weight) in zip(blocks(), levels(), strict=True):
         for k, channel in enumerate(channels):
-            columns[MEAN.format(channel)][rows] = _mean(level[:, k], weight, (1, 2))
+            columns[MEAN.format(channel)][rows] = known_mean(level[:, k], (1, 2), weight)
             for layer in range(len(compartments)):
-                columns[LAYER.format(layer, channel)][rows] = _mean(
-                    block[:, k, layer], weight[:, layer], (1,)
+                columns[LAYER.format(layer, channel)][rows] = known_mean(
+                    block[:, k, layer], 1, weight[:, layer]
                 )
             if last == "sector":
                 _fill_ratios(columns, channel, rows, level[:, k], weight, compartments)
@@ -107,12 +107,13 @@ def _fill_ratios(
     if len(outside) > 1:
         edge, centre = outside[0], outside[-1]
         columns[EDGE_TO_CENTRE.format(channel)][rows] = _above(
-            _mean(level[:, edge], weight[:, edge], (1,)), _mean(level[:, centre], weight[:, centre], (1,))
+            known_mean(level[:, edge], 1, weight[:, edge]),
+            known_mean(level[:, centre], 1, weight[:, centre]),
         )
     if "nucleus" in compartments:
         columns[TO_CYTOPLASM.format(channel)][rows] = _above(
-            _mean(level[:, inside], weight[:, inside], (1, 2)),
-            _mean(level[:, outside], weight[:, outside], (1, 2)),
+            known_mean(level[:, inside], (1, 2), weight[:, inside]),
+            known_mean(level[:, outside], (1, 2), weight[:, outside]),
         )
     sectors = level.shape[-1]
     wave = 2.0 * np.abs(first_harmonic(level)) / sectors
@@ -127,11 +128,3 @@ def _outside(compartments: Sequence[str]) -> list[int]:
 def _above(above: FloatArray, below: FloatArray) -> FloatArray:
     """NaN where what it is divided by is not above 0."""
     return ratio(above, below, below > 0)
-
-
-def _mean(values: FloatArray, weight: FloatArray, axes: tuple[int, ...]) -> FloatArray:
-    finite = np.isfinite(values)
-    weights = np.where(finite, weight, 0.0)
-    total = weights.sum(axis=axes)
-    summed = (np.where(finite, values, 0.0) * weights).sum(axis=axes)
-    return ratio(summed, total, total > 0)

@@ -14,6 +14,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.population.conditions.window_words import lags_of, runs_of
 from cytodisk.population.exchange.exchange_test import ExchangeTest
 from cytodisk.population.population import Population
+from cytodisk.population.ratios import known_mean
 
 LEVEL = 0.05
 CLUSTER_COLUMNS = (
@@ -162,9 +163,9 @@ def numbers_of_results(
     for sign, words in ((1, "raised"), (-1, "lowered")):
         inside = (p_fwer <= LEVEL) & (np.sign(score) == sign)
         if inside.any():
-            found[f"{words} windows"] = _mean(values[:, inside]), True
+            found[f"{words} windows"] = known_mean(values[:, inside], 1), True
     for row in clusters[clusters["p"] <= LEVEL].head(_MOST_RESULTS).itertuples():
-        found[f"cluster {row.cluster}"] = _mean(values[:, labels == row.cluster]), True
+        found[f"cluster {row.cluster}"] = known_mean(values[:, labels == row.cluster], 1), True
     if not found and np.isfinite(score).any():
         best = int(np.nanargmax(np.abs(score)))
         channel, layer, last = np.unravel_index(best, windows["score"].shape)
@@ -177,10 +178,3 @@ def numbers_of_results(
     for at in shown.sort_values("p_fwer", kind="stable").head(_MOST_RESULTS if len(significant) else 1).index:
         found[str(rows.at[at, "scalar"])] = scalars[:, int(at)], bool(len(significant))
     return found
-
-
-def _mean(values: FloatArray) -> FloatArray:
-    finite = np.isfinite(values)
-    count = finite.sum(axis=1)
-    total = np.where(finite, values, 0.0).sum(axis=1)
-    return np.asarray(np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0))

@@ -12,6 +12,7 @@ from cytodisk.population.conditions.experiment_units import Units
 from cytodisk.population.exchange.exchange_test import exchange_test
 from cytodisk.population.exchange.exchanges import LabelExchanges, SignExchanges
 from cytodisk.population.exchange.studentised import GroupDifference, PairDifference
+from cytodisk.population.ratios import known_mean
 
 _MOST = 999  # permutations: these p-values compare experiments and correct nothing
 COLUMNS = ("result", "experiment", "difference_of_all", "difference", "p")
@@ -53,15 +54,8 @@ def left_out_table(results: Mapping[str, FloatArray], units: Units, seed: int) -
 def _difference(values: FloatArray, treated: np.ndarray, paired: bool) -> FloatArray:
     first, second = values[~treated], values[treated]
     if paired:
-        return _mean(second - first)
-    return _mean(second) - _mean(first)
-
-
-def _mean(values: FloatArray) -> FloatArray:
-    finite = np.isfinite(values)
-    count = finite.sum(axis=0)
-    total = np.where(finite, values, 0.0).sum(axis=0)
-    return np.asarray(np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0))
+        return known_mean(second - first, 0)
+    return known_mean(second, 0) - known_mean(first, 0)
 
 
 def _p(values: FloatArray, treated: np.ndarray, paired: bool, seed: int) -> FloatArray:

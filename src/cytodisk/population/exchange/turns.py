@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
-from cytodisk.population.ratios import ratio
+from cytodisk.population.ratios import known_mean, ratio
 
 _VALUES = 4_000_000  # turned at a time
 
@@ -68,9 +68,7 @@ class TurnedPattern:
     """
 
     def __init__(self, values: FloatArray, weights: FloatArray) -> None:
-        finite = np.isfinite(values)
-        count = finite.sum(axis=-1, keepdims=True)
-        level = ratio(np.where(finite, values, 0.0).sum(axis=-1, keepdims=True), count, count > 0)
+        finite, level = np.isfinite(values), known_mean(values, -1)[..., None]
         self._values = np.where(finite, values - level, 0.0)
         self._weights = weights
         own = (self._values**2).mean(axis=-1)

@@ -9,6 +9,7 @@ import xarray as xr
 from cytodisk.arrays import FloatArray
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT
 from cytodisk.population.population import Population
+from cytodisk.population.ratios import known_mean
 from cytodisk.store.populations.window_arrays import window_rows
 
 SHOWN = 4
@@ -38,10 +39,7 @@ def distances_to_mean(population: Population, atlas: xr.Dataset) -> FloatArray:
     found = np.full(len(population), np.nan)
     for rows, block in population.blocks():
         away = (block - mean[at[rows]]) / sd[at[rows]]
-        known = np.isfinite(away)
-        count = known.sum(axis=(1, 2, 3))
-        total = np.where(known, away**2, 0.0).sum(axis=(1, 2, 3))
-        found[rows] = np.sqrt(np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0))
+        found[rows] = np.sqrt(known_mean(away**2, (1, 2, 3)))
     return found
 
 
