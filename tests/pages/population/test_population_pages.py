@@ -18,7 +18,7 @@ from cytodisk.errors import ParameterError, ReadError
 from cytodisk.pages.population.cell_sources import CellSources
 from cytodisk.pages.population.curve_page import curves_page
 from cytodisk.pages.population.direction_page import directions_page
-from cytodisk.pages.population.drawn_population import DrawnPopulation
+from cytodisk.pages.population.drawn_population import DrawnPopulation, in_two_lines
 from cytodisk.pages.population.gallery_page import common_ending, gallery_page
 from cytodisk.pages.population.map_pages import atlas_page, cell_atlas_page
 from cytodisk.pages.population.power_page import write_power_figure
@@ -113,6 +113,12 @@ def test_what_has_a_sign_has_0_in_the_middle_of_its_colours(page: Any, summary: 
     low, high = windows.get_clim()
     assert (low == -high) == is_signed
     assert (windows.get_cmap().name == DIVERGING_COLOURS) == is_signed
+
+
+def test_long_names_have_two_lines() -> None:
+    assert in_two_lines("control", 14.0) == "control"
+    assert in_two_lines("blebbistatin 25 µM", 16.0) == "blebbistatin\n25 µM"
+    assert max(map(len, in_two_lines("a_name_without_an_end and more of it", 14.0).split("\n"))) <= 10
 
 
 def test_several_conditions_are_corrected_together(page: Any) -> None:

@@ -61,7 +61,7 @@ def curves_page(one: DrawnPopulation, channel: str) -> Sheet:
     middle = first + 0.5 * (foot - first - _BELOW)
     label = {"rotation": 90, "ha": "left", "va": "center"}
     sheet.text(2.0, middle, one.value_label(channel), **label)
-    axes[-1].set_xlabel(_lag_label(one))
+    axes[-1].set_xlabel(lag_label(one))
     key = [handle for handle in condition_key(drawn, experiments=one.repeated) if _is_drawn(handle)]
     if any_differs:
         words = f"differs, p ≤ {ALPHA:g} ({one.correction})"
@@ -77,7 +77,8 @@ def _is_drawn(handle: Any) -> bool:
     return str(handle.get_label()) != "one experiment"
 
 
-def _lag_label(one: DrawnPopulation) -> str:
-    unit = str(one.study.provenance.get("lag_unit") or "frames")
+def lag_label(one: DrawnPopulation) -> str:
+    """What runs along the curves, with its unit."""
+    unit = one.lag_unit or "frames"
     words = "time after the onset" if one.study.parameters.get("summary") == _EVENTS else "lag"
     return f"{words} ({unit})"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cytodisk.pages.drawn_movie import LEFT_MM
-from cytodisk.pages.population.drawn_population import DrawnPopulation
+from cytodisk.pages.population.drawn_population import DrawnPopulation, in_two_lines
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.population.condition_looks import condition_colours
 from cytodisk.plot.population.directions import MOST_DOTS, draw_directions
@@ -13,7 +13,8 @@ from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM
 from cytodisk.runs.population.cells_of_study import BRIGHTEST_SIDE
 
 _MAPPED, _AXIS = "disk_direction_", "axis"  # an axis has two ends: it is no direction
-_MOST_ABREAST, _WIDEST, _TITLE, _BELOW, _SIDE, _GAP = 5, 36.0, 5.0, 14.0, 8.0, 6.0  # mm but for the first
+_MOST_ABREAST = 5
+_WIDEST, _TITLE, _LINE, _BELOW, _SIDE, _GAP = 36.0, 5.0, 3.2, 14.0, 8.0, 6.0  # mm
 
 
 def directions_page(one: DrawnPopulation) -> Sheet | None:
@@ -34,13 +35,15 @@ def directions_page(one: DrawnPopulation) -> Sheet | None:
         "Where around the cell the signal is brightest" if of_signal else "Directions of cells in the disk"
     )
     heading = one.heading(width, title, *notes)
-    step = _TITLE + panel + _BELOW
+    titles = {name: in_two_lines(name, panel + _GAP) for name in names}
+    above = _TITLE + _LINE * any("\n" in title for title in titles.values())
+    step = above + panel + _BELOW
     sheet = Sheet(heading.height_mm + len(kinds) * len(blocks) * step, width)
     heading.write(sheet)
     colours = condition_colours(names)
     places = [(kind, block) for kind in kinds for block in blocks]
     for number, (kind, block) in enumerate(places):
-        top = heading.height_mm + number * step + _TITLE
+        top = heading.height_mm + number * step + above
         words = _words(one, kind)
         sheet.text(LEFT_MM, top + 0.5 * panel, words, rotation=90, ha="left", va="center")
         for column, name in enumerate(block):
@@ -50,7 +53,7 @@ def directions_page(one: DrawnPopulation) -> Sheet | None:
             draw_directions(
                 ax, own[kind].to_numpy(np.float64), experiments=own["experiment"], color=colours[name]
             )
-            ax.set_title(name, parse_math=False)
+            ax.set_title(titles[name], parse_math=False)
     return sheet
 
 

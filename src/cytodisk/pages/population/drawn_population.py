@@ -18,7 +18,7 @@ from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.population.cell_sources import CellSources
 from cytodisk.plot.population.difference_map import DifferenceMap
 from cytodisk.plot.units import with_unit
-from cytodisk.runs.channel_names import shown_name
+from cytodisk.runs.channel_names import shortened, shown_name
 from cytodisk.store.populations.population_study import PopulationStudy
 from cytodisk.windows.polar_windows import PolarGrid
 
@@ -46,6 +46,14 @@ _DIRECTIONS = {
 def counted(number: int, noun: str) -> str:
     """A number of things, as "1 cell" or "2 cells"."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def in_two_lines(name: str, room_mm: float) -> str:
+    """A name broken between its words where it is too long, with its middle left out if two lines are."""
+    longest = max(int(room_mm / CHARACTER_MM), 6)
+    first, *others = broken_lines(name.split(" "), " ", room_mm, CHARACTER_MM)
+    lines = [first, " ".join(others)] if others else [first]
+    return "\n".join(shortened(line, longest) for line in lines)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +105,20 @@ class DrawnPopulation:
         if "compartment" in atlas.coords:
             inside = int((atlas["compartment"].to_numpy() == "nucleus").sum())
         return self.sources.grid(atlas.sizes["layer"], atlas.sizes["sector"], inside)
+
+    @property
+    def direction_words(self) -> str:
+        """Where sector 0 lies in each cell; empty if cells were not turned."""
+        align = str(self.study.parameters.get("align") or "none")
+        if align == "none":
+            return ""
+        return _DIRECTIONS.get(align, f"at the brightest side of {align.removeprefix('signal:')}")
+
+    @property
+    def lag_unit(self) -> str:
+        """Unit of the lags of curves, as "s" or "frames"; empty if it is unknown."""
+        unit = str(self.study.provenance.get("lag_unit") or "")
+        return "frames" if unit == "frame" else unit
 
     @property
     def are_known(self) -> bool:
@@ -176,10 +198,8 @@ class DrawnPopulation:
         ]
         if not self.study.is_curves and self.channels:
             facts.append(grid_words(self.grid))
-        align = str(self.study.parameters.get("align") or "none")
-        if align != "none":
-            what = _DIRECTIONS.get(align, f"at the brightest side of {align.removeprefix('signal:')}")
-            facts.append(f"sector 0: {what}")
+        if self.direction_words:
+            facts.append(f"sector 0: {self.direction_words}")
         return facts
 
     def comparison_words(self, condition: str) -> str:

@@ -12,10 +12,12 @@ from cytodisk.pages.population.drawn_population import DrawnPopulation
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.population.condition_profiles import condition_key, draw_condition_profiles
 from cytodisk.plot.style import SINGLE_COLUMN_MM
+from cytodisk.runs.channel_names import shortened
 
 MOST_CHANNELS = 4
 
 _LEFT, _RIGHT, _TALL, _ABOVE, _BELOW, _LINE = 15.5, 6.0, 42.0, 5.5, 13.5, 3.8  # mm
+_LONGEST_NAME = 26  # of a condition in the key, whose columns are half a page wide
 _KEY_STYLE: Any = {"handlelength": 1.6, "labelspacing": 0.35, "columnspacing": 1.2}
 
 
@@ -45,6 +47,8 @@ def profiles_page(one: DrawnPopulation) -> Sheet | None:
             ax, shown, depths=_depths(one, channel), label=one.value_label(channel)
         )
     key = condition_key(lines, experiments=one.repeated)
+    for handle in key[:count]:
+        handle.set_label(shortened(str(handle.get_label()), _LONGEST_NAME))
     sheet.key(LEFT_MM, heading.height_mm - 2.0, key, 2, borderaxespad=0.0, **_KEY_STYLE)
     return sheet
 

@@ -10,7 +10,7 @@ import pandas as pd
 
 from cytodisk.pages.drawn_correlation import broken_lines
 from cytodisk.pages.drawn_movie import LEFT_MM
-from cytodisk.pages.population.drawn_population import DrawnPopulation
+from cytodisk.pages.population.drawn_population import DrawnPopulation, in_two_lines
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.population.condition_looks import condition_colours
 from cytodisk.plot.population.difference_map import corrected_column
@@ -23,7 +23,7 @@ from cytodisk.plot.units import with_unit
 MOST_PANELS = 6
 MOST_ROWS = 44
 
-_LEFT, _STEP, _LEAST, _GAP, _TALL, _ABOVE, _BELOW = 12.5, 10.5, 26.0, 3.0, 29.0, 9.5, 7.0  # mm
+_LEFT, _STEP, _LEAST, _GAP, _TALL, _ABOVE, _BELOW = 12.5, 13.5, 26.0, 3.0, 29.0, 9.5, 9.0  # mm
 _ABOVE_BARE = 4.0  # mm, where no test is written above
 _NAMES, _ROW, _P_ROOM, _LINE = 40.0, 3.7, 9.0, 3.6  # mm
 _LAYER = re.compile(r"layer_\d+_")
@@ -74,6 +74,8 @@ def scalars_page(one: DrawnPopulation) -> Sheet | None:
         draw_super_plot(
             ax, cells, name, conditions=one.conditions, tests=tests, label=label, paired=one.paired
         )
+        shown_names = [in_two_lines(words, (panel - 1.0) / count) for words in one.conditions]
+        ax.set_xticks(range(count), shown_names, parse_math=False)
     return sheet
 
 
@@ -99,7 +101,9 @@ def effects_page(one: DrawnPopulation) -> Sheet | None:
         for line in broken_lines(one.comparison_words(name).split(" "), " ", width - 2 * LEFT_MM)
     ]
     lines.append(f"filled: p ≤ 0.05; on the right: p, corrected for all scalars ({one.correction})")
-    tall, top = _ROW * len(order) + 2.0, heading.height_mm + 3.5
+    titles = [in_two_lines(f"{name} − {one.study.control}", panel + _P_ROOM) for name in treated]
+    more = _LINE * any("\n" in title for title in titles)
+    tall, top = _ROW * len(order) + 2.0, heading.height_mm + 3.5 + more
     sheet = Sheet(top + tall + 11.0 + _LINE * len(lines), width)
     heading.write(sheet)
     colours = condition_colours(one.conditions)
@@ -108,7 +112,7 @@ def effects_page(one: DrawnPopulation) -> Sheet | None:
         own["scalar"] = [scalar_words(one, scalar) for scalar in order]
         ax = sheet.axes(_NAMES + number * (panel + _P_ROOM), top, panel, tall)
         draw_effect_sizes(ax, own, color=colours[name])
-        ax.set_title(f"{name} − {one.study.control}", parse_math=False)
+        ax.set_title(titles[number], parse_math=False)
         ax.tick_params(labelleft=number == 0)
         ax.set_xlabel("effect size (Hedges g)")
     for number, words in enumerate(lines):

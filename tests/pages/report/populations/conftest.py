@@ -23,3 +23,10 @@ def compared(tmp_path_factory: pytest.TempPathFactory) -> PopulationStudy:
 @pytest.fixture(scope="session")
 def population_written(compared: PopulationStudy) -> Path:
     return write_report(compared)
+
+
+@pytest.fixture(scope="session")
+def shapes_written(compared: PopulationStudy) -> Path:
+    folder, made = compared.path.parent, compared.path.parent / "images"
+    shapes = cd.run_shapes(made / "masks", folder / "shapes", groups=made / "groups.csv")
+    return write_report(cd.run_population(shapes.path, folder / "of_shapes", scalars=["area", "solidity"]))

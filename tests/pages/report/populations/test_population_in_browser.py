@@ -59,6 +59,30 @@ def test_window_under_the_pointer_has_its_numbers(page: PopulationPage, compared
     assert "(8 cells, 4 experiments)" in words
 
 
+def test_windows_that_do_not_differ_are_hatched_on_all_sides(page: PopulationPage) -> None:
+    grey = page.browser.execute_script(
+        """
+        const canvas = document.getElementById("disk-2");
+        const { data, width } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        const p = cytodisk.ofWindows("p_holm");
+        const pixel = (share) => Math.round(width / 2 * (1 + share / 1.16));
+        const at = (turn, far) => 4 * (pixel(far * Math.sin(turn)) * width + pixel(far * Math.cos(turn)));
+        return Array.from({ length: 8 }, (_, sector) => {
+          const angle = (sector + 0.5) * Math.PI / 4;
+          const steps = Array.from({ length: 200 }, (_, k) => at(angle, 0.85 + 0.1 * k / 200));
+          const lines = steps.filter((k) => data[k] < 190 && Math.abs(data[k] - data[k + 2]) < 12).length;
+          return [p[sector] <= cytodisk.data.level, lines > 0];
+        });
+        """
+    )
+    assert [marked != hatched for marked, hatched in grey] == [True] * 8
+
+
+def test_very_many_numbers_have_a_range(page: PopulationPage) -> None:
+    low, high = page.js("cytodisk.range(Array.from({ length: 300000 }, (_, k) => k), 0)")
+    assert (low, high) == (0, 299_999)
+
+
 def test_channel_and_scalar_are_chosen(page: PopulationPage) -> None:
     assert "Rac1" in page.text("value")
     Select(page.browser.find_element(By.ID, "atlas-channel")).select_by_index(1)
@@ -76,3 +100,11 @@ def test_tables_are_sorted_and_open_cells(page: PopulationPage) -> None:
     page.browser.find_element(By.CSS_SELECTOR, "#table-cells tbody a").click()
     page.wait("cytodisk.shownCell !== undefined && document.getElementById('cell')?.open")
     assert page.js("location.pathname").endswith("/maps/report.html")
+
+
+def test_shapes_alone_have_their_comparison(browser: webdriver.Chrome, shapes_written: Path) -> None:
+    page = PopulationPage(browser, shapes_written)
+    assert errors(browser) == []
+    assert page.js("document.querySelectorAll('#forest circle').length") == 2  # scalars
+    assert "4 + 4 experiments" in page.text("compared")
+    assert browser.find_elements(By.ID, "atlas-channel") == []

@@ -88,6 +88,10 @@ def test_nothing_to_conclude_is_said_first(compared: PopulationStudy, tmp_path: 
     assert study.sentences[0] in body.split('class="finding"')[1].split("</p>")[0].replace("&#39;", "'")
     assert "experiments unknown" in body
     assert "Conditions were described, not tested." in body
+    assert "Nothing was tested: no window is marked." in body
+    data = data_of(text)
+    assert not data["tested"]
+    assert {scalar["what"] for scalar in data["scalars"]} == {""}
 
 
 def test_names_stay_names(compared: PopulationStudy) -> None:

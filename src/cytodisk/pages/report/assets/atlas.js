@@ -151,7 +151,6 @@
     });
     for (let k = found.length; k < 3; k++) byId(`panel-${k}`).hidden = true;
     byId("value").textContent = page.data.channels[state.channel].value;
-    byId("compared").textContent = comparison()?.words ?? "no comparison";
     readOut();
     page.drawn = JSON.stringify(state);
   };

@@ -21,7 +21,7 @@
   page.range = (values, margin = 0.06) => {
     const known = values.filter(page.known);
     if (!known.length) return [0, 1];
-    const [low, high] = [Math.min(...known), Math.max(...known)];
+    const [low, high] = known.reduce(([least, most], value) => [Math.min(least, value), Math.max(most, value)], [Infinity, -Infinity]);
     const more = margin * (high - low || Math.abs(high) || 1);
     return [low - more, high + more];
   };

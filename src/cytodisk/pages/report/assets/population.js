@@ -7,6 +7,7 @@
 
   page.labelOf = (scalar) => scalar.replaceAll("_", " ");
   const drawAll = () => {
+    byId("compared").textContent = page.comparison()?.words ?? "no comparison";
     page.drawAtlas();
     if (page.data.curves && page.data.lags) page.drawCurves();
     if (page.data.channels.length) page.drawProfiles();

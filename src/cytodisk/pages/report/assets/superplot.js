@@ -6,6 +6,7 @@
   const chartState = { scalar: 0 };
   page.chartState = chartState;
   const { svg } = page;
+  const MOST_DOTS = 1500; // cells of a condition that are drawn
 
   const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
   const colourOf = (condition) => page.data.colours[condition] ?? "#777777";
@@ -58,12 +59,17 @@
     const y = page.range(rows.map((row) => row.value));
     const x = [-0.6, data.conditions.length - 0.4];
     const chart = page.chart({ width: 430, height: 340, x, y, xNames, yLabel, label: `${scalar.label} of each cell and experiment by condition` });
-    for (const row of rows) {
+    const shown = data.conditions.map((words) => rows.filter((row) => row.condition === words)).map((own) => {
+      const every = Math.max(own.length / MOST_DOTS, 1);
+      const drawn = Array.from({ length: Math.min(own.length, MOST_DOTS) }, (_, k) => own[Math.floor(k * every)]);
+      return { drawn, all: own.length };
+    });
+    const opacity = rows.length > 400 ? 0.18 : 0.35;
+    for (const row of shown.flatMap(({ drawn }) => drawn)) {
       const at = data.conditions.indexOf(row.condition);
-      if (at < 0) continue;
       const words = `${name[row.k]}: ${page.digits(row.value)} ${scalar.unit}`;
       const go = link[row.k] ? () => (location.href = link[row.k]) : null;
-      const look = { fill: colourOf(row.condition), "fill-opacity": 0.35, class: go ? "goes" : null, onclick: go };
+      const look = { fill: colourOf(row.condition), "fill-opacity": opacity, class: go ? "goes" : null, onclick: go };
       chart.marks.append(svg("circle", { cx: chart.toX(at + jitter(row.k)), cy: chart.toY(row.value), r: 3.2, ...look }, svg("title", {}, words)));
     }
     const names = [...new Set(rows.map((row) => row.experiment))].filter(Boolean);
@@ -85,7 +91,7 @@
       const number = names.length === own.length ? names.indexOf(one) : own.indexOf(one);
       const spread = own.length > 1 ? (own.indexOf(one) / (own.length - 1) - 0.5) * 0.4 : 0;
       const shift = names.length === own.length && data.conditions.length > 1 ? 0 : spread;
-      const look = { fill: colourOf(words), stroke: "#ffffff", "stroke-width": 1.5 };
+      const look = { fill: colourOf(words), stroke: "#111111", "stroke-width": 1.2 };
       const title = svg("title", {}, `${one}, ${words}: mean ${page.digits(value)} ${scalar.unit} of ${cells} cells`);
       const mark = page.mark(number, 7, chart.toX(at + shift), chart.toY(value), look);
       mark.append(title);
@@ -102,6 +108,7 @@
     byId("superplot-key").textContent = names.length
       ? "Small: a cell. Large: mean of an experiment. Line: mean of experiments. A grey line joins an experiment that has both conditions."
       : "Each point is a cell; experiments are unknown, so nothing can be said beyond these cells.";
+    if (shown.some(({ drawn, all }) => drawn.length < all)) byId("superplot-key").textContent += ` At most ${MOST_DOTS} cells of each condition are drawn; means are of all.`;
   };
 
   const valueOf = (row, name) => row[page.data.tables.scalars.columns.findIndex((column) => column.name === name)];
@@ -165,8 +172,7 @@
       return { name, middle, low: middle.map((value, k) => value - sem[k]), high: middle.map((value, k) => value + sem[k]) };
     });
     const y = page.range([0, ...bands.flatMap(({ middle, low, high }) => [...middle, ...low, ...high])]);
-    const xLabel = `lag${data.lag_unit ? ` (${data.lag_unit})` : ""}`;
-    const chart = page.chart({ width: 700, height: 340, x: page.range(lags, 0.02), y, xLabel, yLabel: data.channels[page.atlasState.channel].value, label: `curves of layer ${layer} of ${layers}` });
+    const chart = page.chart({ width: 700, height: 340, x: page.range(lags, 0.02), y, xLabel: data.lag_label, yLabel: data.channels[page.atlasState.channel].value, label: `curves of layer ${layer} of ${layers}` });
     chart.marks.append(svg("path", { d: `M${chart.left} ${chart.toY(0)}H${chart.right}`, stroke: "#bbbbbb" }));
     for (const { name, middle, low, high } of bands) {
       const colour = colourOf(name);

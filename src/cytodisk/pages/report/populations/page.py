@@ -71,6 +71,7 @@ def population_page(study: PopulationStudy) -> str:
         "notes": [str(note) for note in study.provenance.get("warnings", ())],
         "left_out": list(filter(None, [rows_words(study.cells, "cells.parquet"), curves_note(one)])),
         "methods": methods(one),
+        "sector_0": one.direction_words,
         "studies": _studies(study.cells, study.path),
         "figures": [{**one_file, "link": quote(one_file["link"])} for one_file in figure_files(one)],
         "settings": _settings(study),
@@ -83,6 +84,8 @@ def population_page(study: PopulationStudy) -> str:
 
 def _listed(study: PopulationStudy, name: str) -> dict[str, Any]:
     table: pd.DataFrame = getattr(study, name)
+    if "unit" in table and name == "scalars":
+        table = table.assign(unit=table["unit"].replace("1", ""))
     several = len(study.compared) > 1
     alone = {"p_holm"} if name == "experiments" else {"condition", "p_holm"}
     main = [one for one in _MAIN[name].split() if several or one not in alone]

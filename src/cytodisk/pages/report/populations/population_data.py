@@ -10,6 +10,7 @@ from urllib.parse import quote
 import numpy as np
 import pandas as pd
 
+from cytodisk.pages.population.curve_page import lag_label
 from cytodisk.pages.population.drawn_population import DrawnPopulation
 from cytodisk.pages.report.bokeh_parts import palette
 from cytodisk.pages.report.encode import pack_floats, pack_labels
@@ -62,16 +63,17 @@ def population_data(one: DrawnPopulation) -> dict[str, Any]:
         "correction": one.correction,
         "tested": any(np.isfinite(one.study.comparisons["smallest_p"])),
         "curves": study.is_curves,
-        "lag_unit": str(study.provenance.get("lag_unit", "")),
+        "lag_label": lag_label(one) if study.is_curves else "",
         "unit": one.unit,
         "depth_unit": study.profiles.attrs.get("units", {}).get("depth", ""),
         "channels": [
             {"name": name, "label": one.channel_words(name), "value": one.value_label(name)}
             for name in channels
         ],
-        **(_windows(one, channels) if channels else {"atlas": None, "comparisons": []}),
+        "comparisons": [_comparison(one, name, channels) for name in one.compared],
+        **(_atlas(one, channels) if channels else {"atlas": None}),
         "disk": _disk(one) if channels and not study.is_curves else None,
-        "profiles": _profiles(study.profiles) if not study.is_curves else [],
+        "profiles": [] if study.is_curves else _profiles(study.profiles),
         "scalars": _scalars(one),
         "cells": _cells(one),
         "signed": one.is_signed,
@@ -82,30 +84,31 @@ def population_data(one: DrawnPopulation) -> dict[str, Any]:
     }
 
 
-def _windows(one: DrawnPopulation, channels: list[str]) -> dict[str, Any]:
-    """Means by condition, and each comparison; arrays by condition, channel and window."""
-    study = one.study
-    atlas = study.atlas_arrays.sel(channel=channels)
-    comparisons = []
-    for name in one.compared:
-        found = study.window_arrays(name).reindex(channel=channels)
-        shape = (len(channels), -1)
-        comparisons.append(
-            {
-                "condition": name,
-                "words": one.comparison_words(name),
-                "windows": {
-                    key: pack_floats(found[key].to_numpy().astype(float).reshape(shape))
-                    for key in _OF_WINDOWS
-                    if key in found
-                },
-                "status": found["status"].to_numpy().reshape(shape).astype(str).tolist(),
-            }
-        )
+def _comparison(one: DrawnPopulation, condition: str, channels: list[str]) -> dict[str, Any]:
+    """A comparison in words, and arrays by channel and window where there are windows."""
+    told: dict[str, Any] = {"condition": condition, "words": one.comparison_words(condition)}
+    if not channels:
+        return told
+    found = one.study.window_arrays(condition).reindex(channel=channels)
+    shape = (len(channels), -1)
+    windows = {
+        key: pack_floats(found[key].to_numpy().astype(float).reshape(shape))
+        for key in _OF_WINDOWS
+        if key in found
+    }
+    return told | {
+        "windows": windows,
+        "status": found["status"].to_numpy().reshape(shape).astype(str).tolist(),
+    }
+
+
+def _atlas(one: DrawnPopulation, channels: list[str]) -> dict[str, Any]:
+    """Means by condition; arrays by condition, channel and window."""
+    atlas = one.study.atlas_arrays.sel(channel=channels)
     whole = (len(one.conditions), len(channels), -1)
     values = {key: pack_floats(atlas[key].to_numpy().astype(float).reshape(whole)) for key in _OF_ATLAS}
-    lags = atlas["lag"].to_numpy().tolist() if study.is_curves else None
-    return {"atlas": values, "comparisons": comparisons, "layers": atlas.sizes["layer"], "lags": lags}
+    lags = atlas["lag"].to_numpy().tolist() if one.study.is_curves else None
+    return {"atlas": values, "layers": atlas.sizes["layer"], "lags": lags}
 
 
 def _disk(one: DrawnPopulation) -> dict[str, Any]:
@@ -143,7 +146,9 @@ def _representative(one: DrawnPopulation) -> dict[str, Any] | None:
 
 def _profiles(profiles: pd.DataFrame) -> list[dict[str, Any]]:
     """A line an experiment and channel: depth of its layers, and means."""
-    lines = []
+    lines: list[dict[str, Any]] = []
+    if profiles["layer"].nunique() < 2:  # the edge alone, such as its velocity
+        return lines
     keys = ["condition", "experiment", "channel"]
     for (condition, experiment, channel), part in profiles.groupby(keys, sort=False, dropna=False):
         ordered = part.sort_values("layer")

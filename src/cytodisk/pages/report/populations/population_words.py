@@ -16,12 +16,6 @@ _NORMALISED = {
     "z-score": "were expressed in standard deviations of their cell around its mean",
     "background": "were reduced by the background",
 }
-_DIRECTION = {
-    "nucleus": "the side of the nucleus' offset",
-    "front": "its front",
-    "motion": "its direction of motion",
-    "axis": "its long axis",
-}
 
 
 def facts(one: DrawnPopulation) -> Iterator[tuple[str, str]]:
@@ -102,10 +96,8 @@ def methods(one: DrawnPopulation) -> str:
     normalised = str(settings.get("normalise") or "none")
     if normalised in _NORMALISED:
         words.append(f"Values of windows {_NORMALISED[normalised]}.")
-    align = str(settings.get("align") or "none")
-    if align != "none":
-        towards = _DIRECTION.get(align, f"the brightest side of {align.removeprefix('signal:')}")
-        words.append(f"Each cell was turned by whole sectors so that sector 0 lies at {towards}.")
+    if one.direction_words:
+        words.append(f"Each cell was turned by whole sectors, so that sector 0 lies {one.direction_words}.")
     words += _tests(one)
     return " ".join(words)
 
@@ -151,7 +143,7 @@ def _tests(one: DrawnPopulation) -> Iterator[str]:
 
 def curves_note(one: DrawnPopulation) -> str:
     """What windows are where curves are compared."""
-    unit = str(one.study.provenance.get("lag_unit", ""))
+    unit = one.lag_unit
     return (
         f"Curves over lags{f' in {unit}' if unit else ''} are compared, lag by lag."
         if one.study.is_curves
