@@ -28,5 +28,7 @@ def population_written(compared: PopulationStudy) -> Path:
 @pytest.fixture(scope="session")
 def shapes_written(compared: PopulationStudy) -> Path:
     folder, made = compared.path.parent, compared.path.parent / "images"
-    shapes = cd.run_shapes(made / "masks", folder / "shapes", groups=made / "groups.csv")
-    return write_report(cd.run_population(shapes.path, folder / "of_shapes", scalars=["area", "solidity"]))
+    cd.run_shapes(made / "masks", folder / "shapes", groups=made / "groups.csv")
+    return write_report(
+        cd.run_population(folder / "shapes", folder / "of_shapes", scalars=["area", "solidity"])
+    )
