@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING
 
+from cytodisk.population.significance import LEVEL
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -11,7 +13,6 @@ if TYPE_CHECKING:
     from cytodisk.runs.population.power.population_power import Plan
     from cytodisk.runs.population.power.power_parameters import PowerParameters
 
-_LEVEL = 0.05
 _WIDE, _NARROW = 16, 13
 _DESIGNS = {
     "unpaired": ("unpaired: each experiment holds one condition", "{0} + {0}"),
@@ -61,7 +62,7 @@ def power_lines(table: "pd.DataFrame") -> list[str]:
     layers, sectors = attrs["windows"]
     return [
         f"Effects in standard deviations of a cell within its condition; {attrs['studies']} simulated "
-        f"studies a number, tested as cytodisk population tests (p ≤ {_LEVEL:g}).",
+        f"studies a number, tested as cytodisk population tests (p ≤ {LEVEL:g}).",
         "",
         f"A region differs, a sixth of {layers} × {sectors} windows: how often it is found as a cluster of "
         "windows, and in brackets which share of its windows is found one by one (max-T):",
@@ -82,7 +83,7 @@ def _blocks(table: "pd.DataFrame", words: "Callable[[pd.Series[float]], str]", w
         lines += [f"  {title}", f"    {'effect':<{_NARROW}}" + "".join(f"{e:<{width}g}" for e in effects)]
         for number, rows in own.groupby("experiments", sort=False):
             first = rows.iloc[0]
-            if first["smallest_p"] > _LEVEL:
+            if first["smallest_p"] > LEVEL:
                 said = f"nothing: p = {first['smallest_p']:.2g} at best"
             else:
                 said = "".join(f"{words(row):<{width}}" for _, row in rows.iterrows())

@@ -23,8 +23,8 @@ from cytodisk.plot.population.condition_looks import condition_colours
 from cytodisk.plot.population.condition_profiles import condition_key
 from cytodisk.plot.population.pooled_curves import draw_pooled_curves
 from cytodisk.plot.style import LINE_COLOUR, SINGLE_COLUMN_MM, paper_style
+from cytodisk.population.significance import LEVEL
 from cytodisk.runs.channel_names import shortened, shown_name
-from cytodisk.runs.population.correlations.peak_words import LEVEL
 from cytodisk.store.figures_folder import drawing
 from cytodisk.store.populations.pooled_correlation import PooledCorrelation
 

@@ -12,8 +12,9 @@ import xarray as xr
 from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.errors import ParameterError
 from cytodisk.plot.number_tables import number_table
+from cytodisk.population.significance import LEVEL
 
-ALPHA = 0.05
+ALPHA = LEVEL
 """Largest p that counts as significant."""
 
 _PERCENTILE = 99.0

@@ -8,10 +8,11 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cytodisk.population.conditions.comparison_warnings import LEVEL, sizes_words
+from cytodisk.population.conditions.comparison_warnings import sizes_words
 from cytodisk.population.conditions.experiment_units import NO_VALUES, Units
 from cytodisk.population.conditions.window_words import p_words
 from cytodisk.population.exchange.exchanges import Exchanges
+from cytodisk.population.significance import LEVEL
 
 
 def reach_words(exchanges: Exchanges, units: Units) -> str:

@@ -15,8 +15,8 @@ from cytodisk.population.conditions.window_words import lags_of, runs_of
 from cytodisk.population.exchange.exchange_test import ExchangeTest
 from cytodisk.population.population import Population
 from cytodisk.population.ratios import known_mean
+from cytodisk.population.significance import LEVEL
 
-LEVEL = 0.05
 CLUSTER_COLUMNS = (
     "cluster",
     "channel",

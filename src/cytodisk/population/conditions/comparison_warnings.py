@@ -13,8 +13,8 @@ from cytodisk.population.conditions.experiment_units import Units
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT, names_in
 from cytodisk.population.named_warning import NamedWarning
 from cytodisk.population.population import Population
+from cytodisk.population.significance import LEVEL
 
-LEVEL = 0.05
 _UNEQUAL = 5.0  # cells of the largest experiment over those of the smallest
 _MANY = 0.2  # share of cells without a direction
 _BY_CELL = ("cell mean", "cell total", "z-score")

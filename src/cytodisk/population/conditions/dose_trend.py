@@ -24,6 +24,7 @@ from cytodisk.population.exchange.exchanges import Exchanges
 from cytodisk.population.exchange.studentised import Statistic
 from cytodisk.population.group_columns import EXPERIMENT, codes_of, names_in
 from cytodisk.population.population import Population
+from cytodisk.population.significance import LEVEL
 from cytodisk.taking import takes
 
 
@@ -117,14 +118,14 @@ def dose_trend(
     design = "within experiments" if within else "between experiments"
     p = test.exchanges.smallest_p
     step = {"rank": "step of the dose", "linear": "unit of dose", "log": "factor of 10"}[chosen.scale]
-    different = found.windows["p_fwer"] <= 0.05
-    reach = "" if p <= 0.05 else ": no trend can reach 0.05"
+    different = found.windows["p_fwer"] <= LEVEL
+    reach = "" if p <= LEVEL else f": no trend can reach {LEVEL:g}"
     without = int((usable & (codes < 0)).sum())
     left_out = f"{without} of {int(usable.sum())} cells have no dose or no experiment: they are in no trend."
     words = (
         f"{len(doses)} units at {len(np.unique(doses))} doses, exchanged {design}, can give p = {p:.2g} at "
         f"best{reach}.",
-        f"{int(different.sum())} of {different.size} windows have a trend (max-T, p ≤ 0.05; by {step}).",
+        f"{int(different.sum())} of {different.size} windows have a trend (max-T, p ≤ {LEVEL:g}; by {step}).",
         *([left_out] if without else []),
     )
     windows = found.windows.squeeze("channel") if len(channels) == 1 else found.windows

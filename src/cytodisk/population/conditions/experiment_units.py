@@ -10,6 +10,7 @@ import pandas as pd
 
 from cytodisk.arrays import BoolArray, IntArray
 from cytodisk.errors import PopulationError
+from cytodisk.images.short_lists import shortened
 from cytodisk.population.comparison_parameters import Design, Unit
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT, codes_of, names_in
 
@@ -156,7 +157,8 @@ def _chosen_design(
     first, second = (np.unique(number[use & (side == k)]) for k in (0, 1))
     shared = np.intersect1d(first, second)
     single = np.setxor1d(first, second)
-    words = _named([names[k] for k in shared])
+    alone = shortened([names[k] for k in single], _MOST_NAMED)
+    words = shortened([names[k] for k in shared], _MOST_NAMED)
     if design == "paired" and len(shared) < 2:
         raise PopulationError(
             f"design='paired' needs experiments that hold both conditions, {len(shared)} does: give both "
@@ -164,7 +166,7 @@ def _chosen_design(
         )
     if design == "auto" and len(shared) and len(shared) < _FEWEST_SHARED * (len(shared) + len(single)):
         raise PopulationError(
-            f"experiments {words} hold both conditions, but {_named([names[k] for k in single])} hold only "
+            f"experiments {words} hold both conditions, but {alone} hold only "
             "one: pass design='paired' to use the former alone, or design='unpaired' if equal names are "
             "different experiments"
         )
@@ -177,7 +179,7 @@ def _chosen_design(
             shared,
         )
     verbs = "holds only one and is" if len(single) == 1 else "hold only one and are"
-    left = f"; {_named([names[k] for k in single])} {verbs} left out" if len(single) else ""
+    left = f"; {alone} {verbs} left out" if len(single) else ""
     found = f"{_verb(words, shared, 'hold')} both conditions{left}: the design is paired."
     return "paired", found, shared
 
@@ -225,9 +227,3 @@ def _cell_names(cells: pd.DataFrame, order: IntArray) -> tuple[str, ...]:
 def _verb(words: str, experiments: IntArray, verb: str) -> str:
     """As "Experiments day1, day2 hold", "Experiment day1 holds"."""
     return f"Experiment {words} {verb}s" if len(experiments) == 1 else f"Experiments {words} {verb}"
-
-
-def _named(names: list[str]) -> str:
-    """Some names, and how many more."""
-    more = len(names) - _MOST_NAMED
-    return ", ".join(names[:_MOST_NAMED]) + (f" and {more} more" if more > 0 else "")

@@ -23,6 +23,7 @@ from cytodisk.population.exchange.turns import TurnedPattern, TurnExchanges
 from cytodisk.population.exchange.window_neighbours import ClusterField
 from cytodisk.population.group_columns import EXPERIMENT, codes_of, names_in
 from cytodisk.population.population import Population
+from cytodisk.population.significance import LEVEL
 from cytodisk.taking import takes
 
 
@@ -130,14 +131,15 @@ def pattern_test(
     difference = statistic.means()
     windows = window_dataset(pop, channels, {"difference": difference}, tested)
     clusters = cluster_table(pop, channels, difference, tested)
-    different = int((tested.p_fwer <= 0.05).sum())
+    different = int((tested.p_fwer <= LEVEL).sum())
     by_cell = (
         "" if names else " Experiments are unknown: cells are treated as independent, which they are not."
     )
     words = (
         f"{units} {what}{f' with {len(cells)} cells' if names else ''} were turned at random "
         f"{chosen.permutations} times: they can give p = {exchanges.smallest_p:.2g} at best.{by_cell}",
-        f"{different} of {len(difference)} windows differ from the mean of their layer (max-T, p ≤ 0.05).",
+        f"{different} of {len(difference)} windows differ from the mean of their layer "
+        f"(max-T, p ≤ {LEVEL:g}).",
     )
     windows = windows.squeeze("channel") if len(channels) == 1 else windows
     return PatternTest(windows, clusters, len(cells), names, exchanges.smallest_p, words)

@@ -11,10 +11,11 @@ from cytodisk.population.conditions.experiment_units import Units
 from cytodisk.population.exchange.column_moments import column_moments
 from cytodisk.population.exchange.exchanges import LabelExchanges
 from cytodisk.population.named_warning import NamedWarning
+from cytodisk.population.significance import LEVEL
 
 _UNEQUAL, _UNEQUAL_FEW = 2.0, 1.5  # ratio of variances; where the smaller group varies more
 _AT_ONCE, _MOST_UNITS = 50, 1000  # of more units, which are cells, the spread is not looked at
-_EXCHANGES, _LEVEL = 999, 0.05  # how sure it must be that the variances differ
+_EXCHANGES = 999
 
 
 def spread_warning(values: FloatArray, units: Units, conditions: tuple[str, str]) -> Iterator[NamedWarning]:
@@ -43,7 +44,7 @@ def spread_warning(values: FloatArray, units: Units, conditions: tuple[str, str]
         return
     exchanges = LabelExchanges(units.treated, _EXCHANGES, 0)
     ratios = np.concatenate([_log_ratios(squares, labels) for labels in exchanges.chunks(_AT_ONCE)])
-    if (np.abs(ratios) >= np.abs(ratios[0]) - 1e-9).mean() > _LEVEL:
+    if (np.abs(ratios) >= np.abs(ratios[0]) - 1e-9).mean() > LEVEL:
         return
     ratio = float(np.exp(ratios[0]))
     wide, narrow = conditions[::-1] if ratio > 1 else conditions

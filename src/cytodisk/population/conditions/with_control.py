@@ -14,9 +14,9 @@ from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import ComparisonParameters
 from cytodisk.population.conditions.comparison import ConditionComparison, compare_conditions
 from cytodisk.population.conditions.comparison_sentences import found_words
-from cytodisk.population.conditions.comparison_warnings import LEVEL
 from cytodisk.population.named_warning import NamedWarning
 from cytodisk.population.population import Population
+from cytodisk.population.significance import LEVEL
 from cytodisk.taking import takes
 
 

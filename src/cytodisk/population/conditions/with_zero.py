@@ -20,6 +20,7 @@ from cytodisk.population.conditions.tested_units import AgainstZero, unit_result
 from cytodisk.population.conditions.unit_values import usable_cells
 from cytodisk.population.group_columns import EXPERIMENT, codes_of, names_in
 from cytodisk.population.population import Population
+from cytodisk.population.significance import LEVEL
 from cytodisk.taking import takes
 
 
@@ -102,7 +103,7 @@ def compare_with_zero(
     test = AgainstZero(len(names), chosen)
     found = unit_results(pop, channels, codes, len(names), test)
     p = test.exchanges.smallest_p
-    different = found.windows["p_fwer"] <= 0.05
+    different = found.windows["p_fwer"] <= LEVEL
     nameless = int((use & (codes < 0)).sum())
     left_out = f"{nameless} of {int(use.sum())} cells have no name of their experiment: they are not tested."
     words = (

@@ -14,9 +14,9 @@ from cytodisk.population.conditions.comparison import ConditionComparison
 from cytodisk.population.conditions.dose_trend import DoseTrend
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT
 from cytodisk.population.population import Population
+from cytodisk.population.significance import LEVEL
 from cytodisk.store.populations.window_arrays import window_rows
 
-LEVEL = 0.05
 Comparisons = Mapping[str, ConditionComparison]
 """By the condition that is compared with the control."""
 

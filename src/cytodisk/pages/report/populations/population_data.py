@@ -15,10 +15,10 @@ from cytodisk.pages.population.drawn_population import DrawnPopulation
 from cytodisk.pages.report.bokeh_parts import palette
 from cytodisk.pages.report.encode import pack_floats, pack_labels
 from cytodisk.pages.report.pictures import OUTSIDE, box_between, window_labels
-from cytodisk.pages.report.populations.population_words import LEVEL
 from cytodisk.plot.layer_looks import layer_place
 from cytodisk.plot.population.condition_looks import condition_colours
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS
+from cytodisk.population.significance import LEVEL
 from cytodisk.store.study_kind import CELLS
 from cytodisk.windows.study_grid import polar_grid_of
 

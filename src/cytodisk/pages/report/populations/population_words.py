@@ -7,8 +7,8 @@ from typing import Any
 
 from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.population.drawn_population import DrawnPopulation, counted
+from cytodisk.population.significance import LEVEL
 
-LEVEL = 0.05
 _MOST_COMPARISONS = 4
 _NORMALISED = {
     "cell mean": "were divided by the mean of their cell",

@@ -7,10 +7,8 @@ from typing import Any
 
 import pandas as pd
 
+from cytodisk.population.significance import LEVEL
 from cytodisk.runs.channel_names import VELOCITIES
-
-LEVEL = 0.05
-"""Of a test: up to it a finding is told."""
 
 
 def peak_sentences(pooled: pd.DataFrame, names: tuple[str, str]) -> list[str]:

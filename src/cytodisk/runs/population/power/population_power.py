@@ -15,6 +15,7 @@ from cytodisk.population.exchange.exchanges import LabelExchanges, SignExchanges
 from cytodisk.population.exchange.studentised import GroupDifference, PairDifference
 from cytodisk.population.exchange.window_neighbours import ClusterField
 from cytodisk.population.population import Population
+from cytodisk.population.significance import LEVEL
 from cytodisk.runs.population.power.power_parameters import PowerParameters
 from cytodisk.runs.population.power.variance_shares import VarianceShares, variance_shares
 from cytodisk.runs.run_options import Progress, silent
@@ -25,7 +26,6 @@ LAYERS, SECTORS = 6, 24
 CELLS, BETWEEN_EXPERIMENTS, BETWEEN_DISHES = 12, 0.1, 0.05
 """Of a plan without cells at hand."""
 
-ALPHA = 0.05
 _AT_BEST = 9999  # permutations of a real comparison
 DESIGNS = ("unpaired", "paired")
 
@@ -163,7 +163,7 @@ def _lines(plan: Plan, chosen: PowerParameters, design: str, count: int) -> Iter
     paired = design == "paired"
     treated = np.repeat([False, True], count)
     smallest_p = _exchanges(paired, treated, _AT_BEST, chosen.seed).smallest_p
-    possible = smallest_p <= ALPHA
+    possible = smallest_p <= LEVEL
     values, region = _experiment_means(plan, paired, count, chosen) if possible else _nothing()
     for effect in chosen.effects:
         shares = dict.fromkeys(("window", "windows", "cluster", "scalar"), 0.0)
@@ -230,7 +230,7 @@ def _found(
     else:
         test = exchange_test(GroupDifference(values, treated, family), exchanges, field)
         alone = exchange_test(GroupDifference(one, treated), exchanges)
-    windows = float((test.p_fwer[region] <= ALPHA).mean())
-    clusters = np.flatnonzero(test.cluster_p <= ALPHA) + 1
+    windows = float((test.p_fwer[region] <= LEVEL).mean())
+    clusters = np.flatnonzero(test.cluster_p <= LEVEL) + 1
     cluster = np.isin(test.labels[region], clusters).any()
-    return float(windows > 0), windows, float(cluster), float(alone.p[0] <= ALPHA)
+    return float(windows > 0), windows, float(cluster), float(alone.p[0] <= LEVEL)
