@@ -24,6 +24,7 @@ from cytodisk.pages.population.map_pages import atlas_page, cell_atlas_page
 from cytodisk.pages.population.power_page import write_power_figure
 from cytodisk.pages.population.profile_pages import profiles_page
 from cytodisk.pages.population.scalar_pages import chosen_scalars, effects_page, scalar_words, scalars_page
+from cytodisk.pages.population.write_population_figures import missing_figures
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.style import DIVERGING_COLOURS, paper_style
 from cytodisk.store.study import Study
@@ -119,6 +120,18 @@ def test_long_names_have_two_lines() -> None:
     assert in_two_lines("control", 14.0) == "control"
     assert in_two_lines("blebbistatin 25 µM", 16.0) == "blebbistatin\n25 µM"
     assert max(map(len, in_two_lines("a_name_without_an_end and more of it", 14.0).split("\n"))) <= 10
+
+
+def test_channels_without_figures_are_named() -> None:
+    assert drawn(population()).undrawn_words == ""
+    pop = population()
+    names = ["DAPI", "b", "c", "d", "Rac 1", "f"]
+    many = xr.concat([pop.values.isel(channel=0, drop=True)] * 6, pd.Index(names, name="channel"))
+    one = drawn(cd.Population(many.transpose("cell", "channel", ...), pop.cells))
+    assert one.drawn_channels == names[:4]
+    assert "first 4 of 6 channels (DAPI, b, c, d)" in one.undrawn_words
+    assert "--channel 'Rac 1,f'" in one.undrawn_words
+    assert missing_figures(one.study)[0] == one.undrawn_words
 
 
 def test_several_conditions_are_corrected_together(page: Any) -> None:

@@ -59,7 +59,7 @@ def directions_page(one: DrawnPopulation) -> Sheet | None:
 
 def _columns(one: DrawnPopulation) -> list[str]:
     """The signal's directions after the alignment, or what the maps tell of the cells."""
-    of_signal = [BRIGHTEST_SIDE.format(channel) for channel in one.channels]
+    of_signal = [BRIGHTEST_SIDE.format(channel) for channel in one.drawn_channels]
     found = [name for name in of_signal if name in one.used]
     mapped = [str(name) for name in one.used if str(name).startswith(_MAPPED)]
     return found or [name for name in mapped if name != f"{_MAPPED}{_AXIS}"]

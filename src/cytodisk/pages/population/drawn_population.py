@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -24,6 +25,9 @@ from cytodisk.windows.polar_windows import PolarGrid
 
 CHARACTER_MM = 1.3
 """Width of a character of a name at 7 points, rather too much than too little."""
+
+MOST_CHANNELS = 4
+"""Channels that have figures: the page and the tables have all."""
 
 _BOLD_MM = 1.9  # mean width of a character, bold at 8 points
 _LONGEST_CHANNEL = 24
@@ -96,6 +100,23 @@ class DrawnPopulation:
     def channels(self) -> list[str]:
         """Names of channels that have values."""
         return [name for name in self.study.channels if name]
+
+    @property
+    def drawn_channels(self) -> list[str]:
+        """The channels that have figures."""
+        return self.channels[:MOST_CHANNELS]
+
+    @property
+    def undrawn_words(self) -> str:
+        """Which channels have no figures, and what draws them; empty if all have."""
+        rest = self.channels[MOST_CHANNELS:]
+        if not rest:
+            return ""
+        drawn, more = ", ".join(self.drawn_channels), shlex.quote(",".join(rest[:MOST_CHANNELS]))
+        return (
+            f"Figures are of the first {MOST_CHANNELS} of {len(self.channels)} channels ({drawn}): to draw "
+            f"others, run the command again with --channel {more} and another --out."
+        )
 
     @cached_property
     def grid(self) -> PolarGrid:

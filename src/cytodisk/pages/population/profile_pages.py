@@ -14,8 +14,6 @@ from cytodisk.plot.population.condition_profiles import condition_key, draw_cond
 from cytodisk.plot.style import SINGLE_COLUMN_MM
 from cytodisk.runs.channel_names import shortened
 
-MOST_CHANNELS = 4
-
 _LEFT, _RIGHT, _TALL, _ABOVE, _BELOW, _LINE = 15.5, 6.0, 42.0, 5.5, 13.5, 3.8  # mm
 _LONGEST_NAME = 26  # of a condition in the key, whose columns are half a page wide
 _KEY_STYLE: Any = {"handlelength": 1.6, "labelspacing": 0.35, "columnspacing": 1.2}
@@ -24,8 +22,8 @@ _KEY_STYLE: Any = {"handlelength": 1.6, "labelspacing": 0.35, "columnspacing": 1
 def profiles_page(one: DrawnPopulation) -> Sheet | None:
     """Mean of each layer by condition; None where there is one layer, or no value."""
     table = one.study.profiles
-    channels = [name for name in one.channels if table.loc[table["channel"] == name, "mean"].notna().any()]
-    channels = channels[:MOST_CHANNELS]
+    known = set(table.loc[table["mean"].notna(), "channel"])
+    channels = [name for name in one.drawn_channels if name in known]
     if not channels or table["layer"].nunique() < 2:
         return None
     left_out = len(one.channels) - len(channels)

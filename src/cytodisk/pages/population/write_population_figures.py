@@ -22,9 +22,6 @@ from cytodisk.store.populations.population_study import PopulationStudy
 
 Page: TypeAlias = Callable[[], Sheet | None]
 
-MOST_CHANNELS = 4
-"""Channels that have pages of their own."""
-
 
 def write_population_figures(
     study: PopulationStudy,
@@ -92,16 +89,18 @@ def write_population_figures(
 
 
 def missing_figures(study: PopulationStudy) -> list[str]:
-    """Why pictures that need the maps of cells are not drawn, in sentences; empty if they are."""
-    if study.is_curves or not any(study.channels):
-        return []
-    fault = DrawnPopulation(study).sources.missing
-    return [f"No picture on a cell and no gallery: {fault}."] if fault else []
+    """Which pictures are not drawn and why, in sentences; empty if all are."""
+    one = DrawnPopulation(study)
+    told = [one.undrawn_words] if one.undrawn_words else []
+    if study.is_curves or not one.channels:
+        return told
+    fault = one.sources.missing
+    return [*told, f"No picture on a cell and no gallery: {fault}."] if fault else told
 
 
 def _pages(one: DrawnPopulation) -> dict[str, Page]:
     pages: dict[str, Page] = {}
-    channels = one.channels[:MOST_CHANNELS]
+    channels = one.drawn_channels
     if one.study.is_curves:
         for channel, name in zip(channels, file_names(channels), strict=True):
             pages[f"curves_{name}"] = _of(curves_page, one, channel)

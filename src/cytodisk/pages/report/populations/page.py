@@ -72,6 +72,7 @@ def population_page(study: PopulationStudy) -> str:
         "left_out": list(filter(None, [rows_words(study.cells, "cells.parquet"), curves_note(one)])),
         "methods": methods(one),
         "sector_0": one.direction_words,
+        "undrawn": one.undrawn_words,
         "studies": _studies(study.cells, study.path),
         "figures": [{**one_file, "link": quote(one_file["link"])} for one_file in figure_files(one)],
         "settings": _settings(study),
