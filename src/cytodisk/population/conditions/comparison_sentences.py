@@ -10,7 +10,7 @@ import xarray as xr
 
 from cytodisk.population.conditions.comparison_warnings import sizes_words
 from cytodisk.population.conditions.experiment_units import NO_VALUES, Units
-from cytodisk.population.conditions.window_words import p_words
+from cytodisk.population.conditions.window_words import p_words, signed, windows_words, with_minus
 from cytodisk.population.exchange.exchanges import Exchanges
 from cytodisk.population.significance import LEVEL
 
@@ -92,7 +92,7 @@ def found_words(
         rows = "; ".join(_scalar_words(row) for _, row in found.head(4).iterrows())
         more = f"; and {len(found) - 4} more" if len(found) > 4 else ""
         words = f"Scalars, {against}: {len(found)} of {len(tested)} differ ({method}, p ≤ {LEVEL:g})"
-        yield f"{words}: {rows}{more}." if rows else f"{words}."
+        yield f"{words}: {rows}{more}." if rows else f"{words}{_alone_words(tested)}."
 
 
 def _of_windows(against: str, channel: str, windows: xr.Dataset, clusters: pd.DataFrame, method: str) -> str:
@@ -107,29 +107,41 @@ def _of_windows(against: str, channel: str, windows: xr.Dataset, clusters: pd.Da
     found = own[own["p"] <= LEVEL]
     if len(found):
         parts = [
-            f"layers {row['layers']}, {windows['p_fwer'].dims[-1]}s {row['sectors']} "
-            f"({row['difference']:+.3g}{_unit(windows)}, {p_words(row['p'])})"
+            f"{windows_words(row['layers'], row['sectors'], str(windows['p_fwer'].dims[-1]))} "
+            f"({signed(row['difference'])}{_unit(windows)}, {p_words(row['p'])})"
             for _, row in found.head(3).iterrows()
         ]
         more = f" and {len(found) - 3} more" if len(found) > 3 else ""
-        return f"{words}; clusters: {'; '.join(parts)}{more}."
+        return f"{words}; {'cluster' if len(found) == 1 else 'clusters'}: {'; '.join(parts)}{more}."
     if not different.any():
         best = np.unravel_index(int(np.nanargmax(np.abs(windows["score"].values))), p.shape)
         difference, low, high = (
             float(windows[name].values[best]) for name in ("difference", "difference_low", "difference_high")
         )
-        words += (
-            f", none in a cluster; the strongest of them has {p_words(float(p[best]))}, {difference:+.3g}"
-        )
-        words += f" ({low:.3g} to {high:.3g}){_unit(windows)}" if np.isfinite(low) else _unit(windows)
+        words += f", none in a cluster; the strongest of them has {p_words(float(p[best]))}, "
+        words += signed(difference)
+        between = f" ({with_minus(low)} to {with_minus(high)})" if np.isfinite(low) else ""
+        words += f"{between}{_unit(windows)}"
     return f"{words.rstrip('.')}."
 
 
-def _scalar_words(row: pd.Series) -> str:
+def _alone_words(tested: pd.DataFrame) -> str:
+    """Which scalars would differ, had each been the only question."""
+    alone = tested[tested["p"] <= LEVEL].sort_values("p", kind="stable")
+    if not len(alone):
+        return ""
+    named = ", ".join(alone["scalar"].head(3)) + (f" and {len(alone) - 3} more" if len(alone) > 3 else "")
     return (
-        f"{row['scalar']} {row['control']:.3g} → {row['treated']:.3g} (g = {row['effect_size']:.2g}, "
-        f"{row['low']:.2g} to {row['high']:.2g}; {p_words(row['p_fwer'])})"
+        f" (the smallest corrected {p_words(tested['p_fwer'].min())}); alone, without a correction for their "
+        f"number, {named} {'has' if len(alone) == 1 else 'have'} p ≤ {LEVEL:g}, which counts for the one "
+        "that you chose before you looked"
     )
+
+
+def _scalar_words(row: pd.Series) -> str:
+    control, treated = with_minus(row["control"]), with_minus(row["treated"])
+    effect, low, high = (with_minus(row[name], 2) for name in ("effect_size", "low", "high"))
+    return f"{row['scalar']} {control} → {treated} (g = {effect}, {low} to {high}; {p_words(row['p_fwer'])})"
 
 
 def _unit(windows: xr.Dataset) -> str:

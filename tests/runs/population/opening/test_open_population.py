@@ -18,7 +18,7 @@ def test_a_study_is_a_population_of_its_cells(day1) -> None:
     np.testing.assert_allclose(population.values, np.broadcast_to(wanted[:, :, None, None], (4, 2, 2, 6)))
     cells = population.cells
     np.testing.assert_allclose(population.areas.sum(("layer", "sector")), cells["area"], rtol=1e-6)
-    assert cells["cell"].tolist() == [f"cells.tif, cell {label}" for label in (1, 2, 3, 4)]
+    assert cells["cell"].tolist() == [f"cells.tif, label {label}" for label in (1, 2, 3, 4)]
     assert cells["number"].tolist() == [0, 1, 2, 3]
     assert population.scalars == ("area",)
     assert cells.attrs["units"]["area"] == "px²"
@@ -48,7 +48,7 @@ def test_studies_of_a_list_or_a_folder_are_joined(day1, changed, tmp_path: Path)
     day2 = changed("day2")
     population = open_population([day1, day2])
     assert population.cells["input"].tolist() == ["day1"] * 4 + ["day2"] * 4
-    assert population.cells["cell"].iloc[5] == "day2, cell 2"
+    assert population.cells["cell"].iloc[5] == "day2, label 2"
     assert population.cells["cell"].is_unique
     changed("day10")
     assert open_population(tmp_path).cells["input"].unique().tolist() == ["day2", "day10"]
@@ -73,7 +73,7 @@ def test_cells_that_are_not_in_it_are_told_with_the_reason(changed) -> None:
     study = changed("day2", cells=no_map, windows=no_signal)
     more = changed("day3", cells=lambda cells: cells.assign(condition="b"))
     population = open_population([study, more])
-    assert population.cells["cell"].tolist() == ["day2, cell 4", *(f"day3, cell {k}" for k in (1, 2, 3, 4))]
+    assert population.cells["cell"].tolist() == ["day2, label 4", *(f"day3, label {k}" for k in (1, 2, 3, 4))]
     assert population.conditions == ("a", "b")
     told = population.excluded
     assert told[["input", "label", "reason"]].values.tolist() == [

@@ -16,7 +16,7 @@ def cell_names(cells: pd.DataFrame) -> pd.Series[str]:
     Returns
     -------
     Series of str
-        Such as "day1, cells.tif, frame 3, cell 7", or "day1, cell 7" for a study of one file.
+        Such as "day1, cells.tif, frame 3, label 7", or "day1, label 7" for a study of one file.
     """
     parts = []
     if cells["input"].nunique() > 1:
@@ -27,7 +27,7 @@ def cell_names(cells: pd.DataFrame) -> pd.Series[str]:
     if (files["frame"].nunique() > 1).any():
         parts.append("frame " + cells["frame"].astype(str))
     if (files.size() > 1).any() or len(parts) < 2:
-        parts.append("cell " + cells["label"].astype(str))
+        parts.append("label " + cells["label"].astype(str))
     names = parts[0].astype(str)
     for part in parts[1:]:
         names = names + ", " + part.astype(str)
