@@ -39,7 +39,9 @@ def test_pairs_some_of_which_lack_a_window() -> None:
         turned = differences * np.array(signs)[:, None]
         columns = [column[np.isfinite(column)] for column in turned.T]
         error = [column.var(ddof=1) / len(column) for column in columns]
-        scores.append([abs(c.mean()) / np.sqrt(0.5 * (e + shared)) for c, e in zip(columns, error, strict=True)])
+        scores.append(
+            [abs(c.mean()) / np.sqrt(0.5 * (e + shared)) for c, e in zip(columns, error, strict=True)]
+        )
     statistic = PairDifference(differences, np.zeros(5, dtype=np.int64))
     check(exchange_test(statistic, SignExchanges(7, 999, 0)), np.array(scores))
 

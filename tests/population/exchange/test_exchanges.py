@@ -68,3 +68,11 @@ def test_random_doses_stay_within_their_experiments() -> None:
     assert not exchanges.all_ways
     for row in np.concatenate(list(exchanges.chunks(50))):
         assert (np.sort(row.reshape(6, 4), axis=1) == [0, 1, 10, 100]).all()
+
+
+def test_ways_of_very_many_units_are_not_counted_out() -> None:
+    treated = np.arange(1_000_000) % 2 == 0  # the number of ways has 300 000 digits
+    found = LabelExchanges(treated, 99, 0)
+    assert (found.all_ways, found.count, found.smallest_p) == (False, 100, 0.01)
+    few = LabelExchanges(np.arange(1_000) == 3, 10**6, 0)
+    assert (few.all_ways, few.count) == (True, 1_000)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations, islice, product
-from math import comb
+from math import comb, lgamma, log
 from typing import Protocol, TypeVar
 
 import numpy as np
@@ -56,7 +56,9 @@ class LabelExchanges:
 
     @property
     def _ways(self) -> int:
-        return comb(len(self.treated), int(self.treated.sum()))
+        units, chosen = len(self.treated), int(self.treated.sum())
+        size = lgamma(units + 1) - lgamma(chosen + 1) - lgamma(units - chosen + 1)
+        return comb(units, chosen) if size < log(_VERY_MANY) + 1.0 else 2 * _VERY_MANY
 
     @property
     def all_ways(self) -> bool:
