@@ -78,6 +78,32 @@ def test_windows_that_do_not_differ_are_hatched_on_all_sides(page: PopulationPag
     assert [marked != hatched for marked, hatched in grey] == [True] * 8
 
 
+def test_outline_of_the_cell_is_closed(page: PopulationPage) -> None:
+    gaps = page.browser.execute_script(
+        """
+        const { shape: [height, width], labels } = cytodisk.cell;
+        const { data } = document.getElementById("cell-0").getContext("2d").getImageData(0, 0, width, height);
+        const outside = (k) => labels[k] === 65535;
+        return [...labels.keys()].filter((k) => {
+          const border = k % width === 0 || (k + 1) % width === 0 || k < width || k >= labels.length - width;
+          if (outside(k) || border) return false;
+          return [k - 1, k + 1, k - width, k + width].some(outside) && data[4 * k] !== 0x55;
+        }).length;
+        """
+    )
+    assert gaps == 0
+
+
+def test_main_columns_fit_a_laptop(page: PopulationPage) -> None:
+    assert page.js("innerWidth") <= 1366
+    box = "document.querySelector('#table-scalars .scroll')"
+    assert page.js(f"{box}.scrollWidth <= {box}.clientWidth")
+
+
+def test_small_numbers_have_true_minuses(page: PopulationPage) -> None:
+    assert page.js("cytodisk.digits(-0.00072)") == "−7.2e−4"
+
+
 def test_very_many_numbers_have_a_range(page: PopulationPage) -> None:
     low, high = page.js("cytodisk.range(Array.from({ length: 300000 }, (_, k) => k), 0)")
     assert (low, high) == (0, 299_999)

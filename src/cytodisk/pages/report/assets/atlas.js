@@ -3,6 +3,7 @@
 (() => {
   const page = window.cytodisk;
   const OUTSIDE = 65535;
+  const NUCLEUS = 0xffe9b456; // its outline, as on the disk
   const SIZE = 560; // of a canvas, in its own pixels
   const byId = (id) => document.getElementById(id);
   const state = { comparison: 0, channel: 0, shows: "difference", window: null, pinned: null };
@@ -78,6 +79,7 @@
     const [inside, faded] = [new Set(marks), new Set(pale ?? [])];
     const white = (one) => (0xff000000 | [16, 8, 0].reduce((all, shift) => all | (Math.round(((one >> shift) & 255) * 0.5 + 127) << shift), 0)) >>> 0;
     const pixels = new Uint32Array(height * width).fill(0xffffffff);
+    const inner = (grid().cytoplasm_layers ?? Infinity) * grid().sectors; // first window of the nucleus
     for (let k = 0; k < labels.length; k++) {
       const here = labels[k];
       const near = [(k + 1) % width ? labels[k + 1] : here, labels[k + width] ?? here];
@@ -88,7 +90,10 @@
       const row = Math.floor(k / width);
       pixels[k] = faded.has(here) ? white(table[here]) : table[here];
       if (faded.has(here) && (row + (k % width)) % 8 === 0) pixels[k] = 0xff9a9a9a;
-      if (near.includes(OUTSIDE)) pixels[k] = 0xff555555;
+      const around = [...near, k % width ? labels[k - 1] : here, labels[k - width] ?? here];
+      if (around.includes(OUTSIDE)) pixels[k] = 0xff555555;
+      else if (here >= inner && near.some((one) => one < inner)) pixels[k] = NUCLEUS;
+      else if (here < inner && near.some((one) => one >= inner)) pixels[k] = NUCLEUS;
       else if (near.some((one) => inside.has(one) !== inside.has(here))) pixels[k] = 0xff000000;
       if (here === chosen()) pixels[k] = near.every((one) => one === here) ? pixels[k] : 0xff000000;
     }

@@ -4,7 +4,7 @@
 
   // Numbers in words, with a true minus; a dash for none.
   page.known = (value) => typeof value === "number" && Number.isFinite(value);
-  page.words = (value, text) => (page.known(value) ? String(text(value)).replace("-", "−") : "–");
+  page.words = (value, text) => (page.known(value) ? String(text(value)).replaceAll("-", "−") : "–");
   page.digits = (value) =>
     page.words(value, () => {
       const size = Math.abs(value);

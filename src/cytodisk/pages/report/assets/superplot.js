@@ -17,7 +17,8 @@
     const { data } = page;
     const channel = data.channels[page.atlasState.channel]?.name;
     const lines = data.profiles.filter((line) => line.channel === channel && data.conditions.includes(line.condition));
-    if (!lines.length) return;
+    byId("profiles").parentElement.hidden = !lines.some((line) => line.layer.length > 1); // one layer has no depth
+    if (byId("profiles").parentElement.hidden) return;
     const increases = (values) => values.every((value, k) => page.known(value) && (k === 0 || value > values[k - 1]));
     const deep = lines.every((line) => increases(line.depth)); // not so in a nucleus
     const xs = (line) => (deep ? line.depth : line.layer);

@@ -28,8 +28,8 @@ from cytodisk.store.populations.population_study import PopulationStudy
 
 _SCRIPTS = ("decode", "numbers", "list", "disk", "chart", "atlas", "superplot", "population")
 _MAIN = {
-    "scalars": "scalar what condition mean_control mean_treated unit difference effect_size p p_fwer p_holm "
-    "q low high difference_low difference_high status",
+    "scalars": "scalar what condition mean_control mean_treated unit difference effect_size low high p "
+    "p_fwer p_holm",
     "clusters": "condition channel layers sectors n_windows difference p p_holm",
     "experiments": "condition experiment cells used reason",
     "left_out": "condition left_out result difference difference_without p p_without",
@@ -90,14 +90,18 @@ def _listed(study: PopulationStudy, name: str) -> dict[str, Any]:
     several = len(study.compared) > 1
     alone = {"p_holm"} if name == "experiments" else {"condition", "p_holm"}
     main = [one for one in _MAIN[name].split() if several or one not in alone]
-    return listed(table, main=main, labels=_LABELS, meanings=_meanings(name))
+    if name == "scalars" and len(table) and (table["status"] != "ok").any():
+        main.append("status")
+    labels = _LABELS | ({"sectors": "lags", "n_windows": "n lags"} if study.is_curves else {})
+    return listed(table, main=main, labels=labels, meanings=_meanings(name))
 
 
 def _listed_cells(study: PopulationStudy) -> dict[str, Any]:
     cells = study.cells
     table = cells.drop(columns=[name for name in ("study", "number") if name in cells])
     table.attrs = cells.attrs
-    scalars = [name for name in study.scalar_names if name in table][:6]
+    scalars = [name for name in study.scalar_names if name in table]
+    scalars = sorted(scalars, key=lambda name: name.startswith("layer_"))[:6]  # ratios first
     main = [
         "cell",
         "condition",
