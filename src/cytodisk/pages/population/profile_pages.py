@@ -15,7 +15,7 @@ from cytodisk.plot.style import SINGLE_COLUMN_MM
 from cytodisk.runs.channel_names import shortened
 
 _LEFT, _RIGHT, _TALL, _ABOVE, _BELOW, _LINE = 15.5, 6.0, 42.0, 5.5, 13.5, 3.8  # mm
-_LONGEST_NAME = 26  # of a condition in the key, whose columns are half a page wide
+_LONGEST_NAME = 18  # of a condition in the key, whose columns are half a page wide
 _KEY_STYLE: Any = {"handlelength": 1.6, "labelspacing": 0.35, "columnspacing": 1.2}
 
 

@@ -57,6 +57,10 @@ def test_window_under_the_pointer_has_its_numbers(page: PopulationPage, compared
     assert f"{float(window['p_fwer']):.2g}" in words
     assert "p corrected (max-T)" in words
     assert "(8 cells, 4 experiments)" in words
+    if window["cluster"] > 0:
+        clusters = compared.clusters[compared.clusters["channel"] == "Rac1"].set_index("cluster")
+        p = float(clusters.loc[int(window["cluster"]), "p_holm"])
+        assert f"{int(window['cluster'])}, p corrected {p:.2g}" in words
 
 
 def test_windows_that_do_not_differ_are_hatched_on_all_sides(page: PopulationPage) -> None:

@@ -107,6 +107,14 @@
     return `layer ${layer}${places[layer]}, sector ${window % sectors}`;
   };
 
+  const clusterWords = (number) => {
+    const { columns, rows } = page.data.tables.clusters ?? { columns: [], rows: [] };
+    const place = (name) => columns.findIndex((column) => column.name === name);
+    const keys = { condition: comparison().condition, channel: page.data.channels[state.channel].name, cluster: number };
+    const row = rows.find((one) => Object.entries(keys).every(([name, value]) => one[place(name)] === value));
+    return row ? `${number}, p corrected ${page.chance(row[place("p_holm")])}` : String(number);
+  };
+
   // The window's numbers as rows of two texts.
   const numbersAt = (k) => {
     const { unit, conditions } = page.data;
@@ -130,7 +138,7 @@
       rows[rows.length - 1][1] += at("p_holm") <= page.data.level ? ", significant" : "";
       rows.push(["q (false discovery rate)", page.chance(at("q"))]);
     } else rows.push(["not tested", comparison().status[state.channel][k]]);
-    if (at("cluster") > 0) rows.push(["cluster", String(at("cluster"))]);
+    if (at("cluster") > 0) rows.push(["cluster", clusterWords(at("cluster"))]);
     return rows;
   };
 
