@@ -167,7 +167,7 @@ class Study:
         path = self._map_path(key)
         if not path.exists():
             place = "" if frame is None else f", frame {frame},"
-            reason = rows["reason"].iloc[0] or "it was not kept (--no-maps)"
+            reason = rows["reason"].iloc[0] or "it was not kept: run again without --no-maps"
             raise ReadError(f"cell {cell}{place} of {self.path} has no map: {reason}")
         return self._load(path)
 

@@ -32,3 +32,15 @@ def test_what_no_trend_can_reach_is_said_first() -> None:
     few, many = (cd.dose_trend(_population(list(range(count)))) for count in (4, 5))
     assert few.sentences[0].endswith("can give p = 0.083 at best: no trend can reach 0.05.")
     assert many.sentences[0].endswith("can give p = 0.017 at best.")
+
+
+def test_a_trend_says_where_and_by_how_much() -> None:
+    truth = cd.simulate.population(experiments=4, effect=3.0, seed=0)
+    cells = truth.cells.assign(dose=(truth.cells["condition"] == "drug") * 2.0)
+    words = cd.dose_trend(cd.Population(truth.values, cells)).sentences
+    assert words[1].startswith(
+        "signal: 8 of 48 windows have a trend (max-T, p ≤ 0.05); cluster: layers 0–1, "
+    )
+    assert "sectors 2–5 (+3.03" in words[1]
+    assert words[1].endswith(" by step of the dose, p = 0.029).")
+    assert "mean_signal +0.581 (p = 0.029)" in words[2]

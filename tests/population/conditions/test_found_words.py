@@ -40,7 +40,7 @@ def test_windows_words() -> None:
 def test_scalars_that_differ_alone_are_told_with_what_that_is_worth() -> None:
     words = _said(p_alone=(0.031, 0.031, 0.4))[1]
     assert words.startswith("Scalars, drug against control: 0 of 3 differ")
-    assert "(the smallest corrected p = 0.062)" in words
+    assert ", the smallest corrected p = 0.062; alone" in words
     assert "s0, s1 have p ≤ 0.05, which counts for the one that you chose before you looked." in words
     assert _said(p_alone=(0.4, 0.5))[1].endswith("0 of 2 differ (max-T, p ≤ 0.05).")
     assert "1 of 1 differ (max-T, p ≤ 0.05): s0 1 → 2" in _said(p_alone=(0.01,), p_fwer=0.01)[1]

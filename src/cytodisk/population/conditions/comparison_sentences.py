@@ -125,6 +125,49 @@ def _of_windows(against: str, channel: str, windows: xr.Dataset, clusters: pd.Da
     return f"{words.rstrip('.')}."
 
 
+def trend_words(
+    windows: xr.Dataset, clusters: pd.DataFrame, scalars: pd.DataFrame, step: str
+) -> Iterator[str]:
+    """What has a trend over a dose: windows by channel with their clusters, and scalars.
+
+    Parameters
+    ----------
+    windows : Dataset with dims (channel, layer, last)
+    clusters : DataFrame
+    scalars : DataFrame
+    step : str
+        What slopes are told by, as "step of the dose".
+
+    Yields
+    ------
+    str
+    """
+    for channel in windows["channel"].values:
+        own = windows.sel(channel=channel)
+        known = np.isfinite(own["p_fwer"].values)
+        count = int((own["p_fwer"].values[known] <= LEVEL).sum())
+        words = f"{channel}: {count} of {int(known.sum())} windows have a trend (max-T, p ≤ {LEVEL:g})"
+        found = clusters[(clusters["channel"] == channel) & (clusters["p"] <= LEVEL)]
+        parts = [
+            f"{windows_words(row['layers'], row['sectors'], str(own['p_fwer'].dims[-1]))} "
+            f"({signed(row['difference'])}{_unit(own)} by {step}, {p_words(row['p'])})"
+            for _, row in found.head(3).iterrows()
+        ]
+        more = f" and {len(found) - 3} more" if len(found) > 3 else ""
+        named = "cluster" if len(found) == 1 else "clusters"
+        yield f"{words}; {named}: {'; '.join(parts)}{more}." if parts else f"{words}."
+    tested = scalars[scalars["status"] == "ok"]
+    differ = tested[tested["p_fwer"] <= LEVEL].sort_values("p_fwer", kind="stable")
+    if len(tested):
+        slopes = [
+            f"{row['scalar']} {signed(row['difference'])} ({p_words(row['p_fwer'])})"
+            for _, row in differ.head(4).iterrows()
+        ]
+        more = f"; and {len(differ) - 4} more" if len(differ) > 4 else ""
+        words = f"Scalars: {len(differ)} of {len(tested)} have a trend (max-T, p ≤ {LEVEL:g})"
+        yield f"{words}, by {step}: {'; '.join(slopes)}{more}." if slopes else f"{words}."
+
+
 def _alone_words(tested: pd.DataFrame) -> str:
     """Which scalars would differ, had each been the only question."""
     alone = tested[tested["p"] <= LEVEL].sort_values("p", kind="stable")
@@ -132,7 +175,7 @@ def _alone_words(tested: pd.DataFrame) -> str:
         return ""
     named = ", ".join(alone["scalar"].head(3)) + (f" and {len(alone) - 3} more" if len(alone) > 3 else "")
     return (
-        f" (the smallest corrected {p_words(tested['p_fwer'].min())}); alone, without a correction for their "
+        f", the smallest corrected {p_words(tested['p_fwer'].min())}; alone, without a correction for their "
         f"number, {named} {'has' if len(alone) == 1 else 'have'} p ≤ {LEVEL:g}, which counts for the one "
         "that you chose before you looked"
     )

@@ -16,6 +16,7 @@ from cytodisk.checks import instance_of
 from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import DoseParameters
 from cytodisk.population.conditions.comparison import chosen_channels
+from cytodisk.population.conditions.comparison_sentences import trend_words
 from cytodisk.population.conditions.tested_units import unit_results
 from cytodisk.population.conditions.unit_values import usable_cells
 from cytodisk.population.exchange.dose_exchanges import DoseExchanges, DoseSlope, without_levels
@@ -118,14 +119,13 @@ def dose_trend(
     design = "within experiments" if within else "between experiments"
     p = test.exchanges.smallest_p
     step = {"rank": "step of the dose", "linear": "unit of dose", "log": "factor of 10"}[chosen.scale]
-    different = found.windows["p_fwer"] <= LEVEL
     reach = "" if p <= LEVEL else f": no trend can reach {LEVEL:g}"
     without = int((usable & (codes < 0)).sum())
     left_out = f"{without} of {int(usable.sum())} cells have no dose or no experiment: they are in no trend."
     words = (
         f"{len(doses)} units at {len(np.unique(doses))} doses, exchanged {design}, can give p = {p:.2g} at "
         f"best{reach}.",
-        f"{int(different.sum())} of {different.size} windows have a trend (max-T, p ≤ {LEVEL:g}; by {step}).",
+        *trend_words(found.windows, found.clusters, found.scalars, step),
         *([left_out] if without else []),
     )
     windows = found.windows.squeeze("channel") if len(channels) == 1 else found.windows

@@ -71,7 +71,10 @@ class PopulationParameters(ComparisonParameters):
     @classmethod
     def _at_least_two(cls, names: tuple[str, ...]) -> tuple[str, ...]:
         if len(names) == 1:
-            raise ValueError("must name two conditions or more, the control first, such as control,drug")
+            raise ValueError(
+                "must name two conditions or more, the control first, with commas and no spaces between "
+                "them, such as control,drug"
+            )
         return names
 
     @field_validator("align")
