@@ -122,6 +122,7 @@ def test_real_wells_cannot_show_a_difference(
         pytest.skip("the real data are not there: set CYTODISK_DATA")
     arguments = ["--quick", "--out", str(tmp_path), "--layers", "3", "--sectors", "6"]
     monkeypatch.setattr(sys, "argv", ["population_schwann.py", *arguments])
+    monkeypatch.setattr(benchmark, "_QUICK", 16)  # fewer cells than --quick takes
     assert benchmark.main() == 0
     out = capsys.readouterr().out
     assert "1 + 2 experiments can give p = 0.33 at best" in out
