@@ -130,3 +130,8 @@ def rounded(value: float, digits: int = 3) -> str:
     ('2530', '0.0412', '100')
     """
     return f"{float(f'{value:.{digits}g}'):g}"
+
+
+def counted(number: int, one: str, many: str | None = None) -> str:
+    """A number with its noun, as "1 cell" and "2 cells"."""
+    return f"{number} {one if number == 1 else many or one + 's'}"

@@ -12,7 +12,7 @@ import pandas as pd
 import xarray as xr
 
 from cytodisk.arrays import BoolArray
-from cytodisk.number_words import rounded
+from cytodisk.number_words import counted, rounded
 from cytodisk.pages.drawn_correlation import Heading, broken_lines
 from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.grid_words import grid_words
@@ -45,11 +45,6 @@ _DIRECTIONS = {
     "motion": "where the cell moves to",
     "axis": "at an end of the long axis",
 }
-
-
-def counted(number: int, noun: str) -> str:
-    """A number of things, as "1 cell" or "2 cells"."""
-    return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def in_two_lines(name: str, room_mm: float) -> str:

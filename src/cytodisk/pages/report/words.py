@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -10,9 +9,10 @@ from typing import Any
 
 import pandas as pd
 
-from cytodisk.files import file_name, real_path
+from cytodisk.files import real_path
 from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.report.pictures import Box
+from cytodisk.pages.report.provenance_words import input_words, run_words, value_words, version_of
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_names import without_folders
 from cytodisk.runs.channel_names import correlation_name
@@ -74,12 +74,8 @@ def page_words(
         "others": others,
         "settings": list(_settings(study)),
         "files": list(_FILES.items()),
-        "version": _version(study),
+        "version": version_of(study.provenance),
     }
-
-
-def _version(study: Study) -> str:
-    return str(study.provenance.get("versions", {}).get("cytodisk", "unknown"))
 
 
 def _facts(cell: ShownCell) -> Iterator[tuple[str, str]]:
@@ -93,7 +89,7 @@ def _facts(cell: ShownCell) -> Iterator[tuple[str, str]]:
     yield "interval", f"{interval:.4g} s" if interval else "unknown"
     yield "windows", grid_words(grid)
     yield "tracker", str(study.provenance["parameters"].get("tracker", "unknown"))
-    yield "cytodisk", _version(study)
+    yield "cytodisk", version_of(study.provenance)
 
 
 def _flag(flag: QCFlag, shown: int, study: Study) -> dict[str, Any]:
@@ -165,28 +161,20 @@ def _setting(given: Any, used: Any) -> str:
     """A parameter, or what the run used where none was given."""
     if given is None:
         return "not set" if used is None else f"{used:.6g} (not given; this was found and used)"
-    return given if isinstance(given, str) else json.dumps(given)
+    return value_words(given)
 
 
 def _settings(study: Study) -> Iterator[tuple[str, str]]:
     provenance = study.provenance
-    for role, told in provenance.get("inputs", {}).items():
-        yield (
-            role,
-            f"{file_name(told['path'])} – {told.get('read as', '')} (sha256 {told.get('sha256', '')[:16]}…)",
-        )
+    yield from input_words(provenance)
     for name, value in provenance.get("parameters", {}).items():
         yield name, _setting(value, provenance.get(name))
     for names in study.correlations:
         told = study.correlation(*names).settings
         words = [
-            f"{name} {value if isinstance(value, str) else json.dumps(value)}"
+            f"{name} {value_words(value)}"
             for name, value in told.items()
             if name not in _HEADING and not (value is None or value is False or value in ([], ""))
         ]
         yield f"correlation of {correlation_name(names)}", ", ".join(words)
-    for name in ("started", "finished", "python"):
-        if name in provenance:
-            yield name, str(provenance[name])
-    versions = provenance.get("versions", {})
-    yield "versions", ", ".join(f"{name} {version}" for name, version in versions.items())
+    yield from run_words(provenance)

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from cytodisk.arrays import FloatArray, IntArray
-from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted, frames_of, mapped_rows
+from cytodisk.number_words import counted
+from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, frames_of, mapped_rows
 from cytodisk.runs.qc_flags.remedy import without_frames
 from cytodisk.store.study import Study
 

@@ -8,7 +8,8 @@ from typing import Any
 
 import pandas as pd
 
-from cytodisk.runs.qc_flags.qc_flag import QCFlag, counted, frames_of, mapped_rows, places_of
+from cytodisk.number_words import counted
+from cytodisk.runs.qc_flags.qc_flag import QCFlag, frames_of, mapped_rows, places_of
 from cytodisk.runs.qc_flags.remedy import run_again
 from cytodisk.scale import Scale
 from cytodisk.store.study import Study

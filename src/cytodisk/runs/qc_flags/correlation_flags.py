@@ -8,8 +8,9 @@ import pandas as pd
 
 from cytodisk.analysis.correlation.jitter_mark import JITTERING_SHARE
 from cytodisk.analysis.correlation.prepared_series import DRIFTING_SHARE
+from cytodisk.number_words import counted
 from cytodisk.runs.channel_names import correlation_name
-from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted
+from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag
 from cytodisk.runs.qc_flags.remedy import correlate_again
 from cytodisk.store.study import Study
 

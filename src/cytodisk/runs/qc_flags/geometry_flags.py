@@ -6,9 +6,10 @@ from collections.abc import Iterator
 
 import pandas as pd
 
+from cytodisk.number_words import counted
 from cytodisk.runs.channel_names import correlation_name
 from cytodisk.runs.partial_words import SIGNIFICANT, lost_rows, region_lost
-from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted
+from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag
 from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.study import Study
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from cytodisk.number_words import rounded
-from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted, frames_of, mapped_rows, places_of
+from cytodisk.number_words import counted, rounded
+from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, frames_of, mapped_rows, places_of
 from cytodisk.runs.qc_flags.remedy import correlate_again, run_again, without_frames
 from cytodisk.runs.qc_flags.signal_drift import signal_drifts
 from cytodisk.store.study import Study

@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas as pd
 
+from cytodisk.number_words import counted
 from cytodisk.store.study import Study
 
 
@@ -77,11 +78,6 @@ def places_of(rows: pd.DataFrame, note: Callable[[Any], str] | None = None) -> t
         Place(int(row["cell"]), None if frame is None else int(frame), note(row) if note else "")
         for (_, row), frame in zip(rows.iterrows(), frames, strict=True)
     )
-
-
-def counted(number: int, one: str, many: str | None = None) -> str:
-    """A number with its noun, as "1 cell" and "2 cells"."""
-    return f"{number} {one if number == 1 else many or one + 's'}"
 
 
 def frames_of(study: Study, number: int) -> str:

@@ -15,8 +15,9 @@ from cytodisk.analysis.stress.stress_marks import (
     STEADY_OSCILLATION,
     VARIANCE_CHANGE,
 )
+from cytodisk.number_words import counted
 from cytodisk.runs.channel_names import correlation_name
-from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag, counted
+from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag
 from cytodisk.runs.qc_flags.remedy import correlate_again
 from cytodisk.store.study import Study
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
+from cytodisk.number_words import counted
 from cytodisk.runs.qc_flags import (
     area_jumps,
     column_flags,
@@ -18,7 +19,7 @@ from cytodisk.runs.qc_flags import (
     stress_flags,
     window_flags,
 )
-from cytodisk.runs.qc_flags.qc_flag import QCFlag, counted
+from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.store.study import Study
 
 

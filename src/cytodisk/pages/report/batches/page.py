@@ -11,12 +11,13 @@ import pandas as pd
 
 from cytodisk.errors import ReadError
 from cytodisk.files import real_path
+from cytodisk.number_words import counted
 from cytodisk.pages.report.batches.batch_tables import listed_cells, listed_inputs, own_columns, read_inputs
 from cytodisk.pages.report.batches.pooled import pooled_correlations
 from cytodisk.pages.report.encode import json_for_script
 from cytodisk.pages.report.listed import MOST_ROWS
+from cytodisk.pages.report.provenance_words import version_of
 from cytodisk.pages.report.template import rendered
-from cytodisk.runs.qc_flags.qc_flag import counted
 from cytodisk.store.provenance_file import read_complete
 
 _SCRIPTS = ("decode", "numbers", "list", "batch")
@@ -54,7 +55,7 @@ def batch_page(folder: Path) -> str:
         "left_out": list(_left_out(folder, inputs, count, data)),
         "command": _command(folder, inputs),
         "correlations": pooled_correlations(folder),
-        "version": str(provenance.get("versions", {}).get("cytodisk", "unknown")),
+        "version": version_of(provenance),
         "data_json": json_for_script(data),
     }
     return rendered("batch", ["page", "cells"], _SCRIPTS, words)

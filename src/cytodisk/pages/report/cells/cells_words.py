@@ -9,10 +9,12 @@ from typing import Any
 
 import pandas as pd
 
+from cytodisk.number_words import counted
 from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.report.cells.cell_table import CONDITION, EXPERIMENT
+from cytodisk.pages.report.provenance_words import version_of
 from cytodisk.pages.report.shown_names import without_folders
-from cytodisk.runs.qc_flags.qc_flag import QCFlag, counted
+from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.store.study import Study
 from cytodisk.windows.study_grid import polar_grid_of
 
@@ -137,7 +139,7 @@ def facts(study: Study) -> Iterator[tuple[str, str]]:
     yield "mapped", str(int((rows["status"] == "ok").sum()))
     yield "pixel", f"{pixel:.4g} µm" if pixel else "size unknown"
     yield "windows", grid_words(polar_grid_of(study.provenance))
-    yield "cytodisk", str(study.provenance.get("versions", {}).get("cytodisk", "unknown"))
+    yield "cytodisk", version_of(study.provenance)
 
 
 def left_out(

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from cytodisk.errors import ParameterError
-from cytodisk.files import file_name, real_path
+from cytodisk.files import real_path
 from cytodisk.pages.report.bokeh_parts import palette
 from cytodisk.pages.report.cells.cell_pictures import CellPictures, means_limits, size_of
 from cytodisk.pages.report.cells.cell_table import CONDITION, EXPERIMENT, listed_cells
@@ -26,6 +25,7 @@ from cytodisk.pages.report.cells.window_numbers import WindowNumbers, window_num
 from cytodisk.pages.report.encode import json_for_script
 from cytodisk.pages.report.listed import rows_words
 from cytodisk.pages.report.pictures import OUTSIDE
+from cytodisk.pages.report.provenance_words import input_words, run_words, value_words, version_of
 from cytodisk.pages.report.template import jinja, rendered
 from cytodisk.plot.layer_looks import layer_place
 from cytodisk.plot.style import SIGNAL_COLOURS, signal_limits
@@ -105,8 +105,8 @@ def cells_page(
             *left_out(study, list(pictures), wanted, found.fault, len(maker.mapped)),
             *filter(None, [rows_words(study.cells, "cells.parquet")]),
         ],
-        "settings": _settings(study),
-        "version": str(study.provenance.get("versions", {}).get("cytodisk", "unknown")),
+        "settings": list(_settings(study)),
+        "version": version_of(study.provenance),
         "data": data,
         "data_json": json_for_script(data),
         "pictures_json": json_for_script(list(pictures.values())),
@@ -183,16 +183,9 @@ def _earlier(study: Study) -> list[dict[str, Any]]:
     ]
 
 
-def _settings(study: Study) -> list[tuple[str, str]]:
+def _settings(study: Study) -> Iterator[tuple[str, str]]:
     told = study.provenance
-    words = [
-        (role, f"{file_name(one['path'])} – {one.get('read as', '')} (sha256 {one.get('sha256', '')[:16]}…)")
-        for role, one in told.get("inputs", {}).items()
-    ]
+    yield from input_words(told)
     for name, value in told.get("parameters", {}).items():
-        words.append(
-            (name, "not set" if value is None else value if isinstance(value, str) else json.dumps(value))
-        )
-    words += [(name, str(told[name])) for name in ("started", "finished", "python") if name in told]
-    versions = told.get("versions", {})
-    return [*words, ("versions", ", ".join(f"{name} {version}" for name, version in versions.items()))]
+        yield name, "not set" if value is None else value_words(value)
+    yield from run_words(told)

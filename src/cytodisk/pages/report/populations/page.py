@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -19,9 +20,9 @@ from cytodisk.pages.report.populations.population_words import (
     figure_files,
     headline,
     methods,
-    version_of,
     warning_groups,
 )
+from cytodisk.pages.report.provenance_words import run_words, value_words, version_of
 from cytodisk.pages.report.template import jinja, rendered
 from cytodisk.store.populations.population_columns import TABLES
 from cytodisk.store.populations.population_study import PopulationStudy
@@ -75,8 +76,8 @@ def population_page(study: PopulationStudy) -> str:
         "undrawn": one.undrawn_words,
         "studies": _studies(study.cells, study.path),
         "figures": [{**one_file, "link": quote(one_file["link"])} for one_file in figure_files(one)],
-        "settings": _settings(study),
-        "version": version_of(one),
+        "settings": list(_settings(study)),
+        "version": version_of(study.provenance),
         "data": data,
         "data_json": json_for_script(data),
     }
@@ -136,9 +137,8 @@ def _studies(cells: pd.DataFrame, folder: Path) -> list[dict[str, Any]]:
     ]
 
 
-def _settings(study: PopulationStudy) -> list[tuple[str, str]]:
-    told = study.provenance
-    words = [(name, str(value)) for name, value in study.parameters.items() if value not in (None, [], "")]
-    words += [(name, str(told[name])) for name in ("started", "finished", "python") if name in told]
-    versions = told.get("versions", {})
-    return [*words, ("versions", ", ".join(f"{name} {version}" for name, version in versions.items()))]
+def _settings(study: PopulationStudy) -> Iterator[tuple[str, str]]:
+    for name, value in study.parameters.items():
+        if value not in (None, [], ""):
+            yield name, value_words(value)
+    yield from run_words(study.provenance)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from cytodisk.number_words import counted
 from cytodisk.pages.grid_words import grid_words
-from cytodisk.pages.population.drawn_population import DrawnPopulation, counted
+from cytodisk.pages.population.drawn_population import DrawnPopulation
+from cytodisk.pages.report.provenance_words import version_of
 from cytodisk.population.significance import LEVEL
 
 _MOST_COMPARISONS = 4
@@ -29,7 +31,7 @@ def facts(one: DrawnPopulation) -> Iterator[tuple[str, str]]:
         yield name, f"{counted(len(own), 'cell')}{among}"
     if one.channels and not study.is_curves:
         yield "windows", grid_words(one.grid)
-    yield "cytodisk", version_of(one)
+    yield "cytodisk", version_of(one.study.provenance)
 
 
 def headline(one: DrawnPopulation) -> str:
@@ -60,11 +62,6 @@ def _found(row: dict[Any, Any]) -> str:
     return f"{head}{listed} {differ} ({best})."
 
 
-def version_of(one: DrawnPopulation) -> str:
-    """Version of the run."""
-    return str(one.study.provenance.get("versions", {}).get("cytodisk", "unknown"))
-
-
 def warning_groups(one: DrawnPopulation) -> list[dict[str, str]]:
     """Warnings by name; those of all comparisons alike stand once."""
     seen: dict[tuple[str, str, str, str], list[str]] = {}
@@ -91,7 +88,7 @@ def methods(one: DrawnPopulation) -> str:
     if one.channels and not study.is_curves:
         words.append(
             f"Cells were mapped one to one onto the unit disk and divided into {grid_words(one.grid)} "
-            f"(cytodisk {version_of(one)})."
+            f"(cytodisk {version_of(one.study.provenance)})."
         )
     normalised = str(settings.get("normalise") or "none")
     if normalised in _NORMALISED:
