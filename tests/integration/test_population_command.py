@@ -98,6 +98,7 @@ def test_faults_are_one_line_with_the_remedy(run: Run, cells: Path, tmp_path: Pa
     assert_refused(run("population", maps, "--seed", "1", "--seed=2", *out), "--seed is given 2 times: keep")
     assert_refused(run("population", maps), "--out is missing", "-o atlas/")
     assert_refused(run("population", tmp_path / "none", *out), "does not exist")
+    assert_refused(run("population", maps, "--h5ad", "all.h5ad", *out), "takes no name", "leave all.h5ad out")
     assert_refused(run("population", maps, *out, "--effects", "1"), "--effects: only with --power")
     assert_refused(
         run("population", maps, *groups, *out, "--compare", "drug"), "--compare must name two conditions"

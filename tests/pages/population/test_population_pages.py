@@ -290,6 +290,16 @@ def test_a_gallery_shows_the_images_that_were_measured(page: Any, mapped: Study)
     assert len(bars) == 1
 
 
+def test_cells_without_their_own_level_are_shown_alike(page: Any, mapped: Study) -> None:
+    one = with_maps(mapped)
+    one.study.__dict__["gallery"] = one.study.gallery.assign(channel="signal")
+    one.study.provenance["parameters"] = {"normalise": "cell mean"}
+    figure = page(gallery_page, one, "signal")
+    shown = [np.asarray(ax.images[0].get_array()) for ax in figure.axes if ax.images]
+    assert {round(float(np.nanmedian(image[image > 0])), 3) for image in shown} == {1.0}
+    assert any("× cell mean" in words for words in words_of(figure))
+
+
 def test_a_full_gallery_has_room_on_its_page(page: Any, mapped: Study) -> None:
     one = with_maps(mapped)
     table = one.study.gallery

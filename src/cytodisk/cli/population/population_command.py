@@ -73,10 +73,17 @@ def population_command(
         )
     if out is None:
         raise ParameterError("--out is missing: name a folder for the results, as -o atlas/")
+    if named := [path.name for path in paths if path.suffix == ".h5ad"]:
+        raise ParameterError(
+            f"PATH {named[0]} is no folder of results: --h5ad takes no name, its file is in the folder of "
+            f"--out; leave {named[0]} out"
+        )
     wanted = figure_formats(formats) if figures else ()
     study = _compare(console, given, paths, out)
     say_population(console, study)
     console.print(f"results: {study.path}")
+    for path in sorted(study.path.glob("*.h5ad")):
+        console.print(f"for scanpy: {path}")
     for line in _draw(console, study, wanted) if wanted else ():
         console.print(line)
     if not no_report:

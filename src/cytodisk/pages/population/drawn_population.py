@@ -189,6 +189,11 @@ class DrawnPopulation:
         return bool(len(scalars) and scalars["p_fwer"].notna().any())
 
     @property
+    def is_by_cell(self) -> bool:
+        """Whether each cell's own level was taken out, so that bright and dim cells are compared alike."""
+        return self.study.parameters.get("normalise") in ("cell mean", "cell total", "z-score")
+
+    @property
     def is_signed(self) -> bool:
         """Whether values of windows lie on both sides of 0, as edge velocity does."""
         settings = self.study.parameters

@@ -86,7 +86,9 @@ def gallery_page(one: DrawnPopulation, channel: str) -> Sheet | None:
         )
     left = LEFT_MM + _SIDE + columns * (size + _GAP) + _ROOM
     bar = sheet.axes(left, heading.height_mm + 3.0 + _TITLE, 2.2, min(size * 1.2, 26.0))
-    label = f"{one.channel_words(channel)} (a.u.)" if images else one.value_label(channel)
+    label = one.value_label(channel)
+    if images:
+        label = f"{one.channel_words(channel)} ({'× cell mean' if one.is_by_cell else 'a.u.'})"
     colour_bar(drawn, bar, label, extend="both")
     return sheet
 
@@ -113,8 +115,17 @@ def _shown(
         values[cell["layer"].to_numpy(), cell["sector"].to_numpy()] = cell["value"].to_numpy(dtype=np.float64)
         values = np.roll(values, one.sources.shift(row), axis=1)
         disk, image = one.sources.image(row, channel, windows.disk)
+        if image is not None and one.is_by_cell:
+            image = _by_its_mean(image, disk)
         shown.append(_Shown(row, one.sources.name(row), windows, values, image, disk))
     return shown
+
+
+def _by_its_mean(image: AnyArray, disk: DiskMap) -> FloatArray:
+    """The image over its mean in the cell; nothing of a cell whose mean is not above 0."""
+    placed, values = disk.placed_mask, image.astype(np.float64)
+    mean = float(np.nanmean(values[placed.slices][placed.box]))
+    return values / (mean if mean > 0 else np.nan)
 
 
 def _two_lines(name: str, ending: str, longest: int) -> str:
