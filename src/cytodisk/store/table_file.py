@@ -71,6 +71,7 @@ def read_checked(
     block: Sequence[str] = (),
     remedy: str = REMEDY,
     finite: bool = True,
+    may_be_empty: Sequence[str] = (),
 ) -> pd.DataFrame:
     """A table with the units of its columns in `attrs["units"]`.
 
@@ -88,6 +89,8 @@ def read_checked(
     remedy : str
     finite : bool
         Infinite numbers are faults.
+    may_be_empty : sequence of str
+        Keys that a row can do without.
 
     Returns
     -------
@@ -118,6 +121,9 @@ def read_checked(
         unit_by_name = {one.name: (one.metadata or {}).get(b"unit", b"").decode() for one in found}
     for column in known:
         _check_values(path, column, frame, remedy, finite)
+        if column.name in _FILLED and column.name not in may_be_empty and frame[column.name].isna().any():
+            row = frame[column.name].isna().argmax()
+            raise ReadError(f"{path}: column {column.name} is empty in row {row}: {remedy}")
     _check_blocks(path, frame, block, remedy)
     frame.attrs["units"] = unit_by_name  # at the end: pandas copies attrs with each column that is taken
     return frame
@@ -144,10 +150,8 @@ def _is_alike(found: Any, wanted: Any) -> bool:
 
 
 def _check_values(path: Path, column: Column, frame: pd.DataFrame, remedy: str, finite: bool) -> None:
-    """Keys are numbers from 0 that are all there; no number is infinite."""
+    """Keys are numbers from 0; no number is infinite."""
     values = frame[column.name]
-    if column.name in _FILLED and values.isna().any():
-        raise ReadError(f"{path}: column {column.name} is empty in row {values.isna().argmax()}: {remedy}")
     wrong: Any = None
     if column.name in _KEYS and pa.types.is_integer(column.kind) and len(values):
         wrong = values[(values < 0) | (values >= _MOST)]

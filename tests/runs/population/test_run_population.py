@@ -6,6 +6,8 @@ import warnings
 from pathlib import Path
 
 import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 import cytodisk as cd
@@ -91,6 +93,25 @@ def test_other_inputs_or_parameters_are_another_run(cell_study: Path, done: Path
     table.to_csv(tmp_path / "groups.csv", index=False)
     with pytest.raises(cd.errors.OtherRunError, match=r"groups sha256.* now\): pass --overwrite"):
         _run(cell_study, done, groups=tmp_path / "groups.csv", channel=["Rac1"], resume=True)
+
+
+def test_a_file_without_cells_is_told(done: Path, tmp_path: Path) -> None:
+    shutil.copytree(done, tmp_path / "atlas")
+    path = tmp_path / "atlas" / "excluded.parquet"
+    rows = [
+        {
+            "input": "day1",
+            "source": "a.tif",
+            "frame": None,
+            "label": None,
+            "reason": "refused: it is cut short",
+        },
+        {"input": "day2", "source": "b.tif", "frame": 0, "label": 3, "reason": "refused"},
+    ]
+    pq.write_table(pa.Table.from_pylist(rows, schema=pq.read_schema(path)), path)
+    found = cd.open_population_study(tmp_path / "atlas").excluded
+    assert found["label"].tolist() == [pd.NA, 3]
+    assert found["reason"].tolist() == ["refused: it is cut short", "refused"]
 
 
 def test_a_seed_of_any_length_can_be_read_again(cell_study: Path, tmp_path: Path) -> None:

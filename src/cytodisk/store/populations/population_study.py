@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -21,6 +22,7 @@ from cytodisk.store.table_file import REMEDY, check_heads, read_checked, units_i
 RUN = "population"
 CURVES, CONTROL, CONDITIONS, SENTENCES = "curves", "control", "conditions", "sentences"  # of the provenance
 SCALARS = "scalars compared"
+_PLACE = ("frame", "label")  # which a file as a whole has not
 
 
 class StudyWarning(NamedTuple):
@@ -192,7 +194,7 @@ class PopulationStudy:
     @cached_property
     def excluded(self) -> pd.DataFrame:
         """One row a cell, or file, of the studies that is not among `cells`, with the reason."""
-        return self._table("excluded")
+        return self._table("excluded", _PLACE).astype(dict.fromkeys(_PLACE, "Int64"))
 
     @cached_property
     def atlas_arrays(self) -> xr.Dataset:
@@ -222,10 +224,11 @@ class PopulationStudy:
             raise ReadError(f"population {self.path} has no comparison of {condition!r}: it has {there}")
         return window_arrays(rows)
 
-    def _table(self, name: str) -> pd.DataFrame:
+    def _table(self, name: str, may_be_empty: Sequence[str] = ()) -> pd.DataFrame:
         columns = population_tables(self.is_curves)[name]
         path = self.path / f"{name}.parquet"
-        return read_checked(path, columns, units=units_in(self.provenance), finite=False)
+        units = units_in(self.provenance)
+        return read_checked(path, columns, units=units, finite=False, may_be_empty=may_be_empty)
 
 
 def open_population_study(path: str | os.PathLike[str]) -> PopulationStudy:
