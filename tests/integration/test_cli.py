@@ -370,6 +370,7 @@ def test_info_lists_versions(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("name", ["masks.tif", "signal.ome.tif"])
+@pytest.mark.slow
 def test_demo_leaves_files_of_the_user_alone(run: Run, mask: Path, tmp_path: Path, name: str) -> None:
     theirs = tmp_path / "demo" / "input" / name
     theirs.parent.mkdir(parents=True)

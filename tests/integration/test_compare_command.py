@@ -60,6 +60,7 @@ def test_masks_become_tables_figures_and_words(run: Run, masks: Path, tmp_path: 
     )
 
 
+@pytest.mark.slow
 def test_a_movie_is_compared_through_time(run: Run, tmp_path: Path) -> None:
     shown = cd.simulate.movie("translating", 2, frames=3, radius_px=12.0)
     assert shown.signal is not None

@@ -135,6 +135,7 @@ def test_a_report_of_it(run: Run, study: Path, tmp_path: Path) -> None:
     assert content(study) == before
 
 
+@pytest.mark.slow
 def test_a_movie_run_again_takes_old_correlations_away(run: Run, study: Path, tmp_path: Path) -> None:
     """What was correlated belongs to the results that are replaced."""
     folder = study.parent
@@ -172,6 +173,7 @@ def test_what_is_replaced_is_told_and_a_name_keeps_both(run: Run, study: Path) -
         assert_refused(run(*command, *arguments), words)
 
 
+@pytest.mark.slow
 def test_maps_of_an_earlier_version_are_told_once(run: Run, study: Path, tmp_path: Path) -> None:
     old = shutil.copytree(study, tmp_path / "old")
     found = json.loads((old / "provenance.json").read_text())

@@ -45,6 +45,7 @@ def test_every_command_on_masks_has_the_flag(run: Run) -> None:
         assert "--holes" in heading, command
 
 
+@pytest.mark.slow
 def test_a_batch_takes_it_for_all_or_for_one_input(run: Run, mask: Path, tmp_path: Path) -> None:
     write(tmp_path / "other.tif", tifffile.imread(mask))
     (tmp_path / "study.toml").write_text(

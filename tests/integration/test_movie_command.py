@@ -243,6 +243,7 @@ def test_a_movie_of_empty_frames(run: Run, tmp_path: Path, figures: int) -> None
 
 
 @pytest.mark.parametrize("which", ["masks", "signal"])
+@pytest.mark.slow
 def test_a_damaged_frame(run: Run, masks: Path, signal: Path, tmp_path: Path, which: str) -> None:
     damage(*((masks, 2) if which == "masks" else (signal, 4)))
     out = tmp_path / "out"

@@ -49,6 +49,7 @@ def test_what_can_be_reached_is_the_first_line(run: Run, cells: Path, tmp_path: 
     assert {file: file.stat().st_mtime_ns for file in (out / "figures").iterdir()} == drawn
 
 
+@pytest.mark.slow
 def test_figures_that_were_not_all_drawn_are_drawn_again(
     run: Run, cells: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -48,6 +48,7 @@ def test_commands_of_flags_run_as_they_are_printed(run: Run, study: cd.Study) ->
     assert "small windows" not in {flag.name for flag in cd.qc_flags(cd.open_study(again))}
 
 
+@pytest.mark.slow
 def test_flags_of_other_correlations_are_not_mixed_in(run: Run, study: cd.Study) -> None:
     found = cd.run_correlate(study, "a b", name="odd", **FEW)
     write_table(found.cells.assign(jitter=-0.2), found.path / "cells.parquet")
@@ -58,6 +59,7 @@ def test_flags_of_other_correlations_are_not_mixed_in(run: Run, study: cd.Study)
     assert f"flags of other results: cytodisk report {study.path}" in said
 
 
+@pytest.mark.slow
 def test_a_movie_without_a_signal_is_not_told_to_correlate(study: cd.Study, tmp_path: Path) -> None:
     bare = cd.run_movie(tmp_path / "masks.tif", tmp_path / "bare", layers=2, sectors=8)
     places = [Place(cell=0, frame=7, note="")]

@@ -194,6 +194,7 @@ def test_an_input_that_hangs_or_crashes_has_a_row(tmp_path: Path, monkeypatch: p
 
 
 @pytest.mark.usefixtures("quiet")  # after which no compiled code is left to be written
+@pytest.mark.slow
 def test_a_full_disk_stops_the_run_and_marks_no_input_as_failed(files: Path, tmp_path: Path) -> None:
     """The system's limit on the size of a file stands for the end of the disk."""
     out = tmp_path / "out"
@@ -235,6 +236,7 @@ def test_a_folder_with_other_results_is_not_touched(files: Path, quiet: Path) ->
     assert not (quiet / "new").exists()
 
 
+@pytest.mark.slow
 def test_a_batch_goes_to_a_url_without_a_cluster_too(files: Path, tmp_path: Path) -> None:
     batch = read_batch(files / "study.toml")
     assert batch_study(replace(batch, inputs=batch.inputs[:1]), f"file://{tmp_path}/out").statuses == {

@@ -134,6 +134,7 @@ def test_channels_without_figures_are_named() -> None:
     assert missing_figures(one.study)[0] == one.undrawn_words
 
 
+@pytest.mark.slow
 def test_several_conditions_are_corrected_together(page: Any) -> None:
     told = " ".join(words_of(page(effects_page, drawn(population(3)))))
     assert "corrected for all scalars (max-T, Holm)" in told
@@ -202,6 +203,7 @@ def test_profiles_have_a_line_an_experiment(page: Any, two: DrawnPopulation) -> 
     assert {"edge of the cell", "95 % interval over experiments"} <= set(words_of(figure))
 
 
+@pytest.mark.slow
 def test_directions_have_a_rose_a_condition(page: Any, two: DrawnPopulation) -> None:
     figure = page(directions_page, two)
     assert [ax.get_title() for ax in figure.axes] == two.conditions * 2
@@ -300,6 +302,7 @@ def test_cells_without_their_own_level_are_shown_alike(page: Any, mapped: Study)
     assert any("× cell mean" in words for words in words_of(figure))
 
 
+@pytest.mark.slow
 def test_a_full_gallery_has_room_on_its_page(page: Any, mapped: Study) -> None:
     one = with_maps(mapped)
     table = one.study.gallery

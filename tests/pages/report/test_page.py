@@ -35,6 +35,7 @@ def test_page_is_one_file_within_its_size(written: Path) -> None:
     assert text.count("</script>") == text.count("<script")
 
 
+@pytest.mark.slow
 def test_default_path_and_progress_and_the_same_page_again(study: Study, tmp_path: Path) -> None:
     done: list[tuple[int, int]] = []
     path = write_report(study, progress=lambda *step: done.append(step))
@@ -181,6 +182,7 @@ def test_other_cells_and_their_page(truth: SimulatedMovie, tmp_path: Path) -> No
     assert f'data-frame="{GAP}"' not in text
 
 
+@pytest.mark.slow
 def test_frames_larger_than_expected_are_thinned_out(
     study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -95,6 +95,7 @@ def test_a_pulse_after_each_onset_is_found_and_bleaching_is_not() -> None:
     np.testing.assert_allclose(found[0, 1], 0.0, atol=0.05)  # bleaching alone: 0.5 over the lags
 
 
+@pytest.mark.slow
 def test_each_summary_of_a_study_has_its_shape_and_unit(study: Study) -> None:
     shapes = {
         "mean": (2, 2, 6),

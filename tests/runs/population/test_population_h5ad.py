@@ -11,6 +11,7 @@ from cytodisk.errors import MissingPartError
 from cytodisk.store.provenance_file import read_provenance
 
 
+@pytest.mark.slow
 def test_the_file_holds_the_cells_that_were_compared(cell_study: Path, tmp_path: Path) -> None:
     anndata = pytest.importorskip("anndata", reason="anndata is not installed")
     settings = {"groups": cell_study / "groups.csv", "channel": ["Rac1"], "normalise": "cell mean"}
