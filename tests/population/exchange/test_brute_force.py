@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 from cytodisk.arrays import FloatArray
 from cytodisk.population.exchange.dose_exchanges import DoseExchanges, DoseSlope
-from cytodisk.population.exchange.effect_intervals import pair_effects
+from cytodisk.population.exchange.effect_intervals import group_effects, pair_effects
 from cytodisk.population.exchange.exchange_test import ExchangeTest, exchange_test
 from cytodisk.population.exchange.exchanges import SignExchanges
 from cytodisk.population.exchange.studentised import PairDifference
@@ -38,10 +38,9 @@ def test_pairs_some_of_which_lack_a_window() -> None:
     for signs in product((1.0, -1.0), repeat=7):
         turned = differences * np.array(signs)[:, None]
         columns = [column[np.isfinite(column)] for column in turned.T]
-        error = [column.var(ddof=1) / len(column) for column in columns]
-        scores.append(
-            [abs(c.mean()) / np.sqrt(0.5 * (e + shared)) for c, e in zip(columns, error, strict=True)]
-        )
+        error = np.array([column.var(ddof=1) / len(column) for column in columns])
+        means = np.abs([column.mean() for column in columns])
+        scores.append(means / np.sqrt(0.5 * (error + shared)))
     statistic = PairDifference(differences, np.zeros(5, dtype=np.int64))
     check(exchange_test(statistic, SignExchanges(7, 999, 0)), np.array(scores))
 
@@ -76,3 +75,17 @@ def test_the_effect_size_of_pairs_is_over_the_spread_of_the_conditions() -> None
     bias = 1 - 3 / (4 * 7 - 1)  # Hedges' own approximation, within 1e-3 of the factor
     assert_allclose(found["effect_size"], difference / spread * bias, rtol=2e-3)
     assert found["low"][0] < found["effect_size"][0] < found["high"][0]
+
+
+def test_groups_that_hardly_vary_have_an_interval_at_once() -> None:
+    """Ends of the noncentral t go over into those of the chi distribution, for both signs."""
+    treated = np.repeat([False, True], 4)
+    values = np.tile(np.arange(4.0), 2)[:, None] * np.array([3.4e-3, 3.3e-3, 1e-9, 1e-15])
+    values = values + 2.0 * treated[:, None]
+    up, down = group_effects(values, treated), group_effects(-values, treated)
+    for name, other in (("low", "high"), ("high", "low")):
+        share = up[name] / up["effect_size"]
+        assert_allclose(share, share[0], rtol=1e-3)
+        assert_allclose(up[name], -down[other], rtol=1e-3)
+    assert (up["low"] < up["effect_size"]).all()
+    assert (up["effect_size"] < up["high"]).all()
