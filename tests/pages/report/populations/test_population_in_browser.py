@@ -7,6 +7,7 @@ from selenium import webdriver
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
+from cytodisk.pages.report.populations.page import population_page
 from cytodisk.store.populations.population_study import PopulationStudy
 
 pytestmark = pytest.mark.slow
@@ -138,3 +139,16 @@ def test_shapes_alone_have_their_comparison(browser: webdriver.Chrome, shapes_wr
     assert page.js("document.querySelectorAll('#forest circle').length") == 2  # scalars
     assert "4 + 4 experiments" in page.text("compared")
     assert browser.find_elements(By.ID, "atlas-channel") == []
+
+
+@pytest.mark.parametrize("table", ["profiles", "scalars", "clusters", "left_out", "experiments", "cells"])
+def test_a_table_without_rows_leaves_the_others(
+    browser: webdriver.Chrome, compared: PopulationStudy, tmp_path: Path, table: str
+) -> None:
+    study = PopulationStudy(compared.path, compared.provenance)
+    study.__dict__[table] = getattr(compared, table).iloc[:0]
+    path = tmp_path / "report.html"
+    path.write_text(population_page(study), encoding="utf-8")
+    page = PopulationPage(browser, path)
+    assert errors(browser) == []
+    assert page.js("document.getElementById('failed').hidden")

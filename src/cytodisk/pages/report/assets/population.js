@@ -10,8 +10,8 @@
     byId("compared").textContent = page.comparison()?.words ?? "no comparison";
     page.drawAtlas();
     if (page.data.curves && page.data.lags) page.drawCurves();
-    if (page.data.channels.length) page.drawProfiles();
-    page.drawScalar();
+    if (byId("profiles")) page.drawProfiles();
+    if (byId("superplot")) page.drawScalar();
     if (byId("forest")) page.drawForest();
   };
 
