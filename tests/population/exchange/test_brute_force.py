@@ -80,7 +80,7 @@ def test_the_effect_size_of_pairs_is_over_the_spread_of_the_conditions() -> None
 def test_groups_that_hardly_vary_have_an_interval_at_once() -> None:
     """Ends of the noncentral t go over into those of the chi distribution, for both signs."""
     treated = np.repeat([False, True], 4)
-    values = np.tile(np.arange(4.0), 2)[:, None] * np.array([3.4e-3, 3.3e-3, 1e-9, 1e-15])
+    values = np.tile(np.arange(4.0), 2)[:, None] * np.array([3.4e-3, 3.3e-3, 1e-9, 1e-11])
     values = values + 2.0 * treated[:, None]
     up, down = group_effects(values, treated), group_effects(-values, treated)
     for name, other in (("low", "high"), ("high", "low")):
@@ -89,3 +89,13 @@ def test_groups_that_hardly_vary_have_an_interval_at_once() -> None:
         assert_allclose(up[name], -down[other], rtol=1e-3)
     assert (up["low"] < up["effect_size"]).all()
     assert (up["effect_size"] < up["high"]).all()
+
+
+def test_what_rounding_leaves_of_no_spread_gives_no_effect_size() -> None:
+    treated = np.repeat([False, True], 5)
+    values = np.where(treated, 0.7, 0.1)[:, None] + 1e-17 * np.arange(10.0)[:, None]
+    values[0] = 0.1 * 3 - 0.2  # 0.1 but for rounding
+    found = group_effects(values, treated)
+    assert np.isnan(found["effect_size"][0])
+    assert np.isnan(found["difference_low"][0])
+    assert abs(found["difference"][0] - 0.6) < 1e-12

@@ -13,6 +13,7 @@ from cytodisk.population.exchange.column_moments import column_moments
 from cytodisk.population.ratios import ratio
 
 CONFIDENCE = 0.95
+_ROUNDING = 1e-26  # of the squares of values: what is left of a variance of 0
 _FAR = 1000.0  # score from which on its spread is that of the sd alone, within 3e-4; else it takes hours
 
 
@@ -153,6 +154,10 @@ def _hedges(score: FloatArray, degrees: FloatArray, per_score: FloatArray) -> tu
 def _moments(
     values: FloatArray, chosen: BoolArray | None = None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Mean, variance and number of the values in each column; NaN where there are too few."""
+    """Mean, variance and number of the values in each column; NaN where there are too few.
+
+    What rounding leaves of a variance of 0 is 0: an effect size over it would be any number.
+    """
     found = column_moments(values, chosen)
-    return found.mean, found.variance, found.count
+    varies = ~(found.squares <= _ROUNDING * found.raw_squares)
+    return found.mean, np.where(varies, found.variance, found.variance * 0.0), found.count
