@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
-from matplotlib.text import Text
+from matplotlib.text import Annotation, Text
 
 from cytodisk.files import replacing
 from cytodisk.plot.style import DOUBLE_COLUMN_MM, DPI, MM_PER_INCH
@@ -47,7 +48,9 @@ class Sheet:
         """A legend at a place counted from the page's upper left corner, in millimetres."""
         place = left / self.width_mm, 1.0 - top / self.height_mm
         options: dict[str, Any] = {"loc": "upper left", "frameon": False, "borderpad": 0.0, "ncols": columns}
-        return self.figure.legend(handles=handles, bbox_to_anchor=place, **options | style)
+        key = self.figure.legend(handles=handles, bbox_to_anchor=place, **options | style)
+        _as_written(key)
+        return key
 
     def save(self, path: Path, dpi: int = DPI, **options: Any) -> Path:
         """Write the page whole or not at all.
@@ -57,6 +60,15 @@ class Sheet:
         WriteError
             The folder does not exist or cannot be written.
         """
+        _as_written(self.figure)
         with replacing(path) as temporary:
             self.figure.savefig(temporary, dpi=dpi, **options)
         return path
+
+
+def _as_written(artist: Artist) -> None:
+    """Words of keys and notes as they are: a name with dollar signs is no formula."""
+    keys = [text for key in artist.findobj(Legend) if isinstance(key, Legend) for text in key.get_texts()]
+    notes = [text for text in artist.findobj(Annotation) if isinstance(text, Annotation)]
+    for text in (*keys, *notes):
+        text.set_parse_math(False)

@@ -7,6 +7,7 @@ import xarray as xr
 
 import cytodisk as cd
 from cytodisk.runs.population.conditions_compared import compared_conditions
+from cytodisk.runs.population.population_at_hand import prepared
 
 
 def _population(*conditions: str | None) -> cd.Population:
@@ -33,6 +34,13 @@ def test_names_with_commas_are_put_together_again() -> None:
     assert compared_conditions(there, given).names == ("DMSO", "10 nM, old, washed")
     with pytest.raises(cd.errors.PopulationError, match="no cell has the condition '10 nM'"):
         compared_conditions(there, given[:-1])
+
+
+@pytest.mark.parametrize(("name", "value"), [("normalise", "z-score"), ("align", "axis")])
+def test_cells_without_windows_are_neither_normalised_nor_aligned(name: str, value: str) -> None:
+    shapes = cd.Population(None, pd.DataFrame({"area": [1.0, 2.0]}), scalars=["area"])
+    with pytest.raises(cd.errors.PopulationError, match=f"no windows: leave --{name} out"):
+        prepared(shapes, cd.PopulationParameters(**{name: value}))
 
 
 def test_names_can_be_given_as_one_text() -> None:

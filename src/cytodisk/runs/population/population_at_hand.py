@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
+from cytodisk.errors import PopulationError
 from cytodisk.population.cell_directions import SIGNAL
 from cytodisk.population.population import Population
 from cytodisk.runs.population.conditions_compared import (
@@ -51,6 +52,9 @@ def opened_population(
 
 def prepared(population: Population, chosen: PopulationParameters) -> Population:
     """The population, normalised and aligned as asked for."""
+    given = [name for name in ("normalise", "align") if getattr(chosen, name) != "none"]
+    if given and not population.channels:
+        raise PopulationError(f"{given[0]}: these cells have no windows: leave --{given[0]} out")
     if chosen.normalise != "none":
         population = population.normalise(chosen.normalise)
     return population.align(chosen.align) if chosen.align != "none" else population
