@@ -46,7 +46,7 @@ def left_out_lines(study: "PopulationStudy") -> list[str]:
     for reason in reasons:
         by_reason[str(reason)] = by_reason.get(str(reason), 0) + 1
     most = sorted(by_reason.items(), key=lambda pair: -pair[1])
-    lines = [f"left out: {number}, {reason}" for reason, number in most[:_MOST_REASONS]]
+    lines = [f"left out ({number}): {reason}" for reason, number in most[:_MOST_REASONS]]
     more = len(most) - _MOST_REASONS
     return [*lines, f"… and {more} more reasons: excluded.parquet"] if more > 0 else lines
 
