@@ -196,6 +196,15 @@ def test_very_many_scalars_are_cut_to_the_largest(page: Any) -> None:
     assert figure.axes[0].get_yticklabels()[0].get_text() == "feature 56"
 
 
+def test_the_key_of_experiments_is_read_along_rows(page: Any) -> None:
+    figure = page(scalars_page, drawn(population(2, experiments=17, cells=2, paired=True)))
+    told = [text.get_text() for text in figure.legends[0].get_texts()]  # column by column
+    step = int(told[1].split()[-1]) - 1
+    assert step > 1
+    along = [f"experiment {number}" for first in range(1, step + 1) for number in range(first, 18, step)]
+    assert told == along
+
+
 def test_profiles_have_a_line_an_experiment(page: Any, two: DrawnPopulation) -> None:
     figure = page(profiles_page, two)
     lines = [line.get_gid() for line in figure.axes[0].lines]

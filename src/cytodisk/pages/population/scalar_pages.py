@@ -53,7 +53,7 @@ def scalars_page(one: DrawnPopulation) -> Sheet | None:
     key = experiment_key(cells, one.conditions, paired=one.paired)
     shown, last = key[:-2], key[-2:]
     longest = max((len(str(handle.get_label())) for handle in shown), default=0)
-    abreast = max(1, int((width - 2 * LEFT_MM) / (1.25 * longest + 7.0)))
+    abreast = max(1, int((width - 2 * LEFT_MM) / (1.4 * longest + 8.3)))
     key_height = _LINE * (-(-len(shown) // abreast) + 1) + 3.0
     heading = one.heading(width, "Scalars, cell by cell", *_notes(one, names))
     rows = -(-len(names) // columns)
@@ -62,7 +62,8 @@ def scalars_page(one: DrawnPopulation) -> Sheet | None:
     sheet = Sheet(first + rows * (above + _TALL + _BELOW), width)
     heading.write(sheet)
     if shown:
-        sheet.key(LEFT_MM, heading.height_mm - 2.0, shown, abreast, borderaxespad=0.0, **_KEY_STYLE)
+        along_rows = [one for column in range(abreast) for one in shown[column::abreast]]
+        sheet.key(LEFT_MM, heading.height_mm - 2.0, along_rows, abreast, borderaxespad=0.0, **_KEY_STYLE)
     below = heading.height_mm - 2.0 + _LINE * -(-len(shown) // abreast) + 0.4
     sheet.key(LEFT_MM, below, last, 2, borderaxespad=0.0, **_KEY_STYLE)
     for number, name in enumerate(names):

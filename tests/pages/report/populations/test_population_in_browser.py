@@ -105,6 +105,11 @@ def test_main_columns_fit_a_laptop(page: PopulationPage) -> None:
     assert page.js(f"{box}.scrollWidth <= {box}.clientWidth")
 
 
+def test_eight_experiments_have_eight_marks(page: PopulationPage) -> None:
+    shapes = page.js("Array.from({ length: 8 }, (_, k) => cytodisk.mark(k, 7, 0, 0, {}).getAttribute('d'))")
+    assert len(set(shapes)) == 8
+
+
 def test_small_numbers_have_true_minuses(page: PopulationPage) -> None:
     assert page.js("cytodisk.digits(-0.00072)") == "−7.2e−4"
 

@@ -79,6 +79,9 @@
     (r) => `M0 ${-1.2 * r}L${1.1 * r} ${0.8 * r}H${-1.1 * r}Z`,
     (r) => `M0 ${-1.3 * r}L${1.2 * r} 0L0 ${1.3 * r}L${-1.2 * r} 0Z`,
     (r) => `M0 ${1.2 * r}L${1.1 * r} ${-0.8 * r}H${-1.1 * r}Z`,
+    (r) => `M${-0.4 * r} ${-1.2 * r}h${0.8 * r}v${0.8 * r}h${0.8 * r}v${0.8 * r}h${-0.8 * r}v${0.8 * r}h${-0.8 * r}v${-0.8 * r}h${-0.8 * r}v${-0.8 * r}h${0.8 * r}Z`,
+    (r) => `M${1.2 * r} 0L${-0.8 * r} ${1.1 * r}V${-1.1 * r}Z`,
+    (r) => `M${-1.2 * r} 0L${0.8 * r} ${1.1 * r}V${-1.1 * r}Z`,
   ];
   page.mark = (number, radius, x, y, attributes) =>
     svg("path", { d: MARKS[number % MARKS.length](radius), transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})`, ...attributes });
