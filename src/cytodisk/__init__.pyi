@@ -86,8 +86,8 @@ from .analysis.shape.medoid_cell import medoid_cell as medoid_cell
 
 # Populations: many cells by condition and experiment
 from .population.population import Population as Population
-from .population.conditions.comparison import compare_conditions as compare_conditions
-from .population.conditions.comparison import ConditionComparison as ConditionComparison
+from .population.conditions.condition_comparison import compare_conditions as compare_conditions
+from .population.conditions.condition_comparison import ConditionComparison as ConditionComparison
 from .population.conditions.with_control import compare_with_control as compare_with_control
 from .population.conditions.with_zero import compare_with_zero as compare_with_zero
 from .population.conditions.with_zero import ZeroComparison as ZeroComparison

@@ -65,7 +65,7 @@ from .population.effect_sizes import draw_effect_sizes as draw_effect_sizes
 from .population.cell_gallery import draw_gallery as draw_gallery
 from .population.cell_gallery import draw_window_gallery as draw_window_gallery
 from .population.directions import draw_directions as draw_directions
-from .population.pooled_curves import draw_pooled_curves as draw_pooled_curves
+from .population.pooled_curve_lines import draw_pooled_curves as draw_pooled_curves
 from .population.mean_curves import draw_mean_curves as draw_mean_curves
 from .population.power_curves import draw_power as draw_power
 

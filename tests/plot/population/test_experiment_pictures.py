@@ -21,7 +21,7 @@ from cytodisk.plot.population.directions import EXPERIMENT_NAME, MEAN_NAME, draw
 from cytodisk.plot.population.effect_sizes import INTERVAL_NAME, draw_effect_sizes
 from cytodisk.plot.population.experiment_key import experiment_key
 from cytodisk.plot.population.experiment_lines import CELL_NAME, interval_of_mean, mean_by_experiment
-from cytodisk.plot.population.pooled_curves import draw_pooled_curves
+from cytodisk.plot.population.pooled_curve_lines import draw_pooled_curves
 from cytodisk.plot.population.power_curves import draw_power
 from cytodisk.plot.population.super_plot import draw_super_plot
 

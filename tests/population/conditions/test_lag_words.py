@@ -2,7 +2,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cytodisk.population.conditions.comparison import compare_conditions
+from cytodisk.population.conditions.condition_comparison import compare_conditions
 from cytodisk.population.conditions.window_words import lags_of
 from cytodisk.population.population import Population
 

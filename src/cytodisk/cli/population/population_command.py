@@ -11,7 +11,7 @@ from cytodisk.cli.correlate_command import Format, figure_formats
 from cytodisk.cli.options import Given, GroupsFile, NoReport, Quiet, with_parameters
 from cytodisk.cli.population.kept_plan import keep_plan, refuse_kept_plan
 from cytodisk.cli.population.planned import planned
-from cytodisk.cli.population.population_words import say_population
+from cytodisk.cli.population.population_said import say_population
 from cytodisk.cli.report.report_words import say_page
 from cytodisk.errors import ParameterError
 from cytodisk.runs.population.population_parameters import PopulationParameters

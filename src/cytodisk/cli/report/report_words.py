@@ -31,7 +31,7 @@ def page_of(study: "Study", inputs: "CellInputs", quiet: bool) -> Callable[[], P
     """
 
     def write() -> Path:
-        from cytodisk.pages.report.cells.page import cells_page
+        from cytodisk.pages.report.cells.cells_html import cells_page
         from cytodisk.pages.report.page import REPORT, write_page
         from cytodisk.runs.map.input_files import FoundInputs
 

@@ -21,7 +21,7 @@ from cytodisk.plot.correlation.lag_axis import LagUnit
 from cytodisk.plot.layer_looks import layer_word, shown_layers
 from cytodisk.plot.population.condition_looks import condition_colours
 from cytodisk.plot.population.condition_profiles import condition_key
-from cytodisk.plot.population.pooled_curves import draw_pooled_curves
+from cytodisk.plot.population.pooled_curve_lines import draw_pooled_curves
 from cytodisk.plot.style import LINE_COLOUR, SINGLE_COLUMN_MM, paper_style
 from cytodisk.population.significance import LEVEL
 from cytodisk.runs.channel_names import shortened, shown_name

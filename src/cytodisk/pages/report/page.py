@@ -9,11 +9,11 @@ from pathlib import Path
 from cytodisk.errors import ParameterError, StudyError
 from cytodisk.files import real_path, replacing
 from cytodisk.images.signal_files import FrameSource
-from cytodisk.pages.report.batches.page import batch_page
+from cytodisk.pages.report.batches.batch_html import batch_page
 from cytodisk.pages.report.bokeh_parts import bokeh
-from cytodisk.pages.report.cells.page import cells_page
+from cytodisk.pages.report.cells.cells_html import cells_page
 from cytodisk.pages.report.movie_page import movie_page, open_cell, usual_cell
-from cytodisk.pages.report.populations.page import population_page
+from cytodisk.pages.report.populations.population_html import population_page
 from cytodisk.pages.report.template import jinja
 from cytodisk.runs.study_signal import shown_signal
 from cytodisk.store.populations.population_study import PopulationStudy

@@ -15,8 +15,8 @@ from cytodisk.arrays import BoolArray, FloatArray, IntArray
 from cytodisk.checks import instance_of
 from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import DoseParameters
-from cytodisk.population.conditions.comparison import chosen_channels
 from cytodisk.population.conditions.comparison_sentences import trend_words
+from cytodisk.population.conditions.condition_comparison import chosen_channels
 from cytodisk.population.conditions.tested_units import unit_results
 from cytodisk.population.conditions.unit_values import usable_cells
 from cytodisk.population.exchange.dose_exchanges import DoseExchanges, DoseSlope, without_levels

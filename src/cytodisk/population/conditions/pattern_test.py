@@ -14,8 +14,8 @@ from cytodisk.checks import instance_of
 from cytodisk.errors import PopulationError
 from cytodisk.population.cell_directions import SIGNAL
 from cytodisk.population.comparison_parameters import PermutationParameters
-from cytodisk.population.conditions.comparison import chosen_channels
 from cytodisk.population.conditions.comparison_tables import cluster_table, window_dataset
+from cytodisk.population.conditions.condition_comparison import chosen_channels
 from cytodisk.population.conditions.experiment_units import checked_conditions
 from cytodisk.population.conditions.unit_values import usable_cells, window_means
 from cytodisk.population.exchange.exchange_test import exchange_test

@@ -12,8 +12,8 @@ from cytodisk.arrays import FloatArray
 from cytodisk.checks import instance_of
 from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import ComparisonParameters
-from cytodisk.population.conditions.comparison import ConditionComparison, compare_conditions
 from cytodisk.population.conditions.comparison_sentences import found_words
+from cytodisk.population.conditions.condition_comparison import ConditionComparison, compare_conditions
 from cytodisk.population.named_warning import NamedWarning
 from cytodisk.population.population import Population
 from cytodisk.population.significance import LEVEL

@@ -14,7 +14,7 @@ from cytodisk.arrays import IntArray
 from cytodisk.checks import instance_of
 from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import PermutationParameters
-from cytodisk.population.conditions.comparison import chosen_channels
+from cytodisk.population.conditions.condition_comparison import chosen_channels
 from cytodisk.population.conditions.experiment_units import checked_conditions
 from cytodisk.population.conditions.tested_units import AgainstZero, unit_results
 from cytodisk.population.conditions.unit_values import usable_cells

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from cytodisk.errors import PopulationError
 from cytodisk.population.comparison_parameters import ComparisonParameters, DoseParameters
-from cytodisk.population.conditions.comparison import ConditionComparison
+from cytodisk.population.conditions.condition_comparison import ConditionComparison
 from cytodisk.population.conditions.dose_trend import DoseTrend, dose_trend
 from cytodisk.population.conditions.with_control import compare_with_control
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT, names_in

@@ -10,7 +10,7 @@ import pandas as pd
 import xarray as xr
 
 from cytodisk.arrays import FloatArray
-from cytodisk.population.conditions.comparison import ConditionComparison
+from cytodisk.population.conditions.condition_comparison import ConditionComparison
 from cytodisk.population.conditions.dose_trend import DoseTrend
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT
 from cytodisk.population.population import Population

@@ -14,8 +14,8 @@ from PIL import Image
 
 import cytodisk as cd
 from cytodisk.errors import MissingPartError, ParameterError
-from cytodisk.pages.report.cells import page as cells_module
-from cytodisk.pages.report.cells.page import cells_page
+from cytodisk.pages.report.cells import cells_html as cells_module
+from cytodisk.pages.report.cells.cells_html import cells_page
 from cytodisk.pages.report.listed import MOST_ROWS, listed, rows_words
 from cytodisk.pages.report.page import write_report
 from cytodisk.runs.map.input_files import find_inputs

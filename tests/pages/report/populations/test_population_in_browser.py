@@ -7,7 +7,7 @@ from selenium import webdriver
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
-from cytodisk.pages.report.populations.page import population_page
+from cytodisk.pages.report.populations.population_html import population_page
 from cytodisk.store.populations.population_study import PopulationStudy
 
 pytestmark = pytest.mark.slow

@@ -12,7 +12,7 @@ import cytodisk as cd
 from cytodisk.errors import ParameterError
 from cytodisk.pages.population.drawn_population import DrawnPopulation
 from cytodisk.pages.report.page import write_report
-from cytodisk.pages.report.populations.page import population_page
+from cytodisk.pages.report.populations.population_html import population_page
 from cytodisk.pages.report.populations.population_words import methods
 from cytodisk.store.populations.population_study import PopulationStudy
 

@@ -12,7 +12,7 @@ import xarray as xr
 from scipy.stats import t as student
 
 from cytodisk.errors import PopulationError
-from cytodisk.population.conditions.comparison import compare_conditions
+from cytodisk.population.conditions.condition_comparison import compare_conditions
 from cytodisk.population.conditions.with_control import holm
 from cytodisk.population.conditions.with_zero import compare_with_zero
 from cytodisk.population.group_columns import CONDITION, EXPERIMENT
