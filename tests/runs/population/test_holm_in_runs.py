@@ -12,7 +12,7 @@ def test_counts_are_of_what_is_corrected_for_all_conditions() -> None:
     made = cd.simulate.population(experiments=4, effect=3.0, seed=0)
     pop = cd.Population(made.values, made.cells)
     one = cd.compare_with_control(pop, "control", permutations=99)["drug"]
-    row = comparison_row(one, ("a",), "experiment")
+    row = comparison_row(one, ("a",), "experiment", one.smallest_p)
     assert row["windows_found"] > 0
     ones = {name: np.ones(len(getattr(one, name))) for name in ("clusters", "scalars")}
     lost = replace(
@@ -21,6 +21,6 @@ def test_counts_are_of_what_is_corrected_for_all_conditions() -> None:
         clusters=one.clusters.assign(p_holm=ones["clusters"]),
         scalars=one.scalars.assign(p_holm=ones["scalars"]),
     )
-    row = comparison_row(lost, ("a",), "experiment")
+    row = comparison_row(lost, ("a",), "experiment", lost.smallest_p)
     assert [row[f"{name}_found"] for name in ("windows", "clusters", "scalars")] == [0, 0, 0]
     assert row["smallest_found"] < row["p_holm"] == 1
