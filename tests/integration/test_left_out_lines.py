@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from cytodisk.cli.population.population_words import left_out_lines
+from cytodisk.cli.population.population_said import left_out_lines
 
 
 def test_reasons_are_told_from_the_commonest_on() -> None:
