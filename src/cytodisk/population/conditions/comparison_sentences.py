@@ -101,7 +101,8 @@ def _of_windows(against: str, channel: str, windows: xr.Dataset, clusters: pd.Da
     if not total:
         return f"{channel}, {against}: no window could be tested."
     different = p <= LEVEL
-    words = f"{channel}, {against}: {int(different.sum())} of {total} windows differ"
+    what = "windows" if "sector" in windows.dims else "points of the curves"
+    words = f"{channel}, {against}: {int(different.sum())} of {total} {what} differ"
     words += f" ({method}, p ≤ {LEVEL:g})"
     own = clusters[clusters["channel"] == channel]
     found = own[own["p"] <= LEVEL]

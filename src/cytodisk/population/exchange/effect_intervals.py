@@ -82,7 +82,8 @@ def pair_effects(control: FloatArray, treated: FloatArray) -> Effects:
     Returns
     -------
     dict of str to ndarray
-        See `Effects`. Interval of the effect size: Algina & Keselman (2003), doi:10.1177/0013164403256358.
+        See `Effects`. Interval of the effect size: Algina & Keselman (2003), doi:10.1177/0013164403256358; an
+        approximation, which is a little too short with few pairs.
     """
     both = np.isfinite(control) & np.isfinite(treated)
     first, second = np.where(both, control, np.nan), np.where(both, treated, np.nan)
