@@ -454,9 +454,9 @@ def test_a_mask_of_several_cells_is_refused_with_both_remedies(run: Run, tmp_pat
             run(*command), "2 pieces, the second 75 % of the largest", "--label", "--fragments largest"
         )
     assert not (tmp_path / "no").exists()
-    said = run("map", path, "-o", tmp_path / "largest", "--fragments", "largest", *GRID, "--figures", 0)[1]
+    said = run("map", path, "-o", tmp_path / "largest", "--fragments", "largest", *GRID)[1]
     assert "perhaps more than one cell: a large fragment was dropped; if they are cells, number" in said
-    assert run("map", path, "-o", tmp_path / "two", "--label", *GRID, "--figures", 0)[0] == 0
+    assert run("map", path, "-o", tmp_path / "two", "--label", *GRID)[0] == 0
     assert cd.open_study(tmp_path / "two").cells["area_px"].tolist() == [400, 300]
 
 

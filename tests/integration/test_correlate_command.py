@@ -168,9 +168,9 @@ def test_what_is_replaced_is_told_and_a_name_keeps_both(run: Run, study: Path) -
     for arguments, words in (
         (("--frames", "5"), "--frames must be the first and the last, such as 10:80, got '5'"),
         (("--without-frames", "3:4"), "--without-frames must be whole numbers, such as 17,24, got '3:4'"),
-        (("--surrogates", "5"), "at least 19"),
     ):
         assert_refused(run(*command, *arguments), words)
+    assert_refused(run("correlate", study, "--signal", "edge", "--surrogates", "5"), "at least 19")
 
 
 @pytest.mark.slow

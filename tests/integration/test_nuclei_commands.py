@@ -81,7 +81,7 @@ def test_map_says_how_many_have_which(run: Run, files: tuple[Path, Path]) -> Non
 
 
 def test_map_draws_nucleus_and_cytoplasm_of_all_cells(run: Run, files: tuple[Path, Path]) -> None:
-    options = ("--nuclei", files[1], *GRID, "--several", "largest", "--figures", 0)
+    options = ("--nuclei", files[1], *GRID, "--several", "largest")
     assert run("map", files[0], "-o", "unmeasured", *options)[0] == 0
     assert not Path("unmeasured/figures/nuclei.png").exists()
     said = run("map", files[0], "--signal", files[0], "--channels", "GFP", "-o", "out", *options)[1]
