@@ -59,7 +59,7 @@ def batch(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_batch_is_a_population_of_all_its_cells(batch: Path) -> None:
     population = open_population(batch)
     cells = population.cells
-    assert cells["cell"].tolist() == [f"{name}, cell {k}" for name in "ab" for k in (1, 2, 3)]
+    assert cells["cell"].tolist() == [f"{name}, label {k}" for name in "ab" for k in (1, 2, 3)]
     assert cells["condition"].tolist() == ["control"] * 3 + ["drug"] * 3
     assert cells["experiment"].tolist() == ["day 1"] * 6
     assert cells["plate"].tolist() == [1] * 3 + [2] * 3
