@@ -464,6 +464,7 @@ def staggered(seed: int, frames: int, sectors: int) -> Any:
     return values
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::cytodisk.errors.StationarityWarning")  # waves are slow
 @pytest.mark.parametrize("make", [waves, staggered])
 def test_means_over_sectors_that_hang_together_are_rarely_called_correlated(make: Any) -> None:

@@ -102,6 +102,7 @@ def test_few_lags_are_refused() -> None:
         cd.jitter_step(curves(wide()).sel(lag=slice(-5, 5)))
 
 
+@pytest.mark.slow
 def test_masks_that_jitter_leave_it_and_still_ones_do_not() -> None:
     """Material that has nothing to do with the edge seems to, at lags -1 and 0, where masks jitter."""
     found = {}

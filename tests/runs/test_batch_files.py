@@ -62,6 +62,7 @@ def test_overwrite_leaves_what_is_not_the_batchs(batch: Batch, tmp_path: Path) -
     assert [(out / name).read_text() for name in THEIRS] == ["mine"] * len(THEIRS)
 
 
+@pytest.mark.slow
 def test_overwrite_is_refused_where_an_input_would_go(batch: Batch, tmp_path: Path) -> None:
     out = tmp_path / "out"
     batch_study(batch, out)

@@ -141,6 +141,7 @@ def test_a_stopped_run_goes_on_with_the_next_method(
     pd.testing.assert_frame_equal(resumed.layers, comparison.layers)
 
 
+@pytest.mark.slow
 def test_results_do_not_depend_on_workers(
     comparison: cd.Comparison, files: tuple[Path, Path], tmp_path: Path
 ) -> None:

@@ -39,6 +39,7 @@ def test_a_stopped_run_goes_on_to_the_same_results(
     assert_same_movie(whole, resumed)
 
 
+@pytest.mark.slow
 def test_a_run_with_the_other_tracker_goes_on_too(inputs: MovieInputs, tmp_path: Path) -> None:
     parameters = inputs.parameters.model_copy(update={"tracker": "demons"})
     demons = open_movie(inputs.masks.path, None, parameters)

@@ -48,6 +48,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Study:
     return cd.run_movie(masks, folder / "out", signal=signal, layers=3, sectors=8)
 
 
+@pytest.mark.slow
 def test_a_still_pattern_does_not_survive(study: Study) -> None:
     found = cd.run_correlate(study, "still", **_HOW)
     layers = found.layers.set_index("layer")
@@ -174,6 +175,7 @@ def test_what_does_not_survive() -> None:
     assert does_not_survive(correlation, q, left, q_partial).tolist() == expected
 
 
+@pytest.mark.slow
 def test_independent_series_stay_nominal() -> None:
     """Taking controls out of a signal makes no correlation with what is independent of both."""
     shares = []

@@ -103,6 +103,7 @@ def test_the_files_of_a_study_say_what_their_columns_mean(folder: Path, tmp_path
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_results_do_not_depend_on_workers(folder: Path, tmp_path: Path) -> None:
     masks = folder / "b_masks.tif"  # two parts, so that there is work for two
     one, two = run(masks, tmp_path / "one"), run(masks, tmp_path / "two", workers=2)

@@ -61,6 +61,7 @@ def correlation(pairs: FloatArray) -> float:
     return float(np.corrcoef(pairs)[0, 1])
 
 
+@pytest.mark.slow
 def test_a_fluctuating_cell_stays_simple_for_400_frames() -> None:
     shown = long_movie()
     assert shapely.is_valid(shapely.polygons(shown.boundary_yx)).all()

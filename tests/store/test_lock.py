@@ -46,6 +46,7 @@ def test_a_lock_whose_file_was_removed_is_no_lock(tmp_path: Path) -> None:
     assert not path.exists()
 
 
+@pytest.mark.slow
 def test_processes_that_race_for_a_folder_are_never_in_it_together(tmp_path: Path) -> None:
     command = [sys.executable, "-c", RACE, str(tmp_path / "out")]
     racers = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(4)]

@@ -73,6 +73,7 @@ def test_every_subpixel_is_in_the_window_that_its_place_maps_into(
     assert apart.sum() <= 16 + 1e-3 * apart.size
 
 
+@pytest.mark.slow
 @given(
     seed=st.integers(0, 10_000),
     counts=st.tuples(st.integers(1, 100), st.integers(1, 200), st.integers(1, 50)),
