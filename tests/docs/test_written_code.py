@@ -48,8 +48,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     tifffile.imwrite(here / "nuclei.tif", cell.nucleus.astype("uint8"))
     channels = np.stack([20.0 + 100.0 * cell.nucleus, gfp])
     tifffile.imwrite(here / "cells_image.tif", channels, metadata={"axes": "CYX"})
+    (here / "groups.csv").write_text(f"file,condition,experiment\n{masks.name},control,day 1\n")
     for command in (
-        f"movie {masks} --signal {signal} -o out --figures 0",
+        f"movie {masks} --signal {signal} --groups groups.csv -o out --figures 0",
         "correlate out --signal edge --with velocity --surrogates 99 --figures 0",
         f"shapes {masks} -o shapes",
         "map cells.tif --nuclei nuclei.tif --signal cells_image.tif --channels DAPI,GFP -o nuclei_out "
