@@ -1,4 +1,6 @@
 import os
+import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +11,18 @@ from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.disk.mapping import map_to_disk
 from cytodisk.windows.polar_windows import CellWindows, polar_windows
+
+
+def _has_screen() -> bool:
+    """Whether widgets of Qt can be made here."""
+    screens = ("DISPLAY", "WAYLAND_DISPLAY")
+    if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in screens):
+        return False
+    return all(find_spec(name) is not None for name in ("napari", "qtpy", "pytestqt"))
+
+
+# The plugins of napari and Qt are loaded with a screen only: they import much, and without one Qt may fail.
+pytest_plugins = ["pytestqt.plugin"] if _has_screen() else []
 
 _COMMON = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 settings.register_profile("here", max_examples=30, **_COMMON)
