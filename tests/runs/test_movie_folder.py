@@ -17,7 +17,7 @@ from cytodisk.runs.batch.dry_run import understand
 from cytodisk.runs.channel_names import common_signal_name
 from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
 from cytodisk.runs.movie.movie_study import movie_study
-from cytodisk.runs.study_signal import find_signal
+from cytodisk.store.inputs.study_signal import find_signal
 from cytodisk.store.tables import read_table
 
 FRAMES = 5

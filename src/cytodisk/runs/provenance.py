@@ -9,9 +9,9 @@ from typing import Any
 
 from cytodisk.disk.mapping_parameters import MAPS_VERSION
 from cytodisk.parameters import Parameters
-from cytodisk.runs.input_hashes import described
 from cytodisk.runs.versions import NUMERIC, installed
 from cytodisk.scale import Scale
+from cytodisk.store.inputs.input_hashes import described
 from cytodisk.store.provenance_file import MAPS
 
 

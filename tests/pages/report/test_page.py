@@ -21,8 +21,8 @@ from cytodisk.runs.movie.movie_inputs import open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.runs.qc_flags.study_flags import qc_flags
-from cytodisk.runs.study_signal import find_signal
 from cytodisk.simulate.moving_cells import SimulatedMovie
+from cytodisk.store.inputs.study_signal import find_signal
 from cytodisk.store.study import Study, open_study
 
 

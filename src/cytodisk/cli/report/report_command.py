@@ -99,7 +99,7 @@ def write_page(
     from cytodisk.pages.report.movie_page import EARLIER_MAPS, page_flags
     from cytodisk.pages.report.page import write_report
     from cytodisk.runs.qc_flags.study_flags import qc_flags
-    from cytodisk.runs.study_signal import open_signal
+    from cytodisk.store.inputs.study_signal import open_signal
 
     image = open_signal(study, signal) if signal is not None else None
     unit = "frames" if study.is_movie else "cells"

@@ -11,7 +11,7 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import CytodiskError
 from cytodisk.images.signal_files import SignalFrame, open_image
 from cytodisk.runs.map.input_files import FoundInputs, find_inputs
-from cytodisk.runs.study_signal import FoundSignal, find_signal
+from cytodisk.store.inputs.study_signal import FoundSignal, find_signal
 from cytodisk.store.study import Study
 
 _MARGIN = 0.6  # of a cell's longer side, on each side of it

@@ -22,7 +22,7 @@ from cytodisk.plot.correlation.correlation_peaks import LAG_COLOURS
 from cytodisk.plot.style import DIVERGING_COLOURS
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.study_flags import qc_flags
-from cytodisk.runs.study_signal import FoundSignal, shown_signal
+from cytodisk.store.inputs.study_signal import FoundSignal, shown_signal
 from cytodisk.store.provenance_file import other_maps, writer_of
 from cytodisk.store.study import Study
 

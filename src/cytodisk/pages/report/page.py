@@ -15,7 +15,7 @@ from cytodisk.pages.report.cells.cells_html import cells_page
 from cytodisk.pages.report.movie_page import movie_page, open_cell, usual_cell
 from cytodisk.pages.report.populations.population_html import population_page
 from cytodisk.pages.report.template import jinja
-from cytodisk.runs.study_signal import shown_signal
+from cytodisk.store.inputs.study_signal import shown_signal
 from cytodisk.store.populations.population_study import PopulationStudy
 from cytodisk.store.study import Study
 from cytodisk.store.written_files import writing_files

@@ -17,7 +17,7 @@ from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.pages.report.shown_names import without_folders
 from cytodisk.runs.channel_names import correlation_name
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
-from cytodisk.runs.study_signal import FoundSignal
+from cytodisk.store.inputs.study_signal import FoundSignal
 from cytodisk.store.study import Study
 
 MOST_PLACES = 30

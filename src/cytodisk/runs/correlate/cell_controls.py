@@ -17,7 +17,7 @@ from cytodisk.images.signal_files import FrameSource
 from cytodisk.runs.correlate.chosen_series import chosen_sectors
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.run_options import Progress
-from cytodisk.runs.study_signal import FoundSignal, find_signal
+from cytodisk.store.inputs.study_signal import FoundSignal, find_signal
 from cytodisk.store.study import Study
 from cytodisk.windows.study_grid import polar_grid_of
 

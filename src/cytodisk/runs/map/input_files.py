@@ -12,7 +12,7 @@ from cytodisk.files import file_name
 from cytodisk.images.image_paths import is_pattern
 from cytodisk.runs.cells.cell_inputs import CellInputs, open_inputs
 from cytodisk.runs.cells.cell_parameters import FileParameters
-from cytodisk.runs.input_hashes import described
+from cytodisk.store.inputs.input_hashes import described
 from cytodisk.store.study import Study
 
 

@@ -13,7 +13,7 @@ from cytodisk.images.file_parameters import SignalFileParameters
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.sequences.movie_signals import open_movie_images, reopened
 from cytodisk.images.signal_files import FrameSource
-from cytodisk.runs.input_hashes import described
+from cytodisk.store.inputs.input_hashes import described
 from cytodisk.store.study import Study
 
 

@@ -1,0 +1,1 @@
+"""The files that a study was made from: which they are, and whether they hold what was measured."""
