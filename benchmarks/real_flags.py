@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import cytodisk as cd
-from cytodisk.cli.flag_words import places_words
+from cytodisk.runs.told.flag_words import places_words
 
 GRID = cd.MovieParameters(layers=5, sectors=24)
 

@@ -12,7 +12,8 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from cytodisk.cli import app as cytodisk_app
-from cytodisk.cli.help_groups import flag_name, grouped
+from cytodisk.cli.help_groups import flag_name
+from cytodisk.runs.told.flag_headings import grouped
 
 
 class CommandLine(SphinxDirective):

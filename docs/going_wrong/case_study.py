@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from skimage.measure import find_contours
 
 import cytodisk as cd
-from cytodisk.cli.flag_words import flag_lines
+from cytodisk.runs.told.flag_words import flag_lines
 
 INTERVAL_S, PIXEL_UM = 5.0, 0.16
 NOTHING = "no QC flags"

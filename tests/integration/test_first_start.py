@@ -9,8 +9,9 @@ from pathlib import Path
 import numba
 import pytest
 
-from cytodisk.cli.first_start import _LATE, say_compiling
+from cytodisk.cli.first_start import say_compiling
 from cytodisk.geometry import lower_envelope
+from cytodisk.runs.told.compiling_words import LATE
 
 COMPILE = """
 import numpy as np
@@ -45,7 +46,7 @@ def test_kernels_are_seen_once_they_are_compiled(tmp_path: Path) -> None:
     assert run(ASK, tmp_path) == "False"  # of another Numba
 
 
-@pytest.mark.parametrize("work", _LATE)
+@pytest.mark.parametrize("work", LATE)
 def test_a_line_says_what_takes_long(
     work: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -65,7 +66,7 @@ def test_a_line_says_what_takes_long(
     assert capsys.readouterr().err == ""
 
 
-@pytest.mark.parametrize("module", sorted(set(chain(*_LATE.values()))))
+@pytest.mark.parametrize("module", sorted(set(chain(*LATE.values()))))
 def test_the_modules_that_are_asked_have_kernels(module: str, tmp_path: Path) -> None:
     ask = f"from cytodisk.kernel_cache import has_kernels as has; import {module} as m; print(has(m))"
     assert run(ask, tmp_path) == "False"  # a module without kernels has none to miss

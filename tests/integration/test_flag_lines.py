@@ -7,9 +7,9 @@ import tifffile
 from command_line import Run
 
 import cytodisk as cd
-from cytodisk.cli.flag_words import MOST_FLAGS, flag_lines, places_words
 from cytodisk.runs.batch import compute_input
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag
+from cytodisk.runs.told.flag_words import MOST_FLAGS, flag_lines, places_words
 
 GRID = ("--layers", 2, "--sectors", 6, "--figures", 0)
 

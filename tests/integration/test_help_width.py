@@ -8,7 +8,8 @@ import sys
 import pytest
 
 from cytodisk.cli import app
-from cytodisk.cli.help_groups import flag_name, grouped
+from cytodisk.cli.help_groups import flag_name
+from cytodisk.runs.told.flag_headings import grouped
 
 COMMANDS = sorted(app.commands)
 

@@ -13,7 +13,8 @@ from command_line import Run, assert_refused
 
 import cytodisk as cd
 from cytodisk.cli.console import console_for
-from cytodisk.cli.map_totals import finish_map, percent
+from cytodisk.cli.map_end import finish_map
+from cytodisk.runs.told.map_words import percent
 from deadlines import kill_after_parts, run_to_the_end
 
 GRID = ("--layers", "3", "--sectors", "8", "--edge-length", "2", "--figures", "0")

@@ -11,8 +11,8 @@ import tifffile
 from numpy.testing import assert_allclose
 
 import cytodisk as cd
-from cytodisk.cli.nucleus_words import nucleus_ratio_words, nucleus_share_words
 from cytodisk.errors import ReadError
+from cytodisk.runs.told.nucleus_words import nucleus_ratio_words, nucleus_share_words
 
 CENTRES, SHIFTS = ((40, 40), (40, 130), (40, 220)), ((0, 0), (0, 12), (-9, 12))  # (row, column) of cells
 RADIUS, NUCLEUS = 30, 10

@@ -13,12 +13,12 @@ from movie_files import LAYERS, SECTORS, Stopped, assert_same_movie, stop_after,
 from numpy.testing import assert_allclose
 
 import cytodisk as cd
-from cytodisk.cli.layer_peak_words import compartment_words
 from cytodisk.errors import NucleusError, ParameterError, StudyError
 from cytodisk.runs.movie.movie_inputs import MovieInputs, open_movie
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.movie.movie_study import movie_study
 from cytodisk.runs.qc_flags.nucleus_flags import several_nuclei
+from cytodisk.runs.told.layer_peak_words import compartment_words
 from cytodisk.simulate import MovieWithNuclei
 
 FRAMES, GAP = 7, 4

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cytodisk.cli.console import console_for, count, fail, progress_bar
-from cytodisk.cli.first_start import say_compiling, with_nuclei_or_not
-from cytodisk.cli.flag_words import MOST_FLAGS
+from cytodisk.cli.first_start import say_compiling
 from cytodisk.cli.options import Given, GroupsFile, NoReport, Quiet, with_parameters
 from cytodisk.runs.run_options import BatchOptions
+from cytodisk.runs.told.compiling_words import with_nuclei_or_not
+from cytodisk.runs.told.flag_words import MOST_FLAGS
 
 if TYPE_CHECKING:
     from rich.console import Console

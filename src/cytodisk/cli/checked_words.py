@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cytodisk.cli.console import count
-from cytodisk.cli.map_totals import without_cell_words
-from cytodisk.cli.nuclei_words import nuclei_words, statuses_of
 from cytodisk.images.mask_names import without_name
 from cytodisk.number_words import rounded
+from cytodisk.runs.told.map_words import without_cell_words
+from cytodisk.runs.told.nuclei_words import nuclei_words, statuses_of
 
 if TYPE_CHECKING:
     from cytodisk.runs.cells.cell_inputs import CellInputs

@@ -5,8 +5,8 @@ import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from cytodisk.cli.console import count
-from cytodisk.cli.map_totals import say_reasons
+from cytodisk.cli.console import count, say_losses
+from cytodisk.runs.told.map_words import reason_lines
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -55,7 +55,9 @@ def _say_lost(found: "Comparison") -> None:
     lost = found.cells[found.cells["reason"] != ""]
     at_fault = lost["status"].isin(("refused", "unreadable"))
     masks = lost[at_fault].drop_duplicates(["cell", "reason"])
-    say_reasons(zip(masks["cell"], masks["source"], masks["status"], masks["reason"], strict=True))
+    say_losses(
+        reason_lines(zip(masks["cell"], masks["source"], masks["status"], masks["reason"], strict=True))
+    )
     rows = lost[~at_fault].to_dict("records")
     for row in rows[:_MOST_ROWS]:
         print(f"cell {row['cell']}, {row['method']} ({row['status']}): {row['reason']}", file=sys.stderr)

@@ -41,6 +41,17 @@ def count(number: int, of: str = "cell") -> str:
     return f"1 {of}" if number == 1 else f"{number} {of}s"
 
 
+def say_lines(console: "Console", lines: Iterable[str]) -> None:
+    for line in lines:
+        console.print(line)
+
+
+def say_losses(lines: Iterable[str]) -> None:
+    """Say on stderr what was lost, even where nothing else is printed."""
+    for line in lines:
+        print(line, file=sys.stderr)
+
+
 def say_notes(console: "Console", notes: Iterable[str]) -> None:
     """Say on stderr what is wrong with the files, each once."""
     if not console.quiet:

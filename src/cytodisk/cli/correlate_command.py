@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 
 import typer
 
-from cytodisk.cli.console import console_for, progress_bar
-from cytodisk.cli.correlation_words import say_correlation, say_replaced, say_verdicts
-from cytodisk.cli.flag_words import say_study_flags
+from cytodisk.cli.console import console_for, progress_bar, say_lines
 from cytodisk.cli.options import Figures, Given, MovieStudyOrBatch, Quiet, with_parameters
 from cytodisk.cli.report.given_folder import is_batch
 from cytodisk.cli.report.report_command import opened
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.population.correlations.pool_parameters import BatchCorrelateParameters, PoolOptions
 from cytodisk.runs.run_options import TableOptions
+from cytodisk.runs.told.correlation_words import correlation_lines, replaced_words, verdict_lines
+from cytodisk.runs.told.flag_words import study_flag_lines
 
 if TYPE_CHECKING:
     from cytodisk.store.correlation_store import Correlation
@@ -60,15 +60,17 @@ def correlate_command(
     console = console_for(quiet)
     there = opened(console, study)
     chosen = signal if signal is not None else _only(channels_of(there))
-    say_replaced(console, earlier_settings(there, chosen, with_, settings.name), settings.model_dump())
+    before = earlier_settings(there, chosen, with_, settings.name)
+    if words := replaced_words(before, settings.model_dump()):
+        console.print(f"{words}. To keep both, stop with Ctrl-C and add --name NAME.")
     with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
         found = correlate_study(
             there, chosen, with_, cells=cell, progress=progress, parameters=settings, **dict(options)
         )
     draw_correlation(quiet, there, found, figures, wanted)
-    say_correlation(console, found, there)
-    say_study_flags(console, opened(None, study), found)
-    say_verdicts(console, found)
+    say_lines(console, correlation_lines(found, there))
+    say_lines(console, study_flag_lines(opened(None, study), found))
+    say_lines(console, verdict_lines(found))
 
 
 def _correlate_batch(

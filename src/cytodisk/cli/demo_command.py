@@ -6,15 +6,15 @@ from typing import Annotated
 
 import typer
 
-from cytodisk.cli.console import console_for, progress_bar
+from cytodisk.cli.console import console_for, progress_bar, say_lines
 from cytodisk.cli.correlate_command import NOTHING_CHANGED, draw_correlation
-from cytodisk.cli.correlation_words import say_correlation, say_verdicts
 from cytodisk.cli.first_start import say_compiling
-from cytodisk.cli.flag_words import say_study_flags
 from cytodisk.cli.movie_command import draw_movie, finish_movie, say_movie
 from cytodisk.cli.options import Quiet
 from cytodisk.cli.report.report_command import write_page
 from cytodisk.errors import MissingPartError
+from cytodisk.runs.told.correlation_words import correlation_lines, verdict_lines
+from cytodisk.runs.told.flag_words import study_flag_lines
 
 _AGAIN = "run the same command again"
 
@@ -65,13 +65,13 @@ def demo_command(
         with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
             found = correlate_study(study, "edge", "velocity", progress=progress)
         drawings.append(beside.submit(_draw_correlation, study.path))
-        say_correlation(console, found, study)
+        say_lines(console, correlation_lines(found, study))
         try:
             write_page(console, quiet, study)
         except MissingPartError as missing:
-            say_study_flags(console, study)
+            say_lines(console, study_flag_lines(study))
             console.print(f"no report: {missing}")
-        say_verdicts(console, found)
+        say_lines(console, verdict_lines(found))
         with progress_bar(quiet, "drawings", total=len(drawings), again=_AGAIN) as progress:
             for number, drawing in enumerate(drawings):
                 drawing.result()

@@ -4,21 +4,8 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib import import_module
 
-_OF_NUCLEI, _OF_EDGES = "cytodisk.windows.nucleus.nucleus_raster", "cytodisk.motion.swept_edge"
-# For each kind of work modules whose kernels are compiled late in it.
-_LATE = {
-    "shapes": ("cytodisk.disk.blocks",),
-    "map": ("cytodisk.windows.raster",),
-    "map with nuclei": (_OF_NUCLEI,),
-    "movie": (_OF_EDGES,),
-    "movie with nuclei": (_OF_NUCLEI, _OF_EDGES),
-}
-_WORDS = (
-    "First start: compiling numerical code, once. It takes about 20 s on an idle computer, "
-    "longer on a busy one."
-)
+from cytodisk.runs.told.compiling_words import compiles, compiling_words
 
 
 def say_compiling(quiet: bool, work: str = "map") -> bool:
@@ -36,17 +23,10 @@ def say_compiling(quiet: bool, work: str = "map") -> bool:
     bool
         Whether it is missing.
     """
-    from cytodisk.kernel_cache import has_kernels, keeps_kernels
-
-    missing = not all(has_kernels(import_module(module)) for module in _LATE[work])
-    if missing and not quiet and keeps_kernels():  # else the warning of `keep_kernels` has told
-        print(_WORDS, file=sys.stderr, flush=True)
+    missing = compiles(work)
+    if missing and not quiet and (words := compiling_words(work)):
+        print(words, file=sys.stderr, flush=True)
     return missing
-
-
-def with_nuclei_or_not(work: str, nuclei: object) -> str:
-    """The word for a kind of work, with nuclei where there are some: "map" or "map with nuclei"."""
-    return f"{work} with nuclei" if nuclei else work
 
 
 @contextmanager

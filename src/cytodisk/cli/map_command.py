@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING
 
 from cytodisk.cli.console import console_for, progress_bar, say_notes
-from cytodisk.cli.first_start import compiling, with_nuclei_or_not
-from cytodisk.cli.map_totals import finish_map
+from cytodisk.cli.first_start import compiling
+from cytodisk.cli.map_end import finish_map
 from cytodisk.cli.options import (
     Figures,
     Given,
@@ -20,6 +20,7 @@ from cytodisk.cli.options import (
 from cytodisk.cli.report.report_words import page_of
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.run_options import MapOptions
+from cytodisk.runs.told.compiling_words import with_nuclei_or_not
 
 if TYPE_CHECKING:
     from rich.console import Console

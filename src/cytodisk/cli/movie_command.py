@@ -1,13 +1,10 @@
 """`cytodisk movie`."""
 
-import sys
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from cytodisk.cli.console import RESUME, console_for, count, fail, progress_bar, say_notes
-from cytodisk.cli.first_start import compiling, with_nuclei_or_not
-from cytodisk.cli.flag_words import say_study_flags
-from cytodisk.cli.nucleus_words import nucleus_ratio_words, nucleus_share_words
+from cytodisk.cli.console import RESUME, console_for, fail, progress_bar, say_lines, say_losses, say_notes
+from cytodisk.cli.first_start import compiling
 from cytodisk.cli.options import (
     Figures,
     Given,
@@ -21,6 +18,9 @@ from cytodisk.cli.options import (
 )
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.run_options import RunOptions
+from cytodisk.runs.told.compiling_words import with_nuclei_or_not
+from cytodisk.runs.told.flag_words import study_flag_lines
+from cytodisk.runs.told.movie_words import lost_frame_lines, movie_fault, movie_lines
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -83,59 +83,10 @@ def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int,
 
 def finish_movie(console: "Console", study: "Study", flags: bool = True) -> None:
     """Say what came out, with `flags` what is wrong; exit code 2 if nothing came, or a frame is damaged."""
-    frames = study.cells
-    mapped = frames[frames["status"] == "ok"]
-    cells = frames["cell"].nunique()
-    console.print(f"{len(mapped)} of {len(frames)} frames of {count(cells)} mapped, each one to one")
-    if len(mapped):
-        _say_measures(console, study, mapped)
-    for words in (nucleus_ratio_words(mapped, "frame"), nucleus_share_words(mapped)):
-        if words:
-            console.print(words)
-    for status in ("refused", "missing", "unreadable"):
-        lost = frames[frames["status"] == status]
-        for _, row in lost.head(10).iterrows():
-            print(f"cell {row['cell']}, frame {row['frame']} {status}: {row['reason']}", file=sys.stderr)
-        if len(lost) > 10:
-            print(f"… and {len(lost) - 10} more {status}: column 'reason' of cells.parquet", file=sys.stderr)
+    say_lines(console, movie_lines(study))
+    say_losses(lost_frame_lines(study))
     if flags:
-        say_study_flags(console, study)
+        say_lines(console, study_flag_lines(study))
     console.print(f"results: {study.path}")
-    if not len(mapped):
-        fail(f"no frame could be mapped: {frames['reason'].iloc[0]}")
-    unreadable = int((frames["status"] == "unreadable").sum())
-    if unreadable:
-        fail(f"damaged frames of the input: {unreadable}; all others are in {study.path}")
-
-
-def _say_measures(console: "Console", study: "Study", mapped: Any) -> None:
-    _say_velocity(console, study)
-    length = study.consistency.attrs["units"]["centroid_displacement"]
-    correlation = study.consistency["correlation"].mean()
-    alike = f"consecutive frames correlate by {correlation:.2f}; " if correlation == correlation else ""
-    moved = study.consistency["centroid_displacement"].mean()
-    still = f"window centroids move {moved:.3g} {length} a frame; " if moved == moved else ""
-    console.print(f"{still}{alike}empty windows {int(mapped['empty_windows'].sum())}")
-
-
-def _say_velocity(console: "Console", study: "Study") -> None:
-    speed, unit = study.edge["velocity"], study.edge.attrs["units"]["velocity"]
-    if not speed.notna().any():
-        console.print("edge velocity: none, as no two frames that follow each other were mapped")
-        return
-    error = " ".join(["error of one sector", *_bounds(study.edge)])
-    span = f"{speed.min():.3g} to {speed.max():.3g}".replace("-", "−")
-    console.print(f"edge velocity: {span} {unit}, {error} {study.edge['velocity_error'].median():.2g} {unit}")
-
-
-def _bounds(edge: Any) -> list[str]:
-    """The word "at least" or "at most" if the error of velocity is such a bound in most cells."""
-    from cytodisk.motion.velocity_error import error_is
-
-    words = []
-    for _, of_cell in edge.groupby("cell"):
-        by_frame = of_cell.pivot(index="frame", columns="sector", values="velocity")
-        every = range(by_frame.index.min(), by_frame.index.max() + 1)
-        words.append(error_is(by_frame.reindex(every).to_numpy(dtype=float)))
-    most = max(set(words), key=words.count, default="")
-    return [most] if most else []
+    if fault := movie_fault(study):
+        fail(fault)

@@ -4,10 +4,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cytodisk.cli.checked_words import scale_words
-from cytodisk.cli.console import console_for, count, fail, progress_bar
+from cytodisk.cli.console import console_for, count, fail, progress_bar, say_losses
 from cytodisk.cli.first_start import say_compiling
 from cytodisk.cli.map_command import say_inputs
-from cytodisk.cli.map_totals import say_reasons
 from cytodisk.cli.options import (
     Given,
     GroupsFile,
@@ -18,6 +17,7 @@ from cytodisk.cli.options import (
 )
 from cytodisk.runs.run_options import RunOptions
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
+from cytodisk.runs.told.map_words import reason_lines
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -78,7 +78,7 @@ def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:
     border = int(measured["touches_border"].sum())
     console.print(f"on the image border, so measured in part: {count(border)}")
     _say_qc_flags(console, measured)
-    say_reasons(zip(lost["cell"], lost["source"], lost["status"], lost["reason"], strict=True))
+    say_losses(reason_lines(zip(lost["cell"], lost["source"], lost["status"], lost["reason"], strict=True)))
     if measured["complexity"].notna().any():
         _say_complexity(console, measured)
     elif len(measured):

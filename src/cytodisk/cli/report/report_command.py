@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cytodisk.cli.console import console_for, earlier_version_lines, progress_bar
-from cytodisk.cli.flag_words import file_names, say_flags
+from cytodisk.cli.console import console_for, earlier_version_lines, progress_bar, say_lines
 from cytodisk.cli.options import Quiet
 from cytodisk.cli.report.given_folder import is_batch, is_run
 from cytodisk.cli.report.report_words import say_page, say_written
+from cytodisk.runs.told.flag_words import file_names, flag_lines
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -108,5 +108,5 @@ def write_page(
     if flags:
         found = page_flags(study, image) if study.is_movie else qc_flags(study)
         shown = [flag for flag in found if flag.name != EARLIER_MAPS]  # said at the start
-        say_flags(console, shown, "they are first on the page", file_names(study))
+        say_lines(console, flag_lines(shown, "they are first on the page", file_names(study)))
     say_written(console, page)

@@ -1,11 +1,9 @@
-"""The QC flags of a study in lines of the console: what is wrong, where, and what to do."""
+"""The QC flags of a study in lines: what is wrong, where, and what to do."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag
     from cytodisk.store.correlation_store import Correlation
     from cytodisk.store.study import Study
@@ -15,17 +13,17 @@ _MOST_PLACES = 8
 _LONGEST_NOTE, _SHORT_NOTE = 160, 40
 
 
-def say_study_flags(console: "Console", study: "Study", found: "Correlation | None" = None) -> None:
-    """Print the QC flags of a study; of its correlations those of one alone, if that is given."""
+def study_flag_lines(study: "Study", found: "Correlation | None" = None) -> Iterator[str]:
+    """The QC flags of a study; of its correlations those of one alone, if that is given."""
     from cytodisk.runs.qc_flags.one_correlation import with_one
     from cytodisk.runs.qc_flags.study_flags import qc_flags
 
     page = f"cytodisk report {study.path}"
     files = file_names(study)
     shown = qc_flags(study if found is None else with_one(study, found))
-    say_flags(console, shown, f"see {page}", files)
+    yield from flag_lines(shown, f"see {page}", files)
     if found is not None and _places(qc_flags(study)) - _places(shown):
-        console.print(f"flags of other results: {page}")
+        yield f"flags of other results: {page}"
 
 
 def file_names(study: "Study") -> dict[int, str]:
@@ -39,27 +37,18 @@ def _places(flags: Sequence["QCFlag"]) -> set[tuple[str, "Place"]]:
     return {(flag.name, place) for flag in flags for place in flag.places}
 
 
-def say_flags(
-    console: "Console", flags: Sequence["QCFlag"], where_all: str, files: Mapping[int, str] | None = None
-) -> None:
-    """Print QC flags, a line each, the gravest first.
+def flag_lines(flags: Sequence["QCFlag"], where_all: str, files: Mapping[int, str]) -> Iterator[str]:
+    """QC flags, a line each, the gravest first.
 
     Parameters
     ----------
-    console : Console
     flags : sequence of QCFlag
         As `qc_flags` sorts them.
     where_all : str
         Where those stand for which there is no room.
-    files : mapping of int to str, optional
+    files : mapping of int to str
         Name of the file of each cell, where they come from several.
     """
-    for line in flag_lines(flags, where_all, files or {}):
-        console.print(line)
-
-
-def flag_lines(flags: Sequence["QCFlag"], where_all: str, files: Mapping[int, str]) -> Iterator[str]:
-    """The lines of `say_flags`."""
     for flag in flags[:MOST_FLAGS]:
         places = f" ({places_words(flag.places, files)})" if flag.places else ""
         yield f"QC flag {flag.name}: {flag.what}{places}. {flag.advice}"

@@ -1,4 +1,4 @@
-"""The lines of `cytodisk correlate` about layers: the mean over sectors of each, and what is left of it."""
+"""Lines on the layers of a correlation: the mean over sectors of each, and what is left of it."""
 
 import math
 from collections.abc import Iterator

@@ -1,27 +1,25 @@
-"""What `cytodisk correlate` says: peaks by layer, what speaks against them, what they replaced."""
+"""What a correlation tells: peaks by layer, what speaks against them, what they replaced."""
 
 import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from cytodisk.cli.console import count
-from cytodisk.cli.layer_peak_words import compartment_words, layer_lines, signed
+from cytodisk.number_words import counted
+from cytodisk.runs.told.layer_peak_words import compartment_words, layer_lines, signed
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from cytodisk.store.correlation_store import Correlation
     from cytodisk.store.study import Study
 
 _MOST_CLUSTERS = 5  # of a cell that are listed
 
 
-def say_correlation(console: "Console", found: "Correlation", study: "Study") -> None:
+def correlation_lines(found: "Correlation", study: "Study") -> Iterator[str]:
     """Peaks by layer, and how many windows are significant."""
     from cytodisk.runs.partial_words import not_tested, without_words
 
     settings = found.settings
-    console.print(
+    yield (
         f"signal {found.signal!r} with {found.with_}, {_of_what(settings)}lags to {settings['max_lag']} "
         "frames. "
         f"Positive lag: {_what_comes(found.with_)} after the signal; negative lag: before it"
@@ -29,18 +27,16 @@ def say_correlation(console: "Console", found: "Correlation", study: "Study") ->
     layers, windows = found.layers, found.windows
     for cell in layers["cell"].unique().tolist():
         without = without_words(found, cell)
-        console.print(f"cell {cell}, mean over sectors by layer{compartment_words(study)}:")
-        for words in layer_lines(found, study, cell, without):
-            console.print(words)
-        for words in _cluster_words(found, cell, without):
-            console.print(words)
+        yield f"cell {cell}, mean over sectors by layer{compartment_words(study)}:"
+        yield from layer_lines(found, study, cell, without)
+        yield from _cluster_words(found, cell, without)
     for _, row in found.cells.iterrows():
         for words in _cautions(row, settings):
-            console.print(f"cell {row['cell']}{words}")
+            yield f"cell {row['cell']}{words}"
     if skipped := not_tested(found):
-        console.print(skipped)
-    _say_power(console, found.cells, windows)
-    console.print(f"{count(layers['cell'].nunique())} correlated: {found.path}")
+        yield skipped
+    yield from _power_words(found.cells, windows)
+    yield f"{counted(layers['cell'].nunique(), 'cell')} correlated: {found.path}"
 
 
 def _what_comes(with_: str) -> str:
@@ -53,27 +49,23 @@ def _of_what(settings: dict[str, Any]) -> str:
     return "" if settings.get("statistic", "pearson") == "pearson" else "Spearman correlation of ranks, "
 
 
-def say_verdicts(console: "Console", found: "Correlation") -> None:
-    """The last lines: what nothing known speaks against, and what waits for flags."""
+def verdict_lines(found: "Correlation") -> Iterator[str]:
+    """The last lines, one a cell: what nothing known speaks against, and what waits for flags."""
     from cytodisk.runs.correlate.verdict import verdict_words
 
     for cell in found.cells["cell"].tolist():
         if words := verdict_words(found, int(cell)):
-            console.print(f"cell {cell}. {words}")
+            yield f"cell {cell}. {words}"
 
 
-def say_replaced(console: "Console", before: dict[str, Any] | None, now: dict[str, Any]) -> None:
-    """Say which settings the correlation that will be replaced has, if others."""
+def replaced_words(before: dict[str, Any] | None, now: dict[str, Any]) -> str:
+    """Which settings the correlation that will be replaced has, if others; empty if there is none."""
     if before is None:
-        return
+        return ""
     usual = "max_lag" if now["max_lag"] is None else ""  # which that is, is known at the end
     changed = [name for name in now if name in before and name != usual]
     told = [_setting_words(name, before[name]) for name in changed if not _same(before[name], now[name])]
-    if told:
-        console.print(
-            f"The earlier correlation ({', '.join(told)}) will be replaced. To keep both, stop with Ctrl-C "
-            "and add --name NAME."
-        )
+    return f"The earlier correlation ({', '.join(told)}) will be replaced" if told else ""
 
 
 def _same(before: Any, now: Any) -> bool:
@@ -112,7 +104,7 @@ def _cautions(row: Any, settings: dict[str, Any]) -> Iterator[str]:
         yield ": too few frames to see whether masks jitter, which correlates by itself at lags −1 and 0"
 
 
-def _say_power(console: "Console", cells: Any, windows: Any) -> None:
+def _power_words(cells: Any, windows: Any) -> Iterator[str]:
     """How many windows must be beyond all surrogates for any q to be below 0.05."""
     surrogates = int(cells["surrogates"].max())
     if not surrogates:
@@ -120,11 +112,9 @@ def _say_power(console: "Console", cells: Any, windows: Any) -> None:
     tested = int(windows["q"].notna().groupby(windows["cell"]).sum().max())
     fewest = tested * 20 // (surrogates + 1) + 1  # q = tested / (number · (surrogates + 1)) < 1 / 20
     if fewest > tested > 0:
-        console.print(
-            f"{surrogates} surrogates are too few for any q below 0.05: see --surrogates and --null"
-        )
+        yield f"{surrogates} surrogates are too few for any q below 0.05: see --surrogates and --null"
     elif tested and fewest > 1:
-        console.print(
+        yield (
             f"A patch of fewer than {fewest} windows cannot reach q < 0.05. To find one, use "
             f"--surrogates {_enough(tested, surrogates)} or fewer --sectors."
         )
@@ -158,7 +148,7 @@ def _cluster_line(row: Any, with_: str, without: str) -> str:
 
     words = (
         f"  cluster {row.cluster}, {cluster_place(row)}: {_which_first(row.lag, with_)}, "
-        f"mean r {signed(row.correlation)} in {count(row.windows, 'window')}, p = {row.p:.2g}"
+        f"mean r {signed(row.correlation)} in {counted(row.windows, 'window')}, p = {row.p:.2g}"
     )
     return "; ".join(filter(None, [words, region_left(row, without)]))
 

@@ -2,8 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from cytodisk.cli.console import count
-from cytodisk.number_words import rounded
+from cytodisk.number_words import counted, rounded
 from cytodisk.store.nuclei.summary_columns import (
     PERINUCLEAR_SHARE,
     PERIPHERAL_SHARE,
@@ -35,9 +34,12 @@ def nucleus_ratio_words(cells: "pd.DataFrame", of: str = "cell") -> str:
     numbers = sorted({len(values) for values in known.values()})
     if len(numbers) == 1:
         words = ", ".join(f"{channel} {rounded(values.mean())}" for channel, values in known.items())
-        return f"nucleus to cytoplasm: {words} (mean of {count(numbers[0], of)}, background as in the image)"
+        return (
+            f"nucleus to cytoplasm: {words} (mean of {counted(numbers[0], of)}, background as in the image)"
+        )
     words = ", ".join(
-        f"{channel} {rounded(values.mean())} ({count(len(values), of)})" for channel, values in known.items()
+        f"{channel} {rounded(values.mean())} ({counted(len(values), of)})"
+        for channel, values in known.items()
     )
     return f"nucleus to cytoplasm: {words} (means, background as in the image)"
 

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from cytodisk.cli.console import count
+from cytodisk.number_words import counted
 
 if TYPE_CHECKING:
     from cytodisk.runs.cells.cell_nuclei import CellNucleus
@@ -28,7 +28,7 @@ def nuclei_words(statuses: Counter[str]) -> Iterator[str]:
         Cells, and nuclei without a cell ("no cell"), by what their match says.
     """
     found = ", ".join(
-        f"{count(statuses[status])} {words}" for status, words in _WORDS.items() if statuses[status]
+        f"{counted(statuses[status], 'cell')} {words}" for status, words in _WORDS.items() if statuses[status]
     )
     if found:
         yield f"nuclei: {found}"
