@@ -1,0 +1,1 @@
+"""Layers that are open become the files that a command reads."""

@@ -1,0 +1,43 @@
+"""A list of layers follows the viewer."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.slow
+
+
+def test_choices_follow_the_viewer(make_viewer: Callable[..., Any]) -> None:
+    from cytodisk.napari.given.layer_choice import LayerChoice
+    from cytodisk.napari.given.layer_kinds import MASKS, SIGNALS
+
+    viewer = make_viewer()
+    masks, signals = LayerChoice(viewer, MASKS), LayerChoice(viewer, SIGNALS, several=True)
+    heard: list[Any] = []
+    masks.changed.connect(lambda: heard.append(masks.layer))
+    assert (masks.layer, signals.layers) == (None, ())
+
+    image = viewer.add_image(np.ones((8, 8)), name="Rac1")
+    assert masks.layer is image
+    labels = viewer.add_labels(np.ones((8, 8), int), name="cells")
+    viewer.add_points(np.ones((2, 2)))
+    viewer.add_labels(np.ones((8, 8), int), metadata={"cytodisk": {"study": "x"}})
+    assert masks.fitting() == [labels, image]
+    assert masks.layer is image  # what was chosen stays
+
+    masks.choose(labels)
+    labels.name = "other"
+    signals.choose(image)
+    assert masks._list.currentText() == "other  (labels)"
+    assert (masks.layer, signals.layers) == (labels, (image,))
+
+    viewer.layers.remove(image)
+    assert signals.layers == ()
+    viewer.layers.remove(labels)
+    assert masks.layer is None
+    assert heard == [image, labels, None]
+    masks.close_down()
+    viewer.add_labels(np.ones((8, 8), int))
+    assert masks.layer is None
