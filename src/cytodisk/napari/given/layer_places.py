@@ -78,4 +78,5 @@ def _corner(layer: Any) -> FloatArray:
     """Where the centre of the first pixel lies, beside turns; (y, x) in the layer's unit."""
     affine = np.asarray(layer.affine.affine_matrix, dtype=float)[-3:-1, -1]
     translate: FloatArray = np.asarray(layer.translate, dtype=float)[-2:]
-    return translate + affine
+    corner: FloatArray = translate + affine
+    return corner
