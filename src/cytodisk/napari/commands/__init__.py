@@ -1,0 +1,1 @@
+"""The widgets that do what commands do, on layers that are open."""

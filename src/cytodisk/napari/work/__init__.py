@@ -1,0 +1,1 @@
+"""Work beside the viewer: in a thread, with progress and a button that cancels."""
