@@ -3,6 +3,7 @@
 import pytest
 
 from cytodisk.cli import console
+from cytodisk.runs.told.speed_words import rate_words
 
 
 def test_a_log_gets_a_line_every_half_minute(
@@ -48,7 +49,7 @@ def test_no_time_is_left_before_the_third_frame(
     [(1234.5, "1234 inputs/s"), (0.25, "0.25 inputs/s"), (0.05, "3 inputs/min"), (1 / 1800, "2 inputs/h")],
 )
 def test_a_rate_is_said_over_a_time_in_which_something_happens(a_second: float, words: str) -> None:
-    assert console.rate_words(a_second, "inputs") == words
+    assert rate_words(a_second, "inputs") == words
 
 
 @pytest.mark.parametrize("quiet", [False, True])

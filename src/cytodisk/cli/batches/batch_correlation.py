@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cytodisk.cli.console import PERCENT, console_for, count, progress_bar
+from cytodisk.cli.console import console_for, count, progress_bar
 from cytodisk.cli.report.report_words import say_page
+from cytodisk.runs.told.speed_words import PERCENT
 
 if TYPE_CHECKING:
     from rich.console import Console

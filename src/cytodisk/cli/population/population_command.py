@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cytodisk.cli.console import COMPLETE, PERCENT, console_for, progress_bar
+from cytodisk.cli.console import COMPLETE, console_for, progress_bar
 from cytodisk.cli.correlate_command import Format, figure_formats
 from cytodisk.cli.options import Given, GroupsFile, NoReport, Quiet, with_parameters
 from cytodisk.cli.population.kept_plan import keep_plan, refuse_kept_plan
@@ -17,6 +17,7 @@ from cytodisk.errors import ParameterError
 from cytodisk.runs.population.population_parameters import PopulationParameters
 from cytodisk.runs.population.power.power_parameters import PowerParameters
 from cytodisk.runs.run_options import PopulationOptions
+from cytodisk.runs.told.speed_words import PERCENT
 from cytodisk.store.study_kind import FIGURES
 
 if TYPE_CHECKING:

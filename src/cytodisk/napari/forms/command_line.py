@@ -50,7 +50,7 @@ def command_line(command: str, arguments: Sequence[str | os.PathLike[str]], valu
     'cytodisk map cells.tif -o out --layers 8 --depth-um 0.5,1 --no-maps'
     """
     fields = fields_of(MODELS[command])
-    words = ["cytodisk", command, *map(os.fspath, arguments)]
+    words = ["cytodisk", command, *(os.fspath(one) for one in arguments)]
     for name, value in values.items():
         words += _option(fields[name], flag_of(name, fields[name]), value)
     return subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)

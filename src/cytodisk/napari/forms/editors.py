@@ -74,7 +74,7 @@ def quiet_wheel(widget: QWidget) -> None:
 
 
 class _NoWheel(QObject):
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Wheel and not cast(Any, watched).hasFocus():
             event.ignore()
             return True

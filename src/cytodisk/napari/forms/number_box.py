@@ -38,11 +38,11 @@ class NumberBox(QAbstractSpinBox):
         """Let any text pass: the model has the words for what is wrong with it."""
         return QValidator.State.Acceptable, text, position
 
-    def stepEnabled(self) -> QAbstractSpinBox.StepEnabled:  # noqa: N802
+    def stepEnabled(self) -> QAbstractSpinBox.StepEnabled:
         """Both arrows work."""
         return QAbstractSpinBox.StepUpEnabled | QAbstractSpinBox.StepDownEnabled
 
-    def stepBy(self, steps: int) -> None:  # noqa: N802
+    def stepBy(self, steps: int) -> None:
         """Go up or down, from the default where the box is empty; stop where the range ends."""
         try:
             value = float(self.lineEdit().text() or self._default or self._limits.get("ge", 0))

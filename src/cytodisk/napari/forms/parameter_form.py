@@ -95,12 +95,17 @@ class ParameterForm(QWidget):
         chosen = {name: value for name, value in self.values().items() if name in model.model_fields}
         return model.called(chosen, self.flags)
 
+    def fault_words(self, name: str) -> str:
+        """What is wrong with the value of a parameter by itself, as it stands below its editor."""
+        return str(self._faults[name].text())
+
     def _parts(self, main: Sequence[str], beside: Sequence[str]) -> list[tuple[str, list[str]]]:
         """Headings with the names of their parameters, those asked first in front."""
         names = {flag.removeprefix("--"): name for name, flag in self.flags.items() if name not in main}
-        parts = [(heading, [names[flag] for flag in flags if flag in names]) for heading, flags in (
-            grouped([*names, *beside])
-        )]
+        parts = [
+            (heading, [names[flag] for flag in flags if flag in names])
+            for heading, flags in (grouped([*names, *beside]))
+        ]
         first = [(MAIN, list(main))] if main else []
         return [*first, *((heading, found) for heading, found in parts if found)]
 
