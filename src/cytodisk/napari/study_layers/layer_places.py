@@ -1,0 +1,77 @@
+"""Where layers of a study lie in a viewer: scale, units, and the layer that they were measured on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from cytodisk.napari.study_layers.shown_cells import ShownCells
+
+MARK = "cytodisk"
+"""Key of a layer's metadata that all layers of cytodisk have."""
+
+
+@dataclass(frozen=True)
+class LayerPlace:
+    """Scale, place and units of layers with axes (time,) y, x.
+
+    Attributes
+    ----------
+    scale, translate : tuple of float
+    units : tuple of str
+    beside : str
+        Name of the open layer that it was taken from; empty if the study alone says it.
+    """
+
+    scale: tuple[float, ...]
+    translate: tuple[float, ...]
+    units: tuple[Any, ...]
+    beside: str = ""
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What a layer takes."""
+        return {"scale": self.scale, "translate": self.translate, "units": self.units}
+
+
+def place_of(cells: ShownCells, layers: Iterable[Any] = ()) -> LayerPlace:
+    """Where a study's layers lie: over an open image of the same size, or as the study's scale says.
+
+    Parameters
+    ----------
+    cells : ShownCells
+    layers : iterable of Layer
+        That are open. The first image or labels whose pixels and frames are those of the study is taken;
+        layers of cytodisk are not looked at.
+
+    Returns
+    -------
+    LayerPlace
+    """
+    own = _own_place(cells)
+    for layer in layers:
+        shape: Any = getattr(getattr(layer, "data", None), "shape", ())
+        if MARK in layer.metadata or len(shape) < len(own.scale) or not _is_image(layer):
+            continue
+        fits = tuple(shape[-2:]) == cells.image_shape
+        if fits and (not cells.is_stack or shape[-3] >= cells.n_frames):
+            last = slice(-len(own.scale), None)
+            return LayerPlace(
+                tuple(layer.scale[last]), tuple(layer.translate[last]), tuple(layer.units[last]), layer.name
+            )
+    return own
+
+
+def _is_image(layer: Any) -> bool:
+    return type(layer).__name__ in ("Image", "Labels") and not getattr(layer, "rgb", False)
+
+
+def _own_place(cells: ShownCells) -> LayerPlace:
+    scale = cells.study.scale
+    length, unit = (1.0, "pixel") if scale.pixel_size_um is None else (scale.pixel_size_um, "micrometer")
+    if not cells.is_stack:
+        return LayerPlace((length, length), (0.0, 0.0), (unit, unit))
+    known = scale.frame_interval_s is not None and cells.study.is_movie
+    time, second = (scale.frame_interval_s or 1.0, "second") if known else (1.0, "pixel")
+    return LayerPlace((time, length, length), (0.0, 0.0, 0.0), (second, unit, unit))

@@ -1,0 +1,80 @@
+"""Labels of all windows of a frame, and values of windows painted into the cell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from cytodisk.arrays import FloatArray
+from cytodisk.napari.study_layers.byte_cache import ByteCache
+from cytodisk.napari.study_layers.cell_windows_cache import CellWindowsCache
+from cytodisk.napari.study_layers.shown_cells import ShownCells
+from cytodisk.napari.study_layers.window_values import Numbers, WindowValues
+
+FRAME_BYTES = 48 * 2**20
+"""Of whole frames."""
+
+
+class PaintedFrames:
+    """Images of a source, made frame by frame.
+
+    Parameters
+    ----------
+    cells : ShownCells
+        With some map.
+    windows : CellWindowsCache
+    values : WindowValues
+    """
+
+    def __init__(self, cells: ShownCells, windows: CellWindowsCache, values: WindowValues):
+        self.cells, self.windows, self.values = cells, windows, values
+        self._frames: ByteCache[Any] = ByteCache(FRAME_BYTES, lambda image: int(image.nbytes))
+
+    @cached_property
+    def n_windows(self) -> int:
+        """Windows a cell, by which labels of cells are offset."""
+        return self.windows.grid.n_windows
+
+    @cached_property
+    def dtype(self) -> Any:
+        """Of the labels: the smallest that holds all of them."""
+        return np.uint16 if self.cells.most_places * self.n_windows < 2**16 - 1 else np.int32
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(H, W) of a frame."""
+        shape = self.cells.image_shape
+        assert shape is not None
+        return shape
+
+    def first_label(self, cell: int, frame: int) -> int:
+        """Label of window 0 of a cell."""
+        return 1 + self.cells.place(cell, frame) * self.n_windows
+
+    def labels(self, frame: int) -> Any:
+        """Number of the window + 1, plus the offset of its cell, shape (H, W); 0 where there is none."""
+        return self._frames.get((frame, "labels"), lambda: self._labels(frame))
+
+    def _labels(self, frame: int) -> Any:
+        image = np.zeros(self.shape, dtype=self.dtype)
+        for cell in self.cells.mapped.get(frame, ()):
+            box = self.windows.box_at(cell, frame)
+            labels, part = box.labels, image[box.slices]
+            np.add(labels, self.first_label(cell, frame) - 1, out=part, where=labels > 0, casting="unsafe")
+        return image
+
+    def painted(self, frame: int, channel: str) -> Any:
+        """Mean of a channel in the window of each pixel, shape (H, W) and dtype float32; NaN outside."""
+        number = self.values.channels.index(channel)
+        return self._painted(frame, lambda found: found["mean"][number])
+
+    def _painted(self, frame: int, of_windows: Callable[[Numbers], FloatArray]) -> Any:
+        colours = np.full(1 + self.cells.most_places * self.n_windows, np.nan, dtype=np.float32)
+        for cell in self.cells.mapped.get(frame, ()):
+            values = np.ravel(of_windows(self.values.at(cell, frame)))
+            first = self.first_label(cell, frame)
+            colours[first : first + len(values)] = values
+        return colours[self.labels(frame)]
