@@ -1,4 +1,4 @@
-"""The layers of a study, as napari takes them, and how they get into a viewer."""
+"""The layers of a study, as napari takes them."""
 
 from __future__ import annotations
 
@@ -10,12 +10,10 @@ import numpy as np
 from cytodisk.napari.study_layers.edge_points import edge_points
 from cytodisk.napari.study_layers.feature_table import window_features
 from cytodisk.napari.study_layers.frame_stack import FrameStack
-from cytodisk.napari.study_layers.layer_places import MARK, LayerPlace, place_of
-from cytodisk.napari.study_layers.shown_study import ShownStudy
+from cytodisk.napari.study_layers.study_in_viewer import ShownStudy
+from cytodisk.napari.study_layers.study_place import MARK, StudyPlace
 from cytodisk.napari.study_layers.window_lines import edge_lines, window_lines
-from cytodisk.napari.viewer_parts import Layer, show_warning
 from cytodisk.plot.style import SIGNAL_COLOURS
-from cytodisk.store.study import Study
 
 LayerData = tuple[Any, dict[str, Any], str]
 
@@ -23,61 +21,13 @@ _LINE_COLOUR = "white"
 _LINES, _EDGES, _POINTS = 600.0, 100.0, 80.0  # thin lines, coloured edges and points: in a cell so many
 
 
-def show_study(viewer: Any, study: Study, *, source: str | None = None) -> ShownStudy:
-    """Add a study's results to a viewer.
-
-    Parameters
-    ----------
-    viewer : Viewer
-    study : Study
-    source : str, optional
-        The file of masks whose cells are shown, of a study of many; by default the first.
-
-    Returns
-    -------
-    ShownStudy
-
-    Raises
-    ------
-    ParameterError
-        The study has no such source.
-    """
-    shown = ShownStudy(study, source)
-    for data in layer_data(shown, place_of(shown.cells, viewer.layers)):
-        layer = Layer.create(*data)
-        viewer.add_layer(layer)
-        shown.bind(viewer, layer)
-    if words := shown.cells.missing_words:
-        show_warning(words)
-    return shown
-
-
-def shown_studies(viewer: Any) -> list[ShownStudy]:
-    """Studies whose layers are open in a viewer, in the order of the layers.
-
-    Parameters
-    ----------
-    viewer : Viewer
-
-    Returns
-    -------
-    list of ShownStudy
-    """
-    found: dict[int, ShownStudy] = {}
-    for layer in viewer.layers:
-        shown = layer.metadata.get(MARK, {}).get("shown")
-        if shown is not None and shown.viewer is viewer:
-            found[id(shown)] = shown
-    return list(found.values())
-
-
-def layer_data(shown: ShownStudy, place: LayerPlace) -> list[LayerData]:
+def layer_data(shown: ShownStudy, place: StudyPlace) -> list[LayerData]:
     """Layers of a study, from the lowest to the uppermost.
 
     Parameters
     ----------
     shown : ShownStudy
-    place : LayerPlace
+    place : StudyPlace
         Where they lie.
 
     Returns
@@ -88,7 +38,7 @@ def layer_data(shown: ShownStudy, place: LayerPlace) -> list[LayerData]:
     return list(_layers(shown, place)) if shown.cells.mapped else []
 
 
-def _layers(shown: ShownStudy, place: LayerPlace) -> Iterator[LayerData]:
+def _layers(shown: ShownStudy, place: StudyPlace) -> Iterator[LayerData]:
     first = min(shown.cells.mapped)
     painted, size = shown.painted, shown.cells.diameter_px
 

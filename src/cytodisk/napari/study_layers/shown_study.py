@@ -1,267 +1,59 @@
-"""`ShownStudy`: a study whose layers are open in a viewer, and follow its time slider."""
+"""Show the results of a study in a viewer, and find what is shown."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cached_property
 from typing import Any
 
-from psygnal import Signal
-
-from cytodisk.arrays import FloatArray
-from cytodisk.disk.disk_map import DiskMap
-from cytodisk.errors import ParameterError
-from cytodisk.napari.study_layers.cell_windows_cache import CellWindowsCache
-from cytodisk.napari.study_layers.edge_points import edge_points
-from cytodisk.napari.study_layers.feature_table import window_features
-from cytodisk.napari.study_layers.layer_places import MARK
-from cytodisk.napari.study_layers.painted_frames import PaintedFrames
-from cytodisk.napari.study_layers.prefetch import Prefetch
-from cytodisk.napari.study_layers.shown_cells import ShownCells
-from cytodisk.napari.study_layers.window_lines import edge_lines, window_lines
-from cytodisk.napari.study_layers.window_values import WindowValues
+from cytodisk.napari.study_layers.layers_of_study import layer_data
+from cytodisk.napari.study_layers.study_in_viewer import ShownStudy as ShownStudy
+from cytodisk.napari.study_layers.study_place import MARK, place_of
+from cytodisk.napari.viewer_parts import Layer, show_warning
 from cytodisk.store.study import Study
-from cytodisk.windows.polar_windows import CellWindows
 
 
-class ShownStudy:
-    """A study, its layers in a viewer, and what is under the cursor and the slider.
+def show_study(viewer: Any, study: Study, *, source: str | None = None) -> ShownStudy:
+    """Add a study's results to a viewer.
 
     Parameters
     ----------
+    viewer : Viewer
     study : Study
     source : str, optional
         The file of masks whose cells are shown, of a study of many; by default the first.
 
-    Attributes
-    ----------
-    study : Study
-    cells : ShownCells
-        Which cells are in which frame.
-    painted : PaintedFrames
-        Images of its layers.
-    viewer : Viewer or None
-        None until its layers are in one.
-    layers : dict of str to Layer
-        By role: "windows", "values", "outlines", "velocity", "points", "signal".
-    changed : Signal
-        Emitted when another frame or channel is shown.
+    Returns
+    -------
+    ShownStudy
+
+    Raises
+    ------
+    ParameterError
+        The study has no such source.
     """
+    shown = ShownStudy(study, source)
+    for data in layer_data(shown, place_of(shown.cells, viewer.layers)):
+        layer = Layer.create(*data)
+        viewer.add_layer(layer)
+        shown.bind(viewer, layer)
+    if words := shown.cells.missing_words:
+        show_warning(words)
+    return shown
 
-    changed = Signal()
 
-    def __init__(self, study: Study, source: str | None = None):
-        self.study = study
-        self.cells = ShownCells.of(study, source)
-        self.viewer: Any = None
-        self.layers: dict[str, Any] = {}
-        self._windows = CellWindowsCache(study)
-        self._values = WindowValues(study)
-        self.painted = PaintedFrames(self.cells, self._windows, self._values)
-        self._prefetch = Prefetch(self._load_frame)
-        self._channel = next(iter(self.channels), "")
-        self._told: tuple[int | None, str] | None = None
+def shown_studies(viewer: Any) -> list[ShownStudy]:
+    """Studies whose layers are open in a viewer, in the order of the layers.
 
-    def __deepcopy__(self, memo: Any) -> ShownStudy:
-        return self  # a copied layer shows the same study
+    Parameters
+    ----------
+    viewer : Viewer
 
-    @property
-    def source(self) -> str:
-        """Name of the file of masks; empty for a movie."""
-        return self.cells.source
-
-    @property
-    def channels(self) -> tuple[str, ...]:
-        """Names of the signal's channels; empty without a signal."""
-        return self._values.channels
-
-    @property
-    def channel(self) -> str:
-        """The channel that is shown; empty without a signal."""
-        return self._channel
-
-    @channel.setter
-    def channel(self, name: str) -> None:
-        if name not in self.channels:
-            known = ", ".join(map(repr, self.channels)) or "none, as there is no signal"
-            raise ParameterError(f"channel must be one of the study's, got {name!r}: pass one of {known}")
-        self._channel = name
-        if "values" in self.layers:
-            self._show_channel(self.layers["values"])
-        self._follow()
-
-    def _show_channel(self, layer: Any) -> None:
-        if not self.cells.is_stack:
-            layer.data = self.painted.painted(min(self.cells.mapped), self._channel)
-        layer.name = f"means of {self._channel}"
-        layer.contrast_limits_range = layer.contrast_limits = self.limits(self._channel)
-        layer.refresh()
-
-    @property
-    def frame(self) -> int | None:
-        """Number, in the recording, of the frame under the slider; None if there is none there."""
-        if not self.cells.is_stack:
-            return next(iter(self.cells.mapped), 0)
-        layer = next((self.layers[role] for role in ("windows", "signal") if role in self.layers), None)
-        if layer is None or self.viewer is None or self.viewer.dims.ndim < layer.ndim:
-            return None
-        place = layer.world_to_data(self.viewer.dims.point)[0]
-        frame = round(float(place))
-        return frame if 0 <= frame < self.cells.n_frames else None
-
-    def cell_at(self, frame: int, yx: Sequence[float]) -> int | None:
-        """Cell with a map that holds a place of the image.
-
-        Parameters
-        ----------
-        frame : int
-        yx : (float, float)
-            (row, column) in pixels.
-
-        Returns
-        -------
-        int or None
-        """
-        found = self.window_at(frame, yx)
-        return None if found is None else found[0]
-
-    def window_at(self, frame: int, yx: Sequence[float]) -> tuple[int, int, int] | None:
-        """Cell, layer and sector of the window that has most of the pixel at a place; None outside.
-
-        Parameters
-        ----------
-        frame : int
-        yx : (float, float)
-            (row, column) in pixels.
-        """
-        if not self.cells.mapped.get(frame):
-            return None
-        row, column = (round(float(place)) for place in yx)
-        height, width = self.painted.shape
-        if not (0 <= row < height and 0 <= column < width):
-            return None
-        label = int(self.painted.labels(frame)[row, column])
-        if not label:
-            return None
-        place, window = divmod(label - 1, self.painted.n_windows)
-        cell = next(one for one in self.cells.mapped[frame] if self.cells.place(one, frame) == place)
-        layer, sector = divmod(window, self._windows.grid.sectors)
-        return cell, layer, sector
-
-    def map_at(self, cell: int, frame: int) -> DiskMap:
-        """Map of a cell in a frame.
-
-        Parameters
-        ----------
-        cell, frame : int
-
-        Returns
-        -------
-        DiskMap
-
-        Raises
-        ------
-        ReadError
-            There is none, as its row says, or it is damaged.
-        """
-        return self._windows.map_at(cell, frame)
-
-    def windows_at(self, cell: int, frame: int) -> CellWindows:
-        """Windows of a cell in a frame; see `map_at`."""
-        return self._windows.windows_at(cell, frame)
-
-    def values(self, cell: int, channel: str, frame: int) -> FloatArray:
-        """Means of a channel, or the edge's velocity, of a cell that has a map.
-
-        Parameters
-        ----------
-        cell : int
-        channel : str
-            One of `channels`; or "velocity", "area" or "depth".
-        frame : int
-
-        Returns
-        -------
-        ndarray of shape (layers, sectors) and dtype float
-            Velocity has the shape (sectors,).
-        """
-        numbers = self._values.at(cell, frame)
-        return numbers["mean"][self.channels.index(channel)] if channel in self.channels else numbers[channel]
-
-    def unit(self, name: str) -> str:
-        """Unit of a channel, or of "velocity", "area" or "depth"."""
-        return self._values.units["mean" if name in self.channels else name]
-
-    @cached_property
-    def top_speed(self) -> float:
-        """Speed at the ends of the colours of velocity, the same in all frames."""
-        from cytodisk.plot.movie.activity_maps import top_speed
-
-        return top_speed(self._values.velocities())
-
-    def limits(self, channel: str) -> tuple[float, float]:
-        """Ends of the colours of a channel, the same in all frames: percentiles 1 and 99.5 of its means."""
-        from cytodisk.plot.style import signal_limits
-
-        if channel not in self._limits:
-            self._limits[channel] = signal_limits(self._values.sampled(channel))
-        return self._limits[channel]
-
-    @cached_property
-    def _limits(self) -> dict[str, tuple[float, float]]:
-        return {}
-
-    def bind(self, viewer: Any, layer: Any) -> None:
-        """Note that a layer of this study is in a viewer; it follows the slider from then on."""
-        self.layers[layer.metadata[MARK]["role"]] = layer
-        if self.viewer is None:
-            self.viewer = viewer
-            viewer.dims.events.current_step.connect(self._follow)
-            viewer.layers.events.removed.connect(self._forget)
-        self._told = None
-        self._follow()
-
-    def _forget(self, event: Any) -> None:
-        gone = [role for role, layer in self.layers.items() if layer is event.value]
-        for role in gone:
-            del self.layers[role]
-        if not self.layers and self.viewer is not None:
-            self.viewer.dims.events.current_step.disconnect(self._follow)
-            self.viewer.layers.events.removed.disconnect(self._forget)
-            self.viewer = None
-            self._prefetch.stop()
-
-    def _follow(self, event: Any = None) -> None:
-        """Bring what layers say to the frame under the slider."""
-        frame = self.frame
-        if self._told == (frame, self._channel):
-            return
-        moved = self._told is None or self._told[0] != frame
-        self._told = frame, self._channel
-        if moved and frame is not None:
-            self._show_frame(frame)
-        self.changed.emit()
-
-    def _show_frame(self, frame: int) -> None:
-        if "windows" in self.layers:
-            self.layers["windows"].features = window_features(self.painted, frame)
-        if "points" in self.layers:
-            layer = self.layers["points"]
-            points, features = edge_points(self.painted, frame)
-            layer.data = points
-            layer.features = features
-        if "outlines" in self.layers:
-            layer = self.layers["outlines"]
-            layer.data, features = window_lines(self.painted, frame)
-            layer.features = features
-        if "velocity" in self.layers:
-            layer = self.layers["velocity"]
-            lines, colours = edge_lines(self.painted, frame, self.top_speed)
-            layer.data = lines
-            layer.edge_color = colours
-        self._prefetch.around(frame, self.cells.n_frames)
-
-    def _load_frame(self, frame: int) -> None:
-        for cell in self.cells.mapped.get(frame, ()):
-            self._windows.box_at(cell, frame)
-            self._values.at(cell, frame)
+    Returns
+    -------
+    list of ShownStudy
+    """
+    found: dict[int, ShownStudy] = {}
+    for layer in viewer.layers:
+        shown = layer.metadata.get(MARK, {}).get("shown")
+        if shown is not None and shown.viewer is viewer:
+            found[id(shown)] = shown
+    return list(found.values())

@@ -13,7 +13,7 @@ MARK = "cytodisk"
 
 
 @dataclass(frozen=True)
-class LayerPlace:
+class StudyPlace:
     """Scale, place and units of layers with axes (time,) y, x.
 
     Attributes
@@ -35,7 +35,7 @@ class LayerPlace:
         return {"scale": self.scale, "translate": self.translate, "units": self.units}
 
 
-def place_of(cells: ShownCells, layers: Iterable[Any] = ()) -> LayerPlace:
+def place_of(cells: ShownCells, layers: Iterable[Any] = ()) -> StudyPlace:
     """Where a study's layers lie: over an open image of the same size, or as the study's scale says.
 
     Parameters
@@ -47,7 +47,7 @@ def place_of(cells: ShownCells, layers: Iterable[Any] = ()) -> LayerPlace:
 
     Returns
     -------
-    LayerPlace
+    StudyPlace
     """
     own = _own_place(cells)
     for layer in layers:
@@ -57,7 +57,7 @@ def place_of(cells: ShownCells, layers: Iterable[Any] = ()) -> LayerPlace:
         fits = tuple(shape[-2:]) == cells.image_shape
         if fits and (not cells.is_stack or shape[-3] >= cells.n_frames):
             last = slice(-len(own.scale), None)
-            return LayerPlace(
+            return StudyPlace(
                 tuple(layer.scale[last]), tuple(layer.translate[last]), tuple(layer.units[last]), layer.name
             )
     return own
@@ -67,11 +67,11 @@ def _is_image(layer: Any) -> bool:
     return type(layer).__name__ in ("Image", "Labels") and not getattr(layer, "rgb", False)
 
 
-def _own_place(cells: ShownCells) -> LayerPlace:
+def _own_place(cells: ShownCells) -> StudyPlace:
     scale = cells.study.scale
     length, unit = (1.0, "pixel") if scale.pixel_size_um is None else (scale.pixel_size_um, "micrometer")
     if not cells.is_stack:
-        return LayerPlace((length, length), (0.0, 0.0), (unit, unit))
+        return StudyPlace((length, length), (0.0, 0.0), (unit, unit))
     known = scale.frame_interval_s is not None and cells.study.is_movie
     time, second = (scale.frame_interval_s or 1.0, "second") if known else (1.0, "pixel")
-    return LayerPlace((time, length, length), (0.0, 0.0, 0.0), (second, unit, unit))
+    return StudyPlace((time, length, length), (0.0, 0.0, 0.0), (second, unit, unit))

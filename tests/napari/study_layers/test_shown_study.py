@@ -1,0 +1,110 @@
+"""Results of a study as layers: what they show is what its tables and maps hold."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import tifffile
+
+import cytodisk as cd
+from cytodisk.store.study import Study
+
+pytestmark = pytest.mark.slow
+pytest.importorskip("cytodisk.napari.viewer_parts")
+
+from cytodisk.napari.study_layers.shown_study import show_study, shown_studies  # noqa: E402
+
+FRAMES, LAYERS, SECTORS = 4, 3, 12
+
+
+@pytest.fixture(scope="module")
+def movie(tmp_path_factory: pytest.TempPathFactory) -> Study:
+    """Two cells; the first is not in frame 2, as its mask is in two pieces."""
+    folder = tmp_path_factory.mktemp("movie")
+    truth = cd.simulate.movie("fluctuating", frames=FRAMES, radius_px=14.0)
+    one = truth.masks.astype(np.uint8)
+    labels = np.concatenate([one, 2 * one], axis=2)
+    labels[2][:, : one.shape[2]] *= np.arange(one.shape[1])[:, None] % 30 < 15
+    signal = np.concatenate([truth.signal.to_numpy()] * 2, axis=3).astype(np.float32)
+    tifffile.imwrite(folder / "masks.tif", labels, photometric="minisblack", metadata={"axes": "TYX"})
+    tifffile.imwrite(folder / "signal.tif", signal, metadata={"axes": "TCYX"})
+    return cd.run_movie(
+        folder / "masks.tif",
+        folder / "out",
+        signal=folder / "signal.tif",
+        layers=LAYERS,
+        sectors=SECTORS,
+        kind="labels",
+        channels=("Rac1", "RhoA"),
+        pixel_size_um=0.2,
+        frame_interval_s=5.0,
+    )
+
+
+def test_windows_say_at_every_frame_what_the_tables_say(
+    movie: Study, make_viewer: Callable[..., Any]
+) -> None:
+    viewer = make_viewer()
+    shown = show_study(viewer, movie)
+    layer = shown.layers["windows"]
+
+    for frame in (1, 3, 2):
+        viewer.dims.set_current_step(0, frame)
+        assert shown.frame == frame
+        rows = movie.windows[(movie.windows["frame"] == frame) & (movie.windows["channel"] == "RhoA")]
+        features = layer.features
+        assert len(features) == len(rows)
+        assert features["sector"].tolist() == rows["sector"].tolist()
+        assert features["cell"].tolist() == rows["cell"].tolist()
+        np.testing.assert_allclose(features["mean RhoA (a.u.)"], rows["mean"], rtol=1e-4)
+        np.testing.assert_allclose(features["depth (µm)"], rows["depth"], rtol=1e-4)
+
+
+def test_the_status_bar_tells_the_window_under_the_cursor(
+    movie: Study, make_viewer: Callable[..., Any]
+) -> None:
+    viewer = make_viewer()
+    shown = show_study(viewer, movie)
+    viewer.dims.set_current_step(0, 3)
+    windows = shown.windows_at(1, 3)
+    place = np.rint(windows.centroids_yx[1, 5])
+    number = windows.labels[tuple(place.astype(int))]
+
+    words = shown.layers["windows"].get_status((15.0, *(0.2 * place)), world=True)["coordinates"]
+
+    assert shown.cell_at(3, place) == 1
+    layer, sector = divmod(int(number), SECTORS)
+    assert f"cell: 1, layer: {layer}, sector: {sector}" in words
+    assert "depth (µm)" in words
+
+
+def test_values_are_painted_into_the_windows(movie: Study, make_viewer: Callable[..., Any]) -> None:
+    viewer = make_viewer()
+    shown = show_study(viewer, movie)
+    channels: list[str] = []
+    shown.changed.connect(lambda: channels.append(shown.channel))
+    layer = shown.layers["values"]
+
+    first = layer.data[1]
+    shown.channel = "RhoA"
+
+    assert channels == ["RhoA"]
+    windows = shown.windows_at(0, 1)
+    inside = windows.labels >= 0
+    values = shown.values(0, "RhoA", 1).ravel()[windows.labels[inside]]
+    np.testing.assert_allclose(layer.data[1][inside], values, rtol=1e-6)
+    assert not np.allclose(first[inside], values)
+    assert np.isnan(layer.data[1][0, 0])
+
+
+def test_what_is_shown_ends_with_its_layers(movie: Study, make_viewer: Callable[..., Any]) -> None:
+    viewer = make_viewer()
+    shown = show_study(viewer, movie)
+    assert shown_studies(viewer) == [shown]
+
+    viewer.layers.clear()
+
+    assert shown_studies(viewer) == []
+    viewer.add_image(np.zeros((5, 4, 4)))
+    viewer.dims.set_current_step(0, 2)
