@@ -7,6 +7,7 @@ import xarray as xr
 import cytodisk as cd
 from cytodisk import Scale
 from cytodisk.errors import ParameterError
+from cytodisk.scale import suited_lag, suited_time
 
 KNOWN = Scale(0.5, 4.0)
 
@@ -81,3 +82,38 @@ def test_movies_carry_it_into_maps_velocity_and_activity() -> None:
     activity = cd.sample_movie(movie, cd.polar_windows(2, 4), masks.astype(float))
     for carrier in (movie, movie[1], activity, activity["mean"], cd.edge_velocity(movie, 4)):
         assert Scale.of(carrier) == KNOWN
+
+
+@pytest.mark.parametrize(
+    ("longest_s", "step_s", "name"),
+    [
+        (300.0, 5.0, "s"),
+        (301.0, 5.0, "min"),
+        (240.0, 60.0, "min"),
+        (36000.0, 60.0, "min"),
+        (36001.0, 60.0, "h"),
+    ],
+)
+def test_times_have_a_unit_that_suits(longest_s: float, step_s: float, name: str) -> None:
+    assert suited_time(longest_s, step_s).name == name
+    assert Scale(None, step_s).shown_time(longest_s / step_s).name == name
+
+
+@pytest.mark.parametrize(
+    ("fastest", "frames", "interval_s", "words"),
+    [
+        (0.1, 40, 5.0, "0.1 µm/s"),
+        (0.099, 40, 5.0, "99 nm/s"),
+        (0.02, 100, 10.0, "1.2 µm/min"),
+        (0.0005, 100, 10.0, "30 nm/min"),
+        (0.0005, 100, 3600.0, "1.8 µm/h"),
+    ],
+)
+def test_velocities_go_with_the_times(fastest: float, frames: int, interval_s: float, words: str) -> None:
+    assert Scale(0.1, interval_s).shown_velocity(fastest, frames).words(fastest) == words
+
+
+def test_unknown_scales_keep_their_units() -> None:
+    assert Scale().shown_velocity(0.01, 10).words(0.01) == "0.01 px/frame"
+    assert (Scale().shown_time(9).words(1.0), Scale().shown_time(9).words(9.0)) == ("1 frame", "9 frames")
+    assert suited_lag(5.0).number(-20.0, sign=True) == "−20"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -16,11 +17,107 @@ Number = TypeVar("Number", float, FloatArray)
 
 _ALIKE = 1.01
 
+_MINUTE, _HOUR = 60.0, 3600.0  # in s
+_LONGEST_IN_S, _LONGEST_IN_MIN = 300.0, 36000.0  # times beyond are in the next unit
+_SLOWEST_IN_UM = 0.1  # velocities that do not reach it are in nm
+
 
 def alike(first: float, *others: float, ratio: float = _ALIKE) -> bool:
     """Whether sizes or times above 0 differ by 1 % at most, or by another ratio of largest to least."""
     values = (first, *others)
     return max(values) <= ratio * min(values)
+
+
+@dataclass(frozen=True)
+class ShownUnit:
+    """A unit that suits the numbers to be shown; tables stay in µm and s.
+
+    Parameters
+    ----------
+    name : str
+        Such as "min" or "nm/s".
+    factor : float
+        How many of it make one unit of the table.
+    """
+
+    name: str
+    factor: float = 1.0
+
+    def words(self, value: float, digits: int = 3, *, sign: bool = False) -> str:
+        """A number of the table in this unit, as "2.5 min" or, with its sign, "−20 s"."""
+        shown = self.number(value, digits, sign=sign)
+        plural = self.name == "frame" and shown.lstrip("+−") != "1"
+        return f"{shown} {self.name}{'s' * plural}"
+
+    def number(self, value: float, digits: int = 3, *, sign: bool = False) -> str:
+        """The same without the unit."""
+        rounded = float(f"{value * self.factor:.{digits}g}")
+        return f"{rounded:{'+' if sign else ''}.12g}".replace("-", "−")
+
+
+def suited_time(longest_s: float, step_s: float = 0.0) -> ShownUnit:
+    """The unit for times up to so many seconds: s up to 300 s, min up to 10 h, else h.
+
+    Parameters
+    ----------
+    longest_s : float
+        The longest of the times that stand together, such as those of an axis.
+    step_s : float
+        Time between frames: from a minute on, times are in min, and from an hour on in h.
+
+    Examples
+    --------
+    >>> from cytodisk.scale import suited_time
+    >>> suited_time(200.0).name, suited_time(2400.0).name, suited_time(90000.0).words(90000.0)
+    ('s', 'min', '25 h')
+    """
+    if longest_s <= _LONGEST_IN_S and step_s < _MINUTE:
+        return ShownUnit("s")
+    if longest_s <= _LONGEST_IN_MIN and step_s < _HOUR:
+        return ShownUnit("min", 1.0 / _MINUTE)
+    return ShownUnit("h", 1.0 / _HOUR)
+
+
+def suited_lag(step_s: float) -> ShownUnit:
+    """The unit for lags of frames so many seconds apart: s, min from 30 s on, h from 30 min on.
+
+    Examples
+    --------
+    >>> from cytodisk.scale import suited_lag
+    >>> suited_lag(5.0).words(-20.0, sign=True), suited_lag(30.0).words(90.0, sign=True)
+    ('−20 s', '+1.5 min')
+    """
+    if step_s < 0.5 * _MINUTE:
+        return ShownUnit("s")
+    return ShownUnit("min", 1.0 / _MINUTE) if step_s < 0.5 * _HOUR else ShownUnit("h", 1.0 / _HOUR)
+
+
+def suited_velocity(fastest: float, unit: str, time: ShownUnit) -> ShownUnit:
+    """The unit for velocities: per s, min or h as the movie's times are, in nm where the fastest is < 0.1 µm.
+
+    Parameters
+    ----------
+    fastest : float
+        The largest size of the velocities that stand together.
+    unit : str
+        Their unit; other than µm/s it stays.
+    time : ShownUnit
+        That of the movie's times.
+
+    Examples
+    --------
+    >>> from cytodisk.scale import suited_time, suited_velocity
+    >>> suited_velocity(0.082, "µm/s", suited_time(200.0)).words(0.082)
+    '82 nm/s'
+    >>> suited_velocity(0.01, "µm/s", suited_time(2400.0)).words(0.01)
+    '0.6 µm/min'
+    """
+    if unit != "µm/s":
+        return ShownUnit(unit)
+    factor = 1.0 / time.factor
+    if math.isfinite(fastest) and 0.0 < abs(fastest) * factor < _SLOWEST_IN_UM:
+        return ShownUnit(f"nm/{time.name}", 1000.0 * factor)
+    return ShownUnit(f"µm/{time.name}", factor)
 
 
 @dataclass(frozen=True)
@@ -139,6 +236,17 @@ class Scale:
         if self.frame_interval_s is not None:
             coords["time_s"] = ("time", frames * self.frame_interval_s, {"units": "s"})
         return coords
+
+    def shown_time(self, frames: float) -> ShownUnit:
+        """The unit that suits the times of so many frames; "frame" where seconds are not known."""
+        interval = self.frame_interval_s
+        if interval is None:
+            return ShownUnit("frame")
+        return suited_time(frames * interval, interval)
+
+    def shown_velocity(self, fastest: float, frames: float) -> ShownUnit:
+        """The unit that suits velocities up to `fastest`, which is in `velocity_unit`."""
+        return suited_velocity(fastest, self.velocity_unit, self.shown_time(frames))
 
     def given(self, pixel_size_um: float | None = None, frame_interval_s: float | None = None) -> Scale:
         """This scale, where a user gave no other one."""

@@ -47,7 +47,9 @@ def test_a_signal_with_velocity(run: Run, study: Path) -> None:
     assert "; single windows significant: " in said
     assert "cell 0, clusters of neighbouring windows, p ≤ 0.05" in said
     assert "lag +3 frames: the edge moves after the signal, mean r +0." in said
-    assert said.splitlines()[-1].startswith("cell 0. Nothing speaks against: layer 0 (lag +3 frames)")
+    verdict, finding = said.splitlines()[-2:]
+    assert verdict.startswith("cell 0. Nothing speaks against: layer 0 (lag +3 frames)")
+    assert finding.startswith("Finding, cell 0: Signal 'edge' in layer 0 (outermost) rises 3 frames before")
     found = cd.open_study(study).correlation("edge", "velocity")
     assert found.layers.set_index("layer").loc[0, "lag"] == 3  # the signal leads by three frames
     assert np.isnan(found.windows["lag_s"]).all()  # the interval is not known

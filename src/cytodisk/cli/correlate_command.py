@@ -12,7 +12,12 @@ from cytodisk.cli.report.report_command import opened
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.population.correlations.pool_parameters import BatchCorrelateParameters, PoolOptions
 from cytodisk.runs.run_options import TableOptions
-from cytodisk.runs.told.correlation_words import correlation_lines, replaced_words, verdict_lines
+from cytodisk.runs.told.correlation_words import (
+    correlation_lines,
+    finding_lines,
+    replaced_words,
+    verdict_lines,
+)
 from cytodisk.runs.told.flag_words import study_flag_lines
 
 if TYPE_CHECKING:
@@ -69,8 +74,10 @@ def correlate_command(
         )
     draw_correlation(quiet, there, found, figures, wanted)
     say_lines(console, correlation_lines(found, there))
-    say_lines(console, study_flag_lines(opened(None, study), found))
+    whole = opened(None, study)
+    say_lines(console, study_flag_lines(whole, found))
     say_lines(console, verdict_lines(found))
+    say_lines(console, finding_lines(found, whole))
 
 
 def _correlate_batch(

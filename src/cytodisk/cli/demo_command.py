@@ -13,7 +13,7 @@ from cytodisk.cli.movie_command import draw_movie, finish_movie, say_movie
 from cytodisk.cli.options import Quiet
 from cytodisk.cli.report.report_command import write_page
 from cytodisk.errors import MissingPartError
-from cytodisk.runs.told.correlation_words import correlation_lines, verdict_lines
+from cytodisk.runs.told.correlation_words import correlation_lines, finding_lines, verdict_lines
 from cytodisk.runs.told.flag_words import study_flag_lines
 
 _AGAIN = "run the same command again"
@@ -72,6 +72,7 @@ def demo_command(
             say_lines(console, study_flag_lines(study))
             console.print(f"no report: {missing}")
         say_lines(console, verdict_lines(found))
+        say_lines(console, finding_lines(found, study))
         with progress_bar(quiet, "drawings", total=len(drawings), again=_AGAIN) as progress:
             for number, drawing in enumerate(drawings):
                 drawing.result()

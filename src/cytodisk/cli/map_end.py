@@ -8,7 +8,7 @@ from cytodisk.cli.console import fail, say_lines, say_losses
 from cytodisk.cli.report.report_words import say_page
 from cytodisk.number_words import counted
 from cytodisk.runs.told.flag_words import study_flag_lines
-from cytodisk.runs.told.map_words import lost_cell_lines, map_fault, map_lines
+from cytodisk.runs.told.map_words import lost_cell_lines, map_fault, map_lines, signal_finding_lines
 from cytodisk.store.nuclei.summary_columns import channels_among
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ def finish_map(
     if 0 < figures < int((rows["status"] == "ok").sum()):
         console.print(f"figures drawn for the first {counted(figures, 'cell')}: --figures -1 draws all")
     say_lines(console, study_flag_lines(study))
+    say_lines(console, signal_finding_lines(study))
     console.print(f"results: {study.path}")
     if write_page is not None:
         say_page(console, write_page)

@@ -20,7 +20,7 @@ from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.run_options import RunOptions
 from cytodisk.runs.told.compiling_words import with_nuclei_or_not
 from cytodisk.runs.told.flag_words import study_flag_lines
-from cytodisk.runs.told.movie_words import lost_frame_lines, movie_fault, movie_lines
+from cytodisk.runs.told.movie_words import finding_line, lost_frame_lines, movie_fault, movie_lines
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -87,6 +87,7 @@ def finish_movie(console: "Console", study: "Study", flags: bool = True) -> None
     say_losses(lost_frame_lines(study))
     if flags:
         say_lines(console, study_flag_lines(study))
+        say_lines(console, finding_line(study))
     console.print(f"results: {study.path}")
     if fault := movie_fault(study):
         fail(fault)

@@ -14,11 +14,9 @@ from cytodisk.analysis.time_steps import frame_interval
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.errors import ParameterError
 from cytodisk.plot.units import scale_for
-from cytodisk.scale import Scale
+from cytodisk.scale import Scale, ShownUnit
 
 TICK_STEPS = [1, 2, 2.5, 5, 10]
-
-_LONGEST_IN = (("s", 1.0, 300.0), ("min", 60.0, 36000.0), ("h", 3600.0, np.inf))  # unit, seconds, up to
 
 
 @dataclass(frozen=True)
@@ -75,20 +73,19 @@ class FrameTimes:
         return cls(int(numbers[0]), count, interval, stride)
 
     @property
-    def _unit(self) -> tuple[str, float]:
-        """Unit of the axis and its seconds: a long movie is in minutes or hours."""
-        whole = (self.first + self.count * self.stride) * (self.interval_s or 0.0)
-        return next((unit, seconds) for unit, seconds, most in _LONGEST_IN if whole <= most)
+    def unit(self) -> ShownUnit:
+        """Unit of the axis: a long movie is in minutes or hours."""
+        return Scale(None, self.interval_s).shown_time(self.first + self.count * self.stride)
 
     @property
     def per_frame(self) -> float:
         """From a frame number to the next on the axis."""
-        return 1.0 if self.interval_s is None else self.interval_s / self._unit[1]
+        return 1.0 if self.interval_s is None else self.interval_s * self.unit.factor
 
     @property
     def label(self) -> str:
         """Of the axis, as "time (min)"; "frame" where seconds are not known."""
-        return "frame" if self.interval_s is None else f"time ({self._unit[0]})"
+        return "frame" if self.interval_s is None else f"time ({self.unit.name})"
 
     @property
     def at(self) -> FloatArray:

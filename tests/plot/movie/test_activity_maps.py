@@ -90,7 +90,7 @@ def test_layers_share_colours_and_time() -> None:
     assert velocity.get_clim() == (-1.0, 1.0)
     assert len({drawn.get_clim() for drawn in maps}) == 1
     assert [float(np.ma.asarray(drawn.get_array())[0, 0]) for drawn in maps] == [0.0, 200.0, 300.0, 500.0]
-    assert [ax.get_xlabel() for ax in axes] == ["", "", "", "", "time (s)"]
+    assert [ax.get_xlabel() for ax in axes] == ["", "", "", "", "time (min)"]
     assert [ax.get_title(loc="left") for ax in axes][1:] == [
         "layer 0 (edge)",
         "layer 2",

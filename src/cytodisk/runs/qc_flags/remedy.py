@@ -45,6 +45,11 @@ def correlate_again(study: Study, names: Sequence[str], variant: str, **changes:
     return shlex.join([*words, *cells, *_flags(given | changes), "--name", called])
 
 
+def correlate_command(study: Study, signal: str) -> str:
+    """The command that correlates a channel with the edge, as "cytodisk correlate out --signal Rac1"."""
+    return shlex.join(["cytodisk", "correlate", shown_path(str(study.path)), "--signal", signal])
+
+
 def run_again(study: Study, suffix: str, **changes: Any) -> str:
     """The command that makes a study again in another way, beside what is there.
 

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from cytodisk.store.study import Study
 
 _MOST_CLUSTERS = 5  # of a cell that are listed
+_MOST_FINDINGS = 3  # cells of which sentences are told
 
 
 def correlation_lines(found: "Correlation", study: "Study") -> Iterator[str]:
@@ -56,6 +57,20 @@ def verdict_lines(found: "Correlation") -> Iterator[str]:
     for cell in found.cells["cell"].tolist():
         if words := verdict_words(found, int(cell)):
             yield f"cell {cell}. {words}"
+
+
+def finding_lines(found: "Correlation", study: "Study") -> Iterator[str]:
+    """What the correlation shows, in the sentences of the report, of the first cells."""
+    from cytodisk.runs.findings.correlation_finding import correlation_finding
+    from cytodisk.runs.findings.doubt_words import bearing_flags
+    from cytodisk.runs.qc_flags.study_flags import run_flags
+
+    flags = run_flags(study)
+    cells = [int(cell) for cell in found.cells.loc[found.cells["status"] == "ok", "cell"]]
+    for cell in cells[:_MOST_FINDINGS]:
+        finding = correlation_finding(study, found, cell, bearing_flags(flags, cell))
+        if finding is not None:
+            yield f"Finding, cell {cell}: {finding.words}"
 
 
 def replaced_words(before: dict[str, Any] | None, now: dict[str, Any]) -> str:

@@ -49,6 +49,19 @@ def map_lines(study: "Study", of_folder: bool) -> Iterator[str]:
         yield f"{counted(remarks, 'cell')} with remarks: column 'notes' of cells.parquet"
 
 
+def signal_finding_lines(study: "Study") -> Iterator[str]:
+    """Where the signals are, in the sentences of the report, and the command that compares conditions."""
+    from cytodisk.runs.findings.cells_finding import cells_finding
+
+    if not (study.cells["status"] == "ok").any():
+        return
+    _, *signals = (finding := cells_finding(study)).sentences  # the totals are told above
+    if signals:
+        yield f"Finding: {' '.join(signals)}"
+    if finding.command:
+        yield f"Do the conditions differ? {finding.command}"
+
+
 def lost_cell_lines(study: "Study", of_folder: bool) -> Iterator[str]:
     """Why cells were not mapped."""
     lost = study.cells[study.cells["status"] != "ok"]

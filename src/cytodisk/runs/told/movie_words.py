@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from cytodisk.number_words import counted
 from cytodisk.runs.told.nucleus_words import nucleus_ratio_words, nucleus_share_words
+from cytodisk.scale import suited_velocity
 
 if TYPE_CHECKING:
     from cytodisk.store.study import Study
@@ -63,8 +64,25 @@ def _velocity_words(study: "Study") -> str:
     if not speed.notna().any():
         return "edge velocity: none, as no two frames that follow each other were mapped"
     error = " ".join(["error of one sector", *_bounds(study.edge)])
-    span = f"{speed.min():.3g} to {speed.max():.3g}".replace("-", "−")
-    return f"edge velocity: {span} {unit}, {error} {study.edge['velocity_error'].median():.2g} {unit}"
+    frames = study.cells["frame"].max() - study.cells["frame"].min() + 1
+    shown = suited_velocity(speed.abs().max(), unit, study.scale.shown_time(frames))
+    low, high, wrong = speed.min(), speed.max(), study.edge["velocity_error"].median()
+    return f"edge velocity: {shown.number(low)} to {shown.words(high)}, {error} {shown.words(wrong, 2)}"
+
+
+def finding_line(study: "Study") -> Iterator[str]:
+    """What was measured of the cell with the most mapped frames, and the command that asks more."""
+    from cytodisk.runs.findings.doubt_words import bearing_flags
+    from cytodisk.runs.findings.movie_finding import measured, usual_cell
+    from cytodisk.runs.qc_flags.study_flags import run_flags
+
+    cell = usual_cell(study)
+    if cell is None:
+        return
+    finding = measured(study, cell, bearing_flags(run_flags(study), cell))
+    yield f"Finding, cell {cell}: {finding.words}"
+    if finding.command:
+        yield f"Does the signal rise before the edge moves? {finding.command}"
 
 
 def _bounds(edge: Any) -> list[str]:

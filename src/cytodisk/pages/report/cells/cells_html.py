@@ -13,9 +13,7 @@ from cytodisk.pages.report.cells.cell_pictures import CellPictures, means_limits
 from cytodisk.pages.report.cells.cell_table import CONDITION, EXPERIMENT, listed_cells
 from cytodisk.pages.report.cells.cells_words import (
     cell_names,
-    compare_command,
     facts,
-    finding,
     flag_words,
     groups_words,
     left_out,
@@ -31,6 +29,7 @@ from cytodisk.plot.layer_looks import layer_place
 from cytodisk.plot.style import SIGNAL_COLOURS, signal_limits
 from cytodisk.runs.channel_names import shown_name
 from cytodisk.runs.depth_layers import layer_borders
+from cytodisk.runs.findings.cells_finding import cells_finding
 from cytodisk.runs.map.input_files import FoundInputs, find_inputs
 from cytodisk.runs.qc_flags.study_flags import qc_flags
 from cytodisk.store.provenance_file import other_maps, writer_of
@@ -93,14 +92,16 @@ def cells_page(
     maker = CellPictures(study, found.inputs, numbers)
     pictures = _within_bytes(maker, chosen, progress)
     data = _data(study, grid, numbers, pictures)
+    flags = qc_flags(study)
+    finding = cells_finding(study, flags)
     words = {
         "title": real_path(study.path).name,
         "facts": list(facts(study)),
-        "finding": finding(study),
+        "finding": finding.words,
         "groups": groups_words(study),
-        "command": compare_command(study),
+        "command": finding.command,
         "lost": lost_groups(study),
-        "flags": [*_earlier(study), *flag_words(qc_flags(study), study)],
+        "flags": [*_earlier(study), *flag_words(flags, study)],
         "left_out": [
             *left_out(study, list(pictures), wanted, found.fault, len(maker.mapped)),
             *filter(None, [rows_words(study.cells, "cells.parquet")]),

@@ -41,26 +41,6 @@ def cell_names(cells: pd.DataFrame) -> dict[int, str]:
     return names
 
 
-def finding(study: Study) -> str:
-    """What came of the run, in a sentence with its numbers."""
-    rows = study.cells
-    cells = rows[rows["label"] != 0]
-    mapped = cells[cells["status"] == "ok"]
-    files = rows["source"].nunique() if "source" in rows else 1
-    valid = int(mapped["certificate_valid"].astype(bool).sum())
-    words = f"{len(mapped)} of {counted(len(cells), 'cell')}"
-    words += f" in {counted(files, 'file')} {'is' if len(mapped) == 1 else 'are'} mapped"
-    if len(mapped):
-        words += " one to one" if valid == len(mapped) else f", {valid} of them one to one"
-    lost = cells.loc[cells["status"] != "ok", "status"].value_counts()
-    parts = [words, *(f"{count} {status}" for status, count in lost.items())]
-    flagged = int((mapped["qc_flags"].fillna("") != "").sum())
-    parts.append(f"{flagged} of the mapped have QC flags" if flagged else "none of the mapped has a QC flag")
-    empty = rows.loc[rows["label"] == 0, "status"].value_counts()
-    parts += [f"{counted(count, 'image')} without a cell ({status})" for status, count in empty.items()]
-    return "; ".join(parts) + "."
-
-
 def groups_words(study: Study) -> str:
     """Cells by condition and experiment, and the command that compares them; empty without conditions."""
     rows = study.cells
@@ -75,20 +55,6 @@ def groups_words(study: Study) -> str:
             + (f" in {counted(repeats, 'experiment')}" if repeats else "")
         )
     return "; ".join(words)
-
-
-def compare_command(study: Study) -> str:
-    """The command that compares a study's conditions; empty with fewer than two."""
-    rows = study.cells
-    if CONDITION not in rows:
-        return ""
-    names = [str(name) for name in rows[CONDITION].dropna().unique()]
-    if len(names) < 2:
-        return ""
-    folder = str(study.path)
-    return shlex.join(
-        ["cytodisk", "population", folder, "--compare", ",".join(names), "-o", f"{folder}_population"]
-    )
 
 
 def lost_groups(study: Study) -> list[dict[str, Any]]:

@@ -9,6 +9,7 @@ import pandas as pd
 
 from cytodisk.population.significance import LEVEL
 from cytodisk.runs.channel_names import VELOCITIES
+from cytodisk.runs.correlate.lag_words import lag_words
 
 
 def peak_sentences(pooled: pd.DataFrame, names: tuple[str, str]) -> list[str]:
@@ -37,13 +38,6 @@ def strongest(rows: pd.DataFrame) -> Any:
     return chosen.iloc[int(chosen["correlation"].abs().to_numpy().argmax())] if len(chosen) else None
 
 
-def lag_words(row: Any) -> str:
-    """Lag in seconds, or in frames where seconds are unknown."""
-    if pd.notna(row["lag_s"]):
-        return f"{row['lag_s']:+g} s".replace("-", "−")
-    return f"{row['lag']:+d} frames".replace("-", "−")
-
-
 def _of_condition(rows: pd.DataFrame, name: str, names: tuple[str, str]) -> Iterator[str]:
     raw = strongest(rows[rows["curve"] == "raw"])
     if raw is None:
@@ -52,7 +46,7 @@ def _of_condition(rows: pd.DataFrame, name: str, names: tuple[str, str]) -> Iter
     if not raw["n_experiments"]:
         from_cells = f"{raw['n_cells']} cells, experiments unknown"
     what = f"{name}: {names[0]} and {_other(names[1])}"
-    place = f"in layer {raw['layer']} at lag {lag_words(raw)}"
+    place = f"in layer {raw['layer']} at {lag_words(raw['lag'], raw['lag_s'])}"
     size = f"r = {_two(raw['correlation'])}{_interval(raw)}"
     if raw["p_fwer"] <= LEVEL:
         chance = f"p = {raw['p_fwer']:.2g} over all layers and lags"
@@ -123,7 +117,7 @@ def difference_sentences(comparisons: pd.DataFrame) -> list[str]:
         best = min(number * raw["smallest_p"].min(), 1.0)
         low, high = _two(most["difference_low"]), _two(most["difference_high"])
         size = f"{_two(most['difference'])} in Fisher's z (95 % interval {low} to {high})"
-        where = f"{size} in layer {most['layer']} at lag {lag_words(most)}"
+        where = f"{size} in layer {most['layer']} at {lag_words(most['lag'], most['lag_s'])}"
         where += f", p = {most['p_holm']:.2g}{corrected}"
         if max(best, most["smallest_p"]) > LEVEL:
             words = f"p is {max(best, most['smallest_p']):.2g} at best{corrected}"

@@ -1,0 +1,127 @@
+"""What the study of a movie shows first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import pandas as pd
+
+from cytodisk.number_words import counted, rounded
+from cytodisk.runs.channel_names import correlation_name
+from cytodisk.runs.findings.correlation_finding import correlation_finding
+from cytodisk.runs.findings.doubt_words import bearing_flags
+from cytodisk.runs.findings.finding import Finding, listed
+from cytodisk.runs.findings.layer_levels import LayerLevels, layer_levels
+from cytodisk.runs.findings.signal_sentences import signal_sentence
+from cytodisk.runs.qc_flags.qc_flag import QCFlag
+from cytodisk.runs.qc_flags.remedy import correlate_command
+from cytodisk.runs.qc_flags.study_flags import run_flags
+from cytodisk.store.study import Study
+
+_ORDER = ("found", "doubtful", "nothing")
+
+
+def movie_finding(study: Study, cell: int, flags: Sequence[QCFlag] | None = None) -> Finding:
+    """What a movie's study shows of a cell: its strongest correlation, or else what was measured.
+
+    Parameters
+    ----------
+    study : Study
+    cell : int
+    flags : sequence of QCFlag, optional
+        Those of the study, where they are known already.
+
+    Returns
+    -------
+    Finding
+    """
+    raised = bearing_flags(run_flags(study) if flags is None else flags, cell)
+    found = [
+        (names, finding)
+        for names in study.correlations
+        if (finding := correlation_finding(study, study.correlation(*names), cell, raised)) is not None
+    ]
+    if not found:
+        return measured(study, cell, raised)
+    ordered = sorted(found, key=lambda one: (_ORDER.index(one[1].kind), -one[1].size))
+    (_, first), *others = ordered
+    if not others:
+        return first
+    alike = [correlation_name(names) for names, other in others if other.kind == "found"]
+    more = f"Of the {counted(len(others), 'other correlation')}, {len(alike)} found something"
+    more += f": {listed(alike[:3])}." if alike else "."
+    return Finding(first.kind, (*first.sentences[:2], more), first.command, first.size)
+
+
+def usual_cell(study: Study) -> int | None:
+    """The cell with the most mapped frames, the first of several; None if nothing is mapped."""
+    mapped = study.cells.loc[study.cells["status"] == "ok", "cell"]
+    if mapped.empty:
+        return None
+    cells, counts = np.unique(mapped, return_counts=True)
+    return int(cells[counts.argmax()])
+
+
+def measured(study: Study, cell: int, flagged: Sequence[str] = ()) -> Finding:
+    """What was measured of a cell: how its edge moves, how its area changes, where its signal is.
+
+    Parameters
+    ----------
+    study : Study
+        Of a movie.
+    cell : int
+    flagged : sequence of str
+        Names of QC flags that bear on it.
+
+    Returns
+    -------
+    Finding
+    """
+    levels = layer_levels(study, cell)
+    words = list(_motion(study, cell))
+    if flagged:
+        words[-1] = f"{words[-1][:-1]}; but QC flags are raised that bear on this: {listed(list(flagged))}."
+    words += _signals(study, cell, levels)
+    command = "" if levels is None else correlate_command(study, levels.channels[0])
+    return Finding("measured", tuple(words), command)
+
+
+def _signals(study: Study, cell: int, levels: LayerLevels | None) -> Iterator[str]:
+    if levels is None:
+        yield "No signal was given, so there is none to compare with the edge."
+        return
+    for channel in levels.channels[:2]:
+        yield signal_sentence(study, levels, channel, cell)
+
+
+def _motion(study: Study, cell: int) -> Iterator[str]:
+    """How the edge moves and the area changes."""
+    rows = study.cells[(study.cells["cell"] == cell) & (study.cells["status"] == "ok")].sort_values("frame")
+    edge = study.edge[study.edge["cell"] == cell]
+    speed = edge["velocity"].dropna()
+    frames = int(rows["frame"].iloc[-1] - rows["frame"].iloc[0]) if len(rows) else 0
+    time = study.scale.shown_time(frames)
+    span = time.words(study.scale.time(float(frames)))
+    if speed.empty:
+        yield "No two mapped frames follow each other, so the edge has no velocity."
+        return
+    top = float(np.percentile(speed.abs(), 99.0))
+    unit = study.scale.shown_velocity(top, frames)
+    usual, error = float(speed.abs().median()), float(edge["velocity_error"].median())
+    noise = f", no more than the error of one sector ({unit.words(error, 2)})" if usual <= error else ""
+    moving = (
+        f"In {span} the edge moves at {unit.words(usual, 2)} in the median{noise}, and protrudes in "
+        f"{_share(speed)} of sectors and frames"
+    )
+    yield f"{moving}; {_area(rows, study.cells.attrs['units']['area'])}."
+
+
+def _share(speed: pd.Series[float]) -> str:
+    return f"{float((speed > 0).mean()):.0%}".replace("%", " %")
+
+
+def _area(rows: pd.DataFrame, unit: str) -> str:
+    first, last = float(rows["area"].iloc[0]), float(rows["area"].iloc[-1])
+    change = f"{100 * (last / first - 1):+.0f} %".replace("-", "−")
+    return f"the area goes from {rounded(first)} to {rounded(last)} {unit} ({change})"

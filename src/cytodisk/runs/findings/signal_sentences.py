@@ -1,0 +1,67 @@
+"""Where a signal is in a cell, or in many, in a sentence."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pandas as pd
+
+from cytodisk.runs.findings.finding import ratio_words
+from cytodisk.runs.findings.layer_levels import LayerLevels
+from cytodisk.runs.findings.layer_names import channel_words, layer_name
+from cytodisk.store.nuclei.summary_columns import RATIO, column_of
+from cytodisk.store.study import Study
+
+_EVEN = 1.1
+"""Times the cell's mean: a brightest layer that does not reach it is none."""
+_FEWEST_FOR_QUARTILES = 4
+
+
+def signal_sentence(study: Study, levels: LayerLevels, channel: str, cell: int | None = None) -> str:
+    """Where a channel is brightest, edge to centre and nucleus to cytoplasm.
+
+    Parameters
+    ----------
+    study : Study
+    levels : LayerLevels
+    channel : str
+    cell : int, optional
+        Of a movie, the cell that is told of; of single cells the median over all.
+    """
+    of_channel = levels.of(channel).dropna(how="all")
+    name = channel_words(channel)
+    name = f"{name[0].upper()}{name[1:]}" if name.startswith("signal ") else name
+    if of_channel.empty:
+        return f"{name} has no mean above 0 in any cell."
+    middle: Any = of_channel.median()
+    brightest = int(middle.idxmax())
+    level, layer = ratio_words(float(middle[brightest])), layer_name(study, brightest)
+    where = f"{name} is brightest in {layer}, {level} times the cell's mean"
+    if middle[brightest] < _EVEN:
+        where = f"{name} is even: no layer is more than {level} times the cell's mean"
+    if cell is None and len(of_channel) > 1:
+        most = int((of_channel.idxmax(axis=1) == brightest).sum())
+        where += f" (in the median; this layer is the brightest in {most} of {len(of_channel)} cells)"
+    parts = [where, *_ratios(study, levels, channel, cell)]
+    return f"{'; '.join(parts)}; background not subtracted."
+
+
+def _ratios(study: Study, levels: LayerLevels, channel: str, cell: int | None) -> list[str]:
+    words = []
+    if levels.inner > 0:
+        words.append(_told("edge to centre", levels.edge_to_centre(channel), cell))
+    column = column_of(RATIO, channel)
+    if column in study.cells:
+        rows = study.cells if cell is None else study.cells[study.cells["cell"] == cell]
+        words.append(_told("nucleus to cytoplasm", rows[column], cell))
+    return [one for one in words if one]
+
+
+def _told(name: str, values: pd.Series[float], cell: int | None) -> str:
+    """The median, over cells with the quartiles."""
+    known = values.dropna()
+    if known.empty:
+        return ""
+    low, middle, high = (ratio_words(float(known.quantile(share))) for share in (0.25, 0.5, 0.75))
+    spread = f" (quartiles {low} and {high})" if cell is None and len(known) >= _FEWEST_FOR_QUARTILES else ""
+    return f"{name} {middle}{spread}"
