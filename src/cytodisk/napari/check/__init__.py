@@ -1,0 +1,1 @@
+"""What is wrong, by frame and cell, with a click that leads there."""

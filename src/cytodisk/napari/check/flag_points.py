@@ -1,0 +1,160 @@
+"""Places that are wrong as a layer of points, and the way there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from cytodisk.napari.camera import camera_of
+from cytodisk.napari.check.found_flags import FlagPlace, FoundFlag
+
+ROLE = "flags"
+_COLOUR = "#ffb000"  # told from cells and backgrounds by all, also the colour blind
+_LEAST_PX, _MOST_PX = 18, 60  # size on the screen
+_LONGEST = 200  # letters in the status bar
+
+
+@dataclass(frozen=True)
+class FlagGround:
+    """Where places lie in the viewer.
+
+    Attributes
+    ----------
+    scale, translate : tuple of float
+        Of axes (time,) y, x.
+    units : tuple of object
+    """
+
+    scale: tuple[float, ...]
+    translate: tuple[float, ...]
+    units: tuple[Any, ...]
+
+    @classmethod
+    def of(cls, layer: Any) -> FlagGround:
+        """That of a layer with axes (time,) y, x."""
+        kept = slice(-min(layer.ndim, 3), None)
+        return cls(tuple(layer.scale[kept]), tuple(layer.translate[kept]), tuple(layer.units[kept]))
+
+    @property
+    def has_time(self) -> bool:
+        """Whether there is an axis of time."""
+        return len(self.scale) > 2
+
+    def point(self, place: FlagPlace) -> tuple[float, ...] | None:
+        """A place in the pixels of a layer; None without one."""
+        if place.yx is None:
+            return None
+        return (float(place.frame or 0), *place.yx) if self.has_time else place.yx
+
+    def world(self, place: FlagPlace) -> tuple[float, ...] | None:
+        """A place in the viewer."""
+        point = self.point(place)
+        return None if point is None else tuple(np.array(point) * self.scale + self.translate)
+
+
+def flag_features(
+    flags: Sequence[FoundFlag], ground: FlagGround
+) -> tuple[np.ndarray[Any, Any], pd.DataFrame]:
+    """Points of all places, and what the status bar says of each.
+
+    Parameters
+    ----------
+    flags : sequence of FoundFlag
+    ground : FlagGround
+
+    Returns
+    -------
+    (ndarray of shape (N, D), DataFrame)
+        The table has the columns flag, cell, frame, finding, remedy.
+    """
+    points, rows = [], []
+    for flag in flags:
+        for place in flag.places:
+            point = ground.point(place)
+            if point is None:
+                continue
+            points.append(point)
+            said = place.note or flag.finding
+            rows.append((flag.name, place.cell, place.frame, _short(said), _short(flag.remedy)))
+    names = ["flag", "cell", "frame", "finding", "remedy"]
+    return np.array(points, dtype=float).reshape(len(points), len(ground.scale)), pd.DataFrame(
+        rows, columns=names
+    )
+
+
+def add_flag_points(
+    viewer: Any, flags: Sequence[FoundFlag], ground: FlagGround, *, name: str = "flags", mark: dict[str, Any]
+) -> Any | None:
+    """Add a layer of points with all places.
+
+    Parameters
+    ----------
+    viewer : Viewer
+    flags : sequence of FoundFlag
+    ground : FlagGround
+    name : str
+        Of the layer.
+    mark : dict
+        Its metadata under "cytodisk".
+
+    Returns
+    -------
+    Points or None
+        None if there is no place.
+    """
+    points, features = flag_features(flags, ground)
+    if not len(points):
+        return None
+    selected = set(viewer.layers.selection)
+    layer = viewer.add_points(
+        points,
+        name=name,
+        features=features,
+        scale=ground.scale,
+        translate=ground.translate,
+        units=ground.units,
+        metadata={"cytodisk": {"role": ROLE, **mark}},
+        symbol="ring",
+        face_color="transparent",
+        border_color=_COLOUR,
+        border_width=0.15,
+        size=_LEAST_PX,
+        out_of_slice_display=False,
+    )
+    layer.canvas_size_limits = (_LEAST_PX, _MOST_PX)
+    layer.editable = False
+    if selected:
+        viewer.layers.selection = selected  # what the user works on stays
+    return layer
+
+
+def jump_to(viewer: Any, place: FlagPlace, ground: FlagGround) -> bool:
+    """Bring the slider to the frame of a place, and the place to the middle of the canvas.
+
+    Parameters
+    ----------
+    viewer : Viewer
+    place : FlagPlace
+    ground : FlagGround
+
+    Returns
+    -------
+    bool
+        Whether there is anything to see.
+    """
+    world = ground.world(place)
+    if ground.has_time and place.frame is not None:
+        time = place.frame * ground.scale[0] + ground.translate[0]
+        viewer.dims.set_point(viewer.dims.ndim - len(ground.scale), time)
+    if world is None:
+        return ground.has_time and place.frame is not None
+    camera_of(viewer).center = world[-2:]
+    return True
+
+
+def _short(words: str) -> str:
+    return words if len(words) <= _LONGEST else words[:_LONGEST].rpartition(" ")[0] + " …"

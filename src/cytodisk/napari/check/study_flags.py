@@ -1,0 +1,88 @@
+"""The QC flags of a study as points that jump to their frame, and as a table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from cytodisk.napari.check.flag_points import FlagGround, add_flag_points, jump_to
+from cytodisk.napari.check.flag_table import FlagTable
+from cytodisk.napari.check.found_flags import FoundFlag, flags_of_study, sector_place
+from cytodisk.runs.qc_flags.qc_flag import QCFlag
+from cytodisk.runs.qc_flags.study_flags import qc_flags
+from cytodisk.store.study import Study
+from cytodisk.windows.study_grid import polar_grid_of
+
+if TYPE_CHECKING:
+    from cytodisk.napari.study_layers.shown_study import ShownStudy
+
+_HEIGHT = 220  # px of the table under the canvas
+
+
+class ShownFlags:
+    """Flags of a study in a viewer.
+
+    Attributes
+    ----------
+    flags : list of FoundFlag
+    layer : Points or None
+        None if no flag has a place.
+    table : FlagTable
+    dock : QDockWidget
+    """
+
+    def __init__(self, viewer: Any, flags: list[FoundFlag], ground: FlagGround, study: Study):
+        self._viewer = viewer
+        self.flags = flags
+        mark = {"study": str(study.path), "cell": None}
+        self.layer = add_flag_points(viewer, flags, ground, mark=mark)
+        self.table = FlagTable(lambda place: jump_to(viewer, place, ground))
+        self.table.show_flags(flags, "No QC flags: nothing speaks against these results.")
+        self.table.setMinimumHeight(_HEIGHT)
+        self.dock = viewer.window.add_dock_widget(
+            self.table, name=f"QC flags of {study.path.name}", area="bottom", tabify=True
+        )
+
+    def remove(self) -> None:
+        """Take the layer and the table out of the viewer, if they are still there."""
+        if self.layer is not None and self.layer in self._viewer.layers:
+            self._viewer.layers.remove(self.layer)
+        self._viewer.window.remove_dock_widget(self.table)
+
+
+def show_flags(
+    viewer: Any, study: Study, shown: ShownStudy, flags: Sequence[QCFlag] | None = None
+) -> ShownFlags:
+    """Show the QC flags of a study: points in the layer "flags", and a table under the canvas.
+
+    Parameters
+    ----------
+    viewer : Viewer
+    study : Study
+    shown : ShownStudy
+        Of its layers in the viewer.
+    flags : sequence of QCFlag, optional
+        As `qc_flags` finds them, where that was done in a thread.
+
+    Returns
+    -------
+    ShownFlags
+    """
+    found = qc_flags(study) if flags is None else flags
+    sectors = polar_grid_of(study.provenance).sectors
+    edge = partial(sector_place, shown, sectors=sectors)
+    rows = flags_of_study(study, found, shown.cells.rows, edge)
+    return ShownFlags(viewer, rows, _ground(study, shown), study)
+
+
+def _ground(study: Study, shown: ShownStudy) -> FlagGround:
+    """That of the study's layers, or without any, by its scale."""
+    for role in ("windows", "values", "signal"):
+        if role in shown.layers:
+            return FlagGround.of(shown.layers[role])
+    pixel, interval = study.scale.pixel_size_um, study.scale.frame_interval_s
+    dims = 3 if study.is_movie else 2
+    length, unit = (1.0, "pixel") if pixel is None else (pixel, "micrometer")
+    time, second = (1.0, "pixel") if interval is None else (interval, "second")
+    return FlagGround((time, length, length)[-dims:], (0.0,) * dims, (second, unit, unit)[-dims:])
