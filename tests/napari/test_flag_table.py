@@ -36,7 +36,7 @@ def test_flags_jump_to_their_frame(make_viewer: Callable[..., Any], tmp_path: Pa
 
     assert viewer.dims.current_step[0] == 7
     assert camera_of(viewer).center[-2:] == pytest.approx((17 * 0.2, 20 * 0.2))
-    assert "+7% area jumps: the area jumps. Wrong. What to do: Correct it." in shown.table.said.text()
+    assert "+7%. Area jumps: the area jumps. Wrong. What to do: Correct it." in shown.table.said.text()
     status = shown.layer.get_status((35.0, 3.4, 4.0), world=True)["coordinates"]
     assert all(words in status for words in ("flag: area jumps", "finding: +7%", "remedy: Correct it."))
     assert shown.layer.metadata["cytodisk"] == {"role": "flags", "study": str(study.path), "cell": None}

@@ -118,7 +118,7 @@ def add_flag_points(
         translate=ground.translate,
         units=ground.units,
         metadata={"cytodisk": {"role": ROLE, **mark}},
-        symbol="ring",
+        symbol="disc",
         face_color="transparent",
         border_color=_COLOUR,
         border_width=0.15,

@@ -8,7 +8,7 @@ from typing import Any
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QHeaderView, QLabel, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
 
-from cytodisk.napari.check.found_flags import FlagPlace, FoundFlag
+from cytodisk.napari.check.found_flags import FlagPlace, FoundFlag, sentence
 from cytodisk.number_words import counted
 
 _MOST_PLACES = 1000  # of a kind, that are listed
@@ -29,12 +29,12 @@ class FlagTable(QWidget):
         super().__init__()
         self._go = go
         self.tree: Any = QTreeWidget()
-        self.tree.setHeaderLabels(["What is wrong", "Frame", "Cell"])
+        self.tree.setHeaderLabels(["Frame", "Cell", "What is wrong"])
         self.tree.setUniformRowHeights(True)
         header = self.tree.header()
         header.setStretchLastSection(False)
-        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
-        for column in (1, 2):
+        header.setSectionResizeMode(2, QHeaderView.ResizeMode.Stretch)
+        for column in (0, 1):
             header.setSectionResizeMode(column, QHeaderView.ResizeMode.ResizeToContents)
         self.said: Any = QLabel()
         self.said.setWordWrap(True)
@@ -66,16 +66,17 @@ class FlagTable(QWidget):
     def _add(self, flag: FoundFlag) -> None:
         title = f"{flag.name}: {flag.finding}"
         top = QTreeWidgetItem(self.tree, [title, "", ""])
+        top.setFirstColumnSpanned(True)
         top.setData(0, _PART, (flag, None))
         top.setToolTip(0, flag.words)
         for place in flag.places[:_MOST_PLACES]:
             frame = "" if place.frame is None else str(place.frame)
-            item = QTreeWidgetItem(top, [place.note or flag.name, frame, place.cell])
+            item = QTreeWidgetItem(top, [frame, place.cell, place.note or flag.name])
             item.setData(0, _PART, (flag, place))
-            item.setToolTip(0, place.note)
+            item.setToolTip(2, place.note)
         if len(flag.places) > _MOST_PLACES:
             more = counted(len(flag.places) - _MOST_PLACES, "more place")
-            QTreeWidgetItem(top, [f"… {more}: points of the layer flags", "", ""])
+            QTreeWidgetItem(top, ["", "", f"… {more}: points of the layer flags"])
         top.setExpanded(len(flag.places) <= _OPEN)
 
     def _select(self, item: Any, *_: Any) -> None:
@@ -85,6 +86,6 @@ class FlagTable(QWidget):
         flag, place = part
         place = flag.places[0] if place is None and flag.places else place
         seen = place is not None and self._go(place)
-        note = f"{place.note} " if place is not None and part[1] is not None and place.note else ""
+        note = f"{sentence(place.note)} " if part[1] is not None and place.note else ""
         unseen = "" if seen or place is None else " (There is no such place in the layers that are shown.)"
-        self.said.setText(f"{note}{flag.words}{unseen}")
+        self.said.setText(f"{note}{flag.words[:1].upper()}{flag.words[1:]}{unseen}")

@@ -120,7 +120,10 @@ class _Centres:
         self._of: dict[int, tuple[Any, Any]] = {}
         rows = cells[["cell", "frame", "centroid_y", "centroid_x"]]
         for cell, held in rows.groupby("cell", sort=False):
-            self._of[int(cell)] = held["frame"].to_numpy(), held[["centroid_y", "centroid_x"]].to_numpy(float)  # type: ignore[call-overload]
+            self._of[int(str(cell))] = (
+                held["frame"].to_numpy(),
+                held[["centroid_y", "centroid_x"]].to_numpy(float),
+            )
 
     def frame(self, cell: int) -> int | None:
         """First frame of a cell; None for one that is not shown."""
