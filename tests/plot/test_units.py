@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 
 import cytodisk as cd
 from cytodisk.arrays import BoolArray
-from cytodisk.plot.units import scale_for, velocity_label, with_unit
-from cytodisk.scale import Scale
+from cytodisk.plot.units import scale_for, velocity_unit, with_unit
+from cytodisk.scale import Scale, ShownUnit
 
 FRAMES, LAYERS, SECTORS = 4, 3, 8
 UNKNOWN, SIZE_ALONE, INTERVAL_ALONE, BOTH = Scale(), Scale(0.5), Scale(None, 2.0), Scale(0.5, 2.0)
@@ -126,9 +126,10 @@ def test_an_array_brings_the_unit_of_its_signal(ax: Axes) -> None:
 
 def test_a_unit_that_was_lost_is_not_made_up() -> None:
     velocity = xr.DataArray(np.ones((3, 4)), dims=("time", "sector"))
-    assert velocity_label(velocity) == "edge velocity (unit unknown)"
-    assert velocity_label(velocity, BOTH) == "edge velocity (µm/s)"
-    assert velocity_label(np.ones((3, 4))) == "edge velocity (px/frame)"
+    assert velocity_unit(velocity, None, ShownUnit("s"), 1.0).name == "unit unknown"
+    assert velocity_unit(velocity, BOTH, ShownUnit("s"), 1.0).name == "µm/s"
+    assert velocity_unit(np.ones((3, 4)), None, ShownUnit("frame"), 1.0).name == "px/frame"
+    assert velocity_unit(velocity, BOTH, ShownUnit("min", 1 / 60), 0.001).name == "nm/min"
 
 
 def test_what_is_passed_goes_before_what_is_carried() -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import xarray as xr
 
-from cytodisk.scale import Scale
+from cytodisk.scale import Scale, ShownUnit, suited_velocity
 
 
 def scale_for(carrier: Any, scale: Scale | None = None) -> Scale:
@@ -37,21 +37,26 @@ def with_unit(label: str, unit: str) -> str:
     return label if unit in ("", "1") else f"{label} ({unit})"
 
 
-def velocity_label(velocity: Any, scale: Scale | None = None) -> str:
-    """Label of edge velocity with its unit.
+def velocity_unit(velocity: Any, scale: Scale | None, time: ShownUnit, fastest: float) -> ShownUnit:
+    """The unit that edge velocity is shown in.
 
     Parameters
     ----------
     velocity : array_like or DataArray
     scale : Scale, optional
         Of values that do not say their unit.
+    time : ShownUnit
+        That of the times.
+    fastest : float
+        The largest size that is shown.
 
     Returns
     -------
-    str
-        Of plain numbers without a scale "edge velocity (px/frame)". A DataArray that has lost its unit in a
-        computation, and comes without a scale, has none.
+    ShownUnit
+        Of plain numbers without a scale "px/frame". A DataArray that has lost its unit in a computation, and
+        comes without a scale, has none.
     """
     known = scale_for(velocity, scale)
     lost = isinstance(velocity, xr.DataArray) and known == Scale()
-    return with_unit("edge velocity", unit_of(velocity, "unit unknown" if lost else known.velocity_unit))
+    unit = unit_of(velocity, "unit unknown" if lost else known.velocity_unit)
+    return suited_velocity(fastest, unit, time)

@@ -163,6 +163,7 @@ def _draw_layer(ax: Axes, pooled: PooledCorrelation, layer: int, reach: float) -
     order = {name: place for place, name in enumerate(pooled.conditions)}
     own = own.sort_values("condition", key=lambda names: names.map(order), kind="stable")
     unit = LagUnit.of(own)
+    own = unit.shown(own)
     places = ["condition", "experiment", "input", "cell"]
     wide = own.pivot_table(index=places, columns=unit.column, values="correlation", sort=False)
     wide = wide.sort_index(axis=1)
@@ -172,7 +173,7 @@ def _draw_layer(ax: Axes, pooled: PooledCorrelation, layer: int, reach: float) -
     draw_pooled_curves(ax, curves, wide.index.to_frame(index=False), signal=signal, with_=other)
     ax.set_ylim(-reach, reach)
     colours = condition_colours(list(pooled.conditions))
-    rows = pooled.pooled[pooled.pooled["layer"] == layer]
+    rows = unit.shown(pooled.pooled[pooled.pooled["layer"] == layer])
     for place, (name, colour) in enumerate(colours.items()):
         _draw_tested(
             ax, rows[rows["condition"] == name], unit, colour, reach * (_DOTS_FROM - _DOT_STEP * place)

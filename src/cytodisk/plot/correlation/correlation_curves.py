@@ -102,6 +102,7 @@ def draw_correlation_curves(
     if len(axes) != len(layers):
         raise ParameterError(f"axes must be {len(layers)}, got {len(axes)}: pass one for each layer shown")
     unit, names = LagUnit.of(curves), layer_names(layers, len(numbers), depths)
+    curves, marks = unit.shown(curves), None if marks is None else unit.shown(marks)
     lines = []
     colours = layer_colours(layers, outer)
     for ax, layer, name, colour in zip(axes, layers, names, colours, strict=True):

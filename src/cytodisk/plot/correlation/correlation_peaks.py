@@ -100,7 +100,7 @@ class PeakMap:
                 f"and {grid.sectors} sectors: pass the grid of the study"
             )
         unit = LagUnit.of(rows)
-        tables = {}
+        rows, tables = unit.shown(rows), {}
         for name in ("correlation", unit.column, "q"):
             tables[name] = np.full((grid.layers, grid.sectors), np.nan)
             if name in rows:

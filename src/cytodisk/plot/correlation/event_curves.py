@@ -19,6 +19,7 @@ from cytodisk.plot.number_tables import named_table
 from cytodisk.plot.style import LINE_COLOUR
 from cytodisk.plot.time_axis import TICK_STEPS, FrameTimes
 from cytodisk.plot.units import unit_of, with_unit
+from cytodisk.scale import suited_lag
 
 ONSET_NAME = "onset"
 
@@ -27,7 +28,6 @@ _MOST_OUTLINED = 150  # patches
 _COLUMNS = {"sector", "kind", "onset", "end", "onset_known", "patch"}
 _BAND_OPACITY = 0.18
 _DASHES: Any = ("-", (0, (4.0, 1.2)), (0, (1.2, 1.0)), (0, (5.0, 1.2, 1.2, 1.2)))
-_DELAY_UNITS = {"frame": "frames", "s": "s"}
 
 
 def draw_events(ax: Axes, velocity: xr.DataArray, events: pd.DataFrame) -> LineCollection:
@@ -142,9 +142,9 @@ def draw_event_average(ax: Axes, average: xr.Dataset, *, label: str = "mean") ->
         lines += ax.plot(delays, one["mean"], color=colour, linewidth=0.9, linestyle=dashes, label=name)
     ax.axvline(0.0, color="0.6", linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
     ax.set_xlim(delays[0], delays[-1])
-    ax.set_xlabel(f"delay after {average.attrs['at']} of {average.attrs['kind']} ({_DELAY_UNITS[unit]})")
+    ax.set_xlabel(f"delay after {average.attrs['at']} of {average.attrs['kind']} ({unit})")
     ax.set_ylabel(_signal_label(average, label), parse_math=False)
-    ax.xaxis.set_major_locator(MaxNLocator(6, steps=TICK_STEPS, integer=unit == "frame"))
+    ax.xaxis.set_major_locator(MaxNLocator(6, steps=TICK_STEPS, integer=unit == "frames"))
     ax.yaxis.set_major_locator(MaxNLocator(4, steps=TICK_STEPS))
     if "layer" in average.dims:
         handles = [*lines, *band_key(average)]
@@ -252,8 +252,13 @@ def _parse_average(average: Any) -> xr.Dataset:
 
 
 def _delays(average: xr.Dataset) -> tuple[FloatArray, str]:
-    name, unit = ("delay_s", "s") if "delay_s" in average.coords else ("delay", "frame")
-    return average[name].to_numpy().astype(np.float64), unit
+    """Delays, and their unit."""
+    frames = average["delay"].to_numpy().astype(np.float64)
+    if "delay_s" not in average.coords:
+        return frames, "frames"
+    seconds = average["delay_s"].to_numpy().astype(np.float64)
+    unit = suited_lag(float(np.ptp(seconds) / np.ptp(frames)) if len(frames) > 1 else 0.0)
+    return seconds * unit.factor, unit.name
 
 
 def _signal_label(average: xr.Dataset, label: str) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 import pandas as pd
 
 from cytodisk.errors import ParameterError
+from cytodisk.scale import suited_lag
 
 
 @dataclass(frozen=True)
@@ -19,17 +20,33 @@ class LagUnit:
     column : str
         "lag_s", or "lag" where seconds are not known.
     unit : str
-        "s" or "frames".
+        "s", "min", "h" or "frames".
+    factor : float
+        How many of the unit are one of the column.
     """
 
     column: str
     unit: str
+    factor: float = 1.0
 
     @classmethod
     def of(cls, table: pd.DataFrame) -> LagUnit:
-        """Seconds where the table has them, else frames."""
-        known = "lag_s" in table and bool(table["lag_s"].notna().any())
-        return cls("lag_s", "s") if known else cls("lag", "frames")
+        """Seconds, minutes or hours where the table has seconds, else frames."""
+        if "lag_s" not in table:
+            return cls("lag", "frames")
+        moved = table[(table["lag"] != 0) & table["lag_s"].notna()]
+        if moved.empty:
+            known = bool(table["lag_s"].notna().any())
+            return cls("lag_s", "s") if known else cls("lag", "frames")
+        first = moved.iloc[0]
+        unit = suited_lag(abs(float(first["lag_s"]) / float(first["lag"])))
+        return cls("lag_s", unit.name, unit.factor)
+
+    def shown(self, table: pd.DataFrame) -> pd.DataFrame:
+        """The table with its column of lags in this unit."""
+        if self.factor == 1.0 or self.column not in table:
+            return table
+        return table.assign(**{self.column: table[self.column] * self.factor})
 
     @property
     def label(self) -> str:

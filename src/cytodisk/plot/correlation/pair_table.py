@@ -74,6 +74,7 @@ class PairTable:
             raise ParameterError(f"along must be one of {sorted(set(rows['along']))}, got {along!r}")
         rows = rows[rows["along"] == along]
         unit, fewest = LagUnit.of(rows), _fewest(rows)
+        rows = unit.shown(rows)
         names = ("correlation", "lower_quartile", "upper_quartile", "n")
         wide = [rows.pivot(index="distance", columns=unit.column, values=name) for name in names]
         mean, low, high, n = (table.to_numpy(dtype=np.float64) for table in wide)

@@ -20,7 +20,7 @@ from cytodisk.plot.number_tables import number_table
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS, colour_bar, signal_limits
 from cytodisk.plot.time_axis import TICK_STEPS, FrameTimes
 from cytodisk.plot.time_raster import bar_beside, cut_off, draw_time_raster
-from cytodisk.plot.units import unit_of, velocity_label
+from cytodisk.plot.units import unit_of, velocity_unit, with_unit
 from cytodisk.scale import Scale
 
 SECTOR_LABEL = "sector (0 at +x, towards +y)"
@@ -126,10 +126,12 @@ def draw_velocity_map(ax: Axes, velocity: Any, *, scale: Scale | None = None) ->
     (8, 4)
     """
     table = number_table(velocity, "velocity", ("time", "sector"))
-    top = top_speed(table)
     times = FrameTimes.of(velocity, "velocity", scale)
+    unit = velocity_unit(velocity, scale, times.unit, top_speed(table))
+    table = unit.factor * table
+    top = top_speed(table)
     drawn = _draw_map(ax, table, times, DIVERGING_COLOURS, (-top, top))
-    words = velocity_label(velocity, scale)
+    words = with_unit("edge velocity", unit.name)
     colour_bar(drawn, bar_beside(ax), words, extend=cut_off(table, (-top, top)))
     return drawn
 

@@ -6,10 +6,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from cytodisk.plot.movie.activity_maps import top_speed
 from cytodisk.plot.number_tables import number_table
 from cytodisk.plot.style import LINE_COLOUR, key_above
 from cytodisk.plot.time_axis import FrameTimes, stands_alone
-from cytodisk.plot.units import velocity_label
+from cytodisk.plot.units import velocity_unit, with_unit
 from cytodisk.scale import Scale
 
 SPREAD = (10, 90)  # percentiles
@@ -54,7 +55,10 @@ def draw_mean_velocity(ax: Axes, velocity: Any, *, scale: Scale | None = None) -
     4
     """
     table = number_table(velocity, "velocity", ("time", "sector"))
-    time = FrameTimes.of(velocity, "velocity", scale).set_axis(ax)
+    times = FrameTimes.of(velocity, "velocity", scale)
+    time = times.set_axis(ax)
+    unit = velocity_unit(velocity, scale, times.unit, top_speed(table))
+    table = unit.factor * table
     known = np.isfinite(table).any(axis=1)
     mean, low, high = np.full((3, len(table)), np.nan)
     if known.any():
@@ -67,6 +71,6 @@ def draw_mean_velocity(ax: Axes, velocity: Any, *, scale: Scale | None = None) -
     ax.vlines(time[alone], low[alone], high[alone], color="0.8", linewidth=2.0)
     ax.plot(time[alone], mean[alone], ".", color=LINE_COLOUR, markersize=3.0)
     (line,) = ax.plot(time, mean, color=LINE_COLOUR, linewidth=1.0, label="mean of sectors")
-    ax.set_ylabel(velocity_label(velocity, scale))
+    ax.set_ylabel(with_unit("edge velocity", unit.name))
     key_above(ax)
     return line
