@@ -113,6 +113,7 @@ from .runs.population.correlations.run_batch_correlate import run_batch_correlat
 from .runs.compare_windows.run_compare_windows import run_compare_windows as run_compare_windows
 from .runs.batch.run_batch import run_batch as run_batch
 from .runs.population.run_population import run_population as run_population
+from .runs.export.run_export import run_export as run_export
 from .runs.map.map_parameters import MapParameters as MapParameters
 from .runs.movie.movie_parameters import MovieParameters as MovieParameters
 from .runs.shapes.shape_parameters import ShapeParameters as ShapeParameters
@@ -125,11 +126,13 @@ from .runs.compare_windows.compare_parameters import CompareNucleiParameters as 
 from .runs.population.population_parameters import PopulationParameters as PopulationParameters
 from .runs.run_options import FolderOptions as FolderOptions
 from .runs.run_options import MapOptions as MapOptions
+from .runs.run_options import ExportOptions as ExportOptions
 from .runs.run_options import RunOptions as RunOptions
 from .runs.run_options import BatchOptions as BatchOptions
 from .runs.run_options import PopulationOptions as PopulationOptions
 
 # Results of runs
+from .store.spatial.place_parameters import SpatialParameters as SpatialParameters
 from .store.study import open_study as open_study
 from .store.study import Study as Study
 from .store.populations.pooled_correlation import open_pooled_correlation as open_pooled_correlation

@@ -10,7 +10,11 @@ from cytodisk.cli.lazy_command import LazyCommand
 from cytodisk.errors import CytodiskError
 from cytodisk.stopping import Stopped, is_stop, stopping_tidily
 
-_ELSEWHERE = {"report": "report.report_command", "population": "population.population_command"}
+_ELSEWHERE = {
+    "report": "report.report_command",
+    "population": "population.population_command",
+    "export": "export.export_command",
+}
 """Modules of commands that have none of their name beside this one."""
 
 

@@ -134,6 +134,22 @@ Examples:
 
   cytodisk report all/ --resume     (the folder of a batch: a page for each study)
 """,
+    "export": """Write cells and windows of a study for Fiji, QuPath, or SpatialData.
+
+STUDY is the folder that cytodisk map or movie wrote. --to roi writes sets for ImageJ's ROI Manager
+(outlines.zip, windows.zip, nuclei.zip), --to geojson cells.geojson for QuPath, --to spatialdata the folder
+spatialdata.zarr with images, labels, shapes and tables for squidpy and napari-spatialdata.
+
+Examples:
+
+  cytodisk export out/ --to roi -o fiji/
+
+  cytodisk export out/ --to roi,geojson -o fiji/ --cells 0,3 --frames 10:20
+
+  cytodisk export out/ --to spatialdata -o scverse/
+
+Exit code: 0 when done (cells without a map are told), 2 if a map or an image is gone, or a file is there.
+""",
     "compare-windows": """Compare kinds of windows on your own masks: how many are empty, how regular.
 
 MASKS is one mask, a stack of masks, or a label image, or a folder of those. With --movie it is a stack of

@@ -14,10 +14,8 @@ def silent(done: int, total: int) -> None:
     """Report nothing."""
 
 
-class TableOptions(Parameters):
-    """How tables are written."""
-
-    csv: bool = parameter(False, "Write every table as CSV too, for Excel and other programs.")
+class Options(Parameters):
+    """Options of a run, which its results do not depend on."""
 
     @classmethod
     def split(cls, settings: Mapping[str, Any], model: type[Parameters]) -> tuple[Self, dict[str, Any]]:
@@ -33,6 +31,12 @@ class TableOptions(Parameters):
             raise cls.fault("; ".join(unknown))
         own = {name: value for name, value in settings.items() if name in cls.model_fields}
         return cls(**own), {name: value for name, value in settings.items() if name not in own}
+
+
+class TableOptions(Options):
+    """How tables are written."""
+
+    csv: bool = parameter(False, "Write every table as CSV too, for Excel and other programs.")
 
 
 class FolderOptions(TableOptions):
@@ -55,6 +59,12 @@ class PopulationOptions(FolderOptions):
     h5ad: bool = parameter(
         False, "Write the cells and their windows as population.h5ad too, for scanpy; needs anndata."
     )
+
+
+class ExportOptions(Options):
+    """How files for other programs are written."""
+
+    overwrite: bool = parameter(False, "Replace files of the same names.")
 
 
 class RunOptions(FolderOptions):

@@ -30,6 +30,7 @@ PARTS = {
     "lif": ("liffile",),
     "roi": ("roifile",),
     "anndata": ("anndata",),
+    "spatialdata": ("spatialdata",),
     "cluster": ("distributed", "fsspec"),
 }
 

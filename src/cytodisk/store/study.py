@@ -22,6 +22,7 @@ from cytodisk.store.activity_store import open_activity
 from cytodisk.store.correlation_store import Correlation, list_correlations, read_correlation
 from cytodisk.store.nuclei.profile_table import profile_table
 from cytodisk.store.provenance_file import PROVENANCE, other_maps, read_complete
+from cytodisk.store.spatial.spatial_study import SpatialStudy
 from cytodisk.store.study_folder import part_key
 from cytodisk.store.study_kind import ACTIVITY, CELLS, MAPS
 from cytodisk.store.table_file import REMEDY, check_heads, read_cells, read_checked, rows_of_cell, units_in
@@ -33,7 +34,7 @@ WINDOWS, EDGE, CONSISTENCY = "windows.parquet", "edge.parquet", "consistency.par
 
 
 @dataclass(frozen=True)
-class Study:
+class Study(SpatialStudy):
     """The reading side of a study.
 
     Attributes
@@ -58,8 +59,8 @@ class Study:
     >>> study = cd.run_movie("masks.tif", "out", layers=2, sectors=6)
     >>> study.is_movie, study.movie(0)[2].certificate.valid
     (True, True)
-    >>> study.edge[["frame", "sector", "velocity"]].shape
-    (30, 3)
+    >>> study.edge.shape[0]  # frames × sectors
+    30
     """
 
     path: Path
@@ -218,12 +219,11 @@ class Study:
         at = {int(row["frame"]): row for _, row in rows.iterrows()}
         records = [self._record(cell, frame, at.get(frame)) for frame in range(max(at) + 1)]
         height, width = self.provenance["image_shape"]
-        return DiskMovie(
-            tuple(records),
-            (height, width),
-            self.scale,
-            lambda frame: self._load(self._map_path(part_key(cell, frame))),
-        )
+
+        def load(frame: int) -> DiskMap:
+            return self._load(self._map_path(part_key(cell, frame)))
+
+        return DiskMovie(tuple(records), (height, width), self.scale, load)
 
     def _record(self, cell: int, frame: int, row: Any) -> FrameRecord:
         if row is None:

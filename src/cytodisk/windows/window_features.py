@@ -101,13 +101,23 @@ def _feature(
     known = {name: number for name, number in numbers.items() if np.isfinite(number)}  # JSON has no NaN
     return {
         "type": "Feature",
-        "geometry": shapely.geometry.mapping(_valid(polygon_yx, corner)),
+        "geometry": shapely.geometry.mapping(area_within(polygon_yx, corner)),
         "properties": {"objectType": kind, **named, "measurements": known},
     }
 
 
-def _valid(polygon_yx: FloatArray, corner: tuple[int, int]) -> shapely.Polygon | shapely.MultiPolygon:
-    """The area in an outline, (x, y) from the image's corner; in pieces where the outline touches itself."""
+def area_within(
+    polygon_yx: FloatArray, corner: tuple[int, int] = (0, 0)
+) -> shapely.Polygon | shapely.MultiPolygon:
+    """The area in an outline, (x, y) from the image's corner; in pieces where the outline touches itself.
+
+    Parameters
+    ----------
+    polygon_yx : ndarray of shape (N, 2)
+        (row, column) in pixels, pixel centres at integers; last point not repeated.
+    corner : (int, int)
+        (row, column) of the pixel that these count from, in the image.
+    """
     points = np.round(polygon_yx + np.array(corner) + _FIRST_PIXEL, _DECIMALS)[:, ::-1]
     polygon = shapely.Polygon(points)
     if polygon.is_valid:

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 
 GROUPS = {
-    "Files": "signal nuclei groups out parameters",
+    "Files": "to signal nuclei groups out parameters",
+    "What is written": "cells frames windows images",
     "What the files hold": "pixel-size frame-interval channels movie kind label fragments holes link tracks "
     "axes signal-axes scene z mask-channel signal-channels nuclei-kind nuclei-axes nuclei-channel",
     "Nuclei": "several missing nucleus-radius",

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
+
+import pandas as pd
+import xarray as xr
 
 from cytodisk.errors import ReadError, SignalError
 from cytodisk.files import file_name
@@ -14,7 +17,19 @@ from cytodisk.images.frame_file import FrameFile
 from cytodisk.images.sequences.movie_signals import open_movie_images, reopened
 from cytodisk.images.signal_files import FrameSource
 from cytodisk.store.inputs.input_hashes import described
-from cytodisk.store.study import Study
+
+
+class MeasuredStudy(Protocol):
+    """What is asked of a study."""
+
+    @property
+    def path(self) -> Path: ...
+    @property
+    def cells(self) -> pd.DataFrame: ...
+    @property
+    def provenance(self) -> dict[str, Any]: ...
+
+    def activity(self, cell: int) -> xr.Dataset: ...
 
 
 @dataclass(frozen=True)
@@ -33,7 +48,7 @@ class FoundSignal:
     fault: str = ""
 
 
-def find_signal(study: Study) -> FoundSignal:
+def find_signal(study: MeasuredStudy) -> FoundSignal:
     """Open the file that a study names as its signal, if it still holds what was measured.
 
     Parameters
@@ -71,7 +86,7 @@ def find_signal(study: Study) -> FoundSignal:
     )
 
 
-def open_signal(study: Study, path: Path, files: Sequence[str] = ()) -> FrameFile:
+def open_signal(study: MeasuredStudy, path: Path, files: Sequence[str] = ()) -> FrameFile:
     """Open a movie's images as the study's were: with the same axes, scene, slice and channels.
 
     Parameters
@@ -95,7 +110,7 @@ def open_signal(study: Study, path: Path, files: Sequence[str] = ()) -> FrameFil
     return open_movie_images(path, choice)
 
 
-def shown_signal(study: Study, signal: FrameSource | None = None) -> FoundSignal:
+def shown_signal(study: MeasuredStudy, signal: FrameSource | None = None) -> FoundSignal:
     """The movie to show behind a study's windows: the one that is given, or else the one that it names.
 
     Parameters
@@ -121,7 +136,7 @@ def shown_signal(study: Study, signal: FrameSource | None = None) -> FoundSignal
     return FoundSignal(signal)
 
 
-def misfit(study: Study, source: FrameSource) -> str:
+def misfit(study: MeasuredStudy, source: FrameSource) -> str:
     """Why a movie cannot lie behind a study's windows, as "has …"; empty if it can."""
     (height, width), (mask_height, mask_width) = source.image_shape, study.provenance["image_shape"]
     if (height, width) != (mask_height, mask_width):

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from cytodisk.arrays import FloatArray
-from cytodisk.errors import MissingPartError, ReadError
+from cytodisk.errors import ReadError
 from cytodisk.images.formats.outlined.outline_file import open_outlines
 from cytodisk.images.formats.outlined.outline_set import Outline, OutlineSet
+from cytodisk.images.formats.outlined.roi_bytes import CORNER, decoded_roi
 from cytodisk.images.frame_file import FileChoice, FrameFile
 
 _LARGEST_ROI, _LARGEST_SET = 2**26, 2**30  # bytes
-_CORNER = 0.5  # ImageJ counts from the corner of the first pixel
 _POINTS_OF_CURVE = 16
 _MOVE, _LINE, _QUADRATIC, _CUBIC, _CLOSE = range(5)  # steps of a path, with so many points each
 _POINTS = {_MOVE: 1, _LINE: 1, _QUADRATIC: 2, _CUBIC: 3, _CLOSE: 0}
@@ -54,7 +54,7 @@ def read_rois(path: Path) -> OutlineSet:
     rounded = 0
     with _quiet_log() as logged:
         for number, (name, content) in enumerate(_contents(path), start=1):
-            roi = _roi(path, name, content)
+            roi = decoded_roi(path, name, content)
             rings = _rings(roi)
             if rings is None:
                 without_area[roi.roitype.name.lower()] += 1
@@ -100,21 +100,6 @@ def _is_roi(name: str) -> bool:
     return last.lower().endswith(".roi") and not last.startswith(".")  # as "._a.roi" of macOS
 
 
-def _roi(path: Path, name: str, content: bytes) -> Any:
-    try:
-        from roifile import ImagejRoi
-    except ImportError as error:
-        fault = (
-            "is not installed" if isinstance(error, ModuleNotFoundError) else f"cannot be imported ({error})"
-        )
-        raise MissingPartError.of(f"{path}: reading ImageJ's ROIs needs roifile", "roi", fault) from error
-    try:
-        return ImagejRoi.frombytes(content)
-    except Exception as error:
-        words = " ".join(str(error).split())
-        raise ReadError(f"{path}: ROI {name} is damaged ({words}): save the ROIs again") from error
-
-
 @contextmanager
 def _quiet_log() -> Iterator[list[str]]:
     """What roifile logs, which would stand between the lines of a command."""
@@ -154,7 +139,7 @@ def _rings(roi: Any) -> tuple[FloatArray, ...] | None:
         rings = [np.asarray(roi.coordinates(), dtype=float)]
     else:
         return None
-    return tuple(ring[:, ::-1] - _CORNER for ring in rings)
+    return tuple(ring[:, ::-1] - CORNER for ring in rings)
 
 
 def _rectangle(roi: Any) -> tuple[float, float, float, float]:

@@ -1,0 +1,1 @@
+"""`cytodisk export`: a finished study in the files of other programs."""

@@ -1,0 +1,43 @@
+"""What of a study goes to other programs."""
+
+from __future__ import annotations
+
+from pydantic import field_validator
+
+from cytodisk.parameters import Parameters, parameter
+
+
+class PlaceParameters(Parameters):
+    """Which cells, in which frames, and whether their windows too."""
+
+    cells: tuple[int, ...] | None = parameter(
+        None, "Numbers of the cells; without it all that have a map.", words="whole numbers, such as 0,3"
+    )
+    frames: tuple[int, int] | None = parameter(
+        None,
+        "First and last frame; without it all.",
+        words="the first and the last, such as 10:80",
+    )
+    windows: bool = parameter(True, "With the windows of the cells, not the cells and nuclei alone.")
+
+    @field_validator("cells", "frames")
+    @classmethod
+    def _from_zero(cls, numbers: tuple[int, ...] | None) -> tuple[int, ...] | None:
+        if numbers is not None and any(number < 0 for number in numbers):
+            raise ValueError("must be numbers from 0")
+        return numbers
+
+    @field_validator("frames")
+    @classmethod
+    def _in_order(cls, frames: tuple[int, int] | None) -> tuple[int, int] | None:
+        if frames is not None and frames[1] < frames[0]:
+            raise ValueError("must go from the first to the last")
+        return frames
+
+
+class SpatialParameters(PlaceParameters):
+    """The same, and whether images go with them."""
+
+    images: bool = parameter(
+        True, "With the images that were measured; without them it does not matter where those are."
+    )
