@@ -1,7 +1,7 @@
 """`cytodisk correlate`."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
+from typing import TYPE_CHECKING, Annotated, Literal, cast, get_args
 
 import typer
 
@@ -14,6 +14,7 @@ from cytodisk.runs.population.correlations.pool_parameters import BatchCorrelate
 from cytodisk.runs.run_options import TableOptions
 from cytodisk.runs.told.correlation_words import (
     correlation_lines,
+    earlier_settings,
     finding_lines,
     replaced_words,
     verdict_lines,
@@ -124,12 +125,6 @@ def draw_correlation(
             for place, cell in enumerate(cells):
                 write_correlation_figures(study, found, cell=cell, formats=formats)
                 progress(place + 1, len(cells))
-
-
-def earlier_settings(study: "Study", *names: str) -> dict[str, Any] | None:
-    """Settings of a correlation that the next one will replace."""
-    there = {(*one, "")[:3] for one in study.correlations}
-    return study.correlation(*names).settings if names in there else None
 
 
 def figure_formats(text: str) -> tuple["Format", ...]:

@@ -11,6 +11,7 @@ from cytodisk.napari.given.layer_kinds import LayerKind, is_picture, is_result, 
 
 _WORDS = {"labels": "labels", "shapes": "shapes", "image": "image", "tracks": "tracks", "points": "points"}
 _ROW = 22  # px
+_LETTERS = 12  # of a name, for which there is room in a narrow dock
 
 
 class LayerChoice(QWidget):
@@ -37,6 +38,9 @@ class LayerChoice(QWidget):
         self._list: Any = QListWidget() if several else QComboBox()
         self._several = several
         self._watched: list[Any] = []
+        if not several:
+            self._list.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+            self._list.setMinimumContentsLength(_LETTERS)
         box = QVBoxLayout(self)
         box.setContentsMargins(0, 0, 0, 0)
         box.addWidget(self._list)

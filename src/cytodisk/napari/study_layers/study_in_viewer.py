@@ -221,6 +221,12 @@ class ShownStudy:
         self._told = None
         self._follow()
 
+    def move_to(self, study: Study) -> None:
+        """Show the same study from another folder, to which it was copied."""
+        self.study = self._windows.study = self._values.study = study
+        for layer in self.layers.values():
+            layer.metadata[MARK]["study"] = str(study.path)
+
     def _forget(self, event: Any) -> None:
         gone = [role for role, layer in self.layers.items() if layer is event.value]
         for role in gone:

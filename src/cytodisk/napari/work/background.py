@@ -136,7 +136,10 @@ class Work(QObject):
         self._bar.destroyed.disconnect(self._lose_bar)
         self._bar.end(CANCELLED if isinstance(fault, _Cancelled) else "")
         if fault is None:
-            self._finish(result)
+            try:
+                self._finish(result)
+            except CytodiskError as error:
+                show_error(str(error))
             return
         self._leave()
         if isinstance(fault, CytodiskError):

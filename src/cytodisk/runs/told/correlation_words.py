@@ -73,6 +73,12 @@ def finding_lines(found: "Correlation", study: "Study") -> Iterator[str]:
             yield f"Finding, cell {cell}: {finding.words}"
 
 
+def earlier_settings(study: "Study", *names: str) -> dict[str, Any] | None:
+    """Settings of a correlation that the next one will replace."""
+    there = {(*one, "")[:3] for one in study.correlations}
+    return study.correlation(*names).settings if names in there else None
+
+
 def replaced_words(before: dict[str, Any] | None, now: dict[str, Any]) -> str:
     """Which settings the correlation that will be replaced has, if others; empty if there is none."""
     if before is None:

@@ -1,0 +1,126 @@
+"""What the widgets that run commands share: what is chosen, a form, a button, progress, results."""
+
+from __future__ import annotations
+
+import webbrowser
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from qtpy.QtCore import Qt
+from qtpy.QtWidgets import (
+    QCheckBox,
+    QFormLayout,
+    QFrame,
+    QHBoxLayout,
+    QPushButton,
+    QScrollArea,
+    QVBoxLayout,
+    QWidget,
+)
+
+from cytodisk.napari.commands.results_panel import ResultsPanel
+from cytodisk.napari.forms.parameter_form import ParameterForm
+from cytodisk.napari.work.background import Reporter, Work, run_in_background
+from cytodisk.napari.work.work_bar import WorkBar
+from cytodisk.store.study import Study
+
+_WIDTH = 260
+
+
+class CommandWidget(QWidget):
+    """A widget that runs a command.
+
+    Parameters
+    ----------
+    viewer : Viewer
+    form : ParameterForm
+    run_words : str
+        What stands on the button.
+    can_save : bool
+        Whether results can be saved as a study.
+    """
+
+    def __init__(self, viewer: Any, form: ParameterForm, run_words: str, *, can_save: bool = True):
+        super().__init__()
+        self.viewer, self.form = viewer, form
+        self.work: Work | None = None
+        self.choices = QFormLayout()
+        self.choices.setContentsMargins(4, 4, 4, 0)
+        self.choices.setFieldGrowthPolicy(QFormLayout.ExpandingFieldsGrow)
+        self.run_button = QPushButton(run_words)
+        self.run_button.clicked.connect(self.run)
+        self.replace_box = QCheckBox("replace last")
+        self.replace_box.setToolTip("Remove the layers of the last run. Without it they stay.")
+        self.replace_box.setChecked(True)
+        self.bar = WorkBar()
+        self.results = ResultsPanel(can_save)
+        self.results.report_wanted.connect(self.open_report)
+        self.setMinimumWidth(_WIDTH)
+        self._arrange()
+
+    def run(self) -> None:
+        """Start what the button says."""
+        raise TypeError("a widget must say what it runs")
+
+    def shown_result(self) -> Study | None:
+        """The study whose report can be opened; None if there is none."""
+        raise TypeError("a widget must say which study it shows")
+
+    def open_report(self) -> None:
+        """Write the page of the study, and open it in the browser."""
+        study = self.shown_result()
+        if study is None:
+            return
+
+        def write(report: Reporter) -> Path:
+            from cytodisk.pages.report.page import write_report
+
+            report.stage("Writing the report", "frames" if study.is_movie else "cells")
+            return write_report(study, progress=report)
+
+        self.start(write, lambda page: webbrowser.open(page.absolute().as_uri()))
+
+    def start(self, function: Any, done: Any, *, unit: str = "cells", words: str = "") -> None:
+        """Do something in a thread; meanwhile nothing else can be started here."""
+        self._lock(True)
+
+        def finish(result: Any) -> None:
+            self._lock(False)
+            done(result)
+
+        self.work = run_in_background(
+            self.bar, function, done=finish, failed=lambda: self._lock(False), unit=unit, words=words
+        )
+
+    def _lock(self, is_busy: bool) -> None:
+        for button in self.buttons:
+            button.setEnabled(not is_busy)
+
+    @property
+    def buttons(self) -> Sequence[QPushButton]:
+        """Those that start something."""
+        return self.run_button, self.results.save_button, self.results.report_button
+
+    def _arrange(self) -> None:
+        upper = QWidget()
+        inside = QVBoxLayout(upper)
+        inside.setContentsMargins(0, 0, 0, 0)
+        inside.setSpacing(2)
+        inside.addLayout(self.choices)
+        inside.addWidget(self.form, stretch=1)
+        scroll = QScrollArea()
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QFrame.NoFrame)
+        scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarAlwaysOff)
+        scroll.setWidget(upper)
+        row = QHBoxLayout()
+        row.addWidget(self.run_button, stretch=1)
+        row.addWidget(self.replace_box)
+        self.rows = QVBoxLayout(self)
+        self.rows.setContentsMargins(2, 2, 2, 2)
+        self.rows.setSpacing(4)
+        self.rows.addWidget(scroll, stretch=1)
+        self.rows.addLayout(row)
+        self.rows.addWidget(self.bar)
+        self.rows.addWidget(self.results, stretch=1)

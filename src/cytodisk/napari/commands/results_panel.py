@@ -1,0 +1,111 @@
+"""What came out of a run, in words, and what can be done with it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from qtpy.QtCore import Qt, Signal
+from qtpy.QtGui import QGuiApplication
+from qtpy.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QPlainTextEdit,
+    QPushButton,
+    QScrollArea,
+    QVBoxLayout,
+    QWidget,
+)
+
+from cytodisk.napari.forms.section import Section
+
+_WORDS_HEIGHT, _LINE_HEIGHT = 110, 64
+
+
+class ResultsPanel(QWidget):
+    """Words on results, and buttons: save, report, the same as a command; nothing is seen before a run.
+
+    Parameters
+    ----------
+    can_save : bool
+        Whether there is a button to save.
+
+    Attributes
+    ----------
+    save_wanted, report_wanted, next_wanted : Signal
+        Emitted when a button is clicked.
+    """
+
+    save_wanted = Signal()
+    report_wanted = Signal()
+    next_wanted = Signal()
+
+    def __init__(self, can_save: bool = True) -> None:
+        super().__init__()
+        self.words = QLabel()
+        self.words.setWordWrap(True)
+        self.words.setTextFormat(Qt.PlainText)
+        self.words.setAlignment(Qt.AlignTop)
+        self.words.setTextInteractionFlags(Qt.TextSelectableByMouse)
+        self.scroll = QScrollArea()
+        self.scroll.setWidgetResizable(True)
+        self.scroll.setFrameShape(QFrame.NoFrame)
+        self.scroll.setMinimumHeight(_WORDS_HEIGHT)
+        self.scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarAlwaysOff)
+        self.scroll.setWidget(self.words)
+        self.save_button = QPushButton("Save as a study…")
+        self.save_button.setToolTip("Keep tables, maps and the layers that they came from in a folder.")
+        self.save_button.clicked.connect(self.save_wanted)
+        self.save_button.setVisible(can_save)
+        self.report_button = QPushButton("Open report")
+        self.report_button.setToolTip("Write the page report.html, and open it in the browser.")
+        self.report_button.clicked.connect(self.report_wanted)
+        self.next_button = QPushButton("Correlate…")
+        self.next_button.setToolTip("Does a signal rise before the edge moves?")
+        self.next_button.clicked.connect(self.next_wanted)
+        self.next_button.hide()
+        self.line = QPlainTextEdit()
+        self.line.setReadOnly(True)
+        self.line.setMaximumHeight(_LINE_HEIGHT)
+        self.line.setAccessibleName("The same as a command")
+        self.note = QLabel()
+        self.note.setWordWrap(True)
+        self.copy_button = QPushButton("Copy")
+        self.copy_button.clicked.connect(self._copy)
+        self.command = Section("The same as a command", self._command_body())
+        buttons = QHBoxLayout()
+        buttons.addWidget(self.save_button)
+        buttons.addWidget(self.report_button)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(3)
+        layout.addWidget(self.scroll, stretch=1)
+        layout.addLayout(buttons)
+        layout.addWidget(self.next_button)
+        layout.addWidget(self.command)
+        self.hide()
+
+    def show_words(self, lines: Sequence[str]) -> None:
+        """Show lines in the place of those that were shown."""
+        self.words.setText("\n".join(lines))
+        self.scroll.verticalScrollBar().setValue(0)
+        self.show()
+
+    def show_command(self, line: str, note: str = "") -> None:
+        """Show what to type, with a note below it."""
+        self.line.setPlainText(line)
+        self.note.setText(note)
+        self.note.setVisible(bool(note))
+
+    def _command_body(self) -> QWidget:
+        body = QWidget()
+        layout = QVBoxLayout(body)
+        layout.setContentsMargins(12, 0, 0, 0)
+        layout.setSpacing(3)
+        layout.addWidget(self.line)
+        layout.addWidget(self.note)
+        layout.addWidget(self.copy_button, alignment=Qt.AlignLeft)
+        return body
+
+    def _copy(self) -> None:
+        QGuiApplication.clipboard().setText(self.line.toPlainText())
