@@ -178,3 +178,14 @@ def test_no_point_of_an_outline_is_repeated(windows: cd.CellWindows) -> None:
 def test_geojson_values_of_another_shape_are_refused(windows: cd.CellWindows) -> None:
     with pytest.raises(WindowError, match=r"values\['mean'\].*\(3,\).*\(4, 12\)"):
         windows.geojson({"mean": np.zeros(3)})
+
+
+def test_one_outline_is_that_among_all(windows: cd.CellWindows) -> None:
+    for number, polygon in enumerate(windows.polygons()):
+        assert_allclose(windows.polygon(*divmod(number, windows.sectors)), polygon, atol=1e-9)
+
+
+def test_one_outline_is_that_among_all_with_a_nucleus() -> None:
+    disk = cd.map_to_disk(cd.simulate.disk(20), nucleus=np.pad(cd.simulate.disk(6), 14))
+    windows = cd.polar_windows(3, 7, nucleus_layers=2).on(disk)
+    test_one_outline_is_that_among_all(windows)

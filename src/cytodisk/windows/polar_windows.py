@@ -20,7 +20,7 @@ from cytodisk.windows.grid_parameters import PolarGridParameters
 from cytodisk.windows.nucleus.nucleus_distance import nucleus_distances
 from cytodisk.windows.nucleus.nucleus_grid import with_nucleus_of
 from cytodisk.windows.on_map import WindowsOnMap
-from cytodisk.windows.outlines import window_polygons
+from cytodisk.windows.outlines import window_polygon, window_polygons
 from cytodisk.windows.polar_layout import PolarLayout
 from cytodisk.windows.shares import PER_SIDE, WindowShares
 from cytodisk.windows.weights import window_shares, windows_of_subpixels
@@ -195,6 +195,10 @@ class CellWindows(WindowsOnMap):
             Without points for layers deeper than the cell.
         """
         return window_polygons(self.grid, self.disk)
+
+    def polygon(self, layer: int, sector: int) -> FloatArray:
+        """One of `polygons`, without the time that the others take."""
+        return window_polygon(self.grid, self.disk, layer * self.sectors + sector)
 
     def geojson(
         self,
