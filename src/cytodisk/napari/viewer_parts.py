@@ -8,3 +8,4 @@ from napari.layers import Layer as Layer
 from napari.utils.notifications import show_error as show_error
 from napari.utils.notifications import show_info as show_info
 from napari.utils.notifications import show_warning as show_warning
+from napari.utils.theme import get_theme as get_theme

@@ -125,7 +125,8 @@ def _side(grid: PolarLayout, disk: DiskMap, angle: float, layer: int) -> FloatAr
 
 def _steps(grid: PolarLayout, layer: int) -> FloatArray:
     """Radii of the samples along a side of a window."""
-    return np.linspace(*grid.radii[layer : layer + 2], max(2, _POINTS_PER_RADIUS // grid.layers))
+    outer, inner = grid.radii[layer : layer + 2].tolist()
+    return np.linspace(outer, inner, max(2, _POINTS_PER_RADIUS // grid.layers))
 
 
 def _inwards(disk: DiskMap, angle: float, radii: FloatArray) -> tuple[FloatArray, FloatArray]:

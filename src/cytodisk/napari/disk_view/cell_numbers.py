@@ -1,0 +1,199 @@
+"""The numbers of one cell that the dock shows, by window in a frame and through time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from cytodisk.arrays import BoolArray, FloatArray
+from cytodisk.napari.disk_view.disk_choices import DiskChoice
+from cytodisk.napari.disk_view.window_words import number_with_unit
+from cytodisk.number_words import rounded
+from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS, signal_limits
+from cytodisk.plot.time_axis import FrameTimes
+from cytodisk.windows.polar_windows import PolarGrid
+from cytodisk.windows.study_grid import polar_grid_of
+
+SIGNIFICANT = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class WindowNumbers:
+    """One number a window, and how it is coloured.
+
+    Attributes
+    ----------
+    values : ndarray of shape (layers, sectors) and dtype float
+    limits : (float, float)
+        Of the colours.
+    colours : str
+        Name of the colour map.
+    unit : str
+    hatched : ndarray of shape (layers, sectors) and dtype bool, or None
+        Windows whose number is not significant.
+    lags : ndarray of shape (layers, sectors) and dtype float, or None
+        Of peaks of correlation, in the unit of time.
+    """
+
+    values: FloatArray
+    limits: tuple[float, float]
+    colours: str
+    unit: str
+    hatched: BoolArray | None = None
+    lags: FloatArray | None = None
+
+
+class CellNumbers:
+    """Numbers of one cell of a shown study.
+
+    Parameters
+    ----------
+    shown : ShownStudy
+    cell : int
+    """
+
+    def __init__(self, shown: Any, cell: int):
+        self.shown, self.cell = shown, cell
+        self._means: dict[str, FloatArray] = {}
+        self._peaks: dict[tuple[str, ...], pd.DataFrame] = {}
+
+    @property
+    def is_movie(self) -> bool:
+        """Whether it has a time, and an edge that moves."""
+        return bool(self.shown.study.is_movie)
+
+    @cached_property
+    def grid(self) -> PolarGrid:
+        """The study's windows, which have no radii where these differ from cell to cell."""
+        return polar_grid_of(self.shown.study.provenance)
+
+    def no_map(self, frame: int | None) -> str:
+        """Why the cell has no map in a frame; empty if it has one."""
+        cells = self.shown.cells
+        if frame is None:
+            return "there is no frame under the time slider"
+        if self.cell in cells.mapped.get(frame, ()):
+            return ""
+        words = dict(cells.missing.get(frame, ())).get(self.cell)
+        return words or f"cell {self.cell} is not in frame {frame}"
+
+    def of_windows(self, choice: DiskChoice, frame: int) -> WindowNumbers:
+        """Numbers of the windows in a frame with a map.
+
+        Parameters
+        ----------
+        choice : DiskChoice
+            For an image, the area of the windows.
+        frame : int
+
+        Returns
+        -------
+        WindowNumbers
+        """
+        if choice.kind == "correlation":
+            return self._correlation(choice.names)
+        if choice.kind == "mean":
+            (channel,) = choice.names
+            values = np.asarray(self.shown.values(self.cell, channel, frame), dtype=np.float64)
+            return WindowNumbers(values, self.shown.limits(channel), SIGNAL_COLOURS, self.shown.unit(channel))
+        values = np.asarray(self.shown.values(self.cell, "area", frame), dtype=np.float64)
+        return WindowNumbers(values, signal_limits(values), SIGNAL_COLOURS, self.shown.unit("area"))
+
+    def _correlation(self, names: tuple[str, ...]) -> WindowNumbers:
+        if names not in self._peaks:
+            table = self.shown.study.correlation(*names).windows
+            self._peaks[names] = table[table["cell"] == self.cell]
+        table = self._peaks[names]
+        values = self._by_window(table, "correlation")
+        found = float(np.nanmax(np.abs(values), initial=0.0, where=np.isfinite(values)))
+        top = max(0.1, np.ceil(10.0 * found) / 10.0)
+        chance = self._by_window(table, "q") >= SIGNIFICANT
+        lags = self.shown.study.scale.time(self._by_window(table, "lag"))
+        return WindowNumbers(values, (-top, top), DIVERGING_COLOURS, "", chance, lags)
+
+    def _by_window(self, table: pd.DataFrame, name: str) -> FloatArray:
+        grid = self.grid
+        values = np.full((grid.layers, grid.sectors), np.nan)
+        if name in table:
+            values[table["layer"].to_numpy(), table["sector"].to_numpy()] = table[name].to_numpy(np.float64)
+        return values
+
+    def depth(self, frame: int, layer: int, sector: int) -> float:
+        """Median depth of a window in the unit of length."""
+        return float(self.shown.values(self.cell, "depth", frame)[layer, sector])
+
+    def velocities(self, frame: int) -> FloatArray | None:
+        """Velocity of the edge by sector; None in a study without time."""
+        if not self.is_movie:
+            return None
+        return np.asarray(self.shown.values(self.cell, "velocity", frame), dtype=np.float64)
+
+    @cached_property
+    def _activity(self) -> xr.Dataset:
+        found: xr.Dataset = self.shown.study.activity(self.cell)
+        return found
+
+    @cached_property
+    def times(self) -> FrameTimes:
+        """Where the frames lie on the axis of time."""
+        frames = self._activity["frame"].to_numpy()
+        return FrameTimes(int(frames[0]), len(frames), self.shown.study.scale.frame_interval_s)
+
+    def mean_through_time(self, channel: str, layer: int, sector: int) -> FloatArray:
+        """Mean of a channel in a window in all frames; NaN without a map."""
+        if channel not in self._means:
+            means = self._activity["mean"].sel(channel=channel)
+            self._means = {channel: means.transpose("time", "layer", "sector").to_numpy()}
+        return self._means[channel][:, layer, sector]
+
+    @cached_property
+    def _velocity(self) -> FloatArray:
+        return np.asarray(self._activity["velocity"].transpose("time", "sector").to_numpy())
+
+    def velocity_through_time(self, sector: int) -> FloatArray:
+        """Velocity of the edge of a sector in all frames."""
+        return self._velocity[:, sector]
+
+    def value_words(
+        self, numbers: WindowNumbers, choice: DiskChoice, frame: int, window: tuple[int, int]
+    ) -> list[str]:
+        """What is shown of a window, in words.
+
+        Parameters
+        ----------
+        numbers : WindowNumbers
+            Of the choice in the frame.
+        choice : DiskChoice
+        frame : int
+        window : (int, int)
+            Its layer and sector.
+
+        Returns
+        -------
+        list of str
+            One line each.
+        """
+        value = float(numbers.values[window])
+        if choice.kind == "correlation":
+            return [self._peak_words(numbers, value, window)]
+        label = "window area" if choice.kind in ("area", "image") else choice.label
+        lines = [f"{label}: {number_with_unit(value, numbers.unit)}"]
+        velocities = self.velocities(frame)
+        if velocities is not None:
+            speed = number_with_unit(float(velocities[window[1]]), self.shown.unit("velocity"), signed=True)
+            lines.append(f"edge velocity: {speed}")
+        return lines
+
+    def _peak_words(self, numbers: WindowNumbers, value: float, window: tuple[int, int]) -> str:
+        if numbers.lags is None or numbers.hatched is None or not np.isfinite(value):
+            return "not correlated"
+        lag, time = float(numbers.lags[window]), self.shown.study.scale.time_unit
+        unit = time if time == "s" else "frames"
+        chance = ", not significant" if numbers.hatched[window] else ""
+        words = f"peak correlation {rounded(value, 2)}".replace("-", "−")
+        return f"{words} at lag {number_with_unit(lag, unit)}{chance}"
