@@ -9,14 +9,15 @@ from qtpy.QtCore import QTimer
 from qtpy.QtGui import QColor
 from qtpy.QtWidgets import QWidget
 
-from cytodisk.napari.disk_view.cell_marks import CellMarks
 from cytodisk.napari.disk_view.cell_numbers import CellNumbers
 from cytodisk.napari.disk_view.disk_choices import DiskChoice, disk_choices
 from cytodisk.napari.disk_view.disk_parts import DiskParts
 from cytodisk.napari.disk_view.disk_pixels import DiskColours
 from cytodisk.napari.disk_view.disk_state import DiskState
+from cytodisk.napari.disk_view.drawn_marks import draw_marks
 from cytodisk.napari.disk_view.pointing import Pointed, ViewerPlaces, pointed_in_cell, pointed_in_disk
-from cytodisk.napari.disk_view.viewer_canvas import camera_of, scene_of, text_colour_of
+from cytodisk.napari.disk_view.viewer_canvas import camera_of, text_colour_of
+from cytodisk.napari.disk_view.viewer_link import ViewerLink
 from cytodisk.napari.study_layers.shown_study import shown_studies
 
 NO_STUDY = (
@@ -43,6 +44,8 @@ class DiskDock(QWidget):
         What the cursor points at, in the cell or in the disk.
     pinned : (int, int, int) or None
         Cell, layer and sector that were clicked.
+    link : ViewerLink or None
+        None while the dock is hidden.
     """
 
     def __init__(self, napari_viewer: Any):
@@ -54,10 +57,9 @@ class DiskDock(QWidget):
         self.pinned: tuple[int, int, int] | None = None
         self._shown: Any = None
         self._places: ViewerPlaces | None = None
-        self._marks: CellMarks | None = None
+        self.link: ViewerLink | None = None
         self._cursor_yx: tuple[float, float] | None = None
         self._kept: dict[tuple[int, int], CellNumbers] = {}
-        self._linked = False
         self._connect_parts()
         self._link()
 
@@ -77,38 +79,18 @@ class DiskDock(QWidget):
 
     def _link(self) -> None:
         """Follow the viewer; done again when the dock is shown again."""
-        if self._linked:
-            return
-        self._linked = True
-        viewer = self.viewer
-        viewer.cursor.events.position.connect(self._follow_cursor)
-        viewer.events.mouse_over_canvas.connect(self._follow_cursor)
-        viewer.events.theme.connect(self._take_theme)
-        viewer.dims.events.ndisplay.connect(self._draw_marks)
-        viewer.layers.events.inserted.connect(self._layers_changed)
-        viewer.layers.events.removed.connect(self._layers_changed)
-        viewer.mouse_drag_callbacks.append(self._click_cell)
-        self._marks = CellMarks(scene_of(viewer))
-        self._take_theme()
-        self._list_studies()
+        if self.link is None:
+            called = self._follow_cursor, self._layers_changed, self._take_look, self._click_cell
+            self.link = ViewerLink(self.viewer, *called)
+            self._take_look()
+            self._list_studies()
 
     def _unlink(self) -> None:
         """Leave the viewer as it was."""
-        if not self._linked:
-            return
-        self._linked = False
-        viewer = self.viewer
-        viewer.cursor.events.position.disconnect(self._follow_cursor)
-        viewer.events.mouse_over_canvas.disconnect(self._follow_cursor)
-        viewer.events.theme.disconnect(self._take_theme)
-        viewer.dims.events.ndisplay.disconnect(self._draw_marks)
-        viewer.layers.events.inserted.disconnect(self._layers_changed)
-        viewer.layers.events.removed.disconnect(self._layers_changed)
-        viewer.mouse_drag_callbacks.remove(self._click_cell)
-        self._take_shown(None)
-        if self._marks is not None:
-            self._marks.remove()
-        self._marks = None
+        if self.link is not None:
+            self._take_shown(None)
+            self.link.end()
+            self.link = None
 
     def showEvent(self, event: Any) -> None:
         """Follow the viewer."""
@@ -118,8 +100,9 @@ class DiskDock(QWidget):
         """Follow it no more: the dock is closed, or behind another one."""
         self._unlink()
 
-    def _take_theme(self, event: Any = None) -> None:
+    def _take_look(self, event: Any = None) -> None:
         self.parts.set_text_colour(QColor(text_colour_of(self.viewer)))
+        self._draw_marks()
 
     # Studies
 
@@ -127,7 +110,7 @@ class DiskDock(QWidget):
         QTimer.singleShot(0, self._list_studies)  # once the study knows its layers
 
     def _list_studies(self) -> None:
-        if not self._linked:
+        if self.link is None:
             return
         studies = shown_studies(self.viewer)
         self.parts.list_studies(studies, self._shown)
@@ -239,19 +222,11 @@ class DiskDock(QWidget):
             return None
         return self.pinned[1:]
 
-    def _draw_marks(self, event: Any = None) -> None:
-        marks, places, state = self._marks, self._places, self.state
-        if marks is None:
-            return
-        if places is None or state is None or state.windows is None or not places.is_flat:
-            marks.clear()
-            return
-        pointed = None if self.pointed is None else self.pointed.window
-        for name, window in (("pinned", self._pinned_here), ("pointed", pointed)):
-            outline = state.outline_yx(window)
-            marks.outline(name, None if outline is None else places.scene_xy(outline))
-        for draw, point in ((marks.cross, state.place_yx(self.pointed)), (marks.sector_0, state.sector_0_yx)):
-            draw(None if point is None else places.scene_xy(point))
+    def _draw_marks(self) -> None:
+        if self.link is not None:
+            pointed = None if self.pointed is None else self.pointed.window
+            outlines = {"pinned": self._pinned_here, "pointed": pointed}
+            draw_marks(self.link.marks, self._places, self.state, outlines, self.pointed)
 
     # The cursor
 
