@@ -8,6 +8,7 @@ from threading import RLock
 from typing import Generic, TypeVar
 
 Content = TypeVar("Content")
+_NEARLY = 0.9
 
 
 class ByteCache(Generic[Content]):
@@ -33,6 +34,11 @@ class ByteCache(Generic[Content]):
 
     def __len__(self) -> int:
         return len(self._kept)
+
+    @property
+    def is_full(self) -> bool:
+        """Whether little room is left before something has to go."""
+        return self.n_bytes > _NEARLY * self.most_bytes
 
     def get(self, key: Hashable, make: Callable[[], Content]) -> Content:
         """What is kept under a key, or else what is made now, and then kept.

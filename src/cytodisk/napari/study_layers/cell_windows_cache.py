@@ -16,7 +16,7 @@ from cytodisk.store.study import Study
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 from cytodisk.windows.study_grid import polar_grid_of
 
-MAP_BYTES = 64 * 2**20
+MAP_BYTES = 32 * 2**20
 """Of maps with their windows."""
 LABEL_BYTES = 64 * 2**20
 """Of packed labels."""

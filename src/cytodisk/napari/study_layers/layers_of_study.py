@@ -7,12 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.napari.study_layers.edge_points import edge_points
 from cytodisk.napari.study_layers.feature_table import window_features
 from cytodisk.napari.study_layers.frame_stack import FrameStack
 from cytodisk.napari.study_layers.study_in_viewer import ShownStudy
 from cytodisk.napari.study_layers.study_place import MARK, StudyPlace
-from cytodisk.napari.study_layers.window_lines import edge_lines, window_lines
 from cytodisk.plot.style import SIGNAL_COLOURS
 
 LayerData = tuple[Any, dict[str, Any], str]
@@ -63,17 +61,16 @@ def _layers(shown: ShownStudy, place: StudyPlace) -> Iterator[LayerData]:
             ),
             "image",
         )
-    points, features = edge_points(painted, first)
+    points, features = shown.lines.points(first)
     yield (
         points,
         settings("points", "points of the edge", features=features, size=size / _POINTS, visible=False),
         "points",
     )
-    lines, features = window_lines(painted, first)
     look = {"edge_width": size / _LINES, "edge_color": _LINE_COLOUR, "vector_style": "line", "opacity": 0.7}
-    yield lines, settings("outlines", "borders of windows", features=features, **look), "vectors"
+    yield shown.lines.windows(first), settings("outlines", "borders of windows", **look), "vectors"
     if shown.study.is_movie:
-        lines, colours = edge_lines(painted, first, shown.top_speed)
+        lines, colours = shown.lines.edge(first, shown.top_speed)
         look = {"edge_width": size / _EDGES, "edge_color": colours, "vector_style": "line", "opacity": 1.0}
         yield lines, settings("velocity", _velocity_name(shown), **look), "vectors"
     yield (

@@ -14,7 +14,7 @@ from cytodisk.napari.study_layers.cell_windows_cache import CellWindowsCache
 from cytodisk.napari.study_layers.shown_cells import ShownCells
 from cytodisk.napari.study_layers.window_values import Numbers, WindowValues
 
-FRAME_BYTES = 48 * 2**20
+FRAME_BYTES = 32 * 2**20
 """Of whole frames."""
 
 

@@ -12,13 +12,12 @@ from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError
 from cytodisk.napari.study_layers.cell_windows_cache import CellWindowsCache
-from cytodisk.napari.study_layers.edge_points import edge_points
-from cytodisk.napari.study_layers.feature_table import window_features
+from cytodisk.napari.study_layers.frame_lines import FrameLines
+from cytodisk.napari.study_layers.frame_updates import FrameUpdates
 from cytodisk.napari.study_layers.painted_frames import PaintedFrames
 from cytodisk.napari.study_layers.prefetch import Prefetch
 from cytodisk.napari.study_layers.shown_cells import ShownCells
 from cytodisk.napari.study_layers.study_place import MARK
-from cytodisk.napari.study_layers.window_lines import edge_lines, window_lines
 from cytodisk.napari.study_layers.window_values import WindowValues
 from cytodisk.store.study import Study
 from cytodisk.windows.polar_windows import CellWindows
@@ -40,6 +39,8 @@ class ShownStudy:
         Which cells are in which frame.
     painted : PaintedFrames
         Images of its layers.
+    lines : FrameLines
+        Lines and points of its layers.
     viewer : Viewer or None
         None until its layers are in one.
     layers : dict of str to Layer
@@ -58,7 +59,8 @@ class ShownStudy:
         self._windows = CellWindowsCache(study)
         self._values = WindowValues(study)
         self.painted = PaintedFrames(self.cells, self._windows, self._values)
-        self._prefetch = Prefetch(self._load_frame)
+        self.lines = FrameLines(self.painted)
+        self._prefetch = Prefetch(lambda frame: self._updates.load(frame), self._is_full)
         self._channel = next(iter(self.channels), "")
         self._told: tuple[int | None, str] | None = None
 
@@ -214,6 +216,7 @@ class ShownStudy:
     def bind(self, viewer: Any, layer: Any) -> None:
         """Note that a layer of this study is in a viewer; it follows the slider from then on."""
         self.layers[layer.metadata[MARK]["role"]] = layer
+        layer.events.visible.connect(self._seen)
         if self.viewer is None:
             self.viewer = viewer
             viewer.dims.events.current_step.connect(self._follow)
@@ -249,25 +252,20 @@ class ShownStudy:
         self.changed.emit()
 
     def _show_frame(self, frame: int) -> None:
-        if "windows" in self.layers:
-            self.layers["windows"].features = window_features(self.painted, frame)
-        if "points" in self.layers:
-            layer = self.layers["points"]
-            points, features = edge_points(self.painted, frame)
-            layer.data = points
-            layer.features = features
-        if "outlines" in self.layers:
-            layer = self.layers["outlines"]
-            layer.data, features = window_lines(self.painted, frame)
-            layer.features = features
-        if "velocity" in self.layers:
-            layer = self.layers["velocity"]
-            lines, colours = edge_lines(self.painted, frame, self.top_speed)
-            layer.data = lines
-            layer.edge_color = colours
+        for role, layer in self.layers.items():
+            self._updates.show(role, layer, frame)
         self._prefetch.around(frame, self.cells.n_frames)
 
-    def _load_frame(self, frame: int) -> None:
-        for cell in self.cells.mapped.get(frame, ()):
-            self._windows.box_at(cell, frame)
-            self._values.at(cell, frame)
+    @cached_property
+    def _updates(self) -> FrameUpdates:
+        top_speed = self.top_speed if self.study.is_movie else 1.0
+        return FrameUpdates(self.painted, self.lines, top_speed)
+
+    def _is_full(self) -> bool:
+        return self._windows.boxes.is_full or self._values.is_full or self.lines.is_full
+
+    def _seen(self, event: Any) -> None:
+        """A layer that was hidden is shown: it was not brought to the frame."""
+        if self.frame is not None:
+            for role, layer in self.layers.items():
+                self._updates.show(role, layer, self.frame)

@@ -59,6 +59,11 @@ class WindowValues:
         known = {"mean": "a.u.", "area": scale.area_unit, "depth": scale.length_unit}
         return known | {"velocity": scale.velocity_unit}
 
+    @property
+    def is_full(self) -> bool:
+        """Whether more frames would push others out."""
+        return self._blocks.is_full
+
     def at(self, cell: int, frame: int) -> Numbers:
         """Numbers of the windows of a cell in a frame.
 

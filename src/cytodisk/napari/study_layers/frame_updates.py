@@ -1,0 +1,67 @@
+"""Bring layers to the frame under the slider: those that are visible, without events that are not needed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cytodisk.napari.study_layers.feature_table import window_features
+from cytodisk.napari.study_layers.frame_lines import FrameLines
+from cytodisk.napari.study_layers.painted_frames import PaintedFrames
+
+
+class FrameUpdates:
+    """Sets what layers hold of one frame alone.
+
+    Parameters
+    ----------
+    painted : PaintedFrames
+    lines : FrameLines
+    top_speed : float
+        At the ends of the colours of velocity.
+    """
+
+    def __init__(self, painted: PaintedFrames, lines: FrameLines, top_speed: float):
+        self._painted, self._lines, self._top_speed = painted, lines, top_speed
+        self._shown: dict[str, int] = {}  # frame by role
+
+    def show(self, role: str, layer: Any, frame: int) -> None:
+        """Bring a layer to a frame, if it is visible and of another one.
+
+        Parameters
+        ----------
+        role : str
+        layer : Layer
+        frame : int
+        """
+        if not layer.visible or self._shown.get(role) == frame:
+            return
+        if role == "windows":
+            layer.features = window_features(self._painted, frame)
+        elif role == "outlines":
+            set_data(layer, self._lines.windows(frame))
+        elif role == "velocity":
+            lines, colours = self._lines.edge(frame, self._top_speed)
+            set_data(layer, lines)
+            layer.edge_color = colours
+        elif role == "points":
+            points, features = self._lines.points(frame)
+            set_data(layer, points)
+            layer.features = features
+        else:
+            return
+        self._shown[role] = frame
+
+    def load(self, frame: int) -> None:
+        """Read what is shown of a frame, and keep it."""
+        for cell in self._painted.cells.mapped.get(frame, ()):
+            self._painted.windows.box_at(cell, frame)
+            self._painted.values.at(cell, frame)
+        self._lines.windows(frame)
+        if self._painted.cells.study.is_movie:
+            self._lines.edge(frame, self._top_speed)
+
+
+def set_data(layer: Any, data: Any) -> None:
+    """Give a layer other data, of which the viewer need not know: what it covers is in another layer, too."""
+    with layer.events.data.blocker():
+        layer.data = data
