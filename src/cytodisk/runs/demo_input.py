@@ -52,14 +52,14 @@ def write_demo_input(
     StudyError
         The folder cannot be written, or holds something else.
     """
-    truth = movie("fluctuating", seed, frames=FRAMES, speed_px=0.5, coupled=_COUPLED)
+    truth = demo_movie(seed)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise StudyError(f"output folder {folder} cannot be written: {error.strerror}") from error
     masks, signal = folder / "masks.tif", folder / "signal.ome.tif"
     _write(masks, truth.masks.astype(np.uint8), {"axes": "TYX"}, overwrite)
-    counts = _signal(truth)
+    counts = demo_signal(truth)
     metadata = {
         "axes": "TCYX",
         "Channel": {"Name": [str(name) for name in counts["channel"].to_numpy()]},
@@ -130,7 +130,7 @@ def _signal_words(study: Study, truth: SimulatedMovie) -> str:
     products = windows["mean"] * windows["n_pixels"]
     found = products.groupby([windows["channel"], windows["frame"]]).sum()
     off = []
-    counts = _signal(truth)
+    counts = demo_signal(truth)
     for number, channel in enumerate(counts["channel"].to_numpy()):
         for frame, mask in enumerate(truth.masks):
             counted = float(counts.to_numpy()[frame, number][mask].sum(dtype=np.float64))
@@ -155,7 +155,13 @@ def _lag_words(study: Study, truth: SimulatedMovie) -> str:
     )
 
 
-def _signal(truth: SimulatedMovie) -> Any:
+def demo_movie(seed: int = 0) -> SimulatedMovie:
+    """The movie of the demo: a cell whose "edge" signal follows its edge along one half of it."""
+    return movie("fluctuating", seed, frames=FRAMES, speed_px=0.5, coupled=_COUPLED)
+
+
+def demo_signal(truth: SimulatedMovie) -> Any:
+    """Its channels, with dims (time, channel, y, x)."""
     if truth.signal is None:
         raise StudyError("the demo's movie has no signal: simulate it with signals=True")
     return truth.signal

@@ -65,6 +65,14 @@ class FrameLines:
             inner = []
         return self._in_frame(frame, [*outlines, *inner])
 
+    def nuclei(self, frame: int) -> Any:
+        """Outlines of the nuclei of a frame, as `windows`."""
+        return self._kept.get((frame, "nuclei"), lambda: (self._nuclei(frame),))[0]
+
+    def _nuclei(self, frame: int) -> Any:
+        outlines = [windows.disk.nucleus_outline_yx for _, windows in self._shown(frame)]
+        return self._in_frame(frame, [_closed(outline) for outline in outlines if outline is not None])
+
     def edge(self, frame: int, top_speed: float) -> tuple[Any, Any]:
         """The edges of the cells of a frame, and their colours by velocity.
 
@@ -111,7 +119,7 @@ class FrameLines:
         features : dict of str to ndarray
             Cell, sector, and whether the sector begins there on the edge, or it is the middle of sector 0.
         """
-        return self._kept.get((frame, "points"), lambda: self._points(frame))  # type: ignore[return-value]
+        return self._kept.get((frame, "points"), lambda: self._points(frame))
 
     def _points(self, frame: int) -> tuple[Any, dict[str, Any]]:
         shown, sectors = self._shown(frame), self._painted.windows.grid.sectors
@@ -138,6 +146,11 @@ class FrameLines:
             time[:, 0] = frame
             pieces = np.concatenate([time, pieces], axis=2)
         return pieces.astype(np.float32)
+
+
+def cell_lines(windows: CellWindows) -> Any:
+    """Outline of a cell and the lines between its windows, shape (N, 2, 2): begin and direction."""
+    return np.concatenate([_closed(windows.disk.outline_yx), _between_windows(windows)]).astype(np.float32)
 
 
 def _edge_points(windows: CellWindows) -> FloatArray:

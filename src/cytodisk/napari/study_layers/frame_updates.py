@@ -39,6 +39,8 @@ class FrameUpdates:
             layer.features = window_features(self._painted, frame)
         elif role == "outlines":
             set_data(layer, self._lines.windows(frame))
+        elif role == "nuclei":
+            set_data(layer, self._lines.nuclei(frame))
         elif role == "velocity":
             lines, colours = self._lines.edge(frame, self._top_speed)
             set_data(layer, lines)
@@ -57,6 +59,8 @@ class FrameUpdates:
             self._painted.windows.box_at(cell, frame)
             self._painted.values.at(cell, frame)
         self._lines.windows(frame)
+        if self._painted.windows.grid.nucleus_layers:
+            self._lines.nuclei(frame)
         if self._painted.cells.study.is_movie:
             self._lines.edge(frame, self._top_speed)
 

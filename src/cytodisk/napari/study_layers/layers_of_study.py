@@ -15,8 +15,10 @@ from cytodisk.plot.style import SIGNAL_COLOURS
 
 LayerData = tuple[Any, dict[str, Any], str]
 
-_LINE_COLOUR = "white"
-_LINES, _EDGES, _POINTS = 600.0, 100.0, 80.0  # thin lines, coloured edges and points: in a cell so many
+LINE_LOOK = {"edge_color": "white", "vector_style": "line", "opacity": 0.6}
+_NUCLEUS_COLOUR, _NUCLEI = "cyan", 2.0  # times as wide as lines
+_EDGES, _POINTS = 100.0, 80.0  # coloured edges, and points, that side by side are as wide as a cell
+_LINES_ON_SCREEN, _FINEST_LINES, _WIDEST_LINES = 900.0, 600.0, 150.0
 
 
 def layer_data(shown: ShownStudy, place: StudyPlace) -> list[LayerData]:
@@ -67,8 +69,11 @@ def _layers(shown: ShownStudy, place: StudyPlace) -> Iterator[LayerData]:
         settings("points", "points of the edge", features=features, size=size / _POINTS, visible=False),
         "points",
     )
-    look = {"edge_width": size / _LINES, "edge_color": _LINE_COLOUR, "vector_style": "line", "opacity": 0.7}
+    look: dict[str, Any] = LINE_LOOK | {"edge_width": line_width(size, painted.shape)}
     yield shown.lines.windows(first), settings("outlines", "borders of windows", **look), "vectors"
+    if painted.windows.grid.nucleus_layers:
+        look |= {"edge_width": _NUCLEI * look["edge_width"], "edge_color": _NUCLEUS_COLOUR}
+        yield shown.lines.nuclei(first), settings("nuclei", "outlines of nuclei", **look), "vectors"
     if shown.study.is_movie:
         lines, colours = shown.lines.edge(first, shown.top_speed)
         look = {"edge_width": size / _EDGES, "edge_color": colours, "vector_style": "line", "opacity": 1.0}
@@ -78,6 +83,20 @@ def _layers(shown: ShownStudy, place: StudyPlace) -> Iterator[LayerData]:
         settings("windows", "windows", features=window_features(painted, first), opacity=0.0),
         "labels",
     )
+
+
+def line_width(diameter_px: float, shape: tuple[int, int]) -> float:
+    """Width of a line in pixels of an image, that can be seen when the whole of it is on the screen.
+
+    Parameters
+    ----------
+    diameter_px : float
+        Of a cell, in which lines stay thin.
+    shape : (int, int)
+        Of the image.
+    """
+    wide = max(shape) / _LINES_ON_SCREEN
+    return float(np.clip(wide, diameter_px / _FINEST_LINES, diameter_px / _WIDEST_LINES))
 
 
 def _velocity_name(shown: ShownStudy) -> str:

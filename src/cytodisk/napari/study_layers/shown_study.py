@@ -35,9 +35,34 @@ def show_study(viewer: Any, study: Study, *, source: str | None = None) -> Shown
         layer = Layer.create(*data)
         viewer.add_layer(layer)
         shown.bind(viewer, layer)
+    say_missing(shown)
+    return shown
+
+
+def attach(viewer: Any, shown: ShownStudy, n_layers: int) -> None:
+    """Let layers that a reader returns follow the slider, once they are in the viewer.
+
+    Parameters
+    ----------
+    viewer : Viewer
+    shown : ShownStudy
+    n_layers : int
+        How many there will be.
+    """
+
+    def bind(event: Any) -> None:
+        if event.value.metadata.get(MARK, {}).get("shown") is shown:
+            shown.bind(viewer, event.value)
+            if len(shown.layers) == n_layers:
+                viewer.layers.events.inserted.disconnect(bind)
+
+    viewer.layers.events.inserted.connect(bind)
+
+
+def say_missing(shown: ShownStudy) -> None:
+    """Say what of a study has no map."""
     if words := shown.cells.missing_words:
         show_warning(words)
-    return shown
 
 
 def shown_studies(viewer: Any) -> list[ShownStudy]:

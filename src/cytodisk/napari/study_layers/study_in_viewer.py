@@ -44,7 +44,7 @@ class ShownStudy:
     viewer : Viewer or None
         None until its layers are in one.
     layers : dict of str to Layer
-        By role: "windows", "values", "outlines", "velocity", "points", "signal".
+        By role: "windows", "values", "outlines", "velocity", "points", "nuclei".
     changed : Signal
         Emitted when another frame or channel is shown.
     """
