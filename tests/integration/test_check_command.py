@@ -7,7 +7,8 @@ import pytest
 import tifffile
 from command_line import Run, assert_refused, write
 
-from cytodisk.cli.checked_words import ranges_words, size_words
+from cytodisk.runs.told.mask_sizes import size_words
+from cytodisk.runs.told.place_words import ranges_words
 from cytodisk.scale import Scale
 
 
@@ -43,6 +44,17 @@ def test_faults_are_named_with_their_frames(run: Run, tmp_path: Path) -> None:
     assert "8 frames: 8 usable (1 with QC flags), 0 not usable" in said
     assert "frames without a cell: 4 empty" in said
     assert "cytodisk movie finds them" in said
+
+
+def test_a_mask_that_leaves_its_place_for_a_frame(run: Run, tmp_path: Path) -> None:
+    masks = np.zeros((8, 30, 90), dtype=np.uint8)
+    masks[:, 5:25, 5:25] = 1
+    masks[5] = np.roll(masks[5], 50, axis=1)
+
+    said = run("check", write(tmp_path / "masks.tif", masks))[1]
+
+    words = "jumps to another place (frames 4 and 5: by 2.2 of its diameters)\n"
+    assert f"QC flag place jumps: the mask {words}" in said
 
 
 def test_cells_of_a_label_image_are_named_by_their_numbers(run: Run, tmp_path: Path) -> None:

@@ -25,11 +25,11 @@ def check_command(
         bool, typer.Option("--all", help="Print a line for every cell, or frame of a stack.")
     ] = False,
 ) -> None:
-    from cytodisk.cli.checked_words import Checked
     from cytodisk.cli.contents_lines import say_contents
     from cytodisk.runs.cells.cell_groups import with_groups
     from cytodisk.runs.cells.cell_inputs import open_inputs
     from cytodisk.runs.map.checked_cells import check_cells
+    from cytodisk.runs.told.checked_words import Checked
 
     console = console_for(False)
     say_contents(console, (masks, signal, nuclei))

@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cytodisk.cli.checked_words import scale_words
 from cytodisk.cli.console import console_for, count, fail, progress_bar, say_losses
 from cytodisk.cli.first_start import say_compiling
 from cytodisk.cli.map_command import say_inputs
@@ -18,6 +17,7 @@ from cytodisk.cli.options import (
 from cytodisk.runs.run_options import RunOptions
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 from cytodisk.runs.told.map_words import reason_lines
+from cytodisk.runs.told.mask_sizes import scale_words
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -17,6 +17,11 @@ LARGEST_AREA_STEP = 0.05
 AREA_STEP_SPREADS = 5.0
 """Changes beyond so many standard deviations of the cell's own about their trend are flagged."""
 
+JUMP_MEANING = (
+    "Cells do not gain or lose so much at once: the mask did. Windows and velocity are wrong there."
+)
+JUMP_ADVICE = "Look at both masks, and correct the wrong one."
+
 _LARGEST_OWN = np.log1p(0.25)  # step off the trend that the cell's own spread may explain
 _FEW_STEPS = 3  # that tell no spread
 _LARGEST_OF_FEW = np.log1p(0.1)
@@ -61,9 +66,8 @@ def area_jumps(study: Study) -> Iterator[QCFlag]:
         yield QCFlag(
             "area jumps",
             f"the mask's area jumps in {frames_of(study, len(places))}{flicker}",
-            "Cells do not gain or lose so much at once: the mask did. Windows and velocity are wrong there.",
-            "Look at both masks, and correct the wrong one."
-            + (without_frames(study, places) if study.is_movie else ""),
+            JUMP_MEANING,
+            JUMP_ADVICE + (without_frames(study, places) if study.is_movie else ""),
             tuple(places),
         )
 

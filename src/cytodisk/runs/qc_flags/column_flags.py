@@ -19,7 +19,7 @@ LARGEST_DISTORTION = 0.15
 LARGEST_RESIDUAL_PX = 1.0
 """Tracking residual of a frame, in px; good frames have a few hundredths."""
 
-_WITHOUT_MAP = {
+WITHOUT_MAP = {
     "unreadable": (
         "The file is damaged there; the frame has no numbers.",
         "Copy the file again from the microscope and run again.",
@@ -34,6 +34,7 @@ _WITHOUT_MAP = {
         "if a file is missing, put it back.",
     ),
 }
+"""What a frame without a map means, and what to do, by its status."""
 
 
 @dataclass(frozen=True)
@@ -95,10 +96,10 @@ class ColumnRule:
 
 def without_map(study: Study) -> Iterator[QCFlag]:
     """Frames without a map, by their status."""
-    for status in [*_WITHOUT_MAP, *sorted(set(study.cells["status"]) - {*_WITHOUT_MAP, "ok"})]:
+    for status in [*WITHOUT_MAP, *sorted(set(study.cells["status"]) - {*WITHOUT_MAP, "ok"})]:
         rows = study.cells[study.cells["status"] == status]
         if len(rows):
-            words = _WITHOUT_MAP.get(status, ("The frame has no numbers.", "Read the reason."))
+            words = WITHOUT_MAP.get(status, ("The frame has no numbers.", "Read the reason."))
             places = places_of(rows, lambda row: str(row["reason"]))
             what = frames_of(study, len(rows)) if (rows["label"] != 0).any() else _images(len(rows))
             yield QCFlag(f"{status} frames", f"{what} {status}", *words, places)
