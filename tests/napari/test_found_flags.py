@@ -51,7 +51,7 @@ def test_a_cell_of_many_files_is_named_with_its_file() -> None:
 
 
 def test_points_have_what_the_status_bar_says() -> None:
-    ground = FlagGround((5.0, 0.2, 0.2), (0.0, 1.0, 1.0), ("second", "um", "um"))
+    ground = FlagGround((5.0, 0.2, 0.2), (0.0, 1.0, 1.0), ("second", "um", "um"), -3)
 
     points, features = flag_features([found()], ground)
 

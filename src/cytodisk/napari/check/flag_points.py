@@ -25,30 +25,32 @@ class FlagGround:
     Attributes
     ----------
     scale, translate : tuple of float
-        Of axes (time,) y, x.
+        Of the axes of the layer that they are in, y and x last.
     units : tuple of object
+    time_axis : int or None
+        Which of them is time, counted from the end, such as -3; None without one.
     """
 
     scale: tuple[float, ...]
     translate: tuple[float, ...]
     units: tuple[Any, ...]
+    time_axis: int | None = None
 
     @classmethod
-    def of(cls, layer: Any) -> FlagGround:
-        """That of a layer with axes (time,) y, x."""
-        kept = slice(-min(layer.ndim, 3), None)
-        return cls(tuple(layer.scale[kept]), tuple(layer.translate[kept]), tuple(layer.units[kept]))
-
-    @property
-    def has_time(self) -> bool:
-        """Whether there is an axis of time."""
-        return len(self.scale) > 2
+    def of(cls, layer: Any, time_axis: int | None = -3) -> FlagGround:
+        """That of a layer; without another word an axis before y and x is time."""
+        has_time = time_axis is not None and layer.ndim >= -time_axis
+        place = tuple(layer.scale), tuple(layer.translate), tuple(layer.units)
+        return cls(*place, time_axis if has_time else None)
 
     def point(self, place: FlagPlace) -> tuple[float, ...] | None:
         """A place in the pixels of a layer; None without one."""
         if place.yx is None:
             return None
-        return (float(place.frame or 0), *place.yx) if self.has_time else place.yx
+        point = [0.0] * (len(self.scale) - 2) + [*place.yx]
+        if self.time_axis is not None:
+            point[self.time_axis] = float(place.frame or 0)
+        return tuple(point)
 
     def world(self, place: FlagPlace) -> tuple[float, ...] | None:
         """A place in the viewer."""
@@ -147,11 +149,12 @@ def jump_to(viewer: Any, place: FlagPlace, ground: FlagGround) -> bool:
         Whether there is anything to see.
     """
     world = ground.world(place)
-    if ground.has_time and place.frame is not None:
-        time = place.frame * ground.scale[0] + ground.translate[0]
-        viewer.dims.set_point(viewer.dims.ndim - len(ground.scale), time)
+    axis = None if place.frame is None else ground.time_axis
+    if axis is not None:
+        time = (place.frame or 0) * ground.scale[axis] + ground.translate[axis]
+        viewer.dims.set_point(viewer.dims.ndim + axis, time)
     if world is None:
-        return ground.has_time and place.frame is not None
+        return axis is not None
     camera_of(viewer).center = world[-2:]
     return True
 

@@ -85,4 +85,5 @@ def _ground(study: Study, shown: ShownStudy) -> FlagGround:
     dims = 3 if study.is_movie else 2
     length, unit = (1.0, "pixel") if pixel is None else (pixel, "micrometer")
     time, second = (1.0, "pixel") if interval is None else (interval, "second")
-    return FlagGround((time, length, length)[-dims:], (0.0,) * dims, (second, unit, unit)[-dims:])
+    place = (time, length, length)[-dims:], (0.0,) * dims, (second, unit, unit)[-dims:]
+    return FlagGround(*place, -3 if study.is_movie else None)

@@ -53,3 +53,15 @@ def without_single(letters: str, shape: Sequence[int]) -> tuple[str, tuple[int, 
     """Letters and sizes without axes of length 1 beside Y and X."""
     kept = [(one, int(size)) for one, size in zip(letters, shape, strict=True) if size > 1 or one in "YX"]
     return "".join(one for one, _ in kept), tuple(size for _, size in kept)
+
+
+def time_axis(layer: Any) -> int | None:
+    """Which axis of a layer is time, counted from the end; one without a name is taken for it.
+
+    Parameters
+    ----------
+    layer : napari.layers.Layer
+    """
+    letters = layer_axes(layer)
+    known = next((one for one in ("T", UNNAMED) if one in letters), None)
+    return None if known is None else letters.index(known) - len(letters)

@@ -18,8 +18,7 @@ from cytodisk.runs.told.mask_faults import (
     WITHOUT,
     FaultPlace,
     MaskFault,
-    area_faults,
-    place_faults,
+    leap_faults,
 )
 from cytodisk.runs.told.mask_sizes import scale_words, size_words
 from cytodisk.runs.told.nuclei_words import nuclei_words, statuses_of
@@ -41,6 +40,8 @@ class Checked:
     def __init__(self, inputs: "CellInputs"):
         self._inputs = inputs
         self._is_stack = inputs.sources[0].kind == "stack" and not inputs.is_folder
+        file = inputs.sources[0].file
+        self._named_time = file is not None and "T" in file.axes and file.said_by != "nobody"
         self._without: Counter[str] = Counter()
         self._kinds: dict[tuple[str, str], MaskFault] = {}
         self._areas: list[int] = []
@@ -150,11 +151,14 @@ class Checked:
         for (_, label), rows in self._by_label.items():
             areas, places = zip(*rows, strict=True)
             of_label = "" if self._is_stack else f" of label {label}"
-            yield from area_faults(areas, places, of_label)
-            yield from place_faults(areas, places, of_label)
+            yield from leap_faults(areas, places, of_label, named_time=self._named_time)
 
     def summary(self) -> Iterator[str]:
         """Lines on what is wrong, the gravest first, then on all masks together."""
+        yield from self._fault_lines()
+        yield from self.totals()
+
+    def _fault_lines(self) -> Iterator[str]:
         for fault in self.faults_found():
             if fault.is_between_frames:
                 yield f"{fault.kind} {fault.words}"
@@ -162,6 +166,9 @@ class Checked:
             more = ", and the like" if fault.differs else ""
             places = self._places([place.shown for place in fault.places])
             yield f"{fault.kind}: {places}: {fault.words}{more}"
+
+    def totals(self) -> Iterator[str]:
+        """Lines on all masks together."""
         what = counted(self._looked_at, "frame" if self._is_stack else "cell")
         usable = self._looked_at - self._unusable
         words = f"{what}: {usable} usable ({self._flagged} with QC flags), {self._unusable} not usable"

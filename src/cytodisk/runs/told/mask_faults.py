@@ -22,6 +22,7 @@ BORDER = "QC flag image border"
 """Kinds of faults, as `cytodisk check` heads its lines."""
 
 _FAR = 1.0  # diameters that a cell does not move by from a frame to the next
+_NEAR, _LARGEST_STEP = 0.25, float(np.log1p(0.25))  # most steps of one cell are smaller, in place and in area
 
 _ADVICE = {
     NOT_USABLE: WITHOUT_MAP["refused"],
@@ -97,8 +98,10 @@ class MaskFault:
         return JUMP_ADVICE if self.name else _ADVICE[self.kind][1]
 
 
-def area_faults(areas: Sequence[int], places: Sequence[FaultPlace], of_label: str) -> Iterator[MaskFault]:
-    """Frames in which the area of a mask leaps.
+def leap_faults(
+    areas: Sequence[int], places: Sequence[FaultPlace], of_label: str, *, named_time: bool
+) -> Iterator[MaskFault]:
+    """Frames in which the area of a mask leaps, and frames in which it stands elsewhere.
 
     Parameters
     ----------
@@ -108,41 +111,48 @@ def area_faults(areas: Sequence[int], places: Sequence[FaultPlace], of_label: st
         Its frames.
     of_label : str
         As " of label 3"; empty where there is one.
+    named_time : bool
+        Whether the file or the user calls the frames a time series. Masks that nobody calls so are compared
+        only if most of them differ by 5 % of their area at most.
+
+    Yields
+    ------
+    MaskFault
+        None for masks of different cells.
     """
-    step = _steps(areas, places)
-    found = without_returns(leaps(step), step) if follows_one_cell(step) else []
-    if found:
-        yield _between("area jumps", f"the mask's area{of_label} jumps", _changes(step), found, places)
-
-
-def _changes(step: FloatArray) -> list[str]:
-    return [f"{np.expm1(value):+.0%}".replace("-", "−") if np.isfinite(value) else "" for value in step]
-
-
-def place_faults(areas: Sequence[int], places: Sequence[FaultPlace], of_label: str) -> Iterator[MaskFault]:
-    """Frames in which a mask moves by more than the cell's diameter, as a label on another cell does.
-
-    Parameters
-    ----------
-    areas, places, of_label
-        As of `area_faults`.
-    """
-    if not follows_one_cell(_steps(areas, places)):
+    step, moved = _steps(areas, places), _moved(areas, places)
+    known = np.abs(step[np.isfinite(step)])
+    near = bool(known.size and np.nanmedian(moved) <= _NEAR and np.median(known) <= _LARGEST_STEP)
+    if not (follows_one_cell(step) or (named_time and near)):
         return
-    centre = np.array([(np.nan, np.nan) if place.yx is None else place.yx for place in places])
-    frame = np.array([place.frame for place in places])
-    diameter = 2.0 * np.sqrt(np.median(areas) / np.pi)
-    moved = np.hypot(*np.diff(centre, axis=0).T) / diameter
-    far = np.flatnonzero((np.diff(frame) == 1) & (moved > _FAR))
-    found = [int(k) for k in far if moved[k] > 3 * np.nanmedian(moved)]  # a fast cell is far in all
-    returns = {k for k in found if k - 1 in found and _distance(centre, k - 1, k + 1) < _FAR * diameter}
-    if found := [k for k in found if k not in returns]:
+    if found := without_returns(leaps(step), step):
+        changes = [f"{np.expm1(one):+.0%}".replace("-", "−") if np.isfinite(one) else "" for one in step]
+        yield _between("area jumps", f"the mask's area{of_label} jumps", changes, found, places)
+    if found := _far_places(moved, places, areas):
         words = [f"by {value:.1f} of its diameters" for value in moved]
         yield _between("place jumps", f"the mask{of_label} jumps to another place", words, found, places)
 
 
-def _distance(centre: FloatArray, one: int, other: int) -> float:
-    return float(np.hypot(*(centre[one] - centre[other])))
+def _far_places(moved: FloatArray, places: Sequence[FaultPlace], areas: Sequence[int]) -> list[int]:
+    """Steps by more than a diameter, without those that lead back; none where most steps are long."""
+    typical = float(np.nanmedian(moved)) if np.isfinite(moved).any() else 0.0
+    found = [int(k) for k in np.flatnonzero(moved > max(_FAR, 3 * typical))]
+    back = [
+        k for k in found if k - 1 in found and _distances(areas, (places[k - 1], places[k + 1]))[0] < _FAR
+    ]
+    return [k for k in found if k not in back]
+
+
+def _moved(areas: Sequence[int], places: Sequence[FaultPlace]) -> FloatArray:
+    """By how many diameters a mask moves from each frame to the next; NaN where a frame is missing."""
+    frame = np.array([place.frame for place in places])
+    return np.where(np.diff(frame) == 1, _distances(areas, places), np.nan)
+
+
+def _distances(areas: Sequence[int], places: Sequence[FaultPlace]) -> FloatArray:
+    centre = np.array([(np.nan, np.nan) if place.yx is None else place.yx for place in places])
+    diameter = 2.0 * np.sqrt(np.median(areas) / np.pi)
+    return np.asarray(np.hypot(*np.diff(centre, axis=0).T) / diameter)
 
 
 def _steps(areas: Sequence[int], places: Sequence[FaultPlace]) -> FloatArray:
