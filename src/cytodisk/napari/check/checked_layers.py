@@ -89,19 +89,19 @@ def check_layers(
 
 
 def _flag(fault: MaskFault, is_stack: bool) -> FoundFlag:
-    places = tuple(_place(fault, one, is_stack) for one in fault.places)
+    places = tuple(_place(one, is_stack) for one in fault.places)
     if fault.is_between_frames:
-        name, _, what = fault.words.partition(": ")
-        return FoundFlag(name, what, fault.advice, fault.meaning, places)
+        what = fault.words.removeprefix(f"{fault.name}: ").partition(" (")[0]
+        where = counted(len(places), "time")
+        return FoundFlag(fault.name, f"{what} {where}", fault.advice, fault.meaning, places)
     more = ", and the like" if fault.differs else ""
     where = counted(len(places), "frame" if is_stack else "cell")
-    return FoundFlag(fault.kind, f"{fault.words}{more} ({where})", fault.advice, fault.meaning, places)
+    return FoundFlag(fault.kind, f"{where}: {fault.words}{more}", fault.advice, fault.meaning, places)
 
 
-def _place(fault: MaskFault, place: FaultPlace, is_stack: bool) -> FlagPlace:
+def _place(place: FaultPlace, is_stack: bool) -> FlagPlace:
     cell = "" if is_stack or not place.label else str(place.label)
-    note = place.words if fault.differs or fault.is_between_frames else ""
-    return FlagPlace(place.frame, cell, note, place.yx)
+    return FlagPlace(place.frame, cell, place.words, place.yx)
 
 
 def command_words(files: GivenFiles, chosen: Sequence[tuple[str, Path | None]]) -> list[str]:

@@ -86,6 +86,7 @@ class FlagTable(QWidget):
         flag, place = part
         place = flag.places[0] if place is None and flag.places else place
         seen = place is not None and self._go(place)
-        note = f"{sentence(place.note)} " if part[1] is not None and place.note else ""
+        told = part[1] is not None and place.note not in flag.words
+        note = f"{sentence(place.note)} " if told else ""
         unseen = "" if seen or place is None else " (There is no such place in the layers that are shown.)"
         self.said.setText(f"{note}{flag.words[:1].upper()}{flag.words[1:]}{unseen}")

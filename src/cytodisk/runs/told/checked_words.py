@@ -46,7 +46,8 @@ class Checked:
         self._kinds: dict[tuple[str, str], MaskFault] = {}
         self._areas: list[int] = []
         self._by_label: dict[tuple[str, int], list[tuple[int, FaultPlace]]] = {}  # area and place
-        self._looked_at = self._unusable = self._flagged = self._on_border = 0
+        self._looked_at = self._unusable = self._on_border = 0
+        self._flagged: set[tuple[str, int, int]] = set()
         self._nuclei: Counter[str] = Counter()
         given = inputs.groups
         self._groups = {} if given is None else given.found.texts
@@ -102,7 +103,8 @@ class Checked:
             (report.outline_px, self._place(checked))
         )
         of_nucleus = () if checked.nucleus_report is None else checked.nucleus_report.qc_flags
-        self._flagged += bool(report.qc_flags or report.touches_border or of_nucleus)
+        if report.qc_flags or report.touches_border or of_nucleus:
+            self._flagged.add((found.source, found.frame, found.label))
         self._on_border += report.touches_border
         for flag in (*report.qc_flags, *of_nucleus):
             self._note(FLAG, flag, checked)
@@ -171,7 +173,9 @@ class Checked:
         """Lines on all masks together."""
         what = counted(self._looked_at, "frame" if self._is_stack else "cell")
         usable = self._looked_at - self._unusable
-        words = f"{what}: {usable} usable ({self._flagged} with QC flags), {self._unusable} not usable"
+        leaps = {place.key for fault in self._between_frames() for place in fault.places}
+        flagged = len(self._flagged | leaps)
+        words = f"{what}: {usable} usable ({flagged} with QC flags), {self._unusable} not usable"
         if self._inputs.is_folder:
             words = f"{counted(len(self._inputs.sources), 'file')}, {words}"
         yield f"{words}, {self._on_border} on the image border"

@@ -58,6 +58,11 @@ class FaultPlace:
     words: str = ""
     yx: tuple[float, float] | None = None
 
+    @property
+    def key(self) -> tuple[str, int, int]:
+        """Source, frame and label."""
+        return self.source, self.frame, self.label
+
 
 @dataclass
 class MaskFault:
