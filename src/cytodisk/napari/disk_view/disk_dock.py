@@ -168,8 +168,7 @@ class DiskDock(QWidget):
             return
         frame = self._shown.frame
         if self._cursor_yx is not None and frame is not None:
-            found = pointed_in_cell(self._shown, frame, self._cursor_yx)
-            self.pointed = found if found is None or self.parts.may_show(found.cell) else None
+            self.pointed = self._under_cursor(frame)
         self.state = DiskState(self._shown, self._numbers(self._cell(frame)), choice, frame)
         self._show_disk(self.state)
         self._show_pointed()
@@ -242,8 +241,15 @@ class DiskDock(QWidget):
             if before is not None:
                 self._point(None)
             return
-        found = pointed_in_cell(shown, frame, self._cursor_yx)
-        self._point(found if found is None or self.parts.may_show(found.cell) else None)
+        if self.state is None or self.state.frame == frame:  # or else the new frame is about to be shown
+            self._point(self._under_cursor(frame))
+
+    def _under_cursor(self, frame: int) -> Pointed | None:
+        """What the cursor is at in the cell, if that cell may be shown."""
+        if self._cursor_yx is None:
+            return None
+        found = pointed_in_cell(self._shown, frame, self._cursor_yx)
+        return found if found is None or self.parts.may_show(found.cell) else None
 
     def _point(self, pointed: Pointed | None) -> None:
         if pointed == self.pointed:
@@ -254,15 +260,9 @@ class DiskDock(QWidget):
         else:
             self._show_pointed()
 
-    def _click_cell(self, viewer: Any, event: Any) -> Any:
-        """A click in a cell, and not a drag, keeps its window marked."""
-        start = tuple(event.pos)
-        yield
-        while event.type == "mouse_move":
-            yield
-        moved = np.hypot(*np.subtract(tuple(event.pos), start))
-        if moved <= 3 and self.viewer.mouse_over_canvas:
-            self.pin(self.pointed)
+    def _click_cell(self) -> None:
+        """Keep the window under the cursor marked."""
+        self.pin(self.pointed)
 
     def pin(self, pointed: Pointed | None) -> None:
         """Keep a window marked, whatever is pointed at; none to let it go."""

@@ -17,7 +17,7 @@ from cytodisk.napari.disk_view.window_words import place_words
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS
 from cytodisk.windows.polar_windows import CellWindows
 
-_IMAGE_SIZE = 224  # pixels across the disk of a signal that is mapped onto it
+_IMAGE_SIZE = 200  # pixels across the disk of a signal that is mapped onto it
 
 
 @dataclass(frozen=True)
