@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, finalize
 
 from cytodisk.errors import StudyError
 from cytodisk.files import make_folder, temporary_name
@@ -32,8 +32,8 @@ class WorkFolder:
     """A folder for a study and its inputs that goes when nothing holds it any more."""
 
     def __init__(self) -> None:
-        self._folder = tempfile.TemporaryDirectory(prefix="cytodisk-", ignore_cleanup_errors=True)
-        self.path = Path(self._folder.name)
+        self.path = Path(tempfile.mkdtemp(prefix="cytodisk-"))
+        self._remove = finalize(self, shutil.rmtree, self.path, ignore_errors=True)
 
     @property
     def inputs(self) -> Path:
@@ -47,7 +47,7 @@ class WorkFolder:
 
     def remove(self) -> None:
         """Remove it now."""
-        self._folder.cleanup()
+        self._remove()
 
 
 @dataclass

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from cytodisk.errors import CytodiskError
 from cytodisk.napari.commands.made_study import MadeStudy, WorkFolder
 from cytodisk.napari.given.chosen_layers import ChosenLayers
 from cytodisk.napari.given.given_layers import GivenFiles, given_files
@@ -104,9 +106,17 @@ def _made(
         study, notes = make(files, given, work)
         report.stage("Looking for QC flags")
         return MadeStudy(command, study, work, files, given, warnings=notes, flags=qc_flags(study))
+    except CytodiskError as error:
+        work.remove()
+        raise type(error)(_by_name(error, work)) from error
     except BaseException:
         work.remove()
         raise
+
+
+def _by_name(error: CytodiskError, work: WorkFolder) -> str:
+    """What an error says, where layers that were written are called by their names alone."""
+    return str(error).replace(f"{work.inputs}{os.sep}", "")
 
 
 def _part(model: type[Group], given: Mapping[str, Any], flags: Mapping[str, str]) -> Group:
