@@ -151,6 +151,7 @@ def test_a_movie_is_followed_saved_correlated_and_reported(
     there = cd.open_study(tmp_path / "saved_again").correlation("Rac1", "velocity")
     pd.testing.assert_frame_equal(found.windows, there.windows)
 
+    assert not correlate.results.save_button.isEnabled()
     pages: list[str] = []
     monkeypatch.setattr("webbrowser.open", pages.append)
     clicked(qtbot, correlate, correlate.results.report_button)
@@ -272,6 +273,7 @@ def test_a_study_is_saved_into_a_new_folder_only(
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.txt").write_text("all of it")
 
+    assert widget.made.usual_target == tmp_path / "cell_study"
     widget.save(tmp_path / "mine")
     qtbot.waitUntil(lambda: widget.work.done, timeout=20_000)
 
@@ -279,6 +281,22 @@ def test_a_study_is_saved_into_a_new_folder_only(
     assert not widget.made.is_saved
     assert widget.results.save_button.isEnabled()
     assert (tmp_path / "mine" / "thesis.txt").read_text() == "all of it"
+
+
+def test_layers_are_chosen_by_what_they_hold(make_viewer: Open, truth: Any) -> None:
+    viewer = make_viewer()
+    widget = opened(viewer, FollowCells)
+    viewer.add_image(truth.masks.astype(np.uint8) * 255, name="from Fiji")
+    viewer.add_image(truth.signal.to_numpy()[:, 0], name="Rac1")
+
+    assert widget.masks.layer.name == "from Fiji"
+    assert [layer.name for layer in widget.signal.layers] == ["Rac1"]
+    viewer.layers.remove("from Fiji")
+    viewer.add_labels(truth.masks.astype(np.uint8), name="cell")
+    assert widget.masks.layer.name == "cell"
+    widget.signal.choose()
+    viewer.add_image(truth.signal.to_numpy()[:, 1], name="RhoA")
+    assert widget.signal.layers == ()  # as the user chose
 
 
 def test_a_new_widget_goes_on_with_what_is_shown(

@@ -10,6 +10,7 @@ from typing import Any
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import (
     QCheckBox,
+    QFileDialog,
     QFormLayout,
     QFrame,
     QHBoxLayout,
@@ -19,11 +20,19 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
+from cytodisk.napari.commands.made_study import MadeStudy
+from cytodisk.napari.commands.open_widgets import layers_of
 from cytodisk.napari.commands.results_panel import ResultsPanel
 from cytodisk.napari.forms.parameter_form import ParameterForm
+from cytodisk.napari.study_layers.shown_study import ShownStudy
+from cytodisk.napari.study_layers.study_place import MARK
+from cytodisk.napari.viewer_parts import show_info
 from cytodisk.napari.work.background import Reporter, Work, run_in_background
 from cytodisk.napari.work.work_bar import WorkBar
 from cytodisk.store.study import Study
+
+NOT_SAVED = "Not saved yet: the results go when you close the viewer."
+SAVE_FIRST = "Save as a study first: files of this line go when you close the viewer."
 
 _WIDTH = 260
 
@@ -37,11 +46,9 @@ class CommandWidget(QWidget):
     form : ParameterForm
     run_words : str
         What stands on the button.
-    can_save : bool
-        Whether results can be saved as a study.
     """
 
-    def __init__(self, viewer: Any, form: ParameterForm, run_words: str, *, can_save: bool = True):
+    def __init__(self, viewer: Any, form: ParameterForm, run_words: str):
         super().__init__()
         self.viewer, self.form = viewer, form
         self.work: Work | None = None
@@ -54,7 +61,8 @@ class CommandWidget(QWidget):
         self.replace_box.setToolTip("Remove the layers of the last run. Without it they stay.")
         self.replace_box.setChecked(True)
         self.bar = WorkBar()
-        self.results = ResultsPanel(can_save)
+        self.results = ResultsPanel()
+        self.results.save_wanted.connect(self.ask_where_to_save)
         self.results.report_wanted.connect(self.open_report)
         self.setMinimumWidth(_WIDTH)
         self._arrange()
@@ -66,6 +74,43 @@ class CommandWidget(QWidget):
     def shown_result(self) -> Study | None:
         """The study whose report can be opened; None if there is none."""
         raise TypeError("a widget must say which study it shows")
+
+    def savable(self) -> tuple[MadeStudy, ShownStudy | None] | None:
+        """The study that can be saved, and its layers; None if there is none."""
+        raise TypeError("a widget must say what can be saved")
+
+    def ask_where_to_save(self) -> None:
+        """Ask for a folder, and save there."""
+        found = self.savable()
+        if found is None:
+            return
+        usual = str(found[0].usual_target)
+        path, _ = QFileDialog.getSaveFileName(self, "Save as a study: name of a new folder", usual)
+        if path:
+            self.save(Path(path))
+
+    def save(self, target: Path) -> None:
+        """Save the study in a folder; layers that show it follow."""
+        found = self.savable()
+        if found is None or found[0].work is None:
+            return
+        made, shown = found
+        work, before = found[0].work, made.study.path
+
+        def save(report: Reporter) -> None:
+            report.stage("Saving")
+            made.save(target)
+
+        def saved(_: None) -> None:
+            if shown is not None:
+                shown.move_to(made.study)
+            for layer in layers_of(self.viewer, before):
+                layer.metadata[MARK]["study"] = str(made.study.path)
+            work.remove()
+            made.saved.emit()
+            show_info(f"saved: {made.study.path}")
+
+        self.start(save, saved)
 
     def open_report(self) -> None:
         """Write the page of the study, and open it in the browser."""
@@ -96,6 +141,8 @@ class CommandWidget(QWidget):
     def _lock(self, is_busy: bool) -> None:
         for button in self.buttons:
             button.setEnabled(not is_busy)
+        if self.savable() is None:
+            self.results.save_button.setEnabled(False)
 
     @property
     def buttons(self) -> Sequence[QPushButton]:

@@ -8,10 +8,10 @@ from qtpy.QtWidgets import QComboBox, QLabel, QSizePolicy
 
 from cytodisk.errors import CytodiskError
 from cytodisk.napari.check.study_flags import ShownFlags, show_flags
-from cytodisk.napari.commands.command_widget import CommandWidget
+from cytodisk.napari.commands.command_widget import NOT_SAVED, SAVE_FIRST, CommandWidget
 from cytodisk.napari.commands.correlation_run import MadeCorrelation, run_correlation
 from cytodisk.napari.commands.lag_plot import LagPlot
-from cytodisk.napari.commands.made_study import made_of
+from cytodisk.napari.commands.made_study import MadeStudy, made_of
 from cytodisk.napari.commands.peak_layers import add_peak_layers
 from cytodisk.napari.forms.command_line import command_line
 from cytodisk.napari.forms.parameter_form import ParameterForm
@@ -23,10 +23,8 @@ from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.run_options import TableOptions
 from cytodisk.runs.told.correlation_words import earlier_settings, replaced_words
 from cytodisk.runs.told.speed_words import PERCENT
-from cytodisk.store.study import Study
+from cytodisk.store.study import Study, open_study
 
-_NOT_SAVED = "Not saved yet: save the study in Follow cells, and this goes with it."
-_SAVE_FIRST = "Save the study first, in Follow cells: the folder of this line goes when you close the viewer."
 _NOTHING = "follow cells first, or open the study of a movie"
 
 
@@ -40,8 +38,9 @@ class Correlate(CommandWidget):
 
     def __init__(self, napari_viewer: Any):
         form = ParameterForm(CorrelateParameters, TableOptions, main=("max_lag",), beside=("with",))
-        super().__init__(napari_viewer, form, "Correlate", can_save=False)
+        super().__init__(napari_viewer, form, "Correlate")
         self.made: MadeCorrelation | None = None
+        self._of: ShownStudy | None = None
         self.layers: list[Any] = []
         self.flags: ShownFlags | None = None
         self._studies: list[ShownStudy] = []
@@ -105,12 +104,35 @@ class Correlate(CommandWidget):
             self.layers = add_peak_layers(self.viewer, shown, made.found)
             if made.flags:
                 self.flags = show_flags(self.viewer, made.study, shown, made.flags)
-        flags = counted(len(made.flags), "kind") + " of QC flags: see the table under the image"
-        unsaved = (of := made_of(shown)) is not None and not of.is_saved
-        where = _NOT_SAVED if unsaved else f"results: {made.found.path}"
-        self.results.show_words([*made.lines, flags if made.flags else "no QC flags", where])
-        self.results.show_command(self.command_line(made), _SAVE_FIRST if unsaved else "")
+        self._of = shown
+        if (of := made_of(shown)) is not None:
+            of.saved.connect(self._follow_study)
         self.plot.show_curves(made.found, made.cells)
+        self._tell()
+
+    def savable(self) -> tuple[MadeStudy, ShownStudy | None] | None:
+        """The study that was correlated last, if a widget made it and it is not saved."""
+        made = None if self._of is None else made_of(self._of)
+        return None if made is None or made.is_saved else (made, self._of)
+
+    def _follow_study(self) -> None:
+        """Go on with the study where it was saved."""
+        if self.made is not None and self._of is not None:
+            found = self.made.found
+            self.made.study = open_study(self._of.study.path)
+            self.made.found = self.made.study.correlation(found.signal, found.with_, found.name)
+            self._tell()
+
+    def _tell(self) -> None:
+        made = self.made
+        if made is None:
+            return
+        unsaved = self.savable() is not None
+        flags = counted(len(made.flags), "kind") + " of QC flags: see the table under the image"
+        where = NOT_SAVED if unsaved else f"results: {made.found.path}"
+        self.results.show_words([*made.lines, flags if made.flags else "no QC flags", where])
+        self.results.show_command(self.command_line(made), SAVE_FIRST if unsaved else "")
+        self.results.save_button.setEnabled(unsaved)
 
     def command_line(self, made: MadeCorrelation) -> str:
         """The line for a shell that does the same."""
@@ -168,3 +190,6 @@ class Correlate(CommandWidget):
     def _let_go(self) -> None:
         for event in (self.viewer.layers.events.inserted, self.viewer.layers.events.removed):
             event.disconnect(self._list_studies)
+        of = None if self._of is None else made_of(self._of)
+        if of is not None:
+            of.saved.disconnect(self._follow_study, missing_ok=True)

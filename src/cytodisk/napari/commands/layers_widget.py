@@ -3,33 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any
-
-from qtpy.QtWidgets import QFileDialog
 
 from cytodisk.errors import CytodiskError
 from cytodisk.napari.check.study_flags import ShownFlags, show_flags
-from cytodisk.napari.commands.command_widget import CommandWidget
+from cytodisk.napari.commands.binary_layers import looks_binary
+from cytodisk.napari.commands.command_widget import NOT_SAVED, SAVE_FIRST, CommandWidget
 from cytodisk.napari.commands.correlate import Correlate
 from cytodisk.napari.commands.made_study import MadeStudy, keep_with, made_of
 from cytodisk.napari.commands.open_widgets import layers_of, open_once
 from cytodisk.napari.forms.parameter_form import ParameterForm
 from cytodisk.napari.given.chosen_layers import ChosenLayers
 from cytodisk.napari.given.layer_choice import LayerChoice
-from cytodisk.napari.given.layer_kinds import MASKS, NUCLEI, SIGNALS, TRACKS
+from cytodisk.napari.given.layer_kinds import MASKS, NUCLEI, SIGNALS, TRACKS, is_picture, layer_kind
 from cytodisk.napari.study_layers.shown_study import ShownStudy, show_study, shown_studies
-from cytodisk.napari.study_layers.study_place import MARK
-from cytodisk.napari.viewer_parts import show_error, show_info, show_warning
+from cytodisk.napari.viewer_parts import show_error, show_warning
 from cytodisk.napari.work.background import Reporter
 from cytodisk.number_words import counted
 from cytodisk.parameters import Parameters
 from cytodisk.store.study import Study
 
 Run = Callable[[ChosenLayers, Mapping[str, Any], Mapping[str, str], Reporter], MadeStudy]
-
-_NOT_SAVED = "Not saved yet: the results go when you close the viewer."
-_SAVE_FIRST = "Save as a study first: some files of this line go when you close the viewer."
 
 
 class LayersWidget(CommandWidget):
@@ -76,12 +70,11 @@ class LayersWidget(CommandWidget):
         for name, choice in self._layer_choices.items():
             self.choices.addRow(name, choice)
         self._signal_touched = False
-        self._choose_signal()
+        self._choose_layers()
         self.signal.changed.connect(self._touch_signal)
         for event in (viewer.layers.events.inserted, viewer.layers.events.removed):
-            event.connect(self._choose_signal)
+            event.connect(self._choose_layers)
         self.destroyed.connect(lambda *_: self._let_go())
-        self.results.save_wanted.connect(self.ask_where_to_save)
         self.results.next_wanted.connect(self.correlate)
         self._take_over()
 
@@ -116,6 +109,7 @@ class LayersWidget(CommandWidget):
         if self.replace_box.isChecked():
             self._remove_last()
         self.made, self.shown, self.flags = made, None, None
+        made.saved.connect(self._tell)
         if made.warnings:
             show_warning("\n".join(made.warnings))
         if made.fault:
@@ -127,35 +121,9 @@ class LayersWidget(CommandWidget):
                 self.flags = show_flags(self.viewer, made.study, self.shown, made.flags)
         self._tell()
 
-    def ask_where_to_save(self) -> None:
-        """Ask for a folder, and save there."""
-        if self.made is None or self.made.is_saved:
-            return
-        path, _ = QFileDialog.getSaveFileName(self, "Save as a study: name of a new folder")
-        if path:
-            self.save(Path(path))
-
-    def save(self, target: Path) -> None:
-        """Save the study of the last run in a folder."""
-        made = self.made
-        if made is None or made.work is None:
-            return
-        work, before = made.work, made.study.path
-
-        def save(report: Reporter) -> None:
-            report.stage("Saving")
-            made.save(target)
-
-        def saved(_: None) -> None:
-            if self.shown is not None:
-                self.shown.move_to(made.study)
-            for layer in layers_of(self.viewer, before):
-                layer.metadata[MARK]["study"] = str(made.study.path)
-            work.remove()
-            self._tell()
-            show_info(f"saved: {made.study.path}")
-
-        self.start(save, saved)
+    def savable(self) -> tuple[MadeStudy, ShownStudy | None] | None:
+        """The study of the last run until it is saved."""
+        return None if self.made is None or self.made.is_saved else (self.made, self.shown)
 
     def correlate(self) -> None:
         """Open the widget "Correlate", or bring it to the front."""
@@ -167,6 +135,7 @@ class LayersWidget(CommandWidget):
             made = made_of(shown)
             if made is not None and made.command == self.command:
                 self.made, self.shown = made, shown
+                made.saved.connect(self._tell)
                 self._tell()
 
     def _tell(self) -> None:
@@ -175,12 +144,12 @@ class LayersWidget(CommandWidget):
             return
         flags = counted(len(made.flags), "kind") + " of QC flags: see the table under the image"
         first = [flags if made.flags else "no QC flags"] if self.shown is not None else []
-        where = f"results: {made.study.path}" if made.is_saved else _NOT_SAVED
+        where = f"results: {made.study.path}" if made.is_saved else NOT_SAVED
         self.results.show_words(
             [*made.lines[:1], *first, *made.losses, *made.lines[1:], *made.files.notes, where]
         )
-        self.results.show_command(made.command_line, _SAVE_FIRST if made.needs_saving else "")
-        self.results.save_button.setEnabled(not made.is_saved)
+        self.results.show_command(made.command_line, SAVE_FIRST if made.needs_saving else "")
+        self.results.save_button.setEnabled(self.savable() is not None)
         self.results.next_button.setVisible(self.shown is not None and made.command == "movie")
 
     def _remove_last(self) -> None:
@@ -190,26 +159,27 @@ class LayersWidget(CommandWidget):
             for layer in layers_of(self.viewer, self.made.study.path):
                 self.viewer.layers.remove(layer)
 
-    def _lock(self, is_busy: bool) -> None:
-        super()._lock(is_busy)
-        if self.made is not None and self.made.is_saved:
-            self.results.save_button.setEnabled(False)
-
     def _touch_signal(self) -> None:
         self._signal_touched = True
 
-    def _choose_signal(self, event: Any = None) -> None:
-        """Take all images of the viewer as the signal until the user chooses."""
+    def _choose_layers(self, event: Any = None) -> None:
+        """Take what looks like masks as masks, and all other images as the signal, until the user chooses."""
         if self._signal_touched:
             return
         masks = self.masks.layer
-        fitting = [layer for layer in self.signal.fitting() if layer is not masks]
+        if masks is not None and layer_kind(masks) == "image":
+            fitting = [one for one in self.masks.fitting() if layer_kind(one) != "image" or looks_binary(one)]
+            self.masks.choose(*(fitting[:1] or [masks]))
+            masks = self.masks.layer
+        fitting = [layer for layer in self.signal.fitting() if layer is not masks and not is_picture(layer)]
         self.signal.blockSignals(True)
         self.signal.choose(*fitting)
         self.signal.blockSignals(False)
 
     def _let_go(self) -> None:
         for event in (self.viewer.layers.events.inserted, self.viewer.layers.events.removed):
-            event.disconnect(self._choose_signal)
+            event.disconnect(self._choose_layers)
         for choice in self._layer_choices.values():
             choice.close_down()
+        if self.made is not None:
+            self.made.saved.disconnect(self._tell, missing_ok=True)

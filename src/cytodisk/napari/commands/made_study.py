@@ -8,8 +8,10 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 from weakref import WeakKeyDictionary, finalize
+
+from psygnal import Signal
 
 from cytodisk.errors import StudyError
 from cytodisk.files import make_folder, temporary_name
@@ -50,7 +52,7 @@ class WorkFolder:
         self._remove()
 
 
-@dataclass
+@dataclass(eq=False)
 class MadeStudy:
     """A study that a widget made.
 
@@ -72,7 +74,11 @@ class MadeStudy:
     warnings : list of str
         What is wrong with the files.
     flags : list of QCFlag
+    saved : Signal
+        Emitted when layers and widgets follow it to the folder where it was saved.
     """
+
+    saved: ClassVar[Any] = Signal()
 
     command: str
     study: Study
@@ -89,6 +95,15 @@ class MadeStudy:
     def is_saved(self) -> bool:
         """Whether it stays when the viewer is closed."""
         return self.work is None
+
+    @property
+    def usual_target(self) -> Path:
+        """A new folder beside the file of masks, or in the current folder."""
+        masks = self.files.masks
+        folder = Path.cwd() if masks in self.files.written else masks.parent
+        name = f"{masks.name.split('.')[0]}_study"
+        names = [name, *(f"{name}_{number}" for number in range(2, 1000))]
+        return next((folder / one for one in names if not (folder / one).exists()), folder / name)
 
     @property
     def needs_saving(self) -> bool:

@@ -25,11 +25,6 @@ _WORDS_HEIGHT, _LINE_HEIGHT = 110, 64
 class ResultsPanel(QWidget):
     """Words on results, and buttons: save, report, the same as a command; nothing is seen before a run.
 
-    Parameters
-    ----------
-    can_save : bool
-        Whether there is a button to save.
-
     Attributes
     ----------
     save_wanted, report_wanted, next_wanted : Signal
@@ -40,7 +35,7 @@ class ResultsPanel(QWidget):
     report_wanted = Signal()
     next_wanted = Signal()
 
-    def __init__(self, can_save: bool = True) -> None:
+    def __init__(self) -> None:
         super().__init__()
         self.words = QLabel()
         self.words.setWordWrap(True)
@@ -56,7 +51,6 @@ class ResultsPanel(QWidget):
         self.save_button = QPushButton("Save as a study…")
         self.save_button.setToolTip("Keep tables, maps and the layers that they came from in a folder.")
         self.save_button.clicked.connect(self.save_wanted)
-        self.save_button.setVisible(can_save)
         self.report_button = QPushButton("Open report")
         self.report_button.setToolTip("Write the page report.html, and open it in the browser.")
         self.report_button.clicked.connect(self.report_wanted)
