@@ -78,7 +78,7 @@ class MissingPartError(ImportError, CytodiskError):
         Parameters
         ----------
         needed_by : str
-            As "the report page needs Bokeh".
+            As "the report page needs Jinja2".
         extra : str
             Of cytodisk, as "report".
         fault : str

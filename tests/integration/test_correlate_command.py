@@ -196,7 +196,7 @@ def test_maps_of_an_earlier_version_are_told_once(run: Run, study: Path, tmp_pat
     code, _, error = run("movie", study.parent / "masks.tif", *again)
     assert (code, error.count("Warning: parameters file")) == (0, 1)
     assert 'method "newton" meant areas by triangle then' in error
-    pytest.importorskip("bokeh")
+    pytest.importorskip("jinja2")
     code, said, error = run("report", old)
     assert (code, said.splitlines().count(line), "Maps by" in error) == (0, 1, False)
     assert "QC flag earlier maps" not in said  # the line says it

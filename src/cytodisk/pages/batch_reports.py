@@ -11,8 +11,8 @@ from typing import Any
 import pandas as pd
 
 from cytodisk.errors import CytodiskError, MissingPartError, StudyError
-from cytodisk.pages.report.bokeh_parts import bokeh
 from cytodisk.pages.report.page import REPORT, write_report
+from cytodisk.pages.report.template import jinja
 from cytodisk.runs.population.opening.found_studies import FoundStudy, find_studies
 from cytodisk.store.correlation_store import CORRELATION
 from cytodisk.store.provenance_file import read_provenance
@@ -75,9 +75,9 @@ def write_batch_reports(
     StudyError
         No page could be written.
     MissingPartError
-        Bokeh is not installed.
+        Jinja2 is not installed.
     """
-    bokeh()  # before any work is done
+    jinja()  # before any work is done
     place = Path(folder)
     studies, without = find_studies(place)
     report = progress or (lambda done, whole: None)

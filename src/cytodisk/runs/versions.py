@@ -21,7 +21,7 @@ PACKAGES = (
 
 # Extras of the package, with what each one brings.
 PARTS = {
-    "report": ("bokeh", "jinja2"),
+    "report": ("jinja2",),
     "link": ("laptrack",),
     "demons": ("SimpleITK",),
     "umap": ("umap-learn",),

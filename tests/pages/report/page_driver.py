@@ -12,10 +12,8 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 _PLACE = """
 const figure = cytodisk.figures[arguments[0]];
-const view = Bokeh.index.roots.find((one) => one.model === figure);
-view.el.scrollIntoView({ block: "center" });
-const { left, top } = view.el.getBoundingClientRect();
-return [left + view.frame.x_scale.compute(arguments[1]), top + view.frame.y_scale.compute(arguments[2])];
+figure.canvas.scrollIntoView({ block: "center" });
+return figure.toPage(arguments[1], arguments[2]);
 """
 _TWO_FRAMES = "requestAnimationFrame(() => requestAnimationFrame(arguments[0]))"
 
@@ -55,7 +53,7 @@ class Page:
         self.browser.execute_cdp_cmd("Input.dispatchMouseEvent", event)
 
     def hover(self, figure: str, x: float, y: float) -> list[float]:
-        """Put the pointer on a point of a figure, in the figure's own coordinates."""
+        """Put the pointer on a point of a view, in the view's own coordinates."""
         at: list[float] = self.browser.execute_script(_PLACE, figure, x, y)
         self._mouse("mouseMoved", [at[0] - 1, at[1]])
         self._mouse("mouseMoved", at)
@@ -66,7 +64,6 @@ class Page:
         at = self.hover(figure, x, y)
         self._mouse("mousePressed", at, button="left", clickCount=1)
         self._mouse("mouseReleased", at, button="left", clickCount=1)
-        time.sleep(0.3)  # so long the library waits for a second click
         self.settle()
 
     def focus(self) -> Any:

@@ -81,9 +81,8 @@ def test_what_was_not_computed_is_unknown(study: Study, plain: ShownCell) -> Non
     assert np.isfinite(pair["windows"]["correlation"]).all()
 
 
-def test_too_many_curves_are_left_out(plain: ShownCell, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(correlations, "MOST_CURVE_NUMBERS", 10)
-    (pair,), notes = pairs_of(plain)
+def test_too_many_curves_are_left_out(plain: ShownCell) -> None:
+    (pair,), notes = pairs_of(plain, 10)
     assert pair["curves"] is None
     assert notes == ["correlation curves of single windows (only those of layers are shown)"]
 

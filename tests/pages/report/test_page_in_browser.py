@@ -43,17 +43,17 @@ def test_loads_alone_and_in_silence(page: Page, browser: webdriver.Chrome) -> No
     assert page.js("document.documentElement.scrollWidth <= innerWidth")
     assert not page.control("failed").is_displayed()
     figures = page.js("Object.keys(cytodisk.figures)")
-    assert {"cell", "disk", "activity", "velocity", "peaks", "curve", "area"} <= set(figures)
+    assert {"cell", "disk", "activity", "velocity", "peaks", "area", "curve"} <= set(figures)
 
 
 def test_names_stay_names(page: Page, browser: webdriver.Chrome) -> None:
     assert browser.title == "study – cytodisk report"
     options = [option.get_property("textContent") for option in Select(page.control("channel")).options]
     assert options == [*SHOWN, "window area"]
-    assert page.text("disk-title") == f"mean {SHOWN[0]}"
-    Select(page.control("channel")).select_by_index(1)
+    assert page.text("disk-title") == f"mean {SHOWN[1]}"  # the one that was correlated
+    Select(page.control("channel")).select_by_index(0)
     page.settle()
-    assert page.text("disk-title") == f"mean {SHOWN[1]}"
+    assert page.text("disk-title") == f"mean {SHOWN[0]}"
     assert errors(browser) == []
 
 
@@ -65,7 +65,9 @@ def test_slider_and_play(page: Page, browser: webdriver.Chrome) -> None:
     page.settle()
     assert page.js("cytodisk.shown.index") == 3
     assert page.text("now") == "frame 3 · 15.0 s"
-    assert page.js("cytodisk.figures.area.select('now')[0].location") == pytest.approx(15.0)
+    chart = "cytodisk.figures.area.chart"
+    line = page.js(f"Number({chart}.over.firstChild.getAttribute('d').split('V')[0].split(' ')[0].slice(1))")
+    assert line == pytest.approx(page.js(f"{chart}.toX(15)"))
     page.control("play").click()
     page.wait("document.getElementById('play').getAttribute('aria-pressed') === 'true'")
     page.wait("cytodisk.shown.index > 4 || cytodisk.shown.index < 3")
@@ -79,7 +81,7 @@ def test_slider_and_play(page: Page, browser: webdriver.Chrome) -> None:
 def test_hover_on_the_disk_shows_in_every_view(page: Page, study: Study) -> None:
     page.hover("disk", *disk_point(1, 5))
     assert page.focus() == (1, 5, 0)
-    window = study.activity(0).isel(time=0, channel=0, layer=1, sector=5)
+    window = study.activity(0).isel(time=0, channel=1, layer=1, sector=5)
     assert page.text("read-window") == "layer 1, sector 5"
     assert number(page.text("read-mean")) == pytest.approx(float(window["mean"]), rel=5e-3)
     assert number(page.text("read-area")) == pytest.approx(float(window["area"]), rel=5e-3)
@@ -94,19 +96,19 @@ def test_hover_on_the_disk_shows_in_every_view(page: Page, study: Study) -> None
     assert (page.text("read-p"), page.text("read-q")) == ("0.004", "0.5")
     assert page.js("cytodisk.shown.highlighted") == SECTORS + 5
     for name in ("activity", "velocity"):
-        path = page.js(f"cytodisk.figures.{name}.select('highlight')[0].data")
-        assert (min(path["y"]), max(path["y"])) == (4.5, 5.5)
-        assert (min(path["x"]), max(path["x"])) == (-2.5, 2.5)
-    for name in ("disk", "peaks"):
-        assert page.js(f"cytodisk.figures.{name}.select('chosen')[0].indices") == [SECTORS + 5]
-    curve = page.js("cytodisk.figures.curve.select('window')[0].data")
+        box = "document.querySelector('#figure-{0} svg > g:last-child rect')"
+        size = page.js(f"['x', 'y', 'height'].map((name) => Number({box.format(name)}.getAttribute(name)))")
+        chart = f"cytodisk.figures.{name}.chart"
+        np.testing.assert_allclose(
+            size, page.js(f"[{chart}.toX(-2.5), {chart}.toY(5.5), {chart}.toY(4.5) - {chart}.toY(5.5)]")
+        )
+    curve = page.js("cytodisk.figures.curve.data")
     assert curve["lag"] == [5.0 * lag for lag in LAGS]
-    np.testing.assert_allclose(curve["r"], 0.1 * LAGS, atol=1e-6)
-    chance = page.js("cytodisk.figures.curve.select('null')[0].data")
-    np.testing.assert_allclose(chance["high"], 0.4, atol=1e-6)
+    np.testing.assert_allclose(curve["window"], 0.1 * LAGS, atol=1e-6)
+    np.testing.assert_allclose(curve["high"], 0.4, atol=1e-6)
     assert page.text("curve-layer") == "mean of layer 1: r 0.05 at −5 s, q 0.002"
     page.hover("disk", 1.1, 1.1)
-    np.testing.assert_allclose(page.js("cytodisk.figures.curve.select('null')[0].data.high"), 0.25, atol=1e-6)
+    np.testing.assert_allclose(page.js("cytodisk.figures.curve.data.high"), 0.25, atol=1e-6)
 
 
 def test_hover_on_the_cell_and_the_maps(page: Page, study: Study) -> None:
@@ -116,7 +118,7 @@ def test_hover_on_the_cell_and_the_maps(page: Page, study: Study) -> None:
     assert page.focus() == (0, 7, 0)
     page.hover("velocity", 20.0, 9.0)
     assert page.focus() == (0, 9, 4)
-    assert page.js("cytodisk.figures.area.select('under')[0].location") == pytest.approx(20.0)
+    assert page.js("document.querySelectorAll('#figure-area svg > g:last-child path').length") == 3
     assert page.text("read-frame") == "4 · 20.0 s"
     assert page.js("cytodisk.shown.index") == 0
     page.hover("peaks", *disk_point(2, 3))
@@ -186,10 +188,10 @@ def test_keys_come_back_after_the_pointer(page: Page, browser: webdriver.Chrome)
     page.control("channel").click()
     page.press(Keys.ARROW_DOWN)
     page.press(Keys.ENTER)
-    page.wait("cytodisk.state.channel === 1")
+    page.wait("cytodisk.state.channel === 2")
     assert active() == "body"
     page.press(Keys.ARROW_RIGHT)
-    assert page.js("[cytodisk.state.frame, cytodisk.state.channel]") == [1, 1]
+    assert page.js("[cytodisk.state.frame, cytodisk.state.channel]") == [1, 2]
     page.control("time").click()
     assert active() == "body"
     browser.find_element(By.CSS_SELECTOR, f"button[data-frame='{GAP}']").click()
@@ -246,9 +248,9 @@ def test_a_flag_leads_to_its_frame(page: Page, browser: webdriver.Chrome, study:
     assert page.js("cytodisk.shown.index") == GAP
     reason = study.cells["reason"][GAP]
     assert page.text("cell-note") == f"no map: {study.cells['status'][GAP]}: {reason}"
-    missing = page.js("cytodisk.figures.area.select('missing')[0].data")
-    assert (missing["left"], missing["right"]) == ([27.5], [32.5])
-    assert page.js("cytodisk.labels") is None
+    assert page.js("cytodisk.figures.area.data.missing") == [[27.5, 32.5]]
+    page.hover("cell", *page.js("[2, 2]"))
+    assert page.focus() is None
 
 
 def test_flags_take_a_line_and_print_in_full(page: Page, browser: webdriver.Chrome) -> None:
@@ -307,45 +309,49 @@ def test_choices_change_what_is_drawn(page: Page) -> None:
     page.settle()
     deep = page.js("cytodisk.data.layer_depths[2]")
     assert deep.endswith(" deep")
-    assert page.text("activity-title") == f"mean {SHOWN[0]}, layer 2{deep}"
-    shared = page.js("cytodisk.figures.activity.select('colours')[0].low")
+    assert page.text("activity-title") == f"mean {SHOWN[1]}, layer 2{deep}"
+    shared = page.js("cytodisk.figures.activity.data.limits[0]")
     Select(page.control("colours")).select_by_value("layer")
     page.settle()
-    assert page.js("cytodisk.figures.activity.select('colours')[0].low") != shared
+    assert page.js("cytodisk.figures.activity.data.limits[0]") != shared
     Select(page.control("peak")).select_by_value("lag")
     page.settle()
-    assert page.js("cytodisk.figures.peaks.select('colours')[0].high") == pytest.approx(15.0)
-    low, high = (page.js(f"cytodisk.figures.velocity.select('colours')[0].{end}") for end in ("low", "high"))
+    assert page.js("cytodisk.figures.peaks.data.limits[1]") == pytest.approx(15.0)
+    low, high = page.js("cytodisk.figures.velocity.data.limits")
     assert low == -high < 0
 
 
 def test_windows_that_are_not_significant_are_hatched(page: Page) -> None:
     """Layers 1 to 3 have q of 0.5."""
-    hatched = page.js("cytodisk.figures.peaks.select('not_significant')[0].indices")
+    hatched = page.js("cytodisk.figures.peaks.data.pale")
     assert hatched == list(range(SECTORS, LAYERS * SECTORS))
     assert page.text("peaks-key") == "hatched: not significant (q ≥ 0.05)"
 
 
-def test_wedges_lie_where_the_windows_are(page: Page) -> None:
-    """Angles of a wedge run against the clock on a screen, those of windows with it."""
-    source = page.js("cytodisk.figures.disk.select('pixels')[0].data")
+def test_disk_has_its_windows_where_the_grid_has(page: Page) -> None:
+    """At the middle of each window the pointer is on that window, and the canvas has its colour."""
     grid = cd.polar_windows(LAYERS, SECTORS)
-    angle = -0.5 * (np.array(source["start"]) + np.array(source["end"]))
-    radius = 0.5 * (np.array(source["inner"]) + np.array(source["outer"]))
-    middles = radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
-    np.testing.assert_array_equal(grid.window_of(middles), np.arange(grid.n_windows))
+    for number, (u, v) in enumerate(grid.centres_uv):
+        place = page.js(f"cytodisk.figures.disk.toPage({u}, {v})")
+        event = f"{{ clientX: {place[0]}, clientY: {place[1]} }}"
+        found = page.js(f"cytodisk.figures.disk.under({event})")
+        assert (found["layer"], found["sector"]) == divmod(number, SECTORS)
 
 
 def test_without_signal_correlation_or_scale(
     browser: webdriver.Chrome, bare_study: Study, tmp_path: Path
 ) -> None:
     page = Page(browser, write_report(bare_study, tmp_path / "bare.html"))
-    assert [option.text for option in Select(page.control("channel")).options] == ["window area"]
+    assert not page.control("channel").is_displayed()
+    assert (
+        browser.find_elements(By.CSS_SELECTOR, "#figure-activity, #figure-intensity, #peaks-picture, #auto")
+        == []
+    )
     page.hover("disk", *disk_point(2, 3))
     window = bare_study.activity(0).isel(time=0, layer=2, sector=3)
     assert page.text("read-area").endswith(" px²")
     assert number(page.text("read-area")) == pytest.approx(float(window["area"]), rel=5e-3)
     assert page.text("now") == "frame 0"
-    assert "No signal, so no correlation." in browser.find_element(By.CLASS_NAME, "absent").text
+    assert "No signal:" in browser.find_element(By.CLASS_NAME, "absent").text
     assert page.js(f"cytodisk.data.frames.length === {FRAMES}")
     assert errors(browser) == []

@@ -3,8 +3,9 @@ import pytest
 from report_study import GAP, LAYERS, SECTORS
 
 import cytodisk as cd
-from cytodisk.pages.report import pictures
-from cytodisk.pages.report.pictures import OUTSIDE, Box, Pictures, box_around, resampled, window_labels
+from cytodisk.pages.report import boxes
+from cytodisk.pages.report.boxes import Box, box_around, boxes_by_frame
+from cytodisk.pages.report.pictures import OUTSIDE, Pictures, resampled, window_labels
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.plot.movie.activity_maps import top_speed
 from cytodisk.store.study import Study
@@ -62,18 +63,31 @@ def test_enlarged_image_repeats_pixels() -> None:
     np.testing.assert_array_equal(found, image[1:3, 1:4].repeat(2, axis=0).repeat(2, axis=1))
 
 
-def test_long_movies_are_thinned_out(cell: ShownCell, monkeypatch: pytest.MonkeyPatch) -> None:
-    encoder = Pictures(cell, box_around(cell), None)
-    assert encoder.every([]) == 1
+def test_boxes_go_with_a_cell_that_travels(cell: ShownCell, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert boxes_by_frame(cell) == [box_around(cell)] * len(cell.maps)
+    monkeypatch.setattr(boxes, "_TRAVELS", 0.1)
+    found = boxes_by_frame(cell)
+    assert len({(box.height, box.width, box.scale) for box in found}) == 1
+    assert found[GAP] == found[GAP - 1]
+    for time, box in enumerate(found):
+        if time != GAP:
+            rows, columns = np.nonzero(cell.maps[time].mask)
+            assert box.top <= rows.min() <= rows.max() < box.top + box.height
+            assert box.left <= columns.min() <= columns.max() < box.left + box.width
+
+
+def test_long_movies_are_thinned_out(cell: ShownCell) -> None:
+    encoder = Pictures(cell, boxes_by_frame(cell), None)
+    assert encoder.every([], 10_000_000) == 1
     sizes = [len(encoder.frame(time, [])["labels"] or "") for time in cell.frames]
-    monkeypatch.setattr(pictures, "MOST_BYTES", max(sizes) * 3)
-    assert encoder.every([]) >= 2
-    thinned = cell.every_frames(encoder.every([]))
-    assert thinned.frames == cell.frames[:: encoder.every([])]
+    every = encoder.every([], max(sizes) * 3)
+    assert every >= 2
+    assert cell.every_frames(every).frames == cell.frames[::every]
 
 
 def test_a_frame_without_a_map_has_no_labels(cell: ShownCell) -> None:
-    assert Pictures(cell, box_around(cell), None).frame(GAP, []) == {"labels": None, "channels": None}
+    encoder = Pictures(cell, boxes_by_frame(cell), None)
+    assert encoder.frame(GAP, []) == {"labels": None, "channels": None}
 
 
 @pytest.mark.parametrize(

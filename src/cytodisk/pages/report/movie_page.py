@@ -1,47 +1,46 @@
-"""The page of a movie's study."""
+"""The page of a movie's study: all its cells, one after the other."""
 
 from __future__ import annotations
 
 import shlex
 from collections.abc import Callable
-from typing import Any
 
-import numpy as np
-
-from cytodisk.errors import ParameterError, StudyError
+from cytodisk.errors import ParameterError
 from cytodisk.images.signal_files import FrameSource
-from cytodisk.pages.report.bokeh_parts import palette
 from cytodisk.pages.report.encode import json_for_script
-from cytodisk.pages.report.page_figures import figures_of, library_script
-from cytodisk.pages.report.pictures import MOST_BYTES, OUTSIDE, Pictures, box_around, encode_frames, size_of
-from cytodisk.pages.report.shown_cell import ShownCell
-from cytodisk.pages.report.shown_correlations import pairs_of
+from cytodisk.pages.report.movie_cells import MovieCells
+from cytodisk.pages.report.palettes import palette
+from cytodisk.pages.report.pictures import OUTSIDE
+from cytodisk.pages.report.shown_cell import STRIPS, ShownCell
 from cytodisk.pages.report.template import rendered
 from cytodisk.pages.report.words import MOST_PLACES, page_words
 from cytodisk.plot.correlation.correlation_peaks import LAG_COLOURS
-from cytodisk.plot.style import DIVERGING_COLOURS
+from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.study_flags import qc_flags
 from cytodisk.store.inputs.study_signal import FoundSignal, shown_signal
 from cytodisk.store.provenance_file import other_maps, writer_of
 from cytodisk.store.study import Study
 
-_SCRIPTS = ("decode", "numbers", "state", "pixels", "views", "controls", "main")
+_SCRIPTS = (
+    "decode",
+    "elements",
+    "numbers",
+    "chart",
+    "state",
+    "disk",
+    "pixels",
+    "frame",
+    "views",
+    "controls",
+    "main",
+)
 
 Progress = Callable[[int, int], None]
 
 
-def usual_cell(study: Study) -> int:
-    """The cell with the most mapped frames, the first of several."""
-    mapped = study.cells.loc[study.cells["status"] == "ok", "cell"]
-    if mapped.empty:
-        raise StudyError(f"study {study.path} has no mapped frame: column 'reason' of cells.parquet says why")
-    cells, counts = np.unique(mapped, return_counts=True)
-    return int(cells[counts.argmax()])
-
-
 def open_cell(study: Study, cell: int) -> ShownCell:
-    """A cell to show, with so many frames as a page holds.
+    """A cell to show first.
 
     Raises
     ------
@@ -60,7 +59,7 @@ def open_cell(study: Study, cell: int) -> ShownCell:
             f"study {study.path} has {data.grid.n_windows} windows a cell, a page holds fewer than "
             f"{OUTSIDE}: run it with fewer layers or sectors"
         )
-    return data.thinned()
+    return data
 
 
 def page_flags(study: Study, signal: FrameSource | None = None) -> list[QCFlag]:
@@ -97,6 +96,7 @@ def movie_page(cell: ShownCell, found: FoundSignal, progress: Progress | None) -
     Parameters
     ----------
     cell : ShownCell
+        The cell that is shown first; the study's others follow, as many as there is room for.
     found : FoundSignal
         The movie behind the windows.
     progress : callable, optional
@@ -106,33 +106,37 @@ def movie_page(cell: ShownCell, found: FoundSignal, progress: Progress | None) -
     -------
     str
     """
-    box = box_around(cell)
-    limits = Pictures(cell, box, found.source).limits()
-    cell = cell.every_frames(Pictures(cell, box, found.source).every(limits))
-    pictures = list(encode_frames(Pictures(cell, box, found.source), limits, progress))
-    while sum(map(size_of, pictures)) > MOST_BYTES and len(pictures) > 1:  # larger than the frames judged by
-        cell, pictures = cell.every_frames(2 * cell.every), pictures[::2]
-    pairs, left_out = pairs_of(cell)
-    data = cell.as_json() | {
-        "pairs": pairs,
-        "first": next(k for k, frame in enumerate(pictures) if frame["labels"]) if _any(pictures) else 0,
-        "picture": {"shape": box.shape, "limits": limits, "box": vars(box)},
-        "palettes": {"correlation": palette(DIVERGING_COLOURS), "lag": palette(LAG_COLOURS)},
+    study = cell.study
+    flags = _flags(study, found)
+    texts = MovieCells(cell, found, flags).encoded(progress)
+    words = page_words(cell, list(texts), flags)
+    strips = [*STRIPS.values(), *(["intensity"] if cell.channels else [])]
+    told = {
+        "first": cell.cell,
+        "cells": [{"cell": row["cell"], "shown": row["shown"]} for row in words["cells"]],
+        "strips": strips,
+        "pixel_size_um": study.scale.pixel_size_um,
+        "length_unit": study.scale.length_unit,
+        "palettes": {
+            "signal": palette(SIGNAL_COLOURS),
+            "correlation": palette(DIVERGING_COLOURS),
+            "lag": palette(LAG_COLOURS),
+        },
     }
-    words = page_words(cell, _flags(cell.study, found), found, box, left_out)
     words |= {
-        "data": data,
         "most_places": MOST_PLACES,
-        "library": library_script(),
-        "data_json": json_for_script(data),
-        "pictures_json": json_for_script(pictures),
-        "figures_json": json_for_script(figures_of(cell, box, correlated=bool(pairs))),
+        "several": len(words["cells"]) > 1,
+        "signal": bool(cell.channels),
+        "correlated": bool(study.correlations),
+        "nuclei": bool(cell.grid.nucleus_layers),
+        "strips": strips,
+        "finding": texts[cell.cell]["finding"],
+        "texts": [
+            ("study", json_for_script(told)),
+            *((f"cell-{number}", text["json"]) for number, text in texts.items()),
+        ],
     }
     return rendered("page", ["page"], _SCRIPTS, words)
-
-
-def _any(pictures: list[dict[str, Any]]) -> bool:
-    return any(frame["labels"] for frame in pictures)
 
 
 EARLIER_MAPS = "earlier maps"  # name of a flag

@@ -10,7 +10,6 @@ from cytodisk.errors import ParameterError, StudyError
 from cytodisk.files import real_path, replacing
 from cytodisk.images.signal_files import FrameSource
 from cytodisk.pages.report.batches.batch_html import batch_page
-from cytodisk.pages.report.bokeh_parts import bokeh
 from cytodisk.pages.report.cells.cells_html import cells_page
 from cytodisk.pages.report.movie_page import movie_page, open_cell, usual_cell
 from cytodisk.pages.report.populations.population_html import population_page
@@ -144,7 +143,7 @@ def _write_movie(
     signal: FrameSource | None,
     progress: Progress | None,
 ) -> Path:
-    bokeh()  # before any work is done
+    jinja()  # before any work is done
     usual = usual_cell(study)
     shown = open_cell(study, usual if cell is None else cell)
     target = study.path / _name(shown.cell, usual) if path is None else Path(path)

@@ -14,95 +14,16 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ReadError
 from cytodisk.geometry.placed_mask import PlacedMask
 from cytodisk.images.signal_files import FrameSource, load_image
+from cytodisk.pages.report.boxes import Box
 from cytodisk.pages.report.encode import grey_levels, pack_labels, pack_picture
 from cytodisk.pages.report.shown_cell import ShownCell
 from cytodisk.windows.polar_windows import PolarGrid
 
-MOST_BYTES = 10_000_000
-"""Of pictures and labels together, as text; a longer movie is thinned out."""
-LONGEST_SIDE = 400
-"""Of a picture, in its own pixels."""
 OUTSIDE = 65535
 """Label of a pixel outside the cell."""
 
-_MARGIN = 0.04  # of the box around the cell, on each side
 _SAMPLE = 3  # frames that are encoded to estimate the size of all
-_FINEST = 4  # labels a pixel and direction
 _PERCENTILES = (0.5, 99.9)
-
-
-@dataclass(frozen=True)
-class Box:
-    """The part of the image that is shown, and how finely.
-
-    Attributes
-    ----------
-    top, left, height, width : int
-        In pixels of the image.
-    scale : float
-        Pixels of the picture a pixel of the image.
-    """
-
-    top: int
-    left: int
-    height: int
-    width: int
-    scale: float
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """(H, W) of the picture."""
-        return max(1, round(self.height * self.scale)), max(1, round(self.width * self.scale))
-
-    @property
-    def repeats_pixels(self) -> bool:
-        """Whether each pixel of the image stays a square of one colour."""
-        return self.scale >= 1
-
-    @property
-    def axes_yx(self) -> tuple[FloatArray, FloatArray]:
-        """Where the picture's rows and columns lie in the image, shapes (H,) and (W,)."""
-        rows, columns = self.shape
-        y = self.top - 0.5 + (np.arange(rows) + 0.5) * self.height / rows
-        x = self.left - 0.5 + (np.arange(columns) + 0.5) * self.width / columns
-        return y, x
-
-    def nearest(self, image: Any) -> Any:
-        """Value of an image, shape (H, W), at the pixel nearest to each pixel of the picture."""
-        image = np.asarray(image)
-        rows, columns = (
-            np.clip(np.floor(along + 0.5).astype(int), 0, size - 1)
-            for along, size in zip(self.axes_yx, image.shape, strict=True)
-        )
-        return image[np.ix_(rows, columns)]
-
-
-def box_around(cell: ShownCell) -> Box:
-    """The box that holds the cell in all frames.
-
-    Parameters
-    ----------
-    cell : ShownCell
-        With one mapped frame at least.
-
-    Returns
-    -------
-    Box
-        At most `LONGEST_SIDE` picture pixels long; finer than the image where the cell is small.
-    """
-    outlines = [record.boundary.contour.outline_yx for record in cell.maps.records if record.boundary]
-    low = np.min([outline.min(axis=0) for outline in outlines], axis=0)
-    high = np.max([outline.max(axis=0) for outline in outlines], axis=0)
-    return box_between(low, high, cell.maps.image_shape, LONGEST_SIDE)
-
-
-def box_between(low: FloatArray, high: FloatArray, image_shape: Sequence[int], longest: int) -> Box:
-    """The box with a margin around two corners (row, column), at most so many picture pixels long."""
-    margin = 2 + _MARGIN * (high - low).max()
-    top, left = np.maximum(np.floor(low - margin), 0).astype(int).tolist()
-    bottom, right = np.minimum(np.ceil(high + margin) + 1, image_shape).astype(int).tolist()
-    height, width = bottom - top, right - left
-    return Box(top, left, height, width, min(_FINEST, longest / max(height, width)))
 
 
 def window_labels(disk: DiskMap, grid: PolarGrid, box: Box) -> Any:
@@ -196,25 +117,26 @@ class Pictures:
     Attributes
     ----------
     cell : ShownCell
-    box : Box
+    boxes : sequence of Box
+        What is shown of each frame of the recording; all of one size.
     source : FrameSource or None
         Without one there are labels alone.
     """
 
     cell: ShownCell
-    box: Box
+    boxes: Sequence[Box]
     source: FrameSource | None
 
     def frame(self, time: int, limits: list[tuple[float, float]]) -> dict[str, Any]:
         """Labels and channels of a frame, each None where there is none."""
         labels = None
         if self.cell.maps.records[time].has_map:
-            labels = pack_labels(window_labels(self.cell.maps[time], self.cell.grid, self.box))
+            labels = pack_labels(window_labels(self.cell.maps[time], self.cell.grid, self.boxes[time]))
         pixels = self._pixels(time)
         if pixels is None:
             return {"labels": labels, "channels": None}
         pairs = zip(pixels, limits, strict=True)
-        channels = [pack_picture(grey_picture(image, self.box, *pair)) for image, pair in pairs]
+        channels = [pack_picture(grey_picture(image, self.boxes[time], *pair)) for image, pair in pairs]
         return {"labels": labels, "channels": channels}
 
     def _pixels(self, time: int) -> Any:
@@ -226,19 +148,19 @@ class Pictures:
         """Black and white of each channel, from frames spread over the movie."""
         if self.source is None:
             return []
-        found = [self._pixels(time) for time in self._spread()]
-        known = [pixels for pixels in found if pixels is not None]
+        found = [(self._pixels(time), self.boxes[time]) for time in self._spread()]
+        known = [(pixels, box) for pixels, box in found if pixels is not None]
         channels = range(len(self.source.channels))
-        return [picture_limits([resampled(pixels[k], self.box) for pixels in known]) for k in channels]
+        return [picture_limits([resampled(pixels[k], box) for pixels, box in known]) for k in channels]
 
     def _spread(self) -> list[int]:
         frames = self.cell.frames
         return sorted({frames[round(k)] for k in np.linspace(0, len(frames) - 1, _SAMPLE)})
 
-    def every(self, limits: list[tuple[float, float]]) -> int:
-        """Every so-manyth frame may be shown within `MOST_BYTES`, judged by some frames."""
+    def every(self, limits: list[tuple[float, float]], most: int) -> int:
+        """Every so-manyth frame may be shown within so many bytes of text, judged by some frames."""
         largest = max(size_of(self.frame(time, limits)) for time in self._spread())
-        return self.cell.every * max(1, int(np.ceil(largest * len(self.cell.frames) / MOST_BYTES)))
+        return self.cell.every * max(1, int(np.ceil(largest * len(self.cell.frames) / most)))
 
 
 def size_of(frame: dict[str, Any]) -> int:

@@ -10,25 +10,28 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.colors import to_hex
 
 from cytodisk.arrays import FloatArray
 from cytodisk.pages.movie_cell import MovieCell
 from cytodisk.pages.report.encode import pack_floats
 from cytodisk.pages.report.shown_names import without_folders
-from cytodisk.plot.layer_looks import depth_words, layer_place
+from cytodisk.plot.layer_looks import CYTOPLASM_COLOURS, NUCLEUS_COLOURS, depth_words, layer_place
+from cytodisk.plot.movie.activity_maps import top_speed
 from cytodisk.plot.style import signal_limits
 from cytodisk.plot.time_axis import FrameTimes
 from cytodisk.runs.channel_names import shown_name
 from cytodisk.runs.depth_layers import layer_borders
+from cytodisk.scale import ShownUnit, suited_lag
 
 MOST_ARRAY_BYTES = 5_000_000
-"""Of numbers by frame and window; more frames are thinned out."""
+"""Of numbers by frame and window of all cells of a page; more frames are thinned out."""
 
 _LONGEST_NAME = 24  # letters of a channel: what a list to choose from has room for
 _BY_WINDOW = ("mean", "sd")
 _SHOWN = (*_BY_WINDOW, "n_pixels", "area", "depth", "velocity", "velocity_error", "status", "reason")
-_STRIP_MARGIN = 0.12  # of the range, above and below
-_QUALITY = ("area", "tracking_residual", "area_distortion")
+STRIPS = {"area": "area", "tracking_residual": "residual", "area_distortion": "distortion"}
+"""Columns of quality through time, and the names of their figures."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,12 +68,12 @@ class ShownCell(MovieCell):
         interval = self.scale.frame_interval_s
         return FrameTimes(self.frames[0], len(self.frames), interval, self.every)
 
-    def thinned(self) -> ShownCell:
-        """The same with so many frames that the numbers by window stay below `MOST_ARRAY_BYTES`."""
+    def thinned(self, most: int = MOST_ARRAY_BYTES) -> ShownCell:
+        """The same with so many frames that the numbers by window stay below so many bytes."""
         sizes = self.activity.sizes
         arrays = len(_BY_WINDOW) * len(self.channels) + 2
         size = 4 * arrays * sizes["time"] * sizes["layer"] * sizes["sector"]
-        return self.every_frames(max(self.every, int(np.ceil(size / MOST_ARRAY_BYTES))))
+        return self.every_frames(max(self.every, int(np.ceil(size / most))))
 
     def every_frames(self, every: int) -> ShownCell:
         """The same with every so-manyth frame."""
@@ -85,20 +88,28 @@ class ShownCell(MovieCell):
             "reasons": self.reasons,
             "interval_s": self.scale.frame_interval_s,
             "time_step": self.times.per_frame,
+            "time_unit": self.times.unit.name,
+            "time_label": self.times.label,
+            "lag_step": (self.scale.frame_interval_s or 1.0) * self._lag_unit.factor,
+            "lag_unit": self._lag_unit.name,
             "layers": self.grid.layers,
             "sectors": self.grid.sectors,
             "radii": self.disk_grid.radii.tolist(),
             "units": {
                 "area": self.unit("area"),
                 "depth": self.depths.attrs["units"],
-                "velocity": self.unit("velocity"),
+                "velocity": self.velocity_unit.name,
             },
             "channels": list(self._channels()),
-            "velocity": pack_floats(self.shown["velocity"]),
-            "velocity_error": pack_floats(self.shown["velocity_error"]),
+            "quality": list(self._quality()),
+            "speed_limit": self._top_speed * self.velocity_unit.factor,
+            "velocity": pack_floats(self.shown["velocity"] * self.velocity_unit.factor),
+            "velocity_error": pack_floats(self.shown["velocity_error"] * self.velocity_unit.factor),
             "area": pack_floats(self.shown["area"]),
             "depth": pack_floats(self.depths.isel(time=slice(None, None, self.every))),
             "layer_depths": self.layer_depths,
+            "median_depths": self.median_depths,
+            "profile_colours": [to_hex(colours(1.0)) for colours in (NUCLEUS_COLOURS, CYTOPLASM_COLOURS)],
             "layer_places": self.layer_places,
             "cytoplasm_layers": self.cytoplasm_layers,
         }
@@ -139,11 +150,11 @@ class ShownCell(MovieCell):
             values, whole = self.shown.isel(channel=number), self.whole_mean(number)
             yield {
                 "name": shown_name(name, _LONGEST_NAME),
+                "full": name,
                 "unit": self.unit("mean"),
                 "mean": pack_floats(values["mean"]),
                 "sd": pack_floats(values["sd"]),
                 "whole_mean": pack_floats(whole),
-                "whole_range": strip_range(whole),
                 **_limits(self.activity["mean"].isel(channel=number).to_numpy()),
             }
         area = {"name": "window area", "unit": self.unit("area"), "mean": None, "sd": None}
@@ -158,18 +169,35 @@ class ShownCell(MovieCell):
         return np.asarray((total / inside.where(inside > 0)).to_numpy())
 
     @cached_property
+    def _top_speed(self) -> float:
+        return top_speed(self.activity["velocity"].to_numpy())
+
+    @property
+    def velocity_unit(self) -> ShownUnit:
+        """The unit that suits the velocities; tables stay in µm/s."""
+        return self.scale.shown_velocity(self._top_speed, self.activity.sizes["time"])
+
+    @property
+    def _lag_unit(self) -> ShownUnit:
+        interval = self.scale.frame_interval_s
+        return ShownUnit("frames") if interval is None else suited_lag(interval)
+
+    def _quality(self) -> Iterator[dict[str, Any]]:
+        """Strips through time, named as their figures on the page."""
+        units = self.study.cells.attrs["units"]
+        titles = {
+            "area": f"area of the cell ({units['area']})",
+            "tracking_residual": f"tracking residual ({units['tracking_residual']})",
+            "area_distortion": "area distortion, mean |ln λ|",
+        }
+        for name, strip in STRIPS.items():
+            yield {"name": strip, "title": titles[name], "values": pack_floats(self.quality[name])}
+
+    @cached_property
     def quality(self) -> pd.DataFrame:
         """Area, tracking residual and area distortion in each shown frame; NaN where there is no map."""
         rows = self.study.cells[self.study.cells["cell"] == self.cell].set_index("frame")
-        return rows.reindex(self.frames)[list(_QUALITY)]
-
-
-def strip_range(values: FloatArray) -> tuple[float, float]:
-    """Ends of the axis of a number against time: what it holds, with a margin."""
-    known = values[np.isfinite(values)]
-    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
-    margin = _STRIP_MARGIN * ((high - low) or abs(high) or 1.0)
-    return low - margin, high + margin
+        return rows.reindex(self.frames)[list(STRIPS)]
 
 
 def _limits(values: FloatArray) -> dict[str, Any]:

@@ -28,12 +28,14 @@ _LAYER_PEAK = (*_PEAK, "correlation_partial", "q_partial")
 _CURVE = ("correlation", "low", "high")
 
 
-def pairs_of(cell: ShownCell) -> tuple[list[dict[str, Any]], list[str]]:
+def pairs_of(cell: ShownCell, most: int = MOST_CURVE_NUMBERS) -> tuple[list[dict[str, Any]], list[str]]:
     """Every correlation of a study for one cell.
 
     Parameters
     ----------
     cell : ShownCell
+    most : int
+        Numbers of curves of single windows.
 
     Returns
     -------
@@ -53,7 +55,7 @@ def pairs_of(cell: ShownCell) -> tuple[list[dict[str, Any]], list[str]]:
         if pair not in shown
     ]
     numbers = sum(len(_of(cell, one.curves)) * len(_CURVE) for _, one in known)
-    with_curves = numbers <= MOST_CURVE_NUMBERS
+    with_curves = numbers <= most
     if not with_curves:
         notes.append("correlation curves of single windows (only those of layers are shown)")
     labels = labels_of([(pair, one.settings) for pair, one in known])
@@ -71,6 +73,7 @@ def _pair(cell: ShownCell, found: Correlation, with_curves: bool) -> dict[str, A
     lags = np.unique(pd.concat([table["lag"] for table in (layer_curves, curves) if table is not None]))
     return {
         "signal": shown_name(found.signal),
+        "channel": cell.channels.index(found.signal) if found.signal in cell.channels else 0,
         "with": shown_name(found.with_),
         "lags": lags.tolist(),
         "peak_notes": [*_clusters(cell, found), *_lost(cell, found)],

@@ -2,10 +2,8 @@
 // Conditions and their difference on the disk and on a cell; the window under the pointer with its numbers.
 (() => {
   const page = window.cytodisk;
-  const OUTSIDE = 65535;
-  const NUCLEUS = 0xffe9b456; // its outline, as on the disk
   const SIZE = 560; // of a canvas, in its own pixels
-  const byId = (id) => document.getElementById(id);
+  const { byId } = page;
   const state = { comparison: 0, channel: 0, shows: "difference", window: null, pinned: null };
   page.atlasState = state;
 
@@ -61,44 +59,10 @@
   const grid = () => page.data.disk;
   const chosen = () => state.pinned ?? state.window;
 
-  const numbersOf = (palette) => Uint32Array.from(palette, (colour) => {
-    const [r, g, b] = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
-    return (0xff000000 | (b << 16) | (g << 8) | r) >>> 0;
-  });
-
   // The same on the representative cell, pixel by pixel.
-  const paintCell = (canvas, { values, limits, palette, marks, pale }) => {
-    const { shape: [height, width], labels } = page.cell;
-    const colours = numbersOf(palette);
-    const colour = (value) => {
-      if (!Number.isFinite(value)) return 0xffd9d9d9;
-      const share = (value - limits[0]) / (limits[1] - limits[0]);
-      return colours[Math.round(Math.min(Math.max(share, 0), 1) * (colours.length - 1))];
-    };
-    const table = values.map(colour);
-    const [inside, faded] = [new Set(marks), new Set(pale ?? [])];
-    const white = (one) => (0xff000000 | [16, 8, 0].reduce((all, shift) => all | (Math.round(((one >> shift) & 255) * 0.5 + 127) << shift), 0)) >>> 0;
-    const pixels = new Uint32Array(height * width).fill(0xffffffff);
+  const paintCell = (canvas, panel) => {
     const inner = (grid().cytoplasm_layers ?? Infinity) * grid().sectors; // first window of the nucleus
-    for (let k = 0; k < labels.length; k++) {
-      const here = labels[k];
-      const near = [(k + 1) % width ? labels[k + 1] : here, labels[k + width] ?? here];
-      if (here === OUTSIDE) {
-        if (near.some((one) => one !== OUTSIDE)) pixels[k] = 0xff555555;
-        continue;
-      }
-      const row = Math.floor(k / width);
-      pixels[k] = faded.has(here) ? white(table[here]) : table[here];
-      if (faded.has(here) && (row + (k % width)) % 8 === 0) pixels[k] = 0xff9a9a9a;
-      const around = [...near, k % width ? labels[k - 1] : here, labels[k - width] ?? here];
-      if (around.includes(OUTSIDE)) pixels[k] = 0xff555555;
-      else if (here >= inner && near.some((one) => one < inner)) pixels[k] = NUCLEUS;
-      else if (here < inner && near.some((one) => one >= inner)) pixels[k] = NUCLEUS;
-      else if (near.some((one) => inside.has(one) !== inside.has(here))) pixels[k] = 0xff000000;
-      if (here === chosen()) pixels[k] = near.every((one) => one === here) ? pixels[k] : 0xff000000;
-    }
-    Object.assign(canvas, { width, height });
-    canvas.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(pixels.buffer), width, height), 0, 0);
+    page.paint(canvas, page.cell, { ...panel, colours: page.packed(panel.palette), grid: false, pale: panel.pale ?? [], chosen: chosen(), inner });
   };
 
   const layerWords = (window) => {
@@ -168,14 +132,6 @@
     page.drawn = JSON.stringify(state);
   };
 
-  const underCell = (canvas, event) => {
-    const { left, top, width, height } = canvas.getBoundingClientRect();
-    const column = Math.floor(((event.clientX - left) / width) * canvas.width);
-    const row = Math.floor(((event.clientY - top) / height) * canvas.height);
-    const label = page.cell.labels[row * canvas.width + column] ?? OUTSIDE;
-    return label === OUTSIDE ? null : label;
-  };
-
   const step = (layers, sectors) => {
     const count = grid().sectors;
     const at = chosen() ?? 0;
@@ -206,10 +162,10 @@
       listen(disk, (event) => page.windowOnDisk(disk, grid(), event));
       const cell = byId(`cell-${k}`);
       cell.hidden = !page.cell;
-      if (page.cell) listen(cell, (event) => underCell(cell, event));
+      if (page.cell) listen(cell, (event) => page.windowOnCell(cell, page.cell.labels, event));
     }
     byId("maps").addEventListener("keydown", (event) => {
-      if (!(event.key in KEYS) || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (!(event.key in KEYS) || page.isChord(event)) return;
       event.preventDefault();
       step(...KEYS[event.key]);
     });

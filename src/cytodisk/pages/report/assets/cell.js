@@ -2,9 +2,8 @@
 // One cell in large: pixels or windows, the disk beside it, the window under the pointer.
 (() => {
   const page = window.cytodisk;
-  const OUTSIDE = 65535;
   const CANVAS = 640; // of the disk, in its own pixels
-  const byId = (id) => document.getElementById(id);
+  const { byId, write } = page;
   const state = { cell: null, channel: 0, shows: "signal", contrast: "all", grid: true, window: null, pinned: null };
   page.cellState = state;
   let shown = null; // { picture, decoded, numbers }
@@ -21,45 +20,12 @@
   page.pixelLimits = ({ picture }, channel, contrast) =>
     contrast === "own" ? picture.limits[channel] : page.data.pixel_limits[channel];
 
-  // Paints pixels, or values by window; then lines.
-  page.paintCell = (canvas, { picture, decoded }, { channel, means, limits, lines, chosen }) => {
-    const [height, width] = picture.shape;
-    const { labels, channels } = decoded;
-    const grey = means ? null : channels?.[channel];
-    const colours = page.paletteNumbers;
-    const pixels = new Uint32Array(height * width).fill(0xffffffff);
-    const colour = (value) => {
-      if (!Number.isFinite(value)) return 0xffd9d9d9;
-      return colours[Math.round(Math.min(Math.max((value - limits[0]) / (limits[1] - limits[0]), 0), 1) * 255)];
-    };
-    if (grey) {
-      const [low, high] = picture.limits[channel];
-      const table = Uint32Array.from({ length: 256 }, (_, k) => colour(low + ((high - low) * k) / 255));
-      for (let k = 0; k < grey.length; k++) pixels[k] = table[grey[k]];
-    } else {
-      const table = new Uint32Array(OUTSIDE + 1).fill(0xffd9d9d9);
-      table[OUTSIDE] = 0xffffffff;
-      means?.forEach((value, k) => (table[k] = colour(value)));
-      for (let k = 0; k < labels.length; k++) pixels[k] = table[labels[k]];
-    }
-    if (lines !== "none") {
-      const faint = lines === "all";
-      const over = page.cellLines({ labels, channels: grey ? { [page.state.channel]: grey } : null }, chosen, picture.shape);
-      for (let k = 0; k < over.length; k++) {
-        if ((over[k] === 0x4dffffff && !faint) || over[k] === 0 || (!grey && over[k] === 0xffffffff && labels[k] === OUTSIDE)) continue;
-        pixels[k] = over[k] === 0x4dffffff ? blend(pixels[k]) : over[k];
-      }
-    }
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-    const image = new ImageData(new Uint8ClampedArray(pixels.buffer), width, height);
-    canvas.getContext("2d").putImageData(image, 0, 0);
-  };
-
-  // A third of white over a colour.
-  const blend = (colour) => {
-    const part = (shift) => Math.round(((colour >> shift) & 255) * 0.7 + 76) << shift;
-    return (0xff000000 | part(16) | part(8) | part(0)) >>> 0;
-  };
+  // What `page.paint` takes of a cell, in a channel, or as its windows.
+  page.pictureFor = ({ picture, decoded }, channel, asMeans) => ({
+    shape: picture.shape, labels: decoded.labels, grey: asMeans ? null : decoded.channels[channel], ends: picture.limits?.[channel],
+  });
+  const innerOf = ({ plain }) => (plain ? Infinity : (page.data.cytoplasm_layers ?? Infinity) * page.data.sectors);
+  page.innerOf = innerOf;
 
   const numbersOf = async ({ picture }) => {
     if (!picture.numbers) return {};
@@ -100,26 +66,6 @@
     byId("read-hint").textContent = rows.length ? (state.pinned === null ? "" : "pinned: Esc lets go") : hint;
   };
 
-  const drawScale = ({ box }, shownWidth) => {
-    const size = page.data.pixel_size_um ?? 1;
-    const longest = 0.3 * box[3] * size;
-    const power = 10 ** Math.floor(Math.log10(longest));
-    const length = Math.max(...[0.5, 1, 2, 5].map((step) => step * power).filter((one) => one <= longest * 1.000001));
-    const bar = byId("cell-scale");
-    bar.style.width = `${(length / size / box[3]) * shownWidth}px`;
-    bar.style.left = `${byId("cell-picture").offsetLeft + 10}px`;
-    bar.textContent = `${Number(length.toPrecision(1))} ${page.data.pixel_size_um === null ? "px" : "µm"}`;
-  };
-
-  const fit = ({ shape: [height, width] }) => {
-    const { clientWidth, clientHeight } = byId("cell-frame");
-    const factor = Math.min(clientWidth / width, clientHeight / height);
-    const canvas = byId("cell-picture");
-    canvas.style.width = `${width * factor}px`;
-    canvas.style.height = `${height * factor}px`;
-    return width * factor;
-  };
-
   page.drawCell = () => {
     if (!shown) return;
     const { picture, numbers } = shown;
@@ -131,19 +77,24 @@
     const ofMeans = contrast === "own" && own ? own : channels[channel]?.limits ?? [0, 1];
     const hasPixels = Boolean(picture.channels);
     const asMeans = shows === "means" || !hasPixels;
-    const limits = stretched(asMeans ? ofMeans : page.pixelLimits(shown, channel, contrast));
-    page.state.channel = 0;
-    page.paintCell(byId("cell-picture"), shown, {
-      channel, means: asMeans ? means ?? [] : null, limits, lines: state.grid ? "all" : "outline", chosen: picture.windows ? chosen() : null,
+    const limits = page.stretched(asMeans ? ofMeans : page.pixelLimits(shown, channel, contrast));
+    const [canvas, over] = [byId("cell-picture"), byId("cell-over")];
+    const painted = page.pictureFor(shown, channel, asMeans);
+    page.paint(canvas, painted, {
+      values: means ?? [], limits, colours: page.packedPalette, grid: state.grid, chosen: picture.windows ? chosen() : null, inner: innerOf(picture),
     });
     page.drawBar(byId("cell-bar"), limits, palette, unit);
-    drawScale(picture, fit(picture));
+    const { layers, sectors, pixel_size_um: size } = page.data;
+    const pixel = (picture.box[3] / picture.shape[1]) * (size ?? 1);
+    const factor = page.fitCell(canvas, over, picture.shape);
+    page.drawOver(over, painted, { factor, layers: picture.radii ? picture.radii.length - 1 : layers, sectors, pixel, unit: size === null ? "px" : "µm", numbered: picture.windows });
     const name = channels[channel]?.name;
-    byId("cell-shows").textContent = !name ? "windows; no signal" : asMeans ? `mean ${name} by window` : name;
+    write("cell-shows", !name ? "windows; no signal" : asMeans ? `mean ${name} by window` : name);
+    byId("auto").disabled = asMeans;
     const mapped = Boolean(numbers.area);
     byId("disk-side").hidden = !mapped;
     if (mapped) {
-      const diskLimits = stretched(ofMeans);
+      const diskLimits = page.stretched(ofMeans);
       byId("disk-shows").textContent = name ? `mean ${name}` : "area of windows";
       const values = means ?? numbers.area;
       const shownLimits = means ? diskLimits : ends(numbers.area);
@@ -163,12 +114,6 @@
     return high > low ? [low, high] : [low - 0.5, low + 0.5];
   };
 
-  // The sliders' part of a range.
-  const stretched = ([low, high]) => {
-    const [black, white] = ["black", "white"].map((id) => byId(id).valueAsNumber / 100);
-    return [low + black * (high - low), low + Math.max(white, black + 0.01) * (high - low)];
-  };
-
   page.showCell = async (cell) => {
     Object.assign(state, { cell, window: null, pinned: null });
     const found = await page.pictureOf(cell);
@@ -186,14 +131,7 @@
     }
   };
 
-  const overPicture = (event) => {
-    const canvas = byId("cell-picture");
-    const { left, top, width, height } = canvas.getBoundingClientRect();
-    const column = Math.floor(((event.clientX - left) / width) * canvas.width);
-    const row = Math.floor(((event.clientY - top) / height) * canvas.height);
-    const label = shown.decoded.labels?.[row * canvas.width + column] ?? OUTSIDE;
-    return label === OUTSIDE || !shown.picture.windows ? null : label;
-  };
+  const overPicture = (event) => (shown.picture.windows ? page.windowOnCell(byId("cell-picture"), shown.decoded.labels, event) : null);
   const overDisk = (event) => page.windowOnDisk(byId("cell-disk"), gridOf(shown.picture), event);
 
   const move = (window) => {
@@ -222,11 +160,15 @@
     return pinned;
   };
 
+  // Shares of the range that the sliders stretch, from those of the cell's own.
+  const contrastOf = (painted) => {
+    const [low, high] = page.pixelLimits(shown, state.channel, state.contrast);
+    const [first, last] = painted.ends;
+    return page.autoContrast(painted).map((share) => (first + share * (last - first) - low) / (high - low));
+  };
+
   page.connectCell = () => {
-    page.paletteNumbers = Uint32Array.from(page.data.palette, (colour) => {
-      const [r, g, b] = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
-      return (0xff000000 | (b << 16) | (g << 8) | r) >>> 0;
-    });
+    page.packedPalette = page.packed(page.data.palette);
     Object.assign(byId("cell-disk"), { width: CANVAS, height: CANVAS });
     for (const [id, find] of [["cell-picture", overPicture], ["cell-disk", overDisk]]) {
       byId(id).addEventListener("pointermove", (event) => move(find(event)));
@@ -240,11 +182,9 @@
     byId("channel").addEventListener("change", ({ target }) => change("channel", Number(target.value)));
     for (const name of ["shows", "contrast"]) byId(name).addEventListener("change", ({ target }) => change(name, target.value));
     byId("grid").addEventListener("change", ({ target }) => change("grid", target.checked));
-    for (const id of ["black", "white"]) byId(id).addEventListener("input", page.drawCell);
-    byId("reset").addEventListener("click", () => {
-      byId("black").value = 0;
-      byId("white").value = 100;
-      page.drawCell();
+    page.connectContrast(page.drawCell, () => {
+      const painted = shown && page.pictureFor(shown, state.channel, !shown.picture.channels);
+      return painted?.grey ? contrastOf(painted) : null;
     });
     addEventListener("resize", page.drawCell);
   };

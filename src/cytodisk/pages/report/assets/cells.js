@@ -1,14 +1,8 @@
 "use strict";
 // The list of cells, and the window that opens on one of them.
-(async () => {
+(() => {
   const page = window.cytodisk;
-  const byId = (id) => document.getElementById(id);
-  const read = (id) => JSON.parse(byId(id).textContent);
-  page.state = { channel: 0 };
-  page.row = ({ values, shape }, number) => {
-    const length = shape.slice(1).reduce((product, size) => product * size, 1);
-    return values.subarray(number * length, (number + 1) * length);
-  };
+  const { byId } = page;
 
   const THUMBNAIL = 150; // px
   let list;
@@ -33,9 +27,9 @@
       if (!found) return canvas.replaceWith(make("span", { class: "nothing" }, "no picture"));
       const { picture } = found;
       const channel = page.cellState.channel;
-      const means = picture.channels ? null : [];
       const limits = picture.channels ? page.pixelLimits(found, channel, page.cellState.contrast) : [0, 1];
-      page.paintCell(canvas, found, { channel, means, limits, lines: "outline", chosen: null });
+      const look = { limits, colours: page.packedPalette, grid: false, inner: page.innerOf(picture) };
+      page.paint(canvas, page.pictureFor(found, channel, !picture.channels), look);
       const factor = THUMBNAIL / Math.max(...picture.shape);
       canvas.style.width = `${picture.shape[1] * factor}px`;
       canvas.style.height = `${picture.shape[0] * factor}px`;
@@ -120,7 +114,8 @@
     if (!dialog.open) dialog.showModal();
     describe(k);
     const cell = cellOf(page.data.table.rows[k]);
-    history.replaceState(null, "", `#cell-${cell}`);
+    const channel = page.address().channel;
+    history.replaceState(null, "", `#cell-${cell}${channel === null ? "" : `&channel=${encodeURIComponent(channel)}`}`);
     return page.showCell(cell);
   };
   page.open = (cell) => open(page.data.table.rows.findIndex((row) => cellOf(row) === cell));
@@ -139,14 +134,20 @@
     "]": () => page.stepWindow(0, 1),
   };
   const onKey = (event) => {
-    if (!(event.key in KEYS) || event.ctrlKey || event.metaKey) return;
+    if (!(event.key in KEYS) || page.isChord(event)) return;
     if (["SELECT", "INPUT"].includes(event.target.tagName) && event.target.type !== "checkbox") return;
     event.preventDefault();
     KEYS[event.key]();
   };
 
-  const openHash = () => {
-    const cell = Number(/^#cell-(\d+)$/.exec(location.hash)?.[1] ?? NaN);
+  // "#cell-3&channel=Rac1" opens a cell on a channel.
+  const openAddress = () => {
+    const { cell, channel } = page.address();
+    const number = page.data.channels.findIndex(({ name, full }) => channel !== null && [name, full].includes(channel));
+    if (number >= 0) {
+      page.cellState.channel = number;
+      byId("channel").value = String(number);
+    }
     if (page.data.table.rows.some((row) => cellOf(row) === cell)) void page.open(cell);
   };
 
@@ -170,18 +171,12 @@
         byId("cells").scrollIntoView({ block: "start" });
       });
     }
-    for (const button of document.querySelectorAll("button.why")) {
-      button.addEventListener("click", () => {
-        button.setAttribute("aria-expanded", String(button.closest(".flag").classList.toggle("open")));
-      });
-    }
-    addEventListener("hashchange", openHash);
-    document.documentElement.classList.add("live");
+    addEventListener("hashchange", openAddress);
   };
 
-  try {
-    page.pictures = read("pictures");
-    page.data = read("data");
+  void page.start(() => {
+    page.pictures = page.read("pictures");
+    page.data = page.read("data");
     page.data.pixel_limits = commonLimits();
     page.connectCell();
     const { table } = page.data;
@@ -189,10 +184,6 @@
     list = page.list({ root: byId("cells"), table, label: "cells", open, name: nameOf, card: some ? card : null, choices: choices() });
     page.cells = list;
     connect();
-    openHash();
-    page.ready = true;
-  } catch (error) {
-    byId("failed").hidden = false;
-    throw error;
-  }
+    openAddress();
+  });
 })();

@@ -37,30 +37,32 @@
 
   const tickWords = (value) => String(value).replace("-", "−");
 
-  // Axes; names: [{ at, label }] in the place of numbers along x or y.
-  page.chart = ({ width, height, x, y, xLabel = "", yLabel = "", xNames = null, yNames = null, left = MARGIN.left, label }) => {
-    const [right, bottom] = [width - MARGIN.right, height - MARGIN.bottom];
+  // Axes; names: [{ at, label }] in the place of numbers along x or y, along x also below; xLabel null: no axis of x.
+  page.chart = ({ width, height, x, y, xLabel = "", yLabel = "", xNames = null, yNames = null, left = MARGIN.left, top = MARGIN.top, label, ticks = 5 }) => {
+    const below = xNames?.some((one) => one.below) ? 8 : 0;
+    const [right, bottom] = [width - MARGIN.right, height - (xLabel === null ? 6 : MARGIN.bottom + below)];
     const toX = (value) => left + ((value - x[0]) / (x[1] - x[0])) * (right - left);
-    const toY = (value) => bottom - ((value - y[0]) / (y[1] - y[0])) * (bottom - MARGIN.top);
+    const toY = (value) => bottom - ((value - y[0]) / (y[1] - y[0])) * (bottom - top);
     const root = svg("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "aria-label": label, class: "chart" });
     const axes = svg("g", { class: "axes" });
-    axes.append(svg("path", { d: `M${left} ${MARGIN.top}V${bottom}H${right}` }));
-    const xs = xNames ?? page.ticks(x, 5).map((at) => ({ at, label: tickWords(at) }));
-    const ys = yNames ?? page.ticks(y, 5).map((at) => ({ at, label: tickWords(at) }));
-    for (const { at, label: words } of xs) {
+    axes.append(svg("path", { d: `M${left} ${top}V${bottom}H${right}` }));
+    const xs = xLabel === null ? [] : xNames ?? page.ticks(x, 5).map((at) => ({ at, label: tickWords(at) }));
+    const ys = yNames ?? page.ticks(y, ticks).map((at) => ({ at, label: tickWords(at) }));
+    for (const { at, label: words, below: more } of xs) {
       axes.append(svg("path", { d: `M${toX(at)} ${bottom}v4` }));
-      axes.append(svg("text", { x: toX(at), y: bottom + 17, "text-anchor": "middle" }, words));
+      axes.append(svg("text", { x: toX(at), y: bottom + (below ? 14 : 17), "text-anchor": "middle" }, words));
+      if (more) axes.append(svg("text", { x: toX(at), y: bottom + 28, "text-anchor": "middle" }, more));
     }
     for (const { at, label: words } of ys) {
       axes.append(svg("path", { d: `M${left} ${toY(at)}h-4` }));
       axes.append(svg("text", { x: left - 7, y: toY(at) + 4, "text-anchor": "end" }, words));
     }
-    axes.append(svg("text", { x: (left + right) / 2, y: height - 6, "text-anchor": "middle" }, xLabel));
-    const turned = `rotate(-90 13 ${(MARGIN.top + bottom) / 2})`;
-    axes.append(svg("text", { x: 13, y: (MARGIN.top + bottom) / 2, "text-anchor": "middle", transform: turned }, yLabel));
+    axes.append(svg("text", { x: (left + right) / 2, y: height - 6, "text-anchor": "middle" }, xLabel ?? ""));
+    const turned = `rotate(-90 13 ${(top + bottom) / 2})`;
+    axes.append(svg("text", { x: 13, y: (top + bottom) / 2, "text-anchor": "middle", transform: turned }, yLabel));
     const marks = svg("g");
     root.append(axes, marks);
-    return { root, marks, toX, toY, left, right, top: MARGIN.top, bottom };
+    return { root, marks, toX, toY, left, right, top, bottom, x, y };
   };
 
   page.linePath = ({ toX, toY }, xs, ys) => {

@@ -1,6 +1,6 @@
 "use strict";
 // Everything of the page hangs on this object; tests look at it.
-window.cytodisk = { ready: false, shown: null, drawMilliseconds: null };
+window.cytodisk = { ready: false, shown: null, drawMilliseconds: null, byId: (id) => document.getElementById(id) };
 
 (() => {
   const page = window.cytodisk;
@@ -37,7 +37,10 @@ window.cytodisk = { ready: false, shown: null, drawMilliseconds: null };
     channels: channels && (await Promise.all(channels.map((text) => picture(text, shape)))),
   });
 
+  page.read = (id) => JSON.parse(page.byId(id).textContent);
+
   const kept = new Map();
+  page.forgetFrames = () => kept.clear();
   const fetchFrame = (index) => {
     const found = kept.get(index) ?? page.decode(page.pictures[index], page.data.picture.shape);
     kept.delete(index); // the ones asked for last stand last

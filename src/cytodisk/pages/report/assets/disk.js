@@ -59,8 +59,24 @@
         context.stroke();
       }
     }
+    markZero(context, grid.sectors);
     numberSectors(context, grid.sectors, unit);
   };
+
+  // A wedge beside sector 0 that points at it, as in the cell.
+  const markZero = (context, sectors) => {
+    context.save();
+    context.rotate((0.5 * FULL) / sectors);
+    context.beginPath();
+    context.moveTo(1.01, 0);
+    context.lineTo(1.065, 0.03);
+    context.lineTo(1.065, -0.03);
+    context.fillStyle = "#d55e00";
+    context.fill();
+    context.restore();
+  };
+
+  page.numberedSectors = (sectors) => [...new Set([0, 1, 2, 3].map((k) => Math.round((k * sectors) / 4) % sectors))];
 
   const circle = (context, radius) => {
     context.beginPath();
@@ -70,15 +86,16 @@
 
   const numberSectors = (context, sectors, unit) => {
     const scale = Math.max(unit, 1);
-    context.fillStyle = "#555555";
     context.textAlign = "center";
     context.textBaseline = "middle";
     context.save();
     context.scale(1 / scale, 1 / scale);
-    context.font = `${Math.round(0.075 * scale)}px system-ui, sans-serif`;
-    for (const sector of new Set([0, 1, 2, 3].map((k) => Math.round((k * sectors) / 4) % sectors))) {
+    for (const sector of page.numberedSectors(sectors)) {
       const angle = (FULL * (sector + 0.5)) / sectors;
-      context.fillText(String(sector), 1.09 * scale * Math.cos(angle), 1.09 * scale * Math.sin(angle));
+      context.fillStyle = sector ? "#555555" : "#a04000";
+      context.font = `${sector ? "" : "bold "}${Math.round(0.08 * scale)}px system-ui, sans-serif`;
+      const far = (sector ? 1.08 : 1.115) * scale;
+      context.fillText(String(sector), far * Math.cos(angle), far * Math.sin(angle));
     }
     context.restore();
   };
@@ -142,6 +159,9 @@
     const layers = radii.at(-1) > 0 ? radii.length : radii.length - 1;
     return layer < 0 ? null : Math.min(layer, layers - 1) * sectors + sector;
   };
+
+  // Place of u or v on such a canvas, as a share of its side.
+  page.diskShare = (at) => 0.5 * (at / REACH + 1);
 
   // A bar of the colours with its ends in numbers.
   page.drawBar = (element, limits, palette, unit) => {

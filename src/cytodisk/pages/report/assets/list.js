@@ -5,17 +5,6 @@
   const ROWS = { table: 50, cards: 24 }; // on one page of the list
   const { compare } = new Intl.Collator(undefined, { numeric: true, sensitivity: "base" });
 
-  // An element with attributes, and children that are elements or text.
-  page.make = (tag, attributes = {}, ...children) => {
-    const element = document.createElement(tag);
-    for (const [name, value] of Object.entries(attributes)) {
-      if (value === false || value === null || value === undefined) continue;
-      if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
-      else element.setAttribute(name, value === true ? "" : value);
-    }
-    element.append(...children);
-    return element;
-  };
   const { make } = page;
 
   const shownValue = (column, value) => {
@@ -37,10 +26,10 @@
     });
   };
 
-  // links: addresses by row, null for none, in the place of open.
+  // links: addresses by row, null for none, in the place of open; address(link): with what is chosen.
   // root: element for the list. table: { columns, rows }. open(row): what a click does; name(row): its words.
   // card(row): content of a card, for lists with cards. choices: [{ label, options: [{ label, test }] }].
-  page.list = ({ root, table, label, open = null, name = null, links = null, card = null, choices = [], sort = null }) => {
+  page.list = ({ root, table, label, open = null, name = null, links = null, address = (link) => link, card = null, choices = [], sort = null }) => {
     const { columns, rows } = table;
     const state = { sort, descending: false, text: "", all: false, cards: Boolean(card), start: 0, choices: [] };
     const texts = rows.map((row) => row.filter((value) => typeof value === "string").join("\n").toLowerCase());
@@ -86,7 +75,10 @@
     const cellOf = (column, value, k, first) => {
       const words = shownValue(column, value);
       const look = column.number ? "number" : words.length > 24 ? "long" : null;
-      if (first && links?.[k]) return make("td", { class: look }, make("a", { href: links[k], "aria-label": `open ${name(rows[k])}` }, words));
+      if (first && links?.[k]) {
+        const goes = (event) => (event.currentTarget.href = address(links[k])); // which depends on what is chosen
+        return make("td", { class: look }, make("a", { href: links[k], onclick: goes, onauxclick: goes, "aria-label": `open ${name(rows[k])}` }, words));
+      }
       if (!first || !open) return make("td", { class: look, title: look === "long" ? words : null }, words);
       const button = make("button", { type: "button", class: "opens", "aria-label": `open ${name(rows[k])}` }, words);
       return make("td", { class: look }, button);
@@ -97,8 +89,8 @@
       const body = make("tbody");
       for (const k of numbers) {
         const cells = shown.map(({ column, at }, number) => cellOf(column, rows[k][at], k, number === 0));
-        const go = open ?? (links?.[k] ? () => (location.href = links[k]) : null);
-        body.append(make("tr", go ? { class: "opening", onclick: () => go(k) } : {}, ...cells));
+        const go = open ?? (links?.[k] ? (_, event) => event.target.tagName !== "A" && (location.href = address(links[k])) : null);
+        body.append(make("tr", go ? { class: "opening", onclick: (event) => go(k, event) } : {}, ...cells));
       }
       const titles = make("tr", {}, ...shown.map(({ column }) => head(column)));
       return make("table", { class: "list" }, make("caption", { class: "unseen" }, label), make("thead", {}, titles), body);

@@ -1,9 +1,15 @@
 "use strict";
 // Puts the page of a population together.
-(async () => {
+(() => {
   const page = window.cytodisk;
-  const byId = (id) => document.getElementById(id);
-  page.row = ({ values, shape }, number) => values.subarray(number * shape.at(-1), (number + 1) * shape.at(-1));
+  const { byId } = page;
+
+  // Address of a cell on the page of its study, on the channel of a scalar, or the chosen one.
+  page.cellAddress = (link, scalar = "") => {
+    const { channels } = page.data;
+    const channel = channels.find(({ name }) => scalar.endsWith(`_${name}`)) ?? channels[page.atlasState.channel];
+    return channel && link.includes("#") ? `${link}&channel=${encodeURIComponent(channel.name)}` : link;
+  };
 
   page.labelOf = (scalar) => scalar.replaceAll("_", " ");
   const drawAll = () => {
@@ -42,7 +48,7 @@
         page.showScalar(table.rows[k][at]);
         byId("superplot").scrollIntoView({ block: "center" });
       } : null;
-      page.lists[name] = page.list({ root, table, label: name.replaceAll("_", " "), open, name: (row) => row[0], links: table.links });
+      page.lists[name] = page.list({ root, table, label: name.replaceAll("_", " "), open, name: (row) => row[0], links: table.links, address: page.cellAddress });
     }
   };
 
@@ -59,8 +65,8 @@
     if (page.data.disk) page.connectAtlas();
   };
 
-  try {
-    const raw = JSON.parse(byId("data").textContent);
+  void page.start(async () => {
+    const raw = page.read("data");
     const labels = raw.disk?.cell?.labels;
     page.data = await page.unpack(raw);
     for (const scalar of page.data.scalars) scalar.label = page.labelOf(scalar.name);
@@ -69,9 +75,5 @@
     connect();
     drawAll();
     lists();
-    page.ready = true;
-  } catch (error) {
-    byId("failed").hidden = false;
-    throw error;
-  }
+  });
 })();

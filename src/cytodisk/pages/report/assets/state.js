@@ -5,12 +5,16 @@
   const { known, words } = page;
 
   page.state = {
+    cell: 0, // its number in the study
     index: 0, // place among the shown frames
     channel: 0,
     layer: 0,
     pair: 0,
     peak: "correlation",
     colours: "all",
+    shows: "pixels", // in the cell: pixels, means, correlation, lag
+    grid: true,
+    rim: true,
     playing: false,
     hover: null, // { layer, sector, index? }
     pinned: null, // { layer, sector }
@@ -25,6 +29,7 @@
   page.set = (changes) => {
     const { state, data } = page;
     Object.assign(state, changes);
+    if (!data) return; // no cell is open yet
     state.index = clamp(state.index, data.frames.length);
     state.layer = clamp(state.layer, data.layers);
     if (waiting) return;
@@ -56,15 +61,11 @@
   };
 
   page.windowOf = (layer, sector) => layer * page.data.sectors + sector;
-
-  // A row of an array, as a view into it; rows of arrays by frame hold all windows.
-  page.row = ({ values, shape }, number) => {
-    const length = shape.slice(1).reduce((product, size) => product * size, 1);
-    return values.subarray(number * length, (number + 1) * length);
-  };
+  page.placeOf = (window) => window === null ? null : { layer: Math.floor(window / page.data.sectors), sector: window % page.data.sectors };
 
   page.channel = () => page.data.channels[page.state.channel];
   page.channelValues = () => page.channel().mean ?? page.data.area;
+  page.channelWords = () => (page.channel().mean ? `mean ${page.channel().name}` : page.channel().name);
   page.pair = () => page.data.pairs[page.state.pair];
 
   page.indexOfFrame = (frame) => {
@@ -72,13 +73,13 @@
     return clamp(Math.round((frame - frames[0]) / every), frames.length);
   };
 
-  // Times and lags come in frames; the axes are in seconds where they are known.
-  page.seconds = (frames, digits) => {
-    const { interval_s: interval } = page.data;
-    return interval === null || !known(frames) ? "" : `${digits(frames * interval)} s`;
-  };
-  page.timeOf = (index) => page.seconds(page.data.frames[index], page.digits);
+  // Times and lags come in frames; they are shown in the units that the page's data name.
+  page.timeAt = (index) => page.data.frames[index] * page.data.time_step;
+  page.timeOf = (index) => (page.data.interval_s === null ? "" : `${page.digits(page.timeAt(index))} ${page.data.time_unit}`);
   page.frameWords = (lag) => (known(lag) ? `${words(lag, String)} ${Math.abs(lag) === 1 ? "frame" : "frames"}` : "–");
-  page.lagSeconds = (lag) => page.seconds(lag, (value) => words(value, () => Number(value.toPrecision(3))));
-  page.lagScale = () => page.data.interval_s ?? 1;
+  page.lagScale = () => page.data.lag_step;
+  page.lagWords = (lag) => {
+    const number = words(lag, (value) => Number((value * page.lagScale()).toPrecision(3)));
+    return page.data.interval_s === null || !known(lag) ? "" : `${number} ${page.data.lag_unit}`;
+  };
 })();

@@ -2,7 +2,7 @@
 // Profile by depth, cells and experiments of a scalar, and effect sizes, as charts.
 (() => {
   const page = window.cytodisk;
-  const byId = (id) => document.getElementById(id);
+  const { byId } = page;
   const chartState = { scalar: 0 };
   page.chartState = chartState;
   const { svg } = page;
@@ -69,7 +69,7 @@
     for (const row of shown.flatMap(({ drawn }) => drawn)) {
       const at = data.conditions.indexOf(row.condition);
       const words = `${name[row.k]}: ${page.digits(row.value)} ${scalar.unit}`;
-      const go = link[row.k] ? () => (location.href = link[row.k]) : null;
+      const go = link[row.k] ? () => (location.href = page.cellAddress(link[row.k], scalar.name)) : null;
       const look = { fill: colourOf(row.condition), "fill-opacity": opacity, class: go ? "goes" : null, onclick: go };
       chart.marks.append(svg("circle", { cx: chart.toX(at + jitter(row.k)), cy: chart.toY(row.value), r: 3.2, ...look }, svg("title", {}, words)));
     }

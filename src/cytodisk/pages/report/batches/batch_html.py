@@ -20,7 +20,7 @@ from cytodisk.pages.report.provenance_words import version_of
 from cytodisk.pages.report.template import rendered
 from cytodisk.store.provenance_file import read_complete
 
-_SCRIPTS = ("decode", "numbers", "list", "batch")
+_SCRIPTS = ("decode", "elements", "numbers", "list", "batch")
 _MOST_NAMED = 20
 
 
@@ -48,7 +48,7 @@ def batch_page(folder: Path) -> str:
     data = {"inputs": listed_inputs(inputs, folder), "cells": cells}
     words = {
         "title": real_path(folder).name,
-        "finding": _finding(inputs),
+        "finding": [_finding(inputs)],
         "groups": _groups(inputs),
         "lost": _lost(inputs),
         "flags": _flags(inputs),
@@ -56,7 +56,9 @@ def batch_page(folder: Path) -> str:
         "command": _command(folder, inputs),
         "correlations": pooled_correlations(folder),
         "version": version_of(provenance),
-        "data_json": json_for_script(data),
+        "facts": [("batch", ""), ("cytodisk", version_of(provenance))],
+        "settings": [],
+        "texts": [("data", json_for_script(data))],
     }
     return rendered("batch", ["page", "cells"], _SCRIPTS, words)
 

@@ -14,12 +14,11 @@ from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import CytodiskError, ReadError
 from cytodisk.images.mask_files import MaskImage, SourceCell, list_images
 from cytodisk.images.signal_files import SignalFrame, open_image
+from cytodisk.pages.report.boxes import Box, box_between
 from cytodisk.pages.report.cells.window_numbers import WindowNumbers
 from cytodisk.pages.report.encode import pack_floats, pack_labels, pack_picture
 from cytodisk.pages.report.pictures import (
     OUTSIDE,
-    Box,
-    box_between,
     grey_picture,
     picture_limits,
     resampled,

@@ -8,7 +8,6 @@ from typing import Any
 
 from cytodisk.errors import ParameterError
 from cytodisk.files import real_path
-from cytodisk.pages.report.bokeh_parts import palette
 from cytodisk.pages.report.cells.cell_pictures import CellPictures, means_limits, size_of
 from cytodisk.pages.report.cells.cell_table import CONDITION, EXPERIMENT, listed_cells
 from cytodisk.pages.report.cells.cells_words import (
@@ -22,6 +21,7 @@ from cytodisk.pages.report.cells.cells_words import (
 from cytodisk.pages.report.cells.window_numbers import WindowNumbers, window_numbers
 from cytodisk.pages.report.encode import json_for_script
 from cytodisk.pages.report.listed import rows_words
+from cytodisk.pages.report.palettes import palette
 from cytodisk.pages.report.pictures import OUTSIDE
 from cytodisk.pages.report.provenance_words import input_words, run_words, value_words, version_of
 from cytodisk.pages.report.template import jinja, rendered
@@ -43,7 +43,7 @@ MOST_BYTES = 12_000_000
 """Of all pictures together, as text."""
 
 _BYTES_A_CELL, _BYTES_A_WINDOW = 12_000, 5  # about, to know beforehand how many cells there is room for
-_SCRIPTS = ("decode", "numbers", "pixels", "list", "disk", "cell", "cells")
+_SCRIPTS = ("decode", "elements", "numbers", "chart", "disk", "pixels", "frame", "list", "cell", "cells")
 
 Progress = Callable[[int, int], None]
 
@@ -97,7 +97,7 @@ def cells_page(
     words = {
         "title": real_path(study.path).name,
         "facts": list(facts(study)),
-        "finding": finding.words,
+        "finding": list(finding.sentences),
         "groups": groups_words(study),
         "command": finding.command,
         "lost": lost_groups(study),
@@ -109,8 +109,7 @@ def cells_page(
         "settings": list(_settings(study)),
         "version": version_of(study.provenance),
         "data": data,
-        "data_json": json_for_script(data),
-        "pictures_json": json_for_script(list(pictures.values())),
+        "texts": [("data", json_for_script(data)), ("pictures", json_for_script(list(pictures.values())))],
     }
     return rendered("cells", ["page", "cells"], _SCRIPTS, words)
 
@@ -154,7 +153,7 @@ def _data(
         "pictured": list(pictures),
         "group_columns": [name for name in (CONDITION, EXPERIMENT) if name in study.cells],
         "channels": [
-            {"name": shown_name(name), "unit": "a.u.", "limits": signal_limits(means)}
+            {"name": shown_name(name), "full": name, "unit": "a.u.", "limits": signal_limits(means)}
             for name, means in zip(numbers.channels, means_limits(numbers), strict=True)
         ],
         "layers": grid.layers,

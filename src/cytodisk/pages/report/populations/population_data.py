@@ -12,9 +12,10 @@ import pandas as pd
 
 from cytodisk.pages.population.curve_page import lag_label
 from cytodisk.pages.population.drawn_population import DrawnPopulation
-from cytodisk.pages.report.bokeh_parts import palette
+from cytodisk.pages.report.boxes import box_between
 from cytodisk.pages.report.encode import pack_floats, pack_labels
-from cytodisk.pages.report.pictures import OUTSIDE, box_between, window_labels
+from cytodisk.pages.report.palettes import palette
+from cytodisk.pages.report.pictures import OUTSIDE, window_labels
 from cytodisk.plot.layer_looks import layer_place
 from cytodisk.plot.population.condition_looks import condition_colours
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS

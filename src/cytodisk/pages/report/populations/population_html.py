@@ -27,7 +27,18 @@ from cytodisk.pages.report.template import jinja, rendered
 from cytodisk.store.populations.population_columns import TABLES
 from cytodisk.store.populations.population_study import PopulationStudy
 
-_SCRIPTS = ("decode", "numbers", "list", "disk", "chart", "atlas", "superplot", "population")
+_SCRIPTS = (
+    "decode",
+    "elements",
+    "numbers",
+    "chart",
+    "disk",
+    "pixels",
+    "list",
+    "atlas",
+    "superplot",
+    "population",
+)
 _MAIN = {
     "scalars": "scalar what condition mean_control mean_treated unit difference effect_size low high p "
     "p_fwer p_holm",
@@ -62,12 +73,10 @@ def population_page(study: PopulationStudy) -> str:
     data = population_data(one)
     data["tables"] = {name: table for name in _MAIN if (table := _listed(study, name))["rows"]}
     data["tables"]["cells"] = _listed_cells(study)
-    sentences = list(study.sentences)
     words = {
         "title": real_path(study.path).name,
         "facts": list(facts(one)),
-        "finding": headline(one),
-        "sentences": [words for words in sentences if words != headline(one)],
+        "finding": list(dict.fromkeys([headline(one), *study.sentences])),
         "warnings": warning_groups(one),
         "notes": [str(note) for note in study.provenance.get("warnings", ())],
         "left_out": list(filter(None, [rows_words(study.cells, "cells.parquet"), curves_note(one)])),
@@ -79,7 +88,7 @@ def population_page(study: PopulationStudy) -> str:
         "settings": list(_settings(study)),
         "version": version_of(study.provenance),
         "data": data,
-        "data_json": json_for_script(data),
+        "texts": [("data", json_for_script(data))],
     }
     return rendered("population", ["page", "cells", "population"], _SCRIPTS, words)
 
