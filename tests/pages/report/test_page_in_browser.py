@@ -85,12 +85,12 @@ def test_hover_on_the_disk_shows_in_every_view(page: Page, study: Study) -> None
     assert page.text("read-window") == "layer 1, sector 5"
     assert number(page.text("read-mean")) == pytest.approx(float(window["mean"]), rel=5e-3)
     assert number(page.text("read-area")) == pytest.approx(float(window["area"]), rel=5e-3)
-    assert number(page.text("read-velocity")) == pytest.approx(float(window["velocity"]), rel=5e-3)
+    assert number(page.text("read-velocity")) == pytest.approx(1000 * float(window["velocity"]), rel=5e-3)
     assert page.text("read-area").endswith("µm²")
     depth = page.text("read-depth")
     assert depth.endswith(" µm deep")
     assert number(depth.removeprefix(", ")) == pytest.approx(float(window["depth"]), rel=5e-3)
-    assert page.text("read-velocity").endswith("µm/s")
+    assert page.text("read-velocity").endswith("nm/s")
     assert page.text("read-correlation") == "0.05"
     assert page.text("read-lag") == "2 frames (10 s)"
     assert (page.text("read-p"), page.text("read-q")) == ("0.004", "0.5")

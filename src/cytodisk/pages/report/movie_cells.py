@@ -15,7 +15,7 @@ from cytodisk.pages.report.shown_correlations import MOST_CURVE_NUMBERS, pairs_o
 from cytodisk.pages.report.words import reduced_words
 from cytodisk.runs.findings.movie_finding import movie_finding
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
-from cytodisk.runs.study_signal import FoundSignal
+from cytodisk.store.inputs.study_signal import FoundSignal
 
 MOST_BYTES = 10_000_000
 """Of all pictures of a page, as text; longer movies are thinned out."""

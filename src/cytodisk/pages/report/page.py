@@ -11,9 +11,10 @@ from cytodisk.files import real_path, replacing
 from cytodisk.images.signal_files import FrameSource
 from cytodisk.pages.report.batches.batch_html import batch_page
 from cytodisk.pages.report.cells.cells_html import cells_page
-from cytodisk.pages.report.movie_page import movie_page, open_cell, usual_cell
+from cytodisk.pages.report.movie_page import movie_page, open_cell
 from cytodisk.pages.report.populations.population_html import population_page
 from cytodisk.pages.report.template import jinja
+from cytodisk.runs.findings.movie_finding import usual_cell
 from cytodisk.store.inputs.study_signal import shown_signal
 from cytodisk.store.populations.population_study import PopulationStudy
 from cytodisk.store.study import Study
@@ -145,6 +146,8 @@ def _write_movie(
 ) -> Path:
     jinja()  # before any work is done
     usual = usual_cell(study)
+    if usual is None:
+        raise StudyError(f"study {study.path} has no mapped frame: column 'reason' of cells.parquet says why")
     shown = open_cell(study, usual if cell is None else cell)
     target = study.path / _name(shown.cell, usual) if path is None else Path(path)
     return write_page(study.path, target, lambda: movie_page(shown, shown_signal(study, signal), progress))

@@ -169,7 +169,7 @@ def _doubts(found: Correlation, row: Any) -> Iterator[str]:
             yield mark
     if max(row["drifting_signal"], row["drifting_with"]) > DRIFTING_SHARE:
         yield DRIFTING
-    if row["restarts"]:
+    if row.get("restarts", 0):
         yield RESTARTED
 
 
