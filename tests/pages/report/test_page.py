@@ -14,7 +14,7 @@ from report_study import FRAMES, GAP, NAMES
 
 from cytodisk.errors import MissingPartError, ParameterError, SignalError, StudyError
 from cytodisk.images.frames import open_frames
-from cytodisk.pages.report import movie_cells as page
+from cytodisk.pages.report import encoded_cells as page
 from cytodisk.pages.report.movie_page import page_flags
 from cytodisk.pages.report.page import write_report
 from cytodisk.pages.report.shown_cell import ShownCell

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from cytodisk.errors import ParameterError
 from cytodisk.images.signal_files import FrameSource
 from cytodisk.pages.report.encode import json_for_script
-from cytodisk.pages.report.movie_cells import MovieCells
+from cytodisk.pages.report.encoded_cells import MovieCells
 from cytodisk.pages.report.palettes import palette
 from cytodisk.pages.report.pictures import OUTSIDE
 from cytodisk.pages.report.shown_cell import STRIPS, ShownCell
