@@ -8,6 +8,8 @@ from typing import Any
 
 from cytodisk.errors import MissingPartError
 
+_FOLDERS = {"html": "templates", "css": "styles", "js": "scripts"}
+
 
 def jinja() -> Any:
     """The template engine.
@@ -55,4 +57,5 @@ def rendered(page: str, styles: Iterable[str], scripts: Iterable[str], words: Ma
 
 
 def _asset(name: str) -> str:
-    return (files("cytodisk.pages.report") / "assets" / name).read_text(encoding="utf-8")
+    folder = _FOLDERS[name.rpartition(".")[2]]
+    return (files("cytodisk.pages.report") / "assets" / folder / name).read_text(encoding="utf-8")
