@@ -21,6 +21,7 @@ from cytodisk.runs.population.population_parameters import PopulationParameters
 from cytodisk.runs.population.power.power_parameters import PowerParameters
 from cytodisk.runs.run_options import BatchOptions, MapOptions, RunOptions
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
+from cytodisk.store.spatial.place_parameters import SpatialParameters
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -35,6 +36,7 @@ MODELS: dict[str, type[Parameters]] = {
     "cytodisk compare-windows --nuclei": CompareNucleiParameters,
     "cytodisk population": PopulationParameters,
     "cytodisk population --power": PowerParameters,
+    "cytodisk export": SpatialParameters,
     "cytodisk batch": BatchOptions,
 }
 WORDS = """A parameter has one name: the keyword in Python, the key in ``parameters.toml`` and, with dashes,

@@ -36,6 +36,7 @@ COMMANDS: dict[str, tuple[Callable[..., Any], tuple[type[Parameters], ...]]] = {
     ),
     "population": (cd.run_population, (cd.PopulationParameters, cd.FolderOptions)),
     "batch": (cd.run_batch, (cd.BatchOptions,)),
+    "export": (cd.run_export, (cd.SpatialParameters, cd.ExportOptions)),
 }
 FUNCTIONS = (
     cd.map_to_disk,

@@ -16,6 +16,7 @@ Colour = tuple[int, int, int]
 
 OUTLINES, NUCLEI, WINDOWS = "outlines", "nuclei", "windows"
 _LINES: dict[str, Colour] = {OUTLINES: (255, 255, 0), NUCLEI: (86, 180, 233)}  # yellow; sky blue
+_WHITE = 0.4  # share of it in the colours of layers, of which the first are dark
 _DIGITS = 4  # of a slice in a name, as ImageJ writes it
 
 
@@ -109,4 +110,5 @@ def _layer_colours(study: MappedStudy) -> list[Colour]:
 
     grid = polar_grid_of(study.provenance)
     found = layer_colours(range(grid.layers), grid.cytoplasm_layers if grid.nucleus_layers else None)
-    return [(int(red), int(green), int(blue)) for red, green, blue, _ in (255 * found).round()]
+    lighter = (255 * (found + _WHITE * (1 - found))).round()
+    return [(int(red), int(green), int(blue)) for red, green, blue, _ in lighter]

@@ -19,7 +19,7 @@ from cytodisk.windows.window_features import area_within
 
 Number = TypeVar("Number", int, IntArray)
 
-_BYTES_A_WINDOW = 4000  # its polygon of about a hundred points, and its row
+_BYTES_A_WINDOW = 5000  # its polygon of about a hundred points, and its row: measured
 _SHARE = 0.5  # of free memory
 
 
