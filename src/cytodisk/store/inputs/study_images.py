@@ -19,7 +19,7 @@ from cytodisk.images.mask_files import MaskSource
 from cytodisk.images.signal_files import FrameSource, pair_images
 from cytodisk.store.inputs.study_signal import MeasuredStudy, find_signal
 
-_REMEDY = "put it back, or do without images: images=False (--no-images)"
+_REMEDY = "put it back, or start in the folder where the study was made, or pass images=False (--no-images)"
 
 
 @dataclass(frozen=True)
