@@ -105,6 +105,11 @@ class FrameLines:
             colours.append(own)
         return self._in_frame(frame, lines), np.concatenate(colours).astype(np.float32)
 
+    def sector_0(self, frame: int) -> Any:
+        """Middle of sector 0 on the edge of each cell, as the places of `points`."""
+        points, features = self.points(frame)
+        return points[features["point"] == SECTOR_0]
+
     def points(self, frame: int) -> tuple[Any, dict[str, Any]]:
         """Points on the edges of the cells of a frame that stay on the same place of the disk.
 

@@ -39,6 +39,8 @@ class FrameUpdates:
             layer.features = window_features(self._painted, frame)
         elif role == "outlines":
             set_data(layer, self._lines.windows(frame))
+        elif role == "sector 0":
+            set_data(layer, self._lines.sector_0(frame))
         elif role == "nuclei":
             set_data(layer, self._lines.nuclei(frame))
         elif role == "velocity":
@@ -48,7 +50,8 @@ class FrameUpdates:
         elif role == "points":
             points, features = self._lines.points(frame)
             set_data(layer, points)
-            layer.features = features
+            if len(layer.features) != len(points) or (layer.features["cell"] != features["cell"]).any():
+                layer.features = features
         else:
             return
         self._shown[role] = frame
@@ -59,6 +62,7 @@ class FrameUpdates:
             self._painted.windows.box_at(cell, frame)
             self._painted.values.at(cell, frame)
         self._lines.windows(frame)
+        self._lines.points(frame)
         if self._painted.windows.grid.nucleus_layers:
             self._lines.nuclei(frame)
         if self._painted.cells.study.is_movie:

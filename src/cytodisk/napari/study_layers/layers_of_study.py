@@ -15,8 +15,17 @@ from cytodisk.plot.style import SIGNAL_COLOURS
 
 LayerData = tuple[Any, dict[str, Any], str]
 
-LINE_LOOK = {"edge_color": "white", "vector_style": "line", "opacity": 0.6}
+LINE_LOOK = {"edge_color": "#b4b4b4", "vector_style": "line", "opacity": 0.8}
+"""Of lines between windows: they show on a black canvas and on a white one."""
+_MARK_ON_SCREEN = 9  # of the screen's points
 _NUCLEUS_COLOUR, _NUCLEI = "cyan", 2.0  # times as wide as lines
+_MARK_LOOK: dict[str, Any] = {
+    "size": _MARK_ON_SCREEN,
+    "canvas_size_limits": (_MARK_ON_SCREEN, _MARK_ON_SCREEN),
+    "face_color": "white",
+    "border_color": "black",
+    "border_width": 0.15,
+}
 _EDGES, _POINTS = 100.0, 80.0  # coloured edges, and points, that side by side are as wide as a cell
 _LINES_ON_SCREEN, _FINEST_LINES, _WIDEST_LINES = 900.0, 600.0, 150.0
 
@@ -63,12 +72,6 @@ def _layers(shown: ShownStudy, place: StudyPlace) -> Iterator[LayerData]:
             ),
             "image",
         )
-    points, features = shown.lines.points(first)
-    yield (
-        points,
-        settings("points", "points of the edge", features=features, size=size / _POINTS, visible=False),
-        "points",
-    )
     look: dict[str, Any] = LINE_LOOK | {"edge_width": line_width(size, painted.shape)}
     yield shown.lines.windows(first), settings("outlines", "borders of windows", **look), "vectors"
     if painted.windows.grid.nucleus_layers:
@@ -78,6 +81,10 @@ def _layers(shown: ShownStudy, place: StudyPlace) -> Iterator[LayerData]:
         lines, colours = shown.lines.edge(first, shown.top_speed)
         look = {"edge_width": size / _EDGES, "edge_color": colours, "vector_style": "line", "opacity": 1.0}
         yield lines, settings("velocity", _velocity_name(shown), **look), "vectors"
+    points, features = shown.lines.points(first)
+    look = {"features": features, "size": size / _POINTS, "visible": False}
+    yield points, settings("points", "points of the edge", **look), "points"
+    yield shown.lines.sector_0(first), settings("sector 0", "sector 0", **_MARK_LOOK), "points"
     yield (
         stack(painted.labels, painted.dtype),
         settings("windows", "windows", features=window_features(painted, first), opacity=0.0),

@@ -23,6 +23,12 @@ from cytodisk.store.study import Study
 from cytodisk.windows.polar_windows import CellWindows
 
 
+def without_thumbnail(layer: Any) -> None:
+    """Draw no small picture of lines: napari makes it of each line by itself, at every change of frame."""
+    if hasattr(layer, "_max_vectors_thumbnail"):
+        layer._max_vectors_thumbnail = 0
+
+
 class ShownStudy:
     """A study, its layers in a viewer, and what is under the cursor and the slider.
 
@@ -44,7 +50,7 @@ class ShownStudy:
     viewer : Viewer or None
         None until its layers are in one.
     layers : dict of str to Layer
-        By role: "windows", "values", "outlines", "velocity", "points", "nuclei".
+        By role: "windows", "values", "outlines", "velocity", "points", "sector 0", "nuclei".
     changed : Signal
         Emitted when another frame or channel is shown.
     """
@@ -217,6 +223,7 @@ class ShownStudy:
         """Note that a layer of this study is in a viewer; it follows the slider from then on."""
         self.layers[layer.metadata[MARK]["role"]] = layer
         layer.events.visible.connect(self._seen)
+        without_thumbnail(layer)
         if self.viewer is None:
             self.viewer = viewer
             viewer.dims.events.current_step.connect(self._follow)

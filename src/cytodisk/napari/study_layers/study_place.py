@@ -32,7 +32,8 @@ class StudyPlace:
     @property
     def settings(self) -> dict[str, Any]:
         """What a layer takes."""
-        return {"scale": self.scale, "translate": self.translate, "units": self.units}
+        axes = ("time", "y", "x")[-len(self.scale) :]
+        return {"scale": self.scale, "translate": self.translate, "units": self.units, "axis_labels": axes}
 
 
 def place_of(cells: ShownCells, layers: Iterable[Any] = ()) -> StudyPlace:
