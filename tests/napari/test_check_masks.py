@@ -62,7 +62,7 @@ def test_wrong_frames_are_listed_and_shown(
     widget.table.tree.setCurrentItem(widget.table.tree.topLevelItem(names.index("note")))
     assert viewer.dims.current_step[0] == 7
     assert camera_of(viewer).center[-2:] == pytest.approx((1.5, 1.5))
-    assert set(widget.layer.features["flag"]) == set(names)
+    assert set(widget.marks.layer.features["flag"]) == set(names)
     np.testing.assert_array_equal(layer.data, before)
 
     layer.data[5] = layer.data[4]

@@ -35,6 +35,7 @@ def test_flags_jump_to_their_frame(make_viewer: Callable[..., Any], tmp_path: Pa
     shown.table.tree.setCurrentItem(top.child(1))
 
     assert viewer.dims.current_step[0] == 7
+    assert shown.layer.size.argmax() == 1
     assert camera_of(viewer).center[-2:] == pytest.approx((17 * 0.2, 20 * 0.2))
     assert "+7%. Area jumps: the area jumps. Wrong. What to do: Correct it." in shown.table.said.text()
     status = shown.layer.get_status((35.0, 3.4, 4.0), world=True)["coordinates"]

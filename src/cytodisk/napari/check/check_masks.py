@@ -10,7 +10,7 @@ from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QFormLayout, QLabel, QLineEdit, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
 from cytodisk.napari.check.checked_layers import CheckedLayers, check_layers, command_words
-from cytodisk.napari.check.flag_points import FlagGround, add_flag_points, jump_to
+from cytodisk.napari.check.flag_points import FlagGround, FlagMarks
 from cytodisk.napari.check.flag_table import FlagTable
 from cytodisk.napari.check.found_flags import FlagPlace
 from cytodisk.napari.forms.command_line import command_line
@@ -41,8 +41,7 @@ class CheckMasks(QWidget):
         self.viewer = viewer = napari_viewer
         self.work: Work | None = None
         self.found: CheckedLayers | None = None
-        self.layer: Any = None
-        self._ground: FlagGround | None = None
+        self.marks: FlagMarks | None = None
         self._folder: Any = TemporaryDirectory(prefix="cytodisk_", ignore_cleanup_errors=True)
         self._runs = 0
         self.masks = LayerChoice(viewer, MASKS)
@@ -112,11 +111,11 @@ class CheckMasks(QWidget):
 
     def show_found(self, found: CheckedLayers, ground: FlagGround) -> None:
         """List what is wrong, and mark it in the viewer, in the place of what was marked before."""
-        if self.layer is not None and self.layer in self.viewer.layers:
-            self.viewer.layers.remove(self.layer)
-        self.found, self._ground = found, ground
+        if self.marks is not None:
+            self.marks.remove()
         mark = {"cell": None, "masks": str(found.files.masks)}
-        self.layer = add_flag_points(self.viewer, found.flags, ground, mark=mark)
+        self.marks = FlagMarks(self.viewer, found.flags, ground, mark)
+        self.found = found
         self.table.show_flags(found.flags)
         self.words.setText("\n".join([*found.lines, *found.notes]))
         files = found.files
@@ -127,4 +126,4 @@ class CheckMasks(QWidget):
             self.words.setText(self.words.text() + "\n" + _NO_FILE)
 
     def _go(self, place: FlagPlace) -> bool:
-        return self._ground is not None and jump_to(self.viewer, place, self._ground)
+        return self.marks is not None and self.marks.go(place)

@@ -92,8 +92,8 @@ def _flag(fault: MaskFault, is_stack: bool) -> FoundFlag:
     places = tuple(_place(one, is_stack) for one in fault.places)
     if fault.is_between_frames:
         what = fault.words.removeprefix(f"{fault.name}: ").partition(" (")[0]
-        where = counted(len(places), "time")
-        return FoundFlag(fault.name, f"{what} {where}", fault.advice, fault.meaning, places)
+        where = counted(len(places), "frame")
+        return FoundFlag(fault.name, f"{what} in {where}", fault.advice, fault.meaning, places)
     more = ", and the like" if fault.differs else ""
     where = counted(len(places), "frame" if is_stack else "cell")
     return FoundFlag(fault.kind, f"{where}: {fault.words}{more}", fault.advice, fault.meaning, places)

@@ -14,7 +14,8 @@ from cytodisk.napari.check.found_flags import FlagPlace, FoundFlag
 
 ROLE = "flags"
 _COLOUR = "#ffb000"  # told from cells and backgrounds by all, also the colour blind
-_LEAST_PX, _MOST_PX = 18, 60  # size on the screen
+_SMALL, _LARGE = 6.0, 28.0  # px of the image, of all places and of the one that was clicked
+_ON_SCREEN = 9, 70  # px that a point has at least and at most
 _LONGEST = 200  # letters in the status bar
 
 
@@ -123,40 +124,68 @@ def add_flag_points(
         symbol="disc",
         face_color="transparent",
         border_color=_COLOUR,
-        border_width=0.15,
-        size=_LEAST_PX,
+        border_width=0.2,
+        size=_SMALL,
         out_of_slice_display=False,
     )
-    layer.canvas_size_limits = (_LEAST_PX, _MOST_PX)
+    layer.canvas_size_limits = _ON_SCREEN
     layer.editable = False
     if selected:
         viewer.layers.selection = selected  # what the user works on stays
     return layer
 
 
-def jump_to(viewer: Any, place: FlagPlace, ground: FlagGround) -> bool:
-    """Bring the slider to the frame of a place, and the place to the middle of the canvas.
+class FlagMarks:
+    """Places that are wrong in a viewer: small circles, and a large one at the place that was clicked.
 
     Parameters
     ----------
     viewer : Viewer
-    place : FlagPlace
+    flags : sequence of FoundFlag
     ground : FlagGround
+    mark : dict
+        Metadata of their layer.
 
-    Returns
-    -------
-    bool
-        Whether there is anything to see.
+    Attributes
+    ----------
+    layer : Points or None
+        None if there is no place.
     """
-    world = ground.world(place)
-    axis = None if place.frame is None else ground.time_axis
-    if axis is not None:
-        time = (place.frame or 0) * ground.scale[axis] + ground.translate[axis]
-        viewer.dims.set_point(viewer.dims.ndim + axis, time)
-    if world is None:
-        return axis is not None
-    camera_of(viewer).center = world[-2:]
-    return True
+
+    def __init__(self, viewer: Any, flags: Sequence[FoundFlag], ground: FlagGround, mark: dict[str, Any]):
+        self._viewer, self._ground = viewer, ground
+        places = (place for flag in flags for place in flag.places if place.yx is not None)
+        self._row: dict[FlagPlace, int] = {}
+        for row, place in enumerate(places):
+            self._row.setdefault(place, row)
+        self.layer = add_flag_points(viewer, flags, ground, mark=mark)
+
+    def go(self, place: FlagPlace) -> bool:
+        """Bring the slider to the frame of a place, and the place to the middle of the canvas.
+
+        Returns
+        -------
+        bool
+            Whether there is anything to see.
+        """
+        if self.layer is not None and place in self._row and len(self.layer.data) > self._row[place]:
+            sizes = np.full(len(self.layer.data), _SMALL)
+            sizes[self._row[place]] = _LARGE
+            self.layer.size = sizes
+        ground, viewer, world = self._ground, self._viewer, self._ground.world(place)
+        axis = None if place.frame is None else ground.time_axis
+        if axis is not None:
+            time = (place.frame or 0) * ground.scale[axis] + ground.translate[axis]
+            viewer.dims.set_point(viewer.dims.ndim + axis, time)
+        if world is None:
+            return axis is not None
+        camera_of(viewer).center = world[-2:]
+        return True
+
+    def remove(self) -> None:
+        """Take the layer out of the viewer, if it is still there."""
+        if self.layer is not None and self.layer in self._viewer.layers:
+            self._viewer.layers.remove(self.layer)
 
 
 def _short(words: str) -> str:

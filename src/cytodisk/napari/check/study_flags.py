@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from cytodisk.napari.check.flag_points import FlagGround, add_flag_points, jump_to
+from cytodisk.napari.check.flag_points import FlagGround, FlagMarks
 from cytodisk.napari.check.flag_table import FlagTable
 from cytodisk.napari.check.found_flags import FoundFlag, flags_of_study, sector_place
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
@@ -17,7 +17,7 @@ from cytodisk.windows.study_grid import polar_grid_of
 if TYPE_CHECKING:
     from cytodisk.napari.study_layers.shown_study import ShownStudy
 
-_HEIGHT = 220  # px of the table under the canvas
+_HEIGHT = 150  # px of the table under the canvas
 
 
 class ShownFlags:
@@ -35,9 +35,9 @@ class ShownFlags:
     def __init__(self, viewer: Any, flags: list[FoundFlag], ground: FlagGround, study: Study):
         self._viewer = viewer
         self.flags = flags
-        mark = {"study": str(study.path), "cell": None}
-        self.layer = add_flag_points(viewer, flags, ground, mark=mark)
-        self.table = FlagTable(lambda place: jump_to(viewer, place, ground))
+        self._marks = FlagMarks(viewer, flags, ground, {"study": str(study.path), "cell": None})
+        self.layer = self._marks.layer
+        self.table = FlagTable(self._marks.go)
         self.table.show_flags(flags, "No QC flags: nothing speaks against these results.")
         self.table.setMinimumHeight(_HEIGHT)
         self.dock = viewer.window.add_dock_widget(
@@ -46,8 +46,7 @@ class ShownFlags:
 
     def remove(self) -> None:
         """Take the layer and the table out of the viewer, if they are still there."""
-        if self.layer is not None and self.layer in self._viewer.layers:
-            self._viewer.layers.remove(self.layer)
+        self._marks.remove()
         self._viewer.window.remove_dock_widget(self.table)
 
 

@@ -1,0 +1,119 @@
+"""Draw the screenshots of the page "In napari", of simulated cells alone.
+
+    xvfb-run -a -s '-screen 0 1600x1000x24' python docs/draw_napari.py
+
+Writes into `docs/source/guides/napari`. Without a name it makes all pictures; with names, those.
+"""
+
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from napari import Viewer
+from PIL import Image
+from qtpy.QtWidgets import QApplication
+
+TARGET = Path(__file__).resolve().parent / "source" / "guides" / "napari"
+WIDTH, HEIGHT = 1280, 800
+WAIT_S = 600.0
+COLOURS = 200  # of a picture: a third of the bytes
+
+
+def wait(until: Callable[[], bool], seconds: float = WAIT_S) -> None:
+    """Let the viewer work until something is done."""
+    end = time.monotonic() + seconds
+    while not until():
+        QApplication.processEvents()
+        time.sleep(0.02)
+        if time.monotonic() > end:
+            raise TimeoutError("the viewer takes too long")
+
+
+def settle(seconds: float = 1.5) -> None:
+    """Let the viewer draw."""
+    end = time.monotonic() + seconds
+    wait(lambda: time.monotonic() > end)
+
+
+def save(viewer: Viewer, name: str) -> None:
+    """Write a screenshot of the whole window."""
+    settle()
+    picture = Image.fromarray(viewer.screenshot(canvas_only=False, flash=False)).convert("RGB")
+    TARGET.mkdir(exist_ok=True)
+    picture.quantize(COLOURS).save(TARGET / f"{name}.png", optimize=True)
+
+
+def opened(sample: str) -> Viewer:
+    """A viewer with simulated cells, as File, Open Sample opens them."""
+    viewer = Viewer(title="napari")
+    viewer.window.resize(WIDTH, HEIGHT)
+    viewer.open_sample("cytodisk", sample)
+    viewer.theme = "light"
+    return viewer
+
+
+def dock(viewer: Viewer, name: str, width: int = 330) -> Any:
+    """A widget of the plugin, as the menu Plugins opens it."""
+    holder, widget = viewer.window.add_plugin_dock_widget("cytodisk", name)
+    holder.setMinimumWidth(width)
+    return widget
+
+
+def run(widget: Any) -> None:
+    """Press the button of a widget, and wait for its result."""
+    widget.run()
+    wait(lambda: widget.work.done)
+    settle()
+
+
+def check() -> None:
+    """A wrong frame, found before anything is mapped."""
+    viewer = opened("wrong_frame")
+    widget = dock(viewer, "Check masks")
+    run(widget)
+    names = [flag.name for flag in widget.found.flags]
+    jumps = widget.table.tree.topLevelItem(names.index("area jumps"))
+    widget.table.tree.setCurrentItem(jumps.child(0))
+    save(viewer, "check")
+    viewer.close()
+
+
+def map_cells() -> None:
+    """Cells of an image with windows."""
+    viewer = opened("cells")
+    widget = dock(viewer, "Map cells")
+    run(widget)
+    save(viewer, "map")
+    viewer.close()
+
+
+def follow() -> None:
+    """A movie that was followed, with its disk, and a correlation."""
+    viewer = opened("movie")
+    widget = dock(viewer, "Follow cells")
+    run(widget)
+    viewer.dims.set_current_step(0, 20)
+    save(viewer, "follow")
+    disk = dock(viewer, "Disk")
+    settle()
+    centre = np.asarray(widget.shown.study.cells.loc[20, ["centroid_y", "centroid_x"]], dtype=float)
+    viewer.cursor.position = (
+        *np.asarray(viewer.dims.point)[:1],
+        *(centre * widget.shown.study.scale.pixel_size_um),
+    )
+    disk.setVisible(True)
+    save(viewer, "disk")
+    correlate = dock(viewer, "Correlate")
+    run(correlate)
+    save(viewer, "correlate")
+    viewer.close()
+
+
+PICTURES = {"check": check, "map": map_cells, "follow": follow}
+
+if __name__ == "__main__":
+    for picture in sys.argv[1:] or PICTURES:
+        PICTURES[picture]()
