@@ -11,7 +11,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from napari import Viewer
 from PIL import Image
 from qtpy.QtWidgets import QApplication
@@ -97,14 +96,7 @@ def follow() -> None:
     run(widget)
     viewer.dims.set_current_step(0, 20)
     save(viewer, "follow")
-    disk = dock(viewer, "Disk")
-    settle()
-    centre = np.asarray(widget.shown.study.cells.loc[20, ["centroid_y", "centroid_x"]], dtype=float)
-    viewer.cursor.position = (
-        *np.asarray(viewer.dims.point)[:1],
-        *(centre * widget.shown.study.scale.pixel_size_um),
-    )
-    disk.setVisible(True)
+    dock(viewer, "Disk")
     save(viewer, "disk")
     correlate = dock(viewer, "Correlate")
     run(correlate)

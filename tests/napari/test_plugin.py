@@ -23,3 +23,12 @@ def test_a_viewer_opens(make_viewer: Callable[..., Any]) -> None:
     viewer.add_labels(np.arange(100).reshape(10, 10))
 
     assert viewer.screenshot(flash=False).shape[-1] == 4
+
+
+@pytest.mark.parametrize("name", ["Check masks", "Map cells", "Follow cells", "Correlate", "Disk"])
+def test_widgets_of_the_menu_have_the_viewer_itself(make_viewer: Callable[..., Any], name: str) -> None:
+    viewer = make_viewer()
+
+    _, widget = viewer.window.add_plugin_dock_widget("cytodisk", name)
+
+    assert widget.viewer is viewer

@@ -24,6 +24,7 @@ from cytodisk.napari.commands.made_study import MadeStudy
 from cytodisk.napari.commands.open_widgets import layers_of
 from cytodisk.napari.commands.results_panel import ResultsPanel
 from cytodisk.napari.forms.parameter_form import ParameterForm
+from cytodisk.napari.plain_viewer import plain_viewer
 from cytodisk.napari.study_layers.shown_study import ShownStudy
 from cytodisk.napari.study_layers.study_place import MARK
 from cytodisk.napari.viewer_parts import show_info
@@ -50,7 +51,7 @@ class CommandWidget(QWidget):
 
     def __init__(self, viewer: Any, form: ParameterForm, run_words: str):
         super().__init__()
-        self.viewer, self.form = viewer, form
+        self.viewer, self.form = plain_viewer(viewer), form
         self.work: Work | None = None
         self.choices = QFormLayout()
         self.choices.setContentsMargins(4, 4, 4, 0)

@@ -60,7 +60,7 @@ class Correlate(CommandWidget):
         for box in (self.signal, self.with_):
             box.currentIndexChanged.connect(lambda _: self._warn())
         form.changed.connect(self._warn)
-        for event in (napari_viewer.layers.events.inserted, napari_viewer.layers.events.removed):
+        for event in (self.viewer.layers.events.inserted, self.viewer.layers.events.removed):
             event.connect(self._list_studies)
         self.destroyed.connect(lambda *_: self._let_go())
         self._list_studies()

@@ -63,16 +63,16 @@ class LayersWidget(CommandWidget):
         self.made: MadeStudy | None = None
         self.shown: ShownStudy | None = None
         self.flags: ShownFlags | None = None
-        self.masks = LayerChoice(viewer, MASKS)
-        self.signal = LayerChoice(viewer, SIGNALS, several=True)
-        self.nuclei = LayerChoice(viewer, NUCLEI, optional=True)
-        self.tracks = LayerChoice(viewer, TRACKS, optional=True) if "tracks" in without else None
+        self.masks = LayerChoice(self.viewer, MASKS)
+        self.signal = LayerChoice(self.viewer, SIGNALS, several=True)
+        self.nuclei = LayerChoice(self.viewer, NUCLEI, optional=True)
+        self.tracks = LayerChoice(self.viewer, TRACKS, optional=True) if "tracks" in without else None
         for name, choice in self._layer_choices.items():
             self.choices.addRow(name, choice)
         self._signal_touched = False
         self._choose_layers()
         self.signal.changed.connect(self._touch_signal)
-        for event in (viewer.layers.events.inserted, viewer.layers.events.removed):
+        for event in (self.viewer.layers.events.inserted, self.viewer.layers.events.removed):
             event.connect(self._choose_layers)
         self.destroyed.connect(lambda *_: self._let_go())
         self.results.next_wanted.connect(self.correlate)

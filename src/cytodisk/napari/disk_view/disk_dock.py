@@ -18,6 +18,7 @@ from cytodisk.napari.disk_view.drawn_marks import draw_marks
 from cytodisk.napari.disk_view.pointing import Pointed, ViewerPlaces, pointed_in_cell, pointed_in_disk
 from cytodisk.napari.disk_view.viewer_canvas import camera_of, text_colour_of
 from cytodisk.napari.disk_view.viewer_link import ViewerLink
+from cytodisk.napari.plain_viewer import plain_viewer
 from cytodisk.napari.study_layers.shown_study import shown_studies
 
 NO_STUDY = (
@@ -50,7 +51,7 @@ class DiskDock(QWidget):
 
     def __init__(self, napari_viewer: Any):
         super().__init__()
-        self.viewer = napari_viewer
+        self.viewer = plain_viewer(napari_viewer)
         self.parts = DiskParts(self)
         self.state: DiskState | None = None
         self.pointed: Pointed | None = None
