@@ -1,4 +1,4 @@
-"""Size of a study's report page, and how fast it is written, loaded and moved through time in Chromium."""
+"""Size of a report page, how fast it is written and first seen in Chromium, and moved through time."""
 
 import argparse
 import shutil
@@ -28,6 +28,7 @@ _QUIET = (
     "--window-size=1366,768",
 )
 _LOADS = 5
+_SEEN = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime"
 _GO_TO = """
 cytodisk.drawMilliseconds = null;
 const slider = document.getElementById("time");
@@ -53,11 +54,13 @@ def wait_for(browser: webdriver.Chrome, expression: str) -> Any:
     return WebDriverWait(browser, 60, 0.01).until(lambda _: browser.execute_script(f"return {expression}"))
 
 
-def load_seconds(browser: webdriver.Chrome, page: Path) -> float:
-    """From the start of navigation until all views are drawn."""
+def load_seconds(browser: webdriver.Chrome, page: Path, is_movie: bool) -> tuple[float, float]:
+    """From the start of navigation until text is seen, and until all views are drawn."""
     browser.get(page.as_uri())
-    wait_for(browser, "window.cytodisk?.ready && cytodisk.shown !== null")
-    return float(browser.execute_script("return cytodisk.readyMilliseconds")) / 1000
+    wait_for(browser, "window.cytodisk?.ready" + (" && cytodisk.shown !== null" if is_movie else ""))
+    seen = wait_for(browser, _SEEN)
+    drawn = browser.execute_script("return cytodisk.readyMilliseconds")
+    return float(seen) / 1000, float(drawn) / 1000
 
 
 def frame_milliseconds(browser: webdriver.Chrome) -> list[float]:
@@ -71,21 +74,24 @@ def frame_milliseconds(browser: webdriver.Chrome) -> list[float]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("study", type=Path, nargs="+", help="study folders of movies")
+    parser.add_argument("study", type=Path, nargs="+", help="study folders of movies or masks")
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         browser = open_browser(folder)
         try:
             for path in parser.parse_args().study:
+                study = cd.open_study(path)
                 start = time.perf_counter()
-                page = write_report(cd.open_study(path), Path(folder) / "report.html")
+                page = write_report(study, Path(folder) / "report.html")
                 written = time.perf_counter() - start
-                loads = [load_seconds(browser, page) for _ in range(_LOADS)]
-                frames = frame_milliseconds(browser)
+                loads = [load_seconds(browser, page, study.is_movie) for _ in range(_LOADS)]
+                seen, drawn = (statistics.median(times) for times in zip(*loads, strict=True))
                 print(
-                    f"{path.name}: {page.stat().st_size / 1e6:.2f} MB, written in {written:.1f} s, loaded in "
-                    f"{statistics.median(loads):.2f} s (median of {_LOADS}); a frame takes "
-                    f"{statistics.median(frames):.0f} ms (median), {max(frames):.0f} ms at most"
+                    f"{path.name}: {page.stat().st_size / 1e6:.2f} MB, written in {written:.1f} s; first "
+                    f"text after {seen:.2f} s, all drawn after {drawn:.2f} s (medians of {_LOADS})"
                 )
+                if study.is_movie:
+                    frames = frame_milliseconds(browser)
+                    print(f"  a frame takes {statistics.median(frames):.0f} ms, {max(frames):.0f} ms at most")
         finally:
             browser.quit()
 

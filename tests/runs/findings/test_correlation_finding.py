@@ -51,10 +51,10 @@ def test_what_nothing_speaks_against() -> None:
     found = finding(correlation())
     assert found.kind == "found"
     assert found.sentences == (
-        "Rac1 in layer 0 (outermost) rises 15 s before the edge protrudes: correlation 0.42, 0.38 without "
-        "geometry, q = 0.002; 12 of 20 sectors show it by themselves (p < 0.05), where series shuffled in "
-        "time would give about 1.",
-        "Rac1 comes first, as a cause would; that alone does not make it the cause. Layer 1 shows the same.",
+        "Rac1 in layer 0 (outermost) rises 15 s before the edge protrudes: correlation 0.42 (0.38 without "
+        "geometry), q = 0.002.",
+        "12 of 20 sectors show it by themselves (p < 0.05); series shuffled in time would give about 1. Rac1 "
+        "comes first, as a cause would; that alone does not make it the cause. Layer 1 shows the same.",
         "This is one cell: what others do is not known.",
     )
 
@@ -156,6 +156,6 @@ def test_a_cluster_alone() -> None:
     }
     found.clusters = pd.DataFrame([cluster | {"layers": "0–2", "sectors": "12–25", "p_partial": 0.01}])
     assert finding(found).sentences[0] == (
-        "Rac1 in sectors 12–25, layers 0–2 rises 10 s after the edge protrudes: correlation 0.31, p = 0.004, "
-        "0.01 without geometry, mean of 18 neighbouring windows."
+        "Rac1 in sectors 12–25, layers 0–2 rises 10 s after the edge protrudes: correlation 0.31 in 18 "
+        "neighbouring windows, p = 0.004 (0.01 without geometry)."
     )

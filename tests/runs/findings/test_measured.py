@@ -82,8 +82,8 @@ def test_single_cells(tmp_path: Path) -> None:
     )
     assert found.sentences[1] == (
         "Rac1 is brightest in layer 0 (outermost), 1.50 times the cell's mean (in the median; this layer is "
-        "the brightest in 5 of 5 cells); edge to centre 1.50 (quartiles 1.50 and 1.50); nucleus to cytoplasm "
-        "0.70 (quartiles 0.60 and 0.80); background not subtracted."
+        "the brightest in 5 of 5 cells); edge to centre 1.50 (quartiles 1.50–1.50); nucleus to cytoplasm "
+        "0.70 (quartiles 0.60–0.80); background not subtracted."
     )
     assert found.command.startswith("cytodisk population ")
 

@@ -9,13 +9,11 @@ from cytodisk.number_words import counted
 from cytodisk.runs.findings.doubt_words import bearing_flags
 from cytodisk.runs.findings.finding import Finding, listed
 from cytodisk.runs.findings.layer_levels import layer_levels
-from cytodisk.runs.findings.signal_sentences import signal_sentence
+from cytodisk.runs.findings.signal_sentences import signal_sentences
 from cytodisk.runs.groups.groups import CONDITION
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.study_flags import run_flags
 from cytodisk.store.study import Study
-
-_MOST_CHANNELS = 2
 
 
 def cells_finding(study: Study, flags: Sequence[QCFlag] | None = None) -> Finding:
@@ -36,8 +34,7 @@ def cells_finding(study: Study, flags: Sequence[QCFlag] | None = None) -> Findin
     sentences = [mapped_sentence(study)]
     levels = layer_levels(study)
     if levels is not None:
-        shown = levels.channels[:_MOST_CHANNELS]
-        sentences += [signal_sentence(study, levels, channel) for channel in shown]
+        sentences += signal_sentences(study, levels)
     if raised and levels is not None:
         sentences[-1] = f"{sentences[-1][:-1]}, but QC flags are raised that bear on it: {listed(raised)}."
     return Finding("measured", tuple(sentences), compare_command(study))

@@ -68,7 +68,7 @@ def _found(
     but = f", but QC flags are raised that bear on it: {listed(list(flagged))}" if flagged else ""
     first = f"{_what(study, found, best)}: {_numbers(found, cell, best)}{but}."
     alike = [peak for peak in clear if peak is not best and _alike(peak, best)]
-    second = f"{_meaning(found, best)}{_also(alike)}"
+    second = f"{_sectors(found, cell, best)}{_meaning(found, best)}{_also(alike)}"
     kind: Any = "doubtful" if flagged else "found"
     words = tuple(filter(None, (_capital(first), second, _elsewhere(found, best, doubted))))
     return Finding(kind, words, size=abs(best.row["correlation"]))
@@ -193,32 +193,33 @@ def _what(study: Study, found: Correlation, peak: JudgedPeak) -> str:
 
 def _numbers(found: Correlation, cell: int, peak: JudgedPeak) -> str:
     row = peak.row
-    words = [f"correlation {signed_number(row['correlation'])}", _chance(peak)]
+    size = f"correlation {signed_number(row['correlation'])}"
     without = without_words(found, cell)
+    left: Any = row.get("correlation_partial" if peak.kind == "layer" else "p_partial")
+    known = bool(without) and pd.notna(left)
     if peak.kind == "cluster":
-        words += [f"{row['p_partial']:.2g} {without}"] * (bool(without) and pd.notna(row.get("p_partial")))
-        return f"{', '.join(words)}, mean of {row['windows']} neighbouring windows"
-    if without and pd.notna(row.get("correlation_partial")):
-        words.insert(1, f"{signed_number(row['correlation_partial'])} {without}")
-    return f"{', '.join(words)}{_sectors(found, cell, row)}"
+        of = f" in {row['windows']} neighbouring windows, {_chance(peak)}"
+        return f"{size}{of} ({left:.2g} {without})" if known else f"{size}{of}"
+    partial = f" ({signed_number(left)} {without})" if known else ""
+    return f"{size}{partial}, {_chance(peak)}"
 
 
 def _chance(peak: JudgedPeak) -> str:
     return f"q = {peak.row['q']:.2g}" if peak.kind == "layer" else f"p = {peak.row['p']:.2g}"
 
 
-def _sectors(found: Correlation, cell: int, row: dict[Any, Any]) -> str:
+def _sectors(found: Correlation, cell: int, peak: JudgedPeak) -> str:
     """How many single windows of a layer show the same, and how many would by chance."""
-    rows = found.windows[(found.windows["cell"] == cell) & (found.windows["layer"] == row["layer"])]
+    rows = found.windows[(found.windows["cell"] == cell) & (found.windows["layer"] == peak.row.get("layer"))]
     tested = rows[rows["p"].notna()] if "p" in rows else rows[:0]
     if tested.empty:
         return ""
-    same = (tested["p"] < SIGNIFICANT) & (tested["correlation"] * row["correlation"] > 0)
+    same = (tested["p"] < SIGNIFICANT) & (tested["correlation"] * peak.row["correlation"] > 0)
     chance = SIGNIFICANT * len(tested)
-    expected = f"{chance:.0f}" if chance >= 1 else "fewer than 1"
+    expected = f"about {chance:.0f}" if chance >= 1 else "fewer than 1"
     return (
-        f"; {int(same.sum())} of {len(tested)} sectors show it by themselves (p < 0.05), where series "
-        f"shuffled in time would give about {expected}"
+        f"{int(same.sum())} of {len(tested)} sectors show it by themselves (p < 0.05); series shuffled in "
+        f"time would give {expected}. "
     )
 
 

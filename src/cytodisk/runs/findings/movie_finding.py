@@ -13,7 +13,7 @@ from cytodisk.runs.findings.correlation_finding import correlation_finding
 from cytodisk.runs.findings.doubt_words import bearing_flags
 from cytodisk.runs.findings.finding import Finding, listed
 from cytodisk.runs.findings.layer_levels import LayerLevels, layer_levels
-from cytodisk.runs.findings.signal_sentences import signal_sentence
+from cytodisk.runs.findings.signal_sentences import signal_sentences
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.remedy import correlate_command
 from cytodisk.runs.qc_flags.study_flags import run_flags
@@ -91,8 +91,7 @@ def _signals(study: Study, cell: int, levels: LayerLevels | None) -> Iterator[st
     if levels is None:
         yield "No signal was given, so there is none to compare with the edge."
         return
-    for channel in levels.channels[:2]:
-        yield signal_sentence(study, levels, channel, cell)
+    yield from signal_sentences(study, levels, cell)
 
 
 def _motion(study: Study, cell: int) -> Iterator[str]:

@@ -12,22 +12,32 @@ from cytodisk.runs.findings.layer_names import channel_words, layer_name
 from cytodisk.store.nuclei.summary_columns import RATIO, column_of
 from cytodisk.store.study import Study
 
+_MOST_CHANNELS = 2
 _EVEN = 1.1
 """Times the cell's mean: a brightest layer that does not reach it is none."""
 _FEWEST_FOR_QUARTILES = 4
 
 
-def signal_sentence(study: Study, levels: LayerLevels, channel: str, cell: int | None = None) -> str:
-    """Where a channel is brightest, edge to centre and nucleus to cytoplasm.
+def signal_sentences(study: Study, levels: LayerLevels, cell: int | None = None) -> list[str]:
+    """Where the first channels are brightest, edge to centre and nucleus to cytoplasm.
 
     Parameters
     ----------
     study : Study
     levels : LayerLevels
-    channel : str
     cell : int, optional
         Of a movie, the cell that is told of; of single cells the median over all.
+
+    Returns
+    -------
+    list of str
+        One a channel; the last says that no background was subtracted.
     """
+    told = [_of_channel(study, levels, channel, cell) for channel in levels.channels[:_MOST_CHANNELS]]
+    return [*told[:-1], f"{told[-1][:-1]}; background not subtracted."]
+
+
+def _of_channel(study: Study, levels: LayerLevels, channel: str, cell: int | None) -> str:
     of_channel = levels.of(channel).dropna(how="all")
     name = channel_words(channel)
     name = f"{name[0].upper()}{name[1:]}" if name.startswith("signal ") else name
@@ -43,7 +53,7 @@ def signal_sentence(study: Study, levels: LayerLevels, channel: str, cell: int |
         most = int((of_channel.idxmax(axis=1) == brightest).sum())
         where += f" (in the median; this layer is the brightest in {most} of {len(of_channel)} cells)"
     parts = [where, *_ratios(study, levels, channel, cell)]
-    return f"{'; '.join(parts)}; background not subtracted."
+    return f"{'; '.join(parts)}."
 
 
 def _ratios(study: Study, levels: LayerLevels, channel: str, cell: int | None) -> list[str]:
@@ -63,5 +73,5 @@ def _told(name: str, values: pd.Series[float], cell: int | None) -> str:
     if known.empty:
         return ""
     low, middle, high = (ratio_words(float(known.quantile(share))) for share in (0.25, 0.5, 0.75))
-    spread = f" (quartiles {low} and {high})" if cell is None and len(known) >= _FEWEST_FOR_QUARTILES else ""
+    spread = f" (quartiles {low}–{high})" if cell is None and len(known) >= _FEWEST_FOR_QUARTILES else ""
     return f"{name} {middle}{spread}"

@@ -104,7 +104,7 @@
       return make("ul", { class: "cards" }, ...cards);
     };
 
-    const body = make("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": label });
+    const body = make("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `list of ${label}` });
     const count = make("output", { class: "count" });
     const turn = (by) => {
       change({ start: state.start + by * ROWS[state.cards ? "cards" : "table"] });
