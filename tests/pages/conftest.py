@@ -3,11 +3,12 @@ from pathlib import Path
 
 import pytest
 from matplotlib.figure import Figure
+from readable_pages import assert_readable
 
 
 @pytest.fixture
 def saved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Figure]]:
-    """Every page that was written, and that nothing of it is cut off or smaller than 6 points."""
+    """Every page that was written, and that nothing of it is cut off or too small, or lies on other text."""
     figures: list[Figure] = []
     write = Figure.savefig
 
@@ -35,10 +36,9 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Figure]]:
 
 
 def assert_whole_and_readable(figures: list[Figure]) -> None:
+    assert_readable(figures)
     for figure in figures:
         extent = figure.get_tightbbox()
         assert extent.x0 >= 0
         assert extent.y0 >= 0
         assert (extent.max <= figure.get_size_inches()).all()
-        texts = figure.findobj(lambda artist: hasattr(artist, "get_fontsize"))
-        assert min(text.get_fontsize() for text in texts if text.get_text()) >= 6.0

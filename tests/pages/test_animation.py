@@ -37,7 +37,7 @@ def test_frames_are_all_there(tmp_path: Path, windows: CellWindows, image: Float
     with Image.open(path) as movie:
         assert movie.info["duration"] == 250
         assert movie.info["loop"] == 0
-        assert movie.size == (551, 275)
+        assert movie.size == (552, 283)
     assert path.stat().st_size < 4 * 50_000
 
 

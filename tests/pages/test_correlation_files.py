@@ -69,7 +69,7 @@ def test_pages_of_a_signal_with_velocity(
     assert {path.parent for path in paths} == {with_velocity.path / "figures"}
     assert sorted(path.name for path in paths[0].parent.iterdir()) == sorted(names(paths))
     assert steps == [(done, 5) for done in range(6)]
-    for path, wide in zip(paths, (85, 180, 85, 180), strict=True):
+    for path, wide in zip(paths, (85, 119, 85, 119), strict=True):
         assert _pixels_across(path) == pytest.approx(wide / 25.4 * 200, abs=1.0)
     for figure in saved:
         words = " ".join(text.get_text() for text in figure.texts)

@@ -98,7 +98,7 @@ def test_pages_with_signal(scaled: Study, images: FloatArray, saved: list[Figure
     assert {path.parent for path in paths} == {scaled.path / "figures"}
     assert not list((scaled.path / "figures").glob(".*"))
     widths = {struct.unpack(">I", path.read_bytes()[16:20])[0] for path in paths[:-1]}
-    assert widths == {round(180 / 25.4 * 200)}
+    assert widths == {int(119 / 25.4 * 300)}
     assert GAP not in asked
     assert _count(paths[-1]) == FRAMES - 1
     assert done[0] == (0, 12)

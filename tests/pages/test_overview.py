@@ -36,7 +36,7 @@ def test_overview_of_many(tmp_path: Path, saved: list[Figure]) -> None:
     cells = _cells(["ok"] * 30 + ["refused"] * 3 + ["unreadable"])
     cells.attrs["units"] = {"area": "µm²"}
     path = write_overview(tmp_path / "overview.png", cells)
-    assert _pixels_across(path) == round(180 / 25.4 * 200)
+    assert _pixels_across(path) == int(119 / 25.4 * 300)
     status, histogram, scatter = saved[0].axes
     assert [patch.get_width() for patch in status.patches] == [30, 3, 1]
     assert sum(patch.get_height() for patch in histogram.patches) == 30

@@ -32,12 +32,11 @@ from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, colour_map, paper_st
 from cytodisk.scale import Scale
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
-_DPI = 100
-_WIDTH, _PANEL, _TOP, _BELOW = 140.0, 56.0, 7.0, 7.0  # mm
+_DPI = 118
+_WIDTH, _PANEL, _TOP, _BELOW = 119.0, 47.0, 7.0, 7.0  # mm
 _DISK_PIXELS = 176  # as wide as it is drawn
 _SIGNAL_LEVELS = 48  # noise in many colours is what makes such files long
 _RING_POINTS, _SPOKE_POINTS = 720, 96
-_SIDE_WIDTH = 0.36  # points; as strong as the sides that neighbours share in `draw_sectors`
 
 
 class AnimatedFrames:
@@ -166,7 +165,7 @@ def _draw_cell(ax: Axes, windows: CellWindows, *, over_signal: bool) -> None:
             _fill_sectors(ax, nucleus_arcs(windows), rings[grid.cytoplasm_layers])
     lines = [line[:, ::-1] for line in (*rings[: grid.layers - 1], *spokes)]
     colour = sector_style(grid, over_signal=over_signal)["edgecolors"]
-    ax.add_collection(LineCollection(lines, colors=colour, linewidths=_SIDE_WIDTH), autolim=False)
+    ax.add_collection(LineCollection(lines, colors=colour, linewidths=2.0 * sector_style(grid, over_signal=over_signal)["linewidths"]), autolim=False)
     draw_edge(ax, windows, over_signal=over_signal)
 
 

@@ -17,7 +17,7 @@ from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.cell.window_labels import draw_label_image
 from cytodisk.plot.field_of_view import frame_field
 from cytodisk.plot.outline_sides import outline_sides
-from cytodisk.plot.style import DOUBLE_COLUMN_MM, paper_style
+from cytodisk.plot.style import WIDE_MM, paper_style
 from cytodisk.runs.compare_windows.compare_parameters import ON_A_MAP, TITLES
 from cytodisk.runs.compare_windows.comparison import Comparison
 from cytodisk.store.figures_folder import drawing
@@ -86,7 +86,7 @@ def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = N
     if not chosen:
         return None
     name = "cells.png"
-    size = (DOUBLE_COLUMN_MM - _LEFT - 2.0 - _GAP * (_MOST_CELLS - 1)) / _MOST_CELLS
+    size = (WIDE_MM - _LEFT - 2.0 - _GAP * (_MOST_CELLS - 1)) / _MOST_CELLS
     with drawing(comparison.path, name) as folder, paper_style():
         sheet = Sheet(_TOP + len(comparison.methods) * (size + _WORDS + _GAP) + _BELOW)
         for column, cell in enumerate(chosen):

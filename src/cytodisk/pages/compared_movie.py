@@ -17,8 +17,8 @@ from cytodisk.pages.compared_layers import METHOD_STYLES, draw_measure_by_layer,
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.layer_looks import shown_layers
 from cytodisk.plot.style import (
-    DOUBLE_COLUMN_MM,
     SIGNAL_COLOURS,
+    WIDE_MM,
     colour_bar,
     paper_style,
     signal_limits,
@@ -153,7 +153,7 @@ def _draw_maps(
     sheet: Sheet, signals: dict[str, xr.DataArray], layers: Sequence[int], scale: Scale, channel: str
 ) -> None:
     """Activity maps, a column a method and a row a layer, which has the same colours for all methods."""
-    width = (DOUBLE_COLUMN_MM - _LEFT - _BAR - _GAP * (len(signals) - 1)) / len(signals)
+    width = (WIDE_MM - _LEFT - _BAR - _GAP * (len(signals) - 1)) / len(signals)
     for row, layer in enumerate(layers):
         top = _TOP + row * (_MAP + _MAP_GAP)
         limits = signal_limits(np.stack([values.sel(layer=layer) for values in signals.values()]))
@@ -168,7 +168,7 @@ def _draw_maps(
                 ax.set(xlabel="", xticklabels=[])
             if not row:
                 ax.set_title(TITLES[method], loc="left")
-        bar = sheet.axes(DOUBLE_COLUMN_MM - _BAR + 2.0, top, 2.0, _MAP)
+        bar = sheet.axes(WIDE_MM - _BAR + 2.0, top, 2.0, _MAP)
         colour_bar(drawn, bar, "mean (a.u.)", extend="both")
     sheet.text(_LEFT, 3.0, f"{channel}, mean of each window; grey: the window is empty")
 
@@ -189,7 +189,7 @@ def _draw_measures(
     unit = table.attrs["units"]["centroid_displacement"]
     rows = table[table["cell"] == cell]
     rows = rows[rows["channel"] == channel] if channel is not None else rows
-    width = (DOUBLE_COLUMN_MM - _LEFT - 4.0 - 2 * _PANEL_GAP) / 3
+    width = (WIDE_MM - _LEFT - 4.0 - 2 * _PANEL_GAP) / 3
     axes = [sheet.axes(_LEFT + number * (width + _PANEL_GAP), top, width, _PANEL) for number in range(3)]
     motion = "centroid_displacement"
     name, label, title = motion, f"{motion} ({unit})", "motion of windows a frame"

@@ -8,17 +8,17 @@ import pandas as pd
 import xarray as xr
 from matplotlib.lines import Line2D
 
-from cytodisk.pages.drawn_movie import HEADING_MM, LEFT_MM, DrawnMovie
+from cytodisk.pages.drawn_movie import LEFT_MM, DrawnMovie
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.layer_looks import layer_colours, layer_names, shown_layers
 from cytodisk.plot.movie.layer_lines import draw_by_layer
-from cytodisk.plot.style import DOUBLE_COLUMN_MM
+from cytodisk.plot.style import WIDE_MM
 from cytodisk.windows.layer_coords import layer_coords
 
 _MOST_CORRELATIONS = 2
 _HIGH_CORRELATION = 0.9
 _PANEL, _ROW, _AXIS = 34.0, 49.0, 14.0  # mm: height of a panel, of a row, room for the labels of an axis
-_KEY_COLUMNS, _KEY_LINE = 4, 3.5  # names of layers side by side; mm, height of a second line
+_KEY_COLUMNS, _KEY_LINE = 2, 3.6  # names of layers side by side; mm, height of a line
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,10 +56,10 @@ def consistency_sheet(movie: DrawnMovie) -> Sheet | None:
     measures = consistency_measures(movie)
     if not measures:
         return None
-    columns = {1: 1, 3: 3}.get(len(measures), 2)
-    width = (DOUBLE_COLUMN_MM - 2 * LEFT_MM - _AXIS * columns) / columns
+    columns = min(len(measures), 2)
+    width = (WIDE_MM - 2 * LEFT_MM - _AXIS * columns) / columns
     layers = shown_layers(movie.grid.layers, movie.cytoplasm_layers)
-    top = HEADING_MM + 10.0 + (_KEY_LINE if len(layers) > _KEY_COLUMNS else 0.0)
+    top = movie.heading_mm + 6.5 + _KEY_LINE * -(-len(layers) // _KEY_COLUMNS)
     sheet = Sheet(top + -(-len(measures) // columns) * _ROW - 3.0)
     movie.write_heading(sheet, "consistency of windows from a frame to the next")
     for number, measure in enumerate(measures):
@@ -121,5 +121,4 @@ def _write_key(sheet: Sheet, layers: Sequence[int], movie: DrawnMovie) -> None:
         Line2D([], [], color=colour, linewidth=1.5, label=name)
         for colour, name in zip(colours, names, strict=True)
     ]
-    columns = _KEY_COLUMNS if len(handles) <= _KEY_COLUMNS else 3
-    sheet.key(LEFT_MM, HEADING_MM - 1.5, handles, columns=columns)
+    sheet.key(LEFT_MM, movie.heading_mm - 1.5, handles, columns=_KEY_COLUMNS)

@@ -9,10 +9,10 @@ import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 
-from cytodisk.pages.drawn_correlation import DrawnCorrelation, broken_lines
+from cytodisk.pages.drawn_correlation import DrawnCorrelation
 from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.settings_words import detrending
-from cytodisk.pages.sheet import Sheet
+from cytodisk.pages.sheet import Sheet, broken_lines
 from cytodisk.plot.correlation.correlation_curves import draw_correlation_curves, draw_map_pair
 from cytodisk.plot.correlation.correlation_peaks import PeakMap, Shown
 from cytodisk.plot.correlation.curve_key import curve_key
@@ -22,7 +22,7 @@ from cytodisk.plot.correlation.pair_curves import draw_pairs
 from cytodisk.plot.correlation.pair_table import PairTable, drawn_kinds
 from cytodisk.plot.correlation.peak_maps import draw_peaks_on_cell, draw_peaks_on_disk, peak_key
 from cytodisk.plot.layer_looks import shown_layers
-from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM, colour_bar
+from cytodisk.plot.style import SINGLE_COLUMN_MM, WIDE_MM, colour_bar
 from cytodisk.plot.time_axis import time_stamp
 from cytodisk.plot.time_raster import bar_beside, cut_off
 from cytodisk.runs.correlate.cluster_words import cluster_line
@@ -89,7 +89,7 @@ def _columns(key: list[Any]) -> int:
 
 def maps_page(one: DrawnCorrelation) -> Sheet:
     """The signal in the outermost layer, and what it was correlated with, by time and sector."""
-    heading = one.heading(DOUBLE_COLUMN_MM, f"{one.signal_name} and {one.with_words}", *_map_notes(one))
+    heading = one.heading(WIDE_MM, f"{one.signal_name} and {one.with_words}", *_map_notes(one))
     head = heading.height_mm
     sheet = Sheet(head + 4.0 + _MAP_HEIGHT + 9.0)
     heading.write(sheet)
@@ -167,7 +167,7 @@ def pairs_page(one: DrawnCorrelation) -> Sheet | None:
     if pairs is None or not kinds:
         return None
     tables = [PairTable.of(pairs, along=kind, cell=one.cell) for kind in kinds]
-    width = (DOUBLE_COLUMN_MM - _PAIR_LEFT - _PAIR_BAR - 2 * _PAIR_GAP) / 3
+    width = (WIDE_MM - _PAIR_LEFT - _PAIR_BAR - 2 * _PAIR_GAP) / 3
     page = _PAIR_LEFT + len(kinds) * (width + _PAIR_GAP) - _PAIR_GAP + _PAIR_BAR
     page = max(page, SINGLE_COLUMN_MM)
     heading = one.heading(page, f"{one.signal_name} with {one.with_name}, all pairs of windows")
@@ -199,7 +199,7 @@ def events_page(one: DrawnCorrelation) -> Sheet | None:
     if events.empty or averages.empty:
         return None
     what = f"events of the edge, and {one.signal_name} around onsets of protrusion"
-    heading = one.heading(DOUBLE_COLUMN_MM, what, *_event_notes(one))
+    heading = one.heading(WIDE_MM, what, *_event_notes(one))
     head = heading.height_mm
     sheet = Sheet(head + 4.0 + _MAP_HEIGHT + 9.0)
     heading.write(sheet)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,7 +13,7 @@ from cytodisk.arrays import BoolArray
 from cytodisk.pages.drawn_movie import LEFT_MM, DrawnMovie
 from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.settings_words import settings_words, used_windows
-from cytodisk.pages.sheet import Sheet
+from cytodisk.pages.sheet import BOLD_MM, Sheet, broken_lines
 from cytodisk.plot.correlation.correlation_peaks import PeakMap
 from cytodisk.runs.channel_names import shortened
 from cytodisk.runs.correlate.verdict import jittered_rows
@@ -25,7 +24,6 @@ VELOCITY_NAMES = {"velocity": "velocity", "velocity_cell_frame": "velocity (cell
 """What edge velocities are called in pictures."""
 
 _HEADING_MM, _LINE_MM = 13.0, 3.5
-_CHARACTER_MM, _BOLD_MM = 1.22, 1.9  # mean width at 7 points, and bold at 8
 _LONGEST_NAME = 18
 
 
@@ -157,7 +155,7 @@ class DrawnCorrelation:
         facts = [f"cell {self.cell}", grid_words(grid)]
         facts.append(f"{self.movie.frames} frames")
         facts += [*settings_words(self.correlation.settings), *notes]
-        title = broken_lines(what.split(" "), " ", width_mm - 2 * LEFT_MM, _BOLD_MM)
+        title = broken_lines(what.split(" "), " ", width_mm - 2 * LEFT_MM, BOLD_MM)
         return Heading(title, broken_lines(facts, " · ", width_mm - 2 * LEFT_MM))
 
 
@@ -188,29 +186,3 @@ class Heading:
         for words in self.facts:
             sheet.text(LEFT_MM, top + 0.3, words, color="0.3")
             top += _LINE_MM
-
-
-def broken_lines(
-    parts: Sequence[str], between: str, room_mm: float, character_mm: float = _CHARACTER_MM
-) -> list[str]:
-    """Parts joined into lines that fit into the room, if the parts themselves do.
-
-    Parameters
-    ----------
-    parts : sequence of str
-    between : str
-        Put between parts on a line.
-    room_mm, character_mm : float
-        Length of a line, and of a character.
-
-    Returns
-    -------
-    list of str
-    """
-    lines = [parts[0]]
-    for part in parts[1:]:
-        if len(lines[-1]) + len(between) + len(part) <= int(room_mm / character_mm):
-            lines[-1] += between + part
-        else:
-            lines.append(part)
-    return lines

@@ -11,14 +11,16 @@ import numpy as np
 from cytodisk.arrays import FloatArray
 from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.movie_cell import MovieCell
-from cytodisk.pages.sheet import Sheet
+from cytodisk.pages.sheet import Sheet, broken_lines
+from cytodisk.plot.style import WIDE_MM
 from cytodisk.runs.channel_names import shown_name
 from cytodisk.store.study_folder import part_key
 from cytodisk.store.study_kind import FIGURES
 from cytodisk.windows.polar_windows import CellWindows
 
-HEADING_MM = 12.0
 LEFT_MM = 4.0
+
+_TITLE_MM, _LINE_MM = 8.4, 3.6  # down to below the name, and of each line below it
 
 _LONGEST_CHANNEL = 24
 
@@ -58,11 +60,21 @@ class DrawnMovie(MovieCell):
         return self.grid.on(self.maps[frame])
 
     def write_heading(self, sheet: Sheet, what: str) -> None:
-        """Name of the cell, its frames, scale, and what the page shows, in two lines."""
+        """Name of the cell and what the page shows; below it frames, grid and scale."""
         label = self.activity.attrs.get("label")
         name = f"cell {self.cell}" + ("" if label is None else f" (label {label})")
         sheet.text(LEFT_MM, 5.0, f"{name}: {what}", fontsize=8, weight="bold")
-        sheet.text(LEFT_MM, 8.8, " · ".join(self._facts()), color="0.3")
+        for number, words in enumerate(self._lines):
+            sheet.text(LEFT_MM, 8.8 + _LINE_MM * number, words, color="0.3")
+
+    @property
+    def heading_mm(self) -> float:
+        """From the page's upper border to what comes below the heading."""
+        return _TITLE_MM + _LINE_MM * len(self._lines)
+
+    @cached_property
+    def _lines(self) -> list[str]:
+        return broken_lines(self._facts(), " · ", WIDE_MM - 2 * LEFT_MM)
 
     def save(self, sheet: Sheet, what: str) -> Path:
         """Write a page whole or not at all."""

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from cytodisk.arrays import FloatArray
-from cytodisk.pages.drawn_movie import HEADING_MM, DrawnMovie
+from cytodisk.pages.drawn_movie import DrawnMovie
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.movie.edge_arrows import draw_velocity_arrows
 from cytodisk.plot.movie.edge_motion import draw_area_change, draw_tracks
@@ -12,8 +12,8 @@ from cytodisk.plot.movie.mean_velocity import draw_mean_velocity
 from cytodisk.plot.style import nice_length
 from cytodisk.plot.time_axis import time_stamp
 
-_ARROWS, _TRACKS = 80.0, 66.0  # mm, width of the panels
-_TALL, _LINES, _LINE_LEFT, _LINE_WIDTH = 72.0, 28.0, 17.0, 156.0  # mm
+_ARROWS, _TRACKS, _TRACKS_LEFT = 52.0, 44.0, 60.0  # mm, width of the panels
+_TALL, _LINES, _LINE_LEFT, _LINE_WIDTH = 54.0, 26.0, 15.0, 98.0  # mm
 _POINTS_SHOWN = 120  # arrows around the cell
 _OUTLINES_SHOWN = 20
 _USUAL_ARROW, _LONGEST_ARROW = 0.12, 0.25  # of the cell: percentile 95, and the longest
@@ -31,7 +31,7 @@ def edge_sheet(movie: DrawnMovie) -> Sheet:
     -------
     Sheet
     """
-    top = HEADING_MM + 12.0
+    top = movie.heading_mm + 17.0
     first = top + _TALL + 14.0
     second = first + _LINES + 9.0
     velocity = movie.activity["velocity"].transpose("time", "sector").load()
@@ -88,16 +88,21 @@ def _draw_arrows(sheet: Sheet, top: float, movie: DrawnMovie, velocity: FloatArr
     )
     stamp = time_stamp(time, movie.scale)
     stamp += "" if movie.scale.frame_interval_s is None else f" (frame {time})"
-    sheet.text(4.0, HEADING_MM + 3.0, f"largest mean speed: {stamp} and the next", fontsize=7.5)
+    _write_above(sheet, movie, 4.0, "largest mean speed:", f"{stamp} and the next")
 
 
 def _draw_tracks(sheet: Sheet, top: float, movie: DrawnMovie) -> None:
-    ax = sheet.axes(94.0, top, _TRACKS, _TALL)
+    ax = sheet.axes(_TRACKS_LEFT, top, _TRACKS, _TALL)
     ax.set_anchor("NW")
     every = -(-movie.frames // _OUTLINES_SHOWN)
     draw_tracks(ax, movie.points_yx, every=every, first_frame=movie.first, scale=movie.scale)
     which = "every frame" if every == 1 else f"every {every} frames"
-    sheet.text(94.0, HEADING_MM + 3.0, f"outlines {which}, paths of points from the dot on", fontsize=7.5)
+    _write_above(sheet, movie, _TRACKS_LEFT, f"outlines {which},", "paths of points from the dot on")
+
+
+def _write_above(sheet: Sheet, movie: DrawnMovie, left: float, *lines: str) -> None:
+    for number, words in enumerate(lines):
+        sheet.text(left, movie.heading_mm + 3.0 + 3.3 * number, words, fontsize=7.5)
 
 
 def _draw_changes(

@@ -11,7 +11,7 @@ from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError
 from cytodisk.pages.animation import write_animation
 from cytodisk.pages.consistency_page import consistency_sheet
-from cytodisk.pages.drawn_movie import HEADING_MM, LEFT_MM, DrawnMovie
+from cytodisk.pages.drawn_movie import LEFT_MM, DrawnMovie
 from cytodisk.pages.edge_page import edge_sheet
 from cytodisk.pages.profile_page import profile_sheet
 from cytodisk.pages.sheet import Sheet
@@ -19,7 +19,7 @@ from cytodisk.plot.cell.frame_strip import draw_strip
 from cytodisk.plot.field_of_view import field_of_view
 from cytodisk.plot.layer_looks import shown_layers
 from cytodisk.plot.movie.activity_maps import draw_layers, draw_velocity_map
-from cytodisk.plot.style import DOUBLE_COLUMN_MM, colour_bar, paper_style, signal_limits
+from cytodisk.plot.style import WIDE_MM, colour_bar, paper_style, signal_limits
 from cytodisk.plot.time_axis import time_stamp
 from cytodisk.plot.time_raster import bar_beside
 from cytodisk.runs.channel_names import file_names
@@ -31,7 +31,7 @@ Progress = Callable[[int, int], None]
 
 MOST_ANIMATED = 60  # frames; more make long files
 _STRIP_FRAMES, _STRIP_COLUMNS = 6, 3
-_MAP_LEFT, _MAP_WIDTH, _VELOCITY, _MAP, _MAP_GAP = 15.0, 145.0, 34.0, 25.0, 5.5  # mm
+_MAP_LEFT, _MAP_WIDTH, _VELOCITY, _MAP, _MAP_GAP = 13.0, 87.0, 30.0, 23.0, 5.5  # mm
 _TALLEST = 1.3  # height of a panel of the strip over its width
 
 
@@ -132,9 +132,9 @@ def _pages(movie: DrawnMovie, signal: SignalAt | None) -> list[tuple[str, Callab
 
 
 def _velocity_sheet(movie: DrawnMovie) -> Sheet:
-    sheet = Sheet(HEADING_MM + 6.0 + 2 * _VELOCITY + 12.0)
+    sheet = Sheet(movie.heading_mm + 6.0 + 2 * _VELOCITY + 12.0)
     movie.write_heading(sheet, "edge velocity")
-    ax = sheet.axes(_MAP_LEFT, HEADING_MM + 6.0, _MAP_WIDTH, 2 * _VELOCITY)
+    ax = sheet.axes(_MAP_LEFT, movie.heading_mm + 6.0, _MAP_WIDTH, 2 * _VELOCITY)
     draw_velocity_map(ax, movie.activity["velocity"], scale=movie.scale)
     ax.set_title("edge velocity: protrusion red, retraction blue", loc="left", y=1.0, pad=2.5)
     return sheet
@@ -142,7 +142,7 @@ def _velocity_sheet(movie: DrawnMovie) -> Sheet:
 
 def _activity_sheet(movie: DrawnMovie, channel: int) -> Sheet:
     layers = len(shown_layers(movie.grid.layers, movie.cytoplasm_layers))
-    first = HEADING_MM + 5.0
+    first = movie.heading_mm + 5.0
     below = first + _VELOCITY + _MAP_GAP
     sheet = Sheet(below + layers * (_MAP + _MAP_GAP) + 5.0)
     name = movie.shown_name(channel)
@@ -165,15 +165,15 @@ def _strip_sheet(movie: DrawnMovie, signal: SignalAt | None) -> Sheet:
     shown = [image for image in images if image is not None]
     extent = field_of_view([movie.points_yx])
     wide, right = extent[3] - extent[2], 15.0 if shown else 0.0
-    width = (DOUBLE_COLUMN_MM - 2 * LEFT_MM - right - 3.0 * (_STRIP_COLUMNS - 1)) / _STRIP_COLUMNS
+    width = (WIDE_MM - 2 * LEFT_MM - right - 3.0 * (_STRIP_COLUMNS - 1)) / _STRIP_COLUMNS
     height = width * min((extent[1] - extent[0]) / wide, _TALLEST)
     rows = -(-len(frames) // _STRIP_COLUMNS)
-    sheet = Sheet(HEADING_MM + rows * (height + 10.0) + 1.0)
+    sheet = Sheet(movie.heading_mm + rows * (height + 10.0) + 1.0)
     movie.write_heading(sheet, "windows through time" + (f", over {movie.shown_name()}" if shown else ""))
     axes = [
         sheet.axes(
             LEFT_MM + (k % _STRIP_COLUMNS) * (width + 3.0),
-            HEADING_MM + 4.5 + (k // _STRIP_COLUMNS) * (height + 10.0),
+            movie.heading_mm + 4.5 + (k // _STRIP_COLUMNS) * (height + 10.0),
             width,
             height,
         )

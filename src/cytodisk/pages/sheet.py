@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,10 @@ from matplotlib.legend import Legend
 from matplotlib.text import Annotation, Text
 
 from cytodisk.files import replacing
-from cytodisk.plot.style import DOUBLE_COLUMN_MM, DPI, MM_PER_INCH
+from cytodisk.plot.style import DPI, MM_PER_INCH, WIDE_MM
+
+CHARACTER_MM, BOLD_MM = 1.22, 1.9
+"""Mean width of a character at 7 points, and bold at 8."""
 
 
 class Sheet:
@@ -28,7 +32,7 @@ class Sheet:
     figure : Figure
     """
 
-    def __init__(self, height_mm: float, width_mm: float = DOUBLE_COLUMN_MM) -> None:
+    def __init__(self, height_mm: float, width_mm: float = WIDE_MM) -> None:
         self.height_mm, self.width_mm = height_mm, width_mm
         self.figure = Figure(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH))
 
@@ -72,3 +76,29 @@ def _as_written(artist: Artist) -> None:
     notes = [text for text in artist.findobj(Annotation) if isinstance(text, Annotation)]
     for text in (*keys, *notes):
         text.set_parse_math(False)
+
+
+def broken_lines(
+    parts: Sequence[str], between: str, room_mm: float, character_mm: float = CHARACTER_MM
+) -> list[str]:
+    """Parts joined into lines that fit into the room, if the parts themselves do.
+
+    Parameters
+    ----------
+    parts : sequence of str
+    between : str
+        Put between parts on a line.
+    room_mm, character_mm : float
+        Length of a line, and of a character.
+
+    Returns
+    -------
+    list of str
+    """
+    lines = [parts[0]]
+    for part in parts[1:]:
+        if len(lines[-1]) + len(between) + len(part) <= int(room_mm / character_mm):
+            lines[-1] += between + part
+        else:
+            lines.append(part)
+    return lines

@@ -21,9 +21,10 @@ from cytodisk.errors import ParameterError
 from cytodisk.scale import Scale
 
 SINGLE_COLUMN_MM = 85.0
-DOUBLE_COLUMN_MM = 180.0
+WIDE_MM = 119.0
+"""Width of a page that needs more room: at 85 mm its text of 7 points still has 5, which print asks for."""
 MM_PER_INCH = 25.4
-DPI = 200
+DPI = 300
 
 SIGNAL_COLOURS = "viridis"
 DIVERGING_COLOURS = "RdBu_r"

@@ -85,7 +85,7 @@ def test_an_atlas_shows_each_condition_and_each_difference(page: Any, conditions
     assert joined == [f"{name} − control" for name in one.conditions[1:]]
     counts = [text for text in words_of(figure) if text == "4 cells\n2 experiments"]
     assert len(counts) == conditions
-    assert figure.get_size_inches()[0] * 25.4 == pytest.approx(85.0 if conditions < 4 else 180.0)
+    assert figure.get_size_inches()[0] * 25.4 == pytest.approx(85.0 if conditions < 4 else 119.0)
 
 
 def test_an_atlas_says_how_it_was_tested(page: Any, two: DrawnPopulation) -> None:

@@ -6,10 +6,9 @@ from typing import Any
 
 from matplotlib.lines import Line2D
 
-from cytodisk.pages.drawn_correlation import broken_lines
 from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.population.drawn_population import DrawnPopulation
-from cytodisk.pages.sheet import Sheet
+from cytodisk.pages.sheet import Sheet, broken_lines
 from cytodisk.plot.layer_looks import cytoplasm_layers_of, layer_word, shown_layers
 from cytodisk.plot.population.condition_profiles import condition_key
 from cytodisk.plot.population.difference_map import ALPHA, corrected_column

@@ -9,7 +9,7 @@ from cytodisk.pages.population.drawn_population import DrawnPopulation, in_two_l
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.population.condition_looks import condition_colours
 from cytodisk.plot.population.directions import MOST_DOTS, draw_directions
-from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM
+from cytodisk.plot.style import SINGLE_COLUMN_MM, WIDE_MM
 from cytodisk.runs.population.cells_of_study import BRIGHTEST_SIDE
 
 _MAPPED, _AXIS = "disk_direction_", "axis"  # an axis has two ends: it is no direction
@@ -25,7 +25,7 @@ def directions_page(one: DrawnPopulation) -> Sheet | None:
     names = one.conditions
     blocks = [names[first : first + _MOST_ABREAST] for first in range(0, len(names), _MOST_ABREAST)]
     abreast = max(map(len, blocks))
-    width = SINGLE_COLUMN_MM if abreast <= 2 else DOUBLE_COLUMN_MM
+    width = SINGLE_COLUMN_MM if abreast <= 2 else WIDE_MM
     panel = min((width - 2 * LEFT_MM - _SIDE - (abreast - 1) * _GAP) / abreast, _WIDEST)
     dotted = int(one.used["condition"].value_counts().min()) <= MOST_DOTS
     notes = ["a dot: a cell"] if dotted else ["area of a wedge: share of the cells"]

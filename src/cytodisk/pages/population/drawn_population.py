@@ -13,10 +13,11 @@ import xarray as xr
 
 from cytodisk.arrays import BoolArray
 from cytodisk.number_words import counted, rounded
-from cytodisk.pages.drawn_correlation import Heading, broken_lines
+from cytodisk.pages.drawn_correlation import Heading
 from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.population.cell_sources import CellSources
+from cytodisk.pages.sheet import broken_lines
 from cytodisk.plot.population.difference_map import DifferenceMap
 from cytodisk.plot.units import with_unit
 from cytodisk.runs.channel_names import shortened, shown_name

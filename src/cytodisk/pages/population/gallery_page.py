@@ -19,7 +19,7 @@ from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.population.drawn_population import DrawnPopulation
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.population.cell_gallery import draw_gallery, draw_window_gallery
-from cytodisk.plot.style import DOUBLE_COLUMN_MM, colour_bar
+from cytodisk.plot.style import WIDE_MM, colour_bar
 from cytodisk.runs.channel_names import shortened
 from cytodisk.windows.polar_windows import CellWindows
 
@@ -54,13 +54,13 @@ def gallery_page(one: DrawnPopulation, channel: str) -> Sheet | None:
     images = all(cell.image is not None for cell in cells)
     most = {place: max(len(found[name, place]) for name in one.conditions) for place in PLACES}
     columns = sum(most.values())
-    room = DOUBLE_COLUMN_MM - LEFT_MM - _SIDE - _BAR - _ROOM - (columns - 1) * _GAP
+    room = WIDE_MM - LEFT_MM - _SIDE - _BAR - _ROOM - (columns - 1) * _GAP
     size = min(room / columns, 24.0)
     notes = [] if images else [f"means of windows: {one.sources.image_fault or 'images are not there'}"]
     words = (
         f"{one.channel_words(channel)}: cells nearest to the mean of their condition, and farthest from it"
     )
-    heading = one.heading(DOUBLE_COLUMN_MM, words, *notes)
+    heading = one.heading(WIDE_MM, words, *notes)
     step = _TITLE + size + 3.5
     sheet = Sheet(heading.height_mm + 3.0 + len(one.conditions) * step + _BELOW)
     heading.write(sheet)

@@ -8,17 +8,16 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from cytodisk.pages.drawn_correlation import broken_lines
 from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.population.drawn_population import CHARACTER_MM, DrawnPopulation
-from cytodisk.pages.sheet import Sheet
+from cytodisk.pages.sheet import Sheet, broken_lines
 from cytodisk.plot.population.difference_map import DifferenceMap
 from cytodisk.plot.population.population_maps import difference_key, draw_atlas, draw_difference
 from cytodisk.plot.style import (
     DIVERGING_COLOURS,
-    DOUBLE_COLUMN_MM,
     SIGNAL_COLOURS,
     SINGLE_COLUMN_MM,
+    WIDE_MM,
     colour_bar,
     nice_length,
     signal_limits,
@@ -68,7 +67,7 @@ def _maps_page(
     abreast = max(map(len, rows))
     beside = len(rows) == 1 and abreast == 2 and len(found) == 1
     places = abreast + int(beside)
-    width = SINGLE_COLUMN_MM if places <= 3 else DOUBLE_COLUMN_MM
+    width = SINGLE_COLUMN_MM if places <= 3 else WIDE_MM
     panel = min((width - 2 * LEFT_MM - (places - 1) * _GAP) / places, _WIDEST)
     height = panel * _share(on)
     heading = one.heading(width, title, *(note for note in notes if note))
@@ -176,7 +175,7 @@ class _KeyLines:
                 words += f"; no window and no cluster with p ≤ {found[name].alpha:g}"
             self.lines += broken_lines(words.split(" "), " ", room)
         self.handles = _shared_key(list(found.values()))
-        self.columns = 1 if width < DOUBLE_COLUMN_MM else 3
+        self.columns = 1 if width < WIDE_MM else 3
         self.rows = -(-len(self.handles) // self.columns)
 
     @property

@@ -8,10 +8,9 @@ from pathlib import Path
 import pandas as pd
 
 from cytodisk.errors import ParameterError
-from cytodisk.pages.drawn_correlation import broken_lines
 from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
-from cytodisk.pages.sheet import Sheet
+from cytodisk.pages.sheet import Sheet, broken_lines
 from cytodisk.plot.population.power_curves import draw_power
 from cytodisk.plot.style import SINGLE_COLUMN_MM, paper_style
 

@@ -8,16 +8,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from cytodisk.pages.drawn_correlation import broken_lines
 from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.population.drawn_population import DrawnPopulation, in_two_lines
-from cytodisk.pages.sheet import Sheet
+from cytodisk.pages.sheet import Sheet, broken_lines
 from cytodisk.plot.population.condition_looks import condition_colours
 from cytodisk.plot.population.difference_map import corrected_column
 from cytodisk.plot.population.effect_sizes import draw_effect_sizes
 from cytodisk.plot.population.experiment_key import experiment_key
 from cytodisk.plot.population.super_plot import draw_super_plot
-from cytodisk.plot.style import DOUBLE_COLUMN_MM, SINGLE_COLUMN_MM
+from cytodisk.plot.style import SINGLE_COLUMN_MM, WIDE_MM
 from cytodisk.plot.units import with_unit
 
 MOST_PANELS = 6
@@ -45,7 +44,7 @@ def scalars_page(one: DrawnPopulation) -> Sheet | None:
     panel = max(_LEAST, _STEP * count + 4.0)
     columns, width = 2, SINGLE_COLUMN_MM
     if columns * (panel + _LEFT) + 2 * _GAP > width:
-        width = DOUBLE_COLUMN_MM
+        width = WIDE_MM
         columns = max(1, int((width - 2 * _GAP) / (panel + _LEFT)))
     columns = min(columns, max(len(names), 2))
     panel = (width - 2 * _GAP) / columns - _LEFT
@@ -93,7 +92,7 @@ def effects_page(one: DrawnPopulation) -> Sheet | None:
         kept = set(largest.sort_values(ascending=False, kind="stable").index[:MOST_ROWS])
         order = [name for name in order if name in kept]
     note = "" if len(order) == len(largest) else f"{len(order)} of {len(largest)}, the largest effect sizes"
-    width = SINGLE_COLUMN_MM if len(treated) == 1 else DOUBLE_COLUMN_MM
+    width = SINGLE_COLUMN_MM if len(treated) == 1 else WIDE_MM
     panel = (width - _NAMES - len(treated) * _P_ROOM - 2.0) / len(treated)
     heading = one.heading(width, "Effect sizes of scalars", *([note] if note else []))
     lines = [

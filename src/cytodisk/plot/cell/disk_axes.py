@@ -6,7 +6,6 @@ from +u towards +v, that is clockwise on the page.
 
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
@@ -26,7 +25,6 @@ _REACH = 1.26  # of the axes, in radii: room for the angles
 _DEGREES_PER_POINT = 1.0
 _TICK = (1.03, 1.07)
 _LABEL_RADIUS = 1.1
-_LEAST_POINTS = 6.0  # that can be read in print
 
 
 def fit_disk(ax: Axes) -> None:
@@ -59,7 +57,6 @@ def frame_disk(
     rays = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
     ticks = [np.stack([_TICK[0] * ray, _TICK[1] * ray]) for ray in rays]
     ax.add_collection(LineCollection(ticks, colors=LINE_COLOUR, linewidths=0.5), autolim=False)
-    size = max(_LEAST_POINTS, 0.85 * mpl.rcParams["font.size"])
     for degrees, across, down in (
         (0, "left", "center"),
         (90, "center", "top"),
@@ -72,7 +69,7 @@ def frame_disk(
             number = sectors * degrees // 360
             words = f"sector {number} ({words})" if across == "center" else f"{number}\n{words}"
             words = words if angles else str(number)
-        ax.text(_LABEL_RADIUS * u, _LABEL_RADIUS * v, words, ha=across, va=down, fontsize=size)
+        ax.text(_LABEL_RADIUS * u, _LABEL_RADIUS * v, words, ha=across, va=down)
 
 
 def draw_disk_image(

@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 
 from cytodisk.arrays import FloatArray
 from cytodisk.plot.cell.cell_axes import draw_loop, draw_outline
+from cytodisk.plot.cell.grid_look import line_opacity, line_width
 from cytodisk.plot.cell.window_polygons import window_polygons
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
@@ -24,8 +25,6 @@ SECTOR_NOTE = "○ sector 0"
 EDGE_WIDTH = 2.2  # points
 NUCLEUS_WIDTH = 1.1
 
-_OVER_SIGNAL: dict[str, Any] = {"edgecolors": (1.0, 1.0, 1.0, 0.4), "linewidths": 0.2}
-_ON_WHITE: dict[str, Any] = {"edgecolors": "0.6", "linewidths": 0.2}
 _NOTE_BELOW = 5.0  # points, at the height of the scale bar
 
 
@@ -83,7 +82,8 @@ def sector_style(grid: PolarGrid, *, over_signal: bool) -> dict[str, Any]:
         if grid.nucleus_layers:
             first = grid.cytoplasm_layers * grid.sectors
             faces[first : first + grid.sectors] = sector_colours(grid.sectors)
-    return {"facecolors": faces} | (_OVER_SIGNAL if over_signal else _ON_WHITE)
+    lines = (1.0, 1.0, 1.0, line_opacity(grid.n_windows)) if over_signal else "0.6"
+    return {"facecolors": faces, "edgecolors": lines, "linewidths": line_width(grid.n_windows)}
 
 
 def draw_edge(ax: Axes, windows: CellWindows, *, over_signal: bool) -> None:
