@@ -70,7 +70,7 @@ def test_pages_of_a_signal_with_velocity(
     assert sorted(path.name for path in paths[0].parent.iterdir()) == sorted(names(paths))
     assert steps == [(done, 5) for done in range(6)]
     for path, wide in zip(paths, (85, 119, 85, 119), strict=True):
-        assert _pixels_across(path) == pytest.approx(wide / 25.4 * 200, abs=1.0)
+        assert _pixels_across(path) == pytest.approx(wide / 25.4 * 300, abs=1.0)
     for figure in saved:
         words = " ".join(text.get_text() for text in figure.texts)
         assert "linear detrending" in words

@@ -164,8 +164,10 @@ def _draw_cell(ax: Axes, windows: CellWindows, *, over_signal: bool) -> None:
         if grid.nucleus_layers:
             _fill_sectors(ax, nucleus_arcs(windows), rings[grid.cytoplasm_layers])
     lines = [line[:, ::-1] for line in (*rings[: grid.layers - 1], *spokes)]
-    colour = sector_style(grid, over_signal=over_signal)["edgecolors"]
-    ax.add_collection(LineCollection(lines, colors=colour, linewidths=2.0 * sector_style(grid, over_signal=over_signal)["linewidths"]), autolim=False)
+    style = sector_style(grid, over_signal=over_signal)
+    # As strong as the sides that neighbours share in `draw_sectors`.
+    look: Any = {"colors": style["edgecolors"], "linewidths": 1.8 * style["linewidths"]}
+    ax.add_collection(LineCollection(lines, **look), autolim=False)
     draw_edge(ax, windows, over_signal=over_signal)
 
 

@@ -237,7 +237,7 @@ def _draw_meshes(disk: DiskMap, scale: Scale, row: _Row) -> None:
 
 
 def _draw_distortion(disk: DiskMap, scale: Scale, row: _Row) -> None:
-    """Where areas are distorted; how much of the cell by how much, in the same colours, which is their key."""
+    """Where areas are distorted, and beside it how much of the cell, in the same colours: their key."""
     area, spread = row.axes("area distortion", "how much of the cell has it")
     draw_area_distortion(area, disk, scale=scale)
     _inset(spread, row.sheet, 9.0, 9.0, min(row.height, row.panel))

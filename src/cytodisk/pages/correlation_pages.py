@@ -22,22 +22,23 @@ from cytodisk.plot.correlation.pair_curves import draw_pairs
 from cytodisk.plot.correlation.pair_table import PairTable, drawn_kinds
 from cytodisk.plot.correlation.peak_maps import draw_peaks_on_cell, draw_peaks_on_disk, peak_key
 from cytodisk.plot.layer_looks import shown_layers
+from cytodisk.plot.movie.activity_maps import share_labels
 from cytodisk.plot.style import SINGLE_COLUMN_MM, WIDE_MM, colour_bar
 from cytodisk.plot.time_axis import time_stamp
 from cytodisk.plot.time_raster import bar_beside, cut_off
+from cytodisk.runs.channel_names import shortened
 from cytodisk.runs.correlate.cluster_words import cluster_line
 from cytodisk.runs.partial_words import region_left, windows_lost
 
 _CURVE, _CURVE_GAP, _CURVE_LEFT = 17.0, 5.5, 14.0  # mm
 _PANEL, _PANEL_GAP, _TALLEST = 29.5, 4.0, 1.45  # mm, mm, height over width
-_MAP_LEFT, _MAP, _MAP_HEIGHT, _MAP_BAR = 14.0, 62.0, 48.0, 18.0  # mm
-_EVENTS, _AVERAGE_LEFT, _AVERAGE = 80.0, 124.0, 53.0  # mm
-_PAIR_LEFT, _PAIR_GAP, _PAIR_LINES, _PAIR_IMAGE, _PAIR_BAR = 14.0, 5.0, 30.0, 34.0, 18.0  # mm
-_KEY, _KEY_POINTS = 10.0, 31.0  # height of the key above the average in mm, and of what stands on it
-_KEY_LEFT = -0.05  # of the axes of the average: its key is wider than they are
+_MAP_LEFT, _MAP, _MAP_HEIGHT, _MAP_GAP = 13.0, 87.0, 34.0, 7.0  # mm
+_AVERAGE, _AVERAGE_ABOVE = 34.0, 19.0  # mm, height of the average, and room above for labels and its key
+_PAIR_LEFT, _PAIR_GAP, _PAIR, _PAIR_HEIGHT, _PAIR_STEP = 14.0, 13.0, 36.0, 26.0, 43.0  # mm
 _KEY_STYLE: Any = {"borderaxespad": 0.0, "handlelength": 1.6, "columnspacing": 1.2, "labelspacing": 0.3}
 _LINE = 3.6  # mm
 _LONGEST_LABELS = 53  # characters of two labels beside each other in one column
+_LONGEST_SIGNAL = 12  # characters of its name beside the average
 _MOST_CLUSTERS = 3  # that are told below the peaks
 
 
@@ -88,13 +89,12 @@ def _columns(key: list[Any]) -> int:
 
 
 def maps_page(one: DrawnCorrelation) -> Sheet:
-    """The signal in the outermost layer, and what it was correlated with, by time and sector."""
+    """The signal in the outermost layer, and below it what it was correlated with, by time and sector."""
     heading = one.heading(WIDE_MM, f"{one.signal_name} and {one.with_words}", *_map_notes(one))
-    head = heading.height_mm
-    sheet = Sheet(head + 4.0 + _MAP_HEIGHT + 9.0)
+    top = heading.height_mm + 3.0
+    sheet = Sheet(top + 2 * _MAP_HEIGHT + _MAP_GAP + 9.0)
     heading.write(sheet)
-    lefts = (_MAP_LEFT, _MAP_LEFT + _MAP + _MAP_BAR + 3.0)
-    axes = [sheet.axes(left, head + 3.0, _MAP, _MAP_HEIGHT) for left in lefts]
+    axes = [sheet.axes(_MAP_LEFT, top + k * (_MAP_HEIGHT + _MAP_GAP), _MAP, _MAP_HEIGHT) for k in range(2)]
     other = one.correlation.with_
     title = f"{one.with_words}: protrusion red, retraction blue"
     if not one.by_velocity:
@@ -103,11 +103,11 @@ def maps_page(one: DrawnCorrelation) -> Sheet:
         axes,
         one.activity(one.correlation.signal),
         one.velocity if one.by_velocity else one.activity(other),
-        label=f"mean {one.signal_name}",
-        other_label=f"mean {one.with_name}",
         by_velocity=one.by_velocity,
         scale=one.movie.scale,
     )
+    share_labels(axes)
+    axes[1].tick_params(labelleft=True)
     for ax, name in zip(axes, (f"{one.signal_name}, layer 0 (edge)", title), strict=True):
         ax.set_title(name, loc="left", y=1.0, pad=2.5, parse_math=False)
     return sheet
@@ -167,26 +167,24 @@ def pairs_page(one: DrawnCorrelation) -> Sheet | None:
     if pairs is None or not kinds:
         return None
     tables = [PairTable.of(pairs, along=kind, cell=one.cell) for kind in kinds]
-    width = (WIDE_MM - _PAIR_LEFT - _PAIR_BAR - 2 * _PAIR_GAP) / 3
-    page = _PAIR_LEFT + len(kinds) * (width + _PAIR_GAP) - _PAIR_GAP + _PAIR_BAR
-    page = max(page, SINGLE_COLUMN_MM)
-    heading = one.heading(page, f"{one.signal_name} with {one.with_name}, all pairs of windows")
+    heading = one.heading(WIDE_MM, f"{one.signal_name} with {one.with_name}, all pairs of windows")
     top = heading.height_mm + 5.0
-    second = top + _PAIR_LINES + 4.0
-    notes = broken_lines(_pair_notes(tables), " · ", page - 2 * LEFT_MM)
-    foot = second + _PAIR_IMAGE + 15.7
-    sheet = Sheet(foot + _LINE * len(notes) + 2.2, page)
+    notes = broken_lines(_pair_notes(tables), " · ", WIDE_MM - 2 * LEFT_MM)
+    foot = top + len(kinds) * _PAIR_STEP
+    sheet = Sheet(foot + _LINE * len(notes) + 2.2)
     heading.write(sheet)
     limit = max(float(np.nanmax(np.abs(table.correlation))) for table in tables)
-    columns = []
+    rows = []
     for number, kind in enumerate(kinds):
-        left = _PAIR_LEFT + number * (width + _PAIR_GAP)
-        axes = [sheet.axes(left, top, width, _PAIR_LINES), sheet.axes(left, second, width, _PAIR_IMAGE)]
+        row_top = top + number * _PAIR_STEP
+        lefts = (_PAIR_LEFT, _PAIR_LEFT + _PAIR + _PAIR_GAP)
+        axes = [sheet.axes(left, row_top, _PAIR, _PAIR_HEIGHT) for left in lefts]
         _, image = draw_pairs(axes, pairs, cell=one.cell, along=kind, limit=limit)
-        columns.append(axes)
-    _share_pairs(columns)
-    columns[0][0].set_ylabel("correlation")
-    colour_bar(image, bar_beside(columns[-1][1]), "correlation")
+        axes[0].tick_params(labelbottom=True)
+        axes[0].set(xlabel=axes[1].get_xlabel(), ylabel="correlation")
+        colour_bar(image, bar_beside(axes[1]), "correlation")
+        rows.append(axes)
+    _share_correlations([lines for lines, _ in rows])
     sheet.text(LEFT_MM, foot, f"lag: {sides(*one.first_names, upright=True)}")
     for number, words in enumerate(notes):
         sheet.text(LEFT_MM, foot + _LINE * (number + 1), words, color="0.3")
@@ -201,14 +199,14 @@ def events_page(one: DrawnCorrelation) -> Sheet | None:
     what = f"events of the edge, and {one.signal_name} around onsets of protrusion"
     heading = one.heading(WIDE_MM, what, *_event_notes(one))
     head = heading.height_mm
-    sheet = Sheet(head + 4.0 + _MAP_HEIGHT + 9.0)
+    below = head + 3.0 + _MAP_HEIGHT + _AVERAGE_ABOVE
+    sheet = Sheet(below + _AVERAGE + 9.0)
     heading.write(sheet)
-    ax = sheet.axes(_MAP_LEFT, head + 3.0, _EVENTS, _MAP_HEIGHT)
+    ax = sheet.axes(_MAP_LEFT, head + 3.0, _MAP, _MAP_HEIGHT)
     outlines = draw_events(ax, one.velocity, events)
     words = "events outlined, onsets bold" if len(outlines.get_segments()) else "onsets of protrusion marked"
     ax.set_title(words, loc="left", y=1.0, pad=2.5)
-    around = sheet.axes(_AVERAGE_LEFT, head + 3.0 + _KEY, _AVERAGE, _MAP_HEIGHT - _KEY)
-    _draw_average(around, one, averages)
+    _draw_average(sheet.axes(_MAP_LEFT, below, _MAP, _AVERAGE), one, averages)
     return sheet
 
 
@@ -219,19 +217,17 @@ def _draw_average(ax: Axes, one: DrawnCorrelation, averages: pd.DataFrame) -> No
         ax.set_axis_off()
         ax.text(0.5, 0.5, "no onset of protrusion is known", ha="center", color="0.3")
         return
-    lines = draw_event_average(ax, average, label=one.first_names[0])
+    lines = draw_event_average(ax, average, label=shortened(one.signal_name, _LONGEST_SIGNAL))
     key: Any = {"loc": "lower left", "frameon": False, "borderaxespad": 0.2, "borderpad": 0.0}
-    key |= {"handlelength": 1.8, "labelspacing": 0.25}
+    key |= {"handlelength": 1.8, "labelspacing": 0.25, "columnspacing": 1.2}
+    above = 1.0
     if band := band_key(average):
-        ax.add_artist(ax.legend(handles=band, bbox_to_anchor=(_KEY_LEFT, 1.0), **key))
-    else:
-        words = "no band: too few patches"
-        ax.text(_KEY_LEFT, 1.02, words, color="0.3", transform=ax.transAxes)
-    above = 1.0 + _LINE / (_MAP_HEIGHT - _KEY)
-    ax.legend(handles=lines, ncols=2, bbox_to_anchor=(_KEY_LEFT, above), **key)
-    count = ax.get_title(loc="right")
+        ax.add_artist(ax.legend(handles=band, bbox_to_anchor=(0.0, 1.0), **key))
+        above += _LINE / _AVERAGE
+    ax.legend(handles=lines, ncols=len(lines), bbox_to_anchor=(0.0, above), **key)
+    count = ax.get_title(loc="right") + ("" if band else "; no band: too few patches")
     ax.set_title("", loc="right")
-    ax.set_title(count, loc="left", pad=_KEY_POINTS, fontsize=7.0, color="0.3")
+    ax.text(0.995, 0.02, count, ha="right", va="bottom", color="0.3", transform=ax.transAxes)
 
 
 def _event_notes(one: DrawnCorrelation) -> list[str]:
@@ -280,12 +276,8 @@ def _pair_notes(tables: list[PairTable]) -> list[str]:
     return [*facts, f"bins of fewer than {min(table.fewest for table in tables)} pairs left out"]
 
 
-def _share_pairs(columns: list[list[Any]]) -> None:
-    """The same correlations and lags in all columns, written on the left."""
-    ends = np.array([lines.get_ylim() for lines, _ in columns])
-    for number, (lines, image) in enumerate(columns):
+def _share_correlations(axes: list[Axes]) -> None:
+    """The same correlations in all panels."""
+    ends = np.array([lines.get_ylim() for lines in axes])
+    for lines in axes:
         lines.set_ylim(ends[:, 0].min(), ends[:, 1].max())
-        if number:
-            image.set_ylabel("")
-            lines.tick_params(labelleft=False)
-            image.tick_params(labelleft=False)

@@ -152,7 +152,7 @@ def draw_peaks_on_cell(
     drawn = draw_window_means(ax, windows, values, cmap=colours, limits=limits, scale=scale)
     _fade(ax, window_polygons(windows), peaks, drawn)
     _outline_clusters(ax, window_polygons(windows), peaks)
-    number_sectors(ax, windows, SECTOR_NAME)
+    number_sectors(ax, windows, SECTOR_NAME, scale=scale)
     return drawn
 
 

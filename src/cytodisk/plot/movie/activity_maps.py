@@ -206,7 +206,7 @@ def draw_layers(
         _name(ax, name)
     ends = cut_off(table[:, layers], common)
     colour_bar(drawn[-1], bar_beside(*maps), label, unit_of(values, "a.u."), extend=ends)
-    _share_labels(axes)
+    share_labels(axes)
     return drawn
 
 
@@ -248,8 +248,14 @@ def _draw_map(
     return drawn
 
 
-def _share_labels(axes: Sequence[Axes]) -> None:
-    """One time axis below all maps, and the sectors' label once, half-way up."""
+def share_labels(axes: Sequence[Axes]) -> None:
+    """One time axis below all maps, and the sectors' label once, half-way up.
+
+    Parameters
+    ----------
+    axes : sequence of Axes
+        From top to bottom.
+    """
     for ax in axes:
         ax.set_ylabel("")
         ax.set_xlim(axes[-1].get_xlim())

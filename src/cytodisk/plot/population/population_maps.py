@@ -24,17 +24,14 @@ from cytodisk.plot.cell.window_polygons import (
     window_values,
 )
 from cytodisk.plot.cell.window_regions import region
-from cytodisk.plot.field_of_view import field_of_view, frame_field
 from cytodisk.plot.population.difference_map import DifferenceMap
 from cytodisk.plot.style import (
     DIVERGING_COLOURS,
     LINE_COLOUR,
     MISSING_COLOUR,
     SIGNAL_COLOURS,
-    scale_bar,
     signal_limits,
 )
-from cytodisk.plot.units import scale_for
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
 SIGNIFICANT_NAME, CLUSTER_NAME, UNTESTED_NAME, SECTOR_NAME = "significant", "cluster", "not tested", "sector"
@@ -273,8 +270,6 @@ def _filled(
     if isinstance(on, CellWindows):
         drawn = draw_window_means(ax, on, _turned(table, on, first), cmap=cmap, limits=limits)
         number_sectors(ax, on, SECTOR_NAME, first=first)
-        frame_field(ax, field_of_view([on.disk.outline_yx], _MARGIN))  # room for the numbers
-        scale_bar(ax, scale_for(on))
     else:
         values = window_values(table, (on.layers, on.sectors))
         drawn = add_filled_windows(ax, disk_polygons(on), values, cmap, limits)
