@@ -13,7 +13,7 @@ from matplotlib.collections import LineCollection
 
 from cytodisk.errors import ParameterError
 from cytodisk.pages.compared_layers import spread_over
-from cytodisk.pages.sheet import Sheet
+from cytodisk.pages.sheet import Sheet, broken_lines
 from cytodisk.plot.cell.window_labels import draw_label_image
 from cytodisk.plot.field_of_view import frame_field
 from cytodisk.plot.outline_sides import outline_sides
@@ -23,20 +23,19 @@ from cytodisk.runs.compare_windows.comparison import Comparison
 from cytodisk.store.figures_folder import drawing
 
 _MOST_CELLS = 5
-_LEFT, _TOP, _GAP, _WORDS = 6.0, 13.0, 2.0, 4.0  # mm
-_BELOW = 8.0
-_DPI = 300
+_WIDEST = 32.0  # mm, of a cell
+_LEFT, _TOP, _GAP, _LINE = 9.0, 15.0, 2.0, 3.3  # mm
 _COVERED_BY_CHORDS = 0.98  # interpolated rings are polygons, which cut a little off
 _KEY = (
-    "Dark: layer at the edge, yellow: at the centre; every other sector is paler; white: in no window.",
+    "Dark: layer at the edge, yellow: at the centre; every other sector is paler; white: in no window. "
     "Percent: filled windows, that is with a part of the cell (completeness). Turned over: triangles of a "
-    "map that is not one to one.",
+    "map that is not one to one."
 )
 
 _NUCLEUS_KEY = (
     "Dark brown: layer at the edge, yellow: at the nucleus, blue: in the nucleus, whose outline is black; "
-    "every other sector is paler.",
-    "Percent: filled windows (completeness). Turned over: triangles between rings that cross each other.",
+    "every other sector is paler. Percent: filled windows (completeness). Turned over: triangles between "
+    "rings that cross each other."
 )
 
 
@@ -86,27 +85,43 @@ def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = N
     if not chosen:
         return None
     name = "cells.png"
-    size = (WIDE_MM - _LEFT - 2.0 - _GAP * (_MOST_CELLS - 1)) / _MOST_CELLS
+    size = min((WIDE_MM - _LEFT - 2.0 - _GAP * (len(chosen) - 1)) / len(chosen), _WIDEST)
+    outcomes = {
+        (cell, method): _outcome(comparison, cell, method) for cell in chosen for method in comparison.methods
+    }
+    step = size + _LINE * max(len(lines) for lines in outcomes.values()) + _GAP
+    key = (_NUCLEUS_KEY if comparison.has_nuclei else _KEY).split(" ")
+    notes = broken_lines(key, " ", WIDE_MM - _LEFT - 2.0)
     with drawing(comparison.path, name) as folder, paper_style():
-        sheet = Sheet(_TOP + len(comparison.methods) * (size + _WORDS + _GAP) + _BELOW)
+        foot = _TOP + len(comparison.methods) * step + 2.0
+        sheet = Sheet(foot + 3.5 * len(notes))
         for column, cell in enumerate(chosen):
             labels = comparison.labels(cell)
             left = _LEFT + column * (size + _GAP)
-            sheet.text(left, _TOP - 1.5, _cell_name(comparison.cells, cell))
+            _write(sheet, left, _TOP - 4.5, _cell_name(comparison.cells, cell))
             for row, method in enumerate(comparison.methods):
-                top = _TOP + row * (size + _WORDS + _GAP)
+                top = _TOP + row * step
                 ax = sheet.axes(left, top, size, size)
                 _draw_labels(ax, labels.get(method), labels["mask"], comparison)
                 if "nucleus" in labels:
                     _draw_nucleus(ax, labels["nucleus"])
-                sheet.text(left, top + size + _WORDS - 1.2, _outcome(comparison, cell, method), color="0.35")
+                _write(sheet, left, top + size + 2.8, outcomes[cell, method], color="0.35")
         for row, method in enumerate(comparison.methods):
-            middle = _TOP + row * (size + _WORDS + _GAP) + size / 2
-            sheet.text(2.0, middle, TITLES[method], rotation=90, va="center", ha="left")
+            middle = _TOP + row * step + size / 2
+            sheet.text(2.0, middle, _method_name(method, size), rotation=90, va="center", ha="left")
         sheet.text(_LEFT, 4.0, _title(comparison, chosen, cells is None), size=7.5)
-        for line, words in enumerate(_NUCLEUS_KEY if comparison.has_nuclei else _KEY):
-            sheet.text(_LEFT, sheet.height_mm - 5.0 + 3.5 * line, words, color="0.35")
-        return sheet.save(folder / name, _DPI)
+        _write(sheet, _LEFT, foot + 1.5, notes, color="0.35")
+        return sheet.save(folder / name)
+
+
+def _write(sheet: Sheet, left: float, top: float, lines: Sequence[str], **style: Any) -> None:
+    for number, words in enumerate(lines):
+        sheet.text(left, top + _LINE * number, words, **style)
+
+
+def _method_name(method: str, room_mm: float) -> str:
+    """Its name in one line or two beside a cell of that height."""
+    return "\n".join(broken_lines(TITLES[method].split(" "), " ", room_mm))
 
 
 def chosen_cells(comparison: Comparison) -> list[int]:
@@ -189,20 +204,21 @@ def _grid(comparison: Comparison) -> tuple[int, int]:
     return settings["layers"] + settings.get("nucleus_layers", 0), settings["sectors"]
 
 
-def _cell_name(cells: pd.DataFrame, cell: int) -> str:
+def _cell_name(cells: pd.DataFrame, cell: int) -> list[str]:
     rows = cells[(cells["cell"] == cell) & cells["area_px"].notna()]
-    return f"cell {cell} ({rows['area_px'].iloc[0]:.0f} px²)"
+    return [f"cell {cell}", f"{rows['area_px'].iloc[0]:.0f} px²"]
 
 
-def _outcome(comparison: Comparison, cell: int, method: str) -> str:
+def _outcome(comparison: Comparison, cell: int, method: str) -> list[str]:
+    """What came out, in lines that fit below a cell."""
     cells = comparison.cells
     (row,) = cells[(cells["cell"] == cell) & (cells["method"] == method)].to_dict("records")
     if not row["mapped"]:
-        return "no map"
+        return ["no map"]
     layers, sectors = _grid(comparison)
-    words = f"{1 - row['empty_windows'] / (layers * sectors):.0%}"
+    lines = [f"{1 - row['empty_windows'] / (layers * sectors):.0%}"]
     if row["coverage"] < (_COVERED_BY_CHORDS if comparison.has_nuclei else 0.995):
-        words += f" ({row['coverage']:.0%} of the area)"
+        lines.append(f"{row['coverage']:.0%} of the area")
     if row["certificate_valid"] is False or row["flipped"] > 0:
-        words += f", {row['flipped']:.0f} turned over"
-    return words
+        lines.append(f"{row['flipped']:.0f} turned over")
+    return lines

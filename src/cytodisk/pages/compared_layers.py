@@ -40,7 +40,7 @@ METHOD_STYLES: dict[str, dict[str, Any]] = {
 FILE = "comparison.png"
 # Column of the table by layer, and its name in words.
 PANELS = (
-    ("completeness", "filled windows"),
+    ("completeness", "completeness"),
     ("area_cv", "CV of area"),
     ("eccentricity_cv", "CV of eccentricity"),
     ("eccentricity", "mean eccentricity"),
@@ -52,7 +52,8 @@ NUCLEUS_PANELS = (
     PANELS[3],
 )
 """With nuclei: the second is the mean area of a layer's windows over that of its compartment."""
-_PANEL, _HEIGHT, _TOP, _LEFT, _GAP = 31.5, 34.0, 14.0, 11.0, 13.5  # mm
+_PANEL, _HEIGHT, _STEP, _LEFT, _GAP = 42.0, 33.0, 49.0, 13.0, 16.0  # mm
+_ABREAST, _KEY_ABREAST, _KEY_LINE = 2, 2, 3.9  # panels and methods beside each other; mm
 
 
 def write_comparison(comparison: Comparison) -> Path:
@@ -89,21 +90,24 @@ def write_comparison(comparison: Comparison) -> Path:
     'comparison.png'
     """
     with drawing(comparison.path, FILE) as folder, paper_style():
-        sheet = Sheet(_TOP + _HEIGHT + 15.0)
+        top = key_height(comparison.methods) + 6.0
+        foot = top + 2 * _STEP - 2.0
+        sheet = Sheet(foot + 2 * _KEY_LINE)
         for number, (name, title) in enumerate(NUCLEUS_PANELS if comparison.has_nuclei else PANELS):
-            ax = sheet.axes(_LEFT + number * (_PANEL + _GAP), _TOP, _PANEL, _HEIGHT)
-            draw_measure_by_layer(ax, comparison.by_layer, name, name, comparison.methods)
-            ax.set_title(title, loc="left")
+            row, column = divmod(number, _ABREAST)
+            ax = sheet.axes(_LEFT + column * (_PANEL + _GAP), top + row * _STEP, _PANEL, _HEIGHT)
+            draw_measure_by_layer(ax, comparison.by_layer, name, title, comparison.methods)
             if comparison.has_nuclei:
                 _draw_nucleus_border(ax, comparison.by_layer, name_it=not number)
         write_method_key(sheet, comparison.methods, _LEFT)
         tried = int(comparison.by_method["tried"].max())
         what = "frames" if comparison.is_movie else "cells"
-        words = (
-            f"{tried} {what}. Completeness: share of filled windows, all {what} together; "
-            f"other lines: median over {what}; bands: their quartiles"
+        lines = (
+            f"{tried} {what}. Completeness: share of filled windows, all {what} together;",
+            f"other lines: median over {what}; bands: their quartiles",
         )
-        sheet.text(_LEFT, sheet.height_mm - 1.5, words, color="0.35")
+        for number, words in enumerate(lines):
+            sheet.text(_LEFT, foot + 2.0 + _KEY_LINE * number, words, color="0.35")
         return sheet.save(folder / FILE)
 
 
@@ -168,7 +172,12 @@ def write_method_key(sheet: Sheet, methods: Sequence[str], left: float, top: flo
         In millimetres from the sheet's upper left corner.
     """
     handles = [Line2D([], [], label=TITLES[method], **METHOD_STYLES[method]) for method in methods]
-    sheet.key(left, top, handles, len(handles), handlelength=2.6)
+    sheet.key(left, top, handles, _KEY_ABREAST, handlelength=2.6)
+
+
+def key_height(methods: Sequence[str]) -> float:
+    """Height of what `write_method_key` writes, in mm."""
+    return _KEY_LINE * -(-len(methods) // _KEY_ABREAST)
 
 
 def spread_over(values: Any, count: int) -> list[int]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -13,7 +14,12 @@ from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from cytodisk.pages.compared_layers import METHOD_STYLES, draw_measure_by_layer, write_method_key
+from cytodisk.pages.compared_layers import (
+    METHOD_STYLES,
+    draw_measure_by_layer,
+    key_height,
+    write_method_key,
+)
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.layer_looks import shown_layers
 from cytodisk.plot.style import (
@@ -32,9 +38,13 @@ from cytodisk.scale import Scale
 from cytodisk.store.figures_folder import drawing
 
 _LEFT, _TOP, _GAP, _BAR = 14.0, 11.0, 3.0, 16.0  # mm
-_KEY = "By layer: medians over frames, bands are their quartiles. Through time: mean over layers, no bands."
+_KEY = (
+    "By layer: medians over frames, bands are their quartiles.",
+    "Through time: mean over layers, bands from the lowest layer to the highest.",
+)
+_BAND_OPACITY = 0.18
 _LONGEST_LABEL = 28  # letters along a panel's height
-_MAP, _MAP_GAP, _PANEL, _PANEL_GAP = 18.0, 2.0, 36.0, 15.0
+_MAP, _MAP_GAP, _PANEL, _PANEL_GAP, _PANEL_STEP = 18.0, 2.0, 32.0, 15.0, 48.0
 
 
 def write_compared_movie(comparison: Comparison, cell: int, channel: str | None = None) -> Path:
@@ -84,13 +94,16 @@ def write_compared_movie(comparison: Comparison, cell: int, channel: str | None 
     layers = shown_layers(comparison.provenance["parameters"]["layers"]) if channel is not None else []
     maps = _TOP + len(layers) * (_MAP + _MAP_GAP) + 8.0 if layers else 0.0
     with drawing(comparison.path, f"{name}.png") as folder, paper_style():
-        sheet = Sheet(maps + 12.0 + _PANEL + 15.0)
+        top = maps + key_height(methods) + 9.0
+        foot = top + 2 * _PANEL_STEP - 1.0
+        sheet = Sheet(foot + 8.0)
         if channel is not None:
             signals = {method: comparison.activity(cell, method).isel(channel=number) for method in methods}
             _draw_maps(sheet, signals, layers, comparison.scale, shown_name(channel))
         write_method_key(sheet, methods, _LEFT, maps + 2.0)
-        _draw_measures(sheet, comparison, cell, channel, methods, maps + 12.0)
-        sheet.text(_LEFT, sheet.height_mm - 1.5, _KEY, color="0.35")
+        _draw_measures(sheet, comparison, cell, channel, methods, top)
+        for number, words in enumerate(_KEY):
+            sheet.text(_LEFT, foot + 2.0 + 3.6 * number, words, color="0.35")
         return sheet.save(folder / f"{name}.png")
 
 
@@ -118,7 +131,9 @@ def consistency_by_layer(consistency: pd.DataFrame, name: str) -> pd.DataFrame:
 def draw_displacement(
     ax: Axes, consistency: pd.DataFrame, methods: Sequence[str], scale: Scale
 ) -> list[Line2D]:
-    """Draw how far window centroids move from frame to frame, mean over layers, a line a method.
+    """Draw how far window centroids move from frame to frame, a line a method.
+
+    It is the mean over layers; its band goes from the layer that moves least to that which moves most.
 
     Parameters
     ----------
@@ -138,11 +153,14 @@ def draw_displacement(
     lines = []
     for method in methods:
         rows = consistency[consistency["method"] == method]
-        moved = rows.groupby("frame")["centroid_displacement"].mean().reindex(range(first, last + 1))
-        values = moved.to_numpy()
+        by_frame = rows.groupby("frame")["centroid_displacement"].agg(["mean", "min", "max"])
+        by_frame = by_frame.reindex(range(first, last + 1))
+        values = by_frame["mean"].to_numpy()
         # Only values that a line does not show get a mark: between gaps, or of a movie of two frames.
         style = METHOD_STYLES[method] | {"markevery": stands_alone(values)}
         lines += ax.plot(time, values, label=TITLES[method], **style)
+        band: Any = {"color": style["color"], "alpha": _BAND_OPACITY, "linewidth": 0.0}
+        ax.fill_between(time, by_frame["min"].to_numpy(), by_frame["max"].to_numpy(), **band)
     ax.set(ylabel=f"movement of windows ({scale.length_unit})")
     ax.set_ylim(bottom=0.0)
     ax.yaxis.set_major_locator(MaxNLocator(5, steps=TICK_STEPS))
@@ -189,8 +207,12 @@ def _draw_measures(
     unit = table.attrs["units"]["centroid_displacement"]
     rows = table[table["cell"] == cell]
     rows = rows[rows["channel"] == channel] if channel is not None else rows
-    width = (WIDE_MM - _LEFT - 4.0 - 2 * _PANEL_GAP) / 3
-    axes = [sheet.axes(_LEFT + number * (width + _PANEL_GAP), top, width, _PANEL) for number in range(3)]
+    width = (WIDE_MM - _LEFT - 4.0 - _PANEL_GAP) / 2
+    places = [divmod(number, 2) for number in range(3)]
+    axes = [
+        sheet.axes(_LEFT + column * (width + _PANEL_GAP), top + row * _PANEL_STEP, width, _PANEL)
+        for row, column in places
+    ]
     motion = "centroid_displacement"
     name, label, title = motion, f"{motion} ({unit})", "motion of windows a frame"
     if channel is not None:

@@ -27,8 +27,9 @@ from cytodisk.store.nuclei.summary_columns import (
 MOST_CELLS = 300
 """Cells up to which each gets a line."""
 
-_LEFT, _GAP, _RIGHT, _TOP, _PANEL, _BELOW = 12.0, 14.0, 9.0, 21.0, 40.0, 20.0  # mm
-_WIDEST, _RATIOS = 76.0, 52.0  # mm
+_LEFT, _GAP, _RIGHT, _TOP, _PANEL, _BELOW = 12.0, 12.0, 9.0, 21.0, 34.0, 20.0  # mm
+_ABREAST = 2  # panels
+_FEW_CHANNELS = 2  # up to which shares stand beside the ratios
 _LONGEST_CHANNEL = 20
 _FEW_TIMES = 4.0  # largest over least ratio up to which the axis is linear
 _SPREAD = 0.16  # of dots beside each other, in places of the axis
@@ -40,7 +41,7 @@ def write_nuclei_figure(path: Path, cells: pd.DataFrame, profile: pd.DataFrame |
     Parameters
     ----------
     path : Path
-        Ends in `.png`; 180 mm wide.
+        Ends in `.png`, `.pdf` or `.svg`; 119 mm wide.
     cells : DataFrame
         Of a study without time.
     profile : DataFrame or None
@@ -54,9 +55,12 @@ def write_nuclei_figure(path: Path, cells: pd.DataFrame, profile: pd.DataFrame |
     names = names[: len(CHANNEL_COLOURS)]
     if not names:
         return None
-    rows = 1 if profile is None else 2
+    count = 0 if profile is None else len(names)
+    rows = -(-count // _ABREAST)
+    shares_below = len(names) > _FEW_CHANNELS
     with paper_style():
-        sheet = Sheet(_TOP + rows * (_PANEL + _BELOW) - 8.0)
+        step = _PANEL + _BELOW
+        sheet = Sheet(_TOP + (rows + 1 + shares_below) * step + 2.0)
         measured = int(cells[column_of(RATIO, names[0])].notna().sum())
         sheet.text(4.0, 5.0, f"{measured} cells with their nuclei", fontsize=8, weight="bold")
         sheet.text(
@@ -65,22 +69,21 @@ def write_nuclei_figure(path: Path, cells: pd.DataFrame, profile: pd.DataFrame |
             "a thin line or a dot is a cell; thick: mean of cells; background as in the image",
             color="0.3",
         )
+        half = (sheet.width_mm - _LEFT - _RIGHT - _GAP) / _ABREAST
+        whole = sheet.width_mm - _LEFT - _RIGHT
         if profile is not None:
-            panels = _axes(sheet, _TOP, len(names))
-            panels[0].set_ylabel("mean / mean of the cytoplasm")
-            for ax, name, colour in zip(panels, names, CHANNEL_COLOURS, strict=False):
+            for number, (name, colour) in enumerate(zip(names, CHANNEL_COLOURS, strict=False)):
+                row, column = divmod(number, _ABREAST)
+                ax = sheet.axes(_LEFT + column * (half + _GAP), _TOP + row * step, half, _PANEL)
                 _draw_profiles(ax, cells, profile, name, colour)
-        top, left = _TOP + (rows - 1) * (_PANEL + _BELOW), _LEFT + _RATIOS + _GAP
-        ratios = sheet.axes(_LEFT, top, _RATIOS, _PANEL)
-        shares = sheet.axes(left, top, sheet.width_mm - left - _RIGHT, _PANEL)
-        _draw_ratios(ratios, cells, names)
-        _draw_shares(shares, cells, names)
+                ax.set_ylabel("" if column else "mean / mean of the cytoplasm")
+        top = _TOP + rows * step
+        _draw_ratios(sheet.axes(_LEFT, top, whole if shares_below else half, _PANEL), cells, names)
+        if shares_below:
+            _draw_shares(sheet.axes(_LEFT, top + step, whole, _PANEL), cells, names)
+        else:
+            _draw_shares(sheet.axes(_LEFT + half + _GAP, top, half, _PANEL), cells, names)
         return sheet.save(Path(path))
-
-
-def _axes(sheet: Sheet, top: float, number: int) -> list[Axes]:
-    width = min((sheet.width_mm - _LEFT - _RIGHT - (number - 1) * _GAP) / number, _WIDEST)
-    return [sheet.axes(_LEFT + k * (width + _GAP), top, width, _PANEL) for k in range(number)]
 
 
 def _draw_profiles(ax: Axes, cells: pd.DataFrame, profile: pd.DataFrame, name: str, colour: str) -> None:
@@ -127,13 +130,13 @@ def _draw_shares(ax: Axes, cells: pd.DataFrame, names: list[str]) -> None:
     ax.annotate("even", (1.0, 1.0 / 3.0), xycoords=ax.get_yaxis_transform(), va="center", color="0.4")
     places = [k + side for k in range(len(names)) for side in (-0.25, 0.25)]
     shown = [shown_name(name, _LONGEST_CHANNEL) for name in names]
-    ax.set_xticks(places, ["nucleus", "membrane"] * len(names), fontsize=6.0)
+    ax.set_xticks(places, ["nucleus", "membrane"] * len(names), fontsize=7.0, rotation=90)
     for k, name in enumerate(shown):
         ax.annotate(
             name,
             (k, 0.0),
             xycoords=ax.get_xaxis_transform(),
-            xytext=(0, -14),
+            xytext=(0, -40),
             textcoords="offset points",
             ha="center",
             va="top",

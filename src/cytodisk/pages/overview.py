@@ -19,7 +19,8 @@ from cytodisk.scale import Scale
 _NEEDED = ("status", "area", "area_distortion")
 _MOST_BINS = 30
 _FEW_DECADES = 50  # largest over least area up to which there is room for labels between powers of 10
-_THUMBNAILS = 6
+_THUMBNAILS, _ABREAST = 6, 3
+_TALL, _CELLS_TOP, _CELLS = 32.0, 108.0, 80.0  # mm
 _THUMBNAIL_LIMIT = 1.0  # log2, so that one bad cell does not bleach the others
 _DISTORTION = "area distortion, mean |log λ|"
 
@@ -30,7 +31,7 @@ def write_overview(path: Path, cells: pd.DataFrame, masks: Callable[[int], DiskM
     Parameters
     ----------
     path : Path
-        Ends in `.png`; 180 mm wide at 200 dots per inch.
+        Ends in `.png`, `.pdf` or `.svg`; 119 mm wide.
     cells : DataFrame
         One row a cell, columns status ("ok", "refused", …), area and area_distortion (NaN where there is no
         map). With a column label, rows where it is 0 are files or images without a cell: they are counted in
@@ -77,15 +78,17 @@ def write_overview(path: Path, cells: pd.DataFrame, masks: Callable[[int], DiskM
     mapped = (cells["status"] == "ok").to_numpy() & np.isfinite(distortion)
     chosen = _spread_out(distortion, mapped) if masks is not None else np.empty(0, dtype=np.int64)
     with paper_style():
-        sheet = Sheet(58.0 + (40.0 if len(chosen) else 0.0))
+        sheet = Sheet(_CELLS_TOP - 5.0 + (_CELLS if len(chosen) else 0.0))
         without = (cells["label"] == 0).to_numpy() if "label" in cells.columns else np.zeros(len(cells), bool)
-        _draw_status(sheet.axes(19.0, 8.0, 29.0, 38.0), cells["status"][~without].astype(str), without.sum())
-        _draw_histogram(sheet.axes(64.0, 8.0, 46.0, 38.0), distortion[mapped])
+        _draw_status(sheet.axes(19.0, 8.0, 24.0, _TALL), cells["status"][~without].astype(str), without.sum())
+        _draw_histogram(sheet.axes(63.0, 8.0, 50.0, _TALL), distortion[mapped])
         unit = cells.attrs.get("units", {}).get("area", "px²")
-        _draw_against_area(sheet.axes(127.0, 8.0, 48.0, 38.0), area[mapped], distortion[mapped], unit)
+        _draw_against_area(
+            sheet.axes(19.0, 8.0 + _TALL + 19.0, 94.0, _TALL), area[mapped], distortion[mapped], unit
+        )
         if masks is not None and len(chosen):
             disks = [masks(int(row)) for row in chosen]
-            _draw_cells(sheet, 63.0, disks, Scale.of(cells))
+            _draw_cells(sheet, _CELLS_TOP, disks, Scale.of(cells))
         return sheet.save(Path(path))
 
 
@@ -146,13 +149,13 @@ def _draw_cells(sheet: Sheet, top: float, disks: list[DiskMap], scale: Scale) ->
     """Thumbnails in the same colours."""
     limit = min(max(distortion_limit(disk.distortion) for disk in disks), _THUMBNAIL_LIMIT)
     sheet.text(
-        5.0, top - 2.0, "cells from the least to the most distorted, with their area distortion", fontsize=7.5
+        5.0, top - 2.0, "cells from the least to the most distorted, with area distortion", fontsize=7.5
     )
     for k, disk in enumerate(disks):
-        left = 5.0 + 26.0 * k
-        drawn = draw_area_distortion(sheet.axes(left, top, 24.0, 24.0), disk, scale=scale, limit=limit)
-        sheet.text(left + 12.0, top + 31.5, f"{disk.distortion.area:.3f}", ha="center")
-    colour_bar(drawn, sheet.axes(162.0, top, 2.2, 28.0), DISTORTION_LABEL, extend="both")
+        left, above = 5.0 + 32.0 * (k % _ABREAST), top + 38.0 * (k // _ABREAST)
+        drawn = draw_area_distortion(sheet.axes(left, above, 29.0, 27.0), disk, scale=scale, limit=limit)
+        sheet.text(left + 14.5, above + 34.0, f"{disk.distortion.area:.3f}", ha="center")
+    colour_bar(drawn, sheet.axes(103.0, top, 2.2, 34.0), DISTORTION_LABEL, extend="both")
 
 
 def _spread_out(distortion: FloatArray, mapped: FloatArray) -> IntArray:

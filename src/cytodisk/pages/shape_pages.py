@@ -16,8 +16,9 @@ from cytodisk.plot.style import colour_bar, paper_style
 from cytodisk.scale import Scale
 
 _ALONG = 7  # example cells beside the landscape
-_WIDE, _FLATTEST = 108.0, 0.6  # of the landscape in mm; least height over width, for the examples beside it
-_EXTREMES_WIDE, _EXTREMES_TALL = 142.0, 160.0  # in mm, at most
+_WIDE, _FLATTEST = 66.0, 0.8  # of the landscape in mm; least height over width, for the examples beside it
+_EXTREMES_WIDE, _EXTREMES_TALL = 84.0, 150.0  # in mm, at most
+_ABOVE, _ALONG_LEFT = 13.0, 73.0  # mm
 _ROWS = ("least", "median", "most")
 
 
@@ -83,16 +84,16 @@ def _landscape_page(score: pd.DataFrame, masks: Mapping[int, BoolArray]) -> Shee
     low, high = plane_limits(known)
     width, height = high - low
     tall = float(_WIDE * min(max(height / width, _FLATTEST), 1.0))
-    sheet = Sheet(tall + 16.0)
+    sheet = Sheet(tall + _ABOVE + 7.0)
     title = f"{len(known)} shapes, alike ones close together; arrow: principal axis"
-    sheet.text(6.0, 6.0, title, fontsize=7.5)
-    ax = sheet.axes(6.0, 9.0, _WIDE, tall)
+    sheet.text(4.0, 5.0, title, fontsize=7.5)
+    ax = sheet.axes(4.0, _ABOVE, _WIDE, tall)
     dots, _ = draw_shape_landscape(ax, score, masks)
     spare = max(0.0, float(width * tall / _WIDE - height))
     ax.set_ylim(low[1] - 0.5 * spare, high[1] + 0.5 * spare)
-    sheet.text(121.0, 6.0, "at even steps of rank", fontsize=7.5)
+    sheet.text(_ALONG_LEFT, 10.0, "at even steps of rank", fontsize=7.5)
     along = cells_along(score, _ALONG)[::-1]
-    strip = sheet.axes(121.0, 9.0, 24.0, tall)
+    strip = sheet.axes(_ALONG_LEFT, _ABOVE, 17.0, tall)
     drawn = draw_shape_examples(strip, score, masks, [[cell] for cell in along], one_scale=False)
     values = known.set_index("cell")["complexity"]
     for cell, path in zip(along, drawn.get_paths(), strict=True):
@@ -103,7 +104,7 @@ def _landscape_page(score: pd.DataFrame, masks: Mapping[int, BoolArray]) -> Shee
             textcoords="offset points",
             va="center",
         )
-    colour_bar(dots, sheet.axes(159.0, 9.0, 2.5, min(45.0, tall)), "complexity")
+    colour_bar(dots, sheet.axes(101.0, _ABOVE, 2.2, min(40.0, tall)), "complexity")
     return sheet
 
 
@@ -114,8 +115,8 @@ def _extremes_page(score: pd.DataFrame, masks: Mapping[int, BoolArray], scale: S
     right, bottom = trial.get_xlim()[1], trial.get_ylim()[0]
     tall = min(_EXTREMES_WIDE * bottom / right, _EXTREMES_TALL)
     sheet = Sheet(tall + 18.0)
-    sheet.text(6.0, 6.0, "Least, median and most complex cells, at one scale", fontsize=7.5)
-    ax = sheet.axes(18.0, 9.0, tall * right / bottom, tall)
+    sheet.text(4.0, 5.0, "Least, median and most complex cells, at one scale", fontsize=7.5)
+    ax = sheet.axes(14.0, 9.0, tall * right / bottom, tall)
     drawn = draw_shape_examples(ax, score, masks, rows, scale=scale)
     for name, path in zip(_ROWS, drawn.get_paths()[:: len(rows[0])], strict=True):
         ax.annotate(
@@ -126,5 +127,5 @@ def _extremes_page(score: pd.DataFrame, masks: Mapping[int, BoolArray], scale: S
             ha="right",
             va="center",
         )
-    colour_bar(drawn, sheet.axes(162.0, 9.0, 2.5, 40.0), "complexity")
+    colour_bar(drawn, sheet.axes(101.0, 9.0, 2.2, 34.0), "complexity")
     return sheet

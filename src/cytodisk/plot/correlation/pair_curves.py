@@ -23,8 +23,8 @@ from cytodisk.plot.time_axis import TICK_STEPS, stands_alone
 LAG_0_COLOUR, PEAK_COLOUR = "#0072B2", "#D55E00"
 OUTLINE_NAME = "beyond chance"
 
-_APART, _WIDTH = -0.15, 0.05  # of the longest distance: place and width of the bin at distance 0
-_LEFT = -0.2
+_APART, _WIDTH = -0.2, 0.06  # of the longest distance: place and width of the bin at distance 0
+_LEFT = -0.26
 _ROOM = 1.08  # of the correlation's axis over what it holds
 _BAND_OPACITY = 0.2
 _LEGEND: Any = {
