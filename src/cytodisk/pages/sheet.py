@@ -15,7 +15,7 @@ from matplotlib.text import Annotation, Text
 from cytodisk.files import replacing
 from cytodisk.plot.style import DPI, MM_PER_INCH, WIDE_MM
 
-CHARACTER_MM, BOLD_MM = 1.22, 1.9
+CHARACTER_MM, BOLD_MM = 1.28, 1.9
 """Mean width of a character at 7 points, and bold at 8."""
 
 

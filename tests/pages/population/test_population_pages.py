@@ -183,7 +183,7 @@ def test_effect_sizes_have_a_row_a_scalar(page: Any, two: DrawnPopulation) -> No
     names = [label.get_text() for label in ax.get_yticklabels()]
     assert names == [scalar_words(two, name) for name in two.study.scalars["scalar"]]
     several = page(effects_page, drawn(population(4, experiments=3)))
-    assert several.axes[0].get_title() == "blebbistatin 25 µM − control"
+    assert several.axes[0].get_title().replace("\n", " ") == "blebbistatin 25 µM − control"
 
 
 def test_very_many_scalars_are_cut_to_the_largest(page: Any) -> None:

@@ -25,8 +25,9 @@ from cytodisk.windows.polar_windows import CellWindows
 
 PLACES = ("nearest", "farthest")
 
-_ROOM, _GAP, _TITLE, _BELOW, _SIDE, _BAR = 3.0, 1.5, 7.5, 5.5, 5.0, 16.5  # mm
-_SMALL, _CHARACTER = 6.0, 1.12  # points, mm: of names
+_GAP, _TITLE, _BELOW, _SIDE, _BAR = 1.5, 8.0, 5.5, 9.0, 15.0  # mm
+_CHARACTER, _BOLD = 1.28, 1.6  # mm, of names
+_WIDEST, _BETWEEN = 24.0, 3.0  # mm, of a cell, and between conditions
 
 
 @dataclass(frozen=True)
@@ -52,40 +53,42 @@ def gallery_page(one: DrawnPopulation, channel: str) -> Sheet | None:
     if not cells:
         return None
     images = all(cell.image is not None for cell in cells)
-    most = {place: max(len(found[name, place]) for name in one.conditions) for place in PLACES}
-    columns = sum(most.values())
-    room = WIDE_MM - LEFT_MM - _SIDE - _BAR - _ROOM - (columns - 1) * _GAP
-    size = min(room / columns, 24.0)
+    columns = max(len(row) for row in found.values())
+    room = WIDE_MM - LEFT_MM - _SIDE - _BAR - (columns - 1) * _GAP
+    size = min(room / columns, _WIDEST)
     notes = [] if images else [f"means of windows: {one.sources.image_fault or 'images are not there'}"]
     words = (
         f"{one.channel_words(channel)}: cells nearest to the mean of their condition, and farthest from it"
     )
     heading = one.heading(WIDE_MM, words, *notes)
     step = _TITLE + size + 3.5
-    sheet = Sheet(heading.height_mm + 3.0 + len(one.conditions) * step + _BELOW)
+    block = len(PLACES) * step + _BETWEEN
+    sheet = Sheet(heading.height_mm + len(one.conditions) * block + _BELOW)
     heading.write(sheet)
     axes: list[Axes] = []
     for number, condition in enumerate(one.conditions):
-        top = heading.height_mm + 3.0 + number * step + _TITLE
-        sheet.text(LEFT_MM, top + 0.5 * size, condition, rotation=90, ha="left", va="center")
-        for place in PLACES:
-            left = LEFT_MM + _SIDE + (0.0 if place == "nearest" else most["nearest"] * (size + _GAP) + _ROOM)
-            if number == 0:
-                sheet.text(left, heading.height_mm + 1.0, place, weight="bold")
-            places = range(len(found[condition, place]))
-            axes += [sheet.axes(left + column * (size + _GAP), top, size, size) for column in places]
+        first = heading.height_mm + number * block
+        name = shortened(condition, int((block - _TITLE) / _BOLD))
+        side: Any = {"rotation": 90, "ha": "left", "va": "center"}
+        sheet.text(LEFT_MM, first + 0.5 * (block + _TITLE) - 3.0, name, weight="bold", **side)
+        for row, place in enumerate(PLACES):
+            top = first + row * step + _TITLE
+            sheet.text(LEFT_MM + 4.0, top + 0.5 * size, place, **side)
+            lefts = [
+                LEFT_MM + _SIDE + column * (size + _GAP) for column in range(len(found[condition, place]))
+            ]
+            axes += [sheet.axes(left, top, size, size) for left in lefts]
     drawn = _draw(axes, cells, images)
     ending = common_ending([cell.name.rpartition(", ")[0] for cell in cells])
     for ax, cell in zip(axes, cells, strict=True):
         ax.set_title(
             _two_lines(cell.name, ending, int(size / _CHARACTER)),
-            fontsize=_SMALL,
             pad=2.0,
             linespacing=1.0,
             parse_math=False,
         )
-    left = LEFT_MM + _SIDE + columns * (size + _GAP) + _ROOM
-    bar = sheet.axes(left, heading.height_mm + 3.0 + _TITLE, 2.2, min(size * 1.2, 26.0))
+    left = LEFT_MM + _SIDE + columns * (size + _GAP) + 1.0
+    bar = sheet.axes(left, heading.height_mm + _TITLE, 2.2, min(size * 1.2, 26.0))
     label = one.value_label(channel)
     if images:
         label = f"{one.channel_words(channel)} ({'× cell mean' if one.is_by_cell else 'a.u.'})"

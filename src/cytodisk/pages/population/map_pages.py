@@ -25,7 +25,7 @@ from cytodisk.plot.style import (
 from cytodisk.runs.channel_names import shortened
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
-_MOST_ABREAST = 5  # conditions of a row
+_MOST_ABREAST = 4  # conditions of a row
 _WIDEST = 42.0  # mm, of a disk with its numbers
 _TALLEST = 1.35  # of a cell, height over width
 _TITLE, _BELOW, _BAR, _BAR_BELOW, _LINE = 6.5, 11.5, 2.2, 8.5, 3.6  # mm
@@ -175,7 +175,7 @@ class _KeyLines:
                 words += f"; no window and no cluster with p ≤ {found[name].alpha:g}"
             self.lines += broken_lines(words.split(" "), " ", room)
         self.handles = _shared_key(list(found.values()))
-        self.columns = 1 if width < WIDE_MM else 3
+        self.columns = 1 if width < WIDE_MM else 2
         self.rows = -(-len(self.handles) // self.columns)
 
     @property

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.ticker import MaxNLocator
 
 from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.population.drawn_population import DrawnPopulation, in_two_lines
@@ -17,12 +18,15 @@ from cytodisk.plot.population.effect_sizes import draw_effect_sizes
 from cytodisk.plot.population.experiment_key import experiment_key
 from cytodisk.plot.population.super_plot import draw_super_plot
 from cytodisk.plot.style import SINGLE_COLUMN_MM, WIDE_MM
+from cytodisk.plot.time_axis import TICK_STEPS
 from cytodisk.plot.units import with_unit
 
 MOST_PANELS = 6
 MOST_ROWS = 44
 
-_LEFT, _STEP, _LEAST, _GAP, _TALL, _ABOVE, _BELOW = 12.5, 13.5, 26.0, 3.0, 29.0, 9.5, 9.0  # mm
+_MOST_ABREAST, _FEWEST_ROWS, _AXIS = 2, 14, 11.0  # conditions, scalars, mm below a panel of effect sizes
+
+_LEFT, _STEP, _LEAST, _GAP, _TALL, _ABOVE, _BELOW = 12.5, 16.0, 26.0, 3.0, 29.0, 9.5, 9.0  # mm
 _ABOVE_BARE = 4.0  # mm, where no test is written above
 _NAMES, _ROW, _P_ROOM, _LINE = 40.0, 3.7, 9.0, 3.6  # mm
 _LAYER = re.compile(r"layer_\d+_")
@@ -86,37 +90,45 @@ def effects_page(one: DrawnPopulation) -> Sheet | None:
     treated = [name for name in one.compared if (known["condition"] == name).any()]
     if not treated:
         return None
+    blocks = -(-len(treated) // _MOST_ABREAST)
     largest = known.assign(size=known["effect_size"].abs()).groupby("scalar", sort=False)["size"].max()
     order = list(largest.index)
-    if len(order) > MOST_ROWS:
-        kept = set(largest.sort_values(ascending=False, kind="stable").index[:MOST_ROWS])
+    most = max(MOST_ROWS // blocks, _FEWEST_ROWS)
+    if len(order) > most:
+        kept = set(largest.sort_values(ascending=False, kind="stable").index[:most])
         order = [name for name in order if name in kept]
     note = "" if len(order) == len(largest) else f"{len(order)} of {len(largest)}, the largest effect sizes"
-    width = SINGLE_COLUMN_MM if len(treated) == 1 else WIDE_MM
-    panel = (width - _NAMES - len(treated) * _P_ROOM - 2.0) / len(treated)
+    abreast = min(len(treated), _MOST_ABREAST)
+    width = SINGLE_COLUMN_MM if abreast == 1 else WIDE_MM
+    panel = (width - _NAMES - abreast * _P_ROOM - 2.0) / abreast
     heading = one.heading(width, "Effect sizes of scalars", *([note] if note else []))
     lines = [
         line
         for name in treated
         for line in broken_lines(one.comparison_words(name).split(" "), " ", width - 2 * LEFT_MM)
     ]
-    lines.append(f"filled: p ≤ 0.05; on the right: p, corrected for all scalars ({one.correction})")
+    meaning = f"filled: p ≤ 0.05; on the right: p, corrected for all scalars ({one.correction})"
+    lines += broken_lines(meaning.split(" "), " ", width - 2 * LEFT_MM)
     titles = [in_two_lines(f"{name} − {one.study.control}", panel + _P_ROOM) for name in treated]
-    more = _LINE * any("\n" in title for title in titles)
-    tall, top = _ROW * len(order) + 2.0, heading.height_mm + 3.5 + more
-    sheet = Sheet(top + tall + 11.0 + _LINE * len(lines), width)
+    above = 3.5 + _LINE * any("\n" in title for title in titles)
+    tall = _ROW * len(order) + 2.0
+    foot = heading.height_mm + blocks * (above + tall + _AXIS)
+    sheet = Sheet(foot + _LINE * len(lines), width)
     heading.write(sheet)
     colours = condition_colours(one.conditions)
     for number, name in enumerate(treated):
+        row, column = divmod(number, abreast)
         own = known[known["condition"] == name].set_index("scalar").reindex(order).reset_index()
         own["scalar"] = [scalar_words(one, scalar) for scalar in order]
-        ax = sheet.axes(_NAMES + number * (panel + _P_ROOM), top, panel, tall)
+        top = heading.height_mm + row * (above + tall + _AXIS) + above
+        ax = sheet.axes(_NAMES + column * (panel + _P_ROOM), top, panel, tall)
         draw_effect_sizes(ax, own, color=colours[name])
         ax.set_title(titles[number], parse_math=False)
-        ax.tick_params(labelleft=number == 0)
+        ax.tick_params(labelleft=column == 0)
+        ax.xaxis.set_major_locator(MaxNLocator(4, steps=TICK_STEPS, symmetric=True))
         ax.set_xlabel("effect size (Hedges g)")
     for number, words in enumerate(lines):
-        sheet.text(LEFT_MM, top + tall + 11.0 + _LINE * number, words, color="0.3")
+        sheet.text(LEFT_MM, foot + _LINE * number, words, color="0.3")
     return sheet
 
 

@@ -26,7 +26,6 @@ _APART, _FURTHEST = 0.045, 0.16  # of the means of experiments, and the outermos
 _MEAN_AT = 0.38  # of mean and interval, beside the swarm
 _MARGIN = 0.06  # of the range of the cells
 _BINS = 24
-_SMALL = 6.0  # points, of what is written above each of several conditions
 _MOST_CELLS = 1500  # of a condition that get a dot
 _GOLDEN = 0.6180339887
 
@@ -225,7 +224,6 @@ def _write_tests(ax: Axes, names: Sequence[str], tests: pd.DataFrame) -> None:
             textcoords="offset points",
             ha="center",
             va="bottom",
-            fontsize=None if len(names) == 2 else _SMALL,
             linespacing=1.1,
             annotation_clip=False,
             gid=TEST_NAME,
