@@ -24,7 +24,7 @@ from cytodisk.plot.units import with_unit
 MOST_PANELS = 6
 MOST_ROWS = 44
 
-_MOST_ABREAST, _FEWEST_ROWS, _AXIS = 2, 14, 11.0  # conditions, scalars, mm below a panel of effect sizes
+_MOST_ABREAST, _FEWEST_ROWS, _AXIS = 2, 14, 13.0  # conditions, scalars, mm below a panel of effect sizes
 
 _LEFT, _STEP, _LEAST, _GAP, _TALL, _ABOVE, _BELOW = 12.5, 16.0, 26.0, 3.0, 29.0, 9.5, 9.0  # mm
 _ABOVE_BARE = 4.0  # mm, where no test is written above
