@@ -12,10 +12,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from cytodisk.pages.drawn_correlation import VELOCITY_NAMES, Heading, broken_lines
+from cytodisk.pages.drawn_correlation import VELOCITY_NAMES, Heading
 from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
-from cytodisk.pages.sheet import Sheet
+from cytodisk.pages.sheet import Sheet, broken_lines
 from cytodisk.plot.correlation.curve_key import PARTIAL_LOOK
 from cytodisk.plot.correlation.lag_axis import LagUnit
 from cytodisk.plot.layer_looks import layer_word, shown_layers
