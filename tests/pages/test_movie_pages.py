@@ -105,7 +105,7 @@ def test_pages_with_signal(scaled: Study, images: FloatArray, saved: list[Figure
     assert done[-1] == (12, 12)
     activity, _, edge, strip, consistency = map(_labels, saved)
     assert {"time (s)", "edge velocity (nm/s)", "mean Rac/1 $a$ (a.u.)"} <= activity
-    assert {"time (s)", "area per frame (µm²)", "edge velocity (µm/s)"} <= edge
+    assert {"time (s)", "area per frame (µm²)", "edge velocity (nm/s)"} <= edge
     assert strip == {"Rac/1 $a$ (a.u.)"}
     assert {"time (s)", "displacement (µm)", "correlation with next frame"} <= consistency
 
