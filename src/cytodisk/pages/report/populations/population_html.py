@@ -18,7 +18,7 @@ from cytodisk.pages.report.populations.population_words import (
     curves_note,
     facts,
     figure_files,
-    headline,
+    finding,
     methods,
     warning_groups,
 )
@@ -73,10 +73,12 @@ def population_page(study: PopulationStudy) -> str:
     data = population_data(one)
     data["tables"] = {name: table for name in _MAIN if (table := _listed(study, name))["rows"]}
     data["tables"]["cells"] = _listed_cells(study)
+    found = finding(one)
     words = {
         "title": real_path(study.path).name,
         "facts": list(facts(one)),
-        "finding": list(dict.fromkeys([headline(one), *study.sentences])),
+        "finding": found,
+        "sentences": [told for told in study.sentences if told not in found],
         "warnings": warning_groups(one),
         "notes": [str(note) for note in study.provenance.get("warnings", ())],
         "left_out": list(filter(None, [rows_words(study.cells, "cells.parquet"), curves_note(one)])),

@@ -10,8 +10,10 @@ from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.population.drawn_population import DrawnPopulation
 from cytodisk.pages.report.provenance_words import version_of
 from cytodisk.population.significance import LEVEL
+from cytodisk.runs.findings.finding import listed
 
 _MOST_COMPARISONS = 4
+_AGAINST, _MOST_PLACES = " against ", 2  # sentences that tell where, by channel
 _NORMALISED = {
     "cell mean": "were divided by the mean of their cell",
     "cell total": "were divided by the total of their cell",
@@ -42,6 +44,17 @@ def headline(one: DrawnPopulation) -> str:
     if able.empty:
         return one.study.sentences[0] if one.study.sentences else "Nothing was compared."
     return " ".join(_found(row) for row in able.head(_MOST_COMPARISONS).to_dict("records"))
+
+
+def finding(one: DrawnPopulation) -> list[str]:
+    """What was found, in one to three sentences: the headline, with its warnings, and where it was found."""
+    first = headline(one)
+    names = list(dict.fromkeys(warning.name for warning in one.study.warnings))
+    told = one.study.sentences
+    if names and first not in told:  # where nothing can be found, that is the warning
+        first = f"{first.removesuffix('.')}, but warnings bear on this: {listed(names)}."
+    where = [words for words in told if _AGAINST in words and words != first]
+    return [first, *where[:_MOST_PLACES]]
 
 
 def _found(row: dict[Any, Any]) -> str:
