@@ -53,6 +53,12 @@ def test_peaks_of_a_cell_by_window_with_chance_and_lag() -> None:
     assert numbers.value_words(found, PEAK, 0, (1, 1)) == ["not correlated"]
 
 
+def test_lags_of_peaks_are_in_seconds() -> None:
+    found = CellNumbers(shown_study(), 1).of_windows(DiskChoice("lag", PEAK.names), 0)
+    np.testing.assert_allclose(found.values, [[-10.0, np.nan, -10.0]] * 2)
+    assert (found.limits, found.unit) == ((-10.0, 10.0), "s")
+
+
 @pytest.mark.parametrize(
     ("frame", "words"),
     [(0, ""), (1, "refused: it is in two pieces"), (5, "cell 0 is not in frame 5"), (None, "no frame")],
@@ -80,6 +86,7 @@ def test_images_that_fit_the_masks_can_be_shown() -> None:
         "mean Rac1",
         "window area",
         "peak correlation, Rac1 with velocity",
+        "lag of the peak, Rac1 with velocity",
         "pixels of movie",
         "pixels of picture",
         "pixels of raw",

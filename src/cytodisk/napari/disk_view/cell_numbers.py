@@ -14,6 +14,7 @@ from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.napari.disk_view.disk_choices import DiskChoice
 from cytodisk.napari.disk_view.window_words import number_with_unit
 from cytodisk.number_words import rounded
+from cytodisk.plot.correlation.correlation_peaks import LAG_COLOURS
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS, signal_limits
 from cytodisk.plot.time_axis import FrameTimes
 from cytodisk.windows.polar_windows import PolarGrid
@@ -36,8 +37,8 @@ class WindowNumbers:
     unit : str
     hatched : ndarray of shape (layers, sectors) and dtype bool, or None
         Windows whose number is not significant.
-    lags : ndarray of shape (layers, sectors) and dtype float, or None
-        Of peaks of correlation, in the unit of time.
+    peaks : (ndarray, ndarray) or None
+        Correlation at the peak and its lag in the unit of time, both of shape (layers, sectors).
     """
 
     values: FloatArray
@@ -45,7 +46,7 @@ class WindowNumbers:
     colours: str
     unit: str
     hatched: BoolArray | None = None
-    lags: FloatArray | None = None
+    peaks: tuple[FloatArray, FloatArray] | None = None
 
 
 class CellNumbers:
@@ -95,8 +96,8 @@ class CellNumbers:
         -------
         WindowNumbers
         """
-        if choice.kind == "correlation":
-            return self._correlation(choice.names)
+        if choice.is_peak:
+            return self._peak(choice)
         if choice.kind == "mean":
             (channel,) = choice.names
             values = np.asarray(self.shown.values(self.cell, channel, frame), dtype=np.float64)
@@ -104,17 +105,19 @@ class CellNumbers:
         values = np.asarray(self.shown.values(self.cell, "area", frame), dtype=np.float64)
         return WindowNumbers(values, signal_limits(values), SIGNAL_COLOURS, self.shown.unit("area"))
 
-    def _correlation(self, names: tuple[str, ...]) -> WindowNumbers:
-        if names not in self._peaks:
-            table = self.shown.study.correlation(*names).windows
-            self._peaks[names] = table[table["cell"] == self.cell]
-        table = self._peaks[names]
-        values = self._by_window(table, "correlation")
-        found = float(np.nanmax(np.abs(values), initial=0.0, where=np.isfinite(values)))
-        top = max(0.1, np.ceil(10.0 * found) / 10.0)
+    def _peak(self, choice: DiskChoice) -> WindowNumbers:
+        found = self.shown.study.correlation(*choice.names)
+        if choice.names not in self._peaks:
+            self._peaks[choice.names] = found.windows[found.windows["cell"] == self.cell]
+        table, scale = self._peaks[choice.names], self.shown.study.scale
+        values, lags = self._by_window(table, "correlation"), scale.time(self._by_window(table, "lag"))
         chance = self._by_window(table, "q") >= SIGNIFICANT
-        lags = self.shown.study.scale.time(self._by_window(table, "lag"))
-        return WindowNumbers(values, (-top, top), DIVERGING_COLOURS, "", chance, lags)
+        if choice.kind == "lag":
+            top = _largest(lags) or 1.0
+            unit = scale.time_unit if scale.frame_interval_s else "frames"
+            return WindowNumbers(lags, (-top, top), LAG_COLOURS, unit, chance, (values, lags))
+        top = max(0.1, np.ceil(10.0 * _largest(values)) / 10.0)
+        return WindowNumbers(values, (-top, top), DIVERGING_COLOURS, "", chance, (values, lags))
 
     def _by_window(self, table: pd.DataFrame, name: str) -> FloatArray:
         grid = self.grid
@@ -178,22 +181,35 @@ class CellNumbers:
         list of str
             One line each.
         """
-        value = float(numbers.values[window])
-        if choice.kind == "correlation":
-            return [self._peak_words(numbers, value, window)]
-        label = "window area" if choice.kind in ("area", "image") else choice.label
-        lines = [f"{label}: {number_with_unit(value, numbers.unit)}"]
+        if choice.is_peak:
+            return [self._peak_words(numbers, window)]
+        value, unit, label = float(numbers.values[window]), numbers.unit, choice.label
+        if choice.kind == "image" and self.shown.channel:
+            mean = DiskChoice("mean", (self.shown.channel,))
+            value, label = float(self.of_windows(mean, frame).values[window]), mean.label
+            unit = self.shown.unit(self.shown.channel)
+        elif choice.kind == "image":
+            label = "window area"
+        lines = [f"{label}: {number_with_unit(value, unit)}"]
         velocities = self.velocities(frame)
         if velocities is not None:
             speed = number_with_unit(float(velocities[window[1]]), self.shown.unit("velocity"), signed=True)
             lines.append(f"edge velocity: {speed}")
         return lines
 
-    def _peak_words(self, numbers: WindowNumbers, value: float, window: tuple[int, int]) -> str:
-        if numbers.lags is None or numbers.hatched is None or not np.isfinite(value):
+    def _peak_words(self, numbers: WindowNumbers, window: tuple[int, int]) -> str:
+        if numbers.peaks is None or numbers.hatched is None:
             return "not correlated"
-        lag, time = float(numbers.lags[window]), self.shown.study.scale.time_unit
-        unit = time if time == "s" else "frames"
+        correlation, lag = (float(values[window]) for values in numbers.peaks)
+        if not np.isfinite(correlation):
+            return "not correlated"
+        unit = "s" if self.shown.study.scale.frame_interval_s else "frames"
         chance = ", not significant" if numbers.hatched[window] else ""
-        words = f"peak correlation {rounded(value, 2)}".replace("-", "−")
+        words = f"peak correlation {rounded(correlation, 2)}".replace("-", "−")
         return f"{words} at lag {number_with_unit(lag, unit)}{chance}"
+
+
+def _largest(values: FloatArray) -> float:
+    """The largest without its sign; 0 if none is known."""
+    known = np.abs(values[np.isfinite(values)])
+    return float(known.max()) if known.size else 0.0

@@ -8,9 +8,10 @@ from typing import Any, Literal
 
 from cytodisk.runs.channel_names import correlation_name, shown_name
 
-Kind = Literal["mean", "area", "correlation", "image"]
+Kind = Literal["mean", "area", "correlation", "lag", "image"]
 MARK = "cytodisk"  # of a layer's metadata
 
+_PEAKS = {"correlation": "peak correlation", "lag": "lag of the peak"}
 _LONGEST_NAME = 24  # letters that a combo has room for
 _OWN_IMAGES = ("signal",)  # roles of layers of cytodisk that hold pixels, not windows
 
@@ -21,7 +22,7 @@ class DiskChoice:
 
     Attributes
     ----------
-    kind : {"mean", "area", "correlation", "image"}
+    kind : {"mean", "area", "correlation", "lag", "image"}
     names : tuple of str
         Of the channel, of the correlation as in `Study.correlations`, or of the image layer.
     """
@@ -30,12 +31,22 @@ class DiskChoice:
     names: tuple[str, ...] = ()
 
     @property
+    def is_peak(self) -> bool:
+        """Whether it is of the peak of a correlation."""
+        return self.kind in _PEAKS
+
+    @property
+    def key(self) -> str:
+        """At the colour bar, where a peak needs no name of what was correlated."""
+        return _PEAKS.get(self.kind, self.label)
+
+    @property
     def label(self) -> str:
-        """In the combo and at the colour bar."""
+        """In the list to choose from."""
         if self.kind == "mean":
             return f"mean {shown_name(self.names[0], _LONGEST_NAME)}"
-        if self.kind == "correlation":
-            return f"peak correlation, {correlation_name(self.names)}"
+        if self.kind in _PEAKS:
+            return f"{_PEAKS[self.kind]}, {correlation_name(self.names)}"
         return "window area" if self.kind == "area" else f"pixels of {self.names[0]}"
 
 
@@ -53,7 +64,8 @@ def disk_choices(shown: Any) -> list[DiskChoice]:
         Channels first, area where there is none.
     """
     means = [DiskChoice("mean", (name,)) for name in shown.channels]
-    peaks = [DiskChoice("correlation", tuple(names)) for names in shown.study.correlations]
+    kinds: tuple[Kind, Kind] = ("correlation", "lag")
+    peaks = [DiskChoice(kind, tuple(names)) for names in shown.study.correlations for kind in kinds]
     return [*means, DiskChoice("area"), *peaks, *_images(shown)]
 
 

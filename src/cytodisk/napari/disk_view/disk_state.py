@@ -132,7 +132,7 @@ class DiskState:
             return KeyWords(self.choice.label, limits, SIGNAL_COLOURS), ring
         unit = f" ({self.values.unit})" if self.values.unit else ""
         hatched = "; hatched: not significant" if self.values.hatched is not None else ""
-        return KeyWords(f"{self.choice.label}{unit}{hatched}", self.values.limits, self.values.colours), ring
+        return KeyWords(f"{self.choice.key}{unit}{hatched}", self.values.limits, self.values.colours), ring
 
     def words(self, window: tuple[int, int]) -> list[str]:
         """A window in words: where it is, its value, the velocity of its edge.

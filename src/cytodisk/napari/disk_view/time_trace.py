@@ -13,7 +13,8 @@ from cytodisk.arrays import FloatArray
 from cytodisk.number_words import rounded
 from cytodisk.plot.time_axis import FrameTimes, stands_alone
 
-_HEIGHT, _LEFT, _RIGHT = 96, 46, 8
+_LEAST_HEIGHT, _LARGEST_HEIGHT = 92, 150
+_LEFT, _RIGHT = 46, 8  # pixels beside the line
 _MARGIN = 0.06  # of the range of values, above and below
 _NOW, _ZERO = QColor("#E69F00"), QColor(128, 128, 128, 160)
 
@@ -43,7 +44,8 @@ class TimeTrace(QWidget):
         self.values: FloatArray = np.zeros(0)
         self.now: int | None = None
         self.with_zero = False
-        self.setFixedHeight(_HEIGHT)
+        self.setMinimumHeight(_LEAST_HEIGHT)
+        self.setMaximumHeight(_LARGEST_HEIGHT)
         self.setToolTip("Click to go to a frame.")
 
     def show_line(
