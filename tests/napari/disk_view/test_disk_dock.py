@@ -15,6 +15,7 @@ from cytodisk.store.study import Study
 pytestmark = pytest.mark.slow
 pytest.importorskip("cytodisk.napari.viewer_parts")
 
+from cytodisk.napari.camera import camera_of  # noqa: E402
 from cytodisk.napari.disk_view.disk_dock import NO_STUDY, DiskDock  # noqa: E402
 from cytodisk.napari.study_layers.shown_study import show_study  # noqa: E402
 
@@ -58,8 +59,7 @@ def open_dock(make_viewer: Callable[..., Any], qtbot: Any) -> Callable[..., tupl
         frames = (4,) if study.is_movie else ()
         pixels = np.random.default_rng(0).random((*frames, height, width))
         viewer.add_image(pixels, name="mine", scale=scale, units=units)
-        dock = DiskDock(viewer)
-        viewer.window.add_dock_widget(dock, name="Disk", area="right")
+        _, dock = viewer.window.add_plugin_dock_widget("cytodisk", "Disk")
         viewer.mouse_over_canvas = True
         qtbot.wait(10)
         return viewer, shown, dock
@@ -120,8 +120,6 @@ def test_cell_and_disk_are_linked_both_ways(movie: Study, open_dock: Callable[..
 
     cursor_in_disk(dock, 0.5, 0.2, "MouseButtonPress")
     ((y, x),) = disk.to_cell([(0.5, 0.2)])
-    from cytodisk.napari.disk_view.viewer_canvas import camera_of
-
     assert_allclose(tuple(camera_of(viewer).center)[-2:], (PIXEL * y, PIXEL * x), atol=1e-3)
     assert dock.pinned is not None
     assert dock.pinned[0] == 1

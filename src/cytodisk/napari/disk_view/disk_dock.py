@@ -9,6 +9,7 @@ from qtpy.QtCore import QTimer
 from qtpy.QtGui import QColor
 from qtpy.QtWidgets import QWidget
 
+from cytodisk.napari.camera import camera_of
 from cytodisk.napari.disk_view.cell_numbers import CellNumbers
 from cytodisk.napari.disk_view.disk_choices import DiskChoice, disk_choices
 from cytodisk.napari.disk_view.disk_parts import DiskParts
@@ -16,8 +17,9 @@ from cytodisk.napari.disk_view.disk_pixels import DiskColours
 from cytodisk.napari.disk_view.disk_state import DiskState
 from cytodisk.napari.disk_view.drawn_marks import draw_marks
 from cytodisk.napari.disk_view.pointing import Pointed, ViewerPlaces, pointed_in_cell, pointed_in_disk
-from cytodisk.napari.disk_view.viewer_canvas import camera_of, text_colour_of
+from cytodisk.napari.disk_view.viewer_canvas import text_colour_of
 from cytodisk.napari.disk_view.viewer_link import ViewerLink
+from cytodisk.napari.docks import join_docks
 from cytodisk.napari.plain_viewer import plain_viewer
 from cytodisk.napari.study_layers.shown_study import shown_studies
 
@@ -95,6 +97,7 @@ class DiskDock(QWidget):
 
     def showEvent(self, event: Any) -> None:
         """Follow the viewer."""
+        join_docks(self)
         self._link()
 
     def hideEvent(self, event: Any) -> None:
@@ -290,8 +293,7 @@ class DiskDock(QWidget):
         place = self.state.place_yx(self.pointed)
         if place is not None and np.isfinite(place).all() and self._places.is_flat:
             ((x, y),) = self._places.scene_xy(place)
-            camera = camera_of(self.viewer)
-            camera.center = (*tuple(camera.center)[:-2], float(y), float(x))
+            camera_of(self.viewer).center = float(y), float(x)
 
     def _go_to(self, frame: int) -> None:
         if self._places is not None:

@@ -17,17 +17,6 @@ def scene_of(viewer: Any) -> Any:
     return viewer.window._qt_viewer.canvas.view.scene
 
 
-def camera_of(viewer: Any) -> Any:
-    """The camera, which is the scene's from napari 0.9 on.
-
-    Parameters
-    ----------
-    viewer : Viewer
-    """
-    scene = getattr(viewer, "scene", None)
-    return viewer.camera if scene is None else scene.camera
-
-
 def text_colour_of(viewer: Any) -> str:
     """Colour of text in the viewer's theme, as "#ffffff".
 
