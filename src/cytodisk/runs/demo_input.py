@@ -15,6 +15,7 @@ from cytodisk.analysis.accuracy import (
     tracking_error,
     true_edge_velocity,
 )
+from cytodisk.analysis.top_speed import top_speed
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ReadError, StudyError
 from cytodisk.files import replacing
@@ -118,9 +119,10 @@ def _velocity_words(study: Study, truth: SimulatedMovie, found: FloatArray) -> s
     error = float(np.sqrt(np.mean((found - known)[both] ** 2)))
     spread = float(known[both].std())
     correlation = float(np.corrcoef(found[both], known[both])[0, 1])
+    unit = study.scale.shown_velocity(top_speed(found), len(found))
     return (
-        f"error {error:.3f} µm/s (rms), correlation with the true velocity {correlation:.3f}; the true "
-        f"velocity has a standard deviation of {spread:.3f} µm/s"
+        f"error {unit.words(error, 2)} (rms), correlation with the true velocity {correlation:.3f}; the true "
+        f"velocity has a standard deviation of {unit.words(spread, 2)}"
     )
 
 

@@ -3,11 +3,11 @@ import pytest
 from report_study import GAP, LAYERS, SECTORS
 
 import cytodisk as cd
+from cytodisk.analysis.top_speed import top_speed
 from cytodisk.pages.report import boxes
 from cytodisk.pages.report.boxes import Box, box_around, boxes_by_frame
 from cytodisk.pages.report.pictures import OUTSIDE, Pictures, resampled, window_labels
 from cytodisk.pages.report.shown_cell import ShownCell
-from cytodisk.plot.movie.activity_maps import top_speed
 from cytodisk.store.study import Study
 
 

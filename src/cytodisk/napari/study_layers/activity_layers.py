@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cytodisk.analysis.top_speed import top_speed
 from cytodisk.errors import ReadError
 from cytodisk.napari.study_layers.layers_of_study import LayerData
 from cytodisk.napari.study_layers.study_place import MARK
-from cytodisk.plot.movie.activity_maps import top_speed
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS, signal_limits
 from cytodisk.runs.channel_names import shown_name
 from cytodisk.store.activity_store import open_activity

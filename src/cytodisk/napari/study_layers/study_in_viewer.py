@@ -203,7 +203,7 @@ class ShownStudy:
     @cached_property
     def top_speed(self) -> float:
         """Speed at the ends of the colours of velocity, the same in all frames."""
-        from cytodisk.plot.movie.activity_maps import top_speed
+        from cytodisk.analysis.top_speed import top_speed
 
         return top_speed(self._values.velocities())
 

@@ -12,12 +12,12 @@ import pandas as pd
 import xarray as xr
 from matplotlib.colors import to_hex
 
+from cytodisk.analysis.top_speed import top_speed
 from cytodisk.arrays import FloatArray
 from cytodisk.pages.movie_cell import MovieCell
 from cytodisk.pages.report.encode import pack_floats
 from cytodisk.pages.report.shown_names import without_folders
 from cytodisk.plot.layer_looks import CYTOPLASM_COLOURS, NUCLEUS_COLOURS, depth_words, layer_place
-from cytodisk.plot.movie.activity_maps import top_speed
 from cytodisk.plot.style import signal_limits
 from cytodisk.plot.time_axis import FrameTimes
 from cytodisk.runs.channel_names import shown_name

@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 from matplotlib.ticker import MaxNLocator
 
+from cytodisk.analysis.top_speed import top_speed
 from cytodisk.arrays import FloatArray
 from cytodisk.errors import ParameterError
 from cytodisk.plot.layer_looks import cytoplasm_layers_of, layer_names, shown_layers
@@ -24,8 +25,6 @@ from cytodisk.plot.units import unit_of, velocity_unit, with_unit
 from cytodisk.scale import Scale
 
 SECTOR_LABEL = "sector (0 at +x, towards +y)"
-
-_VELOCITY_PERCENTILES, _MOST_OVER_USUAL = (75.0, 99.0), 3.0
 
 
 def draw_activity_map(
@@ -208,25 +207,6 @@ def draw_layers(
     colour_bar(drawn[-1], bar_beside(*maps), label, unit_of(values, "a.u."), extend=ends)
     share_labels(axes)
     return drawn
-
-
-def top_speed(velocity: FloatArray) -> float:
-    """Speed at the ends of the colours of a velocity map.
-
-    Parameters
-    ----------
-    velocity : ndarray of dtype float
-
-    Returns
-    -------
-    float
-        Percentile 99 of the speeds, at most three times percentile 75; 1 if nothing moves.
-    """
-    speed = np.abs(velocity[np.isfinite(velocity)])
-    if not speed.size:
-        return 1.0
-    usual, fast = np.percentile(speed, _VELOCITY_PERCENTILES).tolist()
-    return min(fast, _MOST_OVER_USUAL * usual) or fast or float(speed.max()) or 1.0
 
 
 def _check_layers(axes: Sequence[Axes], table: FloatArray, velocity: Any, maps: int) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from cytodisk.plot.movie.activity_maps import top_speed
+from cytodisk.analysis.top_speed import top_speed
 from cytodisk.plot.number_tables import number_table
 from cytodisk.plot.style import LINE_COLOUR, key_above
 from cytodisk.plot.time_axis import FrameTimes, stands_alone

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pandas as pd
 
+from cytodisk.analysis.top_speed import top_speed
 from cytodisk.number_words import counted, rounded
 from cytodisk.runs.channel_names import correlation_name
 from cytodisk.runs.findings.correlation_finding import correlation_finding
@@ -100,13 +101,12 @@ def _motion(study: Study, cell: int) -> Iterator[str]:
     edge = study.edge[study.edge["cell"] == cell]
     speed = edge["velocity"].dropna()
     frames = int(rows["frame"].iloc[-1] - rows["frame"].iloc[0]) if len(rows) else 0
-    time = study.scale.shown_time(frames)
+    time = study.scale.shown_time(frames + 1)
     span = time.words(study.scale.time(float(frames)))
     if speed.empty:
         yield "No two mapped frames follow each other, so the edge has no velocity."
         return
-    top = float(np.percentile(speed.abs(), 99.0))
-    unit = study.scale.shown_velocity(top, frames)
+    unit = study.scale.shown_velocity(top_speed(speed.to_numpy()), frames + 1)
     usual, error = float(speed.abs().median()), float(edge["velocity_error"].median())
     noise = f", no more than the error of one sector ({unit.words(error, 2)})" if usual <= error else ""
     moving = (

@@ -64,8 +64,10 @@ def _velocity_words(study: "Study") -> str:
     if not speed.notna().any():
         return "edge velocity: none, as no two frames that follow each other were mapped"
     error = " ".join(["error of one sector", *_bounds(study.edge)])
+    from cytodisk.analysis.top_speed import top_speed
+
     frames = study.cells["frame"].max() - study.cells["frame"].min() + 1
-    shown = suited_velocity(speed.abs().max(), unit, study.scale.shown_time(frames))
+    shown = suited_velocity(top_speed(speed.to_numpy()), unit, study.scale.shown_time(frames))
     low, high, wrong = speed.min(), speed.max(), study.edge["velocity_error"].median()
     return f"edge velocity: {shown.number(low)} to {shown.words(high)}, {error} {shown.words(wrong, 2)}"
 
