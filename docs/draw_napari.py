@@ -54,11 +54,11 @@ def opened(sample: str) -> Viewer:
     return viewer
 
 
-def dock(viewer: Viewer, name: str, width: int = 330) -> Any:
-    """A widget of the plugin, as the menu Plugins opens it."""
+def dock(viewer: Viewer, name: str, width: int = 340) -> tuple[Any, Any]:
+    """A widget of the plugin, as the menu Plugins opens it, and what holds it."""
     holder, widget = viewer.window.add_plugin_dock_widget("cytodisk", name)
     holder.setMinimumWidth(width)
-    return widget
+    return holder, widget
 
 
 def run(widget: Any) -> None:
@@ -71,7 +71,7 @@ def run(widget: Any) -> None:
 def check() -> None:
     """A wrong frame, found before anything is mapped."""
     viewer = opened("wrong_frame")
-    widget = dock(viewer, "Check masks")
+    _, widget = dock(viewer, "Check masks")
     run(widget)
     names = [flag.name for flag in widget.found.flags]
     jumps = widget.table.tree.topLevelItem(names.index("area jumps"))
@@ -83,7 +83,8 @@ def check() -> None:
 def map_cells() -> None:
     """Cells of an image with windows."""
     viewer = opened("cells")
-    widget = dock(viewer, "Map cells")
+    _, widget = dock(viewer, "Map cells")
+    widget.form.set_values({"layers": 5, "sectors": 12})
     run(widget)
     save(viewer, "map")
     viewer.close()
@@ -92,14 +93,21 @@ def map_cells() -> None:
 def follow() -> None:
     """A movie that was followed, with its disk, and a correlation."""
     viewer = opened("movie")
-    widget = dock(viewer, "Follow cells")
+    holder, widget = dock(viewer, "Follow cells")
+    widget.form.set_values({"layers": 6, "sectors": 36})
     run(widget)
     viewer.dims.set_current_step(0, 20)
     save(viewer, "follow")
-    dock(viewer, "Disk")
+    holder.hide()
+    if widget.flags is not None:
+        widget.flags.remove()
+    disk, _ = dock(viewer, "Disk", 420)
     save(viewer, "disk")
-    correlate = dock(viewer, "Correlate")
+    disk.hide()
+    _, correlate = dock(viewer, "Correlate", 380)
     run(correlate)
+    if correlate.flags is not None:
+        correlate.flags.remove()
     save(viewer, "correlate")
     viewer.close()
 

@@ -14,8 +14,8 @@ from cytodisk.napari.check.found_flags import FlagPlace, FoundFlag
 
 ROLE = "flags"
 _COLOUR = "#ffb000"  # told from cells and backgrounds by all, also the colour blind
-_SMALL, _LARGE = 6.0, 28.0  # px of the image, of all places and of the one that was clicked
-_ON_SCREEN = 9, 70  # px that a point has at least and at most
+_SMALL, _LARGE = 10.0, 30.0  # px of the image, of all places and of the one that was clicked
+_ON_SCREEN = 14, 70  # px that a point has at least and at most
 _LONGEST = 200  # letters in the status bar
 
 

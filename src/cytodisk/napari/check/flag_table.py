@@ -58,6 +58,8 @@ class FlagTable(QWidget):
         """
         self.tree.blockSignals(True)
         self.tree.clear()
+        places = [place for flag in flags for place in flag.places]
+        self.tree.setColumnHidden(1, bool(places) and not any(place.cell for place in places))
         for flag in flags:
             self._add(flag)
         self.tree.blockSignals(False)

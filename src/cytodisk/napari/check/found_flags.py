@@ -75,7 +75,12 @@ def sentence(words: str) -> str:
 
 
 def flags_of_study(
-    study: Study, flags: Iterable[QCFlag], cells: pd.DataFrame, edge: Callable[[Place], Point | None] | None
+    study: Study,
+    flags: Iterable[QCFlag],
+    cells: pd.DataFrame,
+    edge: Callable[[Place], Point | None] | None,
+    *,
+    has_time: bool = True,
 ) -> list[FoundFlag]:
     """The QC flags of a study, with places to look at.
 
@@ -87,6 +92,8 @@ def flags_of_study(
         Rows of the cells that are shown; others have no place.
     edge : callable, optional
         Where on the cell's edge a place is that names a sector.
+    has_time : bool
+        Whether frames are shown.
 
     Returns
     -------
@@ -103,6 +110,7 @@ def flags_of_study(
         yx = places.at(one.cell, one.frame) if yx is None else yx
         cell = f"{one.cell} of {of_cell[one.cell]}" if many and one.cell in of_cell else str(one.cell)
         frame = places.frame(one.cell) if one.frame is None else one.frame
+        frame = frame if has_time else None
         note = one.note if one.other_frame is None else f"{one.frames_words}: {one.note}".removesuffix(": ")
         return FlagPlace(frame, cell, note, yx)
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 from cytodisk.napari.check.flag_points import FlagGround, FlagMarks
 from cytodisk.napari.check.flag_table import FlagTable
@@ -18,6 +20,10 @@ if TYPE_CHECKING:
     from cytodisk.napari.study_layers.shown_study import ShownStudy
 
 _HEIGHT = 150  # px of the table under the canvas
+
+
+_SHOWN: WeakKeyDictionary[Any, ShownFlags] = WeakKeyDictionary()
+"""Flags by the study in a viewer that they are of."""
 
 
 class ShownFlags:
@@ -40,14 +46,17 @@ class ShownFlags:
         self.table = FlagTable(self._marks.go)
         self.table.show_flags(flags, "No QC flags: nothing speaks against these results.")
         self.table.setMinimumHeight(_HEIGHT)
-        self.dock = viewer.window.add_dock_widget(
+        self.dock: Any = viewer.window.add_dock_widget(
             self.table, name=f"QC flags of {study.path.name}", area="bottom", tabify=True
         )
 
     def remove(self) -> None:
         """Take the layer and the table out of the viewer, if they are still there."""
         self._marks.remove()
-        self._viewer.window.remove_dock_widget(self.table)
+        if self.dock is not None:
+            with suppress(LookupError, RuntimeError):  # the user has closed the table
+                self._viewer.window.remove_dock_widget(self.table)
+        self.dock = None
 
 
 def show_flags(
@@ -67,12 +76,19 @@ def show_flags(
     Returns
     -------
     ShownFlags
+        In the place of those that were shown of the study before.
     """
+    before = _SHOWN.get(shown)
+    if before is not None:
+        before.remove()
     found = qc_flags(study) if flags is None else flags
     sectors = polar_grid_of(study.provenance).sectors
     edge = partial(sector_place, shown, sectors=sectors)
-    rows = flags_of_study(study, found, shown.cells.rows, edge)
-    return ShownFlags(viewer, rows, _ground(study, shown), study)
+    ground = _ground(study, shown)
+    rows = flags_of_study(study, found, shown.cells.rows, edge, has_time=ground.time_axis is not None)
+    flags_shown = ShownFlags(viewer, rows, ground, study)
+    _SHOWN[shown] = flags_shown
+    return flags_shown
 
 
 def _ground(study: Study, shown: ShownStudy) -> FlagGround:
