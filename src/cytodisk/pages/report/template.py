@@ -50,10 +50,16 @@ def rendered(page: str, styles: Iterable[str], scripts: Iterable[str], words: Ma
             {
                 **words,
                 "style": "\n".join(_asset(f"{name}.css") for name in styles),
-                "scripts": [_asset(f"{name}.js") for name in scripts],
+                "scripts": [_code(_asset(f"{name}.js")) for name in scripts],
             }
         )
     )
+
+
+def _code(script: str) -> str:
+    """A script without indentation and lines of comment; no text in it goes over several lines."""
+    lines = [line.strip() for line in script.splitlines()]
+    return "\n".join(line for line in lines if line and not line.startswith("//"))
 
 
 def _asset(name: str) -> str:

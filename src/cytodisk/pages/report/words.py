@@ -189,9 +189,9 @@ def _cells_left_out(study: Study, cells: Sequence[dict[str, Any]]) -> Iterator[s
         yield f"{counted(len(lost), 'cell')} without a map: {_numbers(lost)}."
     rest = [row["cell"] for row in cells if row["cell"] in mapped and not row["shown"]]
     if rest:
-        folder = shlex.quote(study.path.name or ".")
+        folder, room = shlex.quote(study.path.name or "."), sum(row["shown"] for row in cells)
         yield (
-            f"This page has room for {sum(row['shown'] for row in cells)} cells. Left out: {_numbers(rest)}. "
+            f"This page has room for {counted(room, 'cell')}. Left out: {_numbers(rest)}. "
             f"A page that begins with another cell: cytodisk report {folder} --cell {rest[0]}"
         )
 

@@ -130,12 +130,15 @@ def test_channel_and_scalar_are_chosen(page: PopulationPage) -> None:
     assert (dots, marks) == (16, 8)  # cells, experiments
 
 
-def test_tables_are_sorted_and_open_cells(page: PopulationPage) -> None:
+def test_tables_are_sorted_and_open_cells_on_the_chosen_channel(page: PopulationPage) -> None:
+    Select(page.browser.find_element(By.ID, "atlas-channel")).select_by_index(1)
     page.browser.find_element(By.CSS_SELECTOR, '#table-cells th[data-name="cell"] button').click()
     assert page.js("document.querySelector('#table-cells th[data-name=\"cell\"]').ariaSort") == "ascending"
     page.browser.find_element(By.CSS_SELECTOR, "#table-cells tbody a").click()
     page.wait("cytodisk.shownCell !== undefined && document.getElementById('cell')?.open")
     assert page.js("location.pathname").endswith("/maps/report.html")
+    assert page.js("location.hash").endswith("&channel=RhoA")
+    assert page.js("cytodisk.data.channels[cytodisk.cellState.channel].name") == "RhoA"
 
 
 def test_shapes_alone_have_their_comparison(browser: webdriver.Chrome, shapes_written: Path) -> None:

@@ -43,7 +43,7 @@ MOST_BYTES = 12_000_000
 """Of all pictures together, as text."""
 
 _BYTES_A_CELL, _BYTES_A_WINDOW = 12_000, 5  # about, to know beforehand how many cells there is room for
-_SCRIPTS = ("decode", "elements", "numbers", "chart", "disk", "pixels", "frame", "list", "cell", "cells")
+_SCRIPTS = ("decode", "elements", "numbers", "disk", "pixels", "frame", "list", "cell", "cells")
 
 Progress = Callable[[int, int], None]
 

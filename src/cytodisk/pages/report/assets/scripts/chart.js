@@ -2,19 +2,8 @@
 // Axes, lines and points as SVG.
 (() => {
   const page = window.cytodisk;
-  const SVG = "http://www.w3.org/2000/svg";
   const MARGIN = { left: 62, right: 12, top: 8, bottom: 42 };
 
-  page.svg = (tag, attributes = {}, ...children) => {
-    const element = document.createElementNS(SVG, tag);
-    for (const [name, value] of Object.entries(attributes)) {
-      if (value === null || value === undefined) continue;
-      if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
-      else element.setAttribute(name, value);
-    }
-    element.append(...children);
-    return element;
-  };
   const { svg } = page;
 
   // Ends of an axis that holds some values with a margin.

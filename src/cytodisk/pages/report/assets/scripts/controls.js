@@ -171,7 +171,7 @@
     write("now", now);
     byId("time").value = state.index;
     byId("time").setAttribute("aria-valuetext", now.replace(" · ", ", "));
-    for (const name of ["layer", "channel", "pair"]) if (byId(name)) byId(name).value = state[name];
+    for (const name of ["layer", "channel", "pair", "shows"]) if (byId(name)) byId(name).value = state[name];
     byId("play").setAttribute("aria-pressed", String(state.playing));
     write("play", state.playing ? "❚❚ Pause" : "▶ Play");
     clearTimeout(speaking);

@@ -3,10 +3,10 @@
 (() => {
   const page = window.cytodisk;
   const { byId } = page;
+  const SVG = "http://www.w3.org/2000/svg";
 
   // An element with attributes, and children that are elements or text.
-  page.make = (tag, attributes = {}, ...children) => {
-    const element = document.createElement(tag);
+  const filled = (element, attributes, children) => {
     for (const [name, value] of Object.entries(attributes)) {
       if (value === false || value === null || value === undefined) continue;
       if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
@@ -15,6 +15,8 @@
     element.append(...children);
     return element;
   };
+  page.make = (tag, attributes = {}, ...children) => filled(document.createElement(tag), attributes, children);
+  page.svg = (tag, attributes = {}, ...children) => filled(document.createElementNS(SVG, tag), attributes, children);
 
   page.write = (id, words) => {
     const element = byId(id);

@@ -36,6 +36,7 @@
     const length = Math.max(...[0.5, 1, 2, 5].map((step) => step * power).filter((one) => one <= longest * 1.000001));
     const [x, y, long] = [10 / factor, height - 10 / factor, length / pixel];
     const bar = { d: `M${x} ${y}h${long}`, class: "scale", "stroke-width": 4 / factor };
+    over.classList.toggle("paper", !picture.grey);
     over.replaceChildren(
       ...marks, svg("path", { ...bar, class: "scale-under", "stroke-width": 7 / factor }), svg("path", bar),
       text(x + long / 2, y - 11 / factor, `${Number(length.toPrecision(1))} ${unit}`, { class: "sector scale-words" }),

@@ -63,7 +63,7 @@
     return { values: [...page.row(page.channelValues(), index)], limits: page.stretched(limits), palette: "signal", unit };
   };
 
-  const SHOWN = { velocity: () => "edge velocity, in the outermost windows", pixels: () => page.channel().name, means: page.channelWords, correlation: () => `peak correlation, ${page.pair().label}`, lag: () => `lag of the peak, ${page.pair().label}` };
+  const SHOWN = { velocity: () => "edge velocity, in the outermost windows", pixels: () => page.channel().name, means: page.channelWords, correlation: () => `peak correlation, ${page.pair().label}`, lag: () => `lag of the peak; positive: ${page.pair().with} follows` };
 
   const drawCell = async () => {
     const { index, channel, cell, grid, rim, shows } = page.state;
