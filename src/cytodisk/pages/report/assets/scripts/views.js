@@ -407,12 +407,14 @@
     }
     let resting = null;
     new ResizeObserver(() => {
+      if (matchMedia("print").matches) return; // paper scales what is on the screen
       clearTimeout(resting);
       resting = setTimeout(() => page.draw(), 30);
     }).observe(byId("explorer"));
   };
 
   page.draw = () => {
+    if (!page.data) return; // no cell is open yet
     const { index, channel, pair, peak, cell, grid, rim, shows, layer } = page.state;
     const at = page.focus();
     const window = at && [at.layer, at.sector];
