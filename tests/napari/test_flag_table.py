@@ -46,3 +46,30 @@ def test_flags_jump_to_their_frame(make_viewer: Callable[..., Any], tmp_path: Pa
     assert viewer.dims.current_step[0] == 7
     shown.remove()
     assert list(viewer.layers) == [labels]
+
+
+def test_flags_of_a_study_come_in_the_place_of_the_last(
+    make_viewer: Callable[..., Any], tmp_path: Path
+) -> None:
+    import tifffile
+
+    import cytodisk as cd
+    from cytodisk.napari.check.study_flags import show_flags
+    from cytodisk.napari.study_layers.shown_study import show_study
+
+    masks = cd.simulate.movie("growing", frames=5, radius_px=12.0).masks
+    masks[3, :, : masks.shape[2] // 2] = False
+    tifffile.imwrite(tmp_path / "masks.tif", masks.astype(np.uint8), metadata={"axes": "TYX"})
+    study = cd.run_movie(tmp_path / "masks.tif", tmp_path / "out", layers=2, sectors=6)
+    viewer = make_viewer(show=True)
+    shown = show_study(viewer, study)
+
+    first = show_flags(viewer, study, shown)
+    second = show_flags(viewer, study, shown)
+
+    assert [flag.name for flag in first.flags] == [flag.name for flag in cd.qc_flags(study)]
+    assert first.layer not in viewer.layers
+    assert second.layer in viewer.layers
+    assert len([layer for layer in viewer.layers if layer.name.startswith("flags")]) == 1
+    first.remove()  # again, as whoever made it may do
+    assert 3 in second.layer.data[:, 0]

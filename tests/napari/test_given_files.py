@@ -253,3 +253,24 @@ def test_work_ends_where_progress_says_so(tmp_path: Path, stack: np.ndarray) -> 
 
     with pytest.raises(StopHereError):
         given_files(ChosenLayers(layers.Labels(stack)), tmp_path / "inputs", progress=stop)
+
+
+def test_channels_of_one_file_are_used_from_it(tmp_path: Path, stack: np.ndarray) -> None:
+    path = tmp_path / "image.ome.tif"
+    channels = np.stack([stack + 10 * k for k in range(3)], axis=1).astype(np.uint16)
+    tifffile.imwrite(path, channels, metadata={"axes": "TCYX", "Channel": {"Name": ["DAPI", "Rac1", "RhoA"]}})
+    split = [layers.Image(channels[:, k], name=name) for k, name in ((2, "RhoA"), (1, "image [1]"))]
+    whole = layers.Image(channels, name="image")
+    for layer in (*split, whole):
+        opened_from(layer, path)
+
+    two, all_three = (
+        given(tmp_path, layers.Labels(stack), *split),
+        given(tmp_path, layers.Labels(stack), whole),
+    )
+
+    assert two.signal == all_three.signal == path
+    assert two.values["signal_channels"] == ("2", "1")
+    assert two.values["channels"] == ("RhoA", "image [1]")
+    assert "channels" not in all_three.values
+    assert "signal_channels" not in all_three.values
