@@ -159,3 +159,14 @@ def test_a_cluster_alone() -> None:
         "Rac1 in sectors 12–25, layers 0–2 rises 10 s after the edge protrudes: correlation 0.31 in 18 "
         "neighbouring windows, p = 0.004 (0.01 without geometry)."
     )
+
+
+def test_what_else_is_in_doubt_is_told_together() -> None:
+    """A clear layer beside one at a lag of jitter; and all in doubt."""
+    found = correlation(jitter=0.2)
+    found.layers.loc[1, ["lag", "lag_s"]] = 0, 0.0
+    assert finding(found).sentences[2].endswith("; not yet to be believed: layer 1 (jitter).")
+    pulse = correlation(stress="common pulse")
+    pulse.layers.loc[2, "q"] = 0.01
+    told = "Also significant, and also in doubt: layers 1 and 2 (common pulse)."
+    assert finding(pulse).sentences[1] == told

@@ -11,9 +11,9 @@ import pandas as pd
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.correlate.lag_words import lag_words, time_apart
 from cytodisk.runs.correlate.verdict import JudgedPeak, judged_peaks
-from cytodisk.runs.findings.doubt_words import doubt_words
+from cytodisk.runs.findings.doubt_words import doubt_words, doubted_words
 from cytodisk.runs.findings.finding import Finding, listed, signed_number
-from cytodisk.runs.findings.layer_names import channel_words, layer_name, layers_words
+from cytodisk.runs.findings.layer_names import channel_words, layer_name, numbers_words
 from cytodisk.runs.partial_words import SIGNIFICANT, without_words
 from cytodisk.store.correlation_store import Correlation
 from cytodisk.store.study import Study
@@ -77,7 +77,7 @@ def _found(
 def _also(alike: list[JudgedPeak]) -> str:
     if not alike:
         return ""
-    words = layers_words([int(peak.row["layer"]) for peak in alike])
+    words = numbers_words("layer", [int(peak.row["layer"]) for peak in alike])
     return f" {words[0].upper()}{words[1:]} {'shows' if len(alike) == 1 else 'show'} the same."
 
 
@@ -91,8 +91,7 @@ def _elsewhere(found: Correlation, best: JudgedPeak, doubted: list[JudgedPeak]) 
         same = sum(_shows(found, cell, best) for cell in done)
         words.append(f"The same (layer, sign, lag within {_ALIKE} frame) in {same} of {len(done)} cells")
     if doubted:
-        told = [f"{peak.name} ({', '.join(peak.doubts) or 'lost without controls'})" for peak in doubted]
-        words.append(f"{'not yet to be believed' if words else 'Not yet to be believed'}: {listed(told)}")
+        words.append(f"{'not' if words else 'Not'} yet to be believed: {doubted_words(doubted)}")
     return f"{'; '.join(words)}." if words else ""
 
 
@@ -106,7 +105,7 @@ def _doubtful(
     close = "so it is no finding until that is settled" if waiting else "so it is no finding"
     words = f"{_capital(_what(study, found, best))} ({size}), but {why}: {close}."
     others = [peak for peak in (waiting or lost) if peak is not best]
-    told = f"The same holds for {listed([peak.name for peak in others])}." if others else ""
+    told = f"Also significant, and also in doubt: {doubted_words(others)}." if others else ""
     return Finding("doubtful", tuple(filter(None, (words, told))), size=abs(best.row["correlation"]))
 
 

@@ -11,9 +11,19 @@ from cytodisk.analysis.stress.stress_marks import (
     STEADY_OSCILLATION,
     VARIANCE_CHANGE,
 )
-from cytodisk.runs.correlate.verdict import DRIFTING, GEOMETRY_UNTESTED, JITTER, JITTER_UNKNOWN, RESTARTED
+from cytodisk.runs.correlate.verdict import (
+    DRIFTING,
+    GEOMETRY_UNTESTED,
+    JITTER,
+    JITTER_UNKNOWN,
+    RESTARTED,
+    JudgedPeak,
+)
+from cytodisk.runs.findings.finding import listed
+from cytodisk.runs.findings.layer_names import numbers_words
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 
+_KINDS = ("layer", "cluster")
 _DOUBTS = {
     JITTER: "masks that jitter make a correlation at this lag by themselves",
     JITTER_UNKNOWN: "there are too few frames to see whether masks that jitter made it",
@@ -64,6 +74,20 @@ def doubt_words(doubts: Sequence[str]) -> str:
     """
     own = [_DOUBTS.get(doubt, f"its size {doubt.replace(' not', ' is not')}") for doubt in doubts]
     return ", and ".join(own)
+
+
+def doubted_words(peaks: Sequence[JudgedPeak]) -> str:
+    """Layers and clusters with what speaks against them, as "layers 1–3 (jitter)"."""
+    groups: dict[str, list[JudgedPeak]] = {}
+    for peak in peaks:
+        why = ", ".join(peak.doubts) or "not without what is regressed out"
+        groups.setdefault(why, []).append(peak)
+    return listed([f"{_names(alike)} ({why})" for why, alike in groups.items()])
+
+
+def _names(peaks: Sequence[JudgedPeak]) -> str:
+    numbers = {kind: [int(peak.row[kind]) for peak in peaks if peak.kind == kind] for kind in _KINDS}
+    return ", ".join(numbers_words(kind, numbers[kind]) for kind in _KINDS if numbers[kind])
 
 
 def bearing_flags(flags: Sequence[QCFlag], cell: int | None = None) -> list[str]:

@@ -22,11 +22,11 @@ def channel_words(name: str) -> str:
     return f"signal '{shown}'" if shown.islower() and " " not in shown else shown
 
 
-def layers_words(layers: list[int]) -> str:
-    """Numbers of layers, as "layer 1", "layers 1–3" or "layers 1, 2 and 5"."""
-    ordered = sorted(layers)
+def numbers_words(name: str, numbers: list[int]) -> str:
+    """Numbers with the name of what they count, as "layer 1", "layers 1–3" or "clusters 1, 2 and 5"."""
+    ordered = sorted(numbers)
     if len(ordered) == 1:
-        return f"layer {ordered[0]}"
+        return f"{name} {ordered[0]}"
     if ordered == list(range(ordered[0], ordered[-1] + 1)) and len(ordered) > 2:
-        return f"layers {ordered[0]}–{ordered[-1]}"
-    return f"layers {', '.join(map(str, ordered[:-1]))} and {ordered[-1]}"
+        return f"{name}s {ordered[0]}–{ordered[-1]}"
+    return f"{name}s {', '.join(map(str, ordered[:-1]))} and {ordered[-1]}"
