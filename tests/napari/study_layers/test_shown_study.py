@@ -1,6 +1,8 @@
 """Results of a study as layers: what they show is what its tables and maps hold."""
 
+import shutil
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -8,11 +10,13 @@ import pytest
 import tifffile
 
 import cytodisk as cd
+from cytodisk.errors import ReadError
 from cytodisk.store.study import Study
 
 pytestmark = pytest.mark.slow
 pytest.importorskip("cytodisk.napari.viewer_parts")
 
+from cytodisk.napari.study_layers import shown_study  # noqa: E402
 from cytodisk.napari.study_layers.shown_study import show_study, shown_studies  # noqa: E402
 
 FRAMES, LAYERS, SECTORS = 4, 3, 12
@@ -108,3 +112,25 @@ def test_what_is_shown_ends_with_its_layers(movie: Study, make_viewer: Callable[
     assert shown_studies(viewer) == []
     viewer.add_image(np.zeros((5, 4, 4)))
     viewer.dims.set_current_step(0, 2)
+
+
+def test_a_damaged_map_is_told_and_the_other_cells_are_shown(
+    movie: Study, make_viewer: Callable[..., Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    damaged = tmp_path / "damaged"
+    shutil.copytree(movie.path, damaged)
+    (damaged / "maps" / "cell_00000_t00003.npz").write_bytes(b"no map")
+    told: list[str] = []
+    monkeypatch.setattr(shown_study, "show_error", told.append)
+    viewer = make_viewer()
+    study = cd.open_study(damaged)
+    shown = shown_study.show_study(viewer, study)
+    with pytest.raises(ReadError) as error:
+        study.map(0, 3)
+
+    viewer.dims.set_current_step(0, 3)
+    viewer.dims.set_current_step(0, 1)
+    viewer.dims.set_current_step(0, 3)
+
+    assert told == [str(error.value)]
+    assert shown.layers["windows"].features["cell"].unique().tolist() == [1]

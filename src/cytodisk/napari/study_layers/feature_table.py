@@ -32,7 +32,7 @@ def window_features(painted: PaintedFrames, frame: int, cells: Sequence[int] | N
         `index` is the label of the window; numbers have 5 digits, and their units in the column's name.
         Velocity is that of the edge, in windows of the outermost layer.
     """
-    shown = painted.cells.mapped.get(frame, []) if cells is None else cells
+    shown = painted.shown(frame) if cells is None else cells
     parts = [_of_cell(painted, cell, frame) for cell in shown]
     names = list(_columns(painted))
     if not parts:
@@ -67,8 +67,9 @@ def _of_cell(painted: PaintedFrames, cell: int, frame: int) -> dict[str, Any]:
 
 def _columns(painted: PaintedFrames) -> list[str]:
     """Names of the columns, as a frame without cells has them too."""
-    for frame, cells in painted.cells.mapped.items():
-        return list(_of_cell(painted, cells[0], frame))
+    for frame in painted.cells.mapped:
+        for cell in painted.shown(frame):
+            return list(_of_cell(painted, cell, frame))
     return ["index"]
 
 

@@ -140,7 +140,7 @@ class FrameLines:
         return points.astype(np.float32), features
 
     def _shown(self, frame: int) -> list[tuple[int, CellWindows]]:
-        cells = self._painted.cells.mapped.get(frame, [])
+        cells = self._painted.shown(frame)
         return [(cell, self._painted.windows.windows_at(cell, frame)) for cell in cells]
 
     def _in_frame(self, frame: int, parts: Sequence[FloatArray]) -> Any:

@@ -58,9 +58,7 @@ class FrameUpdates:
 
     def load(self, frame: int) -> None:
         """Read what is shown of a frame, and keep it."""
-        for cell in self._painted.cells.mapped.get(frame, ()):
-            self._painted.windows.box_at(cell, frame)
-            self._painted.values.at(cell, frame)
+        self._painted.shown(frame)
         self._lines.windows(frame)
         self._lines.points(frame)
         if self._painted.windows.grid.nucleus_layers:

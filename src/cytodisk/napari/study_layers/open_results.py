@@ -196,7 +196,8 @@ def frame_words(shown: ShownStudy) -> str:
     told = [f"Cell {cell} has no map: {words}." for cell, words in missing[:_MOST_TOLD]]
     if len(missing) > _MOST_TOLD:
         told.append(f"So have {len(missing) - _MOST_TOLD} more cells none.")
-    count = len(shown.cells.mapped.get(frame, []))
+    told += [words for (_, other), words in shown.painted.faults.items() if other == frame]
+    count = len(shown.painted.shown(frame))
     cells = f"{count} cell{'' if count == 1 else 's'} with windows"
     where = f"Frame {frame}: {cells}." if shown.cells.is_stack else f"{cells}."
     return "\n".join([where, *filter(None, [signal]), *told])

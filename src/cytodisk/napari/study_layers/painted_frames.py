@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from cytodisk.arrays import FloatArray
+from cytodisk.errors import CytodiskError
 from cytodisk.napari.study_layers.byte_cache import ByteCache
 from cytodisk.napari.study_layers.cell_windows_cache import CellWindowsCache
 from cytodisk.napari.study_layers.shown_cells import ShownCells
@@ -32,6 +33,26 @@ class PaintedFrames:
     def __init__(self, cells: ShownCells, windows: CellWindowsCache, values: WindowValues):
         self.cells, self.windows, self.values = cells, windows, values
         self._frames: ByteCache[Any] = ByteCache(FRAME_BYTES, lambda image: int(image.nbytes))
+
+    @cached_property
+    def faults(self) -> dict[tuple[int, int], str]:
+        """Why a cell that has a map cannot be shown, by cell and frame, of frames that were looked at."""
+        return {}
+
+    def shown(self, frame: int) -> list[int]:
+        """Cells of a frame whose map and numbers can be read; of the others `faults` says why not."""
+        return [cell for cell in self.cells.mapped.get(frame, ()) if self._can_be_read(cell, frame)]
+
+    def _can_be_read(self, cell: int, frame: int) -> bool:
+        if (cell, frame) in self.faults:
+            return False
+        try:
+            self.windows.box_at(cell, frame)
+            self.values.at(cell, frame)
+        except CytodiskError as error:
+            self.faults[cell, frame] = str(error)
+            return False
+        return True
 
     @cached_property
     def n_windows(self) -> int:
@@ -60,7 +81,7 @@ class PaintedFrames:
 
     def _labels(self, frame: int) -> Any:
         image = np.zeros(self.shape, dtype=self.dtype)
-        for cell in self.cells.mapped.get(frame, ()):
+        for cell in self.shown(frame):
             box = self.windows.box_at(cell, frame)
             labels, part = box.labels, image[box.slices]
             np.add(labels, self.first_label(cell, frame) - 1, out=part, where=labels > 0, casting="unsafe")
@@ -73,7 +94,7 @@ class PaintedFrames:
 
     def _painted(self, frame: int, of_windows: Callable[[Numbers], FloatArray]) -> Any:
         colours = np.full(1 + self.cells.most_places * self.n_windows, np.nan, dtype=np.float32)
-        for cell in self.cells.mapped.get(frame, ()):
+        for cell in self.shown(frame):
             values = np.ravel(of_windows(self.values.at(cell, frame)))
             first = self.first_label(cell, frame)
             colours[first : first + len(values)] = values

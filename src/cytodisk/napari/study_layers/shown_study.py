@@ -7,7 +7,7 @@ from typing import Any
 from cytodisk.napari.study_layers.layers_of_study import layer_data
 from cytodisk.napari.study_layers.study_in_viewer import ShownStudy as ShownStudy
 from cytodisk.napari.study_layers.study_place import MARK, place_of
-from cytodisk.napari.viewer_parts import Layer, show_warning
+from cytodisk.napari.viewer_parts import Layer, show_error, show_warning
 from cytodisk.store.study import Study
 
 
@@ -31,6 +31,7 @@ def show_study(viewer: Any, study: Study, *, source: str | None = None) -> Shown
         The study has no such source.
     """
     shown = ShownStudy(study, source)
+    shown.tell = show_error
     for data in layer_data(shown, place_of(shown.cells, viewer.layers)):
         layer = Layer.create(*data)
         viewer.add_layer(layer)
@@ -49,6 +50,8 @@ def attach(viewer: Any, shown: ShownStudy, n_layers: int) -> None:
     n_layers : int
         How many there will be.
     """
+
+    shown.tell = show_error
 
     def bind(event: Any) -> None:
         if event.value.metadata.get(MARK, {}).get("shown") is shown:

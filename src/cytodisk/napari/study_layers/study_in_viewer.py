@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -51,6 +51,8 @@ class ShownStudy:
         None until its layers are in one.
     layers : dict of str to Layer
         By role: "windows", "values", "outlines", "velocity", "points", "sector 0", "nuclei".
+    tell : callable
+        Called with the words of what cannot be read of a frame.
     changed : Signal
         Emitted when another frame or channel is shown.
     """
@@ -69,6 +71,8 @@ class ShownStudy:
         self._prefetch = Prefetch(lambda frame: self._updates.load(frame), self._is_full)
         self._channel = next(iter(self.channels), "")
         self._told: tuple[int | None, str] | None = None
+        self._told_faults: set[str] = set()
+        self.tell: Callable[[str], None] = lambda words: None
 
     def __deepcopy__(self, memo: Any) -> ShownStudy:
         return self  # a copied layer shows the same study
@@ -261,6 +265,11 @@ class ShownStudy:
     def _show_frame(self, frame: int) -> None:
         for role, layer in self.layers.items():
             self._updates.show(role, layer, frame)
+        faults = [words for (_, other), words in self.painted.faults.items() if other == frame]
+        for words in faults:
+            if words not in self._told_faults:
+                self._told_faults.add(words)
+                self.tell(words)
         self._prefetch.around(frame, self.cells.n_frames)
 
     @cached_property
