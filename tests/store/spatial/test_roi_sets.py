@@ -94,6 +94,16 @@ def test_what_is_there_is_not_replaced_unasked(mapped: cd.Study, tmp_path: Path)
     assert len(rois_in(tmp_path / "windows.zip")) == 12
 
 
+def test_an_input_of_the_study_is_never_replaced(mapped: cd.Study, tmp_path: Path) -> None:
+    cd.run_export(mapped.path, tmp_path, to="roi", windows=False)
+    before = (tmp_path / "outlines.zip").read_bytes()
+    signal = mapped.path.parent / "signal.ome.tif"
+    cd.run_map(tmp_path / "outlines.zip", tmp_path / "again", signal=signal, **GRID)
+    with pytest.raises(StudyError, match=r"outlines.zip is an input of the study: name another folder"):
+        cd.run_export(tmp_path / "again", tmp_path, to="roi", windows=False, overwrite=True)
+    assert (tmp_path / "outlines.zip").read_bytes() == before
+
+
 @pytest.mark.parametrize(
     ("given", "error", "words"),
     [

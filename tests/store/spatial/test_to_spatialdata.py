@@ -140,7 +140,8 @@ def test_images_of_a_folder_are_found_by_name_and_missed_by_name(spatialdata: An
     assert "window_table" not in data.tables
     tifffile.imwrite(folder / "b_img.tif", np.zeros((40, 70), dtype=np.uint16))
     with pytest.raises(ReadError, match=r"b_img.tif does not hold what was measured.*images=False"):
-        study.to_spatialdata()
+        cd.run_export(study.path, tmp_path / "new", to=("roi", "spatialdata"))
+    assert not (tmp_path / "new").exists()
     shutil.move(folder / "b_img.tif", tmp_path)
     with pytest.raises(ReadError, match=r"b_masks.tif .*cannot be read.*images=False \(--no-images\)"):
         study.to_spatialdata()

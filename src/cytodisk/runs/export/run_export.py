@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from itertools import count, groupby
 from pathlib import Path
 from typing import Any
 
 from cytodisk.checks import is_path
 from cytodisk.errors import ParameterError, StudyError
-from cytodisk.files import make_folder, temporary_name, writing_to
+from cytodisk.files import make_folder, real_path, temporary_name, writing_to
 from cytodisk.images.formats.outlined.roi_bytes import require_roifile
 from cytodisk.images.image_paths import is_zarr
 from cytodisk.runs.run_options import ExportOptions, Progress, silent
@@ -93,11 +94,25 @@ def run_export(
             require()
     opened, folder = open_study(study), Path(out)
     by_source = [list(group) for _, group in groupby(images_of(opened, parameters), lambda one: one.source)]
-    _refuse_files(folder, kinds, by_source, options.overwrite)
-    with writing_to(folder):
-        make_folder(folder)
+    _refuse_files(folder, _names(kinds, by_source), options.overwrite, _inputs_of(opened))
     done = _counted(len(kinds) * sum(map(len, by_source)), progress or silent)
+    with _folder(folder):
+        return _write(opened, folder, kinds, by_source, parameters, done)
+
+
+def _write(
+    opened: Study,
+    folder: Path,
+    kinds: Sequence[str],
+    by_source: Sequence[Sequence[StudyImage]],
+    parameters: SpatialParameters,
+    done: Callable[[], None],
+) -> list[Path]:
     written: list[Path] = []
+    if "spatialdata" in kinds:  # first, as it reads the images, which may be gone
+        written.append(_write_spatialdata(opened, folder / SPATIALDATA, parameters))
+        for _ in range(sum(map(len, by_source))):
+            done()
     for images in by_source:
         prefix = _prefix(images, by_source)
         if "roi" in kinds:
@@ -105,11 +120,21 @@ def run_export(
         if "geojson" in kinds:
             written.append(folder / f"{prefix}cells.geojson")
             write_geojson_set(opened, images, written[-1], parameters.windows, done)
-    if "spatialdata" in kinds:
-        written.append(_write_spatialdata(opened, folder / SPATIALDATA, parameters))
-        for _ in range(sum(map(len, by_source))):
-            done()
     return written
+
+
+@contextmanager
+def _folder(path: Path) -> Iterator[None]:
+    """A folder to write into; one that was made for nothing goes again."""
+    is_new = not path.exists()
+    with writing_to(path):
+        make_folder(path)
+    try:
+        yield
+    finally:
+        if is_new:
+            with suppress(OSError):  # it holds files
+                path.rmdir()
 
 
 def checked_formats(given: Sequence[str]) -> tuple[str, ...]:
@@ -135,14 +160,26 @@ def _prefix(images: Sequence[StudyImage], by_source: Sequence[Sequence[StudyImag
     return f"{name.rpartition('_frame_')[0] if images[0].is_stack else name}_"
 
 
-def _refuse_files(
-    folder: Path, kinds: Sequence[str], by_source: Sequence[Sequence[StudyImage]], overwrite: bool
-) -> None:
+def _names(kinds: Sequence[str], by_source: Sequence[Sequence[StudyImage]]) -> list[str]:
+    """Names of the files that may be written."""
     names = [SPATIALDATA] if "spatialdata" in kinds else []
     for images in by_source:
         own = [f"{kind}.zip" for kind in (OUTLINES, NUCLEI, WINDOWS)] if "roi" in kinds else []
         own += ["cells.geojson"] if "geojson" in kinds else []
         names += [_prefix(images, by_source) + name for name in own]
+    return names
+
+
+def _inputs_of(study: Study) -> set[Path]:
+    """The files that the study was made from, as far as they are found from here."""
+    found = set()
+    for told in study.provenance.get("inputs", {}).values():
+        files = [Path(told["path"]) / name for name in told.get("files", ())]
+        found |= {real_path(file) for file in files or [Path(told["path"])]}
+    return found
+
+
+def _refuse_files(folder: Path, names: Sequence[str], overwrite: bool, inputs: Collection[Path]) -> None:
     there = [name for name in names if os.path.lexists(folder / name)]
     if there and not overwrite:
         more = f" and {len(there) - _SHOWN} more" if len(there) > _SHOWN else ""
@@ -150,6 +187,8 @@ def _refuse_files(
             f"{folder} holds {', '.join(there[:_SHOWN])}{more} already: name another folder, or pass "
             "--overwrite to replace them"
         )
+    if kept := [name for name in there if real_path(folder / name) in inputs]:
+        raise StudyError(f"{folder / kept[0]} is an input of the study: name another folder")
     if SPATIALDATA in there and not is_zarr(folder / SPATIALDATA):
         raise StudyError(f"{folder / SPATIALDATA} is no Zarr folder: move it, or name another folder")
 
