@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -84,14 +85,29 @@ def check_layers(
         found.add(checked)
         report(number, total)
     notes = (*files.notes, *inputs.notes, *inputs.remarks)
-    flags_found = [_flag(fault, is_stack) for fault in found.faults_found()]
+    flags_found = [_flag(fault, is_stack) for fault in _of_all_labels(found.faults_found())]
     return CheckedLayers(flags_found, tuple(found.totals()), notes, files, every)
+
+
+def _of_all_labels(faults: Sequence[MaskFault]) -> list[MaskFault]:
+    """Faults, of which those between frames come once for all labels."""
+    kept: dict[str, MaskFault] = {}
+    found = []
+    for fault in faults:
+        if fault.name in kept:
+            kept[fault.name].places.extend(fault.places)
+            continue
+        found.append(fault)
+        if fault.is_between_frames:
+            kept[fault.name] = fault
+    return found
 
 
 def _flag(fault: MaskFault, is_stack: bool) -> FoundFlag:
     places = tuple(_place(one, is_stack) for one in fault.places)
     if fault.is_between_frames:
         what = fault.words.removeprefix(f"{fault.name}: ").partition(" (")[0]
+        what = re.sub(r" of label \d+", "", what)
         where = counted(len(places), "frame")
         return FoundFlag(fault.name, f"{what} in {where}", fault.advice, fault.meaning, places)
     more = ", and the like" if fault.differs else ""
