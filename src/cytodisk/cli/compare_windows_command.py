@@ -1,5 +1,6 @@
 """`cytodisk compare-windows`."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -25,7 +26,7 @@ from cytodisk.runs.compare_windows.compare_parameters import (
     CompareNucleiParameters,
     CompareWindowsParameters,
 )
-from cytodisk.runs.run_options import RunOptions
+from cytodisk.runs.run_options import FigureOptions, RunOptions
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 @with_parameters(
     CompareWindowsParameters,
     RunOptions,
+    FigureOptions,
     modes={"--movie": CompareMovieParameters, "--nuclei": CompareNucleiParameters},
 )
 def compare_windows_command(
@@ -61,7 +63,7 @@ def compare_windows_command(
 ) -> None:
     drawn = _parse_cells(cells, movie)
     console = console_for(quiet)
-    options = dict(given.options(RunOptions))
+    options, formats = dict(given.options(RunOptions)), given.formats(1)
     _check_mode(given, movie, signal, nuclei)
     if movie:
         found = _run_movie(console, masks, signal, out, given.of(CompareMovieParameters), options)
@@ -72,7 +74,7 @@ def compare_windows_command(
     if not found.cells["mapped"].sum():
         fail(f"no cell could be used: {'; '.join(found.cells['reason'].head(1)) or 'there is none'}")
     say_comparison(console, found)
-    for path, words in draw_figures(found, drawn):
+    for path, words in draw_figures(found, drawn, formats):
         console.print(f"{path.relative_to(found.path)}: {words}")
     say_tables(console, found)
     unreadable = found.cells[found.cells["status"] == "unreadable"]["cell"].nunique()
@@ -86,12 +88,16 @@ def _check_mode(given: Given, movie: bool, signal: Path | None, nuclei: Path | N
         raise ParameterError("--nuclei compares cells that are not followed: leave --movie or --nuclei out")
     of_signal = ["--signal"] if signal is not None and not movie else []
     if nuclei is not None:
-        if beyond := given.beyond(CompareNucleiParameters, RunOptions) + of_signal:
+        if beyond := given.beyond(CompareNucleiParameters, RunOptions, FigureOptions) + of_signal:
             raise ParameterError(f"{', '.join(beyond)}: not with --nuclei; leave it out")
         return
     model = CompareMovieParameters if movie else CompareWindowsParameters
-    beyond = given.beyond(model, RunOptions)
-    of_nuclei = [flag for flag in beyond if flag not in given.beyond(CompareNucleiParameters, RunOptions)]
+    beyond = given.beyond(model, RunOptions, FigureOptions)
+    of_nuclei = [
+        flag
+        for flag in beyond
+        if flag not in given.beyond(CompareNucleiParameters, RunOptions, FigureOptions)
+    ]
     if of_nuclei and movie:
         raise ParameterError(f"{', '.join(of_nuclei)}: not with --movie; leave it out")
     if of_nuclei:
@@ -175,7 +181,9 @@ def _parse_cells(text: str | None, movie: bool) -> list[int] | None:
     return cells
 
 
-def draw_figures(found: "Comparison", cells: list[int] | None = None) -> list[tuple[Path, str]]:
+def draw_figures(
+    found: "Comparison", cells: list[int] | None = None, formats: Sequence[str] = ("png",)
+) -> list[tuple[Path, str]]:
     """Draw what can be drawn of a comparison; each file with a line on what it shows."""
     from cytodisk.pages.compared_cells import write_compared_cells
     from cytodisk.pages.compared_layers import write_comparison
@@ -189,9 +197,9 @@ def draw_figures(found: "Comparison", cells: list[int] | None = None) -> list[tu
         by_layer = (
             "filled windows, their area, its spread, mean eccentricity, by layer of cytoplasm and nucleus"
         )
-    drawn = [(write_comparison(found), by_layer)]
+    drawn = [(write_comparison(found, formats=formats), by_layer)]
     if not found.is_movie:
-        path = write_compared_cells(found, cells)
+        path = write_compared_cells(found, cells, formats=formats)
         return drawn if path is None else [*drawn, (path, "windows of each method in up to five cells")]
     channels = [str(name) for name in found.consistency["channel"].dropna().unique()]
     for cell in sorted(mapped["cell"].unique()):
@@ -202,5 +210,5 @@ def draw_figures(found: "Comparison", cells: list[int] | None = None) -> list[tu
                     f"activity maps of {shown_name(channel)}, how alike consecutive frames are, how far "
                     "windows move, how many are filled"
                 )
-            drawn.append((write_compared_movie(found, int(cell), channel), words))
+            drawn.append((write_compared_movie(found, int(cell), channel, formats=formats), words))
     return drawn

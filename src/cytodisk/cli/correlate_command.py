@@ -1,7 +1,8 @@
 """`cytodisk correlate`."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, cast, get_args
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,7 +12,7 @@ from cytodisk.cli.report.given_folder import is_batch
 from cytodisk.cli.report.report_command import opened
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.population.correlations.pool_parameters import BatchCorrelateParameters, PoolOptions
-from cytodisk.runs.run_options import TableOptions
+from cytodisk.runs.run_options import FigureOptions, TableOptions
 from cytodisk.runs.told.correlation_words import (
     correlation_lines,
     earlier_settings,
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from cytodisk.store.study import Study
 
 NOTHING_CHANGED = "Stopped; nothing was changed."
-Format = Literal["png", "pdf", "svg"]
 GroupsOfBatch = Annotated[
     Path | None,
     typer.Option(
@@ -35,7 +35,7 @@ GroupsOfBatch = Annotated[
 ]
 
 
-@with_parameters(BatchCorrelateParameters, PoolOptions, groups=GroupsOfBatch)
+@with_parameters(BatchCorrelateParameters, PoolOptions, FigureOptions, groups=GroupsOfBatch)
 def correlate_command(
     study: MovieStudyOrBatch,
     given: Given,
@@ -50,16 +50,13 @@ def correlate_command(
         list[int] | None, typer.Option(metavar="NUMBER", help="Only this cell; can be given again.")
     ] = None,
     figures: Figures = 4,
-    formats: Annotated[
-        str, typer.Option("--format", metavar="A,B,…", help="Of figures: png, pdf, svg, or several.")
-    ] = "png",
     quiet: Quiet = False,
 ) -> None:
     from cytodisk.runs.correlate.correlate_study import channels_of, correlate_study
 
-    wanted = figure_formats(formats)
+    formats = given.formats(figures)
     if is_batch(study):
-        _correlate_batch(study, given, (signal, with_), cell, wanted, quiet)
+        _correlate_batch(study, given, (signal, with_), cell, formats or ("png",), quiet)
         return
     _refuse_of_batch(study, given)
     settings, options = given.of(CorrelateParameters), given.options(TableOptions)
@@ -73,7 +70,7 @@ def correlate_command(
         found = correlate_study(
             there, chosen, with_, cells=cell, progress=progress, parameters=settings, **dict(options)
         )
-    draw_correlation(quiet, there, found, figures, wanted)
+    draw_correlation(quiet, there, found, figures, formats)
     say_lines(console, correlation_lines(found, there))
     whole = opened(None, study)
     say_lines(console, study_flag_lines(whole, found))
@@ -86,7 +83,7 @@ def _correlate_batch(
     given: Given,
     names: tuple[str | None, str],
     cells: list[int] | None,
-    formats: tuple[Format, ...],
+    formats: Sequence[str],
     quiet: bool,
 ) -> None:
     from cytodisk.cli.batches.batch_correlation import correlate_batch
@@ -104,7 +101,8 @@ def _refuse_of_batch(study: Path, given: Given) -> None:
     """Refuse what is for a batch alone, where a study is given."""
     from cytodisk.errors import ParameterError
 
-    of_batch = given.beyond(CorrelateParameters, TableOptions) + ["--groups"] * (given.groups is not None)
+    of_batch = given.beyond(CorrelateParameters, TableOptions, FigureOptions)
+    of_batch += ["--groups"] * (given.groups is not None)
     if of_batch:
         raise ParameterError(
             f"{', '.join(of_batch)}: only for the folder of a batch, and {study} is none: leave it out"
@@ -112,7 +110,7 @@ def _refuse_of_batch(study: Path, given: Given) -> None:
 
 
 def draw_correlation(
-    quiet: bool, study: "Study", found: "Correlation", figures: int, formats: tuple[Format, ...]
+    quiet: bool, study: "Study", found: "Correlation", figures: int, formats: Sequence[str]
 ) -> None:
     """Draw the first cells that were correlated."""
     from cytodisk.pages.correlation_files import write_correlation_figures
@@ -125,16 +123,6 @@ def draw_correlation(
             for place, cell in enumerate(cells):
                 write_correlation_figures(study, found, cell=cell, formats=formats)
                 progress(place + 1, len(cells))
-
-
-def figure_formats(text: str) -> tuple["Format", ...]:
-    """The formats in a text such as "png,pdf"; raises ParameterError if one is unknown."""
-    from cytodisk.errors import ParameterError
-
-    wanted = tuple(dict.fromkeys(part.strip().lower() for part in text.split(",")))
-    if not set(wanted) <= set(get_args(Format)):
-        raise ParameterError(f"format must be png, pdf, svg or several with commas between, got {text!r}")
-    return cast(tuple[Format, ...], wanted)
 
 
 def _only(names: list[str]) -> str:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from cytodisk.cli.console import console_for, progress_bar, say_notes
 from cytodisk.cli.first_start import compiling
-from cytodisk.cli.map_end import finish_map
+from cytodisk.cli.map_end import draw_totals, finish_map
 from cytodisk.cli.options import (
     Figures,
     Given,
@@ -19,7 +19,7 @@ from cytodisk.cli.options import (
 )
 from cytodisk.cli.report.report_words import page_of
 from cytodisk.runs.map.map_parameters import MapParameters
-from cytodisk.runs.run_options import MapOptions
+from cytodisk.runs.run_options import FigureOptions, MapOptions
 from cytodisk.runs.told.compiling_words import with_nuclei_or_not
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from cytodisk.runs.cells.cell_inputs import CellInputs
 
 
-@with_parameters(MapParameters, MapOptions, groups=GroupsFile)
+@with_parameters(MapParameters, MapOptions, FigureOptions, groups=GroupsFile)
 def map_command(
     masks: MaskFiles,
     out: OutFolder,
@@ -39,13 +39,13 @@ def map_command(
     no_report: NoReport = False,
     quiet: Quiet = False,
 ) -> None:
-    from cytodisk.pages.cell_pages import draw_cell_page
+    from cytodisk.pages.cell_pages import CellPages
     from cytodisk.runs.cells.cell_groups import with_groups
     from cytodisk.runs.cells.cell_inputs import open_inputs
     from cytodisk.runs.map.map_study import map_study
 
     console = console_for(quiet)
-    options = given.options(MapOptions)
+    options, formats = given.options(MapOptions), given.formats(figures)
     inputs = open_inputs(masks, signal, given.of(MapParameters), nuclei=nuclei)
     inputs = with_groups(inputs, given.groups)
     say_inputs(console, inputs)
@@ -54,11 +54,12 @@ def map_command(
         study = map_study(
             inputs,
             out,
-            draw=draw_cell_page if figures else None,  # workers that draw nothing stay small
+            draw=CellPages(formats) if formats else None,  # workers that draw nothing stay small
             draw_at_most=None if figures < 0 else figures,
             progress=progress,
             **dict(options),
         )
+    draw_totals(study, formats or ("png",))
     finish_map(
         console, study, figures, inputs.is_folder, None if no_report else page_of(study, inputs, quiet)
     )

@@ -1,6 +1,6 @@
 """How `cytodisk map` ends: overview, page, and what came out."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,19 @@ if TYPE_CHECKING:
     from cytodisk.store.study import Study
 
 
+def draw_totals(study: "Study", formats: Sequence[str]) -> None:
+    """Draw the overview of many cells, and that of their nuclei."""
+    from cytodisk.pages.overview import write_overview
+    from cytodisk.store.figures_folder import drawing
+
+    if len(study.cells) > 1:
+        names = [f"overview.{kind}" for kind in formats]
+        with drawing(study.path, *names) as folder:
+            for name in names:
+                write_overview(folder / name, study.cells)
+        _draw_nuclei(study, formats)
+
+
 def finish_map(
     console: "Console",
     study: "Study",
@@ -24,17 +37,8 @@ def finish_map(
     of_folder: bool,
     write_page: Callable[[], Path] | None = None,
 ) -> None:
-    """Draw the overview, write the page and say what came out; exit code 2 if that is nothing, or an input
-    is damaged.
-    """
-    from cytodisk.pages.overview import write_overview
-    from cytodisk.store.figures_folder import drawing
-
+    """Write the page and say what came out; exit code 2 if that is nothing, or an input is damaged."""
     rows = study.cells
-    if len(rows) > 1:
-        with drawing(study.path, "overview.png") as folder:
-            write_overview(folder / "overview.png", rows)
-        _draw_nuclei(study)
     say_lines(console, map_lines(study, of_folder))
     say_losses(lost_cell_lines(study, of_folder))
     if 0 < figures < int((rows["status"] == "ok").sum()):
@@ -48,7 +52,7 @@ def finish_map(
         fail(fault)
 
 
-def _draw_nuclei(study: "Study") -> None:
+def _draw_nuclei(study: "Study", formats: Sequence[str]) -> None:
     """The picture of nucleus and cytoplasm; lines by layer only of as many cells as can be told apart."""
     from cytodisk.pages.nuclei_page import MOST_CELLS, write_nuclei_figure
     from cytodisk.store.figures_folder import drawing
@@ -56,5 +60,8 @@ def _draw_nuclei(study: "Study") -> None:
     if not channels_among(map(str, study.cells)):
         return
     few = (study.cells["status"] == "ok").sum() <= MOST_CELLS
-    with drawing(study.path, "nuclei.png") as folder:
-        write_nuclei_figure(folder / "nuclei.png", study.cells, study.nuclear_profile if few else None)
+    profile = study.nuclear_profile if few else None
+    names = [f"nuclei.{kind}" for kind in formats]
+    with drawing(study.path, *names) as folder:
+        for name in names:
+            write_nuclei_figure(folder / name, study.cells, profile)

@@ -1,5 +1,6 @@
 """`cytodisk movie`."""
 
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from cytodisk.cli.options import (
     with_parameters,
 )
 from cytodisk.runs.movie.movie_parameters import MovieParameters
-from cytodisk.runs.run_options import RunOptions
+from cytodisk.runs.run_options import FigureOptions, RunOptions
 from cytodisk.runs.told.compiling_words import with_nuclei_or_not
 from cytodisk.runs.told.flag_words import study_flag_lines
 from cytodisk.runs.told.movie_words import finding_line, lost_frame_lines, movie_fault, movie_lines
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from cytodisk.store.study import Study
 
 
-@with_parameters(MovieParameters, RunOptions, groups=GroupsFile)
+@with_parameters(MovieParameters, RunOptions, FigureOptions, groups=GroupsFile)
 def movie_command(
     masks: MovieFile,
     out: OutFolder,
@@ -44,14 +45,14 @@ def movie_command(
     from cytodisk.runs.movie.movie_study import movie_study
 
     console = console_for(quiet)
-    options = given.options(RunOptions)
+    options, formats = given.options(RunOptions), given.formats(figures)
     inputs = open_movie(masks, signal, given.of(MovieParameters), nuclei=nuclei)
     inputs = with_movie_groups(inputs, masks, given.groups)
     say_movie(console, inputs)
     work = with_nuclei_or_not("movie", nuclei)
     with compiling(quiet, work, options.workers), progress_bar(quiet, "frames") as progress:
         study = movie_study(inputs, out, progress=progress, **dict(options))
-    draw_movie(quiet, study, inputs, figures)
+    draw_movie(quiet, study, inputs, figures, formats)
     finish_movie(console, study)
 
 
@@ -63,7 +64,14 @@ def say_movie(console: "Console", inputs: "MovieInputs") -> None:
     say_notes(console, inputs.notes)
 
 
-def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int, again: str = RESUME) -> None:
+def draw_movie(
+    quiet: bool,
+    study: "Study",
+    inputs: "MovieInputs",
+    figures: int,
+    formats: Sequence[str] = ("png",),
+    again: str = RESUME,
+) -> None:
     """Draw cells whose figures are not there or not whole, so that a run stopped while drawing goes on."""
     from cytodisk.images.signal_files import load_image
     from cytodisk.pages.movie_pages import write_movie_figures
@@ -72,12 +80,17 @@ def draw_movie(quiet: bool, study: "Study", inputs: "MovieInputs", figures: int,
     image = partial(load_image, inputs.signal)
     cells = sorted(study.cells["cell"].unique())
     wanted = cells if figures < 0 else cells[:figures]
-    missing = [cell for cell in wanted if not is_drawn(study.path, f"cell_{cell:05d}", ".gif")]
+    endings = [".gif", *(f".{kind}" for kind in formats)]
+    missing = [
+        cell
+        for cell in wanted
+        if not all(is_drawn(study.path, f"cell_{cell:05d}", ending) for ending in endings)
+    ]
     if not missing:
         return
     with progress_bar(quiet, "drawings", total=len(missing), again=again) as progress:
         for number, cell in enumerate(missing):
-            write_movie_figures(study, int(cell), image)
+            write_movie_figures(study, int(cell), image, formats=formats)
             progress(number + 1, len(missing))
 
 

@@ -138,6 +138,23 @@ class Given:
         """Options of a run, which no file holds; errors name the flags."""
         return model.called(self._those_of(model), self.flags)
 
+    def formats(self, figures: int) -> tuple[str, ...]:
+        """Formats of the figures that a command draws, none where it draws none.
+
+        Raises
+        ------
+        ParameterError
+            A format is unknown, or one is given where no figure is drawn.
+        """
+        from cytodisk.errors import ParameterError
+        from cytodisk.runs.run_options import FigureOptions
+
+        chosen = self.options(FigureOptions).format
+        if not figures and "format" in self.values:
+            none = "--no-figures" if figures is False else "--figures 0"
+            raise ParameterError(f"--format says how to write figures, {none} to draw none: leave one out")
+        return chosen if figures else ()
+
     def _those_of(self, model: type[Parameters]) -> dict[str, Any]:
         return {name: value for name, value in self.values.items() if name in model.model_fields}
 

@@ -1,5 +1,6 @@
 """`cytodisk shapes`."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ from cytodisk.cli.options import (
     Quiet,
     with_parameters,
 )
-from cytodisk.runs.run_options import RunOptions
+from cytodisk.runs.run_options import FigureOptions, RunOptions
 from cytodisk.runs.shapes.shape_parameters import ShapeParameters
 from cytodisk.runs.told.map_words import reason_lines
 from cytodisk.runs.told.mask_sizes import scale_words
@@ -31,7 +32,7 @@ _FAR_FROM_LINE = (
 )
 
 
-@with_parameters(ShapeParameters, RunOptions, groups=GroupsFile)
+@with_parameters(ShapeParameters, RunOptions, FigureOptions, groups=GroupsFile)
 def shapes_command(
     masks: MaskFiles,
     out: OutFolder,
@@ -41,27 +42,29 @@ def shapes_command(
     from cytodisk.runs.shapes.shape_study import open_shape_inputs, shape_study
 
     settings, options = given.of(ShapeParameters), given.options(RunOptions)
+    formats = given.formats(1)
     console = console_for(quiet)
     inputs = open_shape_inputs(masks, settings, given.groups)
     say_inputs(console, inputs)
     say_compiling(quiet, "shapes")
     with progress_bar(quiet, "cells") as progress:
         table = shape_study(inputs, out, settings, progress=progress, **dict(options))
-    _draw(inputs, table, out)
+    _draw(inputs, table, out, formats)
     for line in scale_words(table.loc[table["status"] == "ok", "equivalent_diameter"], inputs.scale):
         console.print(line)
     _say(console, table, out)
 
 
-def _draw(inputs: "CellInputs", table: "pd.DataFrame", out: Path) -> None:
+def _draw(inputs: "CellInputs", table: "pd.DataFrame", out: Path, formats: Sequence[str]) -> None:
     from cytodisk.pages.shape_pages import cells_to_draw, write_shape_figures
     from cytodisk.runs.shapes.shape_study import cleaned_masks
     from cytodisk.store.figures_folder import drawing
 
     if table["complexity"].notna().any():
         masks = cleaned_masks(inputs, cells_to_draw(table))
-        with drawing(out, "complexity.png", "extremes.png") as folder:
-            write_shape_figures(folder, table, masks, inputs.scale)
+        names = [f"{name}.{kind}" for name in ("complexity", "extremes") for kind in formats]
+        with drawing(out, *names) as folder:
+            write_shape_figures(folder, table, masks, inputs.scale, formats=formats)
 
 
 def _say(console: "Console", table: "pd.DataFrame", out: Path) -> None:

@@ -102,16 +102,22 @@ def write_cell_figures(
         return save_in_formats(_page(heading or name, windows, signal, known), Path(folder), name, chosen)
 
 
-def draw_cell_page(
-    folder: Path,
-    name: str,
-    windows: CellWindows,
-    signal: xr.DataArray | None,
-    heading: str,
-    formats: Sequence[str] = ("png",),
-) -> list[Path]:
-    """`write_cell_figures` as a run calls it."""
-    return write_cell_figures(folder, name, windows, signal, heading=heading, formats=formats)
+@dataclass(frozen=True)
+class CellPages:
+    """`write_cell_figures` as a run calls it.
+
+    Attributes
+    ----------
+    formats : sequence of {"png", "pdf", "svg"}
+    """
+
+    formats: Sequence[str] = ("png",)
+
+    def __call__(
+        self, folder: Path, name: str, windows: CellWindows, signal: xr.DataArray | None, heading: str
+    ) -> list[Path]:
+        """Draw a cell."""
+        return write_cell_figures(folder, name, windows, signal, heading=heading, formats=self.formats)
 
 
 def _page(name: str, windows: CellWindows, signal: xr.DataArray | None, scale: Scale) -> Sheet:

@@ -13,6 +13,7 @@ from matplotlib.collections import LineCollection
 
 from cytodisk.errors import ParameterError
 from cytodisk.pages.compared_layers import spread_over
+from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
 from cytodisk.pages.sheet import Sheet, broken_lines
 from cytodisk.plot.cell.window_labels import draw_label_image
 from cytodisk.plot.field_of_view import frame_field
@@ -39,7 +40,9 @@ _NUCLEUS_KEY = (
 )
 
 
-def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = None) -> Path | None:
+def write_compared_cells(
+    comparison: Comparison, cells: Sequence[int] | None = None, *, formats: Sequence[str] = ("png",)
+) -> Path | None:
     """Write `figures/cells.png`: up to five cells, a row a method.
 
     Layers have colours from the edge (dark) to the centre (light), and every other sector is paler; what lies
@@ -52,11 +55,13 @@ def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = N
     cells : sequence of int, optional
         Which cells, at most five, in this order; by default they go from the smallest area error of the map
         to the largest.
+    formats : sequence of {"png", "pdf", "svg"}
+        Text stays text in the last two.
 
     Returns
     -------
     Path or None
-        None if no cell has windows.
+        That of the first format; None if no cell has windows.
 
     Raises
     ------
@@ -84,7 +89,7 @@ def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = N
     chosen = chosen_cells(comparison) if cells is None else _asked_for(comparison, cells)
     if not chosen:
         return None
-    name = "cells.png"
+    kinds = chosen_formats(formats)
     size = min((WIDE_MM - _LEFT - 2.0 - _GAP * (len(chosen) - 1)) / len(chosen), _WIDEST)
     outcomes = {
         (cell, method): _outcome(comparison, cell, method) for cell in chosen for method in comparison.methods
@@ -92,7 +97,7 @@ def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = N
     step = size + _LINE * max(len(lines) for lines in outcomes.values()) + _GAP
     key = (_NUCLEUS_KEY if comparison.has_nuclei else _KEY).split(" ")
     notes = broken_lines(key, " ", WIDE_MM - _LEFT - 2.0)
-    with drawing(comparison.path, name) as folder, paper_style():
+    with drawing(comparison.path, *(f"cells.{kind}" for kind in kinds)) as folder, paper_style():
         foot = _TOP + len(comparison.methods) * step + 2.0
         sheet = Sheet(foot + 3.5 * len(notes))
         for column, cell in enumerate(chosen):
@@ -111,7 +116,7 @@ def write_compared_cells(comparison: Comparison, cells: Sequence[int] | None = N
             sheet.text(2.0, middle, _method_name(method, size), rotation=90, va="center", ha="left")
         sheet.text(_LEFT, 4.0, _title(comparison, chosen, cells is None), size=7.5)
         _write(sheet, _LEFT, foot + 1.5, notes, color="0.35")
-        return sheet.save(folder / name)
+        return save_in_formats(sheet, folder, "cells", kinds)[0]
 
 
 def _write(sheet: Sheet, left: float, top: float, lines: Sequence[str], **style: Any) -> None:

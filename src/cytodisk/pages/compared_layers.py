@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.style import paper_style
 from cytodisk.plot.time_axis import TICK_STEPS
@@ -37,7 +38,7 @@ METHOD_STYLES: dict[str, dict[str, Any]] = {
     | {"linewidth": 1.2, "markersize": 3.2},
 }
 
-FILE = "comparison.png"
+FIGURE = "comparison"
 # Column of the table by layer, and its name in words.
 PANELS = (
     ("completeness", "completeness"),
@@ -56,7 +57,7 @@ _PANEL, _HEIGHT, _STEP, _LEFT, _GAP = 42.0, 33.0, 49.0, 13.0, 16.0  # mm
 _ABREAST, _KEY_ABREAST, _KEY_LINE = 2, 2, 3.9  # panels and methods beside each other; mm
 
 
-def write_comparison(comparison: Comparison) -> Path:
+def write_comparison(comparison: Comparison, *, formats: Sequence[str] = ("png",)) -> Path:
     """Write `figures/comparison.png`: completeness, spread of area and eccentricity, and length, by layer.
 
     With nuclei mean areas of layers are in the place of the spread of eccentricity, and a line stands between
@@ -65,10 +66,13 @@ def write_comparison(comparison: Comparison) -> Path:
     Parameters
     ----------
     comparison : Comparison
+    formats : sequence of {"png", "pdf", "svg"}
+        Text stays text in the last two.
 
     Returns
     -------
     Path
+        That of the first format.
 
     See Also
     --------
@@ -89,7 +93,9 @@ def write_comparison(comparison: Comparison) -> Path:
     >>> cd.pages.write_comparison(comparison).name
     'comparison.png'
     """
-    with drawing(comparison.path, FILE) as folder, paper_style():
+    chosen = chosen_formats(formats)
+    names = [f"{FIGURE}.{kind}" for kind in chosen]
+    with drawing(comparison.path, *names) as folder, paper_style():
         top = key_height(comparison.methods) + 6.0
         foot = top + 2 * _STEP - 2.0
         sheet = Sheet(foot + 2 * _KEY_LINE)
@@ -108,7 +114,7 @@ def write_comparison(comparison: Comparison) -> Path:
         )
         for number, words in enumerate(lines):
             sheet.text(_LEFT, foot + 2.0 + _KEY_LINE * number, words, color="0.35")
-        return sheet.save(folder / FILE)
+        return save_in_formats(sheet, folder, FIGURE, chosen)[0]
 
 
 def draw_measure_by_layer(

@@ -20,6 +20,7 @@ from cytodisk.pages.compared_layers import (
     key_height,
     write_method_key,
 )
+from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.layer_looks import shown_layers
 from cytodisk.plot.style import (
@@ -47,7 +48,13 @@ _LONGEST_LABEL = 28  # letters along a panel's height
 _MAP, _MAP_GAP, _PANEL, _PANEL_GAP, _PANEL_STEP = 18.0, 2.0, 32.0, 15.0, 48.0
 
 
-def write_compared_movie(comparison: Comparison, cell: int, channel: str | None = None) -> Path:
+def write_compared_movie(
+    comparison: Comparison,
+    cell: int,
+    channel: str | None = None,
+    *,
+    formats: Sequence[str] = ("png",),
+) -> Path:
     """Write a page of a cell: activity maps by method, then their consistency by layer and through time.
 
     Without a signal there are no activity maps, and motion by layer is in the place of the correlation.
@@ -59,11 +66,14 @@ def write_compared_movie(comparison: Comparison, cell: int, channel: str | None 
     cell : int
     channel : str, optional
         Channel of the signal, if there is one.
+    formats : sequence of {"png", "pdf", "svg"}
+        Text stays text in the last two.
 
     Returns
     -------
     Path
-        `figures/movie_cell_00000_<channel>.png`, or `movie_cell_00000.png` without a channel.
+        `figures/movie_cell_00000_<channel>.png`, or `movie_cell_00000.png` without a channel; that
+        of the first format.
 
     See Also
     --------
@@ -84,6 +94,7 @@ def write_compared_movie(comparison: Comparison, cell: int, channel: str | None 
     >>> cd.pages.write_compared_movie(comparison, 0).name
     'movie_cell_00000.png'
     """
+    chosen = chosen_formats(formats)
     rows = comparison.cells[(comparison.cells["cell"] == cell) & (comparison.cells["mapped"] > 0)]
     methods = [method for method in comparison.methods if method in set(rows["method"])]
     name, number = f"movie_cell_{cell:05d}", 0
@@ -93,7 +104,7 @@ def write_compared_movie(comparison: Comparison, cell: int, channel: str | None 
         name += f"_{file_names(names)[number]}"
     layers = shown_layers(comparison.provenance["parameters"]["layers"]) if channel is not None else []
     maps = _TOP + len(layers) * (_MAP + _MAP_GAP) + 8.0 if layers else 0.0
-    with drawing(comparison.path, f"{name}.png") as folder, paper_style():
+    with drawing(comparison.path, *(f"{name}.{kind}" for kind in chosen)) as folder, paper_style():
         top = maps + key_height(methods) + 9.0
         foot = top + 2 * _PANEL_STEP - 1.0
         sheet = Sheet(foot + 8.0)
@@ -104,7 +115,7 @@ def write_compared_movie(comparison: Comparison, cell: int, channel: str | None 
         _draw_measures(sheet, comparison, cell, channel, methods, top)
         for number, words in enumerate(_KEY):
             sheet.text(_LEFT, foot + 2.0 + 3.6 * number, words, color="0.35")
-        return sheet.save(folder / f"{name}.png")
+        return save_in_formats(sheet, folder, name, chosen)[0]
 
 
 def consistency_by_layer(consistency: pd.DataFrame, name: str) -> pd.DataFrame:

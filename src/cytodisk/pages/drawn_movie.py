@@ -76,10 +76,6 @@ class DrawnMovie(MovieCell):
     def _lines(self) -> list[str]:
         return broken_lines(self._facts(), " · ", WIDE_MM - 2 * LEFT_MM)
 
-    def save(self, sheet: Sheet, what: str) -> Path:
-        """Write a page whole or not at all."""
-        return sheet.save(self.path(f"_{what}.png"))
-
     def path(self, ending: str) -> Path:
         """Where a figure is to stand; see `cytodisk.store.figures_folder.drawing`."""
         return self.study.path / FIGURES / f"cell_{part_key(self.cell)}{ending}"

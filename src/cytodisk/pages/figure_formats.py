@@ -40,3 +40,17 @@ def save_in_formats(sheet: Sheet, folder: Path, name: str, formats: Sequence[str
         The folder cannot be written.
     """
     return [sheet.save(folder / f"{name}.{kind}", format=kind, metadata=_DATELESS[kind]) for kind in formats]
+
+
+def save_by_ending(sheet: Sheet, path: Path) -> Path:
+    """Write a page in the format that the ending of a file names.
+
+    Raises
+    ------
+    ParameterError
+        It names none.
+    WriteError
+        The folder cannot be written.
+    """
+    (kind,) = chosen_formats(path.suffix.removeprefix(".").lower())
+    return sheet.save(path, format=kind, metadata=_DATELESS[kind])

@@ -1,6 +1,6 @@
 """The pictures of one cell of a movie's study."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from cytodisk.pages.animation import write_animation
 from cytodisk.pages.consistency_page import consistency_sheet
 from cytodisk.pages.drawn_movie import LEFT_MM, DrawnMovie
 from cytodisk.pages.edge_page import edge_sheet
+from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
 from cytodisk.pages.profile_page import profile_sheet
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.cell.frame_strip import draw_strip
@@ -41,6 +42,7 @@ def write_movie_figures(
     signal: SignalAt | None = None,
     *,
     animation: bool = True,
+    formats: Sequence[str] = ("png",),
     progress: Progress | None = None,
 ) -> list[Path]:
     """Write the pictures of one cell of a movie into the study's folder of figures.
@@ -61,18 +63,22 @@ def write_movie_figures(
         Gives the image of a frame, shape (C, H, W), by the recording's frame number, or None if it has none;
         is asked for the few frames drawn, one at a time. The first channel is the background of the windows.
     animation : bool
-        Whether to write the animation, which takes longest: at most 60 frames, evenly spaced.
+        Whether to write the animation, which takes longest: at most 60 frames, evenly spaced. It is a GIF.
+    formats : sequence of {"png", "pdf", "svg"}
+        Of all other pictures. Text stays text in the last two.
     progress : callable, optional
         Called with (done, in all), counted in pages and frames of the animation.
 
     Returns
     -------
     list of Path
-        The files written: `cell_<number>_<what>.png`, 180 mm wide, and `cell_<number>.gif`. Empty when no
-        frame has a map.
+        The files written: `cell_<number>_<what>.<format>`, 119 mm wide, and `cell_<number>.gif`. Empty when
+        no frame has a map.
 
     Raises
     ------
+    ParameterError
+        A format is unknown.
     ReadError
         The study is not a movie's, has no such cell, or a map of it is damaged.
     SignalError
@@ -95,6 +101,7 @@ def write_movie_figures(
     >>> [path.name for path in cd.pages.write_movie_figures(study, 0, animation=False)]
     ['cell_00000_velocity.png', 'cell_00000_edge.png', 'cell_00000_strip.png', 'cell_00000_consistency.png']
     """
+    chosen = chosen_formats(formats)
     movie = DrawnMovie(study, cell)
     if not movie.mapped:
         return []
@@ -102,14 +109,15 @@ def write_movie_figures(
     frames = _evenly(movie.mapped, MOST_ANIMATED) if animation else []
     report = progress or (lambda done, whole: None)
     whole, paths = len(pages) + len(frames), []
-    names = [movie.path(f"_{what}.png").name for what, _ in pages] + [movie.path(".gif").name] * animation
-    with drawing(study.path, *names):
+    names = [movie.path(f"_{what}.{kind}").name for what, _ in pages for kind in chosen]
+    names += [movie.path(".gif").name] * animation
+    with drawing(study.path, *names) as folder:
         for done, (what, draw) in enumerate(pages):
             report(done, whole)
             with paper_style():
                 sheet = draw()
                 if sheet is not None:
-                    paths.append(movie.save(sheet, what))
+                    paths += save_in_formats(sheet, folder, movie.path(f"_{what}").name, chosen)
         if frames:
             paths.append(_animate(movie, signal, frames, lambda done: report(len(pages) + done, whole)))
     report(whole, whole)

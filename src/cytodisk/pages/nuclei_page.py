@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from cytodisk.arrays import FloatArray
+from cytodisk.pages.figure_formats import save_by_ending
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.nucleus.nucleus_profile import CHANNEL_COLOURS, shade_compartments
 from cytodisk.plot.style import paper_style
@@ -83,7 +84,7 @@ def write_nuclei_figure(path: Path, cells: pd.DataFrame, profile: pd.DataFrame |
             _draw_shares(sheet.axes(_LEFT, top + step, whole, _PANEL), cells, names)
         else:
             _draw_shares(sheet.axes(_LEFT + half + _GAP, top, half, _PANEL), cells, names)
-        return sheet.save(Path(path))
+        return save_by_ending(sheet, Path(path))
 
 
 def _draw_profiles(ax: Axes, cells: pd.DataFrame, profile: pd.DataFrame, name: str, colour: str) -> None:

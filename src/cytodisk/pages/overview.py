@@ -11,6 +11,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodF
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError
+from cytodisk.pages.figure_formats import save_by_ending
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.cell.area_distortion import DISTORTION_LABEL, distortion_limit, draw_area_distortion
 from cytodisk.plot.style import STATUS_COLOURS, colour_bar, paper_style
@@ -89,7 +90,7 @@ def write_overview(path: Path, cells: pd.DataFrame, masks: Callable[[int], DiskM
         if masks is not None and len(chosen):
             disks = [masks(int(row)) for row in chosen]
             _draw_cells(sheet, _CELLS_TOP, disks, Scale.of(cells))
-        return sheet.save(Path(path))
+        return save_by_ending(sheet, Path(path))
 
 
 def _draw_status(ax: Axes, status: pd.Series, without: int) -> None:

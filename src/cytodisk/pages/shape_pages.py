@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from cytodisk.arrays import BoolArray
+from cytodisk.pages.figure_formats import chosen_formats, save_in_formats
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.shape.shape_plane import draw_shape_landscape, known_scores, plane_limits, spread_cells
 from cytodisk.plot.shape.shape_rows import cells_along, draw_shape_examples, least_median_most
@@ -39,24 +40,36 @@ def cells_to_draw(score: pd.DataFrame) -> list[int]:
 
 
 def write_shape_figures(
-    folder: Path, score: pd.DataFrame, masks: Mapping[int, BoolArray], scale: Scale | None = None
+    folder: Path,
+    score: pd.DataFrame,
+    masks: Mapping[int, BoolArray],
+    scale: Scale | None = None,
+    *,
+    formats: Sequence[str] = ("png",),
 ) -> list[Path]:
     """Draw the landscape of shapes and the least, median and most complex cells.
 
     Parameters
     ----------
     folder : Path
-        Gets `complexity.png` and `extremes.png`.
+        Gets `complexity` and `extremes`, with the ending of each format.
     score : DataFrame
         As `complexity_score` returns it.
     masks : mapping of int to ndarray of shape (h, w) and dtype bool
         Masks of the cells that `cells_to_draw` names.
     scale : Scale, optional
         Without a pixel size the scale bar is in px.
+    formats : sequence of {"png", "pdf", "svg"}
+        Text stays text in the last two.
 
     Returns
     -------
     list of Path
+
+    Raises
+    ------
+    ParameterError
+        A format is unknown.
 
     Examples
     --------
@@ -71,12 +84,14 @@ def write_shape_figures(
     >>> [path.name for path in cd.pages.write_shape_figures(Path("."), score, masks)]
     ['complexity.png', 'extremes.png']
     """
+    chosen = chosen_formats(formats)
     with paper_style():
         pages = {
             "complexity": _landscape_page(score, masks),
             "extremes": _extremes_page(score, masks, scale),
         }
-        return [page.save(folder / f"{name}.png") for name, page in pages.items()]
+        written = [save_in_formats(page, folder, name, chosen) for name, page in pages.items()]
+    return [path for paths in written for path in paths]
 
 
 def _landscape_page(score: pd.DataFrame, masks: Mapping[int, BoolArray]) -> Sheet:

@@ -1,7 +1,9 @@
 """Options of a run that do not change its results, beside what decides them."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, ClassVar, Self, TypeAlias
+from typing import Any, ClassVar, Literal, Self, TypeAlias
+
+from pydantic import field_validator
 
 from cytodisk.parameter_words import unknown_words
 from cytodisk.parameters import Parameters, parameter
@@ -37,6 +39,24 @@ class TableOptions(Options):
     """How tables are written."""
 
     csv: bool = parameter(False, "Write every table as CSV too, for Excel and other programs.")
+
+
+class FigureOptions(Parameters):
+    """How figures are written."""
+
+    format: tuple[Literal["png", "pdf", "svg"], ...] = parameter(
+        ("png",), "Of figures; text stays text in pdf and svg. Animations are always GIFs."
+    )
+
+    @field_validator("format", mode="before")
+    @classmethod
+    def _each_once(cls, value: Any) -> Any:
+        """In small letters, each once."""
+        given = [value] if isinstance(value, str) else value
+        names = tuple(dict.fromkeys(str(name).strip().lower() for name in given))
+        if not names or not set(names) <= {"png", "pdf", "svg"}:
+            raise ValueError("must be png, pdf, svg or several with commas between")
+        return names
 
 
 class FolderOptions(TableOptions):

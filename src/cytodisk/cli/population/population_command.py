@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cytodisk.cli.console import COMPLETE, console_for, progress_bar
-from cytodisk.cli.correlate_command import Format, figure_formats
 from cytodisk.cli.options import Given, GroupsFile, NoReport, Quiet, with_parameters
 from cytodisk.cli.population.kept_plan import keep_plan, refuse_kept_plan
 from cytodisk.cli.population.planned import planned
@@ -16,7 +15,7 @@ from cytodisk.cli.report.report_words import say_page
 from cytodisk.errors import ParameterError
 from cytodisk.runs.population.population_parameters import PopulationParameters
 from cytodisk.runs.population.power.power_parameters import PowerParameters
-from cytodisk.runs.run_options import PopulationOptions
+from cytodisk.runs.run_options import FigureOptions, PopulationOptions
 from cytodisk.runs.told.speed_words import PERCENT
 from cytodisk.store.study_kind import FIGURES
 
@@ -29,7 +28,11 @@ if TYPE_CHECKING:
 
 
 @with_parameters(
-    PopulationParameters, PopulationOptions, modes={"--power": PowerParameters}, groups=GroupsFile
+    PopulationParameters,
+    PopulationOptions,
+    FigureOptions,
+    modes={"--power": PowerParameters},
+    groups=GroupsFile,
 )
 def population_command(
     given: Given,
@@ -47,9 +50,6 @@ def population_command(
         typer.Option("--out", "-o", metavar="FOLDER", help="Folder for the results.", show_default=False),
     ] = None,
     figures: Annotated[bool, typer.Option(help="Draw the atlas, profiles and scalars.")] = True,
-    formats: Annotated[
-        str, typer.Option("--format", metavar="A,B,…", help="Of figures: png, pdf, svg, or several.")
-    ] = "png",
     power: Annotated[
         bool, typer.Option("--power", help="Plan: how many experiments find a difference of which size.")
     ] = False,
@@ -57,8 +57,8 @@ def population_command(
     quiet: Quiet = False,
 ) -> None:
     console = console_for(quiet)
+    wanted = given.formats(figures)
     if power:
-        wanted = figure_formats(formats) if figures else ()
         if out is not None and not given.values.get("overwrite"):
             refuse_kept_plan(out)
         table, notes = planned(console, given, paths or [], out is not None)
@@ -66,7 +66,7 @@ def population_command(
             keep_plan(out, table, notes, wanted)
             console.print(f"results: {out}")
         return
-    if beyond := given.beyond(PopulationParameters, PopulationOptions):
+    if beyond := given.beyond(PopulationParameters, PopulationOptions, FigureOptions):
         raise ParameterError(f"{', '.join(beyond)}: only with --power; pass that too, or leave it out")
     if not paths:
         raise ParameterError(
@@ -79,7 +79,6 @@ def population_command(
             f"PATH {named[0]} is no folder of results: --h5ad takes no name, its file is in the folder of "
             f"--out; leave {named[0]} out"
         )
-    wanted = figure_formats(formats) if figures else ()
     study = _compare(console, given, paths, out)
     say_population(console, study)
     console.print(f"results: {study.path}")
@@ -116,7 +115,7 @@ def _compare(console: "Console", given: Given, paths: list[Path], out: Path) -> 
     return study
 
 
-def _draw(console: "Console", study: "PopulationStudy", formats: "Sequence[Format]") -> list[str]:
+def _draw(console: "Console", study: "PopulationStudy", formats: "Sequence[str]") -> list[str]:
     """Draw all figures; what is said of them."""
     from cytodisk.pages.population.write_population_figures import missing_figures, write_population_figures
     from cytodisk.store.figures_folder import drawn_figures, note_drawn

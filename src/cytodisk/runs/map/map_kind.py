@@ -13,7 +13,11 @@ MAP = StudyKind(
     {"windows": WINDOW_COLUMNS},
     tuple(
         pattern
-        for name in ("maps/cell_{}.npz", "maps/cell_{}.geojson", "figures/cell_{}.png")
+        for name in (
+            "maps/cell_{}.npz",
+            "maps/cell_{}.geojson",
+            *(f"figures/cell_{{}}.{kind}" for kind in ("png", "pdf", "svg")),
+        )
         for pattern in part_patterns(name)
     ),
 )

@@ -49,7 +49,8 @@ class MapWork:
     folder : StudyFolder
         Where maps go.
     draw : callable, optional
-        As `run_map` takes it.
+        As `run_map` takes it; its attribute `formats`, if it has one, tells the endings of its figures, which
+        else is png.
     maps, geojson : bool
         Whether maps, and outlines of windows, are written.
     """
@@ -94,7 +95,9 @@ class MapWork:
         """Files that a cell may have: its map, outlines of windows, its figure."""
         path = self.folder.map_path(part_key(task.found.cell))
         wanted = {path: self.maps, path.with_suffix(".geojson"): self.geojson}
-        wanted[self.folder.path / FIGURES / f"{path.stem}.png"] = task.drawn and self.draw is not None
+        for kind in getattr(self.draw, "formats", ("png",)):
+            figure = self.folder.path / FIGURES / f"{path.stem}.{kind}"
+            wanted[figure] = task.drawn and self.draw is not None
         return [file for file, is_wanted in wanted.items() if is_wanted]
 
     def _draw(self, draw: DrawCell, task: CellTask, windows: CellWindows) -> None:

@@ -14,7 +14,7 @@ GROUPS = {
     "interior fade-um",
     "Score of complexity": "neighbors min-dist seed",
     "The run": "workers resume overwrite time-limit scheduler dry-run seed",
-    "Results": "csv maps geojson cell cells figures all no-report quiet help",
+    "Results": "csv maps geojson cell cells figures format all no-report quiet help",
 }
 """Flags by heading, without dashes in front."""
 
