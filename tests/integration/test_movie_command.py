@@ -147,7 +147,7 @@ def test_names_of_channels(run: Run, masks: Path, signal: Path, tmp_path: Path) 
 def test_a_run_that_is_stopped_says_how_to_go_on(
     run: Run, masks: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def stop(*_: object) -> None:
+    def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
     out = tmp_path / "out"
