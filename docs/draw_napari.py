@@ -101,7 +101,10 @@ def follow() -> None:
     holder.hide()
     if widget.flags is not None:
         widget.flags.remove()
-    disk, _ = dock(viewer, "Disk", 420)
+    disk, inside = dock(viewer, "Disk", 300)
+    disk.setMaximumWidth(330)
+    inside.parts.picture.clicked.emit(0.85, 0.3)
+    viewer.reset_view()
     save(viewer, "disk")
     disk.hide()
     _, correlate = dock(viewer, "Correlate", 380)

@@ -145,7 +145,9 @@ def test_the_slider_drives_the_disk_and_the_lines_through_time(
     activity = movie.activity(0)
     rac1 = activity["mean"].sel(channel="Rac1", layer=layer, sector=sector).to_numpy()
     assert_allclose(parts.trace.values, rac1)
-    assert_allclose(parts.velocity_trace.values, activity["velocity"].sel(sector=sector).to_numpy())
+    velocity = activity["velocity"].sel(sector=sector).to_numpy()  # in µm/s
+    factor = {"nm/s": 1000.0, "µm/s": 1.0}[parts.velocity_trace.title.split("(")[1].split(")")[0]]
+    assert_allclose(parts.velocity_trace.values, factor * velocity)
     assert parts.trace.now == 3
     assert "Rac1 (a.u.)" in parts.trace.title
     assert f"sector {sector}" in parts.words.text()

@@ -17,6 +17,7 @@ from cytodisk.number_words import rounded
 from cytodisk.plot.correlation.correlation_peaks import LAG_COLOURS
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS, signal_limits
 from cytodisk.plot.time_axis import FrameTimes
+from cytodisk.scale import ShownUnit, suited_lag
 from cytodisk.windows.polar_windows import PolarGrid
 from cytodisk.windows.study_grid import polar_grid_of
 
@@ -38,7 +39,7 @@ class WindowNumbers:
     hatched : ndarray of shape (layers, sectors) and dtype bool, or None
         Windows whose number is not significant.
     peaks : (ndarray, ndarray) or None
-        Correlation at the peak and its lag in the unit of time, both of shape (layers, sectors).
+        Correlation at the peak and its lag in the unit that suits lags, both of shape (layers, sectors).
     """
 
     values: FloatArray
@@ -110,12 +111,12 @@ class CellNumbers:
         if choice.names not in self._peaks:
             self._peaks[choice.names] = found.windows[found.windows["cell"] == self.cell]
         table, scale = self._peaks[choice.names], self.shown.study.scale
-        values, lags = self._by_window(table, "correlation"), scale.time(self._by_window(table, "lag"))
+        values, lags = self._by_window(table, "correlation"), self._by_window(table, "lag")
+        lags = scale.time(lags) * self._lag_unit.factor
         chance = self._by_window(table, "q") >= SIGNIFICANT
         if choice.kind == "lag":
             top = _largest(lags) or 1.0
-            unit = scale.time_unit if scale.frame_interval_s else "frames"
-            return WindowNumbers(lags, (-top, top), LAG_COLOURS, unit, chance, (values, lags))
+            return WindowNumbers(lags, (-top, top), LAG_COLOURS, self._lag_unit.name, chance, (values, lags))
         top = max(0.1, np.ceil(10.0 * _largest(values)) / 10.0)
         return WindowNumbers(values, (-top, top), DIVERGING_COLOURS, "", chance, (values, lags))
 
@@ -154,13 +155,25 @@ class CellNumbers:
             self._means = {channel: means.transpose("time", "layer", "sector").to_numpy()}
         return self._means[channel][:, layer, sector]
 
+    @property
+    def speed_unit(self) -> ShownUnit:
+        """The unit that suits the edge's velocity, the same in all frames."""
+        shown = self.shown
+        found: ShownUnit = shown.study.scale.shown_velocity(shown.top_speed, shown.cells.n_frames)
+        return found
+
+    @property
+    def _lag_unit(self) -> ShownUnit:
+        interval = self.shown.study.scale.frame_interval_s
+        return ShownUnit("frames") if interval is None else suited_lag(interval)
+
     @cached_property
     def _velocity(self) -> FloatArray:
         return np.asarray(self._activity["velocity"].transpose("time", "sector").to_numpy())
 
     def velocity_through_time(self, sector: int) -> FloatArray:
-        """Velocity of the edge of a sector in all frames."""
-        return self._velocity[:, sector]
+        """Velocity of the edge of a sector in all frames, in `speed_unit`."""
+        return self._velocity[:, sector] * self.speed_unit.factor
 
     def value_words(
         self, numbers: WindowNumbers, choice: DiskChoice, frame: int, window: tuple[int, int]
@@ -183,18 +196,19 @@ class CellNumbers:
         """
         if choice.is_peak:
             return [self._peak_words(numbers, window)]
-        value, unit, label = float(numbers.values[window]), numbers.unit, choice.label
+        value, of, label = float(numbers.values[window]), numbers.unit, choice.label
         if choice.kind == "image" and self.shown.channel:
             mean = DiskChoice("mean", (self.shown.channel,))
             value, label = float(self.of_windows(mean, frame).values[window]), mean.label
-            unit = self.shown.unit(self.shown.channel)
+            of = self.shown.unit(self.shown.channel)
         elif choice.kind == "image":
             label = "window area"
-        lines = [f"{label}: {number_with_unit(value, unit)}"]
+        lines = [f"{label}: {number_with_unit(value, of)}"]
         velocities = self.velocities(frame)
         if velocities is not None:
-            speed = number_with_unit(float(velocities[window[1]]), self.shown.unit("velocity"), signed=True)
-            lines.append(f"edge velocity: {speed}")
+            unit, speed = self.speed_unit, float(velocities[window[1]])
+            words = number_with_unit(speed * unit.factor, unit.name, signed=True)
+            lines.append(f"edge velocity: {words}")
         return lines
 
     def _peak_words(self, numbers: WindowNumbers, window: tuple[int, int]) -> str:
@@ -203,10 +217,9 @@ class CellNumbers:
         correlation, lag = (float(values[window]) for values in numbers.peaks)
         if not np.isfinite(correlation):
             return "not correlated"
-        unit = "s" if self.shown.study.scale.frame_interval_s else "frames"
         chance = ", not significant" if numbers.hatched[window] else ""
         words = f"peak correlation {rounded(correlation, 2)}".replace("-", "−")
-        return f"{words} at lag {number_with_unit(lag, unit)}{chance}"
+        return f"{words} at lag {number_with_unit(lag, self._lag_unit.name)}{chance}"
 
 
 def _largest(values: FloatArray) -> float:

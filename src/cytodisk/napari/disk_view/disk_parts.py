@@ -221,5 +221,5 @@ class DiskParts:
                 f"{DiskChoice('mean', (channel,)).label} ({unit}), {place}", numbers.times, values
             )
         velocity = numbers.velocity_through_time(sector)
-        title = f"edge velocity ({state.shown.unit('velocity')}), sector {sector}"
+        title = f"edge velocity ({numbers.speed_unit.name}), sector {sector}"
         self.velocity_trace.show_line(title, numbers.times, velocity, with_zero=True)

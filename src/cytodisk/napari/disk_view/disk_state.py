@@ -122,8 +122,9 @@ class DiskState:
         """Colour bars of the disk and of its ring; None for one that is not there."""
         ring = None
         if self.numbers.is_movie:
-            top, unit = self.shown.top_speed, self.shown.unit("velocity")
-            ring = KeyWords(f"ring: edge velocity ({unit}), red outward", (-top, top), DIVERGING_COLOURS)
+            speed = self.numbers.speed_unit
+            top = self.shown.top_speed * speed.factor
+            ring = KeyWords(f"ring: edge velocity ({speed.name}), red outward", (-top, top), DIVERGING_COLOURS)
         if self.values is None:
             return None, ring
         if self.choice.kind == "image":
