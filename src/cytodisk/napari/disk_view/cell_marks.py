@@ -10,7 +10,7 @@ from vispy.scene.visuals import Line, Markers
 from cytodisk.arrays import FloatArray
 
 _ON_TOP = 1_000_000  # drawn after all layers
-POINTED, PINNED = "#FF4FD8", "#FFD400"
+POINTED, PINNED = "#00E5FF", "#FFD400"
 """Colours of a window under the cursor, and of one that was clicked; in the disk too."""
 
 _DARK = "#000000"

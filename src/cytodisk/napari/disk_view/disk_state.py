@@ -124,7 +124,8 @@ class DiskState:
         if self.numbers.is_movie:
             speed = self.numbers.speed_unit
             top = self.shown.top_speed * speed.factor
-            ring = KeyWords(f"ring: edge velocity ({speed.name}), red outward", (-top, top), DIVERGING_COLOURS)
+            name = f"ring: edge velocity ({speed.name}), red outward"
+            ring = KeyWords(name, (-top, top), DIVERGING_COLOURS)
         if self.values is None:
             return None, ring
         if self.choice.kind == "image":
