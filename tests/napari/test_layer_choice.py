@@ -25,6 +25,9 @@ def test_choices_follow_the_viewer(make_viewer: Callable[..., Any]) -> None:
     viewer.add_points(np.ones((2, 2)))
     viewer.add_labels(np.ones((8, 8), int), metadata={"cytodisk": {"study": "x"}})
     assert masks.fitting() == [labels, image]
+    assert masks.layer is labels  # what looks like a signal gives way
+    masks.choose(image)
+    viewer.add_labels(np.ones((8, 8), int), metadata={"cytodisk": {"study": "y"}})
     assert masks.layer is image  # what was chosen stays
 
     masks.choose(labels)
@@ -37,7 +40,7 @@ def test_choices_follow_the_viewer(make_viewer: Callable[..., Any]) -> None:
     assert signals.layers == ()
     viewer.layers.remove(labels)
     assert masks.layer is None
-    assert heard == [image, labels, None]
+    assert heard == [image, labels, image, labels, None]
     masks.close_down()
     viewer.add_labels(np.ones((8, 8), int))
     assert masks.layer is None

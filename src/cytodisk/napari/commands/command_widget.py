@@ -9,6 +9,7 @@ from typing import Any
 
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import (
+    QApplication,
     QCheckBox,
     QFileDialog,
     QFormLayout,
@@ -150,25 +151,32 @@ class CommandWidget(QWidget):
         """Those that start something."""
         return self.run_button, self.results.save_button, self.results.report_button
 
+    def show_results(self) -> None:
+        """Scroll to the results."""
+        QApplication.processEvents()  # so that their place is known
+        self.scroll.verticalScrollBar().setValue(self.form.geometry().bottom())
+
     def _arrange(self) -> None:
-        upper = QWidget()
-        inside = QVBoxLayout(upper)
-        inside.setContentsMargins(0, 0, 0, 0)
-        inside.setSpacing(2)
-        inside.addLayout(self.choices)
-        inside.addWidget(self.form, stretch=1)
-        scroll = QScrollArea()
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QFrame.NoFrame)
-        scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarAlwaysOff)
-        scroll.setWidget(upper)
+        inside = QWidget()
+        self.inner = QVBoxLayout(inside)
+        self.inner.setContentsMargins(0, 0, 0, 0)
+        self.inner.setSpacing(4)
+        self.inner.addLayout(self.choices)
+        self.inner.addWidget(self.form)
+        self.inner.addWidget(self.results)
+        self.inner.addStretch()
+        self.scroll = QScrollArea()
+        self.scroll.setWidgetResizable(True)
+        self.scroll.setFrameShape(QFrame.NoFrame)
+        self.scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarAlwaysOff)
+        self.scroll.setWidget(inside)
         row = QHBoxLayout()
         row.addWidget(self.run_button, stretch=1)
         row.addWidget(self.replace_box)
-        self.rows = QVBoxLayout(self)
-        self.rows.setContentsMargins(2, 2, 2, 2)
-        self.rows.setSpacing(4)
-        self.rows.addWidget(scroll, stretch=1)
-        self.rows.addLayout(row)
-        self.rows.addWidget(self.bar)
-        self.rows.addWidget(self.results, stretch=1)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(2, 2, 2, 2)
+        rows.setSpacing(4)
+        rows.addWidget(self.scroll, stretch=1)
+        rows.addLayout(row)
+        rows.addWidget(self.bar)
+        rows.addWidget(self.results.buttons)

@@ -7,11 +7,11 @@ from typing import Any
 from qtpy.QtWidgets import QComboBox, QLabel, QSizePolicy
 
 from cytodisk.errors import CytodiskError
-from cytodisk.napari.check.study_flags import ShownFlags, show_flags
 from cytodisk.napari.commands.command_widget import NOT_SAVED, SAVE_FIRST, CommandWidget
 from cytodisk.napari.commands.correlation_run import MadeCorrelation, run_correlation
 from cytodisk.napari.commands.lag_plot import LagPlot
 from cytodisk.napari.commands.made_study import MadeStudy, made_of
+from cytodisk.napari.commands.open_widgets import show_flags_of
 from cytodisk.napari.commands.peak_layers import add_peak_layers
 from cytodisk.napari.forms.command_line import command_line
 from cytodisk.napari.forms.parameter_form import ParameterForm
@@ -42,7 +42,6 @@ class Correlate(CommandWidget):
         self.made: MadeCorrelation | None = None
         self._of: ShownStudy | None = None
         self.layers: list[Any] = []
-        self.flags: ShownFlags | None = None
         self._studies: list[ShownStudy] = []
         self.study, self.signal, self.with_ = (QComboBox() for _ in range(3))
         for name, box in (("study", self.study), ("signal", self.signal), ("with", self.with_)):
@@ -55,7 +54,7 @@ class Correlate(CommandWidget):
         self.warning.hide()
         self.choices.addRow(self.warning)
         self.plot = LagPlot()
-        self.rows.insertWidget(self.rows.count() - 1, self.plot)
+        self.inner.insertWidget(self.inner.indexOf(self.results), self.plot)
         self.study.currentIndexChanged.connect(lambda _: self._list_channels())
         for box in (self.signal, self.with_):
             box.currentIndexChanged.connect(lambda _: self._warn())
@@ -99,16 +98,16 @@ class Correlate(CommandWidget):
         """Show a correlation: peaks of windows, curves of layers, what it says."""
         if self.replace_box.isChecked():
             self._remove_last()
-        self.made, self.layers, self.flags = made, [], None
+        self.made, self.layers = made, []
         if shown.viewer is not None and "windows" in shown.layers:
             self.layers = add_peak_layers(self.viewer, shown, made.found)
-            if made.flags:
-                self.flags = show_flags(self.viewer, made.study, shown, made.flags)
+            show_flags_of(self.viewer, shown, made.study, made.flags)
         self._of = shown
         if (of := made_of(shown)) is not None:
             of.saved.connect(self._follow_study)
         self.plot.show_curves(made.found, made.cells)
         self._tell()
+        self.show_results()
 
     def savable(self) -> tuple[MadeStudy, ShownStudy | None] | None:
         """The study that was correlated last, if a widget made it and it is not saved."""
@@ -146,7 +145,9 @@ class Correlate(CommandWidget):
         self.study.blockSignals(True)
         self.study.clear()
         for one in self._studies:
-            self.study.addItem(one.study.path.name)
+            made = made_of(one)
+            unsaved = "" if made is None or made.is_saved else f"{made.usual_target.name} (not saved)"
+            self.study.addItem(unsaved or one.study.path.name)
         if not self._studies:
             self.study.addItem(_NOTHING)
         if before in self._studies:
@@ -181,8 +182,6 @@ class Correlate(CommandWidget):
         self.warning.setVisible(bool(words))
 
     def _remove_last(self) -> None:
-        if self.flags is not None:
-            self.flags.remove()
         for layer in self.layers:
             if layer in self.viewer.layers:
                 self.viewer.layers.remove(layer)

@@ -83,6 +83,6 @@ def run_correlation(
     return MadeCorrelation(
         there,
         found,
-        [*finding_lines(found, there), *verdict_lines(found), *correlation_lines(found, there)],
+        [*(list(finding_lines(found, there)) or verdict_lines(found)), *correlation_lines(found, there)],
         qc_flags(with_one(there, found)),
     )

@@ -6,16 +6,14 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from cytodisk.errors import CytodiskError
-from cytodisk.napari.check.study_flags import ShownFlags, show_flags
-from cytodisk.napari.commands.binary_layers import looks_binary
 from cytodisk.napari.commands.command_widget import NOT_SAVED, SAVE_FIRST, CommandWidget
 from cytodisk.napari.commands.correlate import Correlate
 from cytodisk.napari.commands.made_study import MadeStudy, keep_with, made_of
-from cytodisk.napari.commands.open_widgets import layers_of, open_once
+from cytodisk.napari.commands.open_widgets import layers_of, open_once, remove_flags_of, show_flags_of
 from cytodisk.napari.forms.parameter_form import ParameterForm
 from cytodisk.napari.given.chosen_layers import ChosenLayers
 from cytodisk.napari.given.layer_choice import LayerChoice
-from cytodisk.napari.given.layer_kinds import MASKS, NUCLEI, SIGNALS, TRACKS, is_picture, layer_kind
+from cytodisk.napari.given.layer_kinds import MASKS, NUCLEI, SIGNALS, TRACKS, is_picture
 from cytodisk.napari.study_layers.shown_study import ShownStudy, show_study, shown_studies
 from cytodisk.napari.viewer_parts import show_error, show_warning
 from cytodisk.napari.work.background import Reporter
@@ -62,7 +60,6 @@ class LayersWidget(CommandWidget):
         self._models, self._run = models, run
         self.made: MadeStudy | None = None
         self.shown: ShownStudy | None = None
-        self.flags: ShownFlags | None = None
         self.masks = LayerChoice(self.viewer, MASKS)
         self.signal = LayerChoice(self.viewer, SIGNALS, several=True)
         self.nuclei = LayerChoice(self.viewer, NUCLEI, optional=True)
@@ -108,7 +105,7 @@ class LayersWidget(CommandWidget):
         """Show a study: its layers, what it says, what is wrong with it."""
         if self.replace_box.isChecked():
             self._remove_last()
-        self.made, self.shown, self.flags = made, None, None
+        self.made, self.shown = made, None
         made.saved.connect(self._tell)
         if made.warnings:
             show_warning("\n".join(made.warnings))
@@ -117,9 +114,9 @@ class LayersWidget(CommandWidget):
         else:
             self.shown = show_study(self.viewer, made.study)
             keep_with(self.shown, made)
-            if made.flags:
-                self.flags = show_flags(self.viewer, made.study, self.shown, made.flags)
+            show_flags_of(self.viewer, self.shown, made.study, made.flags)
         self._tell()
+        self.show_results()
 
     def savable(self) -> tuple[MadeStudy, ShownStudy | None] | None:
         """The study of the last run until it is saved."""
@@ -153,8 +150,8 @@ class LayersWidget(CommandWidget):
         self.results.next_button.setVisible(self.shown is not None and made.command == "movie")
 
     def _remove_last(self) -> None:
-        if self.flags is not None:
-            self.flags.remove()
+        if self.shown is not None:
+            remove_flags_of(self.shown)
         if self.made is not None:
             for layer in layers_of(self.viewer, self.made.study.path):
                 self.viewer.layers.remove(layer)
@@ -163,14 +160,10 @@ class LayersWidget(CommandWidget):
         self._signal_touched = True
 
     def _choose_layers(self, event: Any = None) -> None:
-        """Take what looks like masks as masks, and all other images as the signal, until the user chooses."""
+        """Take all images but the masks as the signal until the user chooses."""
         if self._signal_touched:
             return
         masks = self.masks.layer
-        if masks is not None and layer_kind(masks) == "image":
-            fitting = [one for one in self.masks.fitting() if layer_kind(one) != "image" or looks_binary(one)]
-            self.masks.choose(*(fitting[:1] or [masks]))
-            masks = self.masks.layer
         fitting = [layer for layer in self.signal.fitting() if layer is not masks and not is_picture(layer)]
         self.signal.blockSignals(True)
         self.signal.choose(*fitting)

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from qtpy.QtWidgets import QApplication
 
+from cytodisk.napari.check.study_flags import ShownFlags, show_flags
+from cytodisk.napari.study_layers.shown_study import ShownStudy
 from cytodisk.napari.study_layers.study_place import MARK
+from cytodisk.runs.qc_flags.qc_flag import QCFlag
+from cytodisk.store.study import Study
 
 
 def open_once(viewer: Any, widget: type[Any], name: str) -> Any:
@@ -46,3 +52,29 @@ def layers_of(viewer: Any, study: Path) -> list[Any]:
         Its folder.
     """
     return [layer for layer in viewer.layers if layer.metadata.get(MARK, {}).get("study") == str(study)]
+
+
+_FLAGS: WeakKeyDictionary[ShownStudy, ShownFlags] = WeakKeyDictionary()
+
+
+def show_flags_of(viewer: Any, shown: ShownStudy, study: Study, flags: Sequence[QCFlag]) -> None:
+    """Show the QC flags of a study in the place of those that were shown; nothing where there are none.
+
+    Parameters
+    ----------
+    viewer : Viewer
+    shown : ShownStudy
+    study : Study
+        As it is now.
+    flags : sequence of QCFlag
+    """
+    remove_flags_of(shown)
+    if flags:
+        _FLAGS[shown] = show_flags(viewer, study, shown, flags)
+
+
+def remove_flags_of(shown: ShownStudy) -> None:
+    """Take the flags of a study out of its viewer."""
+    there = _FLAGS.pop(shown, None)
+    if there is not None:
+        there.remove()

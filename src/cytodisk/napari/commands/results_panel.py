@@ -7,19 +7,17 @@ from collections.abc import Sequence
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtGui import QGuiApplication
 from qtpy.QtWidgets import (
-    QFrame,
-    QHBoxLayout,
+    QGridLayout,
     QLabel,
     QPlainTextEdit,
     QPushButton,
-    QScrollArea,
     QVBoxLayout,
     QWidget,
 )
 
 from cytodisk.napari.forms.section import Section
 
-_WORDS_HEIGHT, _LINE_HEIGHT = 110, 64
+_LINE_HEIGHT = 64
 
 
 class ResultsPanel(QWidget):
@@ -27,6 +25,8 @@ class ResultsPanel(QWidget):
 
     Attributes
     ----------
+    buttons : QWidget
+        They stand where the widget puts them, so that they are seen however long the words are.
     save_wanted, report_wanted, next_wanted : Signal
         Emitted when a button is clicked.
     """
@@ -42,12 +42,7 @@ class ResultsPanel(QWidget):
         self.words.setTextFormat(Qt.PlainText)
         self.words.setAlignment(Qt.AlignTop)
         self.words.setTextInteractionFlags(Qt.TextSelectableByMouse)
-        self.scroll = QScrollArea()
-        self.scroll.setWidgetResizable(True)
-        self.scroll.setFrameShape(QFrame.NoFrame)
-        self.scroll.setMinimumHeight(_WORDS_HEIGHT)
-        self.scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarAlwaysOff)
-        self.scroll.setWidget(self.words)
+        self.words.setMargin(4)
         self.save_button = QPushButton("Save as a study…")
         self.save_button.setToolTip("Keep tables, maps and the layers that they came from in a folder.")
         self.save_button.clicked.connect(self.save_wanted)
@@ -67,23 +62,26 @@ class ResultsPanel(QWidget):
         self.copy_button = QPushButton("Copy")
         self.copy_button.clicked.connect(self._copy)
         self.command = Section("The same as a command", self._command_body())
-        buttons = QHBoxLayout()
-        buttons.addWidget(self.save_button)
-        buttons.addWidget(self.report_button)
+        self.buttons = QWidget()
+        buttons = QGridLayout(self.buttons)
+        buttons.setContentsMargins(0, 0, 0, 0)
+        buttons.setSpacing(3)
+        buttons.addWidget(self.save_button, 0, 0)
+        buttons.addWidget(self.report_button, 0, 1)
+        buttons.addWidget(self.next_button, 1, 0, 1, 2)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(3)
-        layout.addWidget(self.scroll, stretch=1)
-        layout.addLayout(buttons)
-        layout.addWidget(self.next_button)
+        layout.addWidget(self.words)
         layout.addWidget(self.command)
         self.hide()
+        self.buttons.hide()
 
     def show_words(self, lines: Sequence[str]) -> None:
         """Show lines in the place of those that were shown."""
         self.words.setText("\n".join(lines))
-        self.scroll.verticalScrollBar().setValue(0)
         self.show()
+        self.buttons.show()
 
     def show_command(self, line: str, note: str = "") -> None:
         """Show what to type, with a note below it."""

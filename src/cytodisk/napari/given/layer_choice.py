@@ -7,6 +7,7 @@ from typing import Any
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import QComboBox, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
+from cytodisk.napari.given.binary_layers import looks_binary
 from cytodisk.napari.given.layer_kinds import LayerKind, is_picture, is_result, layer_kind
 
 _WORDS = {"labels": "labels", "shapes": "shapes", "image": "image", "tracks": "tracks", "points": "points"}
@@ -36,7 +37,7 @@ class LayerChoice(QWidget):
         super().__init__()
         self._viewer, self._kinds, self._optional = viewer, kinds, optional
         self._list: Any = QListWidget() if several else QComboBox()
-        self._several = several
+        self._several, self._by_hand = several, False
         self._watched: list[Any] = []
         if not several:
             self._list.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
@@ -45,6 +46,8 @@ class LayerChoice(QWidget):
         box.setContentsMargins(0, 0, 0, 0)
         box.addWidget(self._list)
         (self._list.itemChanged if several else self._list.currentIndexChanged).connect(self._chosen)
+        if not several:
+            self._list.activated.connect(self._note_hand)
         for event in (viewer.layers.events.inserted, viewer.layers.events.removed):
             event.connect(self._refresh)
         self._refresh()
@@ -69,6 +72,7 @@ class LayerChoice(QWidget):
 
     def choose(self, *layers: Any) -> None:
         """Choose layers of the list; none to choose nothing where that is possible."""
+        self._by_hand = True
         self._fill(layers)
         self.changed.emit()
 
@@ -81,13 +85,20 @@ class LayerChoice(QWidget):
         self._watched = []
 
     def fitting(self) -> list[Any]:
-        """Layers of the viewer that can be chosen: kinds in their order, the uppermost layer first."""
+        """Layers of the viewer that can be chosen: kinds in their order, the uppermost layer first.
+
+        Images that hold other values than 0 and one more come last where labels fit too.
+        """
         given = [
             one
             for one in reversed(self._viewer.layers)
             if layer_kind(one) in self._kinds and not is_result(one)
         ]
-        return sorted(given, key=lambda one: self._kinds.index(layer_kind(one)))
+        return sorted(given, key=lambda one: (self._kinds.index(layer_kind(one)), self._is_doubtful(one)))
+
+    def _is_doubtful(self, layer: Any) -> bool:
+        """Whether a layer that could hold masks looks like a signal."""
+        return len(self._kinds) > 1 and layer_kind(layer) == "image" and not looks_binary(layer)
 
     def _refresh(self, event: Any = None) -> None:
         before = self.layers
@@ -98,6 +109,8 @@ class LayerChoice(QWidget):
         for layer in fitting:
             layer.events.name.connect(self._refresh)
         kept = tuple(one for one in before if any(one is other for other in fitting))
+        if kept and not (self._by_hand or self._several or self._optional) and self._is_doubtful(kept[0]):
+            kept = ()
         self._fill(kept or (() if self._optional or self._several else tuple(fitting[:1])))
         after = self.layers
         if len(before) != len(after) or any(a is not b for a, b in zip(before, after, strict=True)):
@@ -132,6 +145,9 @@ class LayerChoice(QWidget):
     @property
     def _nothing(self) -> str:
         return f"no layer of {' or '.join(_WORDS.get(kind, kind) for kind in self._kinds)} is open"
+
+    def _note_hand(self, *_: Any) -> None:
+        self._by_hand = True
 
     def _chosen(self, *_: Any) -> None:
         self.changed.emit()

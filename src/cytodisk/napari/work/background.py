@@ -82,8 +82,8 @@ class Work(QObject):
         Whether it ended, in whatever way.
     """
 
-    _told = Signal(object, object, str, str)
-    _ended = Signal(object, object)
+    _told = Signal(int, int, str, str)
+    _ended = Signal()  # without the result: what Signal(object) carries into another thread loses a reference
 
     def __init__(self, bar: WorkBar, unit: str, finish: Callable[[Any], None], leave: Callable[[], None]):
         super().__init__()
@@ -91,6 +91,8 @@ class Work(QObject):
         self._finish, self._leave = finish, leave
         self.reporter = Reporter(self._told, unit)
         self.done = False
+        self._result: Any = None
+        self._fault: BaseException | None = None
         self._told.connect(self._show)
         self._ended.connect(self._end)
         bar.cancel_wanted.connect(self.cancel)
@@ -107,12 +109,11 @@ class Work(QObject):
         self.reporter.cancel()
 
     def _run(self, function: Callable[[Reporter], Any]) -> None:
-        result, fault = None, None
         try:
-            result = function(self.reporter)
+            self._result = function(self.reporter)
         except BaseException as error:  # noqa: BLE001  told or raised again in the thread of the viewer
-            fault = error
-        self._ended.emit(result, fault)
+            self._fault = error
+        self._ended.emit()
 
     def _show(self, done: int, total: int, unit: str, words: str) -> None:
         if self._bar is None:
@@ -126,8 +127,10 @@ class Work(QObject):
         self._bar = None
         self.cancel()
 
-    def _end(self, result: Any, fault: BaseException | None) -> None:
+    def _end(self) -> None:
         self.done = True
+        result, fault = self._result, self._fault
+        self._result = self._fault = None
         _RUNNING.discard(self)
         QCoreApplication.instance().aboutToQuit.disconnect(self.cancel)
         if self._bar is None:
