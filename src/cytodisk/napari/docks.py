@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from typing import Any
+from weakref import WeakSet
 
 from qtpy.QtCore import QTimer
 from qtpy.QtWidgets import QDockWidget, QMainWindow, QWidget
 
-_JOINED = "joined the docks of cytodisk"
+_JOINED: WeakSet[QWidget] = WeakSet()
 _OURS = __name__.rpartition(".")[0]
 
 
@@ -19,8 +20,8 @@ def join_docks(widget: QWidget) -> None:
     widget : QWidget
         Call it in its `showEvent`: it is done the first time, then the dock stays where the user puts it.
     """
-    if not widget.property(_JOINED):
-        widget.setProperty(_JOINED, True)
+    if widget not in _JOINED:
+        _JOINED.add(widget)
         QTimer.singleShot(0, lambda: _join(widget))
 
 

@@ -78,7 +78,8 @@ class FlagTable(QWidget):
             item.setToolTip(2, place.note)
         if len(flag.places) > _MOST_PLACES:
             more = counted(len(flag.places) - _MOST_PLACES, "more place")
-            QTreeWidgetItem(top, ["", "", f"… {more}: points of the layer flags"])
+            last = QTreeWidgetItem(top, ["", "", f"… {more}: points of the layer flags"])
+            last.setData(0, _PART, (flag, None))
         top.setExpanded(len(flag.places) <= _OPEN)
 
     def _select(self, item: Any, *_: Any) -> None:

@@ -24,6 +24,7 @@ from qtpy.QtWidgets import (
 from cytodisk.napari.commands.made_study import MadeStudy
 from cytodisk.napari.commands.open_widgets import layers_of
 from cytodisk.napari.commands.results_panel import ResultsPanel
+from cytodisk.napari.docks import join_docks
 from cytodisk.napari.forms.parameter_form import ParameterForm
 from cytodisk.napari.plain_viewer import plain_viewer
 from cytodisk.napari.study_layers.shown_study import ShownStudy
@@ -68,6 +69,11 @@ class CommandWidget(QWidget):
         self.results.report_wanted.connect(self.open_report)
         self.setMinimumWidth(_WIDTH)
         self._arrange()
+
+    def showEvent(self, event: Any) -> None:
+        """Lie behind the other docks of cytodisk, as a tab."""
+        super().showEvent(event)
+        join_docks(self)
 
     def run(self) -> None:
         """Start what the button says."""

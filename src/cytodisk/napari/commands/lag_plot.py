@@ -27,6 +27,7 @@ class LagPlot(QWidget):
         self.cell.setAccessibleName("Cell of the curves")
         self.cell.currentIndexChanged.connect(lambda _: self._draw())
         self._found: Correlation | None = None
+        self._cells: list[int] = []
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
@@ -39,16 +40,17 @@ class LagPlot(QWidget):
         self._found = None
         self.cell.clear()
         for cell in cells:
-            self.cell.addItem(f"cell {cell}", cell)
+            self.cell.addItem(f"cell {cell}")
+        self._cells = cells
         self.cell.setVisible(len(cells) > 1)
         self._found = found
         self._draw()
         self.show()
 
     def _draw(self) -> None:
-        if self._found is None or self.cell.currentData() is None:
+        if self._found is None or self.cell.currentIndex() < 0:
             return
-        found, cell = self._found, int(self.cell.currentData())
+        found, cell = self._found, self._cells[self.cell.currentIndex()]
         self.figure.clear()
         ax = self.figure.add_subplot()
         lines = draw_lag_curves(ax, found.layer_curves, cell=cell, signal=found.signal, with_=found.with_)

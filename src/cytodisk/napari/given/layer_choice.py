@@ -39,6 +39,7 @@ class LayerChoice(QWidget):
         self._list: Any = QListWidget() if several else QComboBox()
         self._several, self._by_hand = several, False
         self._watched: list[Any] = []
+        self._offered: list[Any] = []  # by row; as data of Qt's items None would lose a reference each time
         if not several:
             self._list.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
             self._list.setMinimumContentsLength(_LETTERS)
@@ -56,14 +57,11 @@ class LayerChoice(QWidget):
     def layers(self) -> tuple[Any, ...]:
         """The chosen layers, in the order of the list."""
         if not self._several:
-            chosen = self._list.currentData()
-            return () if chosen is None else (chosen,)
-        items = [self._list.item(row) for row in range(self._list.count())]
-        return tuple(
-            item.data(Qt.ItemDataRole.UserRole)
-            for item in items
-            if item.checkState() == Qt.CheckState.Checked and item.data(Qt.ItemDataRole.UserRole) is not None
-        )
+            row = self._list.currentIndex()
+            return () if row < 0 or self._offered[row] is None else (self._offered[row],)
+        rows = range(len(self._offered))
+        ticked = [row for row in rows if self._list.item(row).checkState() == Qt.CheckState.Checked]
+        return tuple(self._offered[row] for row in ticked)
 
     @property
     def layer(self) -> Any | None:
@@ -125,8 +123,8 @@ class LayerChoice(QWidget):
             item.setFlags(item.flags() | Qt.ItemFlag.ItemIsUserCheckable)
             on = any(layer is one for one in chosen)
             item.setCheckState(Qt.CheckState.Checked if on else Qt.CheckState.Unchecked)
-            item.setData(Qt.ItemDataRole.UserRole, layer)
         if self._several:
+            self._offered = fitting
             self._list.setFixedHeight(_ROW * min(max(1, len(fitting)), 4) + 6)
         else:
             self._fill_combo(fitting, chosen)
@@ -136,10 +134,11 @@ class LayerChoice(QWidget):
 
     def _fill_combo(self, fitting: list[Any], chosen: tuple[Any, ...]) -> None:
         if self._optional or not fitting:
-            self._list.addItem("none" if fitting else self._nothing, None)
+            self._list.addItem("none" if fitting else self._nothing)
         for layer in fitting:
-            self._list.addItem(_words(layer), layer)
-        rows = [row for row in range(self._list.count()) if chosen and self._list.itemData(row) is chosen[0]]
+            self._list.addItem(_words(layer))
+        self._offered = [None] * (self._list.count() - len(fitting)) + fitting
+        rows = [row for row, one in enumerate(self._offered) if chosen and one is chosen[0]]
         self._list.setCurrentIndex(rows[0] if rows else 0)
 
     @property
