@@ -6,7 +6,13 @@ window.cytodisk = { ready: false, shown: null, drawMilliseconds: null, byId: (id
   const page = window.cytodisk;
   const MOST_KEPT = 60; // decoded frames
 
-  const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  // Plain loops, as they run over millions of numbers.
+  const bytes = (text) => {
+    const letters = atob(text);
+    const found = new Uint8Array(letters.length);
+    for (let k = 0; k < found.length; k++) found[k] = letters.charCodeAt(k);
+    return found;
+  };
 
   const inflate = (text) => {
     const stream = new Blob([bytes(text)]).stream().pipeThrough(new DecompressionStream("deflate"));
@@ -29,7 +35,9 @@ window.cytodisk = { ready: false, shown: null, drawMilliseconds: null, byId: (id
     const context = canvas.getContext("2d", { willReadFrequently: true });
     context.drawImage(bitmap, 0, 0);
     const { data } = context.getImageData(0, 0, width, height);
-    return Uint8Array.from({ length: width * height }, (_, k) => data[4 * k]);
+    const grey = new Uint8Array(width * height);
+    for (let k = 0; k < grey.length; k++) grey[k] = data[4 * k];
+    return grey;
   };
 
   page.decode = async ({ labels, channels }, shape) => ({
