@@ -20,6 +20,7 @@ from cytodisk.napari.given.layer_axes import time_axis
 from cytodisk.napari.given.layer_choice import LayerChoice
 from cytodisk.napari.given.layer_kinds import MASKS, NUCLEI, SIGNALS
 from cytodisk.napari.plain_viewer import plain_viewer
+from cytodisk.napari.qt_fault import warn_of_qt
 from cytodisk.napari.viewer_parts import show_error
 from cytodisk.napari.work.background import Work, run_in_background
 from cytodisk.napari.work.work_bar import WorkBar
@@ -39,6 +40,7 @@ class CheckMasks(QWidget):
 
     def __init__(self, napari_viewer: Any):
         super().__init__()
+        warn_of_qt()
         self.viewer = viewer = plain_viewer(napari_viewer)
         self.work: Work | None = None
         self.found: CheckedLayers | None = None

@@ -27,6 +27,7 @@ from cytodisk.napari.commands.results_panel import ResultsPanel
 from cytodisk.napari.docks import join_docks
 from cytodisk.napari.forms.parameter_form import ParameterForm
 from cytodisk.napari.plain_viewer import plain_viewer
+from cytodisk.napari.qt_fault import warn_of_qt
 from cytodisk.napari.study_layers.shown_study import ShownStudy
 from cytodisk.napari.study_layers.study_place import MARK
 from cytodisk.napari.viewer_parts import show_info
@@ -53,6 +54,7 @@ class CommandWidget(QWidget):
 
     def __init__(self, viewer: Any, form: ParameterForm, run_words: str):
         super().__init__()
+        warn_of_qt()
         self.viewer, self.form = plain_viewer(viewer), form
         self.work: Work | None = None
         self.choices = QFormLayout()

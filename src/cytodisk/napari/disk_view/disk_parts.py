@@ -25,6 +25,7 @@ from cytodisk.napari.disk_view.disk_picture import DiskPicture
 from cytodisk.napari.disk_view.disk_state import DiskState, KeyWords
 from cytodisk.napari.disk_view.pointing import Pointed
 from cytodisk.napari.disk_view.time_trace import TimeTrace
+from cytodisk.napari.qt_fault import warn_of_qt
 from cytodisk.plot.cell.sector_marks import SECTOR_NOTE
 from cytodisk.plot.layer_looks import layer_word
 
@@ -44,6 +45,7 @@ class DiskParts:
     """
 
     def __init__(self, dock: QWidget):
+        warn_of_qt()
         self.studies, self.cells, self.choices = QComboBox(), QComboBox(), QComboBox()
         self.grid = QCheckBox("window grid")
         self.note = QLabel(SECTOR_NOTE)
