@@ -9,7 +9,7 @@ import qtpy
 
 from cytodisk.napari.viewer_parts import show_warning
 
-_FAULTY = (6, 12)  # each signal that carries True or None loses a reference to it: 6.9 to 6.11 lose none
+_FAULTY = (6, 12)  # each signal that carries True or None loses a reference to it: 6.9 to 6.11.3 lose none
 _MORTAL = (3, 12)  # until then Python counts references to True and None, and ends where none is left
 
 
