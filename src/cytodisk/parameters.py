@@ -12,6 +12,7 @@ from cytodisk.errors import CytodiskError, ParameterError
 from cytodisk.number_words import comma_advice, unit_advice
 from cytodisk.parameter_words import choices, kinds, range_words, short_words, unknown_words, value_words
 
+_IN_FULL = "in_full"
 MOST_SEED = 2**128  # as long as those that NumPy draws itself
 
 Group = TypeVar("Group", bound="Parameters")
@@ -175,6 +176,11 @@ class Parameters(BaseModel):
         return plain
 
 
+def in_full(words: str) -> PydanticCustomError:
+    """An error for the validator of a field whose words, after the name, say all: what came, too."""
+    return PydanticCustomError(_IN_FULL, "{words}", {"words": words})
+
+
 def _is_given(value: Any) -> bool:
     """Whether a value excludes another: None and a switch that is off do not."""
     return value is not None and value is not False
@@ -191,6 +197,8 @@ def _fault_words(error: ValidationError, model: type[Parameters], names: Mapping
             words.append(message)
         elif field is None:
             words.append(unknown_words(name, model.model_fields))
+        elif fault["type"] == _IN_FULL:
+            words.append(f"{names.get(name, name)} {message}")
         elif fault["type"] == "value_error":
             colon = "" if message.startswith("must") else ":"
             advice = comma_advice(fault["input"])

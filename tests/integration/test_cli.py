@@ -386,7 +386,8 @@ def test_demo_once_and_again(run: Run, tmp_path: Path, monkeypatch: pytest.Monke
     """One run of the demo, shortened, then the same again, then another seed in the same folder."""
     monkeypatch.setattr("cytodisk.runs.demo_input.FRAMES", 40)
     demo = tmp_path / "demo"
-    code, said, _ = run("demo", "-o", demo)
+    assert_refused(run("demo", "-o", demo, "--format", "jpg"), "--format must be png, pdf, svg", "got 'jpg'")
+    code, said, _ = run("demo", "-o", demo, "--format", "pdf")
     assert code == 0
     assert said.count("no QC flags") == 1
     assert "40 of 40 frames of 1 cell mapped, each one to one" in said
@@ -401,9 +402,9 @@ def test_demo_once_and_again(run: Run, tmp_path: Path, monkeypatch: pytest.Monke
     assert f"report: {demo / 'study' / 'report.html'}" in said
     study = cd.open_study(demo / "study")
     assert (study.provenance["length_unit"], study.provenance["velocity_unit"]) == ("µm", "µm/s")
-    assert any((demo / "study" / "figures").iterdir())
+    assert {path.suffix for path in (demo / "study").rglob("figures/*")} == {".pdf", ".gif"}
     before = content(demo)
-    code, again, _ = run("demo", "-o", demo, "--quiet")
+    code, again, _ = run("demo", "-o", demo, "--quiet", "--format", "pdf")
     assert (code, again) == (0, "")
     after = content(demo)
     assert after == before

@@ -39,7 +39,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_a_folder_is_mapped_and_its_totals_are_given(run: Run, folder: Path, tmp_path: Path) -> None:
-    result = run("map", folder, "--signal", "_img", "-o", tmp_path / "out", *GRID)
+    result = run("map", folder, "--signal", "_img", "-o", tmp_path / "out", *GRID, "--format", "pdf")
     assert_refused(result, "damaged files or frames of the input: 1; all others are in")
     said, error = result[1:]
     assert "masks: 6 files: 3 label images, 2 single masks, 1 unusable file" in said
@@ -47,6 +47,7 @@ def test_a_folder_is_mapped_and_its_totals_are_given(run: Run, folder: Path, tmp
     assert "6 files, 12 cells: 12 mapped, one to one\n" in said
     assert "files or images without a cell: 2 empty, 1 damaged\n" in said
     assert "figures" not in said  # none were asked for
+    assert [path.name for path in (tmp_path / "out" / "figures").iterdir()] == ["overview.pdf"]
     study = cd.open_study(tmp_path / "out")
     border = int(study.cells["touches_border"].fillna(False).sum())
     assert f"on the image border: {border} ({100 * border / 12:.0f} %) of 12 mapped cells" in said

@@ -29,7 +29,12 @@ def test_no_figures_have_no_format() -> None:
         given("pdf").formats(False)
 
 
-@pytest.mark.parametrize("wrong", [("jpg",), ("",), ("png", "eps")])
-def test_formats_are_known(wrong: tuple[str, ...]) -> None:
-    with pytest.raises(ParameterError, match="--format must be png, pdf, svg or several"):
-        given(*wrong).formats(4)
+@pytest.mark.parametrize(
+    ("wrong", "came"),
+    [(("jpg",), "'jpg'"), (("",), "''"), (("png", "eps", "gif"), "'eps', 'gif'"), ((), "none")],
+)
+def test_formats_are_known(wrong: tuple[str, ...], came: str) -> None:
+    words = f"--format must be png, pdf, svg or several with commas between, got {came}"
+    with pytest.raises(ParameterError) as refused:
+        Given({"format": wrong}, None, {"format": "--format"}).formats(4)
+    assert str(refused.value) == words

@@ -10,16 +10,19 @@ from cytodisk.cli.console import console_for, progress_bar, say_lines
 from cytodisk.cli.correlate_command import NOTHING_CHANGED, draw_correlation
 from cytodisk.cli.first_start import say_compiling
 from cytodisk.cli.movie_command import draw_movie, finish_movie, say_movie
-from cytodisk.cli.options import Quiet
+from cytodisk.cli.options import Given, Quiet, with_parameters
 from cytodisk.cli.report.report_command import write_page
 from cytodisk.errors import MissingPartError
+from cytodisk.runs.run_options import FigureOptions
 from cytodisk.runs.told.correlation_words import correlation_lines, finding_lines, verdict_lines
 from cytodisk.runs.told.flag_words import study_flag_lines
 
 _AGAIN = "run the same command again"
 
 
+@with_parameters(FigureOptions, file=False)
 def demo_command(
+    given: Given,
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FOLDER", help="Folder for the demo.")] = Path(
         "cytodisk_demo"
     ),
@@ -36,7 +39,7 @@ def demo_command(
     from cytodisk.runs.movie.movie_study import movie_study
     from cytodisk.runs.warm_up import warm_up
 
-    console = console_for(quiet)
+    console, formats = console_for(quiet), given.options(FigureOptions).format
     with Executor(1, apart=True) as beside:
         if say_compiling(quiet, "movie"):
             beside.submit(warm_up, True)
@@ -60,11 +63,11 @@ def demo_command(
                 overwrite=overwrite,
                 progress=progress,
             )
-        drawings = [beside.submit(_draw_movie, masks, signal, study.path)]
+        drawings = [beside.submit(_draw_movie, masks, signal, study.path, formats)]
         finish_movie(console, study, flags=False)  # the report's lines have them
         with progress_bar(quiet, "percent", stopped=NOTHING_CHANGED) as progress:
             found = correlate_study(study, "edge", "velocity", progress=progress)
-        drawings.append(beside.submit(_draw_correlation, study.path))
+        drawings.append(beside.submit(_draw_correlation, study.path, formats))
         say_lines(console, correlation_lines(found, study))
         try:
             write_page(console, quiet, study)
@@ -87,17 +90,18 @@ def _load_drawing() -> None:
     import_module("cytodisk.pages.movie_pages")
 
 
-def _draw_movie(masks: Path, signal: Path, study: Path) -> None:
+def _draw_movie(masks: Path, signal: Path, study: Path, formats: tuple[str, ...]) -> None:
     from cytodisk.runs.demo_input import LAYERS
     from cytodisk.runs.movie.movie_inputs import open_movie
     from cytodisk.runs.movie.movie_parameters import MovieParameters
     from cytodisk.store.study import open_study
 
-    draw_movie(True, open_study(study), open_movie(masks, signal, MovieParameters(layers=LAYERS)), 1)
+    inputs = open_movie(masks, signal, MovieParameters(layers=LAYERS))
+    draw_movie(True, open_study(study), inputs, 1, formats)
 
 
-def _draw_correlation(study: Path) -> None:
+def _draw_correlation(study: Path, formats: tuple[str, ...]) -> None:
     from cytodisk.store.study import open_study
 
     there = open_study(study)
-    draw_correlation(True, there, there.correlation("edge", "velocity"), 1, ("png",))
+    draw_correlation(True, there, there.correlation("edge", "velocity"), 1, formats)

@@ -47,6 +47,8 @@ Exit code: 0 when done (frames without a map have a row with the reason), 2 if n
 STUDY is a TOML file that names the inputs, by patterns or in a table, with their condition, experiment and
 scale. Cells of one input that differ go into a table of groups (--groups). Each input runs in a process of
 its own: a crash, a time-out or a lack of memory costs a row, not the run.
+No figures are drawn but those of report.html: cytodisk correlate and cytodisk population draw what the folder
+holds, with --format, and cytodisk map and movie the cells of one input.
 
 Examples:
 

@@ -6,7 +6,7 @@ from cytodisk.cli.console import console_for, progress_bar, say_notes
 from cytodisk.cli.first_start import compiling
 from cytodisk.cli.map_end import draw_totals, finish_map
 from cytodisk.cli.options import (
-    Figures,
+    CellFigures,
     Given,
     GroupsFile,
     MaskFiles,
@@ -35,7 +35,7 @@ def map_command(
     given: Given,
     signal: SignalFiles = None,
     nuclei: NucleiFiles = None,
-    figures: Figures = 8,
+    figures: CellFigures = 8,
     no_report: NoReport = False,
     quiet: Quiet = False,
 ) -> None:
@@ -45,7 +45,7 @@ def map_command(
     from cytodisk.runs.map.map_study import map_study
 
     console = console_for(quiet)
-    options, formats = given.options(MapOptions), given.formats(figures)
+    options, formats = given.options(MapOptions), given.options(FigureOptions).format
     inputs = open_inputs(masks, signal, given.of(MapParameters), nuclei=nuclei)
     inputs = with_groups(inputs, given.groups)
     say_inputs(console, inputs)
@@ -54,12 +54,12 @@ def map_command(
         study = map_study(
             inputs,
             out,
-            draw=CellPages(formats) if formats else None,  # workers that draw nothing stay small
+            draw=CellPages(formats) if figures else None,  # workers that draw nothing stay small
             draw_at_most=None if figures < 0 else figures,
             progress=progress,
             **dict(options),
         )
-    draw_totals(study, formats or ("png",))
+    draw_totals(study, formats)
     finish_map(
         console, study, figures, inputs.is_folder, None if no_report else page_of(study, inputs, quiet)
     )

@@ -100,6 +100,14 @@ ParametersFile = Annotated[
 Figures = Annotated[
     int, typer.Option(metavar="NUMBER", help="Number of cells to draw, from the first; -1 for all.")
 ]
+CellFigures = Annotated[
+    int,
+    typer.Option(
+        metavar="NUMBER",
+        help="Number of cells with a page of their own, from the first; -1 for all, 0 for none: the overview "
+        "of several cells, and that of their nuclei, are drawn all the same.",
+    ),
+]
 NoReport = Annotated[
     bool, typer.Option("--no-report", help="Do without the page report.html, which takes a second or two.")
 ]

@@ -21,8 +21,8 @@ Shapes: draw_shape_landscape, the plane of the complexity score; draw_shape_exam
 
 Populations: draw_atlas by condition, on the disk or on a cell; DifferenceMap for draw_difference with
 difference_key; draw_condition_profiles, draw_pooled_curves and draw_mean_curves with condition_key;
-draw_super_plot with experiment_key; draw_effect_sizes, draw_directions, draw_gallery,
-draw_window_gallery, draw_power.
+draw_super_plot with experiment_key, draw_dose_trend with dose_trend_key; draw_effect_sizes,
+draw_directions, draw_gallery, draw_window_gallery, draw_power.
 
 Looks: paper_style for the sizes of a printed page, colour_bar, scale_bar.
 """

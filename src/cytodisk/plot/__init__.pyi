@@ -60,6 +60,8 @@ from .population.population_maps import difference_key as difference_key
 from .population.condition_profiles import draw_condition_profiles as draw_condition_profiles
 from .population.condition_profiles import condition_key as condition_key
 from .population.super_plot import draw_super_plot as draw_super_plot
+from .population.dose_trends import draw_dose_trend as draw_dose_trend
+from .population.dose_trend_key import dose_trend_key as dose_trend_key
 from .population.experiment_key import experiment_key as experiment_key
 from .population.effect_sizes import draw_effect_sizes as draw_effect_sizes
 from .population.cell_gallery import draw_gallery as draw_gallery

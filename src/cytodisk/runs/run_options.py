@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Literal, Self, TypeAlias
 from pydantic import field_validator
 
 from cytodisk.parameter_words import unknown_words
-from cytodisk.parameters import Parameters, parameter
+from cytodisk.parameters import Parameters, in_full, parameter
 
 Progress: TypeAlias = Callable[[int, int], None]
 """Called with (done, in all)."""
@@ -54,8 +54,10 @@ class FigureOptions(Parameters):
         """In small letters, each once."""
         given = [value] if isinstance(value, str) else value
         names = tuple(dict.fromkeys(str(name).strip().lower() for name in given))
-        if not names or not set(names) <= {"png", "pdf", "svg"}:
-            raise ValueError("must be png, pdf, svg or several with commas between")
+        wrong = [name for name in names if name not in ("png", "pdf", "svg")]
+        if wrong or not names:
+            came = ", ".join(map(repr, wrong)) or "none"
+            raise in_full(f"must be png, pdf, svg or several with commas between, got {came}")
         return names
 
 

@@ -23,6 +23,15 @@ def test_a_control_is_known_by_its_name(name: str) -> None:
     assert f"--compare {name},a,b" in found.sentence
 
 
+def test_conditions_stand_in_the_order_of_their_dose() -> None:
+    there = _population("high", "none", "control", "low", "high", "low")
+    dosed = there.with_cells(there.cells.assign(dose=["10", "", "0", 2, 30.0, 1]))
+    assert compared_conditions(dosed, (), "dose").names == ("control", "low", "high", "none")
+    assert compared_conditions(dosed, ()).names == ("control", "high", "none", "low")
+    asked = ("control", "high", "low")
+    assert compared_conditions(dosed, asked, "dose").names == asked
+
+
 def test_a_command_that_is_told_can_be_typed() -> None:
     found = compared_conditions(_population("row B", "row D"), ())
     assert "pass --compare 'row B,row D' to name it" in found.sentence

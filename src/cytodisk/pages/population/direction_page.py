@@ -8,7 +8,7 @@ from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.population.drawn_population import DrawnPopulation, in_two_lines
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.population.condition_looks import condition_colours
-from cytodisk.plot.population.directions import MOST_DOTS, draw_directions
+from cytodisk.plot.population.directions import FEWEST_IN_ROSE, MOST_DOTS, draw_directions
 from cytodisk.plot.style import SINGLE_COLUMN_MM, WIDE_MM
 from cytodisk.runs.population.cells_of_study import BRIGHTEST_SIDE
 
@@ -27,8 +27,9 @@ def directions_page(one: DrawnPopulation) -> Sheet | None:
     abreast = max(map(len, blocks))
     width = SINGLE_COLUMN_MM if abreast <= 2 else WIDE_MM
     panel = min((width - 2 * LEFT_MM - _SIDE - (abreast - 1) * _GAP) / abreast, _WIDEST)
-    dotted = int(one.used["condition"].value_counts().min()) <= MOST_DOTS
-    notes = ["a dot: a cell"] if dotted else ["area of a wedge: share of the cells"]
+    counts = one.used["condition"].value_counts()
+    notes = ["a dot: a cell"] if int(counts.min()) <= MOST_DOTS else []
+    notes += ["area of a wedge: share of the cells"] if int(counts.max()) >= FEWEST_IN_ROSE else []
     notes += ["arrow: resultant of an experiment (thin), mean (thick)", "1 at the rim"]
     of_signal = not kinds[0].startswith(_MAPPED)
     title = (

@@ -22,6 +22,7 @@ from cytodisk.plot.population.difference_map import DifferenceMap
 from cytodisk.plot.units import with_unit
 from cytodisk.runs.channel_names import shortened, shown_name
 from cytodisk.store.populations.population_study import PopulationStudy
+from cytodisk.store.populations.window_arrays import window_arrays
 from cytodisk.windows.polar_windows import PolarGrid
 
 CHARACTER_MM = 1.3
@@ -152,6 +153,15 @@ class DrawnPopulation:
     def atlas(self, channel: str) -> xr.Dataset:
         """Means and counts of a channel by condition, layer and sector."""
         return self._on_grid(self.study.atlas_arrays.sel(channel=channel))
+
+    def trend(self, channel: str) -> DifferenceMap | None:
+        """Change of a channel by one step of the dose; None where no trend was tested."""
+        table = self.study.trends
+        own = table[table["channel"] == channel]
+        if own.empty:
+            return None
+        told = own[["channel", "layer", "sector", "p_fwer"]].assign(difference=own["slope"])
+        return DifferenceMap.of(self._on_grid(window_arrays(told).sel(channel=channel)))
 
     def _on_grid(self, windows: xr.Dataset) -> xr.Dataset:
         """All layers of the grid: what is of the edge alone has no values in the others."""

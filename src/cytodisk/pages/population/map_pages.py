@@ -28,7 +28,7 @@ from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 _MOST_ABREAST = 4  # conditions of a row
 _WIDEST = 42.0  # mm, of a disk with its numbers
 _TALLEST = 1.35  # of a cell, height over width
-_TITLE, _BELOW, _BAR, _BAR_BELOW, _LINE = 6.5, 11.5, 2.2, 8.5, 3.6  # mm
+_TITLE, _BELOW, _BAR, _BAR_BELOW, _LINE = 6.5, 11.5, 2.2, 9.5, 3.6  # mm
 _UNKNOWN = 3.2  # mm, of the third line below a condition: experiments unknown
 _GAP = 3.0
 _KEY_STYLE: Any = {"handlelength": 1.6, "labelspacing": 0.35, "columnspacing": 1.2}

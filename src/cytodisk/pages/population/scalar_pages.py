@@ -29,7 +29,7 @@ _MOST_ABREAST, _FEWEST_ROWS, _AXIS = 2, 14, 13.0  # conditions, scalars, mm belo
 _LEFT, _STEP, _LEAST, _GAP, _TALL, _ABOVE, _BELOW = 12.5, 16.0, 26.0, 3.0, 29.0, 9.5, 9.0  # mm
 _ABOVE_BARE = 4.0  # mm, where no test is written above
 _NAMES, _ROW, _P_ROOM, _LINE = 40.0, 3.7, 9.0, 3.6  # mm
-_LAYER = re.compile(r"layer_\d+_")
+LAYER = re.compile(r"layer_\d+_")
 _KEY_STYLE: Any = {"handlelength": 1.4, "labelspacing": 0.35, "columnspacing": 1.2}
 _WORDS = {
     "mean": "mean of {}",
@@ -137,7 +137,7 @@ def chosen_scalars(one: DrawnPopulation) -> list[str]:
 
     Where nothing was tested, those whose conditions are farthest apart. Layers have a page of their own.
     """
-    names = [name for name in one.study.scalar_names if name in one.used and not _LAYER.match(name)]
+    names = [name for name in one.study.scalar_names if name in one.used and not LAYER.match(name)]
     names = [name for name in names if one.used[name].notna().any()]
     found = one.study.scalars
     if not one.has_tested_scalars:
@@ -186,7 +186,7 @@ def _tests_of(one: DrawnPopulation, name: str) -> pd.DataFrame | None:
 
 def _notes(one: DrawnPopulation, names: list[str]) -> list[str]:
     notes = []
-    everyone = [name for name in one.study.scalar_names if not _LAYER.match(name)]
+    everyone = [name for name in one.study.scalar_names if not LAYER.match(name)]
     if len(names) < len(everyone):
         how = "smallest p" if one.has_tested_scalars else "conditions farthest apart"
         notes.append(f"{len(names)} of {len(everyone)} scalars: {how}")

@@ -14,6 +14,7 @@ from cytodisk.pages.population.gallery_page import gallery_page
 from cytodisk.pages.population.map_pages import atlas_page, cell_atlas_page
 from cytodisk.pages.population.profile_pages import profiles_page
 from cytodisk.pages.population.scalar_pages import effects_page, scalars_page
+from cytodisk.pages.population.trend_page import trend_maps_page, trends_page
 from cytodisk.pages.sheet import Sheet
 from cytodisk.plot.style import paper_style
 from cytodisk.runs.channel_names import file_names
@@ -46,8 +47,10 @@ def write_population_figures(
         `atlas_on_cell_<channel>` (the same on the cell with the most usual shape) and `gallery_<channel>`
         (cells nearest to the mean and farthest from it); `profiles`, the signal by depth; `scalars`, the
         most important ones as SuperPlots; `effect_sizes` of all; `directions` in which channels are
-        brightest. Where curves are compared, such as the signal around events, `curves_<channel>` stands for
-        the pictures of windows. What there are no numbers or maps for is not drawn: see `missing_figures`.
+        brightest; with a dose `dose_trends`, the scalars that follow it most closely, and
+        `dose_trend_maps`, how each window of the disk follows it. Where curves are compared, such as the
+        signal around events, `curves_<channel>` stands for the pictures of windows. What there are no numbers
+        or maps for is not drawn: see `missing_figures`.
 
     Raises
     ------
@@ -114,6 +117,9 @@ def _pages(one: DrawnPopulation) -> dict[str, Page]:
         pages["directions"] = lambda: directions_page(one)
     pages["scalars"] = lambda: scalars_page(one)
     pages["effect_sizes"] = lambda: effects_page(one)
+    if one.study.parameters.get("dose") is not None:
+        pages["dose_trends"] = lambda: trends_page(one)
+        pages["dose_trend_maps"] = lambda: trend_maps_page(one)
     return pages
 
 

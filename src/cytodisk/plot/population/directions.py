@@ -18,10 +18,12 @@ from cytodisk.plot.style import LINE_COLOUR
 DOTS_NAME, ROSE_NAME, EXPERIMENT_NAME, MEAN_NAME, WORDS_NAME = "cells", "rose", "experiment", "mean", "words"
 
 _BINS = 24
-_FEW = 12  # cells below which a rose says nothing
 _RIM, _STEP = 0.95, 0.045  # radius of the dots, and from one to the next that has the same direction
 _ALIKE = 4.0  # degrees within which dots are stacked
 _MOST_STACKED = 12
+FEWEST_IN_ROSE = 12
+"""Cells of a condition with fewer of which a rose says nothing."""
+
 MOST_DOTS = 300
 """Cells of a condition that get a dot; more are a rose alone."""
 
@@ -77,7 +79,7 @@ def draw_directions(
         )
     known = np.isfinite(given)
     angles, names = np.radians(given[known]), names[known]
-    if len(angles) >= _FEW:
+    if len(angles) >= FEWEST_IN_ROSE:
         _draw_rose(ax, angles, color)
     dotted = angles if len(angles) <= MOST_DOTS else angles[:0]
     drawn = ax.scatter(*_stacked(dotted), s=3.5, color=color, linewidths=0, zorder=3.0)
@@ -100,7 +102,7 @@ def draw_directions(
         words,
         (0.5, 0.0),
         xycoords="axes fraction",
-        xytext=(0, -2),
+        xytext=(0, -4),
         textcoords="offset points",
         ha="center",
         va="top",

@@ -117,7 +117,10 @@ def draw_atlas(
                 words,
                 (0.5, 0.0),
                 xycoords="axes fraction",
-                xytext=(0, -12 if isinstance(on, CellWindows) else -1),  # below the scale bar
+                xytext=(
+                    0,
+                    -12 if isinstance(on, CellWindows) else -4,
+                ),  # below the scale bar, or the number of a sector
                 textcoords="offset points",
                 ha="center",
                 va="top",

@@ -139,7 +139,7 @@ def _draw_cells(
     values = known[scalar].to_numpy(dtype=np.float64)
     units = zip(known["condition"], known["experiment"], strict=True)
     drawn = ax.scatter(
-        place + _beside(values),
+        place + spread_beside(values, _WIDEST),
         values,
         s=2.0 if len(values) > 200 else 4.0,
         c=[looks[unit].colour for unit in units] or None,
@@ -152,15 +152,15 @@ def _draw_cells(
     return drawn
 
 
-def _beside(values: FloatArray) -> FloatArray:
-    """How far each dot lies to the side: further where many values are alike."""
+def spread_beside(values: FloatArray, widest: float) -> FloatArray:
+    """How far each dot lies to the side, at most `widest`: further where many values are alike."""
     if not len(values):
         return values
     edges = np.linspace(values.min(), values.max() + 1e-12, _BINS + 1)
     counts = np.convolve(np.histogram(values, edges)[0], [0.25, 0.5, 0.25], mode="same")
     density = np.interp(values, 0.5 * (edges[1:] + edges[:-1]), counts / max(counts.max(), 1e-12))
     rank = np.argsort(np.argsort(values, kind="stable"), kind="stable")
-    return np.asarray((rank * _GOLDEN % 1.0 - 0.5) * 2.0 * _WIDEST * np.maximum(density, 0.15))
+    return np.asarray((rank * _GOLDEN % 1.0 - 0.5) * 2.0 * widest * np.maximum(density, 0.15))
 
 
 def _places(means: Mapping[str, pd.Series], shared: bool) -> dict[str, dict[str, float]]:

@@ -6,6 +6,7 @@ import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 import pandas as pd
 
 from cytodisk.errors import PopulationError
@@ -43,7 +44,9 @@ class ComparedConditions:
         return self.names[1:] if self.control else ()
 
 
-def compared_conditions(population: Population, compare: Sequence[str]) -> ComparedConditions:
+def compared_conditions(
+    population: Population, compare: Sequence[str], dose: str | None = None
+) -> ComparedConditions:
     """The conditions to show, and the control.
 
     Parameters
@@ -51,6 +54,8 @@ def compared_conditions(population: Population, compare: Sequence[str]) -> Compa
     population : Population
     compare : sequence of str
         As they were asked for, the control first; none for all.
+    dose : str, optional
+        Column of cells with their dose: conditions that were not asked for by name are in its order.
 
     Returns
     -------
@@ -79,9 +84,19 @@ def compared_conditions(population: Population, compare: Sequence[str]) -> Compa
         )
         return ComparedConditions(there, "", words)
     control, why = _control_among(there)
-    others = tuple(name for name in there if name != control)
+    others = _by_dose([name for name in there if name != control], population.cells, dose)
     words = f"{control!r} is taken as the control, {why}: pass {_flag((control, *others))} to name it."
     return ComparedConditions((control, *others), control, words)
+
+
+def _by_dose(names: Sequence[str], cells: pd.DataFrame, dose: str | None) -> tuple[str, ...]:
+    """Conditions from the lowest dose to the highest; those without a dose last, equal ones as they came."""
+    if dose is None or dose not in cells:
+        return tuple(names)
+    doses = (
+        pd.to_numeric(cells[dose].astype(object), errors="coerce").groupby(names_in(cells, CONDITION)).mean()
+    )
+    return tuple(sorted(names, key=lambda name: float(doses.fillna(np.inf).get(name, np.inf))))
 
 
 def _with_commas(there: Sequence[str], compare: Sequence[str]) -> tuple[str, ...]:

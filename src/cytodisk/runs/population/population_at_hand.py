@@ -91,7 +91,7 @@ def population_at_hand(
         See `run_population`.
     """
     opened = opened_population(path, groups, chosen)
-    conditions = compared_conditions(opened, chosen.compare)
+    conditions = compared_conditions(opened, chosen.compare, chosen.dose)
     whole = with_conditions(prepared(opened, chosen), conditions)
     used = (chosen_cells(whole, conditions) == "").to_numpy()
     return of_channels(whole if used.all() else whole.select(used), chosen.channel)

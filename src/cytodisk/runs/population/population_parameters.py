@@ -48,7 +48,9 @@ class PopulationParameters(ComparisonParameters):
         words="names of columns with commas between",
     )
     dose: str | None = parameter(
-        None, "Column with the dose of each cell, a number: then a trend over it is tested, too."
+        None,
+        "Column with the dose of each cell, a number: then a trend over it is tested and drawn, too, and "
+        "conditions that --compare does not name stand in its order.",
     )
 
     dose_scale: Scale = parameter("rank", str(DoseParameters.model_fields["scale"].description))

@@ -85,7 +85,7 @@ def population_result(
     PopulationError
         A condition, channel or direction is not there, or no cell is left.
     """
-    chosen = compared_conditions(opened, parameters.compare)
+    chosen = compared_conditions(opened, parameters.compare, parameters.dose)
     whole = with_conditions(prepared(opened, parameters), chosen)
     left_out = chosen_cells(whole, chosen)
     used = (left_out == "").to_numpy()
