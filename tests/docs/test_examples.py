@@ -2,6 +2,7 @@
 
 import doctest
 import inspect
+import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
@@ -52,3 +53,14 @@ def test_examples_show_what_comes(
         doctest.DocTestRunner(optionflags=FLAGS).run(test, out=said.append)
     plt.close("all")
     assert not said, "".join(said)
+
+
+def test_the_repository_holds_no_results() -> None:
+    """What examples and runs write belongs into a folder of their own."""
+    root = Path(__file__).parents[2]
+    if not (root / ".git").exists():
+        pytest.skip("not a repository of git: what it holds is not known")
+    told = subprocess.run(["git", "ls-files"], cwd=root, capture_output=True, text=True, check=True).stdout
+    names = {Path(line).name for line in told.splitlines()}
+    assert not {name for name in names if name.endswith((".parquet", ".npz", ".zarr.zip", ".cytodisk.run"))}
+    assert not names & {"provenance.json", "parameters.toml", "report.html"}
