@@ -117,3 +117,10 @@ def test_unknown_scales_keep_their_units() -> None:
     assert Scale().shown_velocity(0.01, 10).words(0.01) == "0.01 px/frame"
     assert (Scale().shown_time(9).words(1.0), Scale().shown_time(9).words(9.0)) == ("1 frame", "9 frames")
     assert suited_lag(5.0).number(-20.0, sign=True) == "−20"
+
+
+def test_no_number_and_zero() -> None:
+    unit = Scale(0.1, 60.0).shown_time(5)
+    assert (unit.words(np.nan), unit.words(np.inf), unit.words(-0.0)) == ("–", "–", "0 min")
+    assert suited_lag(59.9).words(59.9 * 3) == "2.99 min"
+    assert (suited_time(0.0).name, suited_time(3600.0, 3600.0).words(3600.0)) == ("s", "1 h")

@@ -44,14 +44,18 @@ class ShownUnit:
     factor: float = 1.0
 
     def words(self, value: float, digits: int = 3, *, sign: bool = False) -> str:
-        """A number of the table in this unit, as "2.5 min" or, with its sign, "−20 s"."""
+        """A number of the table in this unit, as "2.5 min" or, with its sign, "−20 s"; "–" for NaN."""
         shown = self.number(value, digits, sign=sign)
+        if not math.isfinite(value):
+            return shown
         plural = self.name == "frame" and shown.lstrip("+−") != "1"
         return f"{shown} {self.name}{'s' * plural}"
 
     def number(self, value: float, digits: int = 3, *, sign: bool = False) -> str:
         """The same without the unit."""
-        rounded = float(f"{value * self.factor:.{digits}g}")
+        if not math.isfinite(value):
+            return "–"
+        rounded = float(f"{value * self.factor:.{digits}g}") + 0.0  # 0 has no sign
         return f"{rounded:{'+' if sign else ''}.12g}".replace("-", "−")
 
 

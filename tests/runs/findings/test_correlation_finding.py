@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
+import cytodisk as cd
 from cytodisk.runs.findings.correlation_finding import correlation_finding
 from cytodisk.runs.findings.finding import Finding
 
@@ -18,7 +21,10 @@ STUDY: Any = SimpleNamespace(
 
 
 def correlation(*, lag: int = 3, cells: int = 1, **row: Any) -> Any:
-    """Layer 0 is significant; so is layer 1, a frame later; 12 of layer 0's 20 windows have p < 0.05."""
+    """Layer 0 is significant; so is layer 1, a frame later.
+
+    15 of layer 0's 20 windows have p < 0.05, 3 of them with the other sign and 2 at another lag.
+    """
     about = {"status": "ok", "jitter": 0.0, "stress": "", "statistic": "pearson", "restarts": 0}
     about |= {"drifting_signal": 0.0, "drifting_with": 0.0, "geometry_not_tested": ""} | row
     layers = pd.DataFrame({"layer": [0, 1, 2], "lag": [lag, lag + 1, -8], "q": [0.002, 0.01, 0.6]})
@@ -29,6 +35,7 @@ def correlation(*, lag: int = 3, cells: int = 1, **row: Any) -> Any:
     windows = pd.DataFrame({"layer": np.repeat([0, 1, 2], 20), "sector": np.tile(np.arange(20), 3)})
     windows = windows.assign(p=np.where(windows["sector"] < 15, 0.01, 0.5))
     windows["correlation"] = np.where(windows["sector"] < 3, -0.4, 0.4)
+    windows["lag"] = np.select([windows["sector"] > 12, windows["sector"] > 8], [lag - 4, lag - 1], lag)
     numbers = range(cells)
     return SimpleNamespace(
         cells=pd.DataFrame([{"cell": cell} | about for cell in numbers]),
@@ -37,6 +44,7 @@ def correlation(*, lag: int = 3, cells: int = 1, **row: Any) -> Any:
         clusters=None,
         signal="Rac1",
         with_="velocity",
+        name="",
         settings={"geometry": True, "control": []},
     )
 
@@ -53,8 +61,9 @@ def test_what_nothing_speaks_against() -> None:
     assert found.sentences == (
         "Rac1 in layer 0 (outermost) rises 15 s before the edge protrudes: correlation 0.42 (0.38 without "
         "geometry), q = 0.002.",
-        "12 of 20 sectors show it by themselves (p < 0.05); series shuffled in time would give about 1. Rac1 "
-        "comes first, as a cause would; that alone does not make it the cause. Layer 1 shows the same.",
+        "10 of 20 sectors show it by themselves (p < 0.05, lag within 1 frame); series shuffled in time "
+        "would give fewer than 1. Rac1 comes first, as a cause would; that alone does not make it the cause. "
+        "Layer 1 shows the same.",
         "This is one cell: what others do is not known.",
     )
 
@@ -132,6 +141,8 @@ def test_other_cells_are_counted() -> None:
     found = correlation(cells=3)
     found.layers.loc[found.layers["cell"] == 2, "lag"] = 9
     assert finding(found).sentences[2] == "The same (layer, sign, lag within 1 frame) in 2 of 3 cells."
+    found.cells.loc[1, "stress"] = "common pulse"  # no more than a doubt, but no cell to count on
+    assert finding(found).sentences[2].endswith("in 1 of 3 cells.")
 
 
 def test_without_surrogates_and_without_the_cell() -> None:
@@ -170,3 +181,44 @@ def test_what_else_is_in_doubt_is_told_together() -> None:
     pulse.layers.loc[2, "q"] = 0.01
     told = "Also significant, and also in doubt: layers 1 and 2 (common pulse)."
     assert finding(pulse).sentences[1] == told
+    pulse.layers["geometry"] = pulse.layers["layer"] == 2
+    assert finding(pulse).sentences[1] == (
+        "Also significant, and also in doubt: layer 1 (common pulse) and layer 2 (common pulse, not without "
+        "geometry)."
+    )
+
+
+def test_a_variant_is_named() -> None:
+    found = correlation()
+    found.name = "early frames"
+    assert "before the edge protrudes (early frames): correlation" in finding(found).words
+    found.layers["q"] = 0.5
+    assert finding(found).words.startswith("Rac1 and edge velocity (early frames) show no correlation")
+
+
+def test_one_layer_and_none() -> None:
+    found = correlation()
+    found.layers = found.layers[:1].assign(q=0.5)
+    assert "in the one layer there is: the largest is 0.42" in finding(found).words
+    found.layers["correlation"] = np.nan
+    assert "could not be correlated in any layer" in finding(found).words
+
+
+def test_numbers_as_names_of_channels() -> None:
+    found = correlation()
+    found.signal = "488"
+    assert finding(found).words.startswith("Channel 488 in layer 0 (outermost) rises")
+
+
+def test_sectors_by_chance_are_no_fewer_than_those_of_series_without_a_coupling() -> None:
+    """Of 200 sectors of noise that share nothing, as many look alike by themselves as the sentence grants."""
+    rng = np.random.default_rng(0)
+    series = [xr.DataArray(rng.normal(size=(60, 1, 200)), dims=("time", "layer", "sector")) for _ in range(2)]
+    peaks = cd.peak_correlation(cd.cross_correlate(*series, max_lag=5, surrogates=99))
+    windows = peaks.to_dataframe().reset_index().assign(cell=0, layer=0)
+    found = correlation(lag=1)
+    found.windows = windows
+    told = finding(found).sentences[1]
+    alike, granted = (int(re.findall(words, told)[0]) for words in (r"^(\d+) of 200", r"at most about (\d+)"))
+    assert granted == 5
+    assert alike <= granted < (windows["p"] < 0.05).sum()

@@ -7,9 +7,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import pytest
 
+from cytodisk.runs.findings import layer_levels
 from cytodisk.runs.findings.cells_finding import cells_finding
-from cytodisk.runs.findings.movie_finding import movie_finding, usual_cell
+from cytodisk.runs.findings.finding import Finding
+from cytodisk.runs.findings.movie_finding import movie_finding, others_words, usual_cell
 from cytodisk.runs.qc_flags.qc_flag import Place, QCFlag
 from cytodisk.store.study import Study
 
@@ -92,3 +95,34 @@ def test_a_signal_that_is_even_has_no_brightest_layer(tmp_path: Path) -> None:
     cells = pd.DataFrame({"cell": [0], "label": 1, "frame": 0, "status": "ok", "qc_flags": "", "area": 9.0})
     even = study(tmp_path, cells.assign(certificate_valid=True), table([1.02, 1.0, 1.0]), 1.0)
     assert "Rac1 is even: no layer is more than 1.01 times the cell's mean" in cells_finding(even, []).words
+    cells = pd.concat([cells] * 3).assign(cell=range(3), certificate_valid=True)
+    said = cells_finding(study(tmp_path, cells, table([1.02, 1.0, 1.0], cells=3), 1.0), []).words
+    assert "1.01 times the cell's mean (in the median of 3 cells); edge to centre" in said
+
+
+def test_cells_beyond_the_first_are_not_told_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows of windows that are read: two cells whole, the third in part."""
+    cells = pd.DataFrame({"cell": range(4), "label": 1, "frame": 0, "status": "ok", "qc_flags": ""})
+    many = study(tmp_path, cells.assign(certificate_valid=True), pd.DataFrame(), 1.0)
+    rows = table([3.0, 1.0, 2.0], cells=4)
+    blocks = [rows[start : start + 7] for start in range(0, len(rows), 7)]
+    monkeypatch.setattr(layer_levels, "MOST_ROWS", 30)
+    monkeypatch.setattr(layer_levels, "has_signal", lambda _: True)
+    monkeypatch.setattr(layer_levels, "window_blocks", lambda *_: iter(blocks))
+    assert "is the brightest in 2 of the first 2 cells)" in cells_finding(many, []).words
+
+
+def test_beside_a_nucleus_there_is_no_centre(tmp_path: Path) -> None:
+    cells = pd.DataFrame({"cell": [0], "label": 1, "frame": 0, "status": "ok", "qc_flags": ""})
+    one = study(tmp_path, cells.assign(certificate_valid=True), table([3.0, 1.0, 2.0]), 1.0)
+    one.provenance["parameters"] |= {"nucleus_layers": 1}
+    assert "edge to layer 2 (next to the nucleus) 1.50" in cells_finding(one, []).words
+
+
+def test_other_correlations_are_counted() -> None:
+    kinds = {"RhoA": "found", "Cdc42": "doubtful", "Ras": "nothing"}
+    others = [((name, "velocity"), Finding(kind, ())) for name, kind in kinds.items()]
+    assert others_words(others) == (
+        "3 other correlations: 1 found (RhoA with velocity), 1 in doubt, 1 not beyond chance."
+    )
+    assert others_words(others[2:]) == "1 other correlation: 1 not beyond chance."

@@ -8,11 +8,12 @@ from typing import Any
 
 import pandas as pd
 
+from cytodisk.number_words import counted
 from cytodisk.runs.channel_names import VELOCITIES
 from cytodisk.runs.correlate.lag_words import lag_words, time_apart
 from cytodisk.runs.correlate.verdict import JudgedPeak, judged_peaks
 from cytodisk.runs.findings.doubt_words import doubt_words, doubted_words
-from cytodisk.runs.findings.finding import Finding, listed, signed_number
+from cytodisk.runs.findings.finding import Finding, capital, listed, signed_number
 from cytodisk.runs.findings.layer_names import channel_words, layer_name, numbers_words
 from cytodisk.runs.partial_words import SIGNIFICANT, without_words
 from cytodisk.store.correlation_store import Correlation
@@ -70,7 +71,8 @@ def _found(
     alike = [peak for peak in clear if peak is not best and _alike(peak, best)]
     second = f"{_sectors(found, cell, best)}{_meaning(found, best)}{_also(alike)}"
     kind: Any = "doubtful" if flagged else "found"
-    words = tuple(filter(None, (_capital(first), second, _elsewhere(found, best, doubted))))
+    without = without_words(found, cell)
+    words = tuple(filter(None, (capital(first), second, _elsewhere(found, best, doubted, without))))
     return Finding(kind, words, size=abs(best.row["correlation"]))
 
 
@@ -81,7 +83,7 @@ def _also(alike: list[JudgedPeak]) -> str:
     return f" {words[0].upper()}{words[1:]} {'shows' if len(alike) == 1 else 'show'} the same."
 
 
-def _elsewhere(found: Correlation, best: JudgedPeak, doubted: list[JudgedPeak]) -> str:
+def _elsewhere(found: Correlation, best: JudgedPeak, doubted: list[JudgedPeak], without: str) -> str:
     """In how many other cells it is the same, and what else is significant, with what speaks against it."""
     words = []
     done = sorted(found.cells.loc[found.cells["status"] == "ok", "cell"].astype(int))
@@ -91,7 +93,7 @@ def _elsewhere(found: Correlation, best: JudgedPeak, doubted: list[JudgedPeak]) 
         same = sum(_shows(found, cell, best) for cell in done)
         words.append(f"The same (layer, sign, lag within {_ALIKE} frame) in {same} of {len(done)} cells")
     if doubted:
-        words.append(f"{'not' if words else 'Not'} yet to be believed: {doubted_words(doubted)}")
+        words.append(f"{'not' if words else 'Not'} yet to be believed: {doubted_words(doubted, without)}")
     return f"{'; '.join(words)}." if words else ""
 
 
@@ -103,9 +105,9 @@ def _doubtful(
     why = doubt_words(best.doubts) if waiting else f"{_left(best)} {without}"
     size = f"correlation {signed_number(best.row['correlation'])}, {_chance(best)}"
     close = "so it is no finding until that is settled" if waiting else "so it is no finding"
-    words = f"{_capital(_what(study, found, best))} ({size}), but {why}: {close}."
-    others = [peak for peak in (waiting or lost) if peak is not best]
-    told = f"Also significant, and also in doubt: {doubted_words(others)}." if others else ""
+    words = f"{capital(_what(study, found, best))} ({size}), but {why}: {close}."
+    others = [peak for peak in (*waiting, *lost) if peak is not best]
+    told = f"Also significant, and also in doubt: {doubted_words(others, without)}." if others else ""
     return Finding("doubtful", tuple(filter(None, (words, told))), size=abs(best.row["correlation"]))
 
 
@@ -119,15 +121,19 @@ def _left(peak: JudgedPeak) -> str:
 
 def _nothing(found: Correlation, cell: int, flagged: Sequence[str]) -> Finding:
     layers = found.layers[(found.layers["cell"] == cell) & found.layers["correlation"].notna()]
-    pair = f"{channel_words(found.signal)} and {_other(found)}"
+    pair = f"{channel_words(found.signal)} and {_other(found)}{_variant(found)}"
     if layers.empty:
         return Finding(
-            "nothing", (f"{_capital(pair)} could not be correlated in any layer: too few frames.",)
+            "nothing",
+            (
+                f"{capital(pair)} could not be correlated in any layer: too few frames, or values that never "
+                "change.",
+            ),
         )
     top = _largest(layers)
     size, at = signed_number(top["correlation"]), lag_words(top["lag"], top.get("lag_s", math.nan))
     first = (
-        f"{_capital(pair)} show no correlation beyond chance in any of {len(layers)} layers: the largest is "
+        f"{capital(pair)} show no correlation beyond chance in {_any_of(len(layers))}: the largest is "
         f"{size} in layer {top['layer']} at {at} (q = {top['q']:.2g})."
     )
     words = [first]
@@ -143,6 +149,10 @@ def _nothing(found: Correlation, cell: int, flagged: Sequence[str]) -> Finding:
     return Finding("nothing", tuple(words), size=abs(float(top["correlation"])))
 
 
+def _any_of(layers: int) -> str:
+    return f"any of {layers} layers" if layers > 1 else "the one layer there is"
+
+
 def _untested(study: Study, found: Correlation, cell: int) -> Finding | None:
     """Of a correlation without surrogates."""
     layers = found.layers[(found.layers["cell"] == cell) & found.layers["correlation"].notna()]
@@ -151,15 +161,10 @@ def _untested(study: Study, found: Correlation, cell: int) -> Finding | None:
     row = _largest(layers)
     best = JudgedPeak("layer", row, (), False)
     words = (
-        f"{_capital(_what(study, found, best))}: correlation {signed_number(row['correlation'])}, but "
+        f"{capital(_what(study, found, best))}: correlation {signed_number(row['correlation'])}, but "
         "whether that is more than chance was not tested (--surrogates 0)."
     )
     return Finding("doubtful", (words,), size=abs(row["correlation"]))
-
-
-def _capital(words: str) -> str:
-    """With a capital, but for a name of a channel."""
-    return words[0].upper() + words[1:] if words.startswith(("the ", "signal ")) else words
 
 
 def _largest(layers: pd.DataFrame) -> dict[Any, Any]:
@@ -185,9 +190,14 @@ def _what(study: Study, found: Correlation, peak: JudgedPeak) -> str:
     begun = f"{steps}{signal} in {place} {verb}"
     other = "the edge protrudes" if found.with_ in VELOCITIES else f"{channel_words(found.with_)} rises"
     if not row["lag"]:
-        return f"{begun} while {other}"
+        return f"{begun} while {other}{_variant(found)}"
     apart = time_apart(row["lag"], peak.lag_s)
-    return f"{begun} {apart} {'before' if row['lag'] > 0 else 'after'} {other}"
+    return f"{begun} {apart} {'before' if row['lag'] > 0 else 'after'} {other}{_variant(found)}"
+
+
+def _variant(found: Correlation) -> str:
+    """The name of a variant, as " (early frames)"."""
+    return f" ({found.name})" if found.name else ""
 
 
 def _numbers(found: Correlation, cell: int, peak: JudgedPeak) -> str:
@@ -208,17 +218,22 @@ def _chance(peak: JudgedPeak) -> str:
 
 
 def _sectors(found: Correlation, cell: int, peak: JudgedPeak) -> str:
-    """How many single windows of a layer show the same, and how many would by chance."""
+    """How many single windows of a layer show the same, and how many would by chance.
+
+    Of series without a coupling, one in twenty has p < 0.05; half of these have the other sign, and many
+    another lag.
+    """
     rows = found.windows[(found.windows["cell"] == cell) & (found.windows["layer"] == peak.row.get("layer"))]
     tested = rows[rows["p"].notna()] if "p" in rows else rows[:0]
     if tested.empty:
         return ""
-    same = (tested["p"] < SIGNIFICANT) & (tested["correlation"] * peak.row["correlation"] > 0)
-    chance = SIGNIFICANT * len(tested)
-    expected = f"about {chance:.0f}" if chance >= 1 else "fewer than 1"
+    near = (tested["lag"] - peak.row["lag"]).abs() <= _ALIKE
+    same = (tested["p"] < SIGNIFICANT) & near & (tested["correlation"] * peak.row["correlation"] > 0)
+    chance = SIGNIFICANT / 2 * len(tested)
+    expected = f"at most about {chance:.0f}" if chance >= 1 else "fewer than 1"
     return (
-        f"{int(same.sum())} of {len(tested)} sectors show it by themselves (p < 0.05); series shuffled in "
-        f"time would give {expected}. "
+        f"{int(same.sum())} of {counted(len(tested), 'sector')} show it by themselves (p < 0.05, lag within "
+        f"{_ALIKE} frame); series shuffled in time would give {expected}. "
     )
 
 
@@ -228,8 +243,8 @@ def _meaning(found: Correlation, peak: JudgedPeak) -> str:
     if not lag:
         return "Both change in the same frame: which comes first cannot be told at this frame interval."
     if lag > 0:
-        return f"{_capital(signal)} comes first, as a cause would; that alone does not make it the cause."
-    return f"{_capital(other)} comes first, and {signal} follows."
+        return f"{capital(signal)} comes first, as a cause would; that alone does not make it the cause."
+    return f"{capital(other)} comes first, and {signal} follows."
 
 
 def _alike(peak: JudgedPeak, best: JudgedPeak) -> bool:
@@ -240,8 +255,10 @@ def _alike(peak: JudgedPeak, best: JudgedPeak) -> bool:
 
 
 def _shows(found: Correlation, cell: int, best: JudgedPeak) -> bool:
-    """Whether a cell shows the same as the best peak of another."""
-    there = [peak for peak in judged_peaks(found, cell) if peak.kind == "layer" and not peak.lost]
+    """Whether a cell shows the same as the best peak of another, and nothing speaks against it there."""
+    there = [
+        peak for peak in judged_peaks(found, cell) if peak.kind == "layer" and not (peak.lost or peak.doubts)
+    ]
     return any(peak.row["layer"] == best.row["layer"] and _alike(peak, best) for peak in there)
 
 

@@ -76,11 +76,22 @@ def doubt_words(doubts: Sequence[str]) -> str:
     return ", and ".join(own)
 
 
-def doubted_words(peaks: Sequence[JudgedPeak]) -> str:
-    """Layers and clusters with what speaks against them, as "layers 1–3 (jitter)"."""
+def doubted_words(peaks: Sequence[JudgedPeak], without: str) -> str:
+    """Layers and clusters with what speaks against them, as "layers 1–3 (jitter)".
+
+    Parameters
+    ----------
+    peaks : sequence of JudgedPeak
+    without : str
+        Of `without_words`.
+
+    Returns
+    -------
+    str
+    """
     groups: dict[str, list[JudgedPeak]] = {}
     for peak in peaks:
-        why = ", ".join(peak.doubts) or "not without what is regressed out"
+        why = ", ".join([*peak.doubts, *[f"not {without}"] * peak.lost])
         groups.setdefault(why, []).append(peak)
     return listed([f"{_names(alike)} ({why})" for why, alike in groups.items()])
 

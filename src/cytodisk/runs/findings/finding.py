@@ -50,4 +50,9 @@ def ratio_words(value: float) -> str:
 
 def signed_number(value: float) -> str:
     """A correlation with two digits and a true minus, as "−0.42"."""
-    return f"{value:.2f}".replace("-", "−")
+    return f"{round(value, 2) + 0.0:.2f}".replace("-", "−")
+
+
+def capital(words: str) -> str:
+    """Words at the start of a sentence: with a capital, but for a name of a channel."""
+    return words[0].upper() + words[1:] if words.startswith(("the ", "signal ", "channel ")) else words

@@ -28,11 +28,19 @@ class LayerLevels:
         Mean of the whole cell, by (cell, channel).
     inner : int
         The innermost layer that is not in a nucleus.
+    cut : bool
+        Whether there are more cells than were read.
     """
 
     levels: pd.DataFrame
     whole: pd.Series[float]
     inner: int
+    cut: bool = False
+
+    @property
+    def has_nucleus(self) -> bool:
+        """Whether layers lie in a nucleus."""
+        return self.inner < self.levels.shape[1] - 1
 
     @property
     def channels(self) -> list[str]:
@@ -64,9 +72,10 @@ def layer_levels(study: Study, cell: int | None = None) -> LayerLevels | None:
     """
     if not has_signal(study):
         return None
-    totals, rows = [], 0
+    totals, rows, cut = [], 0, False
     for block in window_blocks(study, "cell", "channel", "layer", "mean", "n_pixels"):
         if rows > MOST_ROWS and cell is None:
+            cut = True
             break
         rows += len(block)
         known = block[block["mean"].notna() & block["channel"].notna()]
@@ -76,11 +85,13 @@ def layer_levels(study: Study, cell: int | None = None) -> LayerLevels | None:
     sums: Any = pd.concat(totals).groupby(level=_KEYS, sort=False).sum() if totals else pd.DataFrame()
     if sums.empty:
         return None
+    if cut:  # the last cell may be there in part
+        sums = sums.drop(index=sums.index[-1][0], level="cell")
     whole = sums.groupby(level=_KEYS[:2], sort=False).sum()
     grid = polar_grid_of(study.provenance)
     levels = _over(sums).unstack("layer").reindex(columns=range(grid.layers))
     levels = levels.reindex(whole.index)
-    return LayerLevels(levels, _over(whole), grid.layers - grid.nucleus_layers - 1)
+    return LayerLevels(levels, _over(whole), grid.layers - grid.nucleus_layers - 1, cut)
 
 
 _KEYS = ["cell", "channel", "layer"]

@@ -21,6 +21,7 @@ from cytodisk.runs.qc_flags.study_flags import run_flags
 from cytodisk.store.study import Study
 
 _ORDER = ("found", "doubtful", "nothing")
+_MOST_NAMED = 3
 
 
 def movie_finding(study: Study, cell: int, flags: Sequence[QCFlag] | None = None) -> Finding:
@@ -49,10 +50,20 @@ def movie_finding(study: Study, cell: int, flags: Sequence[QCFlag] | None = None
     (_, first), *others = ordered
     if not others:
         return first
-    alike = [correlation_name(names) for names, other in others if other.kind == "found"]
-    more = f"Of the {counted(len(others), 'other correlation')}, {len(alike)} found something"
-    more += f": {listed(alike[:3])}." if alike else "."
-    return Finding(first.kind, (*first.sentences[:2], more), first.command, first.size)
+    last = " ".join([*first.sentences[2:], others_words(others)])
+    return Finding(first.kind, (*first.sentences[:2], last), first.command, first.size)
+
+
+def others_words(others: Sequence[tuple[tuple[str, ...], Finding]]) -> str:
+    """What other correlations came to, as "2 other correlations: 1 found (A with velocity), 1 in doubt."."""
+    named = [correlation_name(names) for names, other in others if other.kind == "found"]
+    kinds: list[str] = [other.kind for _, other in others]
+    parts = [
+        f"{len(named)} found ({listed(named[:_MOST_NAMED])}{', …' * (len(named) > _MOST_NAMED)})"
+    ] * bool(named)
+    for kind, words in (("doubtful", "in doubt"), ("nothing", "not beyond chance")):
+        parts += [f"{kinds.count(kind)} {words}"] * (kind in kinds)
+    return f"{counted(len(others), 'other correlation')}: {', '.join(parts)}."
 
 
 def usual_cell(study: Study) -> int | None:

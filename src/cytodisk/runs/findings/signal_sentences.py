@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from cytodisk.runs.findings.finding import ratio_words
+from cytodisk.runs.findings.finding import capital, ratio_words
 from cytodisk.runs.findings.layer_levels import LayerLevels
 from cytodisk.runs.findings.layer_names import channel_words, layer_name
 from cytodisk.store.nuclei.summary_columns import RATIO, column_of
@@ -39,19 +39,21 @@ def signal_sentences(study: Study, levels: LayerLevels, cell: int | None = None)
 
 def _of_channel(study: Study, levels: LayerLevels, channel: str, cell: int | None) -> str:
     of_channel = levels.of(channel).dropna(how="all")
-    name = channel_words(channel)
-    name = f"{name[0].upper()}{name[1:]}" if name.startswith("signal ") else name
+    name = capital(channel_words(channel))
     if of_channel.empty:
         return f"{name} has no mean above 0 in any cell."
     middle: Any = of_channel.median()
     brightest = int(middle.idxmax())
     level, layer = ratio_words(float(middle[brightest])), layer_name(study, brightest)
-    where = f"{name} is brightest in {layer}, {level} times the cell's mean"
+    many = cell is None and len(of_channel) > 1
+    cells = f"{'the first ' * levels.cut}{len(of_channel)} cells"
     if middle[brightest] < _EVEN:
         where = f"{name} is even: no layer is more than {level} times the cell's mean"
-    if cell is None and len(of_channel) > 1:
+        where += f" (in the median of {cells})" if many else ""
+    else:
+        where = f"{name} is brightest in {layer}, {level} times the cell's mean"
         most = int((of_channel.idxmax(axis=1) == brightest).sum())
-        where += f" (in the median; this layer is the brightest in {most} of {len(of_channel)} cells)"
+        where += f" (in the median; this layer is the brightest in {most} of {cells})" if many else ""
     parts = [where, *_ratios(study, levels, channel, cell)]
     return f"{'; '.join(parts)}."
 
@@ -59,7 +61,8 @@ def _of_channel(study: Study, levels: LayerLevels, channel: str, cell: int | Non
 def _ratios(study: Study, levels: LayerLevels, channel: str, cell: int | None) -> list[str]:
     words = []
     if levels.inner > 0:
-        words.append(_told("edge to centre", levels.edge_to_centre(channel), cell))
+        inner = f"layer {levels.inner} (next to the nucleus)" if levels.has_nucleus else "centre"
+        words.append(_told(f"edge to {inner}", levels.edge_to_centre(channel), cell))
     column = column_of(RATIO, channel)
     if column in study.cells:
         rows = study.cells if cell is None else study.cells[study.cells["cell"] == cell]
