@@ -23,6 +23,7 @@ from cytodisk.store.study import Study
 
 _SMALL = MovieParameters(layers=LAYERS, sectors=SECTORS)
 _CHROMIUM, _DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
+_LONGEST = 60  # seconds that a page, or a script on it, may take before the test fails; a browser can hang
 _QUIET = (
     "--headless=new",
     "--no-sandbox",
@@ -93,6 +94,8 @@ def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chr
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(options=options, service=Service(_DRIVER))
+    driver.set_page_load_timeout(_LONGEST)
+    driver.set_script_timeout(_LONGEST)
     driver.get("about:blank")
     yield driver
     driver.quit()

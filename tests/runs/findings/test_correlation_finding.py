@@ -14,6 +14,7 @@ import xarray as xr
 import cytodisk as cd
 from cytodisk.runs.findings.correlation_finding import correlation_finding
 from cytodisk.runs.findings.finding import Finding
+from cytodisk.runs.told.correlation_words import finding_lines
 
 STUDY: Any = SimpleNamespace(
     provenance={"parameters": {"layers": 3, "sectors": 20}},
@@ -202,6 +203,13 @@ def test_one_layer_and_none() -> None:
     assert "in the one layer there is: the largest is 0.42" in finding(found).words
     found.layers["correlation"] = np.nan
     assert "could not be correlated in any layer" in finding(found).words
+
+
+def test_cells_whose_finding_is_not_told_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cytodisk.runs.qc_flags.study_flags.run_flags", lambda _: [])
+    *told, last = finding_lines(correlation(cells=5), STUDY)
+    assert [line.partition(":")[0] for line in told] == [f"Finding, cell {cell}" for cell in range(3)]
+    assert last == "… and those of 2 more cells: they stand in the report"
 
 
 def test_numbers_as_names_of_channels() -> None:

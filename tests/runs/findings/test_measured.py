@@ -125,4 +125,4 @@ def test_other_correlations_are_counted() -> None:
     assert others_words(others) == (
         "3 other correlations: 1 found (RhoA with velocity), 1 in doubt, 1 not beyond chance."
     )
-    assert others_words(others[2:]) == "1 other correlation: 1 not beyond chance."
+    assert others_words(others[2:]) == "The other correlation, Ras with velocity: not beyond chance."

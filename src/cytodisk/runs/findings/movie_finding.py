@@ -21,6 +21,7 @@ from cytodisk.runs.qc_flags.study_flags import run_flags
 from cytodisk.store.study import Study
 
 _ORDER = ("found", "doubtful", "nothing")
+_KINDS = {"found": "found", "doubtful": "in doubt", "nothing": "not beyond chance"}
 _MOST_NAMED = 3
 
 
@@ -56,13 +57,15 @@ def movie_finding(study: Study, cell: int, flags: Sequence[QCFlag] | None = None
 
 def others_words(others: Sequence[tuple[tuple[str, ...], Finding]]) -> str:
     """What other correlations came to, as "2 other correlations: 1 found (A with velocity), 1 in doubt."."""
+    if len(others) == 1:
+        ((names, other),) = others
+        return f"The other correlation, {correlation_name(names)}: {_KINDS[other.kind]}."
     named = [correlation_name(names) for names, other in others if other.kind == "found"]
     kinds: list[str] = [other.kind for _, other in others]
     parts = [
         f"{len(named)} found ({listed(named[:_MOST_NAMED])}{', …' * (len(named) > _MOST_NAMED)})"
     ] * bool(named)
-    for kind, words in (("doubtful", "in doubt"), ("nothing", "not beyond chance")):
-        parts += [f"{kinds.count(kind)} {words}"] * (kind in kinds)
+    parts += [f"{kinds.count(kind)} {_KINDS[kind]}" for kind in _ORDER[1:] if kind in kinds]
     return f"{counted(len(others), 'other correlation')}: {', '.join(parts)}."
 
 

@@ -71,6 +71,8 @@ def finding_lines(found: "Correlation", study: "Study") -> Iterator[str]:
         finding = correlation_finding(study, found, cell, bearing_flags(flags, cell))
         if finding is not None:
             yield f"Finding, cell {cell}: {finding.words}"
+    if (more := len(cells) - _MOST_FINDINGS) > 0:
+        yield f"… and those of {counted(more, 'more cell')}: they stand in the report"
 
 
 def earlier_settings(study: "Study", *names: str) -> dict[str, Any] | None:

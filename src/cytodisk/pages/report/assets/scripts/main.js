@@ -26,13 +26,16 @@
     }
   };
 
-  // Shows a cell of the study; one that is not on the page is passed over.
+  // Shows a cell of the study; one that is not on the page is passed over. Of several calls the last one counts.
+  let wanted = null;
   page.openCell = async (cell) => {
-    if (!shownCells().includes(cell) || page.data?.cell === cell) return;
+    if (!shownCells().includes(cell) || wanted === cell) return;
+    wanted = cell;
     page.play(false);
     const raw = page.read(`cell-${cell}`);
     const { pictures, ...rest } = raw;
     const data = await page.unpack(rest);
+    if (wanted !== cell) return;
     page.forgetFrames();
     const before = page.data?.channels[page.state.channel]?.name;
     Object.assign(page, { pictures, data });
@@ -45,9 +48,9 @@
 
   page.stepCell = async (by) => {
     const cells = shownCells();
-    const cell = cells[(cells.indexOf(page.data.cell) + by + cells.length) % cells.length];
+    const cell = cells[(cells.indexOf(wanted) + by + cells.length) % cells.length];
     await page.openCell(cell);
-    history.replaceState(null, "", `#cell-${cell}`);
+    history.replaceState(null, "", `#cell-${wanted}`);
   };
 
   // "#cell-3&channel=Rac1" opens a cell on a channel.
