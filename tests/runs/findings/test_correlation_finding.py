@@ -118,6 +118,19 @@ def test_geometry_takes_a_finding_away() -> None:
     assert "but no more than 0.38 (q = 0.4) is left without geometry: so it is no finding" in told.words
 
 
+def test_what_is_left_at_another_lag_is_told_with_it() -> None:
+    """A layer keeps enough at its lag while the partial correlation is larger elsewhere; or does not."""
+    found = correlation()
+    found.layers["lag_partial"] = found.layers["lag"] + 2
+    assert "correlation 0.42 (0.38 at lag +25 s without geometry), q = 0.002" in finding(found).words
+    found.layers["lag_partial"] = found.layers["lag"] + 1
+    assert "correlation 0.42 (0.38 without geometry), q = 0.002" in finding(found).words
+    found.layers["geometry"] = True
+    told = finding(found)
+    assert told.kind == "doubtful"
+    assert "but less than half of it is left at this lag without geometry: so it is no finding" in told.words
+
+
 def test_flags_of_the_run_stand_in_the_same_sentence() -> None:
     told = finding(correlation(), "area jumps", "edge mismatch")
     assert told.kind == "doubtful"

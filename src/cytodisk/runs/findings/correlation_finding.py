@@ -112,10 +112,12 @@ def _doubtful(
 
 
 def _left(peak: JudgedPeak) -> str:
-    """What is left of a peak without the controls."""
+    """What is left of a peak without the controls; the partial correlation may have a peak elsewhere."""
     if peak.kind == "cluster":
         return f"p is {peak.row['p_partial']:.2g}"
     left, q = signed_number(peak.row["correlation_partial"]), peak.row["q_partial"]
+    if q < SIGNIFICANT:
+        return "less than half of it is left at this lag"
     return f"no more than {left} (q = {q:.2g}) is left" if q == q else f"no more than {left} is left"
 
 
@@ -209,8 +211,16 @@ def _numbers(found: Correlation, cell: int, peak: JudgedPeak) -> str:
     if peak.kind == "cluster":
         of = f" in {row['windows']} neighbouring windows, {_chance(peak)}"
         return f"{size}{of} ({left:.2g} {without})" if known else f"{size}{of}"
-    partial = f" ({signed_number(left)} {without})" if known else ""
+    partial = f" ({signed_number(left)}{_at_other_lag(peak)} {without})" if known else ""
     return f"{size}{partial}, {_chance(peak)}"
+
+
+def _at_other_lag(peak: JudgedPeak) -> str:
+    """The lag of the partial correlation, as " at lag +35 s"; empty where it is that of the peak."""
+    lag, other = peak.row["lag"], peak.row.get("lag_partial", math.nan)
+    if not abs(other - lag) > _ALIKE:
+        return ""
+    return f" at {lag_words(other, other * peak.lag_s / lag if lag else math.nan)}"
 
 
 def _chance(peak: JudgedPeak) -> str:
