@@ -1,3 +1,6 @@
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -6,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
 from cytodisk.errors import ParameterError
+from cytodisk.plot import style
 from cytodisk.plot.style import colour_bar, colour_map, nice_length, paper_style, scale_bar, signal_limits
 from cytodisk.scale import Scale
 
@@ -80,3 +84,17 @@ def test_paper_style_ends_with_its_block() -> None:
     with paper_style():
         assert 7 <= mpl.rcParams["font.size"] <= 8
     assert mpl.rcParams["font.size"] == before
+
+
+def test_sizes_of_text_stand_in_the_style_alone() -> None:
+    folder = Path(style.__file__).parents[1]
+    own = re.compile(r"\b(?:font)?size=\d|\"fontsize\": *\d")
+    found = [
+        f"{path.name}: {line.strip()}"
+        for part in ("pages", "plot")
+        for path in (folder / part).rglob("*.py")
+        if path.name != "style.py"
+        for line in path.read_text(encoding="utf-8").splitlines()
+        if own.search(line) and ">>>" not in line
+    ]
+    assert found == []

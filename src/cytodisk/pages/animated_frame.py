@@ -28,7 +28,15 @@ from cytodisk.plot.cell.sector_marks import (
     sector_style,
 )
 from cytodisk.plot.field_of_view import Extent, frame_field
-from cytodisk.plot.style import SIGNAL_COLOURS, colour_bar, colour_map, paper_style, scale_bar, signal_limits
+from cytodisk.plot.style import (
+    SIGNAL_COLOURS,
+    STAMP,
+    colour_bar,
+    colour_map,
+    paper_style,
+    scale_bar,
+    signal_limits,
+)
 from cytodisk.scale import Scale
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
@@ -135,7 +143,7 @@ class _Scene:
             self.sheet = Sheet(_TOP + _PANEL + _BELOW, _WIDTH)
             self.cell = self.sheet.axes(3.0, _TOP, _PANEL, _PANEL)
             self.disk = self.sheet.axes(6.0 + _PANEL, _TOP, _PANEL, _PANEL)
-            self._stamp = self.sheet.text(3.0, 4.5, "", fontsize=9)
+            self._stamp = self.sheet.text(3.0, 4.5, "", **STAMP)
         self.sheet.figure.set_dpi(_DPI)
         self._canvas = FigureCanvasAgg(self.sheet.figure)
         frame_field(self.cell, extent_yx)

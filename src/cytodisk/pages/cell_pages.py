@@ -185,7 +185,7 @@ class _Row:
         """Axes side by side, each with its heading above."""
         places = [_LEFT + k * (self.panel + _GAP) for k in range(len(headings))]
         for place, heading in zip(places, headings, strict=True):
-            self.sheet.text(place + 0.5 * self.panel, self.top - 1.5, heading, ha="center", fontsize=7.5)
+            self.sheet.panel_title(place + 0.5 * self.panel, self.top - 1.5, heading, ha="center")
         return [self.sheet.axes(place, self.top, self.panel, self.height) for place in places]
 
     def bar(self) -> Axes:
@@ -230,7 +230,7 @@ def _draw_profile(sampled: xr.Dataset, row: _Row) -> None:
     wide = row.sheet.width_mm - _LEFT - _PROFILE_LEFT - 8.0
     ax = row.sheet.axes(_LEFT + _PROFILE_LEFT, row.top + 3.5, wide, row.panel - 12.0)
     draw_nucleus_profile(ax, sampled, relative=True)
-    row.sheet.text(_LEFT, row.top - 1.5, "mean by layer; bands: quartiles of sectors", fontsize=7.5)
+    row.sheet.panel_title(_LEFT, row.top - 1.5, "mean by layer; bands: quartiles of sectors")
     ax.legend(frameon=False, loc="best", borderpad=0.2, handlelength=1.4)
 
 
@@ -292,6 +292,6 @@ def _heading(windows: CellWindows, scale: Scale, more: str, width: float) -> lis
 
 def _write_heading(sheet: Sheet, name: str, lines: list[str]) -> None:
     longest = int((sheet.width_mm - 2 * _LEFT) / BOLD_MM)
-    sheet.text(_LEFT, 5.0, shortened(name, longest), fontsize=8, weight="bold")
+    sheet.title(_LEFT, 5.0, shortened(name, longest))
     for number, words in enumerate(lines):
         sheet.text(_LEFT, 8.8 + _LINE * number, words, color="0.3")

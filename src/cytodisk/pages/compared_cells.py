@@ -114,7 +114,7 @@ def write_compared_cells(
         for row, method in enumerate(comparison.methods):
             middle = _TOP + row * step + size / 2
             sheet.text(2.0, middle, _method_name(method, size), rotation=90, va="center", ha="left")
-        sheet.text(_LEFT, 4.0, _title(comparison, chosen, cells is None), size=7.5)
+        sheet.panel_title(_LEFT, 4.0, _title(comparison, chosen, cells is None))
         _write(sheet, _LEFT, foot + 1.5, notes, color="0.35")
         return save_in_formats(sheet, folder, "cells", kinds)[0]
 

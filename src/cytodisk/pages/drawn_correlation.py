@@ -181,7 +181,7 @@ class Heading:
         """Put the lines on the page."""
         top = 4.5
         for words in self.title:
-            sheet.text(LEFT_MM, top, words, fontsize=8, weight="bold")
+            sheet.title(LEFT_MM, top, words)
             top += _LINE_MM
         for words in self.facts:
             sheet.text(LEFT_MM, top + 0.3, words, color="0.3")

@@ -63,7 +63,7 @@ class DrawnMovie(MovieCell):
         """Name of the cell and what the page shows; below it frames, grid and scale."""
         label = self.activity.attrs.get("label")
         name = f"cell {self.cell}" + ("" if label is None else f" (label {label})")
-        sheet.text(LEFT_MM, 5.0, f"{name}: {what}", fontsize=8, weight="bold")
+        sheet.title(LEFT_MM, 5.0, f"{name}: {what}")
         for number, words in enumerate(self._lines):
             sheet.text(LEFT_MM, 8.8 + _LINE_MM * number, words, color="0.3")
 

@@ -102,7 +102,7 @@ def _draw_tracks(sheet: Sheet, top: float, movie: DrawnMovie) -> None:
 
 def _write_above(sheet: Sheet, movie: DrawnMovie, left: float, *lines: str) -> None:
     for number, words in enumerate(lines):
-        sheet.text(left, movie.heading_mm + 3.0 + 3.3 * number, words, fontsize=7.5)
+        sheet.panel_title(left, movie.heading_mm + 3.0 + 3.3 * number, words)
 
 
 def _draw_changes(

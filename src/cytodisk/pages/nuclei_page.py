@@ -63,7 +63,7 @@ def write_nuclei_figure(path: Path, cells: pd.DataFrame, profile: pd.DataFrame |
         step = _PANEL + _BELOW
         sheet = Sheet(_TOP + (rows + 1 + shares_below) * step + 2.0)
         measured = int(cells[column_of(RATIO, names[0])].notna().sum())
-        sheet.text(4.0, 5.0, f"{measured} cells with their nuclei", fontsize=8, weight="bold")
+        sheet.title(4.0, 5.0, f"{measured} cells with their nuclei")
         sheet.text(
             4.0,
             8.6,
@@ -131,7 +131,7 @@ def _draw_shares(ax: Axes, cells: pd.DataFrame, names: list[str]) -> None:
     ax.annotate("even", (1.0, 1.0 / 3.0), xycoords=ax.get_yaxis_transform(), va="center", color="0.4")
     places = [k + side for k in range(len(names)) for side in (-0.25, 0.25)]
     shown = [shown_name(name, _LONGEST_CHANNEL) for name in names]
-    ax.set_xticks(places, ["nucleus", "membrane"] * len(names), fontsize=7.0, rotation=90)
+    ax.set_xticks(places, ["nucleus", "membrane"] * len(names), rotation=90)
     for k, name in enumerate(shown):
         ax.annotate(
             name,

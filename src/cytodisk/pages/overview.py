@@ -149,9 +149,7 @@ def _draw_against_area(ax: Axes, area: FloatArray, distortion: FloatArray, unit:
 def _draw_cells(sheet: Sheet, top: float, disks: list[DiskMap], scale: Scale) -> None:
     """Thumbnails in the same colours."""
     limit = min(max(distortion_limit(disk.distortion) for disk in disks), _THUMBNAIL_LIMIT)
-    sheet.text(
-        5.0, top - 2.0, "cells from the least to the most distorted, with area distortion", fontsize=7.5
-    )
+    sheet.text(5.0, top - 2.0, "cells from the least to the most distorted, with area distortion")
     for k, disk in enumerate(disks):
         left, above = 5.0 + 32.0 * (k % _ABREAST), top + 38.0 * (k // _ABREAST)
         drawn = draw_area_distortion(sheet.axes(left, above, 29.0, 27.0), disk, scale=scale, limit=limit)

@@ -101,12 +101,12 @@ def _landscape_page(score: pd.DataFrame, masks: Mapping[int, BoolArray]) -> Shee
     tall = float(_WIDE * min(max(height / width, _FLATTEST), 1.0))
     sheet = Sheet(tall + _ABOVE + 7.0)
     title = f"{len(known)} shapes, alike ones close together; arrow: principal axis"
-    sheet.text(4.0, 5.0, title, fontsize=7.5)
+    sheet.panel_title(4.0, 5.0, title)
     ax = sheet.axes(4.0, _ABOVE, _WIDE, tall)
     dots, _ = draw_shape_landscape(ax, score, masks)
     spare = max(0.0, float(width * tall / _WIDE - height))
     ax.set_ylim(low[1] - 0.5 * spare, high[1] + 0.5 * spare)
-    sheet.text(_ALONG_LEFT, 10.0, "at even steps of rank", fontsize=7.5)
+    sheet.panel_title(_ALONG_LEFT, 10.0, "at even steps of rank")
     along = cells_along(score, _ALONG)[::-1]
     strip = sheet.axes(_ALONG_LEFT, _ABOVE, 17.0, tall)
     drawn = draw_shape_examples(strip, score, masks, [[cell] for cell in along], one_scale=False)
@@ -130,7 +130,7 @@ def _extremes_page(score: pd.DataFrame, masks: Mapping[int, BoolArray], scale: S
     right, bottom = trial.get_xlim()[1], trial.get_ylim()[0]
     tall = min(_EXTREMES_WIDE * bottom / right, _EXTREMES_TALL)
     sheet = Sheet(tall + 18.0)
-    sheet.text(4.0, 5.0, "Least, median and most complex cells, at one scale", fontsize=7.5)
+    sheet.panel_title(4.0, 5.0, "Least, median and most complex cells, at one scale")
     ax = sheet.axes(14.0, 9.0, tall * right / bottom, tall)
     drawn = draw_shape_examples(ax, score, masks, rows, scale=scale)
     for name, path in zip(_ROWS, drawn.get_paths()[:: len(rows[0])], strict=True):

@@ -13,7 +13,7 @@ from matplotlib.legend import Legend
 from matplotlib.text import Annotation, Text
 
 from cytodisk.files import replacing
-from cytodisk.plot.style import DPI, MM_PER_INCH, WIDE_MM
+from cytodisk.plot.style import DPI, HEADING, MM_PER_INCH, TITLE_SIZE, WIDE_MM
 
 CHARACTER_MM, BOLD_MM = 1.28, 1.9
 """Mean width of a character at 7 points, and bold at 8."""
@@ -47,6 +47,14 @@ class Sheet:
         """Text at a place counted from the page's upper left corner, in millimetres; a dollar sign is one."""
         options: dict[str, Any] = {"va": "baseline", "parse_math": False} | style
         return self.figure.text(left / self.width_mm, 1.0 - top / self.height_mm, words, **options)
+
+    def title(self, left: float, top: float, words: str) -> Text:
+        """What a page is of, bold."""
+        return self.text(left, top, words, **HEADING)
+
+    def panel_title(self, left: float, top: float, words: str, **style: Any) -> Text:
+        """What stands above panels, as titles of axes do."""
+        return self.text(left, top, words, fontsize=TITLE_SIZE, **style)
 
     def key(self, left: float, top: float, handles: list[Any], columns: int, **style: Any) -> Legend:
         """A legend at a place counted from the page's upper left corner, in millimetres."""

@@ -35,14 +35,18 @@ LINE_COLOUR = "0.15"
 OUTWARD_COLOUR, INWARD_COLOUR = "#B2182B", "#2166AC"  # near the ends of the diverging colours
 STATUS_COLOURS = {"ok": "#0072B2", "refused": "#E69F00", "unreadable": "#999999"}
 
+TEXT_SIZE, TITLE_SIZE, NUMBER_SIZE = 7.0, 7.5, 6.0  # points: of text, above a panel, of sectors on a column
+HEADING: Any = {"fontsize": 8.0, "weight": "bold"}  # of a page
+STAMP: Any = {"fontsize": 9.0}  # of a frame of an animation
+
 PAPER: Any = {
     "font.family": "sans-serif",
-    "font.size": 7.0,
-    "axes.titlesize": 7.5,
-    "axes.labelsize": 7.0,
-    "xtick.labelsize": 7.0,
-    "ytick.labelsize": 7.0,
-    "legend.fontsize": 7.0,
+    "font.size": TEXT_SIZE,
+    "axes.titlesize": TITLE_SIZE,
+    "axes.labelsize": TEXT_SIZE,
+    "xtick.labelsize": TEXT_SIZE,
+    "ytick.labelsize": TEXT_SIZE,
+    "legend.fontsize": TEXT_SIZE,
     "axes.linewidth": 0.5,
     "xtick.major.width": 0.5,
     "ytick.major.width": 0.5,

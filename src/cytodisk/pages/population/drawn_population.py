@@ -17,7 +17,7 @@ from cytodisk.pages.drawn_correlation import Heading
 from cytodisk.pages.drawn_movie import LEFT_MM
 from cytodisk.pages.grid_words import grid_words
 from cytodisk.pages.population.cell_sources import CellSources
-from cytodisk.pages.sheet import broken_lines
+from cytodisk.pages.sheet import BOLD_MM, broken_lines
 from cytodisk.plot.population.difference_map import DifferenceMap
 from cytodisk.plot.units import with_unit
 from cytodisk.runs.channel_names import shortened, shown_name
@@ -31,7 +31,6 @@ CHARACTER_MM = 1.3
 MOST_CHANNELS = 4
 """Channels that have figures: the page and the tables have all."""
 
-_BOLD_MM = 1.9  # mean width of a character, bold at 8 points
 _LONGEST_CHANNEL = 24
 _SUMMARIES = {
     "sd": "sd over frames of {}",
@@ -259,7 +258,7 @@ class DrawnPopulation:
             More to say below it.
         """
         room = width_mm - 2 * LEFT_MM
-        title = broken_lines(what.split(" "), " ", room, _BOLD_MM)
+        title = broken_lines(what.split(" "), " ", room, BOLD_MM)
         lines: list[str] = []
         for part in (*self.facts(), *notes):
             pieces = broken_lines(part.split(" "), " ", room)

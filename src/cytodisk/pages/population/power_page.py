@@ -76,7 +76,7 @@ def _page(power: pd.DataFrame, shares: Sequence[str], notes: Sequence[str]) -> S
     lines = broken_lines(list(notes), " · ", SINGLE_COLUMN_MM - 2 * LEFT_MM) if notes else []
     top, step = 6.0 + _LINE * len(lines) + 1.0, _TITLE + _TALL + _BELOW
     sheet = Sheet(top + len(shares) * step, SINGLE_COLUMN_MM)
-    sheet.text(LEFT_MM, 4.5, "How many experiments does it take?", fontsize=8, weight="bold")
+    sheet.title(LEFT_MM, 4.5, "How many experiments does it take?")
     for number, words in enumerate(lines):
         sheet.text(LEFT_MM, 8.3 + _LINE * number, words, color="0.3")
     wide = (SINGLE_COLUMN_MM - _LEFT - _RIGHT - (len(designs) - 1) * _GAP) / len(designs)

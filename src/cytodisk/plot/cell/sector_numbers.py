@@ -8,12 +8,11 @@ from matplotlib.axes import Axes
 from cytodisk.arrays import FloatArray
 from cytodisk.plot.cell.sector_marks import sector_arcs
 from cytodisk.plot.field_of_view import frame_field
-from cytodisk.plot.style import scale_bar
+from cytodisk.plot.style import NUMBER_SIZE, scale_bar
 from cytodisk.plot.units import scale_for
 from cytodisk.scale import Scale
 from cytodisk.windows.polar_windows import CellWindows
 
-NUMBER_SIZE = 6.0
 """Height in points."""
 
 _AWAY = 7.0  # points from the edge

@@ -19,7 +19,7 @@ from cytodisk.plot.correlation.curve_key import ALPHA, BAND_OPACITY, JITTER_LOOK
 from cytodisk.plot.correlation.lag_axis import LagUnit, rows_of_cell, sides, signed
 from cytodisk.plot.layer_looks import cytoplasm_layers_of, layer_colours, layer_names, shown_layers
 from cytodisk.plot.movie.activity_maps import draw_activity_map, draw_velocity_map
-from cytodisk.plot.style import CHANCE_COLOUR, CHANCE_LINE, LINE_COLOUR
+from cytodisk.plot.style import CHANCE_COLOUR, CHANCE_LINE, LINE_COLOUR, TEXT_SIZE
 from cytodisk.plot.time_axis import TICK_STEPS, stands_alone
 from cytodisk.scale import Scale
 
@@ -224,7 +224,9 @@ def _mark_peak(ax: Axes, peak: pd.DataFrame, unit: LagUnit, colour: FloatArray) 
     name = LOST_NAME if lost else JITTER_NAME if jittered else PEAK_NAME
     dot.set(markerfacecolor="white" if faint or jittered else colour, gid=name, zorder=4)
     words = f"{signed(height, '.2f')} at {unit.write(lag)}"
-    ax.set_title(words, loc="right", y=1.0, pad=2.0, fontsize=7.0, color="0.3" if faint else LINE_COLOUR)
+    ax.set_title(
+        words, loc="right", y=1.0, pad=2.0, fontsize=TEXT_SIZE, color="0.3" if faint else LINE_COLOUR
+    )
 
 
 def _share_axes(axes: Sequence[Axes], curves: pd.DataFrame, unit: LagUnit) -> None:

@@ -16,7 +16,7 @@ from cytodisk.errors import ParameterError
 from cytodisk.plot.layer_looks import cytoplasm_layers_of, layer_colours, layer_word, shown_layers
 from cytodisk.plot.movie.activity_maps import draw_velocity_map
 from cytodisk.plot.number_tables import named_table
-from cytodisk.plot.style import LINE_COLOUR
+from cytodisk.plot.style import LINE_COLOUR, TEXT_SIZE
 from cytodisk.plot.time_axis import TICK_STEPS, FrameTimes
 from cytodisk.plot.units import unit_of, with_unit
 from cytodisk.scale import suited_lag
@@ -273,4 +273,4 @@ def _write_number(ax: Axes, table: xr.Dataset) -> None:
     here = table.sel(delay=0).isel(layer=0)
     count, patches = int(here["n"]), int(here["n_patches"])
     words = f"{count} event{'' if count == 1 else 's'} in {patches} patch{'' if patches == 1 else 'es'}"
-    ax.set_title(words, loc="right", fontsize=7.0, color="0.3")
+    ax.set_title(words, loc="right", fontsize=TEXT_SIZE, color="0.3")

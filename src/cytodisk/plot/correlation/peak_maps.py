@@ -17,11 +17,11 @@ from matplotlib.patheffects import withStroke
 
 from cytodisk.arrays import FloatArray
 from cytodisk.plot.cell.disk_axes import disk_polygons, draw_disk_means
-from cytodisk.plot.cell.sector_numbers import NUMBER_SIZE, number_sectors
+from cytodisk.plot.cell.sector_numbers import number_sectors
 from cytodisk.plot.cell.window_polygons import draw_window_means, window_polygons
 from cytodisk.plot.cell.window_regions import pieces_of, region
 from cytodisk.plot.correlation.correlation_peaks import PeakMap, Shown
-from cytodisk.plot.style import LINE_COLOUR, MISSING_COLOUR
+from cytodisk.plot.style import LINE_COLOUR, MISSING_COLOUR, TEXT_SIZE
 from cytodisk.scale import Scale
 from cytodisk.windows.polar_windows import CellWindows, PolarGrid
 
@@ -233,7 +233,7 @@ def _outline_clusters(ax: Axes, polygons_xy: Sequence[FloatArray], peaks: PeakMa
         largest = max(pieces_of(covered), key=lambda piece: piece.area)
         place = largest.representative_point()
         weight = "normal" if number in peaks.lost else "bold"
-        words: Any = {"fontsize": NUMBER_SIZE + 1.0, "fontweight": weight, "ha": "center", "va": "center"}
+        words: Any = {"fontsize": TEXT_SIZE, "fontweight": weight, "ha": "center", "va": "center"}
         ax.text(place.x, place.y, str(number), zorder=2.8, gid=CLUSTER_NAME, path_effects=[rim], **words)
 
 
