@@ -10,7 +10,7 @@ import pytest
 import tifffile
 
 import cytodisk as cd
-from cytodisk.napari.camera import camera_of
+from cytodisk.napari.napari_versions import camera_of
 
 pytestmark = pytest.mark.slow
 

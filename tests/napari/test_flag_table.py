@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cytodisk.napari.camera import camera_of
 from cytodisk.napari.check.flag_points import FlagGround
 from cytodisk.napari.check.found_flags import FlagPlace, FoundFlag
+from cytodisk.napari.napari_versions import camera_of
 
 pytestmark = pytest.mark.slow
 

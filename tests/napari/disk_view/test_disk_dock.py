@@ -15,8 +15,8 @@ from cytodisk.store.study import Study
 pytestmark = pytest.mark.slow
 pytest.importorskip("cytodisk.napari.viewer_parts")
 
-from cytodisk.napari.camera import camera_of  # noqa: E402
 from cytodisk.napari.disk_view.disk_dock import NO_STUDY, DiskDock  # noqa: E402
+from cytodisk.napari.napari_versions import camera_of  # noqa: E402
 from cytodisk.napari.study_layers.shown_study import show_study  # noqa: E402
 
 LAYERS, SECTORS, PIXEL, INTERVAL = 3, 12, 0.2, 5.0

@@ -19,7 +19,7 @@ from cytodisk.napari.given.chosen_layers import ChosenLayers
 from cytodisk.napari.given.layer_axes import time_axis
 from cytodisk.napari.given.layer_choice import LayerChoice
 from cytodisk.napari.given.layer_kinds import MASKS, NUCLEI, SIGNALS
-from cytodisk.napari.plain_viewer import plain_viewer
+from cytodisk.napari.napari_versions import plain_viewer
 from cytodisk.napari.qt_fault import warn_of_qt
 from cytodisk.napari.viewer_parts import show_error
 from cytodisk.napari.work.background import Work, run_in_background

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from cytodisk.napari.camera import camera_of
 from cytodisk.napari.check.found_flags import FlagPlace, FoundFlag
+from cytodisk.napari.napari_versions import camera_of
 
 ROLE = "flags"
 _COLOUR = "#ffb000"  # told from cells and backgrounds by all, also the colour blind

@@ -26,7 +26,7 @@ from cytodisk.napari.commands.open_widgets import layers_of
 from cytodisk.napari.commands.results_panel import ResultsPanel
 from cytodisk.napari.docks import join_docks
 from cytodisk.napari.forms.parameter_form import ParameterForm
-from cytodisk.napari.plain_viewer import plain_viewer
+from cytodisk.napari.napari_versions import plain_viewer
 from cytodisk.napari.qt_fault import warn_of_qt
 from cytodisk.napari.study_layers.shown_study import ShownStudy
 from cytodisk.napari.study_layers.study_place import MARK

@@ -9,7 +9,6 @@ from qtpy.QtCore import QTimer
 from qtpy.QtGui import QColor
 from qtpy.QtWidgets import QWidget
 
-from cytodisk.napari.camera import camera_of
 from cytodisk.napari.disk_view.cell_numbers import CellNumbers
 from cytodisk.napari.disk_view.disk_choices import DiskChoice, disk_choices
 from cytodisk.napari.disk_view.disk_parts import DiskParts
@@ -17,10 +16,9 @@ from cytodisk.napari.disk_view.disk_pixels import DiskColours
 from cytodisk.napari.disk_view.disk_state import DiskState
 from cytodisk.napari.disk_view.drawn_marks import draw_marks
 from cytodisk.napari.disk_view.pointing import Pointed, ViewerPlaces, pointed_in_cell, pointed_in_disk
-from cytodisk.napari.disk_view.viewer_canvas import text_colour_of
 from cytodisk.napari.disk_view.viewer_link import ViewerLink
 from cytodisk.napari.docks import join_docks
-from cytodisk.napari.plain_viewer import plain_viewer
+from cytodisk.napari.napari_versions import camera_of, plain_viewer, text_colour_of
 from cytodisk.napari.study_layers.shown_study import shown_studies
 
 NO_STUDY = (
@@ -105,7 +103,7 @@ class DiskDock(QWidget):
         self._unlink()
 
     def _take_look(self, event: Any = None) -> None:
-        self.parts.set_text_colour(QColor(text_colour_of(self.viewer)))
+        self.parts.set_text_colour(QColor(*text_colour_of(self.viewer)))
         self._draw_marks()
 
     # Studies

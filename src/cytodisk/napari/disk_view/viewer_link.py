@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from cytodisk.napari.disk_view.cell_marks import CellMarks
-from cytodisk.napari.disk_view.viewer_canvas import scene_of
+from cytodisk.napari.napari_versions import scene_of
 
 _STILL = 3.0  # pixels of the canvas that a click may move
 

@@ -11,6 +11,7 @@ from psygnal import Signal
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError
+from cytodisk.napari.napari_versions import without_thumbnail
 from cytodisk.napari.study_layers.cell_windows_cache import CellWindowsCache
 from cytodisk.napari.study_layers.frame_lines import FrameLines
 from cytodisk.napari.study_layers.frame_updates import FrameUpdates
@@ -21,12 +22,6 @@ from cytodisk.napari.study_layers.study_place import MARK
 from cytodisk.napari.study_layers.window_values import WindowValues
 from cytodisk.store.study import Study
 from cytodisk.windows.polar_windows import CellWindows
-
-
-def without_thumbnail(layer: Any) -> None:
-    """Draw no small picture of lines: napari makes it of each line by itself, at every change of frame."""
-    if hasattr(layer, "_max_vectors_thumbnail"):
-        layer._max_vectors_thumbnail = 0
 
 
 class ShownStudy:
