@@ -44,3 +44,26 @@ def test_choices_follow_the_viewer(make_viewer: Callable[..., Any]) -> None:
     masks.close_down()
     viewer.add_labels(np.ones((8, 8), int))
     assert masks.layer is None
+
+
+def test_an_array_is_looked_at_once(make_viewer: Callable[..., Any]) -> None:
+    import dask.array as da
+
+    from cytodisk.napari.given.layer_choice import LayerChoice
+    from cytodisk.napari.given.layer_kinds import MASKS
+
+    reads: list[int] = []
+
+    def plane(block_info: Any = None) -> Any:
+        reads.append(1)
+        return np.eye(8)
+
+    viewer = make_viewer()
+    viewer.add_image(da.map_blocks(plane, chunks=((8,), (8,)), dtype=float), contrast_limits=(0, 1))
+    choice = LayerChoice(viewer, MASKS)
+    looked = len(reads)
+    for layer in (viewer.add_labels(np.ones((8, 8), int)), viewer.layers[0]):
+        layer.name = "other"
+
+    assert len(choice.fitting()) == 2
+    assert looked - len(reads) == 0

@@ -16,8 +16,9 @@ PEAK = DiskChoice("correlation", ("Rac1", "velocity"))
 
 def shown_study() -> Any:
     """A study of two cells with two layers of three sectors, and one correlation."""
+    lag = {"lag": -2, "lag_s": -10.0}
     rows = [
-        {"cell": cell, "layer": layer, "sector": sector, "correlation": 0.1 * (sector - 1), "lag": -2, "q": q}
+        {"cell": cell, "layer": layer, "sector": sector, "correlation": 0.1 * (sector - 1), "q": q} | lag
         for cell in (0, 1)
         for layer in (0, 1)
         for sector, q in ((0, 0.2), (2, 0.01))
@@ -27,7 +28,7 @@ def shown_study() -> Any:
         scale=Scale(0.1, 5.0),
         provenance={"parameters": {"layers": 2, "sectors": 3}},
         correlations=[PEAK.names],
-        correlation=lambda signal, with_: SimpleNamespace(windows=pd.DataFrame(rows)),
+        correlation=lambda signal, with_: SimpleNamespace(windows=pd.DataFrame(rows), settings={}),
     )
     cells = SimpleNamespace(
         mapped={0: [0, 1], 1: [1]},
@@ -51,6 +52,19 @@ def test_peaks_of_a_cell_by_window_with_chance_and_lag() -> None:
     ]
     assert numbers.value_words(found, PEAK, 0, (1, 2)) == ["peak correlation 0.1 at lag −10 s"]
     assert numbers.value_words(found, PEAK, 0, (1, 1)) == ["not correlated"]
+
+
+def test_a_correlation_that_was_made_anew_is_read_again() -> None:
+    shown = shown_study()
+    numbers, first = CellNumbers(shown, 1), shown.study.correlation(*PEAK.names)
+    before = numbers.of_windows(PEAK, 0).values
+    changed = first.windows.assign(correlation=0.5)
+    shown.study.correlation = lambda *names: SimpleNamespace(windows=changed, settings={"max_lag": 9})
+
+    after = numbers.of_windows(PEAK, 0).values
+
+    assert np.nanmax(before) == 0.1
+    assert np.nanmin(after) == np.nanmax(after) == 0.5
 
 
 def test_lags_of_peaks_are_in_seconds() -> None:
@@ -78,7 +92,7 @@ def test_images_that_fit_the_masks_can_be_shown() -> None:
         mark = {"cytodisk": {"role": role}} if role else {}
         return Image(name=name, data=np.zeros(shape), rgb=False, metadata=mark)
 
-    fitting = layer("movie", 2, 20, 30), layer("picture", 20, 30), layer("raw", 2, 20, 30, role="signal")
+    fitting = layer("movie", 2, 20, 30), layer("picture", 20, 30)
     others = layer("short", 1, 20, 30), layer("small", 2, 10, 30), layer("means", 2, 20, 30, role="values")
     shown.viewer = SimpleNamespace(layers=[*fitting, *others])
     labels = [choice.label for choice in disk_choices(shown)]
@@ -89,5 +103,4 @@ def test_images_that_fit_the_masks_can_be_shown() -> None:
         "lag of the peak, Rac1 with velocity",
         "pixels of movie",
         "pixels of picture",
-        "pixels of raw",
     ]

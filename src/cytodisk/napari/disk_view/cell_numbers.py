@@ -7,21 +7,19 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 
 from cytodisk.arrays import BoolArray, FloatArray
 from cytodisk.napari.disk_view.disk_choices import DiskChoice
 from cytodisk.napari.disk_view.window_words import number_with_unit
+from cytodisk.napari.study_layers.window_peaks import window_peaks
 from cytodisk.number_words import rounded
-from cytodisk.plot.correlation.correlation_peaks import LAG_COLOURS
+from cytodisk.plot.correlation.correlation_peaks import LAG_COLOURS, PeakMap
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS, signal_limits
 from cytodisk.plot.time_axis import FrameTimes
-from cytodisk.scale import ShownUnit, suited_lag
+from cytodisk.scale import ShownUnit
 from cytodisk.windows.polar_windows import PolarGrid
 from cytodisk.windows.study_grid import polar_grid_of
-
-SIGNIFICANT = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +36,8 @@ class WindowNumbers:
     unit : str
     hatched : ndarray of shape (layers, sectors) and dtype bool, or None
         Windows whose number is not significant.
-    peaks : (ndarray, ndarray) or None
-        Correlation at the peak and its lag in the unit that suits lags, both of shape (layers, sectors).
+    peaks : PeakMap or None
+        What the number is of, where it is of the peak of a correlation.
     """
 
     values: FloatArray
@@ -47,7 +45,7 @@ class WindowNumbers:
     colours: str
     unit: str
     hatched: BoolArray | None = None
-    peaks: tuple[FloatArray, FloatArray] | None = None
+    peaks: PeakMap | None = None
 
 
 class CellNumbers:
@@ -62,7 +60,7 @@ class CellNumbers:
     def __init__(self, shown: Any, cell: int):
         self.shown, self.cell = shown, cell
         self._means: dict[str, FloatArray] = {}
-        self._peaks: dict[tuple[str, ...], pd.DataFrame] = {}
+        self._peaks: dict[tuple[str, ...], tuple[dict[str, Any], PeakMap | None]] = {}
 
     @property
     def is_movie(self) -> bool:
@@ -107,25 +105,24 @@ class CellNumbers:
         return WindowNumbers(values, signal_limits(values), SIGNAL_COLOURS, self.shown.unit("area"))
 
     def _peak(self, choice: DiskChoice) -> WindowNumbers:
-        found = self.shown.study.correlation(*choice.names)
-        if choice.names not in self._peaks:
-            self._peaks[choice.names] = found.windows[found.windows["cell"] == self.cell]
-        table, scale = self._peaks[choice.names], self.shown.study.scale
-        values, lags = self._by_window(table, "correlation"), self._by_window(table, "lag")
-        lags = scale.time(lags) * self._lag_unit.factor
-        chance = self._by_window(table, "q") >= SIGNIFICANT
-        if choice.kind == "lag":
-            top = _largest(lags) or 1.0
-            return WindowNumbers(lags, (-top, top), LAG_COLOURS, self._lag_unit.name, chance, (values, lags))
-        top = max(0.1, np.ceil(10.0 * _largest(values)) / 10.0)
-        return WindowNumbers(values, (-top, top), DIVERGING_COLOURS, "", chance, (values, lags))
+        peaks, is_lag = self._peaks_of(choice), choice.kind == "lag"
+        colours = LAG_COLOURS if is_lag else DIVERGING_COLOURS
+        if peaks is None:
+            nothing = np.full((self.grid.layers, self.grid.sectors), np.nan)
+            return WindowNumbers(nothing, (-1.0, 1.0), colours, "")
+        top = peaks.limit("lag" if is_lag else "correlation")
+        pale = None if peaks.significant is None else peaks.pale
+        values, unit = (peaks.lag, peaks.lag_unit.unit) if is_lag else (peaks.correlation, "")
+        return WindowNumbers(values, (-top, top), colours, unit, pale, peaks)
 
-    def _by_window(self, table: pd.DataFrame, name: str) -> FloatArray:
-        grid = self.grid
-        values = np.full((grid.layers, grid.sectors), np.nan)
-        if name in table:
-            values[table["layer"].to_numpy(), table["sector"].to_numpy()] = table[name].to_numpy(np.float64)
-        return values
+    def _peaks_of(self, choice: DiskChoice) -> PeakMap | None:
+        """Peaks of a correlation, read again when it was made anew."""
+        found = self.shown.study.correlation(*choice.names)
+        known = self._peaks.get(choice.names)
+        if known is None or known[0] != found.settings:
+            known = found.settings, window_peaks(found, self.cell, self.grid)
+            self._peaks[choice.names] = known
+        return known[1]
 
     def depth(self, frame: int, layer: int, sector: int) -> float:
         """Median depth of a window in the unit of length."""
@@ -161,11 +158,6 @@ class CellNumbers:
         shown = self.shown
         found: ShownUnit = shown.study.scale.shown_velocity(shown.top_speed, shown.cells.n_frames)
         return found
-
-    @property
-    def _lag_unit(self) -> ShownUnit:
-        interval = self.shown.study.scale.frame_interval_s
-        return ShownUnit("frames") if interval is None else suited_lag(interval)
 
     @cached_property
     def _velocity(self) -> FloatArray:
@@ -212,17 +204,10 @@ class CellNumbers:
         return lines
 
     def _peak_words(self, numbers: WindowNumbers, window: tuple[int, int]) -> str:
-        if numbers.peaks is None or numbers.hatched is None:
+        peaks = numbers.peaks
+        if peaks is None or not np.isfinite(peaks.correlation[window]):
             return "not correlated"
-        correlation, lag = (float(values[window]) for values in numbers.peaks)
-        if not np.isfinite(correlation):
-            return "not correlated"
-        chance = ", not significant" if numbers.hatched[window] else ""
+        correlation, lag = float(peaks.correlation[window]), float(peaks.lag[window])
+        chance = ", not significant" if peaks.pale[window] else ""
         words = f"peak correlation {rounded(correlation, 2)}".replace("-", "−")
-        return f"{words} at lag {number_with_unit(lag, self._lag_unit.name)}{chance}"
-
-
-def _largest(values: FloatArray) -> float:
-    """The largest without its sign; 0 if none is known."""
-    known = np.abs(values[np.isfinite(values)])
-    return float(known.max()) if known.size else 0.0
+        return f"{words} at lag {number_with_unit(lag, peaks.lag_unit.unit)}{chance}"

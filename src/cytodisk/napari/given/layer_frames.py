@@ -11,7 +11,7 @@ from cytodisk.arrays import AnyArray
 from cytodisk.errors import ReadError
 from cytodisk.images.frame_file import FrameFile
 from cytodisk.napari.given.layer_axes import UNNAMED, layer_axes, without_single
-from cytodisk.napari.given.layer_kinds import is_picture
+from cytodisk.napari.given.layer_kinds import is_picture, pixels_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +97,7 @@ def frames_of(layer: Any, letters: str | None = None) -> LayerFrames:
             f"layer {layer.name} is a picture of colours (RGB), which measure nothing: split it into "
             "channels (right click on the layer, Split RGB), and choose those, or open the raw image"
         )
-    data = layer.data[0] if layer.multiscale else layer.data
+    data = pixels_of(layer)
     if min(data.shape) < 1:
         raise ReadError(f"layer {layer.name} holds no pixels: its shape is {tuple(data.shape)}")
     return LayerFrames(

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Literal, TypeAlias
 
+MARK = "cytodisk"
+"""Key of a layer's metadata that all layers of cytodisk have."""
+
 LayerKind: TypeAlias = Literal["labels", "image", "shapes", "tracks", "points", "other"]
 
 _KINDS: dict[str, LayerKind] = {
@@ -38,8 +41,13 @@ def layer_kind(layer: Any) -> LayerKind:
 
 def is_result(layer: Any) -> bool:
     """Whether cytodisk made a layer as a result: such a layer is no input."""
-    made = dict(layer.metadata).get("cytodisk")
+    made = dict(layer.metadata).get(MARK)
     return isinstance(made, dict) and "study" in made
+
+
+def pixels_of(layer: Any) -> Any:
+    """The array of an image or of labels, of a pyramid its finest level."""
+    return layer.data[0] if layer.multiscale else layer.data
 
 
 def is_picture(layer: Any) -> bool:

@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from cytodisk.arrays import FloatArray
 from cytodisk.errors import CytodiskError
 from cytodisk.napari.study_layers.byte_cache import ByteCache
 from cytodisk.napari.study_layers.cell_windows_cache import CellWindowsCache
 from cytodisk.napari.study_layers.shown_cells import ShownCells
-from cytodisk.napari.study_layers.window_values import Numbers, WindowValues
+from cytodisk.napari.study_layers.window_values import WindowValues
 
 FRAME_BYTES = 32 * 2**20
 """Of whole frames."""
@@ -90,12 +89,25 @@ class PaintedFrames:
     def painted(self, frame: int, channel: str) -> Any:
         """Mean of a channel in the window of each pixel, shape (H, W) and dtype float32; NaN outside."""
         number = self.values.channels.index(channel)
-        return self._painted(frame, lambda found: found["mean"][number])
+        return self.of_windows(
+            frame, lambda cell: self.values.at(cell, frame)["mean"][number], np.float32(np.nan)
+        )
 
-    def _painted(self, frame: int, of_windows: Callable[[Numbers], FloatArray]) -> Any:
-        colours = np.full(1 + self.cells.most_places * self.n_windows, np.nan, dtype=np.float32)
+    def of_windows(self, frame: int, values_of: Callable[[int], Any | None], nothing: Any) -> Any:
+        """The number of the window of each pixel, shape (H, W).
+
+        Parameters
+        ----------
+        frame : int
+        values_of : callable
+            Numbers of a cell, of shape (layers, sectors); None for a cell without.
+        nothing : scalar
+            Of all other pixels; its type is that of the image.
+        """
+        colours = np.full(1 + self.cells.most_places * self.n_windows, nothing)
         for cell in self.shown(frame):
-            values = np.ravel(of_windows(self.values.at(cell, frame)))
-            first = self.first_label(cell, frame)
-            colours[first : first + len(values)] = values
+            values = values_of(cell)
+            if values is not None:
+                first = self.first_label(cell, frame)
+                colours[first : first + values.size] = values.ravel()
         return colours[self.labels(frame)]

@@ -60,6 +60,11 @@ class ShownCells:
         return cls(study, chosen, rows)
 
     @cached_property
+    def numbers(self) -> list[int]:
+        """Numbers of its cells, in order."""
+        return sorted({int(cell) for cell in self.rows["cell"]})
+
+    @cached_property
     def n_frames(self) -> int:
         """Frames up to the last one that the study has a row of."""
         return int(self.rows["frame"].max()) + 1
@@ -107,7 +112,7 @@ class ShownCells:
 
     @cached_property
     def _place(self) -> dict[int, int]:
-        return {int(cell): place for place, cell in enumerate(sorted(self.rows["cell"].unique()))}
+        return {cell: place for place, cell in enumerate(self.numbers)}
 
     def place(self, cell: int, frame: int) -> int:
         """Number of a cell among those of its frame, by which its labels are offset; the same in a movie."""
