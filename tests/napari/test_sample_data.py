@@ -15,6 +15,7 @@ def test_the_wrong_frame_is_the_only_difference_between_the_movies() -> None:
 
     assert differ.tolist() == [WRONG_FRAME]
     assert wrong[WRONG_FRAME].sum() > 1.2 * right[WRONG_FRAME].sum()
+    assert right_look["axis_labels"] == ("time", "y", "x")
     assert right_look["scale"] == wrong_look["scale"] == (5.0, 0.16, 0.16)
 
 

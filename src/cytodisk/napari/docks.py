@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 from weakref import WeakSet
 
@@ -22,7 +23,22 @@ def join_docks(widget: QWidget) -> None:
     """
     if widget not in _JOINED:
         _JOINED.add(widget)
-        QTimer.singleShot(0, lambda: _join(widget))
+        soon(widget, lambda: _join(widget)).start()
+
+
+def soon(widget: QWidget, function: Callable[[], None]) -> QTimer:
+    """A timer that, once started, calls a function when Qt has laid out what is new.
+
+    Parameters
+    ----------
+    widget : QWidget
+        The timer goes with it.
+    function : callable
+    """
+    timer = QTimer(widget)
+    timer.setSingleShot(True)
+    timer.timeout.connect(function)
+    return timer
 
 
 def _join(widget: QWidget) -> None:

@@ -10,11 +10,10 @@ from typing import Any
 from cytodisk.disk.loading import load_map
 from cytodisk.errors import ReadError
 from cytodisk.napari.study_layers.activity_layers import activity_layers
-from cytodisk.napari.study_layers.layers_of_study import LayerData, layer_data
+from cytodisk.napari.study_layers.layers_of_study import LayerData
 from cytodisk.napari.study_layers.map_layers import map_layers
-from cytodisk.napari.study_layers.shown_study import attach, say_missing
+from cytodisk.napari.study_layers.shown_study import attach, layers_of, say_missing
 from cytodisk.napari.study_layers.study_in_viewer import ShownStudy
-from cytodisk.napari.study_layers.study_place import place_of
 from cytodisk.napari.viewer_parts import current_viewer
 from cytodisk.store.provenance_file import PROVENANCE, read_provenance
 from cytodisk.store.study import open_study
@@ -66,17 +65,14 @@ def study_layers(folder: Path) -> list[LayerData]:
     ReadError
         The folder is no study that can be shown, or it is damaged.
     """
-    study = open_study(folder)
-    shown, viewer = ShownStudy(study), current_viewer()
-    layers = layer_data(shown, place_of(shown.cells, () if viewer is None else viewer.layers))
+    shown, viewer = ShownStudy(open_study(folder)), current_viewer()
+    layers = layers_of(shown, () if viewer is None else viewer.layers)
+    if not layers:
+        raise ReadError(shown.cells.missing_words)
     if viewer is not None:
         attach(viewer, shown, len(layers))
     say_missing(shown)
-    if layers:
-        return layers
-    if study.is_movie:
-        return activity_layers(folder / ACTIVITY)
-    raise ReadError(shown.cells.missing_words)
+    return layers
 
 
 def _layers_of_map(path: Path) -> list[LayerData]:

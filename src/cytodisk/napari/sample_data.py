@@ -56,6 +56,7 @@ def _layers(truth: SimulatedMovie, masks: Any) -> list[LayerData]:
     place = {
         "scale": (truth.frame_interval_s, truth.pixel_size_um, truth.pixel_size_um),
         "units": ("second", "micrometer", "micrometer"),
+        "axis_labels": ("time", "y", "x"),
     }
     signal = demo_signal(truth)
     images: list[LayerData] = [
@@ -77,7 +78,11 @@ def cells_sample() -> list[LayerData]:
     list of (data, settings, kind)
     """
     field = label_image_with_nuclei(_CELLS, seed=3)
-    place = {"scale": (_CELL_PIXEL_UM, _CELL_PIXEL_UM), "units": ("micrometer", "micrometer")}
+    place = {
+        "scale": (_CELL_PIXEL_UM, _CELL_PIXEL_UM),
+        "units": ("micrometer", "micrometer"),
+        "axis_labels": ("y", "x"),
+    }
     cortex = _cortex(field.cells, field.nuclei)
     return [
         (cortex, {"name": "cortex", **place}, "image"),

@@ -134,3 +134,56 @@ def test_a_damaged_map_is_told_and_the_other_cells_are_shown(
 
     assert told == [str(error.value)]
     assert shown.layers["windows"].features["cell"].unique().tolist() == [1]
+
+
+def test_tables_of_features_are_told_when_the_slider_rests(
+    movie: Study, make_viewer: Callable[..., Any], qtbot: Any
+) -> None:
+    viewer = make_viewer()
+    layer = show_study(viewer, movie).layers["windows"]
+    qtbot.wait(500)
+    told: list[int] = []
+    layer.events.features.connect(lambda event: told.append(len(layer.features)))
+
+    for frame in (1, 2, 3):
+        viewer.dims.set_current_step(0, frame)
+    at_once = list(told)
+    qtbot.waitUntil(lambda: bool(told), timeout=5_000)
+
+    assert at_once == []
+    assert told == [2 * LAYERS * SECTORS]
+
+
+def test_a_movie_without_maps_shows_its_activity_beside_what_is_open(
+    movie: Study, make_viewer: Callable[..., Any], qtbot: Any, tmp_path: Path
+) -> None:
+    from cytodisk.napari.commands.correlate import Correlate
+    from cytodisk.napari.disk_view.disk_dock import NO_STUDY, DiskDock
+    from cytodisk.napari.study_layers.open_results import OpenResults
+
+    bare = shutil.copytree(movie.path, tmp_path / "bare")
+    shutil.rmtree(bare / "maps")
+    viewer = make_viewer()
+    place = {"scale": (5.0, 0.2, 0.2), "units": ("second", "micrometer", "micrometer")}
+    image = viewer.add_image(np.zeros((FRAMES, 60, 60)), **place)
+    right = viewer.layers.extent.world[1][-1]
+
+    shown = show_study(viewer, cd.open_study(bare))
+
+    assert shown_studies(viewer) == [shown]
+    assert set(shown.layers) == {"activity: velocity", "activity: Rac1", "activity: RhoA"}
+    np.testing.assert_array_equal(
+        shown.layers["activity: velocity"].data, movie.activity(0)["velocity"].transpose("sector", "time")
+    )
+    assert min(layer.extent.world[0][-1] for layer in shown.layers.values()) > right
+    widgets = [widget(viewer) for widget in (Correlate, DiskDock, OpenResults)]
+    for widget in widgets:
+        qtbot.addWidget(widget)
+    correlate, disk, results = widgets
+    assert correlate.shown is shown
+    assert disk.parts.picture.message == NO_STUDY
+    assert "has no maps" in results.words
+    for layer in list(shown.layers.values()):
+        viewer.layers.remove(layer)
+    assert shown.viewer is None
+    assert list(viewer.layers) == [image]

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from qtpy.QtCore import QTimer
+
 from cytodisk.napari.study_layers.feature_table import window_features
 from cytodisk.napari.study_layers.frame_lines import FrameLines
 from cytodisk.napari.study_layers.painted_frames import PaintedFrames
+
+_REST_MS = 300  # that the slider stands still before tables are told
 
 
 class FrameUpdates:
@@ -23,6 +27,11 @@ class FrameUpdates:
     def __init__(self, painted: PaintedFrames, lines: FrameLines, top_speed: float):
         self._painted, self._lines, self._top_speed = painted, lines, top_speed
         self._shown: dict[str, int] = {}  # frame by role
+        self._untold: Any = None  # layer with other features than its listeners know of
+        self._rest = QTimer()
+        self._rest.setSingleShot(True)
+        self._rest.setInterval(_REST_MS)
+        self._rest.timeout.connect(self._tell_features)
 
     def show(self, role: str, layer: Any, frame: int) -> None:
         """Bring a layer to a frame, if it is visible and of another one.
@@ -36,7 +45,10 @@ class FrameUpdates:
         if not layer.visible or self._shown.get(role) == frame:
             return
         if role == "windows":
-            layer.features = window_features(self._painted, frame)
+            with layer.events.features.blocker():  # a table of 600 windows takes napari seconds
+                layer.features = window_features(self._painted, frame)
+            self._untold = layer
+            self._rest.start()
         elif role == "outlines":
             set_data(layer, self._lines.windows(frame))
         elif role == "sector 0":
@@ -55,6 +67,12 @@ class FrameUpdates:
         else:
             return
         self._shown[role] = frame
+
+    def _tell_features(self) -> None:
+        """Let tables of features know of a frame at which the slider rests."""
+        layer, self._untold = self._untold, None
+        if layer is not None:
+            layer.events.features()
 
     def load(self, frame: int) -> None:
         """Read what is shown of a frame, and keep it."""

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from cytodisk.napari.given.layer_kinds import MARK
 from cytodisk.napari.study_layers.feature_table import window_features
 from cytodisk.napari.study_layers.frame_stack import FrameStack
 from cytodisk.napari.study_layers.study_in_viewer import ShownStudy
-from cytodisk.napari.study_layers.study_place import MARK, StudyPlace
+from cytodisk.napari.study_layers.study_place import StudyPlace
 from cytodisk.plot.style import SIGNAL_COLOURS
 
 LayerData = tuple[Any, dict[str, Any], str]
@@ -107,5 +108,5 @@ def line_width(diameter_px: float, shape: tuple[int, int]) -> float:
 
 
 def _velocity_name(shown: ShownStudy) -> str:
-    top = f"{shown.top_speed:.2g} {shown.unit('velocity')}"
-    return f"velocity of the edge (red out, blue in, to {top})"
+    unit = shown.study.scale.shown_velocity(shown.top_speed, shown.cells.n_frames)
+    return f"velocity of the edge (red out, blue in, to {shown.top_speed * unit.factor:.2g} {unit.name})"

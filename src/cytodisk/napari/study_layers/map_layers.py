@@ -8,10 +8,11 @@ import numpy as np
 import pandas as pd
 
 from cytodisk.disk.disk_map import DiskMap
+from cytodisk.napari.given.layer_kinds import MARK
 from cytodisk.napari.study_layers.feature_table import short
 from cytodisk.napari.study_layers.frame_lines import cell_lines
 from cytodisk.napari.study_layers.layers_of_study import LINE_LOOK, LayerData, line_width
-from cytodisk.napari.study_layers.study_place import MARK
+from cytodisk.runs.cells.nuclei_given import NUCLEUS_LAYERS
 from cytodisk.store.study import Study
 from cytodisk.windows.polar_windows import CellWindows, polar_windows
 from cytodisk.windows.study_grid import polar_grid_of
@@ -33,7 +34,7 @@ def map_layers(name: str, disk: DiskMap, study: Study | None = None) -> list[Lay
     list of (data, settings, kind)
     """
     if study is None:
-        grid = polar_windows(nucleus_layers=None if disk.nucleus is None else 3)
+        grid = polar_windows(nucleus_layers=None if disk.nucleus is None else NUCLEUS_LAYERS)
         scale = disk.scale
     else:
         grid, scale = polar_grid_of(study.provenance), study.scale

@@ -18,13 +18,19 @@ from qtpy.QtWidgets import (
 )
 
 from cytodisk.errors import CytodiskError
+from cytodisk.napari.docks import join_docks
+from cytodisk.napari.napari_versions import plain_viewer
+from cytodisk.napari.qt_fault import warn_of_qt
+from cytodisk.napari.scrolled import scrolled
 from cytodisk.napari.study_layers.activity_layers import activity_layers
 from cytodisk.napari.study_layers.shown_cells import sources_of
 from cytodisk.napari.study_layers.shown_study import ShownStudy, show_study, shown_studies
 from cytodisk.napari.viewer_parts import Layer, show_error
+from cytodisk.number_words import counted
 from cytodisk.store.study import Study, open_study
 from cytodisk.store.study_kind import ACTIVITY
 
+_WIDTH = 260
 _MOST_TOLD = 4  # cells without a map
 
 
@@ -42,9 +48,10 @@ class OpenResults(QWidget):
 
     def __init__(self, napari_viewer: Any):
         super().__init__()
-        self.viewer = viewer = napari_viewer
+        warn_of_qt()
+        self.viewer = viewer = plain_viewer(napari_viewer)
         self.study: Study | None = None
-        self._followed: list[ShownStudy] = []
+        self._there: list[ShownStudy] = []
         self._folder, self._source, self._channel = QLineEdit(), QComboBox(), QComboBox()
         self._shown, self._words = QComboBox(), QLabel()
         self._words.setWordWrap(True)
@@ -59,10 +66,16 @@ class OpenResults(QWidget):
         self._activity.clicked.connect(self.show_activity)
         self._shown.activated.connect(self._tell)
         self._channel.textActivated.connect(self._choose_channel)
-        viewer.layers.events.inserted.connect(self._follow)
-        viewer.layers.events.removed.connect(self._follow)
+        for event in (viewer.layers.events.inserted, viewer.layers.events.removed):
+            event.connect(self._follow)
+        self.destroyed.connect(lambda *_: self._let_go())
         self._look()
         self._follow()
+
+    def showEvent(self, event: Any) -> None:
+        """Lie behind the other docks of cytodisk, as a tab."""
+        super().showEvent(event)
+        join_docks(self)
 
     def _lay_out(self) -> None:
         choose = QPushButton("Choose…")
@@ -79,10 +92,15 @@ class OpenResults(QWidget):
         form.addRow(buttons)
         form.addRow("Shown", self._shown)
         form.addRow("Channel", self._channel)
+        inside = QWidget()
+        column = QVBoxLayout(inside)
+        column.addLayout(form)
+        column.addWidget(self._words)
+        column.addStretch()
+        self.setMinimumWidth(_WIDTH)
         whole = QVBoxLayout(self)
-        whole.addLayout(form)
-        whole.addWidget(self._words)
-        whole.addStretch()
+        whole.setContentsMargins(0, 0, 0, 0)
+        whole.addWidget(scrolled(inside))
 
     def _choose(self) -> None:
         found = QFileDialog.getExistingDirectory(self, "Folder of a study", self._folder.text())
@@ -130,7 +148,8 @@ class OpenResults(QWidget):
             show_error(str(error))
             return
         self._follow()
-        self._shown.setCurrentIndex(max(0, self._shown.findData(id(shown))))
+        if shown in self._there:
+            self._shown.setCurrentIndex(self._there.index(shown))
         self._tell()
 
     def show_activity(self) -> None:
@@ -148,23 +167,30 @@ class OpenResults(QWidget):
     @property
     def shown(self) -> ShownStudy | None:
         """The study that is chosen among those in the viewer."""
-        number = self._shown.currentData()
-        return next((one for one in shown_studies(self.viewer) if id(one) == number), None)
+        row = self._shown.currentIndex()
+        return self._there[row] if 0 <= row < len(self._there) else None
 
     def _follow(self, event: Any = None) -> None:
         """List the studies that are in the viewer."""
-        there = shown_studies(self.viewer)
+        there, before = shown_studies(self.viewer), self.shown
+        for one in self._there:
+            if one not in there:
+                one.changed.disconnect(self._tell, missing_ok=True)
         for one in there:
-            if one not in self._followed:
+            if one not in self._there:
                 one.changed.connect(self._tell)
-        self._followed = there
-        before = self._shown.currentData()
+        self._there = there
         self._shown.clear()
-        for one in there:
-            name = Path(one.study.path).name
-            self._shown.addItem(f"{name}, {one.source}" if one.source else name, id(one))
-        self._shown.setCurrentIndex(max(0, self._shown.findData(before)))
+        self._shown.addItems([", ".join(filter(None, [one.study.path.name, one.source])) for one in there])
+        if before in there:
+            self._shown.setCurrentIndex(there.index(before))
         self._tell()
+
+    def _let_go(self) -> None:
+        for event in (self.viewer.layers.events.inserted, self.viewer.layers.events.removed):
+            event.disconnect(self._follow)
+        for one in self._there:
+            one.changed.disconnect(self._tell, missing_ok=True)
 
     def _choose_channel(self, name: str) -> None:
         if self.shown is not None:
@@ -190,14 +216,16 @@ def frame_words(shown: ShownStudy) -> str:
     else:
         signal = ""
     frame = shown.frame
+    if not shown.cells.mapped:
+        return f"{shown.cells.missing_words}."
     if frame is None:
         return f"There is no frame of the study here. {signal}".strip()
     missing = shown.cells.missing.get(frame, [])
     told = [f"Cell {cell} has no map: {words}." for cell, words in missing[:_MOST_TOLD]]
     if len(missing) > _MOST_TOLD:
-        told.append(f"So have {len(missing) - _MOST_TOLD} more cells none.")
+        told.append(f"{counted(len(missing) - _MOST_TOLD, 'more cell')} without a map.")
     told += [words for (_, other), words in shown.painted.faults.items() if other == frame]
     count = len(shown.painted.shown(frame))
-    cells = f"{count} cell{'' if count == 1 else 's'} with windows"
+    cells = f"{counted(count, 'cell')} with windows"
     where = f"Frame {frame}: {cells}." if shown.cells.is_stack else f"{cells}."
     return "\n".join([where, *filter(None, [signal]), *told])

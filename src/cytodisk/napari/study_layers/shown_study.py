@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
-from cytodisk.napari.study_layers.layers_of_study import layer_data
+from cytodisk.napari.given.layer_kinds import MARK
+from cytodisk.napari.study_layers.activity_layers import activity_layers
+from cytodisk.napari.study_layers.layers_of_study import LayerData, layer_data
 from cytodisk.napari.study_layers.study_in_viewer import ShownStudy as ShownStudy
-from cytodisk.napari.study_layers.study_place import MARK, place_of
+from cytodisk.napari.study_layers.study_place import place_of
 from cytodisk.napari.viewer_parts import Layer, show_error, show_warning
 from cytodisk.store.study import Study
+from cytodisk.store.study_kind import ACTIVITY
 
 
 def show_study(viewer: Any, study: Study, *, source: str | None = None) -> ShownStudy:
-    """Add a study's results to a viewer.
+    """Add a study's results to a viewer; of a movie without maps its activity over time.
 
     Parameters
     ----------
@@ -32,12 +36,34 @@ def show_study(viewer: Any, study: Study, *, source: str | None = None) -> Shown
     """
     shown = ShownStudy(study, source)
     shown.tell = show_error
-    for data in layer_data(shown, place_of(shown.cells, viewer.layers)):
+    for data in layers_of(shown, viewer.layers):
         layer = Layer.create(*data)
         viewer.add_layer(layer)
         shown.bind(viewer, layer)
     say_missing(shown)
     return shown
+
+
+def layers_of(shown: ShownStudy, beside: Iterable[Any] = ()) -> list[LayerData]:
+    """Layers of a study: windows and values, or for a movie without maps its activity over time.
+
+    Parameters
+    ----------
+    shown : ShownStudy
+    beside : iterable of Layer
+        That are open.
+
+    Returns
+    -------
+    list of (data, settings, kind)
+        Empty for single cells without maps.
+    """
+    layers = layer_data(shown, place_of(shown.cells, beside))
+    if layers or not shown.study.is_movie:
+        return layers
+    edges = [float(layer.extent.world[1][-1]) for layer in beside if layer.ndim > 1]
+    left = 1.05 * max(edges, default=0.0)
+    return activity_layers(shown.study.path / ACTIVITY, shown=shown, left=left)
 
 
 def attach(viewer: Any, shown: ShownStudy, n_layers: int) -> None:

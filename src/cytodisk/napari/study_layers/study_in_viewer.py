@@ -11,6 +11,7 @@ from psygnal import Signal
 from cytodisk.arrays import FloatArray
 from cytodisk.disk.disk_map import DiskMap
 from cytodisk.errors import ParameterError
+from cytodisk.napari.given.layer_kinds import MARK
 from cytodisk.napari.napari_versions import without_thumbnail
 from cytodisk.napari.study_layers.cell_windows_cache import CellWindowsCache
 from cytodisk.napari.study_layers.frame_lines import FrameLines
@@ -18,7 +19,6 @@ from cytodisk.napari.study_layers.frame_updates import FrameUpdates
 from cytodisk.napari.study_layers.painted_frames import PaintedFrames
 from cytodisk.napari.study_layers.prefetch import Prefetch
 from cytodisk.napari.study_layers.shown_cells import ShownCells
-from cytodisk.napari.study_layers.study_place import MARK
 from cytodisk.napari.study_layers.window_values import WindowValues
 from cytodisk.store.study import Study
 from cytodisk.windows.polar_windows import CellWindows
@@ -109,7 +109,7 @@ class ShownStudy:
         """Number, in the recording, of the frame under the slider; None if there is none there."""
         if not self.cells.is_stack:
             return next(iter(self.cells.mapped), 0)
-        layer = next((self.layers[role] for role in ("windows", "signal") if role in self.layers), None)
+        layer = self.layers.get("windows")
         if layer is None or self.viewer is None or self.viewer.dims.ndim < layer.ndim:
             return None
         place = layer.world_to_data(self.viewer.dims.point)[0]

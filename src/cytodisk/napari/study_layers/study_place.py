@@ -6,10 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from cytodisk.napari.given.layer_kinds import MARK, is_picture, layer_kind
 from cytodisk.napari.study_layers.shown_cells import ShownCells
-
-MARK = "cytodisk"
-"""Key of a layer's metadata that all layers of cytodisk have."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +51,8 @@ def place_of(cells: ShownCells, layers: Iterable[Any] = ()) -> StudyPlace:
     own = _own_place(cells)
     for layer in layers:
         shape: Any = getattr(getattr(layer, "data", None), "shape", ())
-        if MARK in layer.metadata or len(shape) < len(own.scale) or not _is_image(layer):
+        is_image = layer_kind(layer) in ("image", "labels") and not is_picture(layer)
+        if MARK in layer.metadata or len(shape) < len(own.scale) or not is_image:
             continue
         fits = tuple(shape[-2:]) == cells.image_shape
         if fits and (not cells.is_stack or shape[-3] >= cells.n_frames):
@@ -62,10 +61,6 @@ def place_of(cells: ShownCells, layers: Iterable[Any] = ()) -> StudyPlace:
                 tuple(layer.scale[last]), tuple(layer.translate[last]), tuple(layer.units[last]), layer.name
             )
     return own
-
-
-def _is_image(layer: Any) -> bool:
-    return type(layer).__name__ in ("Image", "Labels") and not getattr(layer, "rgb", False)
 
 
 def _own_place(cells: ShownCells) -> StudyPlace:

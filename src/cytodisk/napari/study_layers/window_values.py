@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from cytodisk.arrays import FloatArray
+from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.napari.study_layers.byte_cache import ByteCache
 from cytodisk.store.study import EDGE, WINDOWS, Study
 from cytodisk.store.table_file import opened_table
@@ -81,20 +81,20 @@ class WindowValues:
         if not self.study.is_movie:
             first = cell - cell % _AT_ONCE
             return self._blocks.get(first, lambda: dict(self._of_cells(first)))[cell]
-        place = self._places(cell)[frame]
+        place = self._place(cell, frame)
         first = place - place % _AT_ONCE
         return self._blocks.get((cell, first), lambda: self._of_frames(cell, first))[place]
 
-    def _places(self, cell: int) -> dict[int, int]:
-        """Place of each frame in the activity of a cell."""
-        if cell not in self._known_places:
+    def _place(self, cell: int, frame: int) -> int:
+        """Place of a frame in the activity of a cell, whose frames increase."""
+        if cell not in self._known_frames:
             with self._reading:
                 frames = self.study.activity(cell)["frame"].to_numpy()
-            self._known_places[cell] = {int(frame): place for place, frame in enumerate(frames)}
-        return self._known_places[cell]
+            self._known_frames[cell] = frames
+        return int(np.searchsorted(self._known_frames[cell], frame))
 
     @cached_property
-    def _known_places(self) -> dict[int, dict[int, int]]:
+    def _known_frames(self) -> dict[int, IntArray]:
         return {}
 
     def _of_frames(self, cell: int, first: int) -> dict[int, dict[str, FloatArray]]:
