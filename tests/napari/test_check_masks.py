@@ -52,7 +52,9 @@ def test_wrong_frames_are_listed_and_shown(
     with pytest.raises(SystemExit):
         main()
     said = capsys.readouterr().out
-    assert all(line in said for line in widget.found.lines)
+    assert '"Follow cells" finds them' in widget.found.lines[-1]
+    for line in widget.found.lines:
+        assert line.replace('the widget "Follow cells"', "cytodisk movie") in said
     assert widget.command.text() == f"cytodisk check {path}"
     jumps = widget.table.tree.topLevelItem(names.index("area jumps"))
     rows = [jumps.child(k) for k in range(jumps.childCount())]
@@ -63,6 +65,7 @@ def test_wrong_frames_are_listed_and_shown(
     assert viewer.dims.current_step[0] == 7
     assert camera_of(viewer).center[-2:] == pytest.approx((1.5, 1.5))
     assert set(widget.marks.layer.features["flag"]) == set(names)
+    assert widget.marks.layer.name == "faults of masks"
     np.testing.assert_array_equal(layer.data, before)
 
     layer.data[5] = layer.data[4]
@@ -72,6 +75,11 @@ def test_wrong_frames_are_listed_and_shown(
     assert 5 not in [place.frame for flag in widget.found.flags for place in flag.places]
     assert not widget.command.isVisible()
     assert len(viewer.layers) == 2
+    written = widget.found.files.masks
+    widget.button.click()
+    qtbot.waitUntil(lambda: widget.found.files.masks != written, timeout=60_000)
+    assert widget.found.files.masks.exists()
+    assert not written.exists()  # a folder a run would fill the disk
 
 
 def test_what_cannot_be_checked_is_said_in_the_librarys_words(

@@ -70,6 +70,6 @@ def test_flags_of_a_study_come_in_the_place_of_the_last(
     assert [flag.name for flag in first.flags] == [flag.name for flag in cd.qc_flags(study)]
     assert first.layer not in viewer.layers
     assert second.layer in viewer.layers
-    assert len([layer for layer in viewer.layers if layer.name.startswith("flags")]) == 1
+    assert len([layer for layer in viewer.layers if layer.name.startswith("QC flags")]) == 1
     first.remove()  # again, as whoever made it may do
     assert 3 in second.layer.data[:, 0]

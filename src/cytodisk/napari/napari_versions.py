@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from cytodisk.napari.viewer_parts import get_theme
-
 
 def plain_viewer(viewer: Any) -> Any:
     """The viewer without the wrapping that each widget of a plugin gets a new one of.
@@ -47,6 +45,8 @@ def text_colour_of(viewer: Any) -> tuple[int, int, int]:
     ----------
     viewer : Viewer
     """
+    from cytodisk.napari.viewer_parts import get_theme  # the rest needs no napari to be imported
+
     red, green, blue = get_theme(viewer.theme).text.as_rgb_tuple(alpha=False)
     return red, green, blue
 

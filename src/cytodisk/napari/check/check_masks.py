@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
-from qtpy.QtCore import Qt
-from qtpy.QtWidgets import QFormLayout, QLabel, QLineEdit, QPushButton, QScrollArea, QVBoxLayout, QWidget
+from qtpy.QtWidgets import QFormLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
 from cytodisk.napari.check.checked_layers import CheckedLayers, check_layers, command_words
 from cytodisk.napari.check.flag_points import FlagGround, FlagMarks
 from cytodisk.napari.check.flag_table import FlagTable
 from cytodisk.napari.check.found_flags import FlagPlace
+from cytodisk.napari.docks import join_docks
 from cytodisk.napari.forms.command_line import command_line
 from cytodisk.napari.forms.parameter_form import ParameterForm
 from cytodisk.napari.given.chosen_layers import ChosenLayers
@@ -21,12 +19,18 @@ from cytodisk.napari.given.layer_choice import LayerChoice
 from cytodisk.napari.given.layer_kinds import MASKS, NUCLEI, SIGNALS
 from cytodisk.napari.napari_versions import plain_viewer
 from cytodisk.napari.qt_fault import warn_of_qt
+from cytodisk.napari.scrolled import ScrolledWords, scrolled
 from cytodisk.napari.viewer_parts import show_error
 from cytodisk.napari.work.background import Work, run_in_background
 from cytodisk.napari.work.work_bar import WorkBar
+from cytodisk.napari.work.work_folder import WorkFolder
 from cytodisk.runs.cells.cell_parameters import CheckParameters
 
-_NO_FILE = "Some layers have no file of their own: save them (File, Save) to type this in a terminal."
+_WIDTH = 260
+_NO_FILE = (
+    "Some layers have no file, so there is no command that does the same: save the layers first "
+    "(File, Save Selected Layers…), open what you saved, and check again."
+)
 
 
 class CheckMasks(QWidget):
@@ -45,8 +49,7 @@ class CheckMasks(QWidget):
         self.work: Work | None = None
         self.found: CheckedLayers | None = None
         self.marks: FlagMarks | None = None
-        self._folder: Any = TemporaryDirectory(prefix="cytodisk_", ignore_cleanup_errors=True)
-        self._runs = 0
+        self._folder: WorkFolder | None = None
         self.masks = LayerChoice(viewer, MASKS)
         self.signal = LayerChoice(viewer, SIGNALS, optional=True)
         self.nuclei = LayerChoice(viewer, NUCLEI, optional=True)
@@ -58,33 +61,39 @@ class CheckMasks(QWidget):
         self.bar = WorkBar()
         self.table = FlagTable(self._go)
         self.table.show_flags((), "Choose masks, and press Check masks.")
-        self.words = QLabel()
-        self.words.setWordWrap(True)
-        self.words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.words = ScrolledWords()
         self.command = QLineEdit()
         self.command.setReadOnly(True)
         self.command.setToolTip("The same as a command, to be typed in a terminal")
         self.command.hide()
+        self.setMinimumWidth(_WIDTH)
         self._arrange()
-        self.destroyed.connect(lambda *_, folder=self._folder: folder.cleanup())
+        self.destroyed.connect(lambda *_: self._let_go())
+
+    def showEvent(self, event: Any) -> None:
+        """Lie behind the other docks of cytodisk, as a tab."""
+        super().showEvent(event)
+        join_docks(self)
+
+    def _let_go(self) -> None:
+        for choice in (self.masks, self.signal, self.nuclei):
+            choice.close_down()
 
     def _arrange(self) -> None:
-        choices = QFormLayout()
+        inside = QWidget()
+        column, choices = QVBoxLayout(inside), QFormLayout()
+        column.setContentsMargins(0, 0, 0, 0)
         for name, choice in {"masks": self.masks, "signal": self.signal, "nuclei": self.nuclei}.items():
             choices.addRow(name, choice)
-        scroll = QScrollArea()
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QScrollArea.Shape.NoFrame)
-        scroll.setWidget(self.form)
-        scroll.setMinimumHeight(110)
+        column.addLayout(choices)
+        column.addWidget(self.form)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(2, 2, 2, 2)
-        rows.addLayout(choices)
-        rows.addWidget(scroll, 1)
+        rows.addWidget(scrolled(inside), 2)
         for part in (self.button, self.bar):
             rows.addWidget(part)
         rows.addWidget(self.table, 3)
-        for part in (self.words, self.command):
+        for part in (self.words.area, self.command):
             rows.addWidget(part)
 
     def run(self) -> None:
@@ -95,18 +104,18 @@ class CheckMasks(QWidget):
             return
         chosen = ChosenLayers(masks, self.signal.layers, self.nuclei.layer)
         values, flags = self.form.values(), self.form.flags
-        self._runs += 1
-        folder = Path(self._folder.name) / str(self._runs)
+        folder = WorkFolder()
         ground = FlagGround.of(masks, time_axis(masks))
         self.button.setEnabled(False)
 
         def show(found: CheckedLayers) -> None:
             self.button.setEnabled(True)
+            self._folder = folder  # that of the last run goes
             self.show_found(found, ground)
 
         self.work = run_in_background(
             self.bar,
-            lambda report: check_layers(chosen, folder, values, flags, report),
+            lambda report: check_layers(chosen, folder.inputs, values, flags, report),
             done=show,
             failed=lambda: self.button.setEnabled(True),
             unit="cells",
@@ -117,7 +126,7 @@ class CheckMasks(QWidget):
         if self.marks is not None:
             self.marks.remove()
         mark = {"cell": None, "masks": str(found.files.masks)}
-        self.marks = FlagMarks(self.viewer, found.flags, ground, mark)
+        self.marks = FlagMarks(self.viewer, found.flags, ground, mark, name="faults of masks")
         self.found = found
         self.table.show_flags(found.flags)
         self.words.setText("\n".join([*found.lines, *found.notes]))

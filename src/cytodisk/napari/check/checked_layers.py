@@ -20,6 +20,8 @@ from cytodisk.runs.map.checked_cells import check_cells
 from cytodisk.runs.told.checked_words import Checked
 from cytodisk.runs.told.mask_faults import FaultPlace, MaskFault
 
+_FOLLOW = 'the widget "Follow cells"'
+
 
 @dataclass(frozen=True)
 class CheckedLayers:
@@ -86,7 +88,7 @@ def check_layers(
         report(number, total)
     notes = (*files.notes, *inputs.notes, *inputs.remarks)
     flags_found = [_flag(fault, is_stack) for fault in _of_all_labels(found.faults_found())]
-    return CheckedLayers(flags_found, tuple(found.totals()), notes, files, every)
+    return CheckedLayers(flags_found, tuple(found.totals(follow=_FOLLOW)), notes, files, every)
 
 
 def _of_all_labels(faults: Sequence[MaskFault]) -> list[MaskFault]:

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from cytodisk.napari.check.found_flags import FlagPlace, FoundFlag
+from cytodisk.napari.given.layer_kinds import MARK
 from cytodisk.napari.napari_versions import camera_of
 
 ROLE = "flags"
@@ -90,7 +91,7 @@ def flag_features(
 
 
 def add_flag_points(
-    viewer: Any, flags: Sequence[FoundFlag], ground: FlagGround, *, name: str = "flags", mark: dict[str, Any]
+    viewer: Any, flags: Sequence[FoundFlag], ground: FlagGround, *, name: str, mark: dict[str, Any]
 ) -> Any | None:
     """Add a layer of points with all places.
 
@@ -120,7 +121,7 @@ def add_flag_points(
         scale=ground.scale,
         translate=ground.translate,
         units=ground.units,
-        metadata={"cytodisk": {"role": ROLE, **mark}},
+        metadata={MARK: {"role": ROLE, **mark}},
         symbol="disc",
         face_color="transparent",
         border_color=_COLOUR,
@@ -145,6 +146,8 @@ class FlagMarks:
     ground : FlagGround
     mark : dict
         Metadata of their layer.
+    name : str
+        Of their layer.
 
     Attributes
     ----------
@@ -152,13 +155,21 @@ class FlagMarks:
         None if there is no place.
     """
 
-    def __init__(self, viewer: Any, flags: Sequence[FoundFlag], ground: FlagGround, mark: dict[str, Any]):
+    def __init__(
+        self,
+        viewer: Any,
+        flags: Sequence[FoundFlag],
+        ground: FlagGround,
+        mark: dict[str, Any],
+        *,
+        name: str,
+    ):
         self._viewer, self._ground = viewer, ground
         places = (place for flag in flags for place in flag.places if place.yx is not None)
         self._row: dict[FlagPlace, int] = {}
         for row, place in enumerate(places):
             self._row.setdefault(place, row)
-        self.layer = add_flag_points(viewer, flags, ground, mark=mark)
+        self.layer = add_flag_points(viewer, flags, ground, name=name, mark=mark)
 
     def go(self, place: FlagPlace) -> bool:
         """Bring the slider to the frame of a place, and the place to the middle of the canvas.

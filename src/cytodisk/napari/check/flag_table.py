@@ -6,9 +6,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from qtpy.QtCore import Qt
-from qtpy.QtWidgets import QHeaderView, QLabel, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
+from qtpy.QtWidgets import QHeaderView, QTreeWidget, QTreeWidgetItem, QVBoxLayout, QWidget
 
 from cytodisk.napari.check.found_flags import FlagPlace, FoundFlag, sentence
+from cytodisk.napari.scrolled import ScrolledWords
 from cytodisk.number_words import counted
 
 _MOST_PLACES = 1000  # of a kind, that are listed
@@ -36,13 +37,11 @@ class FlagTable(QWidget):
         header.setSectionResizeMode(2, QHeaderView.ResizeMode.Stretch)
         for column in (0, 1):
             header.setSectionResizeMode(column, QHeaderView.ResizeMode.ResizeToContents)
-        self.said: Any = QLabel()
-        self.said.setWordWrap(True)
-        self.said.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.said: Any = ScrolledWords()
         box = QVBoxLayout(self)
         box.setContentsMargins(4, 4, 4, 4)
         box.addWidget(self.tree, 1)
-        box.addWidget(self.said)
+        box.addWidget(self.said.area)
         self.tree.currentItemChanged.connect(self._select)
         self.tree.itemClicked.connect(self._select)
         self.show_flags(())
@@ -78,7 +77,7 @@ class FlagTable(QWidget):
             item.setToolTip(2, place.note)
         if len(flag.places) > _MOST_PLACES:
             more = counted(len(flag.places) - _MOST_PLACES, "more place")
-            last = QTreeWidgetItem(top, ["", "", f"… {more}: points of the layer flags"])
+            last = QTreeWidgetItem(top, ["", "", f"… {more}, each with a circle in its frame"])
             last.setData(0, _PART, (flag, None))
         top.setExpanded(len(flag.places) <= _OPEN)
 

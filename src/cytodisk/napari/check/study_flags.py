@@ -41,7 +41,9 @@ class ShownFlags:
     def __init__(self, viewer: Any, flags: list[FoundFlag], ground: FlagGround, study: Study):
         self._viewer = viewer
         self.flags = flags
-        self._marks = FlagMarks(viewer, flags, ground, {"study": str(study.path), "cell": None})
+        self._marks = FlagMarks(
+            viewer, flags, ground, {"study": str(study.path), "cell": None}, name="QC flags"
+        )
         self.layer = self._marks.layer
         self.table = FlagTable(self._marks.go)
         self.table.show_flags(flags, "No QC flags: nothing speaks against these results.")
@@ -62,7 +64,7 @@ class ShownFlags:
 def show_flags(
     viewer: Any, study: Study, shown: ShownStudy, flags: Sequence[QCFlag] | None = None
 ) -> ShownFlags:
-    """Show the QC flags of a study: points in the layer "flags", and a table under the canvas.
+    """Show the QC flags of a study: points in the layer "QC flags", and a table under the canvas.
 
     Parameters
     ----------
@@ -78,9 +80,7 @@ def show_flags(
     ShownFlags
         In the place of those that were shown of the study before.
     """
-    before = _SHOWN.get(shown)
-    if before is not None:
-        before.remove()
+    remove_flags(shown)
     found = qc_flags(study) if flags is None else flags
     sectors = polar_grid_of(study.provenance).sectors
     edge = partial(sector_place, shown, sectors=sectors)
@@ -91,9 +91,16 @@ def show_flags(
     return flags_shown
 
 
+def remove_flags(shown: ShownStudy) -> None:
+    """Take the flags of a study out of its viewer, if there are any."""
+    there = _SHOWN.pop(shown, None)
+    if there is not None:
+        there.remove()
+
+
 def _ground(study: Study, shown: ShownStudy) -> FlagGround:
     """That of the study's layers, or without any, by its scale."""
-    for role in ("windows", "values", "signal"):
+    for role in ("windows", "values"):
         if role in shown.layers:
             return FlagGround.of(shown.layers[role])
     pixel, interval = study.scale.pixel_size_um, study.scale.frame_interval_s

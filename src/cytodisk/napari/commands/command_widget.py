@@ -7,16 +7,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from qtpy.QtCore import Qt
 from qtpy.QtWidgets import (
-    QApplication,
     QCheckBox,
     QFileDialog,
     QFormLayout,
-    QFrame,
     QHBoxLayout,
     QPushButton,
-    QScrollArea,
     QVBoxLayout,
     QWidget,
 )
@@ -24,12 +20,13 @@ from qtpy.QtWidgets import (
 from cytodisk.napari.commands.made_study import MadeStudy
 from cytodisk.napari.commands.open_widgets import layers_of
 from cytodisk.napari.commands.results_panel import ResultsPanel
-from cytodisk.napari.docks import join_docks
+from cytodisk.napari.docks import join_docks, soon
 from cytodisk.napari.forms.parameter_form import ParameterForm
+from cytodisk.napari.given.layer_kinds import MARK
 from cytodisk.napari.napari_versions import plain_viewer
 from cytodisk.napari.qt_fault import warn_of_qt
+from cytodisk.napari.scrolled import scrolled
 from cytodisk.napari.study_layers.shown_study import ShownStudy
-from cytodisk.napari.study_layers.study_place import MARK
 from cytodisk.napari.viewer_parts import show_info
 from cytodisk.napari.work.background import Reporter, Work, run_in_background
 from cytodisk.napari.work.work_bar import WorkBar
@@ -69,6 +66,7 @@ class CommandWidget(QWidget):
         self.results = ResultsPanel()
         self.results.save_wanted.connect(self.ask_where_to_save)
         self.results.report_wanted.connect(self.open_report)
+        self._scroll_soon = soon(self, self._scroll)  # once their place is known
         self.setMinimumWidth(_WIDTH)
         self._arrange()
 
@@ -161,7 +159,9 @@ class CommandWidget(QWidget):
 
     def show_results(self) -> None:
         """Scroll to the results."""
-        QApplication.processEvents()  # so that their place is known
+        self._scroll_soon.start()
+
+    def _scroll(self) -> None:
         self.scroll.verticalScrollBar().setValue(self.form.geometry().bottom())
 
     def _arrange(self) -> None:
@@ -173,11 +173,7 @@ class CommandWidget(QWidget):
         self.inner.addWidget(self.form)
         self.inner.addWidget(self.results)
         self.inner.addStretch()
-        self.scroll = QScrollArea()
-        self.scroll.setWidgetResizable(True)
-        self.scroll.setFrameShape(QFrame.NoFrame)
-        self.scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarAlwaysOff)
-        self.scroll.setWidget(inside)
+        self.scroll = scrolled(inside)
         row = QHBoxLayout()
         row.addWidget(self.run_button, stretch=1)
         row.addWidget(self.replace_box)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from cytodisk.napari.forms.own_values import with_own
 from cytodisk.napari.work.background import Reporter
 from cytodisk.runs.correlate.correlate_parameters import CorrelateParameters
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
@@ -70,15 +71,10 @@ def run_correlation(
     from cytodisk.runs.qc_flags.study_flags import qc_flags
     from cytodisk.runs.told.correlation_words import correlation_lines, finding_lines, verdict_lines
 
-    def part(model: Any) -> Any:
-        own = {name: value for name, value in values.items() if name in model.model_fields}
-        return model.called(own, flags)
-
+    parameters, options = (with_own(model, values, flags) for model in (CorrelateParameters, TableOptions))
     there = open_study(study.path)
     report.stage("Correlating", PERCENT)
-    found = correlate_study(
-        there, *names, progress=report, parameters=part(CorrelateParameters), **dict(part(TableOptions))
-    )
+    found = correlate_study(there, *names, progress=report, parameters=parameters, **dict(options))
     there = open_study(study.path)
     return MadeCorrelation(
         there,

@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from cytodisk.errors import CytodiskError
+from cytodisk.napari.check.study_flags import remove_flags
 from cytodisk.napari.commands.command_widget import NOT_SAVED, SAVE_FIRST, CommandWidget
 from cytodisk.napari.commands.correlate import Correlate
 from cytodisk.napari.commands.made_study import MadeStudy, keep_with, made_of
-from cytodisk.napari.commands.open_widgets import layers_of, open_once, remove_flags_of, show_flags_of
+from cytodisk.napari.commands.open_widgets import layers_of, open_once, show_flags_of
 from cytodisk.napari.forms.parameter_form import ParameterForm
 from cytodisk.napari.given.chosen_layers import ChosenLayers
 from cytodisk.napari.given.layer_choice import LayerChoice
@@ -151,7 +152,7 @@ class LayersWidget(CommandWidget):
 
     def _remove_last(self) -> None:
         if self.shown is not None:
-            remove_flags_of(self.shown)
+            remove_flags(self.shown)
         if self.made is not None:
             for layer in layers_of(self.viewer, self.made.study.path):
                 self.viewer.layers.remove(layer)

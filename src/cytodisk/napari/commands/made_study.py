@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import json
 import shutil
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar
-from weakref import WeakKeyDictionary, finalize
+from weakref import WeakKeyDictionary
 
 from psygnal import Signal
 
@@ -17,39 +16,14 @@ from cytodisk.errors import StudyError
 from cytodisk.files import make_folder, temporary_name
 from cytodisk.napari.forms.command_line import command_line
 from cytodisk.napari.given.given_layers import GivenFiles
+from cytodisk.napari.work.work_folder import INPUTS, WorkFolder
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.store.provenance_file import PROVENANCE, write_json
 from cytodisk.store.study import Study, open_study
 from cytodisk.store.study_kind import PARAMETERS
 
-INPUTS = "inputs"
-"""Folder, in that of a saved study, of layers that were written."""
-
-_STUDY = "study"
 _AGAIN = "_again"  # behind the name of a folder: that of the shown command
 _UNSAVED = "cytodisk_study"
-
-
-class WorkFolder:
-    """A folder for a study and its inputs that goes when nothing holds it any more."""
-
-    def __init__(self) -> None:
-        self.path = Path(tempfile.mkdtemp(prefix="cytodisk-"))
-        self._remove = finalize(self, shutil.rmtree, self.path, ignore_errors=True)
-
-    @property
-    def inputs(self) -> Path:
-        """Where layers are written."""
-        return self.path / INPUTS
-
-    @property
-    def study(self) -> Path:
-        """Where the study is made."""
-        return self.path / _STUDY
-
-    def remove(self) -> None:
-        """Remove it now."""
-        self._remove()
 
 
 @dataclass(eq=False)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
-from weakref import WeakKeyDictionary
 
 from qtpy.QtWidgets import QApplication
 
-from cytodisk.napari.check.study_flags import ShownFlags, show_flags
+from cytodisk.napari.check.study_flags import remove_flags, show_flags
+from cytodisk.napari.docks import dock_of
+from cytodisk.napari.given.layer_kinds import MARK
 from cytodisk.napari.study_layers.shown_study import ShownStudy
-from cytodisk.napari.study_layers.study_place import MARK
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.store.study import Study
 
@@ -36,9 +36,10 @@ def open_once(viewer: Any, widget: type[Any], name: str) -> Any:
     if inner is None:
         inner = widget(viewer)
         viewer.window.add_dock_widget(inner, name=name, area="right", tabify=True)
-    dock = inner.parentWidget()
-    dock.show()
-    dock.raise_()
+    dock = dock_of(inner)
+    if dock is not None:
+        dock.show()
+        dock.raise_()
     return inner
 
 
@@ -54,9 +55,6 @@ def layers_of(viewer: Any, study: Path) -> list[Any]:
     return [layer for layer in viewer.layers if layer.metadata.get(MARK, {}).get("study") == str(study)]
 
 
-_FLAGS: WeakKeyDictionary[ShownStudy, ShownFlags] = WeakKeyDictionary()
-
-
 def show_flags_of(viewer: Any, shown: ShownStudy, study: Study, flags: Sequence[QCFlag]) -> None:
     """Show the QC flags of a study in the place of those that were shown; nothing where there are none.
 
@@ -68,13 +66,7 @@ def show_flags_of(viewer: Any, shown: ShownStudy, study: Study, flags: Sequence[
         As it is now.
     flags : sequence of QCFlag
     """
-    remove_flags_of(shown)
     if flags:
-        _FLAGS[shown] = show_flags(viewer, study, shown, flags)
-
-
-def remove_flags_of(shown: ShownStudy) -> None:
-    """Take the flags of a study out of its viewer."""
-    there = _FLAGS.pop(shown, None)
-    if there is not None:
-        there.remove()
+        show_flags(viewer, study, shown, flags)
+    else:
+        remove_flags(shown)

@@ -7,11 +7,13 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from cytodisk.errors import CytodiskError
-from cytodisk.napari.commands.made_study import MadeStudy, WorkFolder
+from cytodisk.napari.commands.made_study import MadeStudy
+from cytodisk.napari.forms.own_values import with_own
 from cytodisk.napari.given.chosen_layers import ChosenLayers
 from cytodisk.napari.given.given_layers import GivenFiles, given_files
 from cytodisk.napari.work.background import Reporter
-from cytodisk.parameters import Group, Parameters
+from cytodisk.napari.work.work_folder import WorkFolder
+from cytodisk.parameters import Parameters
 from cytodisk.runs.map.map_parameters import MapParameters
 from cytodisk.runs.movie.movie_parameters import MovieParameters
 from cytodisk.runs.run_options import MapOptions, RunOptions
@@ -44,9 +46,9 @@ def run_map(
     from cytodisk.runs.told.map_words import lost_cell_lines, map_fault, map_lines, signal_finding_lines
 
     def make(files: GivenFiles, given: Mapping[str, Any], work: WorkFolder) -> tuple[Study, list[str]]:
-        parameters = _part(MapParameters, given, flags)
+        parameters = with_own(MapParameters, given, flags)
         inputs = open_inputs(files.masks, files.signal, parameters, nuclei=files.nuclei)
-        options = _part(MapOptions, given, flags)
+        options = with_own(MapOptions, given, flags)
         return map_study(inputs, work.study, progress=report, **dict(options)), [
             *inputs.notes,
             *inputs.remarks,
@@ -68,9 +70,9 @@ def run_movie(
     from cytodisk.runs.told.movie_words import finding_line, lost_frame_lines, movie_fault, movie_lines
 
     def make(files: GivenFiles, given: Mapping[str, Any], work: WorkFolder) -> tuple[Study, list[str]]:
-        parameters = _part(MovieParameters, given, flags)
+        parameters = with_own(MovieParameters, given, flags)
         inputs = open_movie(files.masks, files.signal, parameters, nuclei=files.nuclei)
-        options = _part(RunOptions, given, flags)
+        options = with_own(RunOptions, given, flags)
         return movie_study(inputs, work.study, progress=report, **dict(options)), list(inputs.notes)
 
     made = _made("movie", chosen, values, report, make, "frames", MovieParameters, RunOptions)
@@ -117,7 +119,3 @@ def _made(
 def _by_name(error: CytodiskError, work: WorkFolder) -> str:
     """What an error says, where layers that were written are called by their names alone."""
     return str(error).replace(f"{work.inputs}{os.sep}", "")
-
-
-def _part(model: type[Group], given: Mapping[str, Any], flags: Mapping[str, str]) -> Group:
-    return model.called({name: one for name, one in given.items() if name in model.model_fields}, flags)

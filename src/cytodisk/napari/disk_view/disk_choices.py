@@ -6,14 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from cytodisk.napari.given.layer_kinds import MARK, is_picture, layer_kind
 from cytodisk.runs.channel_names import correlation_name, shown_name
 
 Kind = Literal["mean", "area", "correlation", "lag", "image"]
-MARK = "cytodisk"  # of a layer's metadata
 
 _PEAKS = {"correlation": "peak correlation", "lag": "lag of the peak"}
 _LONGEST_NAME = 24  # letters that a combo has room for
-_OWN_IMAGES = ("signal",)  # roles of layers of cytodisk that hold pixels, not windows
 
 
 @dataclass(frozen=True)
@@ -74,10 +73,8 @@ def _images(shown: Any) -> Iterator[DiskChoice]:
     if shown.viewer is None or shape is None:
         return
     for layer in shown.viewer.layers:
-        own = layer.metadata.get(MARK, {}).get("role")
-        if own is not None and own not in _OWN_IMAGES:
-            continue
-        if type(layer).__name__ == "Image" and not layer.rgb and fits(layer.data.shape, shape, shown):
+        is_image = layer_kind(layer) == "image" and not is_picture(layer) and MARK not in layer.metadata
+        if is_image and fits(layer.data.shape, shape, shown):
             yield DiskChoice("image", (layer.name,))
 
 

@@ -114,12 +114,12 @@ class DiskDock(QWidget):
     def _list_studies(self) -> None:
         if self.link is None:
             return
-        studies = shown_studies(self.viewer)
+        studies = [shown for shown in shown_studies(self.viewer) if shown.cells.mapped]
         self.parts.list_studies(studies, self._shown)
         self._take_study()
 
     def _take_study(self, index: int = 0) -> None:
-        self._take_shown(self.parts.studies.currentData())
+        self._take_shown(self.parts.study)
 
     def _take_shown(self, shown: Any) -> None:
         if shown is not self._shown:
@@ -152,7 +152,7 @@ class DiskDock(QWidget):
         self.refresh()
 
     def _choose_colours(self, index: int = 0) -> None:
-        choice = self.parts.choices.currentData()
+        choice = self.parts.choice
         if choice is not None and choice.kind == "mean" and choice.names[0] != self._shown.channel:
             self._shown.channel = choice.names[0]
         self.refresh()
@@ -161,7 +161,7 @@ class DiskDock(QWidget):
 
     def refresh(self) -> None:
         """Show the frame under the slider, and what is pointed at in it."""
-        choice = self.parts.choices.currentData()
+        choice = self.parts.choice
         if self._shown is None or choice is None:
             self.state = None
             self.parts.picture.show_colours(None, NO_STUDY)
@@ -177,7 +177,7 @@ class DiskDock(QWidget):
 
     def _cell(self, frame: int | None) -> int:
         """The chosen cell, the one under the cursor, the one before, or the first."""
-        chosen = self.parts.cells.currentData()
+        chosen = self.parts.cell
         if chosen is not None:
             return int(chosen)
         if self.pointed is not None:

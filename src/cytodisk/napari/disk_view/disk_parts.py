@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from qtpy.QtCore import QSignalBlocker
 from qtpy.QtGui import QColor
@@ -13,7 +13,6 @@ from qtpy.QtWidgets import (
     QFormLayout,
     QHBoxLayout,
     QLabel,
-    QScrollArea,
     QSizePolicy,
     QVBoxLayout,
     QWidget,
@@ -26,11 +25,14 @@ from cytodisk.napari.disk_view.disk_state import DiskState, KeyWords
 from cytodisk.napari.disk_view.pointing import Pointed
 from cytodisk.napari.disk_view.time_trace import TimeTrace
 from cytodisk.napari.qt_fault import warn_of_qt
+from cytodisk.napari.scrolled import scrolled
 from cytodisk.plot.cell.sector_marks import SECTOR_NOTE
 from cytodisk.plot.layer_looks import layer_word
 
 HINT = "Move the cursor over the cell or over the disk."
 UNDER_CURSOR = "under the cursor"
+
+Row = TypeVar("Row")
 
 _LINES = 3  # of words about a window
 _SIGNAL_LINE, _VELOCITY_LINE = "#009E73", "#CC79A7"
@@ -55,6 +57,10 @@ class DiskParts:
         self.trace = TimeTrace(_SIGNAL_LINE)
         self.velocity_trace = TimeTrace(_VELOCITY_LINE)
         self._form = QFormLayout()
+        # by row; as data of Qt's items None would lose a reference each time
+        self._studies: list[Any] = []
+        self._cells: list[int | None] = []
+        self._choices: list[DiskChoice] = []
         self._traced: Any = None
         self._lay_out(dock)
         self.list_cells(None)
@@ -96,13 +102,9 @@ class DiskParts:
         ):
             column.addLayout(part) if part is below else column.addWidget(part)
         column.addStretch()
-        scroll = QScrollArea()
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QScrollArea.Shape.NoFrame)
-        scroll.setWidget(inner)
         outer = QVBoxLayout(dock)
         outer.setContentsMargins(0, 0, 0, 0)
-        outer.addWidget(scroll)
+        outer.addWidget(scrolled(inner))
         dock.setMinimumWidth(260)
         dock.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Expanding)
 
@@ -119,12 +121,28 @@ class DiskParts:
 
     # Lists
 
+    @property
+    def study(self) -> Any:
+        """The study that is chosen; None without one."""
+        return _chosen(self._studies, self.studies)
+
+    @property
+    def cell(self) -> int | None:
+        """The cell that is chosen; None for the one under the cursor."""
+        return _chosen(self._cells, self.cells)
+
+    @property
+    def choice(self) -> DiskChoice | None:
+        """What the disk is coloured by; None without a study."""
+        return _chosen(self._choices, self.choices)
+
     def list_studies(self, studies: Sequence[Any], chosen: Any) -> None:
         """List the open studies; the chosen one stays chosen if it is open."""
         with QSignalBlocker(self.studies):
             self.studies.clear()
+            self._studies = list(studies)
             for shown in studies:
-                self.studies.addItem(" ".join([shown.study.path.name, *filter(None, [shown.source])]), shown)
+                self.studies.addItem(", ".join(filter(None, [shown.study.path.name, shown.source])))
             places = [place for place, shown in enumerate(studies) if shown is chosen]
             self.studies.setCurrentIndex(places[0] if places else len(studies) - 1)
         self._form.setRowVisible(self.studies, len(studies) > 1)
@@ -133,24 +151,25 @@ class DiskParts:
         """List the cells of a study."""
         with QSignalBlocker(self.cells):
             self.cells.clear()
+            self._cells = []
             if shown is not None:
-                numbers = sorted({int(cell) for cell in shown.cells.rows["cell"]})
-                if len(numbers) > 1:
-                    self.cells.addItem(UNDER_CURSOR, None)
-                for cell in numbers:
-                    self.cells.addItem(f"cell {cell}", cell)
+                numbers = shown.cells.numbers
+                self._cells = [*([None] if len(numbers) > 1 else []), *numbers]
+                self.cells.addItems(
+                    [UNDER_CURSOR if cell is None else f"cell {cell}" for cell in self._cells]
+                )
         self._form.setRowVisible(self.cells, self.cells.count() > 1)
 
     def may_show(self, cell: int) -> bool:
         """Whether the disk of a cell is shown when the cursor is over it."""
-        return self.cells.currentData() in (None, cell)
+        return self.cell in (None, cell)
 
     def list_choices(self, choices: Sequence[DiskChoice], chosen: DiskChoice | None) -> None:
         """List what the disk can be coloured by."""
         with QSignalBlocker(self.choices):
             self.choices.clear()
-            for choice in choices:
-                self.choices.addItem(choice.label, choice)
+            self._choices = list(choices)
+            self.choices.addItems([choice.label for choice in choices])
         self._form.setRowVisible(self.choices, len(choices) > 0)
         for part in (self.grid, self.note):
             part.setVisible(len(choices) > 0)
@@ -160,9 +179,8 @@ class DiskParts:
     def choose(self, choice: DiskChoice | None) -> None:
         """Choose what the disk is coloured by, without telling it to others."""
         with QSignalBlocker(self.choices):
-            for place in range(self.choices.count()):
-                if self.choices.itemData(place) == choice:
-                    self.choices.setCurrentIndex(place)
+            if choice in self._choices:
+                self.choices.setCurrentIndex(self._choices.index(choice))
 
     # What is shown
 
@@ -225,3 +243,8 @@ class DiskParts:
         velocity = numbers.velocity_through_time(sector)
         title = f"edge velocity ({numbers.speed_unit.name}), sector {sector}"
         self.velocity_trace.show_line(title, numbers.times, velocity, with_zero=True)
+
+
+def _chosen(rows: Sequence[Row], combo: QComboBox) -> Row | None:
+    row = combo.currentIndex()
+    return rows[row] if 0 <= row < len(rows) else None

@@ -14,6 +14,7 @@ from cytodisk.napari.disk_view.disk_choices import DiskChoice
 from cytodisk.napari.disk_view.disk_pixels import DiskColours, colours_of
 from cytodisk.napari.disk_view.pointing import Pointed
 from cytodisk.napari.disk_view.window_words import place_words
+from cytodisk.napari.given.layer_kinds import pixels_of
 from cytodisk.plot.style import DIVERGING_COLOURS, SIGNAL_COLOURS
 from cytodisk.windows.polar_windows import CellWindows
 
@@ -114,7 +115,8 @@ class DiskState:
         layer = self._layer if self.choice.kind == "image" else None
         if layer is None:
             return None
-        pixels = np.asarray(layer.data if layer.data.ndim == 2 else layer.data[self.frame])
+        data = pixels_of(layer)
+        pixels = np.asarray(data if data.ndim == 2 else data[self.frame])
         low, high = layer.contrast_limits
         return colours_of(windows.disk.image(pixels, _IMAGE_SIZE), (low, high), SIGNAL_COLOURS)
 

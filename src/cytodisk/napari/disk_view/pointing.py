@@ -10,7 +10,7 @@ import numpy as np
 
 from cytodisk.arrays import FloatArray
 
-_ROLES = ("windows", "values", "outlines", "velocity", "signal", "points")
+_ROLES = ("windows", "values", "outlines", "velocity", "points")
 
 
 @dataclass(frozen=True)

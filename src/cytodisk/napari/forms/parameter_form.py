@@ -11,6 +11,7 @@ from qtpy.QtWidgets import QFormLayout, QLabel, QVBoxLayout, QWidget
 
 from cytodisk.errors import CytodiskError
 from cytodisk.napari.forms.editors import editor_for
+from cytodisk.napari.forms.own_values import with_own
 from cytodisk.napari.forms.section import Section
 from cytodisk.parameter_words import flag_of, help_words, unit_of
 from cytodisk.parameters import Group, Parameters
@@ -92,8 +93,7 @@ class ParameterForm(QWidget):
         ParameterError
             A value is wrong, or two exclude each other; the message has their flags, as the tooltips have.
         """
-        chosen = {name: value for name, value in self.values().items() if name in model.model_fields}
-        return model.called(chosen, self.flags)
+        return with_own(model, self.values(), self.flags)
 
     def fault_words(self, name: str) -> str:
         """What is wrong with the value of a parameter by itself, as it stands below its editor."""

@@ -133,8 +133,10 @@ class Work(QObject):
         self._result = self._fault = None
         _RUNNING.discard(self)
         QCoreApplication.instance().aboutToQuit.disconnect(self.cancel)
-        if self._bar is None:
-            return  # its widgets are gone, nobody waits for the result
+        if self._bar is None:  # its widgets are gone, nobody waits for the result
+            if fault is not None and not isinstance(fault, CytodiskError | _Cancelled):
+                raise fault
+            return
         self._bar.cancel_wanted.disconnect(self.cancel)
         self._bar.destroyed.disconnect(self._lose_bar)
         self._bar.end(CANCELLED if isinstance(fault, _Cancelled) else "")

@@ -169,8 +169,8 @@ class Checked:
             places = self._places([place.shown for place in fault.places])
             yield f"{fault.kind}: {places}: {fault.words}{more}"
 
-    def totals(self) -> Iterator[str]:
-        """Lines on all masks together."""
+    def totals(self, follow: str = "cytodisk movie") -> Iterator[str]:
+        """Lines on all masks together; `follow` is what finds faults between frames."""
         what = counted(self._looked_at, "frame" if self._is_stack else "cell")
         usable = self._looked_at - self._unusable
         leaps = {place.key for fault in self._between_frames() for place in fault.places}
@@ -186,7 +186,7 @@ class Checked:
             diameters = 2.0 * np.sqrt(np.asarray(self._areas, dtype=np.float64) / np.pi)
             yield from scale_words(self._inputs.scale.length(diameters), self._inputs.scale)
         if self._is_stack:
-            yield "Masks were looked at one by one. Other faults between frames: cytodisk movie finds them."
+            yield f"Masks were looked at one by one. Other faults between frames: {follow} finds them."
 
     def _places(self, places: Sequence[str | int]) -> str:
         what = "frame" if self._is_stack else "cell"
