@@ -71,7 +71,8 @@ def run_correlation(
     from cytodisk.runs.qc_flags.study_flags import qc_flags
     from cytodisk.runs.told.correlation_words import correlation_lines, finding_lines, verdict_lines
 
-    parameters, options = (with_own(model, values, flags) for model in (CorrelateParameters, TableOptions))
+    parameters = with_own(CorrelateParameters, values, flags)
+    options = with_own(TableOptions, values, flags)
     there = open_study(study.path)
     report.stage("Correlating", PERCENT)
     found = correlate_study(there, *names, progress=report, parameters=parameters, **dict(options))
