@@ -119,6 +119,26 @@ def test_beside_a_nucleus_there_is_no_centre(tmp_path: Path) -> None:
     assert "edge to layer 2 (next to the nucleus) 1.50" in cells_finding(one, []).words
 
 
+def test_a_signal_without_values_is_not_one_that_was_not_given(tmp_path: Path) -> None:
+    one = movie(tmp_path, 10.0)
+    one.windows["mean"] = np.nan
+    assert movie_finding(one, 0, []).words.endswith("The signal has no value in any window.")
+    one.windows["channel"] = None
+    assert "No signal was given" in movie_finding(one, 0, []).words
+    cells = pd.DataFrame({"cell": [0], "label": 1, "frame": 0, "status": "ok", "qc_flags": "holes"})
+    some = study(tmp_path, cells.assign(certificate_valid=True), table([np.nan] * 3), 1.0)
+    said = cells_finding(some, []).words
+    assert said.endswith("1 of the mapped has QC flags. The signal has no value in any window.")
+
+
+def test_an_edge_that_stands_still_has_no_velocity_of_rounding(tmp_path: Path) -> None:
+    one = movie(tmp_path, 10.0)
+    one.edge["velocity"] = 4e-17
+    said = movie_finding(one, 0, []).words
+    assert "moves at 0 µm/s in the median, no more than the error of one sector" in said
+    assert "protrudes in 0 % of" in said
+
+
 def test_other_correlations_are_counted() -> None:
     kinds = {"RhoA": "found", "Cdc42": "doubtful", "Ras": "nothing"}
     others = [((name, "velocity"), Finding(kind, ())) for name, kind in kinds.items()]

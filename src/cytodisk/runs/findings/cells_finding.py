@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from cytodisk.number_words import counted
 from cytodisk.runs.findings.doubt_words import bearing_flags
 from cytodisk.runs.findings.finding import Finding, listed
-from cytodisk.runs.findings.layer_levels import layer_levels
+from cytodisk.runs.findings.layer_levels import WITHOUT_VALUES, has_channel, layer_levels
 from cytodisk.runs.findings.signal_sentences import signal_sentences
 from cytodisk.runs.groups.groups import CONDITION
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
@@ -35,6 +35,8 @@ def cells_finding(study: Study, flags: Sequence[QCFlag] | None = None) -> Findin
     levels = layer_levels(study)
     if levels is not None:
         sentences += signal_sentences(study, levels)
+    elif has_channel(study):
+        sentences.append(WITHOUT_VALUES)
     if raised and levels is not None:
         sentences[-1] = f"{sentences[-1][:-1]}, but QC flags are raised that bear on it: {listed(raised)}."
     return Finding("measured", tuple(sentences), compare_command(study))
@@ -54,7 +56,8 @@ def mapped_sentence(study: Study) -> str:
     lost = cells.loc[cells["status"] != "ok", "status"].value_counts()
     parts = [words, *(f"{count} {status}" for status, count in lost.items())]
     flagged = int((mapped["qc_flags"].fillna("") != "").sum())
-    parts.append(f"{flagged} of the mapped have QC flags" if flagged else "none of the mapped has a QC flag")
+    some = f"{flagged} of the mapped {'has' if flagged == 1 else 'have'} QC flags"
+    parts.append(some if flagged else "none of the mapped has a QC flag")
     empty = rows.loc[rows["label"] == 0, "status"].value_counts()
     parts += [f"{counted(count, 'image')} without a cell ({status})" for status, count in empty.items()]
     return "; ".join(parts) + "."

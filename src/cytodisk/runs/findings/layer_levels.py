@@ -12,6 +12,8 @@ from cytodisk.store.study import Study
 from cytodisk.store.window_blocks import has_signal, window_blocks
 from cytodisk.windows.study_grid import polar_grid_of
 
+WITHOUT_VALUES = "The signal has no value in any window."
+
 MOST_ROWS = 5_000_000
 """Of the table of windows that are read for single cells; the first cells stand for all beyond that."""
 
@@ -62,7 +64,7 @@ class LayerLevels:
 
 
 def layer_levels(study: Study, cell: int | None = None) -> LayerLevels | None:
-    """Levels by layer; None without a signal.
+    """Levels by layer; None without a signal, or where it has no value.
 
     Parameters
     ----------
@@ -92,6 +94,14 @@ def layer_levels(study: Study, cell: int | None = None) -> LayerLevels | None:
     levels = _over(sums).unstack("layer").reindex(columns=range(grid.layers))
     levels = levels.reindex(whole.index)
     return LayerLevels(levels, _over(whole), grid.layers - grid.nucleus_layers - 1, cut)
+
+
+def has_channel(study: Study) -> bool:
+    """Whether a signal was given, also one without a value: only its rows name a channel."""
+    if not has_signal(study):
+        return False
+    first = next(window_blocks(study, "channel"), None)
+    return first is not None and bool(first["channel"].notna().any())
 
 
 _KEYS = ["cell", "channel", "layer"]

@@ -13,16 +13,18 @@ from cytodisk.runs.channel_names import correlation_name
 from cytodisk.runs.findings.correlation_finding import correlation_finding
 from cytodisk.runs.findings.doubt_words import bearing_flags
 from cytodisk.runs.findings.finding import Finding, listed
-from cytodisk.runs.findings.layer_levels import LayerLevels, layer_levels
+from cytodisk.runs.findings.layer_levels import WITHOUT_VALUES, LayerLevels, has_channel, layer_levels
 from cytodisk.runs.findings.signal_sentences import signal_sentences
 from cytodisk.runs.qc_flags.qc_flag import QCFlag
 from cytodisk.runs.qc_flags.remedy import correlate_command
 from cytodisk.runs.qc_flags.study_flags import run_flags
 from cytodisk.store.study import Study
 
+NO_SIGNAL = "No signal was given, so there is none to compare with the edge."
 _ORDER = ("found", "doubtful", "nothing")
 _KINDS = {"found": "found", "doubtful": "in doubt", "nothing": "not beyond chance"}
 _MOST_NAMED = 3
+_NOISE = 1e-6  # of the error of a velocity
 
 
 def movie_finding(study: Study, cell: int, flags: Sequence[QCFlag] | None = None) -> Finding:
@@ -104,7 +106,7 @@ def measured(study: Study, cell: int, flagged: Sequence[str] = ()) -> Finding:
 
 def _signals(study: Study, cell: int, levels: LayerLevels | None) -> Iterator[str]:
     if levels is None:
-        yield "No signal was given, so there is none to compare with the edge."
+        yield WITHOUT_VALUES if has_channel(study) else NO_SIGNAL
         return
     yield from signal_sentences(study, levels, cell)
 
@@ -120,8 +122,12 @@ def _motion(study: Study, cell: int) -> Iterator[str]:
     if speed.empty:
         yield "No two mapped frames follow each other, so the edge has no velocity."
         return
-    unit = study.scale.shown_velocity(top_speed(speed.to_numpy()), frames + 1)
-    usual, error = float(speed.abs().median()), float(edge["velocity_error"].median())
+    error = float(edge["velocity_error"].median())
+    speed = speed.where(~(speed.abs() < _NOISE * error), 0.0)  # what sums leave of an edge that stands still
+    unit, usual = (
+        study.scale.shown_velocity(top_speed(speed.to_numpy()), frames + 1),
+        float(speed.abs().median()),
+    )
     noise = f", no more than the error of one sector ({unit.words(error, 2)})" if usual <= error else ""
     moving = (
         f"In {span} the edge moves at {unit.words(usual, 2)} in the median{noise}, and protrudes in "
