@@ -83,3 +83,13 @@ def test_a_layer_that_no_cell_has_is_left_out(tmp_path: Path, saved: list[Figure
 def test_no_picture_without_a_ratio(tmp_path: Path) -> None:
     assert write_nuclei_figure(tmp_path / "nuclei.png", _cells([np.nan]), None) is None
     assert not list(tmp_path.iterdir())
+
+
+def test_long_names_of_channels_stand_below_the_thirds(tmp_path: Path, drawn: list[Figure]) -> None:
+    cells = _cells([1.5])
+    longer = [
+        cells.rename(columns=lambda name, k=k: name.replace("GFP", f"D7_signal {k}")) for k in (1, 2, 3)
+    ]
+    joined = pd.concat([longer[0], *(one.drop(columns="cell") for one in longer[1:])], axis=1)
+    write_nuclei_figure(tmp_path / "nuclei.png", joined, None)
+    assert "1 cell with its nucleus" in {text.get_text() for text in drawn[0].texts}

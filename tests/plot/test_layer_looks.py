@@ -1,9 +1,13 @@
+from itertools import pairwise
+
 import numpy as np
+import pytest
 import xarray as xr
 
 from cytodisk.plot.layer_looks import (
     cytoplasm_layers_of,
     layer_colours,
+    layer_dashes,
     layer_names,
     layer_word,
     shown_layers,
@@ -44,3 +48,11 @@ def test_colours_tell_the_compartment() -> None:
     lightness = colours[:, :3] @ np.array([0.3, 0.6, 0.1])
     assert (np.diff(lightness[:3]) > 0).all()
     assert (np.diff(lightness[3:]) > 0).all()
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5])
+def test_lines_of_neighbouring_layers_are_told_apart_without_colours(count: int) -> None:
+    dashes = layer_dashes(range(count))
+    assert len(dashes) == count
+    assert all(one != other for one, other in pairwise(dashes)) or count == 2
+    assert dashes[0] == dashes[-1] == "-"

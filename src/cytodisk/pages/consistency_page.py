@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from cytodisk.pages.drawn_movie import LEFT_MM, DrawnMovie
 from cytodisk.pages.sheet import Sheet
-from cytodisk.plot.layer_looks import layer_colours, layer_names, shown_layers
+from cytodisk.plot.layer_looks import layer_colours, layer_dashes, layer_names, shown_layers
 from cytodisk.plot.movie.layer_lines import draw_by_layer
 from cytodisk.plot.style import WIDE_MM
 from cytodisk.windows.layer_coords import layer_coords
@@ -118,7 +118,7 @@ def _write_key(sheet: Sheet, layers: Sequence[int], movie: DrawnMovie) -> None:
     names = layer_names(layers, movie.grid.layers, movie.depths)
     colours = layer_colours(layers, movie.cytoplasm_layers)
     handles = [
-        Line2D([], [], color=colour, linewidth=1.5, label=name)
-        for colour, name in zip(colours, names, strict=True)
+        Line2D([], [], color=colour, linewidth=0.9, linestyle=dashes, label=name)
+        for colour, dashes, name in zip(colours, layer_dashes(layers), names, strict=True)
     ]
     sheet.key(LEFT_MM, movie.heading_mm - 1.5, handles, columns=_KEY_COLUMNS)

@@ -130,7 +130,7 @@ def peaks_page(one: DrawnCorrelation) -> Sheet | None:
     notes = _notes_on_peaks(one)
     sheet = Sheet(head + 2 * row + 7.5 + 4.0 * key_rows + _LINE * len(notes), SINGLE_COLUMN_MM)
     heading.write(sheet)
-    lefts = (LEFT_MM, LEFT_MM + _PANEL + _PANEL_GAP)
+    lefts = (LEFT_MM + 1.5, LEFT_MM + _PANEL + _PANEL_GAP)
     stamp = f"on the cell, {time_stamp(time, movie.scale)}"
     for left, words in zip(lefts, ("on the disk", stamp), strict=True):
         sheet.text(left + 0.5 * _PANEL, head, words, ha="center")

@@ -63,7 +63,8 @@ def write_nuclei_figure(path: Path, cells: pd.DataFrame, profile: pd.DataFrame |
         step = _PANEL + _BELOW
         sheet = Sheet(_TOP + (rows + 1 + shares_below) * step + 2.0)
         measured = int(cells[column_of(RATIO, names[0])].notna().sum())
-        sheet.title(4.0, 5.0, f"{measured} cells with their nuclei")
+        words = "1 cell with its nucleus" if measured == 1 else f"{measured} cells with their nuclei"
+        sheet.title(4.0, 5.0, words)
         sheet.text(
             4.0,
             8.6,
@@ -137,7 +138,7 @@ def _draw_shares(ax: Axes, cells: pd.DataFrame, names: list[str]) -> None:
             name,
             (k, 0.0),
             xycoords=ax.get_xaxis_transform(),
-            xytext=(0, -40),
+            xytext=(0, -49),
             textcoords="offset points",
             ha="center",
             va="top",

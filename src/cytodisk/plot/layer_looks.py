@@ -25,10 +25,20 @@ NUCLEUS_COLOURS = LinearSegmentedColormap.from_list("nucleus", ["#0B2E6B", "#2F7
 NUCLEUS_LINE = "#56B4E9"
 """Of lines over an image: sky blue, of Okabe and Ito."""
 
+_DASHES: Any = ("-", (0, (4.0, 1.2)), (0, (1.2, 1.0)), (0, (5.0, 1.2, 1.2, 1.2)))
 _MOST_LAYERS = 4
 _MOST_IN_CYTOPLASM, _MOST_IN_NUCLEUS = 3, 2
 _LIGHTEST = 0.85  # share of the colours that can be seen on white
 _LIGHTEST_CYTOPLASM, _LIGHTEST_NUCLEUS = 0.5, 0.75
+
+
+def layer_dashes(layers: Sequence[int]) -> list[Any]:
+    """Dashes of the line of each shown layer: without colours, neighbours are told apart.
+
+    The last is solid as the first is: their colours differ most.
+    """
+    inner = [_DASHES[place % len(_DASHES)] for place in range(len(layers) - 1)]
+    return [*inner, "-"] if len(layers) else []
 
 
 def shown_layers(layers: int, cytoplasm_layers: int | None = None) -> list[int]:

@@ -13,7 +13,13 @@ from matplotlib.ticker import MaxNLocator
 
 from cytodisk.arrays import FloatArray, IntArray
 from cytodisk.errors import ParameterError
-from cytodisk.plot.layer_looks import cytoplasm_layers_of, layer_colours, layer_word, shown_layers
+from cytodisk.plot.layer_looks import (
+    cytoplasm_layers_of,
+    layer_colours,
+    layer_dashes,
+    layer_word,
+    shown_layers,
+)
 from cytodisk.plot.movie.activity_maps import draw_velocity_map
 from cytodisk.plot.number_tables import named_table
 from cytodisk.plot.style import LINE_COLOUR, TEXT_SIZE
@@ -27,7 +33,6 @@ _OUTLINE_WIDTH, _ONSET_WIDTH, _THIN_ONSET = 0.4, 1.3, 0.6  # points
 _MOST_OUTLINED = 150  # patches
 _COLUMNS = {"sector", "kind", "onset", "end", "onset_known", "patch"}
 _BAND_OPACITY = 0.18
-_DASHES: Any = ("-", (0, (4.0, 1.2)), (0, (1.2, 1.0)), (0, (5.0, 1.2, 1.2, 1.2)))
 
 
 def draw_events(ax: Axes, velocity: xr.DataArray, events: pd.DataFrame) -> LineCollection:
@@ -131,13 +136,12 @@ def draw_event_average(ax: Axes, average: xr.Dataset, *, label: str = "mean") ->
     delays, unit = _delays(average)
     outer = cytoplasm_layers_of(table)
     layers, lines = shown_layers(table.sizes["layer"], outer), []
-    for place, (layer, colour) in enumerate(zip(layers, layer_colours(layers, outer), strict=True)):
+    looks = zip(layers, layer_colours(layers, outer), layer_dashes(layers), strict=True)
+    for layer, colour, dashes in looks:
         one = table.isel(layer=layer)
         if layer in (layers[0], layers[-1]):
             low, high = one["lower"], one["upper"]
             ax.fill_between(delays, low, high, color=colour, alpha=_BAND_OPACITY, linewidth=0)
-        # The last is solid as the first is: their colours differ most.
-        dashes = "-" if layer == layers[-1] else _DASHES[place % len(_DASHES)]
         name = layer_word(layer, table.sizes["layer"], outer)
         lines += ax.plot(delays, one["mean"], color=colour, linewidth=0.9, linestyle=dashes, label=name)
     ax.axvline(0.0, color="0.6", linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)

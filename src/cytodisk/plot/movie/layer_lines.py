@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from cytodisk.errors import ParameterError
-from cytodisk.plot.layer_looks import cytoplasm_layers_of, layer_colours
+from cytodisk.plot.layer_looks import cytoplasm_layers_of, layer_colours, layer_dashes
 from cytodisk.plot.number_tables import number_table
 from cytodisk.plot.time_axis import TICK_STEPS, FrameTimes, stands_alone
 from cytodisk.plot.units import unit_of, with_unit
@@ -63,10 +63,10 @@ def draw_by_layer(
     time = FrameTimes.of(values, "values", scale).set_axis(ax)
     lines = []
     colours = layer_colours(layers, cytoplasm_layers_of(values))
-    for layer, colour in zip(layers, colours, strict=True):
+    for layer, colour, dashes in zip(layers, colours, layer_dashes(layers), strict=True):
         one = table[:, layer]
         dots: Any = {"marker": ".", "markersize": 3.0, "markevery": stands_alone(one)}
-        lines += ax.plot(time, one, color=colour, linewidth=0.9, clip_on=False, **dots)
+        lines += ax.plot(time, one, color=colour, linewidth=0.9, linestyle=dashes, clip_on=False, **dots)
     ax.set_ylabel(with_unit(label, unit_of(values)))
     ax.yaxis.set_major_locator(MaxNLocator(4, steps=TICK_STEPS))
     return lines
